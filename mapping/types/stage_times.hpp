@@ -1,0 +1,46 @@
+// stage_times.hpp: how long each stage of a pipeline took, frame by frame.
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace roomradar {
+
+struct StageSummary {
+  std::size_t count = 0;
+  double median_ms = 0.0;
+  double p95_ms = 0.0;
+  double p99_ms = 0.0;
+  double max_ms = 0.0;
+};
+
+/// Collects wall-clock times by stage name. One call a stage from outside: `times.timed("fuse", [&] { fuse(...); });`
+class StageTimes {
+ public:
+  template <typename Work>
+  decltype(auto) timed(std::string_view stage, Work&& work) {
+    const Stop stop{*this, stage, std::chrono::steady_clock::now()};
+    return std::forward<Work>(work)();
+  }
+  void add_ms(std::string_view stage, double elapsed_ms);
+  /// Nearest-rank percentiles of each stage; an empty map if nothing was timed.
+  [[nodiscard]] std::map<std::string, StageSummary> summaries() const;
+
+ private:
+  struct Stop {
+    StageTimes& times;
+    std::string_view stage;
+    std::chrono::steady_clock::time_point start;
+    ~Stop() {
+      times.add_ms(stage,
+                   std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+  };
+  std::map<std::string, std::vector<float>, std::less<>> samples_ms_;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,46 @@
+// up_direction.hpp: which way is up in a recording, from the accelerometer or from the planes that the camera saw.
+#pragma once
+#include <Eigen/Geometry>
+#include <string_view>
+#include <vector>
+
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+enum class UpSource {
+  kNone,           ///< nothing usable was seen: the first camera's -y is taken
+  kAccelerometer,  ///< gravity measured by the device
+  kPlane,          ///< normal of the dominant plane that lies roughly level for a camera held upright
+};
+std::string_view to_string(UpSource source);
+
+struct UpDirection {
+  UpSource source = UpSource::kNone;
+  Eigen::Vector3d up_world = Eigen::Vector3d::UnitZ();  ///< unit
+  double support = 0.0;  ///< kPlane: part of all measured normals within 5 degrees of up_world; else 1 or 0
+};
+
+/// Collects evidence frame by frame; frames whose pose is not trusted are not to be added.
+class UpEstimator {
+ public:
+  /// Takes the frame's gravity, and the normals of every 8th pixel of its depth, both turned into the world.
+  void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+
+  /// Gravity's mean where at least half of the frames had one, else the strongest normal direction within 60 degrees
+  /// of the cameras' mean -y (a hand-held camera may look down at a table, but is seldom on its head), if at least
+  /// 5 % of the normals support it; else that mean itself with kNone.
+  [[nodiscard]] UpDirection estimate() const;
+
+ private:
+  std::vector<Eigen::Vector3f> normals_world_;
+  Eigen::Vector3d down_sum_world_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d camera_up_sum_world_ = Eigen::Vector3d::Zero();
+  std::size_t frames_ = 0;
+  std::size_t frames_with_gravity_ = 0;
+};
+
+/// The rotation that takes `up_world` to +z by the shortest way; up_world = -z turns about x.
+Eigen::Isometry3d level_rotation(const Eigen::Vector3d& up_world);
+
+}  // namespace roomradar

@@ -1,0 +1,75 @@
+// types_test.cpp: the vocabulary: cameras, noise, stage times.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/error.hpp"
+#include "mapping/types/intrinsics.hpp"
+#include "mapping/types/stage_times.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr Intrinsics kKinect{640, 480, 585.0, 585.0, 320.0, 240.0};
+
+TEST(Intrinsics, ProjectIsTheInverseOfBackProject) {
+  for (const double depth_m : {0.4, 1.0, 8.0}) {
+    const Eigen::Vector2d p_px = project(kKinect, back_project(kKinect, 17.25, 401.5, depth_m));
+    EXPECT_NEAR(p_px.x(), 17.25, 1e-10);
+    EXPECT_NEAR(p_px.y(), 401.5, 1e-10);
+  }
+}
+
+TEST(Intrinsics, HalvingKeepsTheImageBordersInPlace) {
+  // The left border of the image is at u = -0.5 in both; it must be the same ray.
+  const Intrinsics half = scaled(kKinect, 0.5);
+  EXPECT_EQ(half.width_px, 320);
+  EXPECT_NEAR(back_project(kKinect, -0.5, -0.5, 2.0).x(), back_project(half, -0.5, -0.5, 2.0).x(), 1e-12);
+  EXPECT_NEAR(back_project(kKinect, 639.5, 479.5, 2.0).y(), back_project(half, 319.5, 239.5, 2.0).y(), 1e-12);
+}
+
+TEST(Intrinsics, WhatCannotBeACameraIsNamed) {
+  const auto message = [](Intrinsics camera) -> std::string {
+    try {
+      require_valid(camera, "cam.txt");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(message(kKinect), "accepted");
+  Intrinsics bad = kKinect;
+  bad.fx_px = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(message(bad).find("cam.txt: fx_px"), std::string::npos) << message(bad);
+  bad = kKinect;
+  bad.width_px = 0;
+  EXPECT_NE(message(bad).find("width_px"), std::string::npos);
+  bad = kKinect;
+  bad.cy_px = std::numeric_limits<double>::infinity();
+  EXPECT_NE(message(bad).find("cy_px"), std::string::npos);
+}
+
+TEST(DepthNoise, FollowsNguyenAndStaysFiniteAtTheEnds) {
+  EXPECT_NEAR(depth_sigma_m(0.4F), 0.0012F, 1e-7F);
+  EXPECT_NEAR(depth_sigma_m(2.4F), 0.0012F + 0.0019F * 4.0F, 1e-6F);
+  EXPECT_NEAR(depth_sigma_m(0.0F), 0.0012F, 1e-7F);
+  EXPECT_TRUE(std::isfinite(depth_sigma_m(8.0F, 1.5707963F)));
+  EXPECT_GT(depth_sigma_m(2.0F, 1.4F), depth_sigma_m(2.0F));
+}
+
+TEST(StageTimes, PercentilesAreNearestRank) {
+  StageTimes times;
+  for (int ms = 1; ms <= 100; ++ms) times.add_ms("fuse", ms);
+  EXPECT_EQ(times.timed("read", [] { return 7; }), 7);
+  const auto summaries = times.summaries();
+  EXPECT_EQ(summaries.at("fuse").count, 100U);
+  EXPECT_DOUBLE_EQ(summaries.at("fuse").median_ms, 50.0);
+  EXPECT_DOUBLE_EQ(summaries.at("fuse").p95_ms, 95.0);
+  EXPECT_DOUBLE_EQ(summaries.at("fuse").p99_ms, 99.0);
+  EXPECT_DOUBLE_EQ(summaries.at("fuse").max_ms, 100.0);
+  EXPECT_EQ(summaries.at("read").count, 1U);
+}
+
+}  // namespace
+}  // namespace roomradar
