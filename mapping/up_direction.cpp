@@ -1,6 +1,7 @@
 // up_direction.cpp: mean gravity, or the mode of the surface normals near the cameras' own up.
 #include "mapping/up_direction.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -44,7 +45,7 @@ std::string_view to_string(UpSource source) {
 
 void UpEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   ++frames_;
-  const Eigen::Matrix3d R_world_camera = T_world_camera.rotation();
+  const Eigen::Matrix3d R_world_camera = T_world_camera.linear();
   camera_up_sum_world_ -= R_world_camera.col(1);
   if (frame.down_camera) {
     down_sum_world_ += R_world_camera * *frame.down_camera;
