@@ -1,0 +1,85 @@
+// trajectory.cpp: reading, writing and scoring poses over time.
+#include "mapping/trajectory.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+
+void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory) {
+  std::ofstream file(path);
+  file << "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n";
+  for (const TimedPose& pose : trajectory) {
+    const Eigen::Vector3d t = pose.T_world_camera.translation();
+    const Eigen::Quaterniond q(pose.T_world_camera.linear());
+    std::array<char, 256> line{};
+    std::snprintf(line.data(), line.size(), "%.9f %.12g %.12g %.12g %.12g %.12g %.12g %.12g\n", pose.stamp_s, t.x(),
+                  t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+    file << line.data();
+  }
+  file.flush();
+  if (!file) throw Error(path.string() + ": the trajectory cannot be written; is the disk full?");
+}
+
+std::vector<TimedPose> read_trajectory(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  if (!file) throw Error(path.string() + ": cannot be opened");
+  std::vector<TimedPose> trajectory;
+  std::string line;
+  for (int line_number = 1; std::getline(file, line); ++line_number) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream words(line);
+    std::array<double, 8> v{};
+    for (double& value : v) {
+      if (!(words >> value) || !std::isfinite(value))
+        throw Error(path.string() + ":" + std::to_string(line_number) +
+                    ": expected 8 numbers `stamp tx ty tz qx qy qz qw`, got \"" + line.substr(0, 100) + "\"");
+    }
+    const Eigen::Quaterniond q_xyzw(v[7], v[4], v[5], v[6]);
+    if (std::abs(q_xyzw.norm() - 1.0) > 0.01)
+      throw Error(path.string() + ":" + std::to_string(line_number) + ": the quaternion's length is " +
+                  std::to_string(q_xyzw.norm()) + ", not 1");
+    TimedPose pose;
+    pose.frame_index = static_cast<std::int64_t>(trajectory.size());
+    pose.stamp_s = v[0];
+    pose.T_world_camera.linear() = q_xyzw.normalized().toRotationMatrix();
+    pose.T_world_camera.translation() = Eigen::Vector3d(v[1], v[2], v[3]);
+    trajectory.push_back(pose);
+  }
+  return trajectory;
+}
+
+TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
+                                          const std::vector<TimedPose>& reference) {
+  std::map<std::int64_t, Eigen::Vector3d> reference_m;
+  for (const TimedPose& pose : reference) reference_m[pose.frame_index] = pose.T_world_camera.translation();
+  Eigen::Matrix3Xd from(3, estimate.size());
+  Eigen::Matrix3Xd to(3, estimate.size());
+  Eigen::Index matched = 0;
+  for (const TimedPose& pose : estimate) {
+    const auto found = reference_m.find(pose.frame_index);
+    if (found == reference_m.end()) continue;
+    from.col(matched) = pose.T_world_camera.translation();
+    to.col(matched) = found->second;
+    ++matched;
+  }
+  if (matched < 3) return {};
+  from.conservativeResize(3, matched);
+  to.conservativeResize(3, matched);
+  TrajectoryError error;
+  error.poses = static_cast<std::size_t>(matched);
+  error.T_reference_estimate.matrix() = Eigen::umeyama(from, to, /*with_scaling=*/false);
+  const Eigen::RowVectorXd squared_m2 = ((error.T_reference_estimate * from).eval() - to).colwise().squaredNorm();
+  error.rmse_m = std::sqrt(squared_m2.mean());
+  error.max_m = std::sqrt(squared_m2.maxCoeff());
+  return error;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,35 @@
+// trajectory.hpp: poses over time, and their file in the form of the TUM RGB-D benchmark.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace roomradar {
+
+struct TimedPose {
+  std::int64_t frame_index = 0;
+  double stamp_s = 0.0;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+};
+
+/// One line a pose, `stamp tx ty tz qx qy qz qw` (s, m, unit quaternion), in order, with enough digits to come back
+/// within 1e-9. Throws Error if the file cannot be written.
+void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory);
+
+/// Reads that form; lines starting with # are comments. frame_index is the line's number, from 0.
+/// Throws Error naming file and line where a line has not 8 finite numbers or no usable quaternion.
+std::vector<TimedPose> read_trajectory(const std::filesystem::path& path);
+
+struct TrajectoryError {
+  std::size_t poses = 0;  ///< matched by frame_index
+  double rmse_m = 0.0;
+  double max_m = 0.0;
+  Eigen::Isometry3d T_reference_estimate = Eigen::Isometry3d::Identity();
+};
+
+/// Absolute trajectory error: positions matched by frame index after the best rigid alignment (scale 1).
+/// `poses` is 0 where fewer than 3 match. Source: Horn 1987; Sturm et al., IROS 2012.
+TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference);
+
+}  // namespace roomradar
