@@ -71,12 +71,12 @@ TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate
     ++matched;
   }
   if (matched < 3) return {};
-  from.conservativeResize(3, matched);
-  to.conservativeResize(3, matched);
+  const auto estimated = from.leftCols(matched);
+  const auto expected = to.leftCols(matched);
   TrajectoryError error;
   error.poses = static_cast<std::size_t>(matched);
-  error.T_reference_estimate.matrix() = Eigen::umeyama(from, to, /*with_scaling=*/false);
-  const Eigen::RowVectorXd squared_m2 = ((error.T_reference_estimate * from).eval() - to).colwise().squaredNorm();
+  error.T_reference_estimate.matrix() = Eigen::umeyama(estimated, expected, /*with_scaling=*/false);
+  const Eigen::RowVectorXd squared_m2 = ((error.T_reference_estimate * estimated).eval() - expected).colwise().squaredNorm();
   error.rmse_m = std::sqrt(squared_m2.mean());
   error.max_m = std::sqrt(squared_m2.maxCoeff());
   return error;
