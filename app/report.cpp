@@ -1,0 +1,49 @@
+// report.cpp: gathers and writes a command's report.
+#include "app/report.hpp"
+
+#include <sys/resource.h>
+
+#include <fstream>
+
+#include "mapping/types/version.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+
+double peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
+}
+
+nlohmann::json to_json(const Report& report) {
+  nlohmann::json stages = nlohmann::json::object();
+  for (const auto& [stage, s] : report.times.summaries()) {
+    stages[stage] = {{"count", s.count},   {"median_ms", s.median_ms}, {"p95_ms", s.p95_ms},
+                     {"p99_ms", s.p99_ms}, {"max_ms", s.max_ms}};
+  }
+  nlohmann::json json = {
+      {"command", report.command},
+      {"version", kVersion},
+      {"source", report.source},
+      {"settings", report.settings},
+      {"renderer", report.renderer},
+      {"frames_read", report.frames_read},
+      {"frames_skipped", report.frames_skipped},
+      {"stages", stages},
+      {"peak_rss_mb", peak_rss_mb()},
+      {"wall_s", std::chrono::duration<double>(std::chrono::steady_clock::now() - report.started).count()},
+  };
+  json.update(report.results);
+  return json;
+}
+
+void write_report(const Report& report, const std::filesystem::path& path) {
+  if (path.empty()) return;
+  std::ofstream file(path);
+  file << to_json(report).dump(2) << '\n';
+  file.flush();
+  if (!file) throw Error(path.string() + ": the report cannot be written; does its folder exist, and is there room?");
+}
+
+}  // namespace roomradar
