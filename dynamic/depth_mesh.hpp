@@ -1,0 +1,48 @@
+// depth_mesh.hpp: triangles through the pixels of a depth frame.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "dynamic/surface_policy.hpp"
+#include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+struct DepthMeshConfig {
+  int stride_px = 2;  ///< every stride-th pixel becomes a vertex; silhouettes lose up to stride - 1 pixels
+  float jump_sigmas = 4.0F;          ///< two pixels whose depths differ by noise alone are one surface
+  float jump_incidence_deg = 80.0F;  ///< and so are two on a plane seen at up to this angle from its normal
+  int skirt_gap_px = 64;  ///< a skirt closes unmeasured gaps (projector shadow) of up to this width
+};
+/// Throws Error naming the field, its value and the rule.
+void require_valid(const DepthMeshConfig& config);
+
+/// Buffers that the meshers reuse from frame to frame; their content means nothing between calls.
+struct DepthMeshScratch {
+  std::vector<std::int32_t> vertex_above, vertex_here;
+  std::vector<float> filled_m;
+};
+
+/// Meshes the pixels that moved: a vertex at each measured pixel of the mask (on the stride grid), triangles
+/// between neighbours that lie on one surface. Nothing spans a depth jump or the mask's edge.
+///
+/// @param depth_m         height x width, metres along the axis, 0 = no measurement
+/// @param moved_mask      same size, not 0 = in
+/// @param T_world_camera  pose of the depth camera
+/// @param mesh            overwritten, allocations kept; origin at the camera's position, world axes, unit
+/// normals,
+///                        counter-clockwise towards the camera, no colours; empty if nothing is masked
+void mesh_masked(const DepthImage& depth_m, const MaskImage& moved_mask, const Intrinsics& camera,
+                 const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
+                 DepthMeshScratch& scratch, Mesh& mesh);
+
+/// Meshes the whole frame, as a system without a map would. kSkirt also joins the two sides of each depth
+/// jump, and of each unmeasured gap within a row, by polygons; kHoles, and kMap alike, leave them open.
+/// Otherwise as mesh_masked.
+void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);
+
+}  // namespace roomradar

@@ -1,0 +1,69 @@
+// foreground.hpp: which pixels of a depth frame differ from the static model, and how.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
+
+namespace roomradar {
+
+enum class PixelLabel : std::uint8_t {
+  kNotKnown,  ///< no live depth, or no static model to compare it with
+  kStatic,    ///< agrees with the static model as far as noise and pose error let one tell
+  kMoved,     ///< nearer than the static model: something came in between
+  kRevealed,  ///< farther than the static model: something was taken away
+};
+using LabelImage = Image<PixelLabel>;
+
+/// All "sigmas" are of the total: sensor noise at this depth and incidence angle, and the model's own error,
+/// added as variances. Strong pixels start a region, weak pixels only join one.
+struct ForegroundConfig {
+  float model_sigma_m = 0.006F;  ///< error of the expected depth itself; a map with 1 cm cells has about this
+  float model_sigma_per_m = 0.004F;  ///< and what grows with depth: pose error, the sensor's own distortion
+  float strong_sigmas = 4.0F;
+  float weak_sigmas = 2.0F;
+  int silhouette_px = 3;   ///< a pose error of 0.3 degrees or of 5 mm at 1 m shifts an edge by 3 px
+  int hole_reach_px = 16;  ///< how far from the model's edge a pixel without expected depth is still judged
+  int min_region_px = 60;  ///< smaller regions are noise
+  float min_region_m2 = 0.0003F;  ///< the same by size in the world: 3 cm2
+};
+/// Throws Error naming the field, its value and the rule.
+void require_valid(const ForegroundConfig& config);
+
+/// Buffers that mark_foreground reuses from frame to frame; their content means nothing between calls.
+struct ForegroundScratch {
+  std::vector<float> nearest_m, farthest_m;  ///< extremes of the expected depth around each pixel
+  std::vector<float> row_nearest_m, row_farthest_m, block_nearest_m, block_reach_m;
+  std::vector<std::uint8_t> evidence;
+  std::vector<std::uint32_t> region;
+};
+
+struct ForegroundCounts {
+  std::size_t valid = 0;  ///< pixels with live depth
+  std::size_t moved = 0;
+  std::size_t revealed = 0;
+  std::size_t not_known = 0;  ///< pixels with live depth but nothing to compare it with
+};
+
+/// Compares a depth frame with what the static model would show at the same pose.
+///
+/// @param depth_m           live depth, height x width, metres along the axis, 0 = no measurement
+/// @param expected_depth_m  the static model seen by the same camera, same size, 0 = the model has nothing
+/// there
+/// @param camera            of both images
+/// @param scratch           reused; nothing is allocated from the second frame of a size on
+/// @param labels            resized and set
+/// @param moved_mask        255 where the label is kMoved, else 0; resized and set
+/// The three sizes must agree (asserted).
+///
+/// A pixel counts as moved only if it is nearer than the nearest expected depth within silhouette_px, so an
+/// edge that a pose error shifted, and a flying pixel on it, stay static. A pixel where the model has a hole
+/// is judged against the nearest expected depth within about hole_reach_px: nearer than all of that is moved;
+/// anything else, and everything farther inside an unmapped view, is kNotKnown: a hole proves nothing.
+ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
+                                 const Intrinsics& camera, const ForegroundConfig& config,
+                                 ForegroundScratch& scratch, LabelImage& labels, MaskImage& moved_mask);
+
+}  // namespace roomradar
