@@ -1,0 +1,45 @@
+// compose.hpp: put the virtual objects into the camera's picture: hidden by what is nearer, shadowing what is below.
+#pragma once
+#include <Eigen/Geometry>
+#include <span>
+
+#include "app/contact_shadow.hpp"
+#include "app/object_layer.hpp"
+#include "mapping/types/image.hpp"
+#include "mapping/types/intrinsics.hpp"
+
+namespace roomradar {
+
+struct ComposeConfig {
+  float occlusion_tolerance_m = 0.006F;   ///< a real surface must be nearer by this at 1 m to hide the object
+  float tolerance_per_m2 = 0.003F;        ///< and by this more per squared metre of distance: sensor noise
+  float occlusion_softness_m = 0.004F;    ///< over this depth the object fades out: no hard line where surfaces meet
+  float shadow_strength = 0.75F;          ///< 0 none .. 1: black where the object covers the whole sky
+};
+/// Throws Error "compose.shadow_strength = 2: must be in 0..1" and the like.
+void require_valid(const ComposeConfig& config);
+
+/// An object that darkens what is below it.
+struct ShadowCaster {
+  const ContactShadow* shadow = nullptr;
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+};
+
+/// The picture of the room with the objects in it.
+///
+/// @param background       the camera's picture, of the camera's size; e.g. the live colour, or shade_depth of the depth
+/// @param camera           the (colour) camera
+/// @param T_world_camera   its pose
+/// @param real_depth_m     real surfaces as this camera sees them, of its size; 0: nothing known, hides nothing
+/// @param casters          objects that cast a soft shadow on real surfaces
+/// @param layer            the objects as this camera sees them (ObjectDrawer::draw)
+/// @param picture          of the camera's size; may not be `background`
+/// Throws Error if sizes disagree. Only the objects' and shadows' rectangles cost time beyond one copy.
+void compose(const ColourImage& background, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+             const DepthImage& real_depth_m, std::span<const ShadowCaster> casters, const ObjectLayer& layer,
+             const ComposeConfig& config, ColourImage& picture);
+
+/// A grey picture of a depth image, lit from the camera, for sources without colour. Pixels without depth are dark.
+void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture);
+
+}  // namespace roomradar

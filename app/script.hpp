@@ -1,0 +1,62 @@
+// script.hpp: the events file of `roomradar run --script FILE`: what the virtual objects do, and when.
+#pragma once
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace roomradar {
+
+enum class Action {
+  kAdd,     ///< load a mesh; it is not in the room until it is placed, dropped or thrown
+  kPlace,   ///< put it at a position, at rest in mid-air until the next step of physics
+  kDrop,    ///< let it fall from above a point, or from above a level surface in view
+  kThrow,   ///< put it at a position with a velocity
+  kRemove,  ///< take it out of the room
+  kQuit,    ///< end the run before this frame
+};
+
+/// One line of the file. Positions are of the object's origin, in the world (m, +z up).
+struct ScriptEvent {
+  int line = 0;                               ///< in the file, from 1; 0 in a script made in code
+  std::optional<std::int64_t> frame;          ///< before this frame of the run, from 0; either this ...
+  std::optional<double> time_s;               ///< ... or before the first frame at or after this time of the run
+  Action action = Action::kQuit;
+  std::string name;                           ///< of the object; empty for kQuit
+  std::string mesh;                           ///< kAdd: `teapot`, or a mesh file, relative to the script's folder
+  std::optional<double> size_m;               ///< kAdd: scaled so that its longest side is this; as it is if absent
+  std::optional<Eigen::Vector3d> position_world;  ///< kPlace, kDrop, kThrow; kDrop without one: over a surface in view
+  double height_m = 0.3;                      ///< kDrop: its lowest point starts this far above the position or surface
+  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow
+};
+
+/// In the order of the file. Numbers are finite; a name is added before it is used and not added twice.
+struct Script {
+  std::vector<ScriptEvent> events;
+};
+
+/// Reads an events file. One event a line, words between blanks, # begins a comment:
+///
+///     frame 0    add pot teapot size 0.2
+///     frame 10   drop pot view height 0.3         over a level surface that the camera sees
+///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
+///     time 4     place pot 0.4 -0.1 0.9
+///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
+///     time 6     remove pot
+///     frame 300  quit
+///
+/// Throws Error "FILE:LINE: ..." with what was found and what is wanted for: an unknown word, a missing or surplus
+/// word, a number that is none, not finite or out of range, a negative frame or time, a name that was not added (or was
+/// twice), a file that cannot be read, is binary or longer than 1 MiB.
+Script read_script(const std::filesystem::path& path);
+
+/// The same from text; `where` stands for the file's name in messages, mesh paths stay as they are.
+Script parse_script(std::string_view text, std::string_view where);
+
+/// Whether an event is due before a frame: its frame number is reached, or its time.
+bool is_due(const ScriptEvent& event, std::int64_t run_frame, double run_time_s);
+
+}  // namespace roomradar

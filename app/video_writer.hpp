@@ -1,0 +1,36 @@
+// video_writer.hpp: pictures to a video file, chosen by its extension.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "mapping/types/image.hpp"
+
+namespace roomradar {
+
+/// .mp4 (H.264 where there is an encoder, else MPEG-4), .avi (Motion JPEG), .mkv (MPEG-4). An odd last row or column is
+/// left out, for the encoders want even sizes.
+class VideoWriter {
+ public:
+  /// Throws Error for another extension, a folder that does not exist, or frames_per_s not in 1..240.
+  /// The file is made with the first picture.
+  VideoWriter(std::filesystem::path path, double frames_per_s);
+  VideoWriter(const VideoWriter&) = delete;
+  VideoWriter& operator=(const VideoWriter&) = delete;
+  ~VideoWriter();  ///< finishes the file without complaint if close() was not called
+
+  /// Throws Error if the file cannot be made, the disk is full, or the size is not that of the first picture.
+  void write(const ColourImage& picture);
+
+  /// Finishes the file and reads it back: throws Error if it is missing or holds fewer frames than were written
+  /// (disk full). Nothing happens the second time, or if nothing was written.
+  void close();
+
+  [[nodiscard]] std::int64_t frames_written() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace roomradar
