@@ -1,0 +1,38 @@
+// material.hpp: what a surface looks like: procedural patterns on metres of surface.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "mapping/types/image.hpp"
+
+namespace roomradar {
+
+enum class Pattern {
+  kPlain,      ///< one colour with fine speckle
+  kPlaster,    ///< wall paint: speckle, faint blotches
+  kWood,       ///< grain along u
+  kPlanks,     ///< floor boards along u, each with its own grain
+  kTiles,      ///< square tiles with joints
+  kCarpet,     ///< woven border and ornaments
+  kPoster,     ///< shapes on a ground, different for each seed
+  kLandscape,  ///< sky, hills and meadow
+  kSpine,      ///< book: bands and letters
+  kFabric,     ///< weave with stripes
+  kStone,      ///< speckled stone
+  kSkin,       ///< for hands and faces
+};
+
+struct Material {
+  Pattern pattern = Pattern::kPlain;
+  Rgb first{200, 200, 200};
+  Rgb second{120, 120, 120};
+  std::uint32_t seed = 0;
+  float infrared = 0.6F;  ///< part of the projector's light that comes back; dark, glossy things have little
+};
+
+/// Colour (0 to 1, linear in what the eye calls even steps) of a point (u, v) in metres on a face of the
+/// given size, measured from the face's centre; v is up on upright faces.
+std::array<float, 3> pattern_colour(const Material& material, float u_m, float v_m, float width_m,
+                                    float height_m);
+
+}  // namespace roomradar

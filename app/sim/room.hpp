@@ -1,0 +1,62 @@
+// room.hpp: a furnished room made in code: solids, what they look like, and where things may happen in it.
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/sim/material.hpp"
+#include "app/sim/solid.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+struct Lamp {
+  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();
+  float power = 1.0F;     ///< irradiance at 1 m, relative
+  double radius_m = 0.2;  ///< of the glowing ball: how soft shadows are
+};
+
+/// +z is up, the floor's surface is z = 0, metres. Solids touch but do not overlap, so that each one's
+/// surface is, but for what it stands on, the room's surface. No solid is changed after the room is made.
+struct Room {
+  std::string name;
+  std::vector<Solid> solids;
+  std::vector<Material> materials;  ///< one a solid
+  std::vector<Lamp> lamps;
+  Eigen::Vector3d interior_min_world = Eigen::Vector3d::Zero();  ///< the air between floor, walls and ceiling
+  Eigen::Vector3d interior_max_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d focus_world = Eigen::Vector3d::Zero();  ///< what a visitor looks at; a surface point
+  double view_azimuth_rad = 0.0;                          ///< from the focus towards where a visitor stands
+  Eigen::Vector3d walk_centre_world =
+      Eigen::Vector3d::Zero();  ///< of the ellipse that a scan walks along, eye height
+  Eigen::Vector2d walk_half_m = Eigen::Vector2d::Ones();  ///< its half axes along x and y
+  Eigen::Vector3d ball_from_world =
+      Eigen::Vector3d::Zero();  ///< surface points between which a ball can roll
+  Eigen::Vector3d ball_to_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d person_from_world =
+      Eigen::Vector3d::Zero();  ///< floor points between which a person can walk
+  Eigen::Vector3d person_to_world = Eigen::Vector3d::Zero();
+};
+
+/// The names that make_room knows.
+const std::vector<std::string>& room_names();
+/// Throws Error listing the known names if `name` is none of them.
+Room make_room(std::string_view name);
+
+/// Distance (m) from a point to the nearest surface; negative inside a solid. Exact outside, and inside as
+/// long as no touching neighbour is deeper: there the depth within one solid, which is a lower bound of the
+/// depth in all.
+double signed_distance_m(const Room& room, const Eigen::Vector3d& p_world);
+
+struct RayHit {
+  double range_m = 0.0;  ///< in units of the direction's length
+  int solid = -1;        ///< index into Room::solids
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
+};
+/// First surface that a ray meets from outside. Exact; looks at every solid.
+std::optional<RayHit> cast_ray(const std::vector<Solid>& solids, const Eigen::Vector3d& origin_world,
+                               const Eigen::Vector3d& direction_world);
+
+}  // namespace roomradar

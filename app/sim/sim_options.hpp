@@ -1,0 +1,51 @@
+// sim_options.hpp: what to simulate, and the form in which a user asks for it on the command line.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mapping/types/intrinsics.hpp"
+
+namespace roomradar {
+
+enum class CameraPathKind {
+  kScan,  ///< walks round the room and back to the start, looking across it
+  kView,  ///< stands still, as a hand can, and looks at the room's focus
+};
+enum class MoverKind {
+  kHand,    ///< a hand and forearm that reach over the focus and withdraw
+  kBall,    ///< a ball that rolls to and fro
+  kPerson,  ///< a person-sized body that walks through the room
+};
+std::string_view to_string(CameraPathKind kind);
+std::string_view to_string(MoverKind kind);
+
+/// The Kinect's depth camera at its full size.
+inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 240.0};
+
+struct SimOptions {
+  std::string room = "table";  ///< one of room_names()
+  std::uint64_t seed = 1;      ///< of the camera's path, the movers' phase and the noise
+  std::int64_t frames = 300;   ///< 1 or more
+  double rate_hz = 30.0;       ///< frames a second, > 0
+  CameraPathKind path = CameraPathKind::kScan;
+  std::vector<MoverKind> movers;  ///< each at most once
+  double noise_scale = 1.0;       ///< times the Kinect's noise; 0: clean depth, without shadow or dropouts
+  Intrinsics depth_camera = kKinectDepthCamera;
+  bool registered_colour = true;  ///< false: a colour camera of its own, 2.5 cm beside the depth camera
+};
+
+/// Reads `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
+///   seed, frames, rate, path (scan, view), moving (hand, ball, person; several with commas), noise (0 = off,
+///   1 = Kinect), width (of the image, 4:3, 64 to 1920 pixels), colour (registered, separate).
+/// Throws Error naming the key or value that is not known, or out of range, and listing what is.
+SimOptions parse_sim_spec(std::string_view spec);
+
+/// The shortest spec that parses to `options`, where the depth camera is a scaled Kinect.
+std::string sim_spec(const SimOptions& options);
+
+/// Throws Error naming the field and the rule.
+void require_valid(const SimOptions& options);
+
+}  // namespace roomradar

@@ -1,0 +1,47 @@
+// simulated_source.hpp: a Kinect in a room made in code, with the truth beside every frame.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/sim/sim_options.hpp"
+#include "mapping/types/frame_source.hpp"
+
+namespace roomradar {
+
+struct Room;
+
+/// What the sensor would have delivered without its faults, for the frame read last.
+struct SimTruth {
+  DepthImage
+      depth_m;      ///< exact depth of the pixel's centre ray, within the sensor's range; 0 = outside of it
+  MaskImage moved;  ///< 255 where the nearest surface is a moving thing
+  MaskImage mover;  ///< 0 = the room, else 1 + the position of the mover in SimOptions::movers
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+};
+
+/// Frames of a simulated Kinect. Frame i depends on the options and i alone: rewinding or reading on gives
+/// the same pixels. Room coordinates are the world: +z up, metres, floor at z = 0.
+class SimulatedSource final : public FrameSource {
+ public:
+  /// Throws Error if the options are not valid.
+  explicit SimulatedSource(const SimOptions& options);
+  ~SimulatedSource() override;
+
+  ReadResult next(Frame& frame) override;
+  bool rewind() override;
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override;
+  [[nodiscard]] std::string name() const override;
+
+  /// Makes `next` deliver frame `index` (0 to frames) without rendering those before it.
+  void seek(std::int64_t index);
+  [[nodiscard]] const SimTruth& truth() const;  ///< of the frame that `next` filled last
+  [[nodiscard]] const SimOptions& options() const;
+  [[nodiscard]] const Room& room() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace roomradar

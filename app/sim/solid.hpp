@@ -1,0 +1,46 @@
+// solid.hpp: the convex solids that rooms and moving things are made of, with exact distances and exact rays.
+#pragma once
+#include <Eigen/Geometry>
+
+namespace roomradar {
+
+enum class SolidShape {
+  kBox,       ///< half_m along x, y and z of the solid's frame
+  kCylinder,  ///< about z: radius half_m.x() (= half_m.y()), half height half_m.z()
+};
+
+/// A box or cylinder, grown by a ball of round_m: a box of no size grown is a sphere, a line grown is a
+/// capsule.
+struct Solid {
+  SolidShape shape = SolidShape::kBox;
+  Eigen::Isometry3d T_world_solid = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d half_m = Eigen::Vector3d::Zero();  ///< of the core, before it is grown
+  double round_m = 0.0;
+};
+
+Solid box(const Eigen::Vector3d& centre_world, const Eigen::Vector3d& size_m, double yaw_rad = 0.0);
+Solid rounded_box(const Eigen::Vector3d& centre_world, const Eigen::Vector3d& size_m, double round_m,
+                  double yaw_rad = 0.0);
+Solid cylinder(const Eigen::Vector3d& foot_world, double radius_m, double height_m);  ///< upright
+Solid sphere(const Eigen::Vector3d& centre_world, double radius_m);
+Solid capsule(const Eigen::Vector3d& a_world, const Eigen::Vector3d& b_world, double radius_m);
+
+/// Exact distance (m) from a point in the solid's frame to its surface, negative inside.
+double signed_distance_local_m(const Solid& solid, const Eigen::Vector3d& p_solid);
+double signed_distance_m(const Solid& solid, const Eigen::Vector3d& p_world);
+
+/// Unit outward normal, in the solid's frame, of the surface point nearest to p_solid.
+Eigen::Vector3d normal_local(const Solid& solid, const Eigen::Vector3d& p_solid);
+
+/// Where a ray enters the solid: the smallest t > 0 with origin + t * direction on the surface, coming from
+/// outside; negative if it misses, or starts inside. Both in the solid's frame; the direction need not be a
+/// unit vector.
+double ray_entry_local(const Solid& solid, const Eigen::Vector3d& origin_solid,
+                       const Eigen::Vector3d& direction_solid);
+
+/// Half sizes of the box round the solid in its own frame.
+inline Eigen::Vector3d bounds_half_m(const Solid& solid) {
+  return solid.half_m + Eigen::Vector3d::Constant(solid.round_m);
+}
+
+}  // namespace roomradar
