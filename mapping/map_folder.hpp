@@ -1,0 +1,77 @@
+// map_folder.hpp: a prescanned room on disk, saved whole or not at all. The format is in maps/README.md.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "mapping/places.hpp"
+#include "mapping/static_map.hpp"
+#include "mapping/trajectory.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+inline constexpr int kMapFormatVersion = 1;
+
+/// One file of the folder as map.json lists it.
+struct MapFile {
+  std::uint64_t bytes = 0;
+  std::string sha256;  ///< 64 hexadecimal digits
+};
+
+/// map.json. What is said of the parts (from `format_version` on) is filled in by save_map and load_map.
+struct MapInfo {
+  std::string source;  ///< the recording or device, as the user named it
+  std::int64_t frames_read = 0;
+  std::int64_t frames_fused = 0;
+  std::string up_source = "none";  ///< accelerometer, plane or none
+  Eigen::Isometry3d T_world_recorded =
+      Eigen::Isometry3d::Identity();            ///< recording's world to the map's, +z up
+  std::map<std::string, std::string> settings;  ///< what prescan ran with, by name
+
+  int format_version = kMapFormatVersion;
+  std::string tool_version;
+  double resolution_m = 0.0;
+  MapCounts counts;
+  std::uint64_t vertices = 0;
+  std::uint64_t triangles = 0;
+  std::uint64_t keyframes = 0;
+  std::uint64_t poses = 0;
+  std::map<std::string, MapFile>
+      files;  ///< by name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt
+};
+
+struct SavedMap {
+  MapInfo info;
+  StaticMap octree{0.01};
+  Mesh mesh;
+  Places places;
+  std::vector<TimedPose> trajectory;
+};
+
+/// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step:
+/// afterwards `folder` is the whole new map, or, after an Error, whatever it was before. Parent folders are
+/// made. Throws Error if `folder` exists and is not a map (its files are left alone), or the disk does not
+/// take the map.
+void save_map(const std::filesystem::path& folder, const SavedMap& map);
+
+/// Reads a map, every file checked against its checksum first. Throws Error naming the file and the fault.
+SavedMap load_map(const std::filesystem::path& folder);
+
+/// Reads and checks map.json alone.
+MapInfo load_map_info(const std::filesystem::path& folder);
+
+/// All faults found, one sentence each naming the file; empty for a sound map. Never throws for a broken map.
+std::vector<std::string> verify_map(const std::filesystem::path& folder);
+
+/// Writes one part of the saved map by extension: .ot and .bt the octree; .ply .obj .stl .glb the mesh.
+/// Throws Error if the extension is none of these or the map is broken.
+void export_map(const std::filesystem::path& folder, const std::filesystem::path& path);
+
+/// The lines of `roomradar map info`.
+std::string describe(const MapInfo& info);
+
+}  // namespace roomradar
