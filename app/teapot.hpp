@@ -1,0 +1,21 @@
+// teapot.hpp: the Utah teapot from its published Bezier patches, as a virtual object to play with.
+#pragma once
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// The Utah teapot, standing on z = 0, its body's axis on the z axis, spout along +x, handle along -x, +z up;
+/// counter-clockwise seen from outside, with a smooth normal a vertex. Neighbouring patches share their
+/// vertices.
+///
+/// @param tessellation  segments along each side of each of the 32 patches, 1 to 256; about 64 *
+/// tessellation^2
+///                      triangles (10 gives 6,240)
+/// @param height_m      from the base to the top of the knob, > 0; it is 2.04 times as long and 1.27 times as
+/// wide
+/// @throws Error if an argument is out of range
+/// Source: Martin Newell, University of Utah, 1975; control points as published in F. Crow, The Origins of
+/// the Teapot, IEEE Computer Graphics and Applications 7(1), 1987.
+Mesh utah_teapot(int tessellation, double height_m);
+
+}  // namespace roomradar

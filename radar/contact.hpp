@@ -1,0 +1,39 @@
+// contact.hpp: what a moving object would touch first, and after how far.
+#pragma once
+#include <Eigen/Core>
+
+namespace roomradar {
+
+enum class ContactStatus {
+  kInvalidInput,  ///< direction zero or not finite, distance not finite or <= 0, object empty, a pose not
+                  ///< finite
+  kNoTarget,      ///< nothing in the way within the distance
+  kContact,       ///< touches after travel_m >= 0
+  kOverlap,       ///< a surface that opposes the motion is inside the object already; travel_m < 0
+};
+
+/// Which kind of surface was touched.
+enum class Touched {
+  kNothing,
+  kStatic,   ///< the prescanned room
+  kDynamic,  ///< what moved since
+  kObject,   ///< another virtual object
+};
+
+struct [[nodiscard]] Contact {
+  ContactStatus status = ContactStatus::kInvalidInput;  // unset means failed
+  double travel_m =
+      0.0;  ///< along the direction until touch; negative: depth of the overlap; kContact and kOverlap only
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< on the scene's surface
+  Eigen::Vector3d normal_world =
+      Eigen::Vector3d::Zero();  ///< unit, of the scene's triangle, turned to face the object
+  Touched touched = Touched::kNothing;
+  double pixel_m = 0.0;  ///< side of a radar pixel: how far apart the samples are across the direction
+
+  /// Whether there is something to react to.
+  explicit operator bool() const {
+    return status == ContactStatus::kContact || status == ContactStatus::kOverlap;
+  }
+};
+
+}  // namespace roomradar

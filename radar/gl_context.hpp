@@ -1,0 +1,53 @@
+// gl_context.hpp: an OpenGL context without a window, on a GPU where there is one, else on the processor.
+#pragma once
+#include <string>
+
+namespace roomradar {
+
+enum class RendererChoice {
+  kAuto,      ///< a working GPU where there is one, else software
+  kGpu,       ///< a GPU or an Error
+  kSoftware,  ///< Mesa's llvmpipe or an Error
+};
+
+/// What the environment variable ROOMRADAR_RENDERER asks for: "gpu", "software", or "auto" (the same as
+/// unset).
+/// @throws Error if it holds anything else
+RendererChoice renderer_choice_from_environment();
+
+/// Owns an off-screen EGL display connection and an OpenGL core context of version 4.5 or later (reversed
+/// depth needs glClipControl). The context is current on the thread that made it, and any code that runs
+/// there may call GL; it has no default framebuffer, so everything draws into framebuffer objects. Clip space
+/// is set once, here, for all: depth 0 to 1, lower left origin; whoever changes that puts it back. Not thread
+/// safe. Everything made with it (GpuMesh, DepthPass, CyberRadar) must be gone before it is.
+class GlContext {
+ public:
+  /// @throws Error saying which devices were tried and why each failed (no EGL, no GPU, a version below 4.5)
+  explicit GlContext(RendererChoice choice = renderer_choice_from_environment());
+  ~GlContext();
+  GlContext(const GlContext&) = delete;
+  GlContext& operator=(const GlContext&) = delete;
+
+  /// As the driver names itself, with its GL version: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 4.5".
+  [[nodiscard]] const std::string& renderer() const { return renderer_; }
+  [[nodiscard]] bool is_software() const { return is_software_; }
+
+  /// Makes the context current on the calling thread (after a window's context has been, or on another thread
+  /// once the first has called release()).
+  /// @throws Error if the driver refuses
+  void make_current() const;
+  /// Lets go of the context on the calling thread.
+  void release() const;
+
+  /// The EGL handles (EGLDisplay, EGLConfig, EGLContext), for code that shares objects with this context.
+  [[nodiscard]] void* egl_display() const { return display_; }
+  [[nodiscard]] void* egl_context() const { return context_; }
+
+ private:
+  void* display_ = nullptr;
+  void* context_ = nullptr;
+  std::string renderer_;
+  bool is_software_ = true;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,34 @@
+// mesh_chunks.hpp: triangles in runs with bounding boxes, so that a pass can leave out what it cannot see.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// A run of consecutive triangles.
+struct MeshChunk {
+  std::uint32_t first_triangle = 0;
+  std::uint32_t triangle_count = 0;
+  Eigen::AlignedBox3f bounds_local;  ///< m, relative to the mesh's origin
+};
+
+struct ChunkedTriangles {
+  std::vector<Triangle> triangles;
+  std::vector<MeshChunk> chunks;
+  Eigen::AlignedBox3f bounds_local;   ///< of all triangles; empty where there is none
+  std::size_t dropped_triangles = 0;  ///< left out: a vertex not finite or an index past the last vertex
+};
+
+/// Puts triangles that lie near each other into the same run: Morton order of their centres, then runs of
+/// `max_triangles`. For meshes that stay. O(n log n).
+void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out);
+
+/// Cuts the triangles into runs of `max_triangles` in the order they have. For meshes that live one frame:
+/// the rows of a depth image already lie near each other. O(n), no allocation once `out` has held as many.
+void chunk_in_order(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out);
+
+}  // namespace roomradar
