@@ -22,8 +22,8 @@ void require_valid(const DepthMeshConfig& config);
 
 /// Buffers that the meshers reuse from frame to frame; their content means nothing between calls.
 struct DepthMeshScratch {
-  std::vector<std::int32_t> vertex_above, vertex_here;
-  std::vector<float> filled_m;
+  std::vector<std::uint32_t> vertex_above, vertex_here;  // of two grid rows
+  std::vector<float> filled_m;                           // the image with its gaps closed, for skirts
 };
 
 /// Meshes the pixels that moved: a vertex at each measured pixel of the mask (on the stride grid), triangles

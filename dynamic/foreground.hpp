@@ -34,10 +34,13 @@ void require_valid(const ForegroundConfig& config);
 
 /// Buffers that mark_foreground reuses from frame to frame; their content means nothing between calls.
 struct ForegroundScratch {
-  std::vector<float> nearest_m, farthest_m;  ///< extremes of the expected depth around each pixel
-  std::vector<float> row_nearest_m, row_farthest_m, block_nearest_m, block_reach_m;
-  std::vector<std::uint8_t> evidence;
-  std::vector<std::uint32_t> region;
+  std::vector<float> nearest_m, farthest_m, sigma_m;       // one row
+  std::vector<float> padded_nearest_m, padded_farthest_m;  // one row and the window's margins
+  std::vector<float> row_nearest_m, row_farthest_m;        // whole images
+  std::vector<float> block_nearest_m, block_reach_m;       // one value a block of pixels
+  std::vector<std::uint8_t> evidence;                      // bits, see foreground.cpp
+  std::vector<std::uint32_t> region;                       // pixels of the region being grown
+  std::size_t region_size = 0;
 };
 
 struct ForegroundCounts {
