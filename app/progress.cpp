@@ -46,8 +46,8 @@ void Progress::show(bool last) {
     if (is_terminal_) bar = " [" + std::string(filled, '#') + std::string(kBarWidth - filled, ' ') + "]";
     count += "/" + std::to_string(*total_);
   }
-  std::fprintf(stderr, "%s%s%s %s, %.1f/s%s%s%s", is_terminal_ ? "\r" : "", what_.c_str(), bar.c_str(), count.c_str(),
-               per_s, note_.empty() ? "" : ", ", note_.c_str(), is_terminal_ ? "\033[K" : "");
+  std::fprintf(stderr, "%s%s%s %s, %.1f/s%s%s%s", is_terminal_ ? "\r" : "", what_.c_str(), bar.c_str(),
+               count.c_str(), per_s, note_.empty() ? "" : ", ", note_.c_str(), is_terminal_ ? "\033[K" : "");
   if (last || !is_terminal_) std::fputc('\n', stderr);
   std::fflush(stderr);
 }

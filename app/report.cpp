@@ -5,8 +5,8 @@
 
 #include <fstream>
 
-#include "mapping/types/version.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/version.hpp"
 
 namespace roomradar {
 
@@ -19,8 +19,11 @@ double peak_rss_mb() {
 nlohmann::json to_json(const Report& report) {
   nlohmann::json stages = nlohmann::json::object();
   for (const auto& [stage, s] : report.times.summaries()) {
-    stages[stage] = {{"count", s.count},   {"median_ms", s.median_ms}, {"p95_ms", s.p95_ms},
-                     {"p99_ms", s.p99_ms}, {"max_ms", s.max_ms}};
+    stages[stage] = {{"count", s.count},
+                     {"median_ms", s.median_ms},
+                     {"p95_ms", s.p95_ms},
+                     {"p99_ms", s.p99_ms},
+                     {"max_ms", s.max_ms}};
   }
   nlohmann::json json = {
       {"command", report.command},
@@ -43,7 +46,8 @@ void write_report(const Report& report, const std::filesystem::path& path) {
   std::ofstream file(path);
   file << to_json(report).dump(2) << '\n';
   file.flush();
-  if (!file) throw Error(path.string() + ": the report cannot be written; does its folder exist, and is there room?");
+  if (!file)
+    throw Error(path.string() + ": the report cannot be written; does its folder exist, and is there room?");
 }
 
 }  // namespace roomradar

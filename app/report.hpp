@@ -1,4 +1,5 @@
-// report.hpp: the JSON file that a command leaves with --report: settings, times of each stage, memory, results.
+// report.hpp: the JSON file that a command leaves with --report: settings, times of each stage, memory,
+// results.
 #pragma once
 #include <chrono>
 #include <filesystem>
@@ -9,7 +10,8 @@
 
 namespace roomradar {
 
-/// The keys that every command's report has. The command adds its own to `results`, which are merged at top level.
+/// The keys that every command's report has. The command adds its own to `results`, which are merged at top
+/// level.
 struct Report {
   std::string command;
   std::string source;

@@ -20,8 +20,8 @@ void write_trajectory(const std::filesystem::path& path, const std::vector<Timed
     const Eigen::Vector3d t = pose.T_world_camera.translation();
     const Eigen::Quaterniond q(pose.T_world_camera.linear());
     std::array<char, 256> line{};
-    std::snprintf(line.data(), line.size(), "%.9f %.12g %.12g %.12g %.12g %.12g %.12g %.12g\n", pose.stamp_s, t.x(),
-                  t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
+    std::snprintf(line.data(), line.size(), "%.9f %.12g %.12g %.12g %.12g %.12g %.12g %.12g\n", pose.stamp_s,
+                  t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
     file << line.data();
   }
   file.flush();
@@ -76,7 +76,8 @@ TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate
   TrajectoryError error;
   error.poses = static_cast<std::size_t>(matched);
   error.T_reference_estimate.matrix() = Eigen::umeyama(estimated, expected, /*with_scaling=*/false);
-  const Eigen::RowVectorXd squared_m2 = ((error.T_reference_estimate * estimated).eval() - expected).colwise().squaredNorm();
+  const Eigen::RowVectorXd squared_m2 =
+      ((error.T_reference_estimate * estimated).eval() - expected).colwise().squaredNorm();
   error.rmse_m = std::sqrt(squared_m2.mean());
   error.max_m = std::sqrt(squared_m2.maxCoeff());
   return error;

@@ -13,8 +13,8 @@ struct TimedPose {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// One line a pose, `stamp tx ty tz qx qy qz qw` (s, m, unit quaternion), in order, with enough digits to come back
-/// within 1e-9. Throws Error if the file cannot be written.
+/// One line a pose, `stamp tx ty tz qx qy qz qw` (s, m, unit quaternion), in order, with enough digits to
+/// come back within 1e-9. Throws Error if the file cannot be written.
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory);
 
 /// Reads that form; lines starting with # are comments. frame_index is the line's number, from 0.
@@ -30,6 +30,7 @@ struct TrajectoryError {
 
 /// Absolute trajectory error: positions matched by frame index after the best rigid alignment (scale 1).
 /// `poses` is 0 where fewer than 3 match. Source: Horn 1987; Sturm et al., IROS 2012.
-TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference);
+TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
+                                          const std::vector<TimedPose>& reference);
 
 }  // namespace roomradar

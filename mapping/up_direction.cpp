@@ -8,8 +8,9 @@
 namespace roomradar {
 namespace {
 
-constexpr int kStep_px = 8;                // normals from pixel pairs this far apart: noise averaged, edges still apart
-constexpr float kMaxJump = 0.03F;          // of the depth: neighbours that differ more lie on different surfaces
+constexpr int kStepsAcross =
+    80;  // normals from pixels 1/80 of the width apart: noise averaged, edges still apart
+constexpr double kMaxSlope = 4.0;  // depth change over lateral distance: 76 degrees; steeper is an edge
 constexpr std::size_t kMaxNormals = 400'000;  // ~5 MB; later frames are thinned out by then anyway
 constexpr double kConeAboutCameraUp_deg = 60.0;
 constexpr double kModeWindow_deg = 5.0;
@@ -18,8 +19,8 @@ constexpr double kMinSupport = 0.05;
 double cos_deg(double angle_deg) { return std::cos(angle_deg * std::numbers::pi / 180.0); }
 
 /// Mean of the normals within the window of `axis`; how many they are goes to `count`.
-Eigen::Vector3d mean_near(const std::vector<Eigen::Vector3f>& normals, const Eigen::Vector3d& axis, double window_deg,
-                          std::size_t& count) {
+Eigen::Vector3d mean_near(const std::vector<Eigen::Vector3f>& normals, const Eigen::Vector3d& axis,
+                          double window_deg, std::size_t& count) {
   const auto cos_window = static_cast<float>(cos_deg(window_deg));
   const Eigen::Vector3f axis_f = axis.cast<float>();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -36,9 +37,12 @@ Eigen::Vector3d mean_near(const std::vector<Eigen::Vector3f>& normals, const Eig
 
 std::string_view to_string(UpSource source) {
   switch (source) {
-    case UpSource::kAccelerometer: return "accelerometer";
-    case UpSource::kPlane: return "plane";
-    case UpSource::kNone: break;
+    case UpSource::kAccelerometer:
+      return "accelerometer";
+    case UpSource::kPlane:
+      return "plane";
+    case UpSource::kNone:
+      break;
   }
   return "none";
 }
@@ -55,18 +59,20 @@ void UpEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   const auto point = [&](int x, int y) -> Eigen::Vector3f {
     return back_project(frame.depth_camera, x, y, static_cast<double>(frame.depth_m.at(x, y))).cast<float>();
   };
-  for (int y = 0; y + kStep_px < frame.depth_m.height; y += kStep_px) {
-    for (int x = 0; x + kStep_px < frame.depth_m.width; x += kStep_px) {
+  const int step_px = std::max(1, frame.depth_m.width / kStepsAcross);
+  const auto jump_per_m = static_cast<float>(kMaxSlope * step_px / frame.depth_camera.fx_px);
+  for (int y = 0; y + step_px < frame.depth_m.height; y += step_px) {
+    for (int x = 0; x + step_px < frame.depth_m.width; x += step_px) {
       if (normals_world_.size() >= kMaxNormals) return;
       const float here_m = frame.depth_m.at(x, y);
-      const float right_m = frame.depth_m.at(x + kStep_px, y);
-      const float below_m = frame.depth_m.at(x, y + kStep_px);
-      const float jump_m = kMaxJump * here_m;
+      const float right_m = frame.depth_m.at(x + step_px, y);
+      const float below_m = frame.depth_m.at(x, y + step_px);
+      const float jump_m = jump_per_m * here_m;
       if (here_m <= 0 || right_m <= 0 || below_m <= 0 || std::abs(right_m - here_m) > jump_m ||
           std::abs(below_m - here_m) > jump_m)
         continue;
       const Eigen::Vector3f p = point(x, y);
-      const Eigen::Vector3f towards_camera = (point(x, y + kStep_px) - p).cross(point(x + kStep_px, y) - p);
+      const Eigen::Vector3f towards_camera = (point(x, y + step_px) - p).cross(point(x + step_px, y) - p);
       const float length = towards_camera.norm();
       if (length > 0) normals_world_.emplace_back(R * (towards_camera / length));
     }
@@ -79,8 +85,8 @@ UpDirection UpEstimator::estimate() const {
     return {UpSource::kAccelerometer, -down_sum_world_.normalized(), 1.0};
 
   const bool upright_known = camera_up_sum_world_.norm() > 1e-6;
-  const Eigen::Vector3d camera_up =
-      upright_known ? Eigen::Vector3d(camera_up_sum_world_.normalized()) : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
+  const Eigen::Vector3d camera_up = upright_known ? Eigen::Vector3d(camera_up_sum_world_.normalized())
+                                                  : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
   // Each of a subset of the normals is tried as the mode; the best is refined to the mean of its window.
   const double cos_cone = cos_deg(kConeAboutCameraUp_deg);
   const std::size_t stride = std::max<std::size_t>(1, normals_world_.size() / 400);
@@ -97,8 +103,9 @@ UpDirection UpEstimator::estimate() const {
     }
   }
   for (int pass = 0; pass < 3; ++pass) best = mean_near(normals_world_, best, kModeWindow_deg, best_count);
-  const double support =
-      normals_world_.empty() ? 0.0 : static_cast<double>(best_count) / static_cast<double>(normals_world_.size());
+  const double support = normals_world_.empty()
+                             ? 0.0
+                             : static_cast<double>(best_count) / static_cast<double>(normals_world_.size());
   if (support < kMinSupport) return {UpSource::kNone, camera_up, 0.0};
   return {UpSource::kPlane, best, support};
 }

@@ -1,4 +1,5 @@
-// up_direction.hpp: which way is up in a recording, from the accelerometer or from the planes that the camera saw.
+// up_direction.hpp: which way is up in a recording, from the accelerometer or from the planes that the camera
+// saw.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>
@@ -24,12 +25,13 @@ struct UpDirection {
 /// Collects evidence frame by frame; frames whose pose is not trusted are not to be added.
 class UpEstimator {
  public:
-  /// Takes the frame's gravity, and the normals of every 8th pixel of its depth, both turned into the world.
+  /// Takes the frame's gravity, and the normals of its depth at a grid of 80 across, both turned into the
+  /// world.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Gravity's mean where at least half of the frames had one, else the strongest normal direction within 60 degrees
-  /// of the cameras' mean -y (a hand-held camera may look down at a table, but is seldom on its head), if at least
-  /// 5 % of the normals support it; else that mean itself with kNone.
+  /// Gravity's mean where at least half of the frames had one, else the strongest normal direction within 60
+  /// degrees of the cameras' mean -y (a hand-held camera may look down at a table, but is seldom on its
+  /// head), if at least 5 % of the normals support it; else that mean itself with kNone.
   [[nodiscard]] UpDirection estimate() const;
 
  private:

@@ -1,12 +1,13 @@
-// error.hpp: the one exception type of the project, thrown where the program meets files, devices and arguments.
+// error.hpp: the one exception type of the project, thrown where the program meets files, devices and
+// arguments.
 #pragma once
 #include <stdexcept>
 #include <string>
 
 namespace roomradar {
 
-/// A failure that a user can act on. The message says what failed, where (file, field, frame) and what to do about it.
-/// Thrown at the boundary only; the per-frame path answers with status values.
+/// A failure that a user can act on. The message says what failed, where (file, field, frame) and what to do
+/// about it. Thrown at the boundary only; the per-frame path answers with status values.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -27,8 +27,8 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
 
-  /// Fills `frame`, reusing its allocations. A single unreadable frame is kSkipped; a source that cannot go on
-  /// (device gone, disk error, ten unreadable frames one after the other) throws Error.
+  /// Fills `frame`, reusing its allocations. A single unreadable frame is kSkipped; a source that cannot go
+  /// on (device gone, disk error, ten unreadable frames one after the other) throws Error.
   virtual ReadResult next(Frame& frame) = 0;
 
   /// Goes back to the first frame and returns true, or returns false if this source cannot (a live device).

@@ -13,7 +13,8 @@ void require_valid(const Intrinsics& camera, const char* where) {
   };
   constexpr int kMaxSize_px = 16384;  // what every GL renderer we know can draw in one pass
   if (camera.width_px < 1 || camera.width_px > kMaxSize_px) fail("width_px", camera.width_px, "in 1..16384");
-  if (camera.height_px < 1 || camera.height_px > kMaxSize_px) fail("height_px", camera.height_px, "in 1..16384");
+  if (camera.height_px < 1 || camera.height_px > kMaxSize_px)
+    fail("height_px", camera.height_px, "in 1..16384");
   if (!std::isfinite(camera.fx_px) || camera.fx_px <= 0) fail("fx_px", camera.fx_px, "finite and > 0");
   if (!std::isfinite(camera.fy_px) || camera.fy_px <= 0) fail("fy_px", camera.fy_px, "finite and > 0");
   if (!(camera.cx_px >= -camera.width_px && camera.cx_px <= 2 * camera.width_px))

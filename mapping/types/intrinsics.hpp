@@ -19,7 +19,8 @@ struct Intrinsics {
 
 /// Point in the camera frame (m) seen at image coordinates (u, v) at depth_m along the optical axis.
 inline Eigen::Vector3d back_project(const Intrinsics& camera, double u_px, double v_px, double depth_m) {
-  return {(u_px - camera.cx_px) / camera.fx_px * depth_m, (v_px - camera.cy_px) / camera.fy_px * depth_m, depth_m};
+  return {(u_px - camera.cx_px) / camera.fx_px * depth_m, (v_px - camera.cy_px) / camera.fy_px * depth_m,
+          depth_m};
 }
 
 /// Image coordinates (u, v) of a point in the camera frame. The point's z must be > 0.
@@ -28,8 +29,9 @@ inline Eigen::Vector2d project(const Intrinsics& camera, const Eigen::Vector3d& 
           camera.fy_px * p_camera.y() / p_camera.z() + camera.cy_px};
 }
 
-/// The same camera with its image made `factor` times as large (0.5: half the width, half the height, rounded down).
-/// Pixel centres stay where they are in the world: centres are at whole numbers, so cx' = (cx + 0.5) * factor - 0.5.
+/// The same camera with its image made `factor` times as large (0.5: half the width, half the height, rounded
+/// down). Pixel centres stay where they are in the world: centres are at whole numbers, so cx' = (cx + 0.5) *
+/// factor - 0.5.
 inline Intrinsics scaled(const Intrinsics& camera, double factor) {
   return {static_cast<int>(std::floor(camera.width_px * factor)),
           static_cast<int>(std::floor(camera.height_px * factor)),
@@ -39,8 +41,8 @@ inline Intrinsics scaled(const Intrinsics& camera, double factor) {
           (camera.cy_px + 0.5) * factor - 0.5};
 }
 
-/// Throws Error naming `where`, the field and the rule if the camera cannot be one: sizes in 1..16384, focal lengths
-/// finite and > 0, principal point finite and within one image size of the image.
+/// Throws Error naming `where`, the field and the rule if the camera cannot be one: sizes in 1..16384, focal
+/// lengths finite and > 0, principal point finite and within one image size of the image.
 void require_valid(const Intrinsics& camera, const char* where);
 
 }  // namespace roomradar

@@ -9,9 +9,11 @@
 
 namespace roomradar {
 
-using Triangle = std::array<std::uint32_t, 3>;  ///< counter-clockwise seen from outside (from where the sensor stood)
+using Triangle =
+    std::array<std::uint32_t, 3>;  ///< counter-clockwise seen from outside (from where the sensor stood)
 
-/// Indexed triangles. A vertex stands at origin + vertices[i] in the mesh's frame (world, or an object's own).
+/// Indexed triangles. A vertex stands at origin + vertices[i] in the mesh's frame (world, or an object's
+/// own).
 struct Mesh {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m; vertices are float and relative to it
   std::vector<Eigen::Vector3f> vertices;             ///< m

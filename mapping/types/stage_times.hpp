@@ -18,7 +18,8 @@ struct StageSummary {
   double max_ms = 0.0;
 };
 
-/// Collects wall-clock times by stage name. One call a stage from outside: `times.timed("fuse", [&] { fuse(...); });`
+/// Collects wall-clock times by stage name. One call a stage from outside: `times.timed("fuse", [&] {
+/// fuse(...); });`
 class StageTimes {
  public:
   template <typename Work>
@@ -36,8 +37,8 @@ class StageTimes {
     std::string_view stage;
     std::chrono::steady_clock::time_point start;
     ~Stop() {
-      times.add_ms(stage,
-                   std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+      times.add_ms(
+          stage, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
   };
   std::map<std::string, std::vector<float>, std::less<>> samples_ms_;

@@ -7,7 +7,8 @@
 
 namespace roomradar::test {
 
-/// Folder of one recording: $ROOMRADAR_DATA/NAME, else ../shared/data/NAME beside the project; nothing if it is absent.
+/// Folder of one recording: $ROOMRADAR_DATA/NAME, else ../shared/data/NAME beside the project; nothing if it
+/// is absent.
 inline std::optional<std::filesystem::path> recording(const std::string& name) {
   const char* chosen = std::getenv("ROOMRADAR_DATA");
   const std::filesystem::path folder = std::filesystem::path(chosen ? chosen : ROOMRADAR_DATA_DEFAULT) / name;
@@ -18,8 +19,8 @@ inline std::optional<std::filesystem::path> recording(const std::string& name) {
 }  // namespace roomradar::test
 
 /// Declares `variable` (a path), or skips the running test with a sentence where the recording is absent.
-#define ROOMRADAR_RECORDING_OR_SKIP(variable, name)                                        \
-  const auto variable##_found = ::roomradar::test::recording(name);                        \
-  if (!variable##_found)                                                                   \
+#define ROOMRADAR_RECORDING_OR_SKIP(variable, name)                                               \
+  const auto variable##_found = ::roomradar::test::recording(name);                               \
+  if (!variable##_found)                                                                          \
     GTEST_SKIP() << "recording '" << (name) << "' is not here; set ROOMRADAR_DATA to its folder"; \
   const std::filesystem::path& variable = *variable##_found
