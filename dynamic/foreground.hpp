@@ -20,11 +20,11 @@ using LabelImage = Image<PixelLabel>;
 /// All "sigmas" are of the total: sensor noise at this depth and incidence angle, and the model's own error,
 /// added as variances. Strong pixels start a region, weak pixels only join one.
 struct ForegroundConfig {
-  float model_sigma_m = 0.006F;  ///< error of the expected depth itself; a map with 1 cm cells has about this
-  float model_sigma_per_m = 0.004F;  ///< and what grows with depth: pose error, the sensor's own distortion
+  float model_sigma_m = 0.004F;  ///< error of the expected depth itself; a map with 1 cm cells has about this
+  float model_sigma_per_m = 0.002F;  ///< and what grows with depth: pose error, the sensor's own distortion
   float strong_sigmas = 4.0F;
   float weak_sigmas = 2.0F;
-  int silhouette_px = 3;   ///< a pose error of 0.3 degrees or of 5 mm at 1 m shifts an edge by 3 px
+  int silhouette_px = 4;   ///< a pose error of 0.3 degrees shifts an edge by 3 px, one of 5 mm at 1 m as much
   int hole_reach_px = 16;  ///< how far from the model's edge a pixel without expected depth is still judged
   int min_region_px = 60;  ///< smaller regions are noise
   float min_region_m2 = 0.0003F;  ///< the same by size in the world: 3 cm2

@@ -1,0 +1,281 @@
+// foreground_test.cpp: what counts as moved, as revealed, and as not known.
+#include "dynamic/foreground.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr Intrinsics kKinect{640, 480, 585.0, 585.0, 320.0, 240.0};
+
+DepthImage flat(float depth_m, const Intrinsics& camera = kKinect) {
+  return {camera.width_px, camera.height_px, depth_m};
+}
+
+void fill_rectangle(DepthImage& image, int x0, int y0, int x1, int y1, float depth_m) {
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) image.at(x, y) = depth_m;
+  }
+}
+
+// Adds the Kinect's axial noise to what was measured.
+void add_noise(DepthImage& depth_m, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<float> normal;
+  for (float& z : depth_m.pixels) {
+    if (z > 0.0F) z += depth_sigma_m(z) * normal(random);
+  }
+}
+
+// A table seen from 1.2 m above it at 35 degrees below the horizon, with a box on it and a wall 3.5 m away.
+DepthImage table_view(double shift_m, double turn_deg) {
+  DepthImage depth_m = flat(0.0F);
+  const double turn = turn_deg * M_PI / 180.0;
+  for (int y = 0; y < kKinect.height_px; ++y) {
+    for (int x = 0; x < kKinect.width_px; ++x) {
+      const Eigen::Vector3d straight = back_project(kKinect, x, y, 1.0);
+      const Eigen::Vector3d ray(straight.x() * std::cos(turn) + std::sin(turn), straight.y(),
+                                -straight.x() * std::sin(turn) + std::cos(turn));
+      // Axes turned to level: forward and down.
+      const double down = ray.y() * std::cos(0.61) + ray.z() * std::sin(0.61);
+      const double forward = ray.z() * std::cos(0.61) - ray.y() * std::sin(0.61);
+      double t = (3.5 - shift_m) / std::max(forward, 1e-6);            // wall
+      if (down > 1e-6) t = std::min(t, (1.2 - shift_m) / down);        // table
+      const double t_box = (1.0 - shift_m) / std::max(forward, 1e-6);  // front of the box
+      if (std::abs(ray.x() * t_box) < 0.2 && down * t_box < 1.2 - shift_m && down * t_box > 0.7)
+        t = std::min(t, t_box);
+      depth_m.at(x, y) = static_cast<float>(t);
+    }
+  }
+  return depth_m;
+}
+
+struct Marked {
+  LabelImage labels;
+  MaskImage moved_mask;
+  ForegroundCounts counts;
+};
+
+Marked mark(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& config = {},
+            const Intrinsics& camera = kKinect) {
+  Marked marked;
+  ForegroundScratch scratch;
+  marked.counts =
+      mark_foreground(depth_m, expected_m, camera, config, scratch, marked.labels, marked.moved_mask);
+  return marked;
+}
+
+double intersection_over_union(const MaskImage& mask, const std::function<bool(int, int)>& truth) {
+  std::size_t both = 0, either = 0;
+  for (int y = 0; y < mask.height; ++y) {
+    for (int x = 0; x < mask.width; ++x) {
+      const bool marked = mask.at(x, y) != 0;
+      both += marked && truth(x, y);
+      either += marked || truth(x, y);
+    }
+  }
+  return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
+}
+
+TEST(Foreground, NothingMovesInTheNoiseOfAKinect) {
+  for (const float depth_m : {0.6F, 1.0F, 2.0F, 4.0F, 7.0F}) {
+    DepthImage live_m = flat(depth_m);
+    add_noise(live_m, 1);
+    const Marked marked = mark(live_m, flat(depth_m));
+    EXPECT_EQ(marked.counts.moved, 0U) << depth_m;
+    EXPECT_EQ(marked.counts.revealed, 0U) << depth_m;
+    EXPECT_EQ(marked.counts.valid, 640U * 480U);
+    EXPECT_EQ(marked.labels.at(320, 240), PixelLabel::kStatic);
+  }
+}
+
+TEST(Foreground, ModelOneCentimetreOffIsNotMovement) {
+  for (const float offset_m : {-0.01F, 0.01F}) {
+    DepthImage live_m = table_view(0.0, 0.0);
+    DepthImage expected_m = live_m;
+    add_noise(live_m, 2);
+    for (float& z : expected_m.pixels) z += offset_m;
+    const Marked marked = mark(live_m, expected_m);
+    EXPECT_EQ(marked.counts.moved, 0U) << offset_m;
+    EXPECT_EQ(marked.counts.revealed, 0U) << offset_m;
+  }
+}
+
+TEST(Foreground, PoseOffByFiveMillimetresAndAThirdOfADegreeLightsUpNoSilhouette) {
+  for (const double turn_deg : {-0.3, 0.3}) {
+    for (const double shift_m : {-0.005, 0.005}) {
+      DepthImage live_m = table_view(shift_m, turn_deg);
+      add_noise(live_m, 3);
+      const Marked marked = mark(live_m, table_view(0.0, 0.0));
+      EXPECT_LT(static_cast<double>(marked.counts.moved), 0.001 * 640 * 480) << turn_deg << " " << shift_m;
+      EXPECT_LT(static_cast<double>(marked.counts.revealed), 0.001 * 640 * 480) << turn_deg << " " << shift_m;
+    }
+  }
+}
+
+TEST(Foreground, HandThreeCentimetresBeforeASurfaceIsFoundToItsEdges) {
+  const auto hand = [](int x, int y) { return x >= 200 && x < 320 && y >= 150 && y < 260; };
+  for (const float clearance_m : {0.03F, 0.05F, 0.1F, 0.2F}) {
+    DepthImage live_m = flat(1.0F);
+    fill_rectangle(live_m, 200, 150, 320, 260, 1.0F - clearance_m);
+    add_noise(live_m, 4);
+    EXPECT_GT(intersection_over_union(mark(live_m, flat(1.0F)).moved_mask, hand), 0.95) << clearance_m;
+  }
+}
+
+TEST(Foreground, FoundAtBothEndsOfTheRange) {
+  const auto square = [](int x, int y) { return x >= 280 && x < 340 && y >= 200 && y < 260; };
+  for (const auto& [near_m, far_m] : {std::pair{0.4F, 0.6F}, std::pair{6.0F, 8.0F}}) {
+    DepthImage live_m = flat(far_m);
+    fill_rectangle(live_m, 280, 200, 340, 260, near_m);
+    add_noise(live_m, 5);
+    EXPECT_GT(intersection_over_union(mark(live_m, flat(far_m)).moved_mask, square), 0.97) << near_m;
+  }
+}
+
+TEST(Foreground, HandOverTheLensIsAllMoved) {
+  const Marked marked = mark(flat(0.45F), table_view(0.0, 0.0));
+  EXPECT_EQ(marked.counts.moved, 640U * 480U);
+}
+
+TEST(Foreground, WhatWasTakenAwayIsRevealedNotMoved) {
+  DepthImage expected_m = flat(1.5F);
+  fill_rectangle(expected_m, 300, 200, 360, 260, 1.2F);
+  const Marked marked = mark(flat(1.5F), expected_m);
+  EXPECT_EQ(marked.counts.moved, 0U);
+  EXPECT_NEAR(static_cast<double>(marked.counts.revealed), 60.0 * 60.0, 60.0);
+  EXPECT_EQ(marked.labels.at(330, 230), PixelLabel::kRevealed);
+  EXPECT_EQ(marked.moved_mask.at(330, 230), 0);
+}
+
+TEST(Foreground, UnmeasuredPixelsAreNotKnown) {
+  DepthImage live_m = flat(1.0F);
+  fill_rectangle(live_m, 200, 150, 320, 260, 0.8F);
+  fill_rectangle(live_m, 240, 190, 270, 220, 0.0F);  // a hole in the middle of the hand
+  const Marked marked = mark(live_m, flat(1.0F));
+  EXPECT_EQ(marked.labels.at(255, 205), PixelLabel::kNotKnown);
+  EXPECT_EQ(marked.moved_mask.at(255, 205), 0);
+  EXPECT_EQ(marked.counts.moved, 120U * 110U - 30U * 30U);
+  EXPECT_EQ(marked.counts.not_known, 0U) << "counts pixels with live depth only";
+
+  const Marked blind = mark(flat(0.0F), flat(1.0F));
+  EXPECT_EQ(blind.counts.valid, 0U);
+  EXPECT_EQ(blind.counts.moved, 0U);
+}
+
+TEST(Foreground, WithoutAModelNothingIsKnown) {
+  const Marked marked = mark(flat(1.0F), flat(0.0F));
+  EXPECT_EQ(marked.counts.moved, 0U);
+  EXPECT_EQ(marked.counts.not_known, 640U * 480U);
+}
+
+TEST(Foreground, HoleOfTheModelIsMovedOnlyNearerThanAllAroundIt) {
+  DepthImage expected_m = flat(2.0F);
+  fill_rectangle(expected_m, 300, 200, 320, 220, 0.0F);
+  DepthImage live_m = flat(2.0F);
+  fill_rectangle(live_m, 290, 190, 330, 230, 1.5F);  // in front of the hole and of what is around it
+  EXPECT_EQ(mark(live_m, expected_m).labels.at(310, 210), PixelLabel::kMoved);
+
+  live_m = flat(2.0F);
+  fill_rectangle(live_m, 300, 200, 320, 220, 2.6F);  // one sees into the hole
+  EXPECT_EQ(mark(live_m, expected_m).labels.at(310, 210), PixelLabel::kNotKnown);
+  EXPECT_EQ(mark(live_m, expected_m).counts.revealed, 0U);
+}
+
+TEST(Foreground, FarInsideAnUnmappedViewNothingIsKnown) {
+  DepthImage expected_m = flat(0.0F);
+  fill_rectangle(expected_m, 0, 0, 320, 480, 2.0F);
+  DepthImage live_m = flat(2.0F);
+  fill_rectangle(live_m, 500, 100, 600, 300, 1.0F);
+  const Marked marked = mark(live_m, expected_m);
+  EXPECT_EQ(marked.counts.moved, 0U);
+  EXPECT_EQ(marked.labels.at(550, 200), PixelLabel::kNotKnown);
+}
+
+TEST(Foreground, SpecksAreNoise) {
+  DepthImage live_m = flat(1.0F);
+  fill_rectangle(live_m, 100, 100, 105, 105, 0.7F);
+  live_m.at(300, 300) = 0.5F;
+  EXPECT_EQ(mark(live_m, flat(1.0F)).counts.moved, 0U);
+}
+
+TEST(Foreground, ObjectOnePixelThickIsFoundIfItIsLong) {
+  DepthImage live_m = flat(1.2F);
+  fill_rectangle(live_m, 300, 100, 301, 300, 0.9F);
+  EXPECT_EQ(mark(live_m, flat(1.2F)).counts.moved, 200U);
+}
+
+TEST(Foreground, PersonLeavingThroughTheBorderIsFoundUpToTheLastPixel) {
+  DepthImage live_m = flat(3.0F);
+  fill_rectangle(live_m, 630, 100, 640, 480, 2.0F);
+  const Marked marked = mark(live_m, flat(3.0F));
+  EXPECT_EQ(marked.counts.moved, 10U * 380U);
+  EXPECT_EQ(marked.moved_mask.at(639, 479), 255);
+}
+
+TEST(Foreground, HandBesideANearEdgeKeepsItsRim) {
+  // The static box's edge is nearer than the hand behind it; the window around the edge must not eat the
+  // hand.
+  DepthImage expected_m = flat(2.0F);
+  fill_rectangle(expected_m, 0, 0, 300, 480, 1.0F);
+  DepthImage live_m = expected_m;
+  fill_rectangle(live_m, 300, 200, 380, 300, 1.5F);
+  add_noise(live_m, 6);
+  const auto hand = [](int x, int y) { return x >= 300 && x < 380 && y >= 200 && y < 300; };
+  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).moved_mask, hand), 0.99);
+}
+
+TEST(Foreground, WorksAtAnySizeOfImage) {
+  for (const auto& [width, height] :
+       {std::pair{1, 1}, std::pair{3, 2}, std::pair{7, 481}, std::pair{321, 5}}) {
+    const Intrinsics camera{width, height, 300.0, 300.0, width / 2.0, height / 2.0};
+    ForegroundConfig config;
+    config.min_region_px = 0;
+    config.min_region_m2 = 0.0F;
+    const Marked marked = mark(flat(0.5F, camera), flat(1.0F, camera), config, camera);
+    EXPECT_EQ(marked.counts.moved, static_cast<std::size_t>(width * height));
+  }
+  const Intrinsics none{0, 0, 300.0, 300.0, 0.0, 0.0};
+  EXPECT_EQ(mark(flat(1.0F, none), flat(1.0F, none), {}, none).counts.valid, 0U);
+}
+
+TEST(Foreground, SecondFrameOfASizeReusesItsBuffers) {
+  DepthImage live_m = flat(1.0F);
+  ForegroundScratch scratch;
+  LabelImage labels;
+  MaskImage mask;
+  mark_foreground(live_m, flat(1.0F), kKinect, {}, scratch, labels, mask);
+  const void* before[] = {labels.pixels.data(),  mask.pixels.data(),           scratch.evidence.data(),
+                          scratch.region.data(), scratch.row_nearest_m.data(), scratch.block_reach_m.data()};
+  mark_foreground(flat(0.5F), flat(1.0F), kKinect, {}, scratch, labels, mask);
+  const void* after[] = {labels.pixels.data(),  mask.pixels.data(),           scratch.evidence.data(),
+                         scratch.region.data(), scratch.row_nearest_m.data(), scratch.block_reach_m.data()};
+  for (std::size_t i = 0; i < std::size(before); ++i) EXPECT_EQ(before[i], after[i]) << i;
+}
+
+TEST(Foreground, ImpossibleSettingsAreNamed) {
+  ForegroundConfig config;
+  EXPECT_NO_THROW(require_valid(config));
+  config.strong_sigmas = 1.0F;  // under weak_sigmas
+  try {
+    require_valid(config);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("foreground.strong_sigmas = 1"), std::string::npos)
+        << error.what();
+  }
+  config = {};
+  config.model_sigma_m = std::nanf("");
+  EXPECT_THROW(require_valid(config), Error);
+}
+
+}  // namespace
+}  // namespace roomradar
