@@ -1,0 +1,159 @@
+// gpu_mesh.cpp: buffers that are filled once or every frame, and drawn chunk by chunk.
+#include "radar/gpu_mesh.hpp"
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
+#include <limits>
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+// Chunks of a static mesh: at 1 cm cells a run of 1,024 triangles is a patch of about 25 cm, the size of what
+// is thrown around. A streamed mesh's run is part of an image row or a few of them.
+constexpr std::uint32_t kStaticChunkTriangles = 1024;
+constexpr std::uint32_t kStreamedChunkTriangles = 512;
+
+enum Buffer : std::size_t { kPositions, kNormals, kColours, kIndices };
+
+/// Whether the box is wholly outside one of the clip planes. Conservative: a box near a corner may count as
+/// inside.
+bool is_outside(const Eigen::AlignedBox3f& box, const Eigen::Matrix4d& clip_from_local) {
+  const Eigen::Vector3d centre = box.center().cast<double>();
+  const Eigen::Vector3d half = 0.5 * box.sizes().cast<double>();
+  const Eigen::RowVector4d w = clip_from_local.row(3);
+  const Eigen::RowVector4d x = clip_from_local.row(0);
+  const Eigen::RowVector4d y = clip_from_local.row(1);
+  const Eigen::RowVector4d z = clip_from_local.row(2);
+  const Eigen::RowVector4d planes[6] = {w + x, w - x, w + y, w - y, z, w - z};  // >= 0 inside
+  for (const Eigen::RowVector4d& plane : planes) {
+    const Eigen::RowVector3d n = plane.head<3>();
+    if (n.dot(centre) + plane[3] + n.cwiseAbs().dot(half) < 0.0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+GpuMesh::GpuMesh(GlContext& /*context*/) {
+  glCreateVertexArrays(1, &vertex_array_);
+  glCreateBuffers(static_cast<GLsizei>(buffers_.size()), buffers_.data());
+  glVertexArrayVertexBuffer(vertex_array_, kPositions, buffers_[kPositions], 0, sizeof(Eigen::Vector3f));
+  glVertexArrayVertexBuffer(vertex_array_, kNormals, buffers_[kNormals], 0, sizeof(Eigen::Vector3f));
+  glVertexArrayVertexBuffer(vertex_array_, kColours, buffers_[kColours], 0, sizeof(Rgb));
+  glVertexArrayElementBuffer(vertex_array_, buffers_[kIndices]);
+  for (const GLuint attribute : {kPositions, kNormals, kColours}) {
+    glVertexArrayAttribBinding(vertex_array_, attribute, attribute);
+  }
+  glVertexArrayAttribFormat(vertex_array_, kPositions, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribFormat(vertex_array_, kNormals, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribFormat(vertex_array_, kColours, 3, GL_UNSIGNED_BYTE, GL_TRUE, 0);
+  glEnableVertexArrayAttrib(vertex_array_, kPositions);
+}
+
+GpuMesh::~GpuMesh() {
+  glDeleteBuffers(static_cast<GLsizei>(buffers_.size()), buffers_.data());
+  glDeleteVertexArrays(1, &vertex_array_);
+}
+
+void GpuMesh::upload(const Mesh& mesh, MeshUsage usage) {
+  const auto refuse = [](const std::string& fault) { throw Error("mesh refused: " + fault); };
+  if (!mesh.origin.allFinite()) refuse("its origin is not finite");
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
+    refuse(std::to_string(mesh.normals.size()) + " normals for " + std::to_string(mesh.vertices.size()) +
+           " vertices; give one each or none");
+  }
+  if (!mesh.colours.empty() && mesh.colours.size() != mesh.vertices.size()) {
+    refuse(std::to_string(mesh.colours.size()) + " colours for " + std::to_string(mesh.vertices.size()) +
+           " vertices; give one each or none");
+  }
+  if (mesh.triangles.size() > std::numeric_limits<std::int32_t>::max() / 3) {
+    refuse(std::to_string(mesh.triangles.size()) + " triangles; 715827882 is the most");
+  }
+  if (usage == MeshUsage::kStatic) {
+    ChunkedTriangles chunked;
+    chunk_by_place(mesh, kStaticChunkTriangles, chunked);
+    if (chunked.dropped_triangles > 0) {
+      refuse(std::to_string(chunked.dropped_triangles) + " of " + std::to_string(mesh.triangles.size()) +
+             " triangles have a vertex that is not finite or not there; repair it or leave them out");
+    }
+    chunked_ = std::move(chunked);
+  } else {
+    chunk_in_order(mesh, kStreamedChunkTriangles, chunked_);
+  }
+  origin_ = mesh.origin;
+  vertices_.assign(mesh.vertices.begin(), mesh.vertices.end());
+  has_normals_ = !mesh.normals.empty();
+  has_colours_ = !mesh.colours.empty();
+
+  fill_buffer(kPositions, vertices_.data(), vertices_.size() * sizeof(Eigen::Vector3f), usage);
+  fill_buffer(kIndices, chunked_.triangles.data(), chunked_.triangles.size() * sizeof(Triangle), usage);
+  if (has_normals_) {
+    fill_buffer(kNormals, mesh.normals.data(), mesh.normals.size() * sizeof(Eigen::Vector3f), usage);
+    glEnableVertexArrayAttrib(vertex_array_, kNormals);
+  } else {
+    glDisableVertexArrayAttrib(vertex_array_, kNormals);
+  }
+  if (has_colours_) {
+    fill_buffer(kColours, mesh.colours.data(), mesh.colours.size() * sizeof(Rgb), usage);
+    glEnableVertexArrayAttrib(vertex_array_, kColours);
+  } else {
+    glDisableVertexArrayAttrib(vertex_array_, kColours);
+  }
+}
+
+void GpuMesh::fill_buffer(std::size_t which, const void* data, std::size_t size_bytes, MeshUsage usage) {
+  if (size_bytes == 0) return;
+  const GLenum hint = usage == MeshUsage::kStatic ? GL_STATIC_DRAW : GL_STREAM_DRAW;
+  if (usage == MeshUsage::kStatic || size_bytes > capacity_bytes_[which]) {
+    glNamedBufferData(buffers_[which], static_cast<GLsizeiptr>(size_bytes), data, hint);
+    capacity_bytes_[which] = size_bytes;
+    return;
+  }
+  glInvalidateBufferData(buffers_[which]);  // draws under way keep the old contents
+  glNamedBufferSubData(buffers_[which], 0, static_cast<GLsizeiptr>(size_bytes), data);
+}
+
+std::size_t GpuMesh::draw(const Eigen::Matrix4d& clip_from_local) const {
+  if (chunked_.triangles.empty()) return 0;
+  glBindVertexArray(vertex_array_);
+  if (!has_normals_) glVertexAttrib3f(kNormals, 0.0F, 0.0F, 1.0F);
+  if (!has_colours_) glVertexAttrib3f(kColours, 0.8F, 0.8F, 0.8F);
+  std::size_t drawn = 0;
+  std::uint32_t run_first = 0;
+  std::uint32_t run_count = 0;  // neighbouring chunks in sight go in one call
+  const auto draw_run = [&] {
+    if (run_count == 0) return;
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * run_count), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(run_first * sizeof(Triangle)));
+    drawn += run_count;
+    run_count = 0;
+  };
+  for (const MeshChunk& chunk : chunked_.chunks) {
+    if (is_outside(chunk.bounds_local, clip_from_local)) {
+      draw_run();
+      continue;
+    }
+    if (run_count == 0) run_first = chunk.first_triangle;
+    run_count += chunk.triangle_count;
+  }
+  draw_run();
+  return drawn;
+}
+
+Eigen::AlignedBox3d GpuMesh::bounds() const {
+  if (chunked_.bounds_local.isEmpty()) return {};
+  return {chunked_.bounds_local.min().cast<double>() + origin_,
+          chunked_.bounds_local.max().cast<double>() + origin_};
+}
+
+Eigen::Matrix4d clip_from_local(const MeshInstance& instance, const Eigen::Matrix4d& clip_from_world) {
+  Eigen::Isometry3d T_world_local = instance.T_world_mesh;
+  T_world_local.translate(instance.mesh->origin());
+  return clip_from_world * T_world_local.matrix();
+}
+
+}  // namespace roomradar

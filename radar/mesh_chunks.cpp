@@ -1,0 +1,86 @@
+// mesh_chunks.cpp: check, order and box triangles.
+#include "radar/mesh_chunks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace roomradar {
+namespace {
+
+bool is_usable(const Mesh& mesh, const Triangle& triangle) {
+  const std::size_t count = mesh.vertices.size();
+  if (triangle[0] >= count || triangle[1] >= count || triangle[2] >= count) return false;
+  const Eigen::Vector3f sum =
+      mesh.vertices[triangle[0]] + mesh.vertices[triangle[1]] + mesh.vertices[triangle[2]];
+  return std::isfinite(sum.x() + sum.y() + sum.z());  // one coordinate not finite makes the sum so
+}
+
+void keep_usable(const Mesh& mesh, ChunkedTriangles& out) {
+  out.triangles.resize(mesh.triangles.size());
+  std::size_t kept = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    out.triangles[kept] = triangle;
+    kept += is_usable(mesh, triangle) ? 1U : 0U;
+  }
+  out.triangles.resize(kept);
+  out.dropped_triangles = mesh.triangles.size() - kept;
+}
+
+void cut_into_chunks(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out) {
+  out.chunks.clear();
+  out.bounds_local.setEmpty();
+  for (std::size_t first = 0; first < out.triangles.size(); first += max_triangles) {
+    MeshChunk chunk;
+    chunk.first_triangle = static_cast<std::uint32_t>(first);
+    chunk.triangle_count =
+        static_cast<std::uint32_t>(std::min<std::size_t>(max_triangles, out.triangles.size() - first));
+    for (std::size_t i = first; i < first + chunk.triangle_count; ++i) {
+      for (const std::uint32_t vertex : out.triangles[i]) chunk.bounds_local.extend(mesh.vertices[vertex]);
+    }
+    out.bounds_local.extend(chunk.bounds_local);
+    out.chunks.push_back(chunk);
+  }
+}
+
+/// Spreads the lowest 10 bits so that two zeros stand between each.
+std::uint32_t spread_bits(std::uint32_t v) {
+  v = (v | (v << 16U)) & 0x030000FFU;
+  v = (v | (v << 8U)) & 0x0300F00FU;
+  v = (v | (v << 4U)) & 0x030C30C3U;
+  return (v | (v << 2U)) & 0x09249249U;
+}
+
+}  // namespace
+
+void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out) {
+  keep_usable(mesh, out);
+  Eigen::AlignedBox3f box;
+  const auto centre = [&](const Triangle& t) -> Eigen::Vector3f {
+    return (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0F;
+  };
+  for (const Triangle& triangle : out.triangles) box.extend(centre(triangle));
+
+  // One scale for all axes: cells are cubes, and a flat room does not get slabs.
+  const float longest_m = box.isEmpty() ? 0.0F : box.sizes().maxCoeff();
+  const float scale = longest_m > 0.0F ? 1023.0F / longest_m : 0.0F;
+  std::vector<std::pair<std::uint32_t, Triangle>> keyed(out.triangles.size());
+  for (std::size_t i = 0; i < keyed.size(); ++i) {
+    const Eigen::Vector3f cell = (centre(out.triangles[i]) - box.min()) * scale;
+    const std::uint32_t key = spread_bits(static_cast<std::uint32_t>(cell.x())) |
+                              (spread_bits(static_cast<std::uint32_t>(cell.y())) << 1U) |
+                              (spread_bits(static_cast<std::uint32_t>(cell.z())) << 2U);
+    keyed[i] = {key, out.triangles[i]};
+  }
+  std::stable_sort(keyed.begin(), keyed.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (std::size_t i = 0; i < keyed.size(); ++i) out.triangles[i] = keyed[i].second;
+  cut_into_chunks(mesh, max_triangles, out);
+}
+
+void chunk_in_order(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out) {
+  keep_usable(mesh, out);
+  cut_into_chunks(mesh, max_triangles, out);
+}
+
+}  // namespace roomradar
