@@ -1,4 +1,5 @@
-// compose.hpp: put the virtual objects into the camera's picture: hidden by what is nearer, shadowing what is below.
+// compose.hpp: put the virtual objects into the camera's picture: hidden by what is nearer, shadowing what is
+// below.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -11,10 +12,11 @@
 namespace roomradar {
 
 struct ComposeConfig {
-  float occlusion_tolerance_m = 0.006F;   ///< a real surface must be nearer by this at 1 m to hide the object
-  float tolerance_per_m2 = 0.003F;        ///< and by this more per squared metre of distance: sensor noise
-  float occlusion_softness_m = 0.004F;    ///< over this depth the object fades out: no hard line where surfaces meet
-  float shadow_strength = 0.75F;          ///< 0 none .. 1: black where the object covers the whole sky
+  float occlusion_tolerance_m = 0.006F;  ///< a real surface must be nearer by this at 1 m to hide the object
+  float tolerance_per_m2 = 0.003F;       ///< and by this more per squared metre of distance: sensor noise
+  float occlusion_softness_m =
+      0.004F;                     ///< over this depth the object fades out: no hard line where surfaces meet
+  float shadow_strength = 0.75F;  ///< 0 none .. 1: black where the object covers the whole sky
 };
 /// Throws Error "compose.shadow_strength = 2: must be in 0..1" and the like.
 void require_valid(const ComposeConfig& config);
@@ -27,10 +29,12 @@ struct ShadowCaster {
 
 /// The picture of the room with the objects in it.
 ///
-/// @param background       the camera's picture, of the camera's size; e.g. the live colour, or shade_depth of the depth
+/// @param background       the camera's picture, of the camera's size; e.g. the live colour, or shade_depth
+/// of the depth
 /// @param camera           the (colour) camera
 /// @param T_world_camera   its pose
-/// @param real_depth_m     real surfaces as this camera sees them, of its size; 0: nothing known, hides nothing
+/// @param real_depth_m     real surfaces as this camera sees them, of its size; 0: nothing known, hides
+/// nothing
 /// @param casters          objects that cast a soft shadow on real surfaces
 /// @param layer            the objects as this camera sees them (ObjectDrawer::draw)
 /// @param picture          of the camera's size; may not be `background`
@@ -39,7 +43,8 @@ void compose(const ColourImage& background, const Intrinsics& camera, const Eige
              const DepthImage& real_depth_m, std::span<const ShadowCaster> casters, const ObjectLayer& layer,
              const ComposeConfig& config, ColourImage& picture);
 
-/// A grey picture of a depth image, lit from the camera, for sources without colour. Pixels without depth are dark.
+/// A grey picture of a depth image, lit from the camera, for sources without colour. Pixels without depth are
+/// dark.
 void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture);
 
 }  // namespace roomradar

@@ -6,31 +6,14 @@
 
 #include "app/object_layer.hpp"
 #include "mapping/types/intrinsics.hpp"
-#include "mapping/types/mesh.hpp"
+#include "radar/gpu_mesh.hpp"
 
 namespace roomradar {
 
-class GlContext;
-
-/// A mesh on the GPU with what shading needs: positions, normals, colours. Lives as long as its context.
-class DrawnMesh {
- public:
-  /// Normals are computed (area-weighted) where the mesh has none; colour is used where it has no colours.
-  /// Throws Error if the mesh has no triangles, an index past its vertices, or a vertex that is not finite.
-  DrawnMesh(GlContext& context, const Mesh& mesh, Rgb colour = {196, 148, 92});
-  DrawnMesh(DrawnMesh&&) noexcept;
-  DrawnMesh& operator=(DrawnMesh&&) noexcept;
-  ~DrawnMesh();
-
- private:
-  friend class ObjectDrawer;
-  struct Buffers;
-  std::unique_ptr<Buffers> buffers_;
-};
-
+/// A virtual object: drawn with its mesh's normals and colours where it has them, else flat and in `colour`.
 struct DrawnObject {
-  const DrawnMesh* mesh = nullptr;
-  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+  MeshInstance instance;
+  Rgb colour{198, 120, 72};
 };
 
 struct Lighting {
@@ -47,11 +30,12 @@ class ObjectDrawer {
   ObjectDrawer& operator=(const ObjectDrawer&) = delete;
   ~ObjectDrawer();
 
-  /// Draws the objects at 2 x 2 samples a pixel into `layer`, whose rectangle is just large enough for them; an empty
-  /// rectangle if none is in view. Near plane 0.05 m, far plane behind the farthest object: the depth step at 1 m
-  /// is below 1e-4 m. Reuses the layer's allocations.
-  void draw(std::span<const DrawnObject> objects, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-            const Lighting& lighting, ObjectLayer& layer);
+  /// Draws the objects into `layer`, whose rectangle is just large enough for them; an empty rectangle if
+  /// none is in view. 2 x 2 samples a pixel, or one where the rectangle is larger than half a million pixels.
+  /// Near plane 0.05 m, no far end; the depth step is 6e-8 of the depth. Objects with a null mesh are left
+  /// out. Reuses the layer's allocations.
+  void draw(std::span<const DrawnObject> objects, const Intrinsics& camera,
+            const Eigen::Isometry3d& T_world_camera, const Lighting& lighting, ObjectLayer& layer);
 
  private:
   struct State;

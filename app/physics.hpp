@@ -1,4 +1,5 @@
-// physics.hpp: move a virtual object by what the radar answers, and by nothing else: fall, touch, slide, rest.
+// physics.hpp: move a virtual object by what the radar answers, and by nothing else: fall, touch, slide,
+// rest.
 #pragma once
 #include <Eigen/Geometry>
 #include <functional>
@@ -16,33 +17,38 @@ struct Body {
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
   bool at_rest = false;
-  double slow_s = 0.0;  ///< for how long it has been nearly still on a support
+  double lingered_s = 0.0;  ///< for how long it has been on a support within rest_drift_m of lingers_at_world
+  Eigen::Vector3d lingers_at_world = Eigen::Vector3d::Zero();
 };
 
 struct PhysicsConfig {
   Eigen::Vector3d gravity_world_mps2{0.0, 0.0, -9.81};
-  double restitution = 0.0;              ///< part of the normal velocity that comes back, 0..1; below bounce_mps none does
-  double bounce_mps = 0.3;               ///< slower impacts do not bounce
-  double friction = 0.4;                 ///< Coulomb's coefficient, >= 0
-  double contact_margin_m = 0.001;       ///< gap kept to a surface; the radar samples, and sampling finds contact late
-  double margin_per_pixel = 0.5;         ///< and this part of the radar's pixel size on top, where it tells one
-  double max_margin_m = 0.004;           ///< the gap never grows past this
-  double max_step_s = 1.0 / 30.0;        ///< a longer step is cut into such pieces
-  double max_advance_s = 0.5;            ///< time past this in one call is dropped (a stalled camera must not launch things)
-  int max_slides = 4;                    ///< surfaces met one after the other in one piece of a step
-  double rest_speed_mps = 0.12;          ///< slower than this on a support for rest_after_s: at rest
-  double rest_after_s = 0.1;
-  double wake_gap_m = 0.012;             ///< support sank by more than this: falls again; sensor noise is some mm
-  double wake_overlap_m = 0.008;         ///< support or a hand came in by more than this: moves out of the way
-  double overlap_allowed_m = 0.001;      ///< less is left as it is
-  double push_out_mps = 1.0;             ///< fastest way out of an overlap; also the speed of a hand that still pushes
+  double restitution =
+      0.0;                  ///< part of the normal velocity that comes back, 0..1; below bounce_mps none does
+  double bounce_mps = 0.3;  ///< slower impacts do not bounce
+  double friction = 0.5;    ///< Coulomb's coefficient, >= 0
+  double contact_margin_m =
+      0.001;  ///< gap kept to a surface; the radar samples, and sampling finds contact late
+  double margin_per_pixel = 0.5;   ///< and this part of the radar's pixel size on top, where it tells one
+  double max_margin_m = 0.004;     ///< the gap never grows past this
+  double max_step_s = 1.0 / 30.0;  ///< a longer step is cut into such pieces
+  double max_advance_s =
+      0.5;             ///< time past this in one call is dropped (a stalled camera must not launch things)
+  int max_slides = 4;  ///< surfaces met one after the other in one piece of a step
+  double rest_drift_m = 0.012;  ///< stays within this on a support for rest_after_s: at rest
+  double rest_after_s = 0.3;
+  double wake_gap_m = 0.012;         ///< support sank by more than this: falls again; sensor noise is some mm
+  double wake_overlap_m = 0.008;     ///< support or a hand came in by more than this: moves out of the way
+  double overlap_allowed_m = 0.001;  ///< less is left as it is
+  double push_out_mps = 1.0;  ///< fastest way out of an overlap; also the speed of a hand that still pushes
   double max_speed_mps = 20.0;
 };
 /// Throws Error "physics.friction = -1: must be >= 0" and the like.
 void require_valid(const PhysicsConfig& config);
 
-/// What stands in the way of the object at T_world_object if it moves along a unit direction by up to distance_m.
-/// CyberRadar::query bound to the object's mesh and to the frame's scene, or an analytic room in tests.
+/// What stands in the way of the object at T_world_object if it moves along a unit direction by up to
+/// distance_m. CyberRadar::query bound to the object's mesh and to the frame's scene, or an analytic room in
+/// tests.
 using TravelQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
                                           const Eigen::Vector3d& direction_world, double distance_m)>;
 
@@ -54,28 +60,35 @@ enum class StepStatus {
 
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
-  int contacts = 0;                ///< surfaces met
-  int queries = 0;                 ///< radar passes asked for
-  double deepest_overlap_m = 0.0;  ///< deepest overlap seen before it was resolved, along gravity or a push, >= 0
+  int contacts = 0;  ///< surfaces met
+  int queries = 0;   ///< radar passes asked for
+  double deepest_overlap_m =
+      0.0;  ///< deepest overlap seen before it was resolved, by the shortest way out, >= 0
+  double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only
   bool touched_static = false;
   bool touched_dynamic = false;
   bool touched_object = false;
-  bool woke = false;               ///< was at rest before and is not any more
+  bool woke = false;  ///< was at rest before and is not any more
 };
 
 /// Moves `body` on by dt_s: gravity, contact, Coulomb friction along the surface met, rest.
-/// Each piece of motion is first swept by the radar, so nothing is tunnelled through however large the step is.
+/// Each piece of motion is first swept by the radar, so nothing is tunnelled through however large the step
+/// is.
 ///
 /// @param dt_s   seconds since the last call, >= 0; 0 changes nothing
-/// @param query  the radar; asked 1 to about 2 + max_slides times a piece
-/// @param push_directions_world  unit directions from the body to where moving surfaces are (see push_directions):
-///        an overlap there moves the body away by the shortest of these ways; empty where nothing moves nearby
+/// @param query  the radar; asked once about what is below, once more a push direction, 1 to max_slides times
+/// a piece
+/// @param push_directions_world  unit directions from the body to where moving surfaces are (see
+/// push_directions):
+///        an overlap there moves the body away by the shortest of these ways; empty where nothing moves
+///        nearby
 /// A body at rest is asked about along gravity only (and along push_directions), and does not move by noise.
+/// A body at rest with a velocity is woken by it. Steps longer than max_advance_s count as that.
 StepReport advance(Body& body, double dt_s, const TravelQuery& query, const PhysicsConfig& config,
                    std::span<const Eigen::Vector3d> push_directions_world = {});
 
-/// Horizontal unit directions from a body to the moving surfaces about it: to the nearest vertex and to the mean of
-/// all vertices within reach_m of centre_world. None, one or two.
+/// Horizontal unit directions from a body to the moving surfaces about it: to the nearest vertex and to the
+/// mean of all vertices within reach_m of centre_world. None, one or two.
 struct PushDirections {
   int count = 0;
   Eigen::Vector3d direction_world[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};

@@ -9,26 +9,27 @@
 namespace roomradar {
 
 struct PlacementConfig {
-  double cell_m = 0.02;                ///< of the height grid that the view is turned into
-  double max_tilt_deg = 15.0;          ///< of the surface against level
-  double flatness_m = 0.015;           ///< heights under the footprint differ by at most this
-  double min_seen = 0.8;               ///< part of the footprint's cells that must have been measured
-  double clear_height_m = 0.3;         ///< nothing stands this high above the footprint
-  double min_range_m = 0.4;            ///< from the camera
+  double cell_m = 0.02;         ///< of the height grid that the view is turned into
+  double max_tilt_deg = 15.0;   ///< of the surface against level
+  double flatness_m = 0.015;    ///< heights under the footprint differ by at most this
+  double min_seen = 0.8;        ///< part of the footprint's cells that must have been measured
+  double clear_height_m = 0.3;  ///< nothing stands this high above the footprint
+  double min_range_m = 0.4;     ///< from the camera
   double max_range_m = 4.0;
-  double table_below_camera_m = 1.05;  ///< surfaces down to this below the camera are taken for tables, lower for floor
+  double table_below_camera_m =
+      1.05;  ///< surfaces down to this below the camera are taken for tables, lower for floor
 };
 /// Throws Error "placement.cell_m = 0: must be > 0" and the like.
 void require_valid(const PlacementConfig& config);
 
 struct Support {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< on the surface, under the object's middle
-  double spread_m = 0.0;                                  ///< of the heights under the footprint, standard deviation
-  double area_m2 = 0.0;                                   ///< of level cells connected with it
+  double spread_m = 0.0;  ///< of the heights under the footprint, standard deviation
+  double area_m2 = 0.0;   ///< of level cells connected with it
 };
 
-/// The best place for an object of the given footprint: level, flat, clear of what stands about, near the middle of the
-/// picture, rather a table than the floor, with room to spare. Nothing if there is none.
+/// The best place for an object of the given footprint: level, flat, clear of what stands about, near the
+/// middle of the picture, rather a table than the floor, with room to spare. Nothing if there is none.
 ///
 /// @param depth_m         live or expected depth, of the camera's size
 /// @param T_world_camera  world with +z up

@@ -21,15 +21,16 @@ enum class Action {
 
 /// One line of the file. Positions are of the object's origin, in the world (m, +z up).
 struct ScriptEvent {
-  int line = 0;                               ///< in the file, from 1; 0 in a script made in code
-  std::optional<std::int64_t> frame;          ///< before this frame of the run, from 0; either this ...
-  std::optional<double> time_s;               ///< ... or before the first frame at or after this time of the run
+  int line = 0;                       ///< in the file, from 1; 0 in a script made in code
+  std::optional<std::int64_t> frame;  ///< before this frame of the run, from 0; either this ...
+  std::optional<double> time_s;       ///< ... or before the first frame at or after this time of the run
   Action action = Action::kQuit;
-  std::string name;                           ///< of the object; empty for kQuit
-  std::string mesh;                           ///< kAdd: `teapot`, or a mesh file, relative to the script's folder
-  std::optional<double> size_m;               ///< kAdd: scaled so that its longest side is this; as it is if absent
-  std::optional<Eigen::Vector3d> position_world;  ///< kPlace, kDrop, kThrow; kDrop without one: over a surface in view
-  double height_m = 0.3;                      ///< kDrop: its lowest point starts this far above the position or surface
+  std::string name;              ///< of the object; empty for kQuit
+  std::string mesh;              ///< kAdd: `teapot`, or a mesh file, relative to the script's folder
+  std::optional<double> size_m;  ///< kAdd: scaled so that its longest side is this; as it is if absent
+  std::optional<Eigen::Vector3d>
+      position_world;     ///< kPlace, kDrop, kThrow; kDrop without one: over a surface in view
+  double height_m = 0.3;  ///< kDrop: its lowest point starts this far above the position or surface
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow
 };
 
@@ -48,9 +49,9 @@ struct Script {
 ///     time 6     remove pot
 ///     frame 300  quit
 ///
-/// Throws Error "FILE:LINE: ..." with what was found and what is wanted for: an unknown word, a missing or surplus
-/// word, a number that is none, not finite or out of range, a negative frame or time, a name that was not added (or was
-/// twice), a file that cannot be read, is binary or longer than 1 MiB.
+/// Throws Error "FILE:LINE: ..." with what was found and what is wanted for: an unknown word, a missing or
+/// surplus word, a number that is none, not finite or out of range, a negative frame or time, a name that was
+/// not added (or was twice), a file that cannot be read, is binary or longer than 1 MiB.
 Script read_script(const std::filesystem::path& path);
 
 /// The same from text; `where` stands for the file's name in messages, mesh paths stay as they are.

@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// .mp4 (H.264 where there is an encoder, else MPEG-4), .avi (Motion JPEG), .mkv (MPEG-4). An odd last row or column is
-/// left out, for the encoders want even sizes.
+/// .mp4 (H.264 where there is an encoder, else MPEG-4), .avi (Motion JPEG), .mkv (MPEG-4). An odd last row or
+/// column is left out, for the encoders want even sizes.
 class VideoWriter {
  public:
   /// Throws Error for another extension, a folder that does not exist, or frames_per_s not in 1..240.
@@ -22,8 +22,8 @@ class VideoWriter {
   /// Throws Error if the file cannot be made, the disk is full, or the size is not that of the first picture.
   void write(const ColourImage& picture);
 
-  /// Finishes the file and reads it back: throws Error if it is missing or holds fewer frames than were written
-  /// (disk full). Nothing happens the second time, or if nothing was written.
+  /// Finishes the file and reads it back: throws Error if it is missing or holds fewer frames than were
+  /// written (disk full). Nothing happens the second time, or if nothing was written.
   void close();
 
   [[nodiscard]] std::int64_t frames_written() const;

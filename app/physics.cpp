@@ -1,0 +1,333 @@
+// physics.cpp: move a virtual object by what the radar answers.
+#include "app/physics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+constexpr double kShortest_m = 1e-13;  // less than this is no motion
+constexpr double kGrazing = 0.05;  // cosine below which a margin is not measured along the motion any more
+constexpr double kSupportCosine = 0.5;  // a surface within 60 degrees of level holds an object up
+constexpr double kDoubtful_m = 0.003;   // deeper overlap along gravity: the way out may be sideways
+
+bool is_finite(const Body& body) {
+  return body.T_world_object.matrix().allFinite() && body.velocity_world_mps.allFinite();
+}
+
+/// Whether the radar's answer can be built on. A normal that is missing or does not face the object is
+/// replaced by the direction back, in place.
+bool make_usable(Contact& contact, const Vec3& direction) {
+  if (contact.status == ContactStatus::kInvalidInput) return false;
+  if (!contact) return true;
+  if (!std::isfinite(contact.travel_m)) return false;
+  const double length = contact.normal_world.norm();
+  const bool faces_object =
+      std::isfinite(length) && length > 0.5 && contact.normal_world.dot(direction) < -1e-3 * length;
+  contact.normal_world = faces_object ? Vec3(contact.normal_world / length) : Vec3(-direction);
+  return true;
+}
+
+/// One call of advance: the body, the radar, and what is reported.
+class Stepper {
+ public:
+  Stepper(Body& body, const TravelQuery& query, const PhysicsConfig& config, StepReport& report)
+      : body_(body), query_(query), config_(config), report_(report) {
+    const double g = config.gravity_world_mps2.norm();
+    if (g > 0.0) down_ = config.gravity_world_mps2 / g;
+  }
+
+  /// Looks below, and moves out of surfaces that came into the body, by the shortest way among gravity's and
+  /// the given.
+  void leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world);
+
+  /// Whether what leave_overlaps saw below still holds the body up, within the noise.
+  [[nodiscard]] bool is_held_up() const;
+
+  /// One piece of free motion: sweep, touch, slide, and perhaps rest.
+  void move(double dt_s);
+
+  void wake();
+  [[nodiscard]] bool failed() const { return report_.status == StepStatus::kHeld; }
+
+ private:
+  struct Way {
+    double depth_m = 0.0;  // 0: no overlap
+    Vec3 direction = Vec3::Zero();
+    Touched touched = Touched::kNothing;
+  };
+
+  Contact ask(const Vec3& direction, double distance_m);
+  static Way overlap_in(const Contact& contact, const Vec3& direction);
+  double margin_m(const Contact& contact) const {
+    return std::min(config_.contact_margin_m + config_.margin_per_pixel * std::max(contact.pixel_m, 0.0),
+                    config_.max_margin_m);
+  }
+  void note(Touched touched);
+  void hold();
+  void collide(const Contact& contact, Vec3& remaining);
+  void linger(double dt_s);
+
+  Body& body_;
+  const TravelQuery& query_;
+  const PhysicsConfig& config_;
+  StepReport& report_;
+  Vec3 down_ = Vec3::Zero();
+  Contact below_;  // along gravity, before any motion
+  std::array<Vec3, 2> met_normals_;
+  int met_count_ = 0;
+};
+
+Contact Stepper::ask(const Vec3& direction, double distance_m) {
+  ++report_.queries;
+  Contact contact = query_(body_.T_world_object, direction, distance_m);
+  if (!make_usable(contact, direction)) hold();
+  return contact;
+}
+
+void Stepper::hold() {
+  report_.status = StepStatus::kHeld;
+  body_.velocity_world_mps.setZero();
+}
+
+void Stepper::note(Touched touched) {
+  report_.touched_static |= touched == Touched::kStatic;
+  report_.touched_dynamic |= touched == Touched::kDynamic;
+  report_.touched_object |= touched == Touched::kObject;
+}
+
+void Stepper::wake() {
+  if (!body_.at_rest) return;
+  report_.woke = true;
+  body_.at_rest = false;
+  body_.lingered_s = 0.0;
+}
+
+Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) {
+  if (contact.status != ContactStatus::kOverlap) return {};
+  return {std::max(-contact.travel_m, 0.0), direction, contact.touched};
+}
+
+void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world) {
+  Way way;
+  const auto consider = [&](const Way& other) {
+    if (other.depth_m > 0.0 && (way.depth_m <= 0.0 || other.depth_m < way.depth_m)) way = other;
+  };
+  const auto look = [&](const Vec3& direction) {
+    if (!failed()) consider(overlap_in(ask(direction, config_.max_margin_m), direction));
+  };
+  if (!down_.isZero()) {
+    below_ = ask(down_, config_.wake_gap_m + 2.0 * config_.max_margin_m);
+    consider(overlap_in(below_, down_));
+  }
+  for (const Vec3& direction : push_directions_world)
+    if (direction.allFinite() && direction.norm() > 0.5) look(direction.normalized());
+  // A wall that grazes the body's side looks deep along gravity: look sideways before jumping on top of it.
+  if (way.depth_m > kDoubtful_m && way.direction == down_) {
+    const Vec3 across = down_.unitOrthogonal();
+    const Vec3 other_across = down_.cross(across);
+    for (const Vec3& direction : {across, Vec3(-across), other_across, Vec3(-other_across)}) look(direction);
+  }
+  if (failed() || way.depth_m <= 0.0) return;
+
+  report_.deepest_overlap_m = std::max(report_.deepest_overlap_m, way.depth_m);
+  if (way.touched == Touched::kStatic)
+    report_.deepest_static_overlap_m = std::max(report_.deepest_static_overlap_m, way.depth_m);
+  note(way.touched);
+  if (way.depth_m <= (body_.at_rest ? config_.wake_overlap_m : config_.overlap_allowed_m)) return;
+
+  wake();
+  const double push_m = std::min(way.depth_m, config_.push_out_mps * dt_s);
+  // What stands behind stops the push: the body is squeezed, and the next call asks again.
+  const Contact behind = ask(-way.direction, push_m + config_.max_margin_m);
+  if (failed()) return;
+  double free_m = push_m;
+  if (behind.status == ContactStatus::kContact) free_m = std::max(behind.travel_m - margin_m(behind), 0.0);
+  if (behind.status == ContactStatus::kOverlap && behind.touched == Touched::kStatic) free_m = 0.0;
+  body_.T_world_object.translation() -= std::min(push_m, free_m) * way.direction;
+  const double inward_mps = body_.velocity_world_mps.dot(way.direction);
+  if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction;
+}
+
+bool Stepper::is_held_up() const {
+  if (down_.isZero()) return true;
+  return below_ && below_.travel_m <= config_.wake_gap_m + margin_m(below_);
+}
+
+/// Takes out what goes into the surface, of the velocity by restitution and friction, of the motion that
+/// remains wholly; where two surfaces are met, along their crease; where three are, all of it.
+void Stepper::collide(const Contact& contact, Vec3& remaining) {
+  const Vec3& normal = contact.normal_world;
+  Vec3& velocity = body_.velocity_world_mps;
+  const double into_mps = -velocity.dot(normal);
+  Vec3 along = velocity + into_mps * normal;
+  double kept = 1.0;
+  if (into_mps > 0.0) {
+    const double speed = along.norm();
+    kept = speed > 0.0 ? std::max(1.0 - config_.friction * into_mps / speed, 0.0) : 0.0;
+    const double back_mps = into_mps > config_.bounce_mps ? config_.restitution * into_mps : 0.0;
+    along *= kept;
+    velocity = along + back_mps * normal;
+  }
+  remaining -= std::min(remaining.dot(normal), 0.0) * normal;
+  remaining *= kept;
+
+  for (int i = 0; i < met_count_; ++i) {
+    const Vec3& other = met_normals_[static_cast<std::size_t>(i)];
+    if (remaining.dot(other) >= -1e-9) continue;
+    const Vec3 crease = other.cross(normal);
+    const double length2 = crease.squaredNorm();
+    const bool is_corner = met_count_ == 2 || length2 < 1e-6;
+    const auto on_crease = [&](const Vec3& v) -> Vec3 {
+      return is_corner ? Vec3::Zero() : Vec3(crease * (crease.dot(v) / length2));
+    };
+    remaining = on_crease(remaining);
+    if (velocity.dot(other) < 0.0) velocity = on_crease(velocity);
+    break;
+  }
+  if (met_count_ < 2) met_normals_[static_cast<std::size_t>(met_count_++)] = normal;
+  ++report_.contacts;
+  note(contact.touched);
+}
+
+/// Counts time on a support, from where the body first lingered; there for long enough, it is at rest.
+void Stepper::linger(double dt_s) {
+  const Vec3 position = body_.T_world_object.translation();
+  if (body_.lingered_s <= 0.0 || (position - body_.lingers_at_world).norm() > config_.rest_drift_m) {
+    body_.lingers_at_world = position;
+    body_.lingered_s = 0.0;
+  }
+  body_.lingered_s += dt_s;
+  if (body_.lingered_s < config_.rest_after_s) return;
+  body_.at_rest = true;
+  body_.velocity_world_mps.setZero();
+}
+
+void Stepper::move(double dt_s) {
+  body_.velocity_world_mps += config_.gravity_world_mps2 * dt_s;
+  const double speed_mps = body_.velocity_world_mps.norm();
+  if (speed_mps > config_.max_speed_mps) body_.velocity_world_mps *= config_.max_speed_mps / speed_mps;
+
+  auto position = body_.T_world_object.translation();
+  Vec3 remaining = body_.velocity_world_mps * dt_s;
+  bool is_supported = false;
+  met_count_ = 0;
+  for (int slide = 0; slide < config_.max_slides; ++slide) {
+    const double distance_m = remaining.norm();
+    if (distance_m < kShortest_m) break;
+    const Vec3 direction = remaining / distance_m;
+    const Contact contact = ask(direction, distance_m + config_.max_margin_m / kGrazing);
+    if (failed()) return;
+    // The gap is kept across the surface; seen along a grazing motion it is longer.
+    const double steepness = std::max(-contact.normal_world.dot(direction), kGrazing);
+    const double free_m = contact ? contact.travel_m - margin_m(contact) / steepness : distance_m;
+    if (free_m >= distance_m) {
+      position += remaining;
+      break;
+    }
+    const Vec3 moved = std::max(free_m, 0.0) * direction;
+    position += moved;
+    remaining -= moved;
+    is_supported |= contact.normal_world.dot(down_) < -kSupportCosine;
+    collide(contact, remaining);
+  }
+  if (is_supported) linger(dt_s);
+}
+
+}  // namespace
+
+void require_valid(const PhysicsConfig& config) {
+  const auto require = [](bool holds, const char* name, double value, const char* rule) {
+    if (!holds)
+      throw Error(std::string("physics.") + name + " = " + std::to_string(value) + ": must be " + rule);
+  };
+  const auto require_positive = [&](const char* name, double value) {
+    require(std::isfinite(value) && value > 0.0, name, value, "> 0");
+  };
+  const auto require_not_negative = [&](const char* name, double value) {
+    require(std::isfinite(value) && value >= 0.0, name, value, ">= 0");
+  };
+  require(config.gravity_world_mps2.allFinite(), "gravity_world_mps2", config.gravity_world_mps2.norm(),
+          "finite");
+  require(config.restitution >= 0.0 && config.restitution <= 1.0, "restitution", config.restitution,
+          "in 0..1");
+  require_not_negative("bounce_mps", config.bounce_mps);
+  require_not_negative("friction", config.friction);
+  require_not_negative("contact_margin_m", config.contact_margin_m);
+  require_not_negative("margin_per_pixel", config.margin_per_pixel);
+  require_positive("max_margin_m", config.max_margin_m);
+  require_positive("max_step_s", config.max_step_s);
+  require_positive("max_advance_s", config.max_advance_s);
+  require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,
+          "at most 1000 max_step_s");
+  require(config.max_slides >= 1 && config.max_slides <= 64, "max_slides", config.max_slides, "in 1..64");
+  require_positive("rest_drift_m", config.rest_drift_m);
+  require_positive("rest_after_s", config.rest_after_s);
+  require_positive("wake_gap_m", config.wake_gap_m);
+  require_positive("wake_overlap_m", config.wake_overlap_m);
+  require_not_negative("overlap_allowed_m", config.overlap_allowed_m);
+  require_positive("push_out_mps", config.push_out_mps);
+  require_positive("max_speed_mps", config.max_speed_mps);
+}
+
+StepReport advance(Body& body, double dt_s, const TravelQuery& query, const PhysicsConfig& config,
+                   std::span<const Eigen::Vector3d> push_directions_world) {
+  StepReport report;
+  if (!std::isfinite(dt_s) || dt_s < 0.0 || !is_finite(body)) {
+    report.status = StepStatus::kInvalid;
+    return report;
+  }
+  if (dt_s == 0.0) return report;
+  dt_s = std::min(dt_s, config.max_advance_s);
+
+  Stepper stepper(body, query, config, report);
+  stepper.leave_overlaps(dt_s, push_directions_world);
+  if (stepper.failed()) return report;
+  if (body.at_rest && body.velocity_world_mps.isZero() && stepper.is_held_up()) return report;
+  stepper.wake();
+
+  const int pieces = static_cast<int>(std::ceil(dt_s / config.max_step_s - 1e-9));
+  for (int piece = 0; piece < pieces && !body.at_rest && !stepper.failed(); ++piece)
+    stepper.move(dt_s / std::max(pieces, 1));
+  return report;
+}
+
+PushDirections push_directions(const Mesh& moving_world, const Eigen::Vector3d& centre_world, double reach_m,
+                               const Eigen::Vector3d& up_world) {
+  const Vec3 centre = centre_world - moving_world.origin;
+  Vec3 nearest = Vec3::Zero();
+  Vec3 sum = Vec3::Zero();
+  double nearest_m2 = reach_m * reach_m;
+  std::size_t count = 0;
+  for (const Eigen::Vector3f& vertex : moving_world.vertices) {
+    const Vec3 offset = vertex.cast<double>() - centre;
+    const double distance_m2 = offset.squaredNorm();
+    if (!(distance_m2 <= reach_m * reach_m)) continue;  // NaN is not near either
+    sum += offset;
+    ++count;
+    if (distance_m2 <= nearest_m2) {
+      nearest_m2 = distance_m2;
+      nearest = offset;
+    }
+  }
+  PushDirections result;
+  if (count == 0) return result;
+  for (const Vec3& offset : {nearest, Vec3(sum / static_cast<double>(count))}) {
+    const Vec3 level = offset - offset.dot(up_world) * up_world;
+    const double length = level.norm();
+    if (length < 0.2 * offset.norm() || length < 1e-6) continue;  // straight above or below: gravity's affair
+    const Vec3 direction = level / length;
+    if (result.count == 1 && direction.dot(result.direction_world[0]) > 0.97) continue;
+    result.direction_world[result.count++] = direction;
+  }
+  return result;
+}
+
+}  // namespace roomradar

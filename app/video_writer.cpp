@@ -1,0 +1,113 @@
+// video_writer.cpp: pictures to a video file through OpenCV, with the checks that OpenCV leaves out.
+#include "app/video_writer.hpp"
+
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::int64_t kFramesBetweenSpaceChecks = 15;
+constexpr std::uintmax_t kMinFreeBytes = 4U
+                                         << 20U;  // an encoder's buffers and the file's index must still fit
+
+std::vector<std::string> codecs_for(const std::string& extension) {
+  if (extension == ".mp4") return {"avc1", "mp4v"};
+  if (extension == ".avi") return {"MJPG"};
+  if (extension == ".mkv") return {"mp4v", "MJPG"};
+  return {};
+}
+
+}  // namespace
+
+struct VideoWriter::State {
+  std::filesystem::path path;
+  double frames_per_s = 30.0;
+  std::vector<std::string> codecs;
+  cv::VideoWriter writer;
+  cv::Mat bgr;
+  int width_px = 0;
+  int height_px = 0;
+  std::int64_t frames_written = 0;
+  bool is_closed = false;
+
+  void open() {
+    for (const std::string& codec : codecs) {
+      const int fourcc = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
+      const cv::Size size(width_px & ~1, height_px & ~1);
+      if (writer.open(path.string(), cv::CAP_FFMPEG, fourcc, frames_per_s, size)) return;
+    }
+    throw Error(path.string() +
+                ": no video can be made here; may the folder be written, and is OpenCV built with FFmpeg?");
+  }
+
+  void require_space() const {
+    std::error_code fault;
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    const std::filesystem::space_info space = std::filesystem::space(folder, fault);
+    if (!fault && space.available < kMinFreeBytes)
+      throw Error(path.string() + ": the disk is full; make room or choose another folder");
+  }
+};
+
+VideoWriter::VideoWriter(std::filesystem::path path, double frames_per_s)
+    : state_(std::make_unique<State>()) {
+  state_->codecs = codecs_for(path.extension().string());
+  if (state_->codecs.empty()) throw Error(path.string() + ": a video's name ends in .mp4, .avi or .mkv");
+  if (!(frames_per_s >= 1.0 && frames_per_s <= 240.0))
+    throw Error(path.string() + ": " + std::to_string(frames_per_s) + " frames a second: must be in 1..240");
+  std::error_code fault;
+  if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), fault))
+    throw Error(path.string() + ": its folder does not exist; make it first");
+  if (std::filesystem::is_directory(path, fault))
+    throw Error(path.string() + ": is a folder, not a video file");
+  state_->path = std::move(path);
+  state_->frames_per_s = frames_per_s;
+}
+
+VideoWriter::~VideoWriter() = default;
+
+std::int64_t VideoWriter::frames_written() const { return state_->frames_written; }
+
+void VideoWriter::write(const ColourImage& picture) {
+  State& s = *state_;
+  if (s.is_closed) throw Error(s.path.string() + ": the video is finished; nothing can be added");
+  if (picture.width < 2 || picture.height < 2)
+    throw Error(s.path.string() + ": a video's picture needs 2 x 2 pixels");
+  if (s.frames_written == 0) {
+    s.width_px = picture.width;
+    s.height_px = picture.height;
+    s.require_space();
+    s.open();
+  }
+  if (picture.width != s.width_px || picture.height != s.height_px)
+    throw Error(s.path.string() + ": picture " + std::to_string(s.frames_written) + " is " +
+                std::to_string(picture.width) + " x " + std::to_string(picture.height) + ", the first was " +
+                std::to_string(s.width_px) + " x " + std::to_string(s.height_px));
+  if (s.frames_written % kFramesBetweenSpaceChecks == 0) s.require_space();
+  const cv::Mat rgb(picture.height, picture.width, CV_8UC3, const_cast<Rgb*>(picture.pixels.data()));
+  cv::cvtColor(rgb(cv::Rect(0, 0, picture.width & ~1, picture.height & ~1)), s.bgr, cv::COLOR_RGB2BGR);
+  s.writer.write(s.bgr);
+  ++s.frames_written;
+}
+
+void VideoWriter::close() {
+  State& s = *state_;
+  if (std::exchange(s.is_closed, true) || s.frames_written == 0) return;
+  s.writer.release();
+  // OpenCV does not say when a write failed, so the file is asked: one that was cut short has no index, or
+  // fewer frames.
+  cv::VideoCapture reader(s.path.string(), cv::CAP_FFMPEG);
+  const double frames_held = reader.isOpened() ? reader.get(cv::CAP_PROP_FRAME_COUNT) : 0.0;
+  if (frames_held + 1.5 < static_cast<double>(s.frames_written))
+    throw Error(s.path.string() + ": holds " + std::to_string(static_cast<long>(std::max(frames_held, 0.0))) +
+                " of " + std::to_string(s.frames_written) + " frames; is the disk full?");
+}
+
+}  // namespace roomradar

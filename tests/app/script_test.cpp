@@ -1,0 +1,154 @@
+// script_test.cpp: events files, right and wrong.
+#include "app/script.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+std::string message_of(const std::string& text) {
+  try {
+    (void)parse_script(text, "events.txt");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+constexpr const char* kWhole = R"(# the whole language
+frame 0    add pot teapot size 0.2
+frame 10   drop pot view height 0.4    # over what is seen
+time 2.5   drop pot at 0.4 -0.1 0.75
+
+time 4     place pot 0.4 -0.1 0.9
+time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 5e-1
+frame 200  remove pot
+frame 300  quit
+)";
+
+TEST(Script, ReadsEachAction) {
+  const Script script = parse_script(kWhole, "events.txt");
+  ASSERT_EQ(script.events.size(), 7U);
+  const auto& add = script.events[0];
+  EXPECT_EQ(add.action, Action::kAdd);
+  EXPECT_EQ(add.line, 2);
+  EXPECT_EQ(add.frame, 0);
+  EXPECT_FALSE(add.time_s);
+  EXPECT_EQ(add.name, "pot");
+  EXPECT_EQ(add.mesh, "teapot");
+  EXPECT_EQ(add.size_m, 0.2);
+  EXPECT_EQ(script.events[1].action, Action::kDrop);
+  EXPECT_FALSE(script.events[1].position_world);
+  EXPECT_EQ(script.events[1].height_m, 0.4);
+  EXPECT_EQ(script.events[2].time_s, 2.5);
+  EXPECT_EQ(script.events[2].position_world, Eigen::Vector3d(0.4, -0.1, 0.75));
+  EXPECT_EQ(script.events[2].height_m, 0.3);
+  EXPECT_EQ(script.events[3].action, Action::kPlace);
+  EXPECT_EQ(script.events[4].action, Action::kThrow);
+  EXPECT_EQ(script.events[4].velocity_world_mps, Eigen::Vector3d(1, 0, 0.5));
+  EXPECT_EQ(script.events[5].action, Action::kRemove);
+  EXPECT_EQ(script.events[6].action, Action::kQuit);
+  EXPECT_EQ(script.events[6].line, 9);
+}
+
+TEST(Script, NothingIsAScriptToo) {
+  EXPECT_TRUE(parse_script("", "e").events.empty());
+  EXPECT_TRUE(parse_script("\n  # only words\r\n\t\n", "e").events.empty());
+}
+
+TEST(Script, NamesFileLineAndFault) {
+  const std::string add = "frame 0 add pot teapot\n";
+  const struct {
+    const char* text;
+    const char* expected;
+  } faults[] = {
+      {"frame 1 jump pot", "unknown action 'jump'"},
+      {"at 1 quit", "not with 'at'"},
+      {"frame -1 quit", "'-1' is out of range"},
+      {"frame 1.5 quit", "whole number"},
+      {"frame one quit", "'one' is not a finite number"},
+      {"time nan quit", "'nan' is not a finite number"},
+      {"time inf quit", "'inf' is not a finite number"},
+      {"time -0.1 quit", "'-0.1' is out of range"},
+      {"time 1e999 quit", "'1e999' is not a finite number"},
+      {"frame 1", "the line ends"},
+      {"frame 1 place pot 0 0", "the line ends"},
+      {"frame 1 place pot 0 0 nan", "'nan' is not a finite number"},
+      {"frame 1 place pot 0 0 1x", "'1x' is not a finite number"},
+      {"frame 1 place pot 0 0 1 2", "'2' is too much"},
+      {"frame 1 place pot 0 0 5000", "'5000' is out of range"},
+      {"frame 1 drop pot 0 0 1", "'at' is wanted"},
+      {"frame 1 drop pot view height -1", "'-1' is out of range"},
+      {"frame 1 drop pot view hight 1", "'hight' is too much"},
+      {"frame 1 throw pot 0 0 1 speed 1 0 0", "'velocity' is wanted"},
+      {"frame 1 throw pot 0 0 1 velocity 1000 0 0", "'1000' is out of range"},
+      {"frame 1 remove cup", "no object 'cup'"},
+      {"frame 1 add pot teapot", "added in line 1 already"},
+      {"frame 1 add cup teapot size 0", "'0' is out of range"},
+      {"frame 1 quit now", "'now' is too much"},
+  };
+  for (const auto& fault : faults) {
+    const std::string message = message_of(add + fault.text);
+    EXPECT_NE(message.find(fault.expected), std::string::npos) << fault.text << " -> " << message;
+    EXPECT_EQ(message.rfind("events.txt:2: ", 0), 0U) << message;
+  }
+}
+
+TEST(Script, RefusesWhatIsNotText) {
+  const std::string binary("frame 0\0 quit", 13);
+  EXPECT_NE(message_of(binary).find("is not text"), std::string::npos);
+}
+
+TEST(Script, EveryTruncationIsReadOrRefusedWithALine) {
+  const std::string whole = kWhole;
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const std::string message = message_of(whole.substr(0, length));
+    if (!message.empty()) {
+      EXPECT_EQ(message.rfind("events.txt:", 0), 0U) << message;
+    }
+  }
+}
+
+class ScriptFile : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("roomradar_script_test_" + std::to_string(::getpid()));
+};
+
+TEST_F(ScriptFile, MeshFilesAreRelativeToTheScript) {
+  std::ofstream(folder_ / "e.txt")
+      << "frame 0 add a bunny.obj\nframe 0 add b /abs/c.ply\nframe 0 add c teapot\n";
+  const Script script = read_script(folder_ / "e.txt");
+  EXPECT_EQ(script.events[0].mesh, (folder_ / "bunny.obj").string());
+  EXPECT_EQ(script.events[1].mesh, "/abs/c.ply");
+  EXPECT_EQ(script.events[2].mesh, "teapot");
+}
+
+TEST_F(ScriptFile, RefusesMissingFoldersAndHugeFiles) {
+  EXPECT_THROW((void)read_script(folder_ / "none.txt"), Error);
+  EXPECT_THROW((void)read_script(folder_), Error);
+  std::ofstream(folder_ / "huge.txt") << "#";
+  std::filesystem::resize_file(folder_ / "huge.txt", (1U << 20U) + 1U);
+  EXPECT_THROW((void)read_script(folder_ / "huge.txt"), Error);
+}
+
+TEST(Script, AnEventIsDueFromItsFrameOrTimeOn) {
+  const Script script = parse_script("frame 3 quit\ntime 1.5 quit", "e");
+  EXPECT_FALSE(is_due(script.events[0], 2, 99.0));
+  EXPECT_TRUE(is_due(script.events[0], 3, 0.0));
+  EXPECT_TRUE(is_due(script.events[0], 4, 0.0));
+  EXPECT_FALSE(is_due(script.events[1], 99, 1.49));
+  EXPECT_TRUE(is_due(script.events[1], 0, 1.5));
+}
+
+}  // namespace
+}  // namespace roomradar
