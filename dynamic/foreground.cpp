@@ -14,91 +14,80 @@ namespace roomradar {
 namespace {
 
 constexpr float kNothing_m = std::numeric_limits<float>::max();  // "nearest" where the model has nothing
-constexpr int kBlock_px = 8;  // grid on which the reach into holes is computed
+constexpr int kBlock_px = 4;  // extremes around a pixel are taken over whole blocks of this size
 constexpr int kSlopeStep_px =
     4;  // slopes are taken over several pixels: a mesh from cells is a staircase at one
 
 // Evidence of one pixel, as bits.
 constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kWeakRevealed = 4, kStrongRevealed = 8, kTaken = 16;
 
-// Nearest and farthest expected depth within `radius` pixels along each row.
-void extremes_along_rows(const DepthImage& expected_m, int radius, ForegroundScratch& scratch) {
-  const int width = expected_m.width;
-  std::vector<float>& padded_nearest = scratch.padded_nearest_m;
-  std::vector<float>& padded_farthest = scratch.padded_farthest_m;
-  padded_nearest.assign(static_cast<std::size_t>(width + 2 * radius), kNothing_m);
-  padded_farthest.assign(static_cast<std::size_t>(width + 2 * radius), 0.0F);
-  for (int y = 0; y < expected_m.height; ++y) {
-    const float* expected = expected_m.row(y);
-    float* nearest_in = padded_nearest.data() + radius;
-    float* farthest_in = padded_farthest.data() + radius;
-    for (int x = 0; x < width; ++x) {
-      nearest_in[x] = expected[x] > 0.0F ? expected[x] : kNothing_m;
-      farthest_in[x] = expected[x];
-    }
-    float* nearest = scratch.row_nearest_m.data() + expected_m.index(0, y);
-    float* farthest = scratch.row_farthest_m.data() + expected_m.index(0, y);
-    std::copy_n(nearest_in - radius, width, nearest);
-    std::copy_n(farthest_in - radius, width, farthest);
-    for (int shift = 1 - radius; shift <= radius; ++shift) {
-      const float* a = nearest_in + shift;
-      const float* b = farthest_in + shift;
-      for (int x = 0; x < width; ++x) {
-        nearest[x] = a[x] < nearest[x] ? a[x] : nearest[x];
-        farthest[x] = b[x] > farthest[x] ? b[x] : farthest[x];
-      }
-    }
-  }
-}
+int blocks_along(int size_px) { return (size_px + kBlock_px - 1) / kBlock_px; }
 
-// The same across rows, for row y: the extremes in the whole window.
-void extremes_across_rows(int width, int height, int y, int radius, ForegroundScratch& scratch) {
-  float* nearest = scratch.nearest_m.data();
-  float* farthest = scratch.farthest_m.data();
-  const auto row = [width](const std::vector<float>& image, int at) {
-    return image.data() + static_cast<std::size_t>(at) * static_cast<std::size_t>(width);
-  };
-  const int first = std::max(y - radius, 0);
-  const int last = std::min(y + radius, height - 1);
-  std::copy_n(row(scratch.row_nearest_m, first), width, nearest);
-  std::copy_n(row(scratch.row_farthest_m, first), width, farthest);
-  for (int other = first + 1; other <= last; ++other) {
-    const float* a = row(scratch.row_nearest_m, other);
-    const float* b = row(scratch.row_farthest_m, other);
-    for (int x = 0; x < width; ++x) {
-      nearest[x] = a[x] < nearest[x] ? a[x] : nearest[x];
-      farthest[x] = b[x] > farthest[x] ? b[x] : farthest[x];
-    }
-  }
-}
-
-// Nearest expected depth of each block of pixels and of the blocks within `reach_px` around it.
-void nearest_in_reach(const DepthImage& expected_m, int reach_px, ForegroundScratch& scratch) {
-  const int columns = (expected_m.width + kBlock_px - 1) / kBlock_px;
-  const int rows = (expected_m.height + kBlock_px - 1) / kBlock_px;
-  const auto blocks = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  scratch.block_nearest_m.assign(blocks, kNothing_m);
-  for (int y = 0; y < expected_m.height; ++y) {
-    const float* expected = expected_m.row(y);
-    float* block = scratch.block_nearest_m.data() + static_cast<std::size_t>(y / kBlock_px) * columns;
-    for (int x = 0; x < expected_m.width; ++x) {
-      const float z = expected[x] > 0.0F ? expected[x] : kNothing_m;
-      float& nearest = block[x / kBlock_px];
-      nearest = z < nearest ? z : nearest;
-    }
-  }
-  const int reach = (reach_px + kBlock_px - 1) / kBlock_px;
-  scratch.block_reach_m.assign(blocks, kNothing_m);
+// Smallest (or largest) value of the blocks within `reach` blocks of each block, along rows and then along
+// columns.
+template <typename Better>
+void spread(const std::vector<float>& blocks, int columns, int rows, int reach, const Better& better,
+            std::vector<float>& along_rows, std::vector<float>& spread_blocks) {
+  const auto at = [columns](int x, int y) { return static_cast<std::size_t>(y) * columns + x; };
+  along_rows = blocks;
   for (int y = 0; y < rows; ++y) {
     for (int x = 0; x < columns; ++x) {
-      float& nearest = scratch.block_reach_m[static_cast<std::size_t>(y * columns + x)];
-      for (int v = std::max(y - reach, 0); v <= std::min(y + reach, rows - 1); ++v) {
-        for (int u = std::max(x - reach, 0); u <= std::min(x + reach, columns - 1); ++u) {
-          nearest = std::min(nearest, scratch.block_nearest_m[static_cast<std::size_t>(v * columns + u)]);
-        }
+      float best = blocks[at(x, y)];
+      for (int u = std::max(x - reach, 0); u <= std::min(x + reach, columns - 1); ++u) {
+        best = better(best, blocks[at(u, y)]);
+      }
+      along_rows[at(x, y)] = best;
+    }
+  }
+  spread_blocks = along_rows;
+  for (int y = 0; y < rows; ++y) {
+    float* best = spread_blocks.data() + at(0, y);
+    for (int v = std::max(y - reach, 0); v <= std::min(y + reach, rows - 1); ++v) {
+      const float* other = along_rows.data() + at(0, v);
+      for (int x = 0; x < columns; ++x) best[x] = better(best[x], other[x]);
+    }
+  }
+}
+
+// Nearest and farthest expected depth around each block: within the silhouette's window, and within the
+// hole's reach.
+void extremes_around(const DepthImage& expected_m, const ForegroundConfig& config,
+                     ForegroundScratch& scratch) {
+  const auto nearer = [](float a, float b) { return b < a ? b : a; };
+  const auto farther = [](float a, float b) { return b > a ? b : a; };
+  const int columns = blocks_along(expected_m.width);
+  const int rows = blocks_along(expected_m.height);
+  const auto width = static_cast<std::size_t>(columns) * kBlock_px;
+  scratch.block_nearest_m.assign(static_cast<std::size_t>(columns) * rows, kNothing_m);
+  scratch.block_farthest_m.assign(static_cast<std::size_t>(columns) * rows, 0.0F);
+  for (int row = 0; row < rows; ++row) {
+    scratch.nearest_m.assign(width, kNothing_m);
+    scratch.farthest_m.assign(width, 0.0F);
+    for (int y = row * kBlock_px; y < std::min((row + 1) * kBlock_px, expected_m.height); ++y) {
+      const float* expected = expected_m.row(y);
+      float* nearest = scratch.nearest_m.data();
+      float* farthest = scratch.farthest_m.data();
+      for (int x = 0; x < expected_m.width; ++x) {
+        const float z = expected[x];
+        nearest[x] = nearer(nearest[x], z > 0.0F ? z : kNothing_m);
+        farthest[x] = farther(farthest[x], z);
+      }
+    }
+    for (int column = 0; column < columns; ++column) {
+      const std::size_t block = static_cast<std::size_t>(row) * columns + column;
+      for (int x = column * kBlock_px; x < (column + 1) * kBlock_px; ++x) {
+        scratch.block_nearest_m[block] = nearer(scratch.block_nearest_m[block], scratch.nearest_m[x]);
+        scratch.block_farthest_m[block] = farther(scratch.block_farthest_m[block], scratch.farthest_m[x]);
       }
     }
   }
+  const int silhouette = blocks_along(config.silhouette_px);
+  const int reach = blocks_along(config.hole_reach_px);
+  spread(scratch.block_nearest_m, columns, rows, reach, nearer, scratch.spread_m, scratch.window_reach_m);
+  spread(scratch.block_nearest_m, columns, rows, silhouette, nearer, scratch.spread_m,
+         scratch.window_nearest_m);
+  spread(scratch.block_farthest_m, columns, rows, silhouette, farther, scratch.spread_m,
+         scratch.window_farthest_m);
 }
 
 // Angle of which `cosine` in 0..1 is the cosine, within 7e-5 rad, without a library call.
@@ -111,67 +100,99 @@ inline float arc_cosine(float cosine) {
 // The flatter of two slopes, so that a depth jump on one side of a pixel does not count as a slope.
 inline float flatter(float a, float b) { return std::abs(a) < std::abs(b) ? a : b; }
 
-// What one row of pixels says, before its neighbours are asked.
-void weigh_row(const DepthImage& depth_m, const DepthImage& expected_m, int y, const Intrinsics& camera,
-               const ForegroundConfig& config, ForegroundScratch& scratch) {
-  const int width = depth_m.width;
-  const float* live = depth_m.row(y);
-  const float* expected = expected_m.row(y);
+// Sensor's and model's error together, for a surface at depth_m.
+inline float total_sigma_m(float depth_m, float incidence_rad, const ForegroundConfig& config) {
+  const float sensor = depth_sigma_m(depth_m, incidence_rad);
+  const float model = config.model_sigma_m + config.model_sigma_per_m * depth_m;
+  return std::sqrt(sensor * sensor + model * model);
+}
+
+// sigma_m of each pixel of row y, from the expected depth and its slope.
+void sigmas_of_row(const DepthImage& expected_m, int y, const Intrinsics& camera,
+                   const ForegroundConfig& config, ForegroundScratch& scratch) {
+  const int width = expected_m.width;
+  const float* middle = expected_m.row(y);
   const float* above = expected_m.row(std::max(y - kSlopeStep_px, 0));
   const float* below = expected_m.row(std::min(y + kSlopeStep_px, expected_m.height - 1));
-  const float* nearest = scratch.nearest_m.data();
-  const float* farthest = scratch.farthest_m.data();
-  float* sigma = scratch.sigma_m.data();
-  std::uint8_t* evidence = scratch.evidence.data() + depth_m.index(0, y);
+  float* padded = scratch.padded_m.data();
+  std::copy_n(middle, width, padded + kSlopeStep_px);
+  std::fill_n(padded, kSlopeStep_px, middle[0]);
+  std::fill_n(padded + kSlopeStep_px + width, kSlopeStep_px, middle[width - 1]);
 
+  const float* left = padded;
+  const float* right = padded + 2 * kSlopeStep_px;
+  float* sigma = scratch.sigma_m.data();
   const float per_step = 1.0F / static_cast<float>(kSlopeStep_px);
   const auto fx = static_cast<float>(camera.fx_px);
   const auto fy = static_cast<float>(camera.fy_px);
   const auto cx = static_cast<float>(camera.cx_px);
   const float v = static_cast<float>(y) - static_cast<float>(camera.cy_px);
+  const float v_ray2 = v * v / (fy * fy) + 1.0F;
+  const ForegroundConfig settings =
+      config;  // a copy, so that the compiler sees that the loop does not write it
   for (int x = 0; x < width; ++x) {
-    const float z = expected[x];
-    const float left = expected[std::max(x - kSlopeStep_px, 0)];
-    const float right = expected[std::min(x + kSlopeStep_px, width - 1)];
-    const float slope_u = flatter(z - left, right - z) * per_step;
-    const float slope_v = flatter(z - above[x], below[x] - z) * per_step;
     // With depth z(u, v) the surface normal is (fx z_u, fy z_v, -(z + u z_u + v z_v)), u and v from the
     // principal point; its product with the viewing ray (u / fx, v / fy, 1) is -z.
+    const float z = middle[x];
     const float u = static_cast<float>(x) - cx;
+    const float slope_u = flatter(z - left[x], right[x] - z) * per_step;
+    const float slope_v = flatter(z - above[x], below[x] - z) * per_step;
     const float normal_x = fx * slope_u;
     const float normal_y = fy * slope_v;
     const float normal_z = z + u * slope_u + v * slope_v;
     const float normal2 = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z;
-    const float ray2 = u * u / (fx * fx) + v * v / (fy * fy) + 1.0F;
-    const float cosine = std::min(z / std::sqrt(std::max(normal2 * ray2, 1e-12F)), 1.0F);
-    const float sensor = depth_sigma_m(z, arc_cosine(cosine));
-    const float model = config.model_sigma_m + config.model_sigma_per_m * z;
-    sigma[x] = std::sqrt(sensor * sensor + model * model);
+    const float cosine = z / std::sqrt(normal2 * (u * u / (fx * fx) + v_ray2) + 1e-12F);
+    sigma[x] = total_sigma_m(z, arc_cosine(cosine < 1.0F ? cosine : 1.0F), settings);
   }
+}
+
+// What one row of pixels says, before its neighbours are asked.
+void weigh_row(const DepthImage& depth_m, const DepthImage& expected_m, int y, const ForegroundConfig& config,
+               ForegroundScratch& scratch) {
+  const int width = depth_m.width;
+  const float* live = depth_m.row(y);
+  const float* expected = expected_m.row(y);
+  const float* nearest = scratch.nearest_m.data();
+  const float* farthest = scratch.farthest_m.data();
+  const float* sigma = scratch.sigma_m.data();
+  std::uint8_t* evidence = scratch.evidence.data() + depth_m.index(0, y);
+  const float weak = config.weak_sigmas;
+  const float strong = config.strong_sigmas;
   for (int x = 0; x < width; ++x) {
-    const float weak_m = config.weak_sigmas * sigma[x];
-    const float strong_m = config.strong_sigmas * sigma[x];
-    const bool known = live[x] > 0.0F && expected[x] > 0.0F;
-    const bool weak_moved = live[x] < expected[x] - weak_m;
-    const bool strong_moved = live[x] < nearest[x] - strong_m;
-    const bool weak_revealed = live[x] > expected[x] + weak_m;
-    const bool strong_revealed = live[x] > farthest[x] + strong_m;
-    const int bits = weak_moved * kWeakMoved | strong_moved * kStrongMoved | weak_revealed * kWeakRevealed |
-                     strong_revealed * kStrongRevealed;
-    evidence[x] = static_cast<std::uint8_t>(known ? bits : 0);
+    const float z = live[x];
+    const int moved = (z < expected[x] - weak * sigma[x] ? kWeakMoved : 0) |
+                      (z < nearest[x] - strong * sigma[x] ? kStrongMoved : 0);
+    const int revealed = (z > expected[x] + weak * sigma[x] ? kWeakRevealed : 0) |
+                         (z > farthest[x] + strong * sigma[x] ? kStrongRevealed : 0);
+    const int known = z > 0.0F ? (expected[x] > 0.0F ? 0xFF : 0) : 0;
+    evidence[x] = static_cast<std::uint8_t>((moved | revealed) & known);
   }
   // Holes of the model: only what is nearer than all the model around can have moved.
-  const int columns = (width + kBlock_px - 1) / kBlock_px;
-  const float* reach = scratch.block_reach_m.data() + static_cast<std::size_t>(y / kBlock_px) * columns;
+  const float* reach = scratch.reach_m.data();
   for (int x = 0; x < width; ++x) {
-    if (expected[x] > 0.0F || !(live[x] > 0.0F)) continue;
-    const float z = reach[x / kBlock_px];
-    if (z == kNothing_m) continue;
-    const float model = config.model_sigma_m + config.model_sigma_per_m * z;
-    const float sensor = depth_sigma_m(z);
-    if (live[x] < z - config.strong_sigmas * std::sqrt(sensor * sensor + model * model)) {
+    if (expected[x] > 0.0F || !(live[x] > 0.0F) || reach[x] == kNothing_m) continue;
+    if (live[x] < reach[x] - strong * total_sigma_m(reach[x], 0.0F, config))
       evidence[x] = kWeakMoved | kStrongMoved;
+  }
+}
+
+// Repeats each block's value for the pixels of a row.
+void stretch(const std::vector<float>& blocks, int columns, int row, std::vector<float>& pixels) {
+  const float* block = blocks.data() + static_cast<std::size_t>(row) * columns;
+  for (std::size_t x = 0; x < pixels.size(); ++x) pixels[x] = block[x / kBlock_px];
+}
+
+void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const Intrinsics& camera,
+                  const ForegroundConfig& config, ForegroundScratch& scratch) {
+  const int columns = blocks_along(depth_m.width);
+  for (int y = 0; y < depth_m.height; ++y) {
+    if (y % kBlock_px == 0) {
+      stretch(scratch.window_nearest_m, columns, y / kBlock_px, scratch.nearest_m);
+      stretch(scratch.window_farthest_m, columns, y / kBlock_px, scratch.farthest_m);
+      stretch(scratch.window_reach_m, columns, y / kBlock_px, scratch.reach_m);
     }
+    sigmas_of_row(expected_m, y, camera, config, scratch);
+    weigh_row(depth_m, expected_m, y, config, scratch);
   }
 }
 
@@ -268,20 +289,14 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   const auto width = static_cast<std::size_t>(depth_m.width);
   labels.resize(depth_m.width, depth_m.height, PixelLabel::kNotKnown);
   moved_mask.resize(depth_m.width, depth_m.height, 0);
-  scratch.row_nearest_m.resize(pixels);
-  scratch.row_farthest_m.resize(pixels);
-  scratch.nearest_m.resize(width);
-  scratch.farthest_m.resize(width);
-  scratch.sigma_m.resize(width);
   scratch.evidence.resize(pixels);
   scratch.region.resize(pixels);
-
-  extremes_along_rows(expected_depth_m, config.silhouette_px, scratch);
-  nearest_in_reach(expected_depth_m, config.hole_reach_px, scratch);
-  for (int y = 0; y < depth_m.height; ++y) {
-    extremes_across_rows(depth_m.width, depth_m.height, y, config.silhouette_px, scratch);
-    weigh_row(depth_m, expected_depth_m, y, camera, config, scratch);
-  }
+  if (pixels == 0) return {};
+  scratch.padded_m.resize(width + 2 * kSlopeStep_px);
+  scratch.sigma_m.resize(width);
+  scratch.reach_m.resize(width);
+  extremes_around(expected_depth_m, config, scratch);
+  weigh_pixels(depth_m, expected_depth_m, camera, config, scratch);
 
   ForegroundCounts counts;
   for (std::size_t i = 0; i < pixels; ++i) {

@@ -34,12 +34,12 @@ void require_valid(const ForegroundConfig& config);
 
 /// Buffers that mark_foreground reuses from frame to frame; their content means nothing between calls.
 struct ForegroundScratch {
-  std::vector<float> nearest_m, farthest_m, sigma_m;       // one row
-  std::vector<float> padded_nearest_m, padded_farthest_m;  // one row and the window's margins
-  std::vector<float> row_nearest_m, row_farthest_m;        // whole images
-  std::vector<float> block_nearest_m, block_reach_m;       // one value a block of pixels
-  std::vector<std::uint8_t> evidence;                      // bits, see foreground.cpp
-  std::vector<std::uint32_t> region;                       // pixels of the region being grown
+  std::vector<float> nearest_m, farthest_m, reach_m, sigma_m;  // one value a pixel of a row
+  std::vector<float> padded_m;                                 // one row of expected depth with margins
+  std::vector<float> block_nearest_m, block_farthest_m;        // one value a block of pixels
+  std::vector<float> window_nearest_m, window_farthest_m, window_reach_m, spread_m;
+  std::vector<std::uint8_t> evidence;  // bits, see foreground.cpp
+  std::vector<std::uint32_t> region;   // pixels of the region being grown
   std::size_t region_size = 0;
 };
 

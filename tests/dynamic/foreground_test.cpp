@@ -253,11 +253,13 @@ TEST(Foreground, SecondFrameOfASizeReusesItsBuffers) {
   LabelImage labels;
   MaskImage mask;
   mark_foreground(live_m, flat(1.0F), kKinect, {}, scratch, labels, mask);
-  const void* before[] = {labels.pixels.data(),  mask.pixels.data(),           scratch.evidence.data(),
-                          scratch.region.data(), scratch.row_nearest_m.data(), scratch.block_reach_m.data()};
+  const void* before[] = {labels.pixels.data(),          mask.pixels.data(),
+                          scratch.evidence.data(),       scratch.region.data(),
+                          scratch.window_reach_m.data(), scratch.sigma_m.data()};
   mark_foreground(flat(0.5F), flat(1.0F), kKinect, {}, scratch, labels, mask);
-  const void* after[] = {labels.pixels.data(),  mask.pixels.data(),           scratch.evidence.data(),
-                         scratch.region.data(), scratch.row_nearest_m.data(), scratch.block_reach_m.data()};
+  const void* after[] = {labels.pixels.data(),          mask.pixels.data(),
+                         scratch.evidence.data(),       scratch.region.data(),
+                         scratch.window_reach_m.data(), scratch.sigma_m.data()};
   for (std::size_t i = 0; i < std::size(before); ++i) EXPECT_EQ(before[i], after[i]) << i;
 }
 
