@@ -1,0 +1,22 @@
+// morton.hpp: octree keys as one number whose octal digits are the child indices from the root down.
+#pragma once
+#include <cstdint>
+
+namespace roomradar {
+
+/// Moves bit i of a 16-bit key to bit 3 i.
+constexpr std::uint64_t spread_bits(std::uint32_t key) {
+  std::uint64_t x = key & 0xFFFFU;
+  x = (x | x << 16U) & 0xFF00'00FFU;
+  x = (x | x << 8U) & 0x00F0'0F00'F00FU;
+  x = (x | x << 4U) & 0x0C30'C30C'30C3U;
+  x = (x | x << 2U) & 0x2492'4924'9249U;
+  return x;
+}
+
+/// Keys in 0..65535. Digit d from the top is OctoMap's child index at depth d: x has weight 1, y 2, z 4.
+constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  return spread_bits(x) | spread_bits(y) << 1U | spread_bits(z) << 2U;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,16 @@
+// static_map_octree.hpp: what a StaticMap owns. Private to static_map*.cpp.
+#pragma once
+#include "mapping/fusion.hpp"
+#include "mapping/room_octree.hpp"
+#include "mapping/static_map.hpp"
+
+namespace roomradar {
+
+struct StaticMap::Octree {
+  Octree(double resolution_m, const FusionConfig& fusion);
+  FusionConfig config;
+  RoomOcTree tree;
+  FusionScratch scratch;
+};
+
+}  // namespace roomradar
