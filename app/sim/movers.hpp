@@ -1,0 +1,33 @@
+// movers.hpp: things that move through a simulated room: a hand, a ball, a person.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "app/sim/room.hpp"
+#include "app/sim/sim_options.hpp"
+
+namespace roomradar {
+
+/// How one thing moves; its shape at any time follows from this alone.
+struct Mover {
+  MoverKind kind = MoverKind::kHand;
+  Eigen::Vector3d from_world =
+      Eigen::Vector3d::Zero();  ///< withdrawn hand, one end of the ball's or person's way
+  Eigen::Vector3d to_world = Eigen::Vector3d::Zero();  ///< hand over the focus, other end of the way
+  Eigen::Vector3d arm_world =
+      Eigen::Vector3d::UnitX();  ///< hand: unit direction from the fingers to the elbow
+  double radius_m = 0.0;         ///< ball
+  double period_s = 1.0;         ///< there and back
+  double phase_rad = 0.0;
+  std::vector<Material> materials;  ///< one a solid
+};
+
+/// @param viewer_world  where a viewer's camera stands: the hand passes between it and the room's focus
+Mover plan_mover(MoverKind kind, const Room& room, const Eigen::Vector3d& viewer_world, std::uint64_t seed);
+
+/// Appends the thing's solids at time t_s, as many and in the same order at any time. All positions have
+/// continuous derivatives in time.
+void append_solids(const Mover& mover, double t_s, std::vector<Solid>& solids);
+
+}  // namespace roomradar

@@ -1,0 +1,11 @@
+// rooms.hpp: the rooms that make_room knows, one function each.
+#pragma once
+#include "app/sim/room.hpp"
+
+namespace roomradar {
+
+Room make_table_room();  ///< a dining table with four chairs and things on it, cupboard, window, pictures
+Room make_shelf_room();  ///< book shelves, sofa and coffee table
+Room make_wall_room();   ///< one big wall and next to nothing else
+
+}  // namespace roomradar
