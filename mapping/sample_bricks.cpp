@@ -1,0 +1,57 @@
+// sample_bricks.cpp: sorting an octree's samples into bricks.
+#include "mapping/sample_bricks.hpp"
+
+namespace roomradar {
+namespace {
+
+static_assert(sizeof(BrickSample) == 8);
+constexpr int kBrickShift = 3;
+static_assert(1 << kBrickShift == kBrickEdge);
+
+std::uint64_t place_code(const VoxelIndex& first) {
+  const auto field = [](int coordinate) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>((coordinate >> kBrickShift) + (1 << 20)) &
+                                      0x1F'FFFFU);
+  };
+  return field(first.x()) | field(first.y()) << 21U | field(first.z()) << 42U;
+}
+
+}  // namespace
+
+SampleBricks::SampleBricks(const StaticMap& map, float min_weight) {
+  map.visit_samples([&](const SurfaceSample& sample) {
+    if (sample.weight < min_weight) return;
+    const VoxelIndex first = sample.voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
+    if (bricks_.empty() || bricks_.back().first != first) {  // the octree's order visits each brick once
+      by_place_.emplace(place_code(first), bricks_.size());
+      bricks_.emplace_back().first = first;
+    }
+    bricks_.back().samples[brick_offset(sample.voxel - first)] = {.distance_m = sample.distance_m,
+                                                                  .colour = sample.colour,
+                                                                  .known = true,
+                                                                  .has_colour = sample.has_colour};
+  });
+}
+
+std::size_t SampleBricks::find(const VoxelIndex& first) const {
+  const auto found = by_place_.find(place_code(first));
+  return found == by_place_.end() ? kNone : found->second;
+}
+
+BrickNeighbourhood::BrickNeighbourhood(const SampleBricks& bricks, std::size_t centre) {
+  const VoxelIndex first = bricks.bricks()[centre].first;
+  for (int z = 0; z < 3; ++z)
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 3; ++x)
+        around_[static_cast<std::size_t>((z * 3 + y) * 3 + x)] =
+            bricks.find(first + kBrickEdge * Eigen::Vector3i(x - 1, y - 1, z - 1));
+}
+
+BrickNeighbourhood::Place BrickNeighbourhood::place(const Eigen::Vector3i& relative) const {
+  const Eigen::Vector3i which = relative.unaryExpr([](int v) { return (v >> kBrickShift) + 1; });
+  const Eigen::Vector3i offset = relative.unaryExpr([](int v) { return v & (kBrickEdge - 1); });
+  return {around_[static_cast<std::size_t>((which.z() * 3 + which.y()) * 3 + which.x())],
+          brick_offset(offset)};
+}
+
+}  // namespace roomradar

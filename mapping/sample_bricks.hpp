@@ -1,0 +1,64 @@
+// sample_bricks.hpp: the signed distances of a static map in small dense cubes, so that neighbours are found
+// fast.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "mapping/static_map.hpp"
+
+namespace roomradar {
+
+struct BrickSample {
+  float distance_m = 0.0F;
+  Rgb colour;
+  bool known : 1 = false;
+  bool has_colour : 1 = false;
+};
+
+inline constexpr int kBrickEdge = 8;  // voxels
+
+struct Brick {
+  VoxelIndex first = VoxelIndex::Zero();  ///< its lowest voxel, a multiple of kBrickEdge
+  std::array<BrickSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
+};
+
+/// Bricks that hold at least one sample, in the order of the octree.
+class SampleBricks {
+ public:
+  SampleBricks(const StaticMap& map, float min_weight);
+
+  [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
+  static constexpr std::size_t kNone = ~std::size_t{0};
+  /// Position in bricks() of the brick whose lowest voxel is `first`, or kNone.
+  [[nodiscard]] std::size_t find(const VoxelIndex& first) const;
+
+ private:
+  std::vector<Brick> bricks_;
+  std::unordered_map<std::uint64_t, std::size_t> by_place_;
+};
+
+/// Position of a voxel in its brick's arrays; offsets in 0..kBrickEdge-1.
+inline std::size_t brick_offset(const Eigen::Vector3i& offset) {
+  return static_cast<std::size_t>((offset.z() * kBrickEdge + offset.y()) * kBrickEdge + offset.x());
+}
+
+/// A brick and its 26 neighbours, to read across its borders.
+class BrickNeighbourhood {
+ public:
+  BrickNeighbourhood(const SampleBricks& bricks, std::size_t centre);
+
+  struct Place {
+    std::size_t brick = SampleBricks::kNone;
+    std::size_t offset = 0;
+  };
+  /// Of a voxel given relative to the centre brick's lowest, each coordinate in -kBrickEdge..2*kBrickEdge-1.
+  [[nodiscard]] Place place(const Eigen::Vector3i& relative) const;
+
+ private:
+  std::array<std::size_t, 27> around_{};
+};
+
+}  // namespace roomradar
