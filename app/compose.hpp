@@ -15,7 +15,7 @@ struct ComposeConfig {
   float occlusion_tolerance_m = 0.006F;  ///< a real surface must be nearer by this at 1 m to hide the object
   float tolerance_per_m2 = 0.003F;       ///< and by this more per squared metre of distance: sensor noise
   float occlusion_softness_m =
-      0.004F;                     ///< over this depth the object fades out: no hard line where surfaces meet
+      0.004F;                     ///< over this depth the object fades out: no hard line where it touches
   float shadow_strength = 0.75F;  ///< 0 none .. 1: black where the object covers the whole sky
 };
 /// Throws Error "compose.shadow_strength = 2: must be in 0..1" and the like.
@@ -26,6 +26,11 @@ struct ShadowCaster {
   const ContactShadow* shadow = nullptr;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
+
+/// The pixels whose real depth `compose` looks at: those of the layer and of the shadows. Only these need
+/// rendering.
+PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
+                            const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer);
 
 /// The picture of the room with the objects in it.
 ///
@@ -38,7 +43,9 @@ struct ShadowCaster {
 /// @param casters          objects that cast a soft shadow on real surfaces
 /// @param layer            the objects as this camera sees them (ObjectDrawer::draw)
 /// @param picture          of the camera's size; may not be `background`
-/// Throws Error if sizes disagree. Only the objects' and shadows' rectangles cost time beyond one copy.
+/// @throws Error if sizes disagree, or the layer reaches past the picture
+/// Visibility is averaged over 3 x 3 pixels, so that edges of what hides the object are soft as the object's
+/// own are. Only the objects' and shadows' rectangles cost time beyond one copy.
 void compose(const ColourImage& background, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
              const DepthImage& real_depth_m, std::span<const ShadowCaster> casters, const ObjectLayer& layer,
              const ComposeConfig& config, ColourImage& picture);

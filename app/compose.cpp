@@ -1,0 +1,229 @@
+// compose.cpp: put the virtual objects into the camera's picture.
+#include "app/compose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+/// The smallest rectangle that holds both; one without pixels does not count.
+PixelRect united(const PixelRect& a, const PixelRect& b) {
+  if (a.width <= 0 || a.height <= 0) return b;
+  if (b.width <= 0 || b.height <= 0) return a;
+  const int x = std::min(a.x, b.x);
+  const int y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
+
+/// Pixels that may show the space in which the shadow is tabulated.
+PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
+                          const Eigen::Isometry3d& T_world_camera) {
+  const ContactShadow& shadow = *caster.shadow;
+  if (shadow.covered.empty()) return {};
+  constexpr double kNear_m = 0.05;
+  const Eigen::Vector3d low(shadow.x0_m, shadow.y0_m, shadow.bottom_m - shadow.extent_m);
+  const Eigen::Vector3d size(shadow.columns * shadow.cell_m, shadow.rows * shadow.cell_m,
+                             1.1 * shadow.extent_m);
+  Eigen::AlignedBox2d seen;
+  int behind = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d offset(corner & 1 ? size.x() : 0.0, corner & 2 ? size.y() : 0.0,
+                                 corner & 4 ? size.z() : 0.0);
+    const Eigen::Vector3d p_world = caster.T_world_object.translation() + low + offset;
+    const Eigen::Vector3d p_camera = T_world_camera.inverse() * p_world;
+    if (p_camera.z() < kNear_m)
+      ++behind;
+    else
+      seen.extend(project(camera, p_camera));
+  }
+  if (behind == 8) return {};
+  if (behind > 0) return {0, 0, camera.width_px, camera.height_px};
+  const auto pixel = [](double at_px, int size_px) {
+    return static_cast<int>(std::clamp(at_px, -1.0, static_cast<double>(size_px)));
+  };
+  const int x0 = pixel(std::floor(seen.min().x()), camera.width_px);
+  const int y0 = pixel(std::floor(seen.min().y()), camera.height_px);
+  const int x1 = pixel(std::ceil(seen.max().x()), camera.width_px);
+  const int y1 = pixel(std::ceil(seen.max().y()), camera.height_px);
+  return clamped({x0, y0, x1 - x0 + 1, y1 - y0 + 1}, camera.width_px, camera.height_px);
+}
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
+}
+
+void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
+                 const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m, float strength,
+                 ColourImage& picture) {
+  const PixelRect rect = shadowed_pixels(caster, camera, T_world_camera);
+  // From pixel and depth straight to the shadow's axes, which are the world's with the object's origin.
+  const Eigen::Matrix3f R_world_camera = T_world_camera.linear().cast<float>();
+  const Eigen::Vector3f camera_from_object_m =
+      (T_world_camera.translation() - caster.T_world_object.translation()).cast<float>();
+  const Eigen::Vector3f step_x = R_world_camera.col(0) / static_cast<float>(camera.fx_px);
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    const Eigen::Vector3f ray_at_column_0 = R_world_camera * back_project(camera, 0.0, y, 1.0).cast<float>();
+    const float* depth_m = real_depth_m.row(y);
+    Rgb* pixels = picture.row(y);
+    for (int x = rect.x; x < rect.x + rect.width; ++x) {
+      if (!(depth_m[x] > 0.0F)) continue;
+      const Eigen::Vector3f ray = ray_at_column_0 + static_cast<float>(x) * step_x;
+      const float taken = sky_taken(*caster.shadow, camera_from_object_m + depth_m[x] * ray);
+      if (taken <= 0.0F) continue;
+      const float left = 1.0F - strength * taken;
+      Rgb& pixel = pixels[x];
+      pixel = {to_byte(left * static_cast<float>(pixel.r)), to_byte(left * static_cast<float>(pixel.g)),
+               to_byte(left * static_cast<float>(pixel.b))};
+    }
+  }
+}
+
+/// How much of an object at object_m shows at pixel (x, y), 0..1: the weighted mean over 3 x 3 pixels of
+/// whether the real surface there is not nearer.
+float visible_part(const DepthImage& real_depth_m, int x, int y, float object_m,
+                   const ComposeConfig& config) {
+  constexpr float kWeight[3] = {1.0F, 2.0F, 1.0F};
+  const float tolerance_m = config.occlusion_tolerance_m + config.tolerance_per_m2 * object_m * object_m;
+  float sum = 0.0F;
+  float weights = 0.0F;
+  for (int j = -1; j <= 1; ++j) {
+    for (int i = -1; i <= 1; ++i) {
+      if (!real_depth_m.contains(x + i, y + j)) continue;
+      const float real_m = real_depth_m.at(x + i, y + j);
+      const float weight = kWeight[i + 1] * kWeight[j + 1];
+      const float past_m = real_m > 0.0F ? object_m - real_m - tolerance_m : 0.0F;
+      sum += weight * std::clamp(1.0F - past_m / config.occlusion_softness_m, 0.0F, 1.0F);
+      weights += weight;
+    }
+  }
+  return sum / weights;
+}
+
+void lay_over(const ObjectLayer& layer, const DepthImage& real_depth_m, const ComposeConfig& config,
+              ColourImage& picture) {
+  const float samples = static_cast<float>(layer.samples * layer.samples);
+  for (int y = 0; y < layer.rect.height; ++y) {
+    for (int x = 0; x < layer.rect.width; ++x) {
+      float r = 0.0F, g = 0.0F, b = 0.0F, depth_sum_m = 0.0F, covered = 0.0F;
+      for (int j = 0; j < layer.samples; ++j) {
+        const std::size_t first = layer.depth_m.index(x * layer.samples, y * layer.samples + j);
+        for (std::size_t k = first; k < first + static_cast<std::size_t>(layer.samples); ++k) {
+          const float depth_m = layer.depth_m.pixels[k];
+          if (!(depth_m > 0.0F)) continue;
+          const Rgb& colour = layer.colour.pixels[k];
+          r += static_cast<float>(colour.r);
+          g += static_cast<float>(colour.g);
+          b += static_cast<float>(colour.b);
+          depth_sum_m += depth_m;
+          covered += 1.0F;
+        }
+      }
+      if (covered == 0.0F) continue;
+      const float visible =
+          visible_part(real_depth_m, layer.rect.x + x, layer.rect.y + y, depth_sum_m / covered, config);
+      const float object_part = visible / samples;  // of each covered sub-pixel
+      const float behind_part = 1.0F - covered * object_part;
+      Rgb& pixel = picture.at(layer.rect.x + x, layer.rect.y + y);
+      pixel = {to_byte(object_part * r + behind_part * static_cast<float>(pixel.r)),
+               to_byte(object_part * g + behind_part * static_cast<float>(pixel.g)),
+               to_byte(object_part * b + behind_part * static_cast<float>(pixel.b))};
+    }
+  }
+}
+
+template <typename Pixel>
+void require_size(const char* what, const Image<Pixel>& image, int width_px, int height_px) {
+  if (image.width == width_px && image.height == height_px) return;
+  throw Error(std::string("compose: ") + what + " is " + std::to_string(image.width) + " x " +
+              std::to_string(image.height) + " pixels, wanted are " + std::to_string(width_px) + " x " +
+              std::to_string(height_px));
+}
+
+}  // namespace
+
+void require_valid(const ComposeConfig& config) {
+  const auto require = [](bool holds, const char* name, float value, const char* rule) {
+    if (!holds)
+      throw Error(std::string("compose.") + name + " = " + std::to_string(value) + ": must be " + rule);
+  };
+  const auto is_length = [](float value_m) { return value_m >= 0.0F && value_m <= 1.0F; };
+  require(is_length(config.occlusion_tolerance_m), "occlusion_tolerance_m", config.occlusion_tolerance_m,
+          "in 0..1");
+  require(is_length(config.tolerance_per_m2), "tolerance_per_m2", config.tolerance_per_m2, "in 0..1");
+  require(config.occlusion_softness_m > 0.0F && config.occlusion_softness_m <= 1.0F, "occlusion_softness_m",
+          config.occlusion_softness_m, "in 0..1, not 0");
+  require(is_length(config.shadow_strength), "shadow_strength", config.shadow_strength, "in 0..1");
+}
+
+PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
+                            const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer) {
+  // One pixel more: visibility is averaged with the neighbours.
+  const bool has_objects = layer.rect.width > 0 && layer.rect.height > 0;
+  PixelRect rect =
+      has_objects ? PixelRect{layer.rect.x - 1, layer.rect.y - 1, layer.rect.width + 2, layer.rect.height + 2}
+                  : PixelRect{};
+  for (const ShadowCaster& caster : casters)
+    if (caster.shadow != nullptr) rect = united(rect, shadowed_pixels(caster, camera, T_world_camera));
+  return clamped(rect, camera.width_px, camera.height_px);
+}
+
+void compose(const ColourImage& background, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+             const DepthImage& real_depth_m, std::span<const ShadowCaster> casters, const ObjectLayer& layer,
+             const ComposeConfig& config, ColourImage& picture) {
+  require_size("the background", background, camera.width_px, camera.height_px);
+  require_size("the real depth", real_depth_m, camera.width_px, camera.height_px);
+  picture.width = background.width;
+  picture.height = background.height;
+  picture.pixels = background.pixels;
+
+  for (const ShadowCaster& caster : casters)
+    if (caster.shadow != nullptr)
+      cast_shadow(caster, camera, T_world_camera, real_depth_m, config.shadow_strength, picture);
+
+  if (layer.rect.width <= 0 || layer.rect.height <= 0) return;
+  if (!(clamped(layer.rect, camera.width_px, camera.height_px) == layer.rect))
+    throw Error("compose: the objects' layer reaches past the picture");
+  require_size("the layer's colour", layer.colour, layer.rect.width * layer.samples,
+               layer.rect.height * layer.samples);
+  require_size("the layer's depth", layer.depth_m, layer.rect.width * layer.samples,
+               layer.rect.height * layer.samples);
+  lay_over(layer, real_depth_m, config, picture);
+}
+
+void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture) {
+  picture.resize(depth_m.width, depth_m.height, Rgb{24, 26, 30});
+  constexpr int kReach_px = 2;  // a wider baseline than the neighbours': quantised depth has stairs
+  for (int y = 0; y < depth_m.height; ++y) {
+    for (int x = 0; x < depth_m.width; ++x) {
+      const float z_m = depth_m.at(x, y);
+      if (!(z_m > 0.0F)) continue;
+      // Slope along an axis from the sides that belong to the same surface.
+      const auto slope = [&](int dx, int dy) {
+        float rise_m = 0.0F;
+        int span = 0;
+        for (const int side : {-kReach_px, kReach_px}) {
+          const int xx = x + side * dx, yy = y + side * dy;
+          if (!depth_m.contains(xx, yy)) continue;
+          const float other_m = depth_m.at(xx, yy);
+          if (!(other_m > 0.0F) || std::abs(other_m - z_m) > 0.03F * z_m * kReach_px) continue;
+          rise_m += side > 0 ? other_m - z_m : z_m - other_m;
+          span += kReach_px;
+        }
+        return span > 0 ? rise_m / static_cast<float>(span) : 0.0F;
+      };
+      const Eigen::Vector3f normal(slope(1, 0) * static_cast<float>(camera.fx_px) / z_m,
+                                   slope(0, 1) * static_cast<float>(camera.fy_px) / z_m, -1.0F);
+      const Eigen::Vector3f ray = back_project(camera, x, y, 1.0).cast<float>();
+      const float facing = std::abs(normal.normalized().dot(ray.normalized()));
+      const float nearness = 1.0F / (1.0F + 0.04F * z_m * z_m);
+      const std::uint8_t grey = to_byte(235.0F * (0.2F + 0.8F * facing) * nearness);
+      picture.at(x, y) = {grey, grey, grey};
+    }
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,181 @@
+// draw.cpp: draw the virtual objects as a camera sees them.
+#include "app/draw.hpp"
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "mapping/types/error.hpp"
+#include "radar/depth_pass.hpp"
+#include "radar/gl_program.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kNear_m = 0.05;
+constexpr int kMaxSupersampled_px = 160'000;  // half of a 640 x 480 picture
+
+constexpr const char* kVertexShader = R"(#version 450 core
+layout(location = 0) in vec3 p_local;
+layout(location = 1) in vec3 normal_local;
+layout(location = 2) in vec3 colour_srgb;
+layout(location = 0) uniform mat4 clip_from_local;
+layout(location = 1) uniform mat4 eye_from_local;  // world axes, the camera at 0
+layout(location = 2) uniform vec4 plain_srgb;      // w 1: instead of the vertices' colours
+out vec3 p_eye;
+out vec3 normal_eye;
+out vec3 albedo;
+void main() {
+  gl_Position = clip_from_local * vec4(p_local, 1.0);
+  p_eye = (eye_from_local * vec4(p_local, 1.0)).xyz;
+  normal_eye = mat3(eye_from_local) * normal_local;
+  albedo = pow(mix(colour_srgb, plain_srgb.rgb, plain_srgb.a), vec3(2.2));
+}
+)";
+
+// A lit room: light from all sides that is stronger from above, one broad lamp, and its reflection in the
+// glaze. Highlight: Blinn's, normalised. Reflection at grazing angles: Schlick's approximation of Fresnel's
+// law.
+constexpr const char* kFragmentShader = R"(#version 450 core
+in vec3 p_eye;
+in vec3 normal_eye;
+in vec3 albedo;
+layout(location = 3) uniform vec3 up;
+layout(location = 4) uniform vec3 to_light;
+layout(location = 5) uniform vec2 exposure_gloss;
+layout(location = 6) uniform bool has_normals;
+out vec4 colour;
+const vec3 sky = vec3(0.80, 0.83, 0.88);
+const vec3 ground = vec3(0.26, 0.23, 0.20);
+const vec3 lamp = vec3(0.85, 0.80, 0.72);
+void main() {
+  vec3 to_eye = normalize(-p_eye);
+  vec3 facet = normalize(cross(dFdx(p_eye), dFdy(p_eye)));
+  if (dot(facet, to_eye) < 0.0) facet = -facet;
+  vec3 n = has_normals ? normalize(normal_eye) : facet;
+  if (dot(n, facet) < 0.0) n = -n;  // the inside of an open mesh
+  vec3 ambient = mix(ground, sky, 0.5 + 0.5 * dot(n, up));
+  float lambert = max(dot(n, to_light), 0.0);
+  vec3 halfway = normalize(to_light + to_eye);
+  float highlight = pow(max(dot(n, halfway), 0.0), 90.0) * 3.0 * step(0.0, dot(n, to_light));
+  float fresnel = 0.04 + 0.96 * pow(1.0 - max(dot(n, to_eye), 0.0), 5.0);
+  vec3 mirrored = mix(ground, sky, smoothstep(-0.3, 0.6, dot(reflect(-to_eye, n), up)));
+  vec3 light = albedo * (ambient * 0.75 + lamp * lambert * 0.75)
+             + exposure_gloss.y * (lamp * highlight + fresnel * mirrored);
+  light *= exposure_gloss.x;
+  colour = vec4(pow(light / (1.0 + 0.15 * light), vec3(1.0 / 2.2)), 1.0);
+}
+)";
+
+PixelRect united(const PixelRect& a, const PixelRect& b) {
+  if (a.width <= 0 || a.height <= 0) return b;
+  if (b.width <= 0 || b.height <= 0) return a;
+  const int x = std::min(a.x, b.x);
+  const int y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
+
+}  // namespace
+
+struct ObjectDrawer::State {
+  unsigned program = 0;
+  unsigned framebuffer = 0;
+  std::array<unsigned, 2> textures{};  // colour, depth
+  int width_px = 0;
+  int height_px = 0;
+
+  void fit(int wanted_width_px, int wanted_height_px) {
+    if (wanted_width_px <= width_px && wanted_height_px <= height_px) return;
+    width_px = std::max(wanted_width_px, width_px);
+    height_px = std::max(wanted_height_px, height_px);
+    glDeleteTextures(2, textures.data());
+    glCreateTextures(GL_TEXTURE_2D, 2, textures.data());
+    glTextureStorage2D(textures[0], 1, GL_RGBA8, width_px, height_px);
+    glTextureStorage2D(textures[1], 1, GL_DEPTH_COMPONENT32F, width_px, height_px);
+    glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, textures[0], 0);
+    glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, textures[1], 0);
+  }
+};
+
+ObjectDrawer::ObjectDrawer(GlContext& /*context*/) : state_(std::make_unique<State>()) {
+  state_->program = make_program("virtual objects", kVertexShader, kFragmentShader);
+  glCreateFramebuffers(1, &state_->framebuffer);
+}
+
+ObjectDrawer::~ObjectDrawer() {
+  glDeleteFramebuffers(1, &state_->framebuffer);
+  glDeleteTextures(2, state_->textures.data());
+  glDeleteProgram(state_->program);
+}
+
+void ObjectDrawer::draw(std::span<const DrawnObject> objects, const Intrinsics& camera,
+                        const Eigen::Isometry3d& T_world_camera, const Lighting& lighting,
+                        ObjectLayer& layer) {
+  PixelRect rect;
+  for (const DrawnObject& object : objects)
+    rect = united(rect, pixels_of(object.instance, camera, T_world_camera, kNear_m));
+  layer.rect = clamped(rect, camera.width_px, camera.height_px);
+  layer.samples = layer.rect.width * layer.rect.height <= kMaxSupersampled_px ? 2 : 1;
+  const int width = layer.rect.width * layer.samples;
+  const int height = layer.rect.height * layer.samples;
+  layer.colour.resize(width, height);
+  layer.depth_m.resize(width, height);
+  if (width == 0 || height == 0) return;
+
+  state_->fit(width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer);
+  glViewport(0, 0, width, height);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  const std::array<GLfloat, 4> black{};
+  const GLfloat infinitely_far = 0.0F;
+  glClearNamedFramebufferfv(state_->framebuffer, GL_COLOR, 0, black.data());
+  glClearNamedFramebufferfv(state_->framebuffer, GL_DEPTH, 0, &infinitely_far);
+
+  glUseProgram(state_->program);
+  const Eigen::Vector3f up = lighting.up_world.normalized().cast<float>();
+  const Eigen::Vector3f to_light = lighting.to_key_light_world.normalized().cast<float>();
+  glUniform3fv(3, 1, up.data());
+  glUniform3fv(4, 1, to_light.data());
+  glUniform2f(5, lighting.exposure, lighting.gloss);
+
+  const Intrinsics fine_camera = scaled(camera, layer.samples);
+  const PixelRect fine_rect{layer.rect.x * layer.samples, layer.rect.y * layer.samples, width, height};
+  const Eigen::Matrix4d clip_from_world =
+      clip_from_camera(fine_camera, kNear_m, fine_rect) * T_world_camera.inverse().matrix();
+  for (const DrawnObject& object : objects) {
+    if (object.instance.mesh == nullptr) continue;
+    const GpuMesh& mesh = *object.instance.mesh;
+    const Eigen::Matrix4d clip = clip_from_local(object.instance, clip_from_world);
+    const Eigen::Matrix4f clip_float = clip.cast<float>();
+    // Relative to the camera in double first, so that a room far from zero keeps its digits.
+    Eigen::Isometry3d eye = object.instance.T_world_mesh * Eigen::Translation3d(mesh.origin());
+    eye.translation() -= T_world_camera.translation();
+    const Eigen::Matrix4f eye_float = eye.matrix().cast<float>();
+    const auto part = [](std::uint8_t byte) { return static_cast<float>(byte) / 255.0F; };
+    glUniformMatrix4fv(0, 1, GL_FALSE, clip_float.data());
+    glUniformMatrix4fv(1, 1, GL_FALSE, eye_float.data());
+    glUniform4f(2, part(object.colour.r), part(object.colour.g), part(object.colour.b),
+                mesh.has_colours() ? 0.0F : 1.0F);
+    glUniform1i(6, mesh.has_normals() ? 1 : 0);
+    mesh.draw(clip);
+  }
+
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, layer.colour.pixels.data());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, layer.depth_m.pixels.data());
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  for (float& depth_m : layer.depth_m.pixels)
+    depth_m = depth_from_buffer(depth_m, static_cast<float>(kNear_m));
+}
+
+}  // namespace roomradar

@@ -1,0 +1,252 @@
+// placement.cpp: find a level surface in view, on a grid of heights seen from above.
+#include "app/placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr float kUnseen = -std::numeric_limits<float>::infinity();
+
+/// What is seen from above: the height of the topmost surface in each cell of a level grid about the camera.
+class HeightGrid {
+ public:
+  HeightGrid(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+             const PlacementConfig& config)
+      : cell_m_(config.cell_m), origin_world_(T_world_camera.translation()) {
+    half_ =
+        static_cast<int>(std::ceil(1.5 * config.max_range_m / cell_m_));  // a wide lens sees farther sideways
+    size_ = 2 * half_ + 1;
+    const std::size_t cells = static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_);
+    std::vector<float> highest_m(cells, kUnseen);
+    std::vector<float> sum_m(cells, 0.0F);
+    std::vector<int> count(cells, 0);
+    const auto for_each_point = [&](const auto& visit) {
+      const int stride = std::max(camera.width_px / 400, 1);
+      for (int y = 0; y < camera.height_px; y += stride) {
+        for (int x = 0; x < camera.width_px; x += stride) {
+          const double z_m = depth_m.at(x, y);
+          if (!(z_m >= config.min_range_m && z_m <= config.max_range_m)) continue;
+          const Eigen::Vector3d p = T_world_camera.linear() * back_project(camera, x, y, z_m);
+          const int i = static_cast<int>(std::lround(p.x() / cell_m_)) + half_;
+          const int j = static_cast<int>(std::lround(p.y() / cell_m_)) + half_;
+          if (is_inside(i, j)) visit(index(i, j), static_cast<float>(p.z()));
+        }
+      }
+    };
+    for_each_point([&](std::size_t cell, float z_m) { highest_m[cell] = std::max(highest_m[cell], z_m); });
+    // The mean of the topmost layer rather than its highest point, which is the noisiest.
+    const float layer_m = static_cast<float>(2.0 * config.flatness_m);
+    for_each_point([&](std::size_t cell, float z_m) {
+      if (z_m < highest_m[cell] - layer_m) return;
+      sum_m[cell] += z_m;
+      ++count[cell];
+    });
+    top_m_.assign(cells, kUnseen);
+    for (std::size_t cell = 0; cell < cells; ++cell)
+      if (count[cell] > 0) top_m_[cell] = sum_m[cell] / static_cast<float>(count[cell]);
+  }
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] bool is_inside(int i, int j) const { return i >= 0 && j >= 0 && i < size_ && j < size_; }
+  [[nodiscard]] std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
+  }
+  /// Above the camera's height (m), usually negative; kUnseen where nothing is.
+  [[nodiscard]] float top_m(int i, int j) const { return is_inside(i, j) ? top_m_[index(i, j)] : kUnseen; }
+  [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {
+    return origin_world_ + Eigen::Vector3d((i - half_) * cell_m_, (j - half_) * cell_m_, height_m);
+  }
+
+ private:
+  double cell_m_;
+  Eigen::Vector3d origin_world_;
+  int half_ = 0;
+  int size_ = 0;
+  std::vector<float> top_m_;
+};
+
+struct Offset {
+  int i, j;
+};
+
+std::vector<Offset> disc(double radius_cells) {
+  std::vector<Offset> offsets;
+  const int reach = static_cast<int>(std::floor(radius_cells));
+  for (int j = -reach; j <= reach; ++j)
+    for (int i = -reach; i <= reach; ++i)
+      if (i * i + j * j <= radius_cells * radius_cells) offsets.push_back({i, j});
+  return offsets;
+}
+
+struct Footprint {
+  bool is_level = false;
+  double height_m = 0.0;  // of the fitted plane at the middle
+  double spread_m = 0.0;
+};
+
+/// Fits z = a + b x + c y to the tops under the footprint, and tells whether an object can stand there.
+Footprint footprint_at(const HeightGrid& grid, int i, int j, const std::vector<Offset>& offsets,
+                       const PlacementConfig& config) {
+  const float middle_m = grid.top_m(i, j);
+  if (middle_m == kUnseen) return {};
+  const double most_rise = std::tan(config.max_tilt_deg * std::numbers::pi / 180.0);
+  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
+  int seen = 0;
+  for (const Offset& offset : offsets) {
+    const float top_m = grid.top_m(i + offset.i, j + offset.j);
+    if (top_m == kUnseen) continue;
+    const double rise_m = top_m - middle_m;
+    const double away_m = std::hypot(offset.i, offset.j) * config.cell_m;
+    if (std::abs(rise_m) > 2.0 * config.flatness_m + most_rise * away_m)
+      return {};  // an edge: no need to fit
+    const Eigen::Vector3d row(1.0, offset.i * config.cell_m, offset.j * config.cell_m);
+    normal_matrix += row * row.transpose();
+    right_side += row * rise_m;
+    ++seen;
+  }
+  if (seen < 3 || seen < config.min_seen * static_cast<double>(offsets.size())) return {};
+  const Eigen::Vector3d plane = normal_matrix.ldlt().solve(right_side);
+  if (!plane.allFinite() || plane.tail<2>().norm() > most_rise) return {};
+
+  double squares_m2 = 0.0;
+  for (const Offset& offset : offsets) {
+    const float top_m = grid.top_m(i + offset.i, j + offset.j);
+    if (top_m == kUnseen) continue;
+    const double off_m = top_m - middle_m -
+                         plane.dot(Eigen::Vector3d(1.0, offset.i * config.cell_m, offset.j * config.cell_m));
+    if (std::abs(off_m) > config.flatness_m) return {};
+    squares_m2 += off_m * off_m;
+  }
+  return {true, middle_m + plane[0], std::sqrt(squares_m2 / seen)};
+}
+
+/// Distance (cells, chamfer 1 and sqrt 2) of each place to the nearest one that is none.
+std::vector<float> distance_inside(const std::vector<char>& is_place, int size) {
+  constexpr float kDiagonal = std::numbers::sqrt2_v<float>;
+  std::vector<float> distance(is_place.size());
+  const auto at = [&](int i, int j) -> float {
+    const bool is_inside = i >= 0 && j >= 0 && i < size && j < size;
+    return is_inside ? distance[static_cast<std::size_t>(j) * static_cast<std::size_t>(size) +
+                                static_cast<std::size_t>(i)]
+                     : 0.0F;
+  };
+  const auto sweep = [&](int begin, int end, int step) {
+    for (int j = begin; j != end; j += step) {
+      for (int i = begin; i != end; i += step) {
+        float& here = distance[static_cast<std::size_t>(j) * static_cast<std::size_t>(size) +
+                               static_cast<std::size_t>(i)];
+        here = std::min({here, at(i - step, j) + 1.0F, at(i, j - step) + 1.0F,
+                         at(i - step, j - step) + kDiagonal, at(i + step, j - step) + kDiagonal});
+      }
+    }
+  };
+  for (std::size_t cell = 0; cell < is_place.size(); ++cell) distance[cell] = is_place[cell] ? 1e9F : 0.0F;
+  sweep(0, size, 1);
+  sweep(size - 1, -1, -1);
+  return distance;
+}
+
+std::size_t connected_places(std::vector<char> is_place, const HeightGrid& grid, Offset start) {
+  std::vector<Offset> open{start};
+  is_place[grid.index(start.i, start.j)] = 0;
+  std::size_t count = 0;
+  while (!open.empty()) {
+    const Offset place = open.back();
+    open.pop_back();
+    ++count;
+    for (const Offset step : {Offset{1, 0}, Offset{-1, 0}, Offset{0, 1}, Offset{0, -1}}) {
+      const Offset next{place.i + step.i, place.j + step.j};
+      if (!grid.is_inside(next.i, next.j) || !is_place[grid.index(next.i, next.j)]) continue;
+      is_place[grid.index(next.i, next.j)] = 0;
+      open.push_back(next);
+    }
+  }
+  return count;
+}
+
+/// 1 in the middle of the picture, falling towards its edge; 0 outside.
+double centrality(const Eigen::Vector3d& p_camera, const Intrinsics& camera) {
+  if (p_camera.z() <= 0.0) return 0.0;
+  const Eigen::Vector2d p = project(camera, p_camera);
+  const double u = 2.0 * (p.x() + 0.5) / camera.width_px - 1.0;
+  const double v = 2.0 * (p.y() + 0.5) / camera.height_px - 1.0;
+  if (std::abs(u) > 1.0 || std::abs(v) > 1.0) return 0.0;
+  return std::exp(-2.0 * (u * u + v * v));
+}
+
+}  // namespace
+
+void require_valid(const PlacementConfig& config) {
+  const auto require = [](const char* name, double value, double lowest, double highest) {
+    if (value >= lowest && value <= highest) return;
+    throw Error(std::string("placement.") + name + " = " + std::to_string(value) + ": must be in " +
+                std::to_string(lowest) + ".." + std::to_string(highest));
+  };
+  require("cell_m", config.cell_m, 0.005, 0.1);
+  require("max_tilt_deg", config.max_tilt_deg, 0.0, 60.0);
+  require("flatness_m", config.flatness_m, 0.0, 0.2);
+  require("min_seen", config.min_seen, 0.0, 1.0);
+  require("room_to_spare_m", config.room_to_spare_m, 0.0, 1.0);
+  require("min_range_m", config.min_range_m, 0.0, 10.0);
+  require("max_range_m", config.max_range_m, config.min_range_m, 10.0);
+  require("table_below_camera_m", config.table_below_camera_m, 0.0, 10.0);
+}
+
+std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics& camera,
+                                    const Eigen::Isometry3d& T_world_camera, double footprint_radius_m,
+                                    const PlacementConfig& config) {
+  require_valid(config);
+  if (!(footprint_radius_m > 0.0 && footprint_radius_m <= 1.0)) return std::nullopt;
+  if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px)
+    return std::nullopt;
+  if (!T_world_camera.matrix().allFinite()) return std::nullopt;
+
+  const HeightGrid grid(depth_m, camera, T_world_camera, config);
+  const std::vector<Offset> offsets = disc((footprint_radius_m + config.room_to_spare_m) / config.cell_m);
+  std::vector<char> is_place(static_cast<std::size_t>(grid.size()) * static_cast<std::size_t>(grid.size()),
+                             0);
+  for (int j = 0; j < grid.size(); ++j)
+    for (int i = 0; i < grid.size(); ++i)
+      is_place[grid.index(i, j)] = footprint_at(grid, i, j, offsets, config).is_level;
+
+  const std::vector<float> inside_cells = distance_inside(is_place, grid.size());
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  constexpr double kAmple_m = 0.15;      // more room than this is no better
+  constexpr double kFloorIsWorth = 0.2;  // as a place for things, against a table
+  double best_worth = 0.0;
+  Offset best{0, 0};
+  for (int j = 0; j < grid.size(); ++j) {
+    for (int i = 0; i < grid.size(); ++i) {
+      if (!is_place[grid.index(i, j)]) continue;
+      const double height_m = grid.top_m(i, j);
+      const double room = std::min(inside_cells[grid.index(i, j)] * config.cell_m / kAmple_m, 1.0);
+      const double worth = centrality(T_camera_world * grid.point_world(i, j, height_m), camera) *
+                           (0.2 + 0.8 * room) *
+                           (height_m >= -config.table_below_camera_m ? 1.0 : kFloorIsWorth);
+      if (worth > best_worth) {
+        best_worth = worth;
+        best = {i, j};
+      }
+    }
+  }
+  if (best_worth <= 0.0) return std::nullopt;
+
+  const Footprint footprint = footprint_at(grid, best.i, best.j, offsets, config);
+  Support support;
+  support.point_world = grid.point_world(best.i, best.j, footprint.height_m);
+  support.spread_m = footprint.spread_m;
+  support.area_m2 =
+      static_cast<double>(connected_places(is_place, grid, best)) * config.cell_m * config.cell_m;
+  return support;
+}
+
+}  // namespace roomradar
