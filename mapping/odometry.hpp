@@ -12,13 +12,17 @@
 namespace roomradar {
 
 struct OdometryConfig {
+  ViewConfig view;
   AlignConfig align;
   PlaceConfig place;
   double keyframe_distance_m = 0.15;  ///< a view further than this from every keyframe becomes one
   double keyframe_angle_deg = 12.0;
   double keyframe_overlap = 0.7;  ///< or that has less than this in common with the newest
   int references = 3;             ///< keyframes that a frame is aligned with at once
-  int loop_candidates = 8;        ///< older keyframes with overlap that a new keyframe is joined with
+  bool solve_online = true;
+  double furthest = 1.0;
+  double max_gap = 0.03;
+  int loop_candidates = 8;  ///< older keyframes with overlap that a new keyframe is joined with
 };
 
 /// A frame's place in the trajectory.
