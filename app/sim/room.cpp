@@ -19,7 +19,7 @@ Room make_room(std::string_view name) {
   if (name == "shelf") return make_shelf_room();
   if (name == "wall") return make_wall_room();
   std::string known;
-  for (const std::string& one : room_names()) known += (known.empty() ? "" : ", ") + one;
+  for (const std::string& one : room_names()) known.append(known.empty() ? "" : ", ").append(one);
   throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known);
 }
 

@@ -24,6 +24,11 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
+void append_with_comma(std::string& list, std::string_view one, std::string_view comma) {
+  if (!list.empty()) list += comma;
+  list += one;
+}
+
 [[noreturn]] void refuse(std::string_view key, std::string_view value, const std::string& wanted) {
   throw Error("sim: " + std::string(key) + " = '" + std::string(value) + "': must be " + wanted);
 }
@@ -143,7 +148,7 @@ void require_valid(const SimOptions& options) {
   const std::vector<std::string>& known = room_names();
   if (std::find(known.begin(), known.end(), options.room) == known.end()) {
     std::string names;
-    for (const std::string& one : known) names += (names.empty() ? "" : ", ") + one;
+    for (const std::string& one : known) append_with_comma(names, one, ", ");
     throw Error("no simulated room is called '" + options.room + "'; known are: " + names);
   }
   if (options.frames < 1 || options.frames > 100'000'000)

@@ -30,11 +30,10 @@ class SimulatedSource final : public FrameSource {
 
   ReadResult next(Frame& frame) override;
   bool rewind() override;
+  bool seek(std::int64_t index) override;
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override;
   [[nodiscard]] std::string name() const override;
 
-  /// Makes `next` deliver frame `index` (0 to frames) without rendering those before it.
-  void seek(std::int64_t index);
   [[nodiscard]] const SimTruth& truth() const;  ///< of the frame that `next` filled last
   [[nodiscard]] const SimOptions& options() const;
   [[nodiscard]] const Room& room() const;

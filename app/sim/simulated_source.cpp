@@ -1,0 +1,190 @@
+// simulated_source.cpp: one frame of the simulated Kinect, from time to pixels.
+#include "app/sim/simulated_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/sim/camera_path.hpp"
+#include "app/sim/counter_random.hpp"
+#include "app/sim/kinect_depth.hpp"
+#include "app/sim/movers.hpp"
+#include "app/sim/room.hpp"
+#include "app/sim/surface_look.hpp"
+#include "app/sim/view_caster.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The Kinect's colour camera stands 2.5 cm along the depth camera's +x and sees a little wider.
+constexpr double kColourOffset_m = 0.025;
+constexpr double kColourFocal = 525.0 / 585.0;
+
+}  // namespace
+
+struct SimulatedSource::State {
+  explicit State(const SimOptions& chosen)
+      : options(chosen), room(make_room(chosen.room)), room_look(room, finest_texel_m(chosen)) {
+    const double duration_s = static_cast<double>(options.frames) / options.rate_hz;
+    path = plan_camera_path(room, options.path, options.seed, duration_s);
+    const Vector3d viewer_world =
+        plan_camera_path(room, CameraPathKind::kView, options.seed, duration_s).centre_world;
+    std::vector<Material> materials;
+    for (std::size_t i = 0; i < options.movers.size(); ++i) {
+      movers.push_back(plan_mover(options.movers[i], room, viewer_world, options.seed));
+      append_solids(movers.back(), 0.0, solids);
+      materials.insert(materials.end(), movers.back().materials.begin(), movers.back().materials.end());
+      mover_of_solid.resize(solids.size(), static_cast<std::uint8_t>(i + 1));
+    }
+    mover_look.emplace(room, solids, materials, finest_texel_m(options));
+    for (const Material& material : room.materials) infrared.push_back(material.infrared);
+    for (const Material& material : materials) infrared.push_back(material.infrared);
+
+    colour_camera = options.depth_camera;
+    if (!options.registered_colour) {
+      colour_camera.fx_px *= kColourFocal;
+      colour_camera.fy_px *= kColourFocal;
+      T_colour_depth.translation().x() = -kColourOffset_m;
+    }
+  }
+
+  /// Two pixels' width at 1 m is as fine as anything is looked at from.
+  static double finest_texel_m(const SimOptions& options) { return 1.6 / options.depth_camera.fx_px; }
+
+  void place_solids(double t_s) {
+    solids.assign(room.solids.begin(), room.solids.end());
+    for (const Mover& mover : movers) append_solids(mover, t_s, solids);
+  }
+  void fill_truth();
+  void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
+                   ColourImage& colour) const;
+
+  SimOptions options;
+  Room room;
+  SurfaceLook room_look;
+  std::optional<SurfaceLook> mover_look;
+  CameraPath path;
+  std::vector<Mover> movers;
+  std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover of the solids behind the room's
+  std::vector<float> infrared;
+  Intrinsics colour_camera;
+  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
+  std::int64_t next_index = 0;
+
+  std::vector<Solid> solids;  ///< the room's, then the movers', at the time of the current frame
+  ViewCaster depth_view, colour_view;
+  ExactView depth_exact, colour_exact;
+  KinectScratch scratch;
+  SimTruth truth;
+};
+
+void SimulatedSource::State::fill_truth() {
+  const int width_px = options.depth_camera.width_px, height_px = options.depth_camera.height_px;
+  truth.depth_m.resize(width_px, height_px);
+  truth.moved.resize(width_px, height_px);
+  truth.mover.resize(width_px, height_px);
+  for (std::size_t i = 0; i < truth.depth_m.pixels.size(); ++i) {
+    const float depth_m = depth_exact.depth_m.pixels[i];
+    if (depth_m >= static_cast<float>(kKinectNearest_m) && depth_m <= static_cast<float>(kKinectFarthest_m))
+      truth.depth_m.pixels[i] = depth_m;
+    const auto moving = depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room.solids.size());
+    if (moving < 0) continue;
+    truth.moved.pixels[i] = 255;
+    truth.mover.pixels[i] = mover_of_solid[static_cast<std::size_t>(moving)];
+  }
+}
+
+void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
+                                         ColourImage& colour) const {
+  colour.resize(colour_camera.width_px, colour_camera.height_px);
+  const auto noise_scale = static_cast<float>(options.noise_scale);
+  for (int y = 0; y < colour.height; ++y)
+    for (int x = 0; x < colour.width; ++x) {
+      const int seen = exact.solid.at(x, y);
+      if (seen < 0) continue;
+      const auto index = static_cast<std::size_t>(seen);
+      const double depth_m = exact.depth_m.at(x, y);
+      const Vector3d p_solid = view.local_point(seen, x, y, depth_m);
+      const Vector3d normal_solid = normal_local(solids[index], p_solid);
+      const Vector3d to_camera = view.local_point(seen, x, y, 0.0) - p_solid;
+      const double cosine = std::max(normal_solid.dot(to_camera) / to_camera.norm(), 0.2);
+      const double footprint_m = depth_m / (colour_camera.fx_px * cosine);
+      Rgb& pixel = colour.at(x, y);
+      pixel = index < room.solids.size()
+                  ? room_look.shade(index, p_solid, normal_solid, footprint_m, solids[index].T_world_solid)
+                  : mover_look->shade(index - room.solids.size(), p_solid, normal_solid, footprint_m,
+                                      solids[index].T_world_solid);
+      if (noise_scale == 0.0F) continue;
+      const std::uint64_t pixel_key = mixed(key + colour.index(x, y));
+      const float brightness = 1.6F * noise_scale * gaussian(pixel_key);
+      const auto noisy = [brightness](std::uint8_t of) {
+        return static_cast<std::uint8_t>(
+            std::clamp(static_cast<float>(of) + brightness + 0.5F, 0.0F, 255.0F));
+      };
+      pixel = {noisy(pixel.r), noisy(pixel.g), noisy(pixel.b)};
+    }
+}
+
+SimulatedSource::SimulatedSource(const SimOptions& options) {
+  require_valid(options);
+  state_ = std::make_unique<State>(options);
+}
+
+SimulatedSource::~SimulatedSource() = default;
+
+ReadResult SimulatedSource::next(Frame& frame) {
+  State& s = *state_;
+  if (s.next_index >= s.options.frames) return {ReadStatus::kEnd, {}};
+  const std::int64_t index = s.next_index++;
+  const double t_s = static_cast<double>(index) / s.options.rate_hz;
+  const Eigen::Isometry3d T_world_camera = T_world_camera_at(s.path, t_s);
+  s.place_solids(t_s);
+  s.depth_view.prepare(s.solids, s.options.depth_camera, T_world_camera);
+  render_exact(s.depth_view, s.options.depth_camera, s.depth_exact);
+  s.truth.T_world_camera = T_world_camera;
+  s.fill_truth();
+  if (s.options.noise_scale > 0.0) {
+    measure_depth(s.solids, s.infrared, s.depth_view, s.depth_exact, s.options.depth_camera, T_world_camera,
+                  s.options.noise_scale, s.options.seed, index, s.scratch, frame.depth_m);
+  } else {
+    frame.depth_m = s.truth.depth_m;
+  }
+
+  const std::uint64_t colour_key = hash_of(s.options.seed, static_cast<std::uint64_t>(index), 0x636f6c);
+  if (s.options.registered_colour) {
+    s.fill_colour(s.depth_view, s.depth_exact, colour_key, frame.colour);
+  } else {
+    s.colour_view.prepare(s.solids, s.colour_camera, T_world_camera * s.T_colour_depth.inverse());
+    render_exact(s.colour_view, s.colour_camera, s.colour_exact);
+    s.fill_colour(s.colour_view, s.colour_exact, colour_key, frame.colour);
+  }
+
+  frame.index = index;
+  frame.stamp_s = t_s;
+  frame.depth_camera = s.options.depth_camera;
+  frame.colour_camera = s.colour_camera;
+  frame.T_colour_depth = s.T_colour_depth;
+  frame.T_world_camera = T_world_camera;
+  frame.down_camera = T_world_camera.linear().transpose() * -Vector3d::UnitZ();
+  return {ReadStatus::kFrame, {}};
+}
+
+bool SimulatedSource::rewind() {
+  state_->next_index = 0;
+  return true;
+}
+
+bool SimulatedSource::seek(std::int64_t index) {
+  if (index < 0 || index >= state_->options.frames) return false;
+  state_->next_index = index;
+  return true;
+}
+
+std::optional<std::int64_t> SimulatedSource::frame_count() const { return state_->options.frames; }
+std::string SimulatedSource::name() const { return sim_spec(state_->options); }
+const SimTruth& SimulatedSource::truth() const { return state_->truth; }
+const SimOptions& SimulatedSource::options() const { return state_->options; }
+const Room& SimulatedSource::room() const { return state_->room; }
+
+}  // namespace roomradar
