@@ -14,7 +14,8 @@ namespace roomradar {
 namespace {
 
 constexpr float kNothing_m = std::numeric_limits<float>::max();  // "nearest" where the model has nothing
-constexpr int kBlock_px = 4;  // extremes around a pixel are taken over whole blocks of this size
+constexpr int kBlock_px = 4;   // extremes around a pixel are taken over whole blocks of this size
+constexpr int kMaxWindow = 6;  // blocks to each side
 constexpr int kSlopeStep_px =
     4;  // slopes are taken over several pixels: a mesh from cells is a staircase at one
 
@@ -27,7 +28,9 @@ int blocks_along(int size_px) { return (size_px + kBlock_px - 1) / kBlock_px; }
 // columns.
 template <typename Better>
 void spread(const std::vector<float>& blocks, int columns, int rows, int reach, const Better& better,
-            std::vector<float>& along_rows, std::vector<float>& spread_blocks) {
+            ForegroundScratch& scratch) {
+  std::vector<float>& along_rows = scratch.along_rows_m;
+  std::vector<float>& spread_blocks = scratch.spread_m;
   const auto at = [columns](int x, int y) { return static_cast<std::size_t>(y) * columns + x; };
   along_rows = blocks;
   for (int y = 0; y < rows; ++y) {
@@ -49,9 +52,23 @@ void spread(const std::vector<float>& blocks, int columns, int rows, int reach, 
   }
 }
 
+// How many blocks to each side an edge may be off: the turn of the pose shifts all edges alike, its shift and
+// the map's distortion the near ones more.
+void choose_windows(int columns, int rows, const Intrinsics& camera, const ForegroundConfig& config,
+                    ForegroundScratch& scratch) {
+  const auto nearer = [](float a, float b) { return b < a ? b : a; };
+  spread(scratch.block_nearest_m, columns, rows, kMaxWindow, nearer, scratch);
+  const float focal_px = static_cast<float>(std::max(camera.fx_px, camera.fy_px));
+  scratch.window.resize(scratch.block_nearest_m.size());
+  for (std::size_t i = 0; i < scratch.window.size(); ++i) {
+    const float edge_px = focal_px * (config.edge_error_rad + config.edge_error_m / scratch.spread_m[i]);
+    scratch.window[i] = std::clamp(static_cast<int>(std::ceil(edge_px / kBlock_px)), 0, kMaxWindow);
+  }
+}
+
 // Nearest and farthest expected depth around each block: within the silhouette's window, and within the
 // hole's reach.
-void extremes_around(const DepthImage& expected_m, const ForegroundConfig& config,
+void extremes_around(const DepthImage& expected_m, const Intrinsics& camera, const ForegroundConfig& config,
                      ForegroundScratch& scratch) {
   const auto nearer = [](float a, float b) { return b < a ? b : a; };
   const auto farther = [](float a, float b) { return b > a ? b : a; };
@@ -81,13 +98,22 @@ void extremes_around(const DepthImage& expected_m, const ForegroundConfig& confi
       }
     }
   }
-  const int silhouette = blocks_along(config.silhouette_px);
-  const int reach = blocks_along(config.hole_reach_px);
-  spread(scratch.block_nearest_m, columns, rows, reach, nearer, scratch.spread_m, scratch.window_reach_m);
-  spread(scratch.block_nearest_m, columns, rows, silhouette, nearer, scratch.spread_m,
-         scratch.window_nearest_m);
-  spread(scratch.block_farthest_m, columns, rows, silhouette, farther, scratch.spread_m,
-         scratch.window_farthest_m);
+  choose_windows(columns, rows, camera, config, scratch);
+  spread(scratch.block_nearest_m, columns, rows, blocks_along(config.hole_reach_px), nearer, scratch);
+  scratch.window_reach_m = scratch.spread_m;
+  scratch.window_nearest_m = scratch.block_nearest_m;
+  scratch.window_farthest_m = scratch.block_farthest_m;
+  for (int reach = 1; reach <= kMaxWindow; ++reach) {
+    spread(scratch.block_nearest_m, columns, rows, 1, nearer, scratch);
+    scratch.block_nearest_m.swap(scratch.spread_m);
+    spread(scratch.block_farthest_m, columns, rows, 1, farther, scratch);
+    scratch.block_farthest_m.swap(scratch.spread_m);
+    for (std::size_t i = 0; i < scratch.window.size(); ++i) {
+      if (scratch.window[i] != reach) continue;
+      scratch.window_nearest_m[i] = scratch.block_nearest_m[i];
+      scratch.window_farthest_m[i] = scratch.block_farthest_m[i];
+    }
+  }
 }
 
 // Angle of which `cosine` in 0..1 is the cosine, within 7e-5 rad, without a library call.
@@ -167,12 +193,11 @@ void weigh_row(const DepthImage& depth_m, const DepthImage& expected_m, int y, c
     const int known = z > 0.0F ? (expected[x] > 0.0F ? 0xFF : 0) : 0;
     evidence[x] = static_cast<std::uint8_t>((moved | revealed) & known);
   }
-  // Holes of the model: only what is nearer than all the model around can have moved.
+  // Holes of the model: they prove nothing, but what moved may cover them.
   const float* reach = scratch.reach_m.data();
   for (int x = 0; x < width; ++x) {
     if (expected[x] > 0.0F || !(live[x] > 0.0F) || reach[x] == kNothing_m) continue;
-    if (live[x] < reach[x] - strong * total_sigma_m(reach[x], 0.0F, config))
-      evidence[x] = kWeakMoved | kStrongMoved;
+    if (live[x] < reach[x] - strong * total_sigma_m(reach[x], 0.0F, config)) evidence[x] = kWeakMoved;
   }
 }
 
@@ -271,8 +296,10 @@ void require_valid(const ForegroundConfig& config) {
           "in 0..1000");
   require(config.strong_sigmas >= config.weak_sigmas && config.strong_sigmas < 1e3F, "strong_sigmas",
           config.strong_sigmas, "at least weak_sigmas, and under 1000");
-  require(config.silhouette_px >= 0 && config.silhouette_px <= 64, "silhouette_px", config.silhouette_px,
-          "in 0..64");
+  require(config.edge_error_m >= 0.0F && config.edge_error_m < 1.0F, "edge_error_m", config.edge_error_m,
+          "in 0..1");
+  require(config.edge_error_rad >= 0.0F && config.edge_error_rad < 0.1F, "edge_error_rad",
+          config.edge_error_rad, "in 0..0.1");
   require(config.hole_reach_px >= 0 && config.hole_reach_px <= 256, "hole_reach_px", config.hole_reach_px,
           "in 0..256");
   require(config.min_region_px >= 0, "min_region_px", config.min_region_px, ">= 0");
@@ -295,7 +322,7 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   scratch.padded_m.resize(width + 2 * kSlopeStep_px);
   scratch.sigma_m.resize(width);
   scratch.reach_m.resize(width);
-  extremes_around(expected_depth_m, config, scratch);
+  extremes_around(expected_depth_m, camera, config, scratch);
   weigh_pixels(depth_m, expected_depth_m, camera, config, scratch);
 
   ForegroundCounts counts;

@@ -24,7 +24,9 @@ struct ForegroundConfig {
   float model_sigma_per_m = 0.002F;  ///< and what grows with depth: pose error, the sensor's own distortion
   float strong_sigmas = 4.0F;
   float weak_sigmas = 2.0F;
-  int silhouette_px = 4;   ///< a pose error of 0.3 degrees shifts an edge by 3 px, one of 5 mm at 1 m as much
+  float edge_error_m =
+      0.02F;  ///< how far aside an edge of the model may stand: pose error and the map's distortion
+  float edge_error_rad = 0.005F;  ///< the same by a turn of the pose, 0.3 degrees
   int hole_reach_px = 16;  ///< how far from the model's edge a pixel without expected depth is still judged
   int min_region_px = 60;  ///< smaller regions are noise
   float min_region_m2 = 0.0003F;  ///< the same by size in the world: 3 cm2
@@ -37,7 +39,8 @@ struct ForegroundScratch {
   std::vector<float> nearest_m, farthest_m, reach_m, sigma_m;  // one value a pixel of a row
   std::vector<float> padded_m;                                 // one row of expected depth with margins
   std::vector<float> block_nearest_m, block_farthest_m;        // one value a block of pixels
-  std::vector<float> window_nearest_m, window_farthest_m, window_reach_m, spread_m;
+  std::vector<float> window_nearest_m, window_farthest_m, window_reach_m, along_rows_m, spread_m;
+  std::vector<int> window;             // blocks to each side that an edge may be off
   std::vector<std::uint8_t> evidence;  // bits, see foreground.cpp
   std::vector<std::uint32_t> region;   // pixels of the region being grown
   std::size_t region_size = 0;
@@ -61,10 +64,12 @@ struct ForegroundCounts {
 /// @param moved_mask        255 where the label is kMoved, else 0; resized and set
 /// The three sizes must agree (asserted).
 ///
-/// A pixel counts as moved only if it is nearer than the nearest expected depth within silhouette_px, so an
-/// edge that a pose error shifted, and a flying pixel on it, stay static. A pixel where the model has a hole
-/// is judged against the nearest expected depth within about hole_reach_px: nearer than all of that is moved;
-/// anything else, and everything farther inside an unmapped view, is kNotKnown: a hole proves nothing.
+/// A pixel starts a moved region only if it is nearer than every expected depth within the reach of an edge's
+/// error, so an edge that a pose error shifted, and a flying pixel on it, stay static. From there a region
+/// grows over pixels that are nearer than the model just there, across the live surface. Where the model has
+/// a hole no region starts; one may grow into it over what is nearer than all expected depth within
+/// hole_reach_px. Everything else in a hole, and all of an unmapped view, is kNotKnown: a hole proves
+/// nothing.
 ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
                                  const Intrinsics& camera, const ForegroundConfig& config,
                                  ForegroundScratch& scratch, LabelImage& labels, MaskImage& moved_mask);
