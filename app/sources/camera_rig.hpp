@@ -10,8 +10,9 @@ namespace roomradar {
 
 struct CameraRig {
   Intrinsics depth_camera;
-  std::optional<Intrinsics> colour_camera;                           ///< nothing where there is no colour
-  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();  ///< depth-camera points to colour-camera points
+  std::optional<Intrinsics> colour_camera;  ///< nothing where there is no colour
+  Eigen::Isometry3d T_colour_depth =
+      Eigen::Isometry3d::Identity();  ///< depth-camera points to colour-camera points
 };
 
 /// camera.json:
@@ -23,14 +24,14 @@ struct CameraRig {
 CameraRig read_camera_file(const std::filesystem::path& path);
 void write_camera_file(const CameraRig& rig, const std::filesystem::path& path);
 
-/// camera-intrinsics.txt: the 3 x 3 matrix fx 0 cx / 0 fy cy / 0 0 1 of a camera whose images are of the size given.
-/// The file does not say its size, so a principal point farther than a fifth of the image from the image's centre is
-/// taken as a sign that it belongs to other images.
-/// Throws Error naming the file and what is wrong with it.
+/// camera-intrinsics.txt: the 3 x 3 matrix fx 0 cx / 0 fy cy / 0 0 1 of a camera whose images are of the size
+/// given. The file does not say its size, so a principal point farther than a fifth of the image from the
+/// image's centre is taken as a sign that it belongs to other images. Throws Error naming the file and what
+/// is wrong with it.
 Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_px, int height_px);
 
-/// The rotation nearest to `almost` (Frobenius norm, by SVD), or nothing if it has an entry that is not finite, is
-/// farther than 0.01 in any entry from it, or mirrors.
+/// The rotation nearest to `almost` (Frobenius norm, by SVD), or nothing if it has an entry that is not
+/// finite, is farther than 0.01 in any entry from it, or mirrors.
 std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& almost);
 
 }  // namespace roomradar

@@ -7,14 +7,14 @@
 
 namespace roomradar {
 
-/// Opens Kinect number `device` (from 0) through libfreenect: raw 11 bit depth made metres here, colour, and the
-/// accelerometer's gravity. A thread of its own serves the device.
+/// Opens Kinect number `device` (from 0) through libfreenect: raw 11 bit depth made metres here, colour, and
+/// the accelerometer's gravity. A thread of its own serves the device.
 ///
-/// A live device's frames that nobody fetches in time are dropped, the oldest first, and counted in Frame::index. A
-/// replay by fakenect waits instead, so that it gives what open_folder gives on the same recording, and ends with it
-/// (FAKENECT_LOOP=0). The source cannot rewind; see spooled_source.hpp.
-/// @throws Error, here or from next(), if the program was built without Kinect, if there is no such device or it
-/// cannot be opened, if it stops answering, or if it sends no depth for options.device_timeout_s.
+/// A live device's frames that nobody fetches in time are dropped, the oldest first, and counted in
+/// Frame::index. A replay by fakenect waits instead, so that it gives what open_folder gives on the same
+/// recording, and ends with it (FAKENECT_LOOP=0). The source cannot rewind; see spooled_source.hpp.
+/// @throws Error, here or from next(), if the program was built without Kinect, if there is no such device or
+/// it cannot be opened, if it stops answering, or if it sends no depth for options.device_timeout_s.
 std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& options = {});
 
 }  // namespace roomradar

@@ -20,20 +20,22 @@ std::string_view to_string(RecordingFormat format);
 /// Writes a recording frame by frame. What comes back through open_folder:
 ///   kTum          stamps to 1 us, depth to 0.1 mm (none past 13.1 m), colour, poses, gravity
 ///   kSevenScenes  depth to 0.5 mm (none past 65.5 m), colour, poses; stamps are frame / 30 s; no gravity
-///   kFakenect     stamps to 1/60 us (33 s between frames at most), depth as raw 11 bit (the Kinect's own steps, none past
-///                 10 m), colour, gravity to 1/819 g; no poses; 640 x 480 only, which is all that fakenect replays
+///   kFakenect     stamps to 1/60 us (33 s between frames at most), depth as raw 11 bit (the Kinect's own
+///   steps, none past
+///                 10 m), colour, gravity to 1/819 g; no poses; 640 x 480 only, which is all that fakenect
+///                 replays
 /// Colour is lossless. All frames must have the first one's cameras, which go to camera.json.
 class RecordingWriter {
  public:
   /// Makes the folder, or takes an empty one. Throws Error if it holds anything or cannot be written.
   RecordingWriter(std::filesystem::path folder, RecordingFormat format);
 
-  /// Throws Error if a file cannot be written, if the cameras change, if the stamp does not advance, or if the images
-  /// are not of the cameras' size.
+  /// Throws Error if a file cannot be written, if the cameras change, if the stamp does not advance, or if
+  /// the images are not of the cameras' size.
   void write(const Frame& frame);
 
-  /// Finishes the lists and says so if they are not on disk (Error). Nothing may be written afterwards. Without it what
-  /// was written is still a readable recording, most likely.
+  /// Finishes the lists and says so if they are not on disk (Error). Nothing may be written afterwards.
+  /// Without it what was written is still a readable recording, most likely.
   void close();
 
   [[nodiscard]] std::int64_t frames_written() const { return frames_written_; }

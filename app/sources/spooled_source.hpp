@@ -11,14 +11,15 @@
 
 namespace roomradar {
 
-/// Writes each frame to a temporary folder as it is read from the source within, and reads it from there after
-/// rewind(), the same to the bit. What had not been read before the rewind is read from the source within afterwards.
-/// The folder goes with the object. About 0.6 MB a 640 x 480 frame.
+/// Writes each frame to a temporary folder as it is read from the source within, and reads it from there
+/// after rewind(), the same to the bit. What had not been read before the rewind is read from the source
+/// within afterwards. The folder goes with the object. About 0.6 MB a 640 x 480 frame.
 class SpooledSource final : public FrameSource {
  public:
   /// @param parent_folder  where the temporary folder is made; the system's own place for such if empty
   /// @throws Error if the folder cannot be made; next() throws Error if it cannot be written (disk full)
-  explicit SpooledSource(std::unique_ptr<FrameSource> source, const std::filesystem::path& parent_folder = {});
+  explicit SpooledSource(std::unique_ptr<FrameSource> source,
+                         const std::filesystem::path& parent_folder = {});
   ~SpooledSource() override;
 
   ReadResult next(Frame& frame) override;

@@ -1,0 +1,182 @@
+// image_file.cpp: image files by OpenCV's decoders, checked before and after.
+#include "app/sources/image_file.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "app/sources/image_header.hpp"
+#include "app/sources/kinect_units.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+constexpr std::uintmax_t kLargestFile_bytes = std::uintmax_t{1} << 30;
+
+Bytes read_bytes(const std::filesystem::path& path) {
+  std::error_code fault;
+  const std::uintmax_t size = std::filesystem::file_size(path, fault);
+  if (fault)
+    throw Error(path.string() + ": " +
+                (std::filesystem::exists(path) ? "cannot be read: " + fault.message() : "is missing"));
+  if (size > kLargestFile_bytes)
+    throw Error(path.string() + ": has " + std::to_string(size) + " bytes, too many for an image");
+  Bytes bytes(static_cast<std::size_t>(size));
+  std::ifstream file(path, std::ios::binary);
+  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
+    throw Error(path.string() + ": cannot be read to its end");
+  return bytes;
+}
+
+void write_bytes(const void* data, std::size_t size, const std::string& header,
+                 const std::filesystem::path& path) {
+  std::ofstream file(path, std::ios::binary);
+  file << header;
+  file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+  file.close();
+  if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
+}
+
+void write_png(const cv::Mat& image, const std::filesystem::path& path) {
+  Bytes bytes;
+  if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+    throw Error(path.string() + ": cannot be encoded as PNG");
+  write_bytes(bytes.data(), bytes.size(), "", path);
+}
+
+/// Decodes to `type` (an OpenCV type), the size that the header says.
+cv::Mat decode(const Bytes& bytes, int flags, int type, const ImageHeader& header, const std::string& name) {
+  cv::Mat image;
+  try {
+    image = cv::imdecode(bytes, flags);
+  } catch (const cv::Exception& fault) {
+    throw Error(name + ": cannot be decoded: " + fault.err);
+  }
+  if (image.empty() || image.type() != type || image.cols != header.width_px ||
+      image.rows != header.height_px)
+    throw Error(name + ": is damaged: its pixels cannot be decoded");
+  return image;
+}
+
+cv::Mat decode_16_bit_png(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  const Bytes bytes = read_bytes(path);
+  const ImageHeader header = read_image_header(bytes, name);
+  if (header.kind != ImageKind::kPng || header.bits != 16 || header.channels != 1)
+    throw Error(name + ": is a " + to_string(header) + "; depth must be a 16 bit grey PNG");
+  return decode(bytes, cv::IMREAD_UNCHANGED, CV_16UC1, header, name);
+}
+
+void read_kinect_raw(const std::filesystem::path& path, DepthImage& depth_m) {
+  const std::string name = path.string();
+  const Bytes bytes = read_bytes(path);
+  const ImageHeader header = read_image_header(bytes, name);
+  if (header.kind != ImageKind::kPgm || header.bits != 16)
+    throw Error(name + ": is a " + to_string(header) + "; raw Kinect depth must be a 16 bit PGM");
+  depth_m.resize(header.width_px, header.height_px);
+  const std::uint8_t* raw = bytes.data() + header.pixels_at;
+  for (float& pixel : depth_m.pixels) {
+    pixel = raw_depth_m(static_cast<std::uint16_t>(raw[0] | raw[1] << 8));
+    raw += 2;
+  }
+}
+
+/// A view of the image's pixels, red first.
+cv::Mat view_of(ColourImage& image) {
+  static_assert(sizeof(Rgb) == 3);
+  return {image.height, image.width, CV_8UC3, image.pixels.data()};
+}
+
+}  // namespace
+
+void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, DepthImage& depth_m) {
+  if (encoding == DepthEncoding::kKinectRaw) return read_kinect_raw(path, depth_m);
+  const cv::Mat image = decode_16_bit_png(path);
+  depth_m.resize(image.cols, image.rows);
+  const bool is_tum = encoding == DepthEncoding::kTum;
+  const float units_per_m = is_tum ? 5000.0F : 1000.0F;
+  for (int y = 0; y < image.rows; ++y) {
+    const std::uint16_t* from = image.ptr<std::uint16_t>(y);
+    float* to = depth_m.row(y);
+    for (int x = 0; x < image.cols; ++x)
+      to[x] = from[x] == 65535 && !is_tum ? 0.0F : static_cast<float>(from[x]) / units_per_m;
+  }
+}
+
+void read_colour_file(const std::filesystem::path& path, ColourImage& colour) {
+  const std::string name = path.string();
+  const Bytes bytes = read_bytes(path);
+  const ImageHeader header = read_image_header(bytes, name);
+  colour.resize(header.width_px, header.height_px);
+  if (header.kind == ImageKind::kPpm && header.bits == 8) {
+    std::memcpy(colour.pixels.data(), bytes.data() + header.pixels_at, colour.pixels.size() * sizeof(Rgb));
+    return;
+  }
+  const cv::Mat image =
+      decode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, CV_8UC3, header, name);
+  cv::Mat red_first = view_of(colour);
+  cv::cvtColor(image, red_first, cv::COLOR_BGR2RGB);
+}
+
+void write_depth_file(const DepthImage& depth_m, DepthEncoding encoding, const std::filesystem::path& path) {
+  cv::Mat image(depth_m.height, depth_m.width, CV_16UC1);
+  const bool is_raw = encoding == DepthEncoding::kKinectRaw;
+  const float units_per_m = encoding == DepthEncoding::kTum ? 5000.0F : 1000.0F;
+  const float largest = encoding == DepthEncoding::kTum ? 65535.0F : 65534.0F;  // 65535 mm stands for none
+  for (int y = 0; y < depth_m.height; ++y) {
+    const float* from = depth_m.row(y);
+    std::uint16_t* to = image.ptr<std::uint16_t>(y);
+    for (int x = 0; x < depth_m.width; ++x) {
+      const float units = std::round(from[x] * units_per_m);
+      to[x] = is_raw                             ? raw_from_depth_m(from[x])
+              : units > 0.0F && units <= largest ? static_cast<std::uint16_t>(units)
+                                                 : std::uint16_t{0};
+    }
+  }
+  if (!is_raw) return write_png(image, path);
+  static_assert(std::endian::native == std::endian::little, "raw Kinect depth is little-endian on disk");
+  write_bytes(image.data, image.total() * image.elemSize(),
+              "P5 " + std::to_string(image.cols) + " " + std::to_string(image.rows) + " 65535\n", path);
+}
+
+void write_colour_file(const ColourImage& colour, const std::filesystem::path& path) {
+  if (path.extension() == ".ppm")
+    return write_bytes(colour.pixels.data(), colour.pixels.size() * sizeof(Rgb),
+                       "P6 " + std::to_string(colour.width) + " " + std::to_string(colour.height) + " 255\n",
+                       path);
+  const cv::Mat red_first(colour.height, colour.width, CV_8UC3, const_cast<Rgb*>(colour.pixels.data()));
+  cv::Mat blue_first;
+  cv::cvtColor(red_first, blue_first, cv::COLOR_RGB2BGR);
+  write_png(blue_first, path);
+}
+
+void write_exact_depth_file(const DepthImage& depth_m, const std::filesystem::path& path) {
+  cv::Mat halves(2 * depth_m.height, depth_m.width, CV_16UC1);
+  for (int y = 0; y < depth_m.height; ++y)
+    for (int x = 0; x < depth_m.width; ++x) {
+      const auto bits = std::bit_cast<std::uint32_t>(depth_m.at(x, y));
+      halves.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(bits >> 16);
+      halves.at<std::uint16_t>(y + depth_m.height, x) = static_cast<std::uint16_t>(bits & 0xffff);
+    }
+  write_png(halves, path);
+}
+
+void read_exact_depth_file(const std::filesystem::path& path, DepthImage& depth_m) {
+  const cv::Mat halves = decode_16_bit_png(path);
+  depth_m.resize(halves.cols, halves.rows / 2);
+  for (int y = 0; y < depth_m.height; ++y)
+    for (int x = 0; x < depth_m.width; ++x)
+      depth_m.at(x, y) =
+          std::bit_cast<float>(static_cast<std::uint32_t>(halves.at<std::uint16_t>(y, x)) << 16 |
+                               halves.at<std::uint16_t>(y + depth_m.height, x));
+}
+
+}  // namespace roomradar

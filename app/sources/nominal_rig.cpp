@@ -1,0 +1,104 @@
+// nominal_rig.cpp: published and measured figures of Kinects, and which source of intrinsics goes first.
+#include "app/sources/nominal_rig.hpp"
+
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+/// x right of the depth camera is where the Kinect's colour camera stands, 2.5 cm aside, towards the
+/// projector.
+Eigen::Isometry3d rigid(double rx_rad, double ry_rad, double rz_rad, const Eigen::Vector3d& t_m) {
+  const Eigen::Vector3d r(rx_rad, ry_rad, rz_rad);
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  if (r.norm() > 0) T.linear() = Eigen::AngleAxisd(r.norm(), r.normalized()).toRotationMatrix();
+  T.translation() = t_m;
+  return T;
+}
+
+CameraRig figures(NominalRig kind) {
+  switch (kind) {
+    case NominalRig::kSevenScenes:
+      return {{640, 480, 585.0, 585.0, 320.0, 240.0},
+              Intrinsics{640, 480, 527.0, 527.0, 320.0, 240.0},
+              rigid(0.0043, 0.0007, 0.0089, {-0.0248, 0.0006, 0.0})};
+    case NominalRig::kTum:
+      // "ROS default" of the benchmark's page, which it recommends where colour and depth are registered by
+      // the driver.
+      return {{640, 480, 525.0, 525.0, 319.5, 239.5}, Intrinsics{640, 480, 525.0, 525.0, 319.5, 239.5}, {}};
+    case NominalRig::kAligned:
+      return {{640, 480, 460.0, 460.0, 319.5, 239.5}, Intrinsics{640, 480, 460.0, 460.0, 319.5, 239.5}, {}};
+    case NominalRig::kKinect:
+      // Nicolas Burrus, "Kinect Calibration", 2011: intrinsics of both cameras of one Kinect, and 1.9985e-2,
+      // -7.44e-4, -1.0917e-2 m between them. The shift along the axis is taken for noise and left out, the
+      // baseline is the device's 2.5 cm, and so is the rotation.
+      return {{640, 480, 594.21, 591.04, 339.5, 242.7},
+              Intrinsics{640, 480, 529.2, 525.6, 328.9, 267.5},
+              rigid(0, 0, 0, {-0.025, 0.0, 0.0})};
+  }
+  throw Error("nominal_rig: no such kind of recording");
+}
+
+Intrinsics fitted(const Intrinsics& camera, ImageSize size) {
+  const double factor = static_cast<double>(size.width_px) / camera.width_px;
+  Intrinsics result = scaled(camera, factor);
+  result.cy_px += (size.height_px - camera.height_px * factor) / 2;
+  result.width_px = size.width_px;
+  result.height_px = size.height_px;
+  return result;
+}
+
+std::string text_of(ImageSize size) {
+  return std::to_string(size.width_px) + " x " + std::to_string(size.height_px);
+}
+
+void require_fit(const Intrinsics& camera, ImageSize images, const char* which, const std::string& where) {
+  const ImageSize size{camera.width_px, camera.height_px};
+  if (size == images) return;
+  throw Error(where + ": the " + which + " camera's intrinsics are for images of " + text_of(size) +
+              ", but the recording's are " + text_of(images) + "; give intrinsics for " + text_of(images));
+}
+
+}  // namespace
+
+CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour) {
+  CameraRig rig = figures(kind);
+  rig.depth_camera = fitted(rig.depth_camera, depth);
+  if (colour)
+    rig.colour_camera = fitted(*rig.colour_camera, *colour);
+  else
+    rig.colour_camera.reset();
+  return rig;
+}
+
+CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
+                           const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
+                           std::optional<ImageSize> colour) {
+  const auto camera_file = folder / "camera.json";
+  const auto matrix_file = folder / "camera-intrinsics.txt";
+  const bool has_camera_file = !folder.empty() && std::filesystem::exists(camera_file);
+
+  CameraRig rig = has_camera_file ? read_camera_file(camera_file) : nominal_rig(kind, depth, colour);
+  if (has_camera_file) require_fit(rig.depth_camera, depth, "depth", camera_file.string());
+  if (chosen_depth) {
+    require_valid(*chosen_depth, "the depth intrinsics that were given");
+    require_fit(*chosen_depth, depth, "depth", folder.string());
+    rig.depth_camera = *chosen_depth;
+  } else if (!has_camera_file && !folder.empty() && std::filesystem::exists(matrix_file)) {
+    rig.depth_camera = read_intrinsics_matrix(matrix_file, depth.width_px, depth.height_px);
+  }
+
+  if (!colour) {
+    rig.colour_camera.reset();
+    return rig;
+  }
+  const bool is_registered =
+      has_camera_file ? !rig.colour_camera : kind == NominalRig::kTum || kind == NominalRig::kAligned;
+  if (is_registered) rig.colour_camera = fitted(rig.depth_camera, *colour);
+  require_fit(*rig.colour_camera, *colour, "colour", camera_file.string());
+  return rig;
+}
+
+}  // namespace roomradar

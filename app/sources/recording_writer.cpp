@@ -1,0 +1,207 @@
+// recording_writer.cpp: frames as files, one small function a format.
+#include "app/sources/recording_writer.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "app/sources/image_file.hpp"
+#include "app/sources/kinect_units.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kStandardGravity_m_s2 = 9.80665;
+
+template <typename... Values>
+std::string formatted(const char* format, Values... values) {
+  std::array<char, 512> text{};
+  std::snprintf(text.data(), text.size(), format, values...);
+  return text.data();
+}
+
+std::string fixed_6(double value) { return formatted("%.6f", value); }
+
+void make_folder(const fs::path& folder) {
+  std::error_code fault;
+  fs::create_directories(folder, fault);
+  if (fault) throw Error(folder.string() + ": cannot be made: " + fault.message());
+}
+
+/// Opens the list if that has not been done, and adds a line.
+void add_line(std::ofstream& list, const fs::path& path, const std::string& line, const char* heading = "") {
+  if (!list.is_open()) {
+    list.open(path);
+    list << heading;
+  }
+  list << line << '\n';
+  if (!list) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
+}
+
+bool same_cameras(const CameraRig& a, const CameraRig& b) {
+  return a.depth_camera == b.depth_camera && a.colour_camera == b.colour_camera &&
+         a.T_colour_depth.isApprox(b.T_colour_depth, 1e-9);
+}
+
+template <typename Pixel>
+void require_size(const Image<Pixel>& image, const Intrinsics& camera, const std::string& where) {
+  if (image.width != camera.width_px || image.height != camera.height_px)
+    throw Error(where + " image is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                ", but its camera's intrinsics are for " + std::to_string(camera.width_px) + " x " +
+                std::to_string(camera.height_px));
+}
+
+}  // namespace
+
+RecordingFormat parse_recording_format(std::string_view text) {
+  for (const auto format : {RecordingFormat::kTum, RecordingFormat::kSevenScenes, RecordingFormat::kFakenect})
+    if (text == to_string(format)) return format;
+  throw Error("format '" + std::string(text) + "': must be tum, 7scenes or fakenect");
+}
+
+std::string_view to_string(RecordingFormat format) {
+  switch (format) {
+    case RecordingFormat::kTum:
+      return "tum";
+    case RecordingFormat::kSevenScenes:
+      return "7scenes";
+    case RecordingFormat::kFakenect:
+      return "fakenect";
+  }
+  return "unknown";
+}
+
+RecordingWriter::RecordingWriter(fs::path folder, RecordingFormat format)
+    : folder_(std::move(folder)), format_(format) {
+  make_folder(folder_);
+  std::error_code fault;
+  if (!fs::is_empty(folder_, fault))
+    throw Error(folder_.string() +
+                ": is not empty; a recording is written to a folder of its own, name a new one");
+  if (format_ != RecordingFormat::kTum) return;
+  make_folder(folder_ / "depth");
+}
+
+void RecordingWriter::write(const Frame& frame) {
+  const std::string where = folder_.string() + ": frame " + std::to_string(frame.index) + "'s ";
+  require_size(frame.depth_m, frame.depth_camera, where + "depth");
+  if (!frame.colour.empty()) require_size(frame.colour, frame.colour_camera, where + "colour");
+  if (frames_written_ > 0 && !(frame.stamp_s > last_stamp_s_))
+    throw Error(where + "stamp " + fixed_6(frame.stamp_s) + " s is not later than the one before, " +
+                fixed_6(last_stamp_s_) + " s");
+
+  CameraRig rig{frame.depth_camera, {}, frame.T_colour_depth};
+  if (frame.colour_camera.width_px > 0) rig.colour_camera = frame.colour_camera;
+  if (!rig_) {
+    rig_ = rig;
+    write_camera_file(rig, folder_ / "camera.json");
+  } else if (!same_cameras(rig, *rig_)) {
+    throw Error(where + "cameras are not those of the first frame; a recording has one camera.json for all");
+  }
+
+  switch (format_) {
+    case RecordingFormat::kTum:
+      write_tum(frame);
+      break;
+    case RecordingFormat::kSevenScenes:
+      write_seven_scenes(frame);
+      break;
+    case RecordingFormat::kFakenect:
+      write_fakenect(frame);
+      break;
+  }
+  last_stamp_s_ = frame.stamp_s;
+  ++frames_written_;
+}
+
+void RecordingWriter::write_tum(const Frame& frame) {
+  const std::string stamp = fixed_6(frame.stamp_s);
+  const std::string depth_file = "depth/" + stamp + ".png";
+  write_depth_file(frame.depth_m, DepthEncoding::kTum, folder_ / depth_file);
+  add_line(depth_list_, folder_ / "depth.txt", stamp + " " + depth_file, "# stamp_s file\n");
+  if (!frame.colour.empty()) {
+    const std::string colour_file = "rgb/" + stamp + ".png";
+    if (!colour_list_.is_open()) make_folder(folder_ / "rgb");
+    write_colour_file(frame.colour, folder_ / colour_file);
+    add_line(colour_list_, folder_ / "rgb.txt", stamp + " " + colour_file, "# stamp_s file\n");
+  }
+  if (frame.T_world_camera) {
+    const Eigen::Vector3d t = frame.T_world_camera->translation();
+    const Eigen::Quaterniond q(frame.T_world_camera->linear());
+    add_line(pose_list_, folder_ / "groundtruth.txt",
+             stamp + formatted(" %.12g %.12g %.12g %.12g %.12g %.12g %.12g", t.x(), t.y(), t.z(), q.x(),
+                               q.y(), q.z(), q.w()),
+             "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n");
+  }
+  if (frame.down_camera) {
+    const Eigen::Vector3d a = acceleration_at_rest_g(*frame.down_camera) * kStandardGravity_m_s2;
+    add_line(gravity_list_, folder_ / "accelerometer.txt",
+             stamp + formatted(" %.9g %.9g %.9g", a.x(), a.y(), a.z()),
+             "# stamp_s ax ay az: m/s^2; x left, y up, z forward\n");
+  }
+}
+
+void RecordingWriter::write_seven_scenes(const Frame& frame) {
+  const fs::path stem = folder_ / formatted("frame-%06lld", static_cast<long long>(frames_written_));
+  write_depth_file(frame.depth_m, DepthEncoding::kMillimetres, stem.string() + ".depth.png");
+  if (!frame.colour.empty()) write_colour_file(frame.colour, stem.string() + ".color.png");
+  const fs::path pose_file = stem.string() + ".pose.txt";
+  std::ofstream pose(pose_file);
+  const Eigen::Matrix4d matrix =
+      frame.T_world_camera ? frame.T_world_camera->matrix() : Eigen::Matrix4d::Constant(std::nan(""));
+  for (int row = 0; row < 4; ++row)
+    pose << formatted("%.12g\t%.12g\t%.12g\t%.12g\n", matrix(row, 0), matrix(row, 1), matrix(row, 2),
+                      matrix(row, 3));
+  pose.close();
+  if (!pose)
+    throw Error(pose_file.string() + ": cannot be written; is the disk full, or the folder read-only?");
+}
+
+void RecordingWriter::write_fakenect(const Frame& frame) {
+  if (frame.depth_m.width != 640 || frame.depth_m.height != 480 ||
+      (!frame.colour.empty() && (frame.colour.width != 640 || frame.colour.height != 480)))
+    throw Error(folder_.string() +
+                ": fakenect replays images of 640 x 480 only; choose the format tum or 7scenes");
+  const fs::path index_file = folder_ / "INDEX.txt";
+  const auto total_ticks = static_cast<std::int64_t>(std::llround(frame.stamp_s * kKinectTicksPerSecond));
+  const std::string stamps =
+      fixed_6(frame.stamp_s) + "-" + std::to_string(static_cast<std::uint32_t>(total_ticks));
+
+  // Gravity first: the reader gives a depth image the latest before it.
+  if (frame.down_camera) {
+    const Eigen::Vector3d counts = acceleration_at_rest_g(*frame.down_camera) * kKinectCountsPerG;
+    const std::array<std::int16_t, 6> tilt_state = {static_cast<std::int16_t>(std::lround(counts.x())),
+                                                    static_cast<std::int16_t>(std::lround(counts.y())),
+                                                    static_cast<std::int16_t>(std::lround(counts.z()))};
+    const fs::path file = folder_ / ("a-" + stamps + ".dump");
+    std::ofstream dump(file, std::ios::binary);
+    dump.write(reinterpret_cast<const char*>(tilt_state.data()), sizeof tilt_state);
+    dump.close();
+    if (!dump) throw Error(file.string() + ": cannot be written; is the disk full, or the folder read-only?");
+    add_line(depth_list_, index_file, file.filename().string());
+  }
+  write_depth_file(frame.depth_m, DepthEncoding::kKinectRaw, folder_ / ("d-" + stamps + ".pgm"));
+  add_line(depth_list_, index_file, "d-" + stamps + ".pgm");
+  if (!frame.colour.empty()) {
+    write_colour_file(frame.colour, folder_ / ("r-" + stamps + ".ppm"));
+    add_line(depth_list_, index_file, "r-" + stamps + ".ppm");
+  }
+}
+
+void RecordingWriter::close() {
+  for (std::ofstream* list : {&depth_list_, &colour_list_, &pose_list_, &gravity_list_}) {
+    if (!list->is_open()) continue;
+    list->close();
+    if (!*list)
+      throw Error(folder_.string() + ": the lists cannot be written to their end; is the disk full?");
+  }
+}
+
+}  // namespace roomradar

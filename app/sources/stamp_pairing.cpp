@@ -1,0 +1,47 @@
+// stamp_pairing.cpp: nearest in time, each image once, decided as early as it is certain.
+#include "app/sources/stamp_pairing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roomradar {
+
+void StampPairing::add_depth(std::int64_t depth, double stamp_s) { waiting_.push_back({depth, stamp_s}); }
+
+void StampPairing::add_colour(std::int64_t colour, double stamp_s) {
+  colours_.push_back({colour, stamp_s});
+  if (colours_.size() > kColoursKept) colours_.pop_front();
+}
+
+std::optional<DepthColourPair> StampPairing::take() {
+  if (waiting_.empty()) return std::nullopt;
+  const Stamped depth = waiting_.front();
+  DepthColourPair pair{.depth = depth.number};
+  // Also true of a stamp that is not a number.
+  pair.stamp_goes_back = last_depth_s_ ? !(depth.stamp_s > *last_depth_s_) : !std::isfinite(depth.stamp_s);
+  if (pair.stamp_goes_back) {
+    waiting_.pop_front();
+    return pair;
+  }
+
+  const auto distance_s = [&](const Stamped& colour) { return std::abs(colour.stamp_s - depth.stamp_s); };
+  const auto nearest =
+      std::min_element(colours_.begin(), colours_.end(),
+                       [&](const Stamped& a, const Stamped& b) { return distance_s(a) < distance_s(b); });
+  const bool certain = finished_ || waiting_.size() > 1 ||
+                       (nearest != colours_.end() && distance_s(*nearest) <= config_.unbeatable_s) ||
+                       std::any_of(colours_.begin(), colours_.end(),
+                                   [&](const Stamped& colour) { return colour.stamp_s >= depth.stamp_s; });
+  if (!certain) return std::nullopt;
+
+  waiting_.pop_front();
+  last_depth_s_ = depth.stamp_s;
+  if (nearest != colours_.end() && distance_s(*nearest) <= config_.tolerance_s) {
+    pair.colour = nearest->number;
+    colours_.erase(nearest);
+  }
+  std::erase_if(colours_, [&](const Stamped& colour) { return colour.stamp_s <= depth.stamp_s; });
+  return pair;
+}
+
+}  // namespace roomradar
