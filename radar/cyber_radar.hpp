@@ -8,6 +8,7 @@
 #include "radar/contact.hpp"
 #include "radar/gl_context.hpp"
 #include "radar/gpu_mesh.hpp"
+#include "radar/radar_volume.hpp"
 
 namespace roomradar {
 
@@ -23,22 +24,6 @@ void require_valid(const RadarConfig& config);
 struct SceneMesh {
   MeshInstance instance;
   Touched kind = Touched::kStatic;
-};
-
-/// Where the images of one query stand: pixel (i, j) is centred at
-/// origin_world + (i + 0.5) * pixel_m * x_world + (j + 0.5) * pixel_m * y_world, and depth runs along
-/// u_world.
-struct RadarVolume {
-  Eigen::Vector3d origin_world =
-      Eigen::Vector3d::Zero();  ///< corner of the rear plane, just behind the object
-  Eigen::Vector3d x_world = Eigen::Vector3d::UnitX();
-  Eigen::Vector3d y_world = Eigen::Vector3d::UnitY();
-  Eigen::Vector3d u_world = Eigen::Vector3d::UnitZ();  ///< unit, the direction of motion; x cross y = u
-  double pixel_m = 0.0;
-  double depth_m =
-      0.0;  ///< d: the object's length along u plus the distance asked for, plus a pad at both ends
-  int width_px = 0;
-  int height_px = 0;
 };
 
 /// Cyber Radar: an object that moves along a line touches first where the scene is nearest ahead of its
@@ -76,33 +61,46 @@ class CyberRadar {
   ///
   /// @param object           the sensor object; must not be in `scene`
   /// @param direction_world  any length but 0
-  /// @param distance_m       how far ahead to look, > 0
+  /// @param distance_m       how far ahead to look, > 0, at most 10 km; the depth step is 6e-8 of d
   /// @param scene            what can be touched; instances with a null or empty mesh are left out
-  /// @return see Contact. L within 10 um + 1e-6 d of zero counts as touching: kContact with travel 0.
+  /// @return see Contact. L within 10 um + 1e-6 d of zero counts as touching: kContact with travel 0. Where
+  /// several pixels
+  ///         are equally near (a face that lands flat) the point is the pixel nearest to their middle.
   /// Never throws; allocates nothing after the first queries of a size.
   Contact query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
                 std::span<const SceneMesh> scene);
 
   /// The last query's volume and images, row by row, of volume().width_px x height_px.
-  /// R, M: metres, volume().depth_m where there is nothing. L: metres, NaN where undefined.
+  /// R, M: metres, volume().depth_m where there is nothing. L: metres, NaN where undefined. R is seen through
+  /// the object's outline and past what lies behind its front. Where nothing of the scene reaches the volume,
+  /// nothing is drawn and both hold depth_m. After kInvalidInput all are empty.
   [[nodiscard]] const RadarVolume& volume() const { return volume_; }
   [[nodiscard]] const Image<float>& range_m() const { return range_m_; }
   [[nodiscard]] const Image<float>& mask_m() const { return mask_m_; }
   [[nodiscard]] const Image<float>& lookat_m() const { return lookat_m_; }
 
  private:
-  struct Gl;
+  enum Layer : std::size_t { kMask, kRange, kEntry, kLayerCount };
+
   RadarConfig config_;
   RadarVolume volume_;
   Image<float> range_m_;
   Image<float> mask_m_;
   Image<float> lookat_m_;
-  unsigned depth_only_program_ = 0;
+  unsigned mask_program_ = 0;
   unsigned range_program_ = 0;
   unsigned entry_program_ = 0;
-  std::array<unsigned, 3> textures_{};      // M, R, entry layer
-  std::array<unsigned, 3> framebuffers_{};  // of the textures
+  std::array<unsigned, kLayerCount> textures_{};
+  std::array<unsigned, kLayerCount> framebuffers_{};  // one a texture
   unsigned readback_buffer_ = 0;
+
+  [[nodiscard]] double touching_m() const;
+  void begin_layer(Layer layer, unsigned program) const;
+  void draw_mask(const MeshInstance& object) const;
+  void draw_entry(const MeshInstance& object) const;
+  void draw_range(std::span<const SceneMesh> scene) const;
+  double read_and_compare();
+  [[nodiscard]] Contact contact_at_least_gap(double least_m, std::span<const SceneMesh> scene) const;
 };
 
 }  // namespace roomradar

@@ -4,8 +4,10 @@
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
+#include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "mapping/types/error.hpp"
 
@@ -142,6 +144,12 @@ std::size_t GpuMesh::draw(const Eigen::Matrix4d& clip_from_local) const {
   }
   draw_run();
   return drawn;
+}
+
+bool GpuMesh::reaches(const Eigen::Matrix4d& clip_from_local) const {
+  return std::any_of(chunked_.chunks.begin(), chunked_.chunks.end(), [&](const MeshChunk& chunk) {
+    return !is_outside(chunk.bounds_local, clip_from_local);
+  });
 }
 
 Eigen::AlignedBox3d GpuMesh::bounds() const {

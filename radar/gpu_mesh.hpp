@@ -46,6 +46,9 @@ class GpuMesh {
   /// @return number of triangles handed to the renderer
   std::size_t draw(const Eigen::Matrix4d& clip_from_local) const;
 
+  /// Whether draw() would draw anything.
+  [[nodiscard]] bool reaches(const Eigen::Matrix4d& clip_from_local) const;
+
   [[nodiscard]] std::size_t triangle_count() const { return chunked_.triangles.size(); }
   [[nodiscard]] std::size_t dropped_triangles() const { return chunked_.dropped_triangles; }
   [[nodiscard]] bool has_normals() const { return has_normals_; }

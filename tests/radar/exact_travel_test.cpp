@@ -1,0 +1,96 @@
+// exact_travel_test.cpp: the judge itself, on contacts that can be worked out by hand.
+#include "radar/exact_travel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "mapping/types/error.hpp"
+#include "tests/radar/shapes.hpp"
+
+namespace roomradar {
+namespace {
+
+const Eigen::Vector3d kDown(0, 0, -1);
+
+Eigen::Isometry3d at(double x, double y, double z) {
+  return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
+}
+
+TEST(ExactTravel, BoxAboveFloorTravelsItsClearance) {
+  const auto travel_m = exact_travel(shapes::box({0.2F, 0.2F, 0.2F}), at(0.3, 0.1, 1.0), kDown, 2.0,
+                                     shapes::floor(2.0F, 0.0F), at(0, 0, 0));
+  ASSERT_TRUE(travel_m);
+  EXPECT_NEAR(*travel_m, 0.9, 1e-8);  // float vertices of 0.1 are off by 1.5e-9
+}
+
+TEST(ExactTravel, EdgeMeetsEdge) {
+  // Two boxes on their edges, crossed: only edge against edge touches.
+  const Mesh box = shapes::box({1.0F, 0.2F, 0.2F});
+  Eigen::Isometry3d upper(Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitX()));
+  upper.pretranslate(Eigen::Vector3d(0, 0, 1));
+  Eigen::Isometry3d lower(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()) *
+                          Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitX()));
+  const auto travel_m = exact_travel(box, upper, kDown, 2.0, box, lower);
+  ASSERT_TRUE(travel_m);
+  EXPECT_NEAR(*travel_m, 1.0 - 0.2 * std::sqrt(2.0), 1e-7);
+}
+
+TEST(ExactTravel, CornerMeetsFaceAndFaceMeetsCorner) {
+  Mesh spike;  // a tetrahedron that points down to (0, 0, 0)
+  spike.vertices = {{0, 0, 0}, {0.1F, 0, 0.3F}, {-0.1F, 0.1F, 0.3F}, {-0.1F, -0.1F, 0.3F}};
+  spike.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}};
+  const Mesh floor = shapes::floor(1.0F, 0.0F);
+  const auto falling = exact_travel(spike, at(0.2, 0.1, 0.5), kDown, 2.0, floor, at(0, 0, 0));
+  ASSERT_TRUE(falling);
+  EXPECT_NEAR(*falling, 0.5, 1e-12);
+  const auto lifted = exact_travel(floor, at(0, 0, 0), -kDown, 2.0, spike, at(0.2, 0.1, 0.5));
+  ASSERT_TRUE(lifted);
+  EXPECT_NEAR(*lifted, 0.5, 1e-12);
+}
+
+TEST(ExactTravel, MissesAndReachesAreTold) {
+  const Mesh box = shapes::box({0.2F, 0.2F, 0.2F});
+  const Mesh floor = shapes::floor(1.0F, 0.0F);
+  EXPECT_FALSE(exact_travel(box, at(3, 0, 1), kDown, 5.0, floor, at(0, 0, 0)));   // beside it
+  EXPECT_FALSE(exact_travel(box, at(0, 0, 1), -kDown, 5.0, floor, at(0, 0, 0)));  // away from it
+  EXPECT_FALSE(exact_travel(box, at(0, 0, 1), kDown, 0.8, floor, at(0, 0, 0)));   // not that far
+  EXPECT_FALSE(exact_travel(box, at(0, 0, 1), kDown, 5.0, {}, at(0, 0, 0)));
+}
+
+TEST(ExactTravel, CrossingNowIsTravelZero) {
+  EXPECT_EQ(exact_travel(shapes::box({0.2F, 0.2F, 0.2F}), at(0, 0, 0.05), Eigen::Vector3d(0.3, 0.1, -1), 1.0,
+                         shapes::floor(1.0F, 0.0F), at(0, 0, 0)),
+            0.0);
+}
+
+TEST(ExactTravel, GridAndBruteForceAgree) {
+  std::mt19937 random(1);
+  const Mesh object = shapes::torus(14, 9, 0.2F, 0.07F, 0.02F);
+  const Mesh scene = shapes::torus(16, 10, 0.3F, 0.1F, 0.03F);
+  int contacts = 0;
+  for (int i = 0; i < 200; ++i) {
+    Eigen::Isometry3d T_world_object(shapes::random_rotation(random));
+    T_world_object.pretranslate(0.5 * shapes::random_point(random));
+    const Eigen::Isometry3d T_world_scene(shapes::random_rotation(random));
+    const Eigen::Vector3d direction = shapes::random_point(random);
+    const auto slow =
+        exact_travel(object, T_world_object, direction, 1.0, scene, T_world_scene, ExactMethod::kBruteForce);
+    const auto fast =
+        exact_travel(object, T_world_object, direction, 1.0, scene, T_world_scene, ExactMethod::kGrid);
+    EXPECT_EQ(slow, fast) << i;
+    contacts += slow ? 1 : 0;
+  }
+  EXPECT_GT(contacts, 50);
+}
+
+TEST(ExactTravel, BadArgumentsAreRefused) {
+  const Mesh box = shapes::box({1, 1, 1});
+  EXPECT_THROW((void)exact_travel(box, at(0, 0, 0), {0, 0, 0}, 1.0, box, at(0, 0, 0)), Error);
+  EXPECT_THROW(
+      (void)exact_travel(box, at(0, 0, 0), kDown, std::numeric_limits<double>::quiet_NaN(), box, at(0, 0, 0)),
+      Error);
+}
+
+}  // namespace
+}  // namespace roomradar
