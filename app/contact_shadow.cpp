@@ -91,16 +91,28 @@ float window(int i, int count) {
   return std::clamp(from_edge / 0.1F, 0.0F, 1.0F);
 }
 
-/// Sum of the patches' form factors at a level point (x, y) that is clearance_m below the bottom, in the form
-/// that stays below 1 close to a patch of finite area: cos^2 A / (pi d^2 + A).
-float covered_at(const std::vector<Patch>& patches, float x_m, float y_m, float clearance_m, float area_m2) {
+/// Form factor of a small level piece of the underside, as a level point below sees it.
+float form_factor(float dx_m, float dy_m, float h_m, float area_m2) {
+  const float d2 = dx_m * dx_m + dy_m * dy_m + h_m * h_m;
+  return h_m * h_m * area_m2 / (std::numbers::pi_v<float> * d2 * d2);
+}
+
+/// Sum of the patches' form factors at a level point (x, y) that is clearance_m below the bottom. A patch
+/// that is near against its size is taken in nine pieces.
+float covered_at(const std::vector<Patch>& patches, float x_m, float y_m, float clearance_m, float cell_m) {
+  const float area_m2 = cell_m * cell_m;
+  const float third_m = cell_m / 3.0F;
   float sum = 0.0F;
   for (const Patch& patch : patches) {
     const float dx = patch.x_m - x_m;
     const float dy = patch.y_m - y_m;
     const float h = patch.height_m + clearance_m;
-    const float d2 = dx * dx + dy * dy + h * h;
-    sum += h * h * area_m2 / (d2 * (std::numbers::pi_v<float> * d2 + area_m2));
+    if (dx * dx + dy * dy + h * h > 9.0F * area_m2) {
+      sum += form_factor(dx, dy, h, area_m2);
+      continue;
+    }
+    for (const float v : {-third_m, 0.0F, third_m})
+      for (const float u : {-third_m, 0.0F, third_m}) sum += form_factor(dx + u, dy + v, h, area_m2 / 9.0F);
   }
   return std::min(sum, 1.0F);
 }
@@ -138,8 +150,8 @@ ContactShadow make_contact_shadow(const Mesh& mesh, const Eigen::Matrix3d& R_wor
     if (is_usable(triangle)) underside.add(placed(triangle[0]), placed(triangle[1]), placed(triangle[2]));
   const std::vector<Patch> patches = underside.patches(shadow.bottom_m);
 
-  const float area_m2 = static_cast<float>(shadow.cell_m * shadow.cell_m);
-  const float least_clearance_m = static_cast<float>(0.3 * shadow.cell_m);
+  const float cell_m = static_cast<float>(shadow.cell_m);
+  const float least_clearance_m = 0.4F * cell_m;  // nearer, the pieces of a patch would be told apart
   for (const double level : kLevels) {
     shadow.clearances_m.push_back(level * shadow.extent_m);
     const float clearance_m = std::max(static_cast<float>(shadow.clearances_m.back()), least_clearance_m);
@@ -147,9 +159,9 @@ ContactShadow make_contact_shadow(const Mesh& mesh, const Eigen::Matrix3d& R_wor
     for (int j = 0; j < shadow.rows; ++j) {
       for (int i = 0; i < shadow.columns; ++i) {
         const float edge = window(i, shadow.columns) * window(j, shadow.rows) * fade;
-        const float x_m = static_cast<float>(i * shadow.cell_m);
-        const float y_m = static_cast<float>(j * shadow.cell_m);
-        shadow.covered.push_back(edge > 0.0F ? edge * covered_at(patches, x_m, y_m, clearance_m, area_m2)
+        const float x_m = static_cast<float>(i) * cell_m;
+        const float y_m = static_cast<float>(j) * cell_m;
+        shadow.covered.push_back(edge > 0.0F ? edge * covered_at(patches, x_m, y_m, clearance_m, cell_m)
                                              : 0.0F);
       }
     }

@@ -1,0 +1,284 @@
+// compose_test.cpp: occlusion, edges and shadows on scenes whose picture is known; and what the drawer hands
+// over.
+#include "app/compose.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "app/draw.hpp"
+#include "mapping/types/error.hpp"
+#include "radar/depth_pass.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr Rgb kGrey{100, 100, 100};
+constexpr Rgb kRed{200, 0, 0};
+const Intrinsics kCamera{64, 48, 60.0, 60.0, 31.5, 23.5};
+
+/// A layer of one colour at one depth over a rectangle.
+ObjectLayer flat_layer(const PixelRect& rect, float depth_m, int samples = 2) {
+  ObjectLayer layer;
+  layer.rect = rect;
+  layer.samples = samples;
+  layer.colour.resize(rect.width * samples, rect.height * samples, kRed);
+  layer.depth_m.resize(rect.width * samples, rect.height * samples, depth_m);
+  return layer;
+}
+
+ColourImage composed(const DepthImage& real_depth_m, const ObjectLayer& layer,
+                     const ComposeConfig& config = {}) {
+  ColourImage picture;
+  compose(ColourImage(kCamera.width_px, kCamera.height_px, kGrey), kCamera, Eigen::Isometry3d::Identity(),
+          real_depth_m, {}, layer, config, picture);
+  return picture;
+}
+
+/// A square plate of side 2 * half_m at height z_m, facing down and up.
+Mesh plate(float half_m, float z_m) {
+  Mesh mesh;
+  mesh.vertices = {
+      {-half_m, -half_m, z_m}, {half_m, -half_m, z_m}, {half_m, half_m, z_m}, {-half_m, half_m, z_m}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+TEST(Compose, ShowsTheObjectInFrontOfTheRoomAndHidesItBehind) {
+  DepthImage real_depth_m(64, 48, 2.0F);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 32; ++x) real_depth_m.at(x, y) = 0.5F;  // a hand over the left half
+  const ColourImage picture = composed(real_depth_m, flat_layer({10, 10, 40, 20}, 1.0F));
+  EXPECT_EQ(picture.at(5, 5), kGrey);
+  EXPECT_EQ(picture.at(15, 15), kGrey);  // behind the hand
+  EXPECT_EQ(picture.at(40, 15), kRed);   // in front of the wall
+  EXPECT_EQ(picture.at(49, 29), kRed);   // the rectangle's last pixel
+  EXPECT_EQ(picture.at(50, 29), kGrey);
+  // The hand's edge is soft over one pixel to each side, and falls off steadily.
+  EXPECT_LT(picture.at(31, 15).r, picture.at(32, 15).r);
+  EXPECT_EQ(picture.at(30, 15), kGrey);
+  EXPECT_EQ(picture.at(33, 15), kRed);
+}
+
+TEST(Compose, AnObjectOnASurfaceDoesNotFlickerWithItsNoise) {
+  DepthImage real_depth_m(64, 48, 1.0F);
+  for (std::size_t i = 0; i < real_depth_m.pixels.size(); ++i)
+    real_depth_m.pixels[i] += (i % 2 == 0 ? 0.006F : -0.006F);
+  const ColourImage picture = composed(real_depth_m, flat_layer({10, 10, 10, 10}, 1.0F));
+  for (int y = 10; y < 20; ++y)
+    for (int x = 10; x < 20; ++x) EXPECT_EQ(picture.at(x, y), kRed);
+}
+
+TEST(Compose, NothingKnownHidesNothing) {
+  const ColourImage picture = composed(DepthImage(64, 48, 0.0F), flat_layer({0, 0, 64, 48}, 3.0F));
+  EXPECT_EQ(picture.pixels, ColourImage(64, 48, kRed).pixels);
+}
+
+TEST(Compose, HalfCoveredPixelsAreHalfMixed) {
+  ObjectLayer layer = flat_layer({10, 10, 1, 1}, 1.0F);
+  layer.depth_m.at(0, 0) = layer.depth_m.at(0, 1) = 0.0F;
+  const ColourImage picture = composed(DepthImage(64, 48, 2.0F), layer);
+  EXPECT_EQ(picture.at(10, 10), (Rgb{150, 50, 50}));
+  ObjectLayer coarse = flat_layer({10, 10, 1, 1}, 1.0F, 1);
+  EXPECT_EQ(composed(DepthImage(64, 48, 2.0F), coarse).at(10, 10), kRed);
+}
+
+TEST(Compose, AnEmptyLayerLeavesThePicture) {
+  const ColourImage picture = composed(DepthImage(64, 48, 2.0F), ObjectLayer{});
+  EXPECT_EQ(picture.pixels, ColourImage(64, 48, kGrey).pixels);
+}
+
+TEST(Compose, RefusesSizesThatDisagree) {
+  EXPECT_THROW((void)composed(DepthImage(63, 48, 1.0F), ObjectLayer{}), Error);
+  EXPECT_THROW((void)composed(DepthImage(64, 48, 1.0F), flat_layer({60, 10, 10, 10}, 1.0F)), Error);
+  ObjectLayer cut = flat_layer({10, 10, 10, 10}, 1.0F);
+  cut.colour.resize(19, 20);
+  EXPECT_THROW((void)composed(DepthImage(64, 48, 1.0F), cut), Error);
+}
+
+TEST(Compose, NamesTheFieldThatIsWrong) {
+  EXPECT_NO_THROW(require_valid(ComposeConfig{}));
+  ComposeConfig config;
+  config.shadow_strength = 2.0F;
+  try {
+    require_valid(config);
+    FAIL() << "a strength of 2 was taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("compose.shadow_strength"), std::string::npos);
+  }
+  config = {};
+  config.occlusion_softness_m = 0.0F;
+  EXPECT_THROW(require_valid(config), Error);
+}
+
+TEST(ContactShadow, AgreesWithTheFormFactorOfASquarePlate) {
+  const float half_m = 0.1F;
+  const ContactShadow shadow = make_contact_shadow(plate(half_m, 0.0F), Eigen::Matrix3d::Identity());
+  // A point under a corner of a rectangle: 1/(2 pi) (A/sqrt(1+A^2) atan(B/sqrt(1+A^2)) + B/... ), four times
+  // under the middle. Howell's catalogue of configuration factors, B-3.
+  for (const double below_m : {0.02, 0.05, 0.1, 0.14}) {
+    const double a = half_m / below_m;
+    const double root = std::sqrt(1.0 + a * a);
+    const double exact = 4.0 / (2.0 * M_PI) * 2.0 * a / root * std::atan(a / root);
+    const float taken = sky_taken(shadow, Eigen::Vector3f(0, 0, static_cast<float>(-below_m)));
+    EXPECT_NEAR(taken, exact, 0.03) << below_m;
+  }
+}
+
+TEST(ContactShadow, IsDarkestInContactAndFadesSidewaysAndDownwards) {
+  const ContactShadow shadow = make_contact_shadow(plate(0.1F, 0.05F), Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(shadow.bottom_m, 0.05, 1e-6);
+  float before = 2.0F;
+  for (float below_m = 0.0F; below_m < 0.25F; below_m += 0.01F) {
+    const float taken = sky_taken(shadow, {0, 0, 0.05F - below_m});
+    EXPECT_LE(taken, before + 1e-4F);
+    before = taken;
+  }
+  EXPECT_GT(sky_taken(shadow, {0, 0, 0.05F}), 0.9F);
+  EXPECT_LT(before, 0.01F);
+  before = 2.0F;
+  for (float x_m = 0.0F; x_m < 0.4F; x_m += 0.01F) {
+    const float taken = sky_taken(shadow, {x_m, 0, 0.03F});
+    EXPECT_LE(taken, before + 1e-4F);
+    before = taken;
+  }
+  EXPECT_EQ(before, 0.0F);
+  EXPECT_EQ(sky_taken(shadow, {0, 0, 0.10F}), 0.0F);  // above its bottom
+  EXPECT_EQ(sky_taken(shadow, {0, 0, -5.0F}), 0.0F);
+}
+
+TEST(ContactShadow, NothingCastsNone) {
+  EXPECT_EQ(sky_taken(make_contact_shadow(Mesh{}, Eigen::Matrix3d::Identity()), {0, 0, 0}), 0.0F);
+  Mesh broken = plate(0.1F, 0.0F);
+  broken.vertices[0].x() = std::nanf("");
+  broken.triangles[1][2] = 99;
+  EXPECT_EQ(sky_taken(make_contact_shadow(broken, Eigen::Matrix3d::Identity()), {0, 0, -0.01F}), 0.0F);
+  EXPECT_EQ(sky_taken(ContactShadow{}, {0, 0, 0}), 0.0F);
+}
+
+TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
+  // The camera looks straight down from 1 m above a table at z = 0.
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  T_world_camera.translation().z() = 1.0;
+  const ContactShadow shadow = make_contact_shadow(plate(0.1F, 0.0F), Eigen::Matrix3d::Identity());
+  ShadowCaster caster{&shadow, Eigen::Isometry3d::Identity()};
+  caster.T_world_object.translation() = Eigen::Vector3d(0.2, 0.1, 0.03);
+  const DepthImage table_m(64, 48, 1.0F);
+  ColourImage picture;
+  compose(ColourImage(64, 48, kGrey), kCamera, T_world_camera, table_m, {&caster, 1}, {}, {}, picture);
+  const int x = static_cast<int>(std::lround(60.0 * 0.2 + 31.5));
+  const int y = static_cast<int>(std::lround(60.0 * -0.1 + 23.5));  // world y is up in the picture
+  EXPECT_LT(picture.at(x, y).r, 60);
+  EXPECT_EQ(picture.at(3, 24), kGrey);
+  const PixelRect rect = pixels_to_compose({&caster, 1}, kCamera, T_world_camera, {});
+  for (int v = 0; v < 48; ++v) {
+    for (int u = 0; u < 64; ++u) {
+      const bool is_inside =
+          u >= rect.x && u < rect.x + rect.width && v >= rect.y && v < rect.y + rect.height;
+      if (!is_inside) {
+        EXPECT_EQ(picture.at(u, v), kGrey);
+      }
+    }
+  }
+  compose(ColourImage(64, 48, kGrey), kCamera, T_world_camera, DepthImage(64, 48), {&caster, 1}, {}, {},
+          picture);
+  EXPECT_EQ(picture.pixels, ColourImage(64, 48, kGrey).pixels);  // no surface, no shadow
+}
+
+TEST(ShadeDepth, IsBrighterWhereTheSurfaceFacesTheCamera) {
+  DepthImage depth_m(64, 48, 1.0F);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 32; x < 64; ++x)
+      depth_m.at(x, y) = 1.0F + 0.02F * static_cast<float>(x - 32);  // turned away
+  depth_m.at(5, 5) = 0.0F;
+  ColourImage picture;
+  shade_depth(depth_m, kCamera, picture);
+  EXPECT_GT(picture.at(20, 24).r, picture.at(45, 24).r + 30);
+  EXPECT_LT(picture.at(5, 5).r, 40);
+  shade_depth(DepthImage{}, kCamera, picture);
+  EXPECT_TRUE(picture.empty());
+}
+
+class Drawer : public ::testing::Test {
+ protected:
+  GlContext context_{RendererChoice::kSoftware};
+  ObjectDrawer drawer_{context_};
+  GpuMesh mesh_{context_};
+  DrawnObject object_{{&mesh_, Eigen::Isometry3d::Identity()}};
+};
+
+TEST_F(Drawer, DepthAgreesWithTheDepthPassAndTheRectangleHoldsTheObject) {
+  Mesh mesh = plate(0.2F, 0.0F);
+  mesh.vertices[1].z() = 0.1F;
+  mesh_.upload(mesh, MeshUsage::kStatic);
+  object_.instance.T_world_mesh.translation() = Eigen::Vector3d(0.1, -0.05, 1.2);
+  ObjectLayer layer;
+  drawer_.draw({&object_, 1}, kCamera, Eigen::Isometry3d::Identity(), {}, layer);
+  ASSERT_EQ(layer.samples, 2);
+  DepthImage expected_m;
+  DepthPass pass(context_);
+  (void)pass.render({&object_.instance, 1}, scaled(kCamera, 2), Eigen::Isometry3d::Identity(), expected_m);
+  int covered = 0;
+  for (int y = 0; y < expected_m.height; ++y) {
+    for (int x = 0; x < expected_m.width; ++x) {
+      const int i = x - layer.rect.x * 2;
+      const int j = y - layer.rect.y * 2;
+      const float drawn_m = layer.depth_m.contains(i, j) ? layer.depth_m.at(i, j) : 0.0F;
+      ASSERT_NEAR(drawn_m, expected_m.at(x, y), 1e-4F) << x << " " << y;
+      covered += drawn_m > 0.0F;
+    }
+  }
+  EXPECT_GT(covered, 300);
+}
+
+TEST_F(Drawer, UpperSidesAreBrighterThanLowerOnes) {
+  Mesh mesh = plate(0.3F, 0.0F);
+  mesh_.upload(mesh, MeshUsage::kStatic);
+  const auto green_seen_from = [&](double height_m) {
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    if (height_m > 0) T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // looks down
+    T_world_camera.translation().z() = height_m;
+    ObjectLayer layer;
+    drawer_.draw({&object_, 1}, kCamera, T_world_camera, {}, layer);
+    EXPECT_GT(layer.depth_m.at(layer.depth_m.width / 2, layer.depth_m.height / 2), 0.0F);
+    return layer.colour.at(layer.colour.width / 2, layer.colour.height / 2).g;
+  };
+  EXPECT_GT(green_seen_from(1.0), green_seen_from(-1.0) + 30);
+}
+
+TEST_F(Drawer, WhatIsOutOfViewDrawsNothing) {
+  mesh_.upload(plate(0.2F, 0.0F), MeshUsage::kStatic);
+  object_.instance.T_world_mesh.translation() = Eigen::Vector3d(0, 0, -1.0);
+  ObjectLayer layer;
+  drawer_.draw({&object_, 1}, kCamera, Eigen::Isometry3d::Identity(), {}, layer);
+  EXPECT_EQ(layer.rect.width * layer.rect.height, 0);
+  drawer_.draw({}, kCamera, Eigen::Isometry3d::Identity(), {}, layer);
+  EXPECT_EQ(layer.rect.width * layer.rect.height, 0);
+  const DrawnObject nothing;
+  drawer_.draw({&nothing, 1}, kCamera, Eigen::Isometry3d::Identity(), {}, layer);
+  EXPECT_EQ(layer.rect.width * layer.rect.height, 0);
+}
+
+TEST_F(Drawer, KeepsItsDigitsFarFromTheWorldsOrigin) {
+  mesh_.upload(plate(0.2F, 0.0F), MeshUsage::kStatic);
+  const Eigen::Vector3d far_away(1e6, -2e6, 3e5);
+  const auto layer_at = [&](const Eigen::Vector3d& where) {
+    Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+    T_world_camera.translation() = where;
+    object_.instance.T_world_mesh.translation() = where + Eigen::Vector3d(0.05, 0.02, 1.0);
+    ObjectLayer layer;
+    drawer_.draw({&object_, 1}, kCamera, T_world_camera, {}, layer);
+    return layer;
+  };
+  const ObjectLayer near = layer_at(Eigen::Vector3d::Zero());
+  const ObjectLayer far = layer_at(far_away);
+  ASSERT_EQ(near.rect, far.rect);
+  for (std::size_t i = 0; i < near.depth_m.pixels.size(); ++i)
+    ASSERT_NEAR(near.depth_m.pixels[i], far.depth_m.pixels[i], 1e-5F);
+  EXPECT_EQ(near.colour.pixels, far.colour.pixels);
+}
+
+}  // namespace
+}  // namespace roomradar

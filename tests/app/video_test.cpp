@@ -1,0 +1,188 @@
+// video_test.cpp: videos and pictures come back as they were written; a full disk is noticed.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+
+#include "app/picture_file.hpp"
+#include "app/video_writer.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+class InFolder : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  const std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("roomradar_video_test_" + std::to_string(::getpid()));
+};
+using Video = InFolder;
+using Picture = InFolder;
+
+/// A bright square on a blue ground that moves right by two pixels a frame.
+ColourImage square_at(int frame, int width_px, int height_px) {
+  ColourImage picture(width_px, height_px, Rgb{20, 40, 160});
+  for (int y = 20; y < 40; ++y)
+    for (int x = 10 + 2 * frame; x < 30 + 2 * frame; ++x)
+      if (picture.contains(x, y)) picture.at(x, y) = {240, 200, 30};
+  return picture;
+}
+
+TEST_F(Video, EachKindComesBackWithItsFramesAndColours) {
+  for (const char* name : {"v.mp4", "v.avi", "v.mkv"}) {
+    const std::string path = (folder_ / name).string();
+    VideoWriter writer(path, 25.0);
+    for (int frame = 0; frame < 30; ++frame) writer.write(square_at(frame, 161, 121));  // odd sizes lose one
+    EXPECT_EQ(writer.frames_written(), 30);
+    writer.close();
+    writer.close();
+
+    cv::VideoCapture reader(path);
+    ASSERT_TRUE(reader.isOpened()) << name;
+    EXPECT_NEAR(reader.get(cv::CAP_PROP_FPS), 25.0, 0.1) << name;
+    cv::Mat bgr;
+    int frames = 0;
+    while (reader.read(bgr)) {
+      ASSERT_EQ(bgr.size(), cv::Size(160, 120)) << name;
+      const cv::Vec3b inside = bgr.at<cv::Vec3b>(30, 20 + 2 * frames);
+      const cv::Vec3b outside = bgr.at<cv::Vec3b>(90, 80);
+      EXPECT_NEAR(inside[2], 240, 40) << name << " " << frames;
+      EXPECT_NEAR(outside[0], 160, 40) << name << " " << frames;
+      ++frames;
+    }
+    EXPECT_EQ(frames, 30) << name;
+  }
+}
+
+TEST_F(Video, RefusesWhatCannotBeMade) {
+  EXPECT_THROW(VideoWriter("film.gif", 30.0), Error);
+  EXPECT_THROW(VideoWriter("film", 30.0), Error);
+  EXPECT_THROW(VideoWriter(folder_ / "none" / "film.mp4", 30.0), Error);
+  EXPECT_THROW(VideoWriter(folder_ / "film.mp4", 0.0), Error);
+  EXPECT_THROW(VideoWriter(folder_ / "film.mp4", std::nan("")), Error);
+  std::filesystem::create_directory(folder_ / "folder.mp4");
+  EXPECT_THROW(VideoWriter(folder_ / "folder.mp4", 30.0), Error);
+}
+
+TEST_F(Video, TheFirstPictureFixesTheSize) {
+  VideoWriter writer(folder_ / "v.avi", 30.0);
+  EXPECT_THROW(writer.write(ColourImage(1, 1)), Error);
+  writer.write(square_at(0, 160, 120));
+  try {
+    writer.write(square_at(1, 160, 100));
+    FAIL() << "another size was taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("160 x 100"), std::string::npos);
+  }
+  writer.close();
+  EXPECT_THROW(writer.write(square_at(1, 160, 120)), Error);
+}
+
+TEST_F(Video, NothingWrittenMakesNoFile) {
+  VideoWriter writer(folder_ / "v.mp4", 30.0);
+  writer.close();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "v.mp4"));
+}
+
+/// Runs `work` in a child whose files may not grow past a limit, as on a full disk; whether it threw Error.
+template <typename Work>
+bool throws_on_a_full_disk(Work&& work, rlim_t limit_bytes) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{limit_bytes, limit_bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    int status = 0;
+    try {
+      work();
+    } catch (const Error&) {
+      status = 42;
+    } catch (...) {
+      status = 43;
+    }
+    ::_exit(status);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 42;
+}
+
+TEST_F(Video, AFullDiskIsAnErrorAtTheLatestWhenItIsClosed) {
+  for (const char* name : {"v.mp4", "v.avi", "v.mkv"}) {
+    const auto write_all = [&] {
+      VideoWriter writer(folder_ / name, 30.0);
+      std::srand(1);
+      for (int frame = 0; frame < 40; ++frame) {
+        ColourImage noise(320, 240);
+        for (Rgb& pixel : noise.pixels) pixel.r = pixel.g = pixel.b = static_cast<std::uint8_t>(std::rand());
+        writer.write(noise);
+      }
+      writer.close();
+    };
+    EXPECT_TRUE(throws_on_a_full_disk(write_all, 100'000)) << name;
+    EXPECT_FALSE(throws_on_a_full_disk(write_all, RLIM_INFINITY)) << name;
+  }
+}
+
+TEST_F(Picture, ColourComesBackExactly) {
+  const ColourImage picture = square_at(3, 77, 55);
+  const std::string path = (folder_ / "p.png").string();
+  write_png(picture, path);
+  const cv::Mat bgr = cv::imread(path, cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(bgr.size(), cv::Size(77, 55));
+  for (int y = 0; y < 55; ++y) {
+    for (int x = 0; x < 77; ++x) {
+      const cv::Vec3b pixel = bgr.at<cv::Vec3b>(y, x);
+      ASSERT_EQ((Rgb{pixel[2], pixel[1], pixel[0]}), picture.at(x, y));
+    }
+  }
+}
+
+TEST_F(Picture, DepthIsBlackWhereThereIsNoneAndRedderWhereItIsNear) {
+  DepthImage depth_m(40, 10);
+  for (int x = 1; x < 40; ++x)
+    for (int y = 0; y < 10; ++y) depth_m.at(x, y) = 0.5F + 0.1F * static_cast<float>(x);
+  const std::string path = (folder_ / "d.png").string();
+  write_png(depth_m, path);
+  cv::Mat bgr = cv::imread(path);
+  EXPECT_EQ(bgr.at<cv::Vec3b>(5, 0), cv::Vec3b(0, 0, 0));
+  EXPECT_GT(bgr.at<cv::Vec3b>(5, 4)[2], bgr.at<cv::Vec3b>(5, 4)[0]);
+  EXPECT_GT(bgr.at<cv::Vec3b>(5, 35)[0], bgr.at<cv::Vec3b>(5, 35)[2]);
+  write_png(DepthImage(8, 8), path);  // nothing measured
+  bgr = cv::imread(path);
+  EXPECT_EQ(cv::countNonZero(bgr.reshape(1)), 0);
+}
+
+TEST_F(Picture, AMaskComesBackExactly) {
+  MaskImage mask(9, 7);
+  mask.at(3, 2) = 255;
+  const std::string path = (folder_ / "m.png").string();
+  write_png(mask, path);
+  const cv::Mat grey = cv::imread(path, cv::IMREAD_UNCHANGED);
+  EXPECT_EQ(grey.type(), CV_8UC1);
+  EXPECT_EQ(grey.at<unsigned char>(2, 3), 255);
+  EXPECT_EQ(cv::countNonZero(grey), 1);
+}
+
+TEST_F(Picture, RefusesEmptyImagesMissingFoldersAndFullDisks) {
+  EXPECT_THROW(write_png(ColourImage{}, folder_ / "e.png"), Error);
+  EXPECT_THROW(write_png(DepthImage{}, folder_ / "e.png"), Error);
+  EXPECT_THROW(write_png(MaskImage{}, folder_ / "e.png"), Error);
+  EXPECT_THROW(write_png(square_at(0, 20, 20), folder_ / "none" / "p.png"), Error);
+  EXPECT_TRUE(throws_on_a_full_disk([&] { write_png(square_at(0, 640, 480), folder_ / "f.png"); }, 100));
+  EXPECT_FALSE(
+      throws_on_a_full_disk([&] { write_png(square_at(0, 640, 480), folder_ / "f.png"); }, RLIM_INFINITY));
+}
+
+}  // namespace
+}  // namespace roomradar
