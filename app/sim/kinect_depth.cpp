@@ -59,14 +59,22 @@ PatchNoise make_patch_noise(const Intrinsics& camera, std::uint64_t key, std::ve
 
 }  // namespace
 
-void render_exact(const ViewCaster& view, const Intrinsics& camera, ExactView& exact) {
+void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
+                  ExactView& exact) {
   exact.depth_m.resize(camera.width_px, camera.height_px);
   exact.solid.resize(camera.width_px, camera.height_px, -1);
+  exact.cosine.resize(camera.width_px, camera.height_px);
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
       const PixelHit hit = view.cast(x, y);
       exact.depth_m.at(x, y) = static_cast<float>(hit.depth_m);
       exact.solid.at(x, y) = hit.solid;
+      if (hit.solid < 0) continue;
+      const Vector3d p_solid = view.local_point(hit.solid, x, y, hit.depth_m);
+      const Vector3d to_camera = view.local_point(hit.solid, x, y, 0.0) - p_solid;
+      const Vector3d normal = normal_local(solids[static_cast<std::size_t>(hit.solid)], p_solid);
+      exact.cosine.at(x, y) =
+          static_cast<float>(std::clamp(normal.dot(to_camera) / to_camera.norm(), 0.0, 1.0));
     }
 }
 
@@ -102,14 +110,7 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
     for (int x = 0; x < camera.width_px; ++x) {
       int solid = exact.solid.at(x, y);
       if (solid < 0) continue;
-      double z = exact.depth_m.at(x, y);
-      const auto incidence_at = [&](double u, double v) {
-        const Solid& seen = solids[static_cast<std::size_t>(solid)];
-        const Vector3d p_local = view.local_point(solid, u, v, z);
-        const Vector3d to_camera = (view.local_point(solid, u, v, 0.0) - p_local).normalized();
-        return std::max(normal_local(seen, p_local).dot(to_camera), 0.0);
-      };
-      const double theta = std::min(std::acos(std::min(incidence_at(x, y), 1.0)), 1.4835);
+      const double theta = std::min(std::acos(exact.cosine.at(x, y)), 1.4835F);
 
       const std::uint64_t pixel_key = mixed(key + exact.depth_m.index(x, y));
       const double sigma_px = noise_scale * camera.width_px / kKinectWidth_px *
@@ -120,17 +121,15 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
       const int nearest_y = std::clamp(static_cast<int>(std::lround(v)), 0, camera.height_px - 1);
       solid = exact.solid.at(nearest_x, nearest_y);
       if (solid < 0) continue;
-      z = view.depth_of(solid, u, v);
+      double z = view.depth_of(solid, u, v);
       if (z <= 0.0) z = exact.depth_m.at(nearest_x, nearest_y);  // just beside the solid's outline
 
-      const double cosine = incidence_at(u, v);
+      const float cosine = exact.cosine.at(nearest_x, nearest_y);
       const double ragged = 1.0 + kRaggedness * gaussian(mixed(pixel_key + 3));
       if (infrared[static_cast<std::size_t>(solid)] * cosine / (z * z) < kFaintest * ragged) continue;
       if (scratch.projector.is_blocked(u - disparity_px_m / z, v, z - kShadowMargin_m)) continue;
 
-      const double sigma_m =
-          noise_scale *
-          depth_sigma_m(static_cast<float>(z), static_cast<float>(std::acos(std::min(cosine, 1.0))));
+      const double sigma_m = noise_scale * depth_sigma_m(static_cast<float>(z), std::acos(cosine));
       const double step_m = quantisation_step_m(camera, z);
       const double before_quantising_m = std::sqrt(std::max(sigma_m * sigma_m - step_m * step_m / 12.0, 0.0));
       const double noisy_m = z + before_quantising_m * patch_noise.at(x, y);

@@ -15,12 +15,14 @@ inline constexpr double kKinectNearest_m = 0.5;
 inline constexpr double kKinectFarthest_m = 8.0;
 
 struct ExactView {
-  DepthImage depth_m;  ///< of the first surface, whatever the sensor's range; 0 = nothing
-  Image<int> solid;    ///< index of the solid seen; -1 = nothing
+  DepthImage depth_m;   ///< of the first surface, whatever the sensor's range; 0 = nothing
+  Image<int> solid;     ///< index of the solid seen; -1 = nothing
+  Image<float> cosine;  ///< of the angle between the ray and the surface's normal, 0 to 1
 };
 
-/// Exact depth and solid of every pixel's centre ray.
-void render_exact(const ViewCaster& view, const Intrinsics& camera, ExactView& exact);
+/// Exact depth, solid and angle of every pixel's centre ray.
+void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
+                  ExactView& exact);
 
 /// Step between neighbouring depths that disparities in 1/8 px of the Kinect's 640 px wide image can tell, at
 /// depth_m: z^2 / (8 f b). Source: Khoshelham and Elberink, Sensors 2012, equation (5).

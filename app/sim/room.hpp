@@ -8,7 +8,7 @@
 
 #include "app/sim/material.hpp"
 #include "app/sim/solid.hpp"
-#include "mapping/types/mesh.hpp"
+#include "app/sim/solid_tree.hpp"
 
 namespace roomradar {
 
@@ -24,6 +24,7 @@ struct Room {
   std::string name;
   std::vector<Solid> solids;
   std::vector<Material> materials;  ///< one a solid
+  SolidTree tree;                   ///< of the solids
   std::vector<Lamp> lamps;
   Eigen::Vector3d interior_min_world = Eigen::Vector3d::Zero();  ///< the air between floor, walls and ceiling
   Eigen::Vector3d interior_max_world = Eigen::Vector3d::Zero();
@@ -50,13 +51,8 @@ Room make_room(std::string_view name);
 /// depth in all.
 double signed_distance_m(const Room& room, const Eigen::Vector3d& p_world);
 
-struct RayHit {
-  double range_m = 0.0;  ///< in units of the direction's length
-  int solid = -1;        ///< index into Room::solids
-  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
-};
-/// First surface that a ray meets from outside. Exact; looks at every solid.
-std::optional<RayHit> cast_ray(const std::vector<Solid>& solids, const Eigen::Vector3d& origin_world,
+/// First surface that a ray meets from outside; range_m in units of the direction's length. Exact.
+std::optional<RayHit> cast_ray(const Room& room, const Eigen::Vector3d& origin_world,
                                const Eigen::Vector3d& direction_world);
 
 }  // namespace roomradar

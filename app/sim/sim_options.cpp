@@ -126,7 +126,7 @@ std::string sim_spec(const SimOptions& options) {
   std::string spec = "sim:" + options.room;
   char separator = '?';
   const auto say = [&](const std::string& key, const std::string& value) {
-    spec += separator + key + "=" + value;
+    spec.append(1, separator).append(key).append("=").append(value);
     separator = '&';
   };
   if (options.seed != usual.seed) say("seed", std::to_string(options.seed));
@@ -134,8 +134,7 @@ std::string sim_spec(const SimOptions& options) {
   if (options.rate_hz != usual.rate_hz) say("rate", without_trailing_zeros(options.rate_hz));
   if (options.path != usual.path) say("path", std::string(to_string(options.path)));
   std::string moving;
-  for (const MoverKind kind : options.movers)
-    moving += (moving.empty() ? "" : ",") + std::string(to_string(kind));
+  for (const MoverKind kind : options.movers) append_with_comma(moving, to_string(kind), ",");
   if (!moving.empty()) say("moving", moving);
   if (options.noise_scale != usual.noise_scale) say("noise", without_trailing_zeros(options.noise_scale));
   if (options.depth_camera.width_px != usual.depth_camera.width_px)

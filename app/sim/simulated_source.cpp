@@ -107,8 +107,7 @@ void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView
       const double depth_m = exact.depth_m.at(x, y);
       const Vector3d p_solid = view.local_point(seen, x, y, depth_m);
       const Vector3d normal_solid = normal_local(solids[index], p_solid);
-      const Vector3d to_camera = view.local_point(seen, x, y, 0.0) - p_solid;
-      const double cosine = std::max(normal_solid.dot(to_camera) / to_camera.norm(), 0.2);
+      const double cosine = std::max(exact.cosine.at(x, y), 0.2F);
       const double footprint_m = depth_m / (colour_camera.fx_px * cosine);
       Rgb& pixel = colour.at(x, y);
       pixel = index < room.solids.size()
@@ -141,7 +140,7 @@ ReadResult SimulatedSource::next(Frame& frame) {
   const Eigen::Isometry3d T_world_camera = T_world_camera_at(s.path, t_s);
   s.place_solids(t_s);
   s.depth_view.prepare(s.solids, s.options.depth_camera, T_world_camera);
-  render_exact(s.depth_view, s.options.depth_camera, s.depth_exact);
+  render_exact(s.solids, s.depth_view, s.options.depth_camera, s.depth_exact);
   s.truth.T_world_camera = T_world_camera;
   s.fill_truth();
   if (s.options.noise_scale > 0.0) {
@@ -156,7 +155,7 @@ ReadResult SimulatedSource::next(Frame& frame) {
     s.fill_colour(s.depth_view, s.depth_exact, colour_key, frame.colour);
   } else {
     s.colour_view.prepare(s.solids, s.colour_camera, T_world_camera * s.T_colour_depth.inverse());
-    render_exact(s.colour_view, s.colour_camera, s.colour_exact);
+    render_exact(s.solids, s.colour_view, s.colour_camera, s.colour_exact);
     s.fill_colour(s.colour_view, s.colour_exact, colour_key, frame.colour);
   }
 

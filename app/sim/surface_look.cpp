@@ -88,21 +88,6 @@ std::uint8_t to_byte(float of) {
 constexpr double kLampPoints[6][3] = {{0.8, 0.2, 0.1},  {-0.5, 0.6, -0.2}, {-0.3, -0.8, 0.2},
                                       {0.2, 0.1, -0.8}, {0.4, -0.5, 0.4},  {-0.3, 0.2, 0.7}};
 
-bool is_shadowed(const std::vector<Solid>& solids, const Vector3d& p_world, const Vector3d& lamp_world) {
-  const Vector3d way = lamp_world - p_world;
-  const double squared_m2 = way.squaredNorm();
-  for (const Solid& solid : solids) {
-    const Vector3d to_start = p_world - solid.T_world_solid.translation();
-    const double radius_m = bounds_half_m(solid).norm();
-    const double along = std::clamp(-to_start.dot(way) / squared_m2, 0.0, 1.0);
-    if ((to_start + along * way).squaredNorm() > radius_m * radius_m) continue;
-    const auto R_solid_world = solid.T_world_solid.linear().transpose();
-    const double t = ray_entry_local(solid, R_solid_world * to_start, R_solid_world * way);
-    if (t > 0.0 && t < 1.0) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 SurfaceLook::SurfaceLook(const Room& room, double texel_m) : room_(room) {
@@ -209,7 +194,7 @@ float SurfaceLook::light_at(const Vector3d& p_world, const Vector3d& normal_worl
       const Vector3d lamp_world = lamp.position_world + lamp.radius_m * Vector3d(x, y, z);
       const Vector3d way = lamp_world - start;
       const double facing = normal_world.dot(way);
-      if (facing <= 0.0 || (shadows && is_shadowed(room_.solids, start, lamp_world))) continue;
+      if (facing <= 0.0 || (shadows && room_.tree.is_blocked(room_.solids, start, lamp_world))) continue;
       const double squared_m2 = std::max(way.squaredNorm(), 0.1);
       seen += facing / (squared_m2 * std::sqrt(squared_m2));
     }

@@ -29,12 +29,8 @@ void ViewCaster::prepare(std::span<const Solid> solids, const Intrinsics& camera
   camera_ = camera;
   columns_ = (camera.width_px + kTile_px - 1) / kTile_px;
   rows_ = (camera.height_px + kTile_px - 1) / kTile_px;
-  const auto columns = static_cast<std::size_t>(columns_);
-  const auto rows = static_cast<std::size_t>(rows_);
   prepared_.clear();
   nearest_first_.clear();
-  column_seen_.assign(solids.size() * columns, 0);
-  row_seen_.assign(solids.size() * rows, 0);
 
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const Solid& solid = solids[i];
@@ -45,27 +41,33 @@ void ViewCaster::prepare(std::span<const Solid> solids, const Intrinsics& camera
     const Vector3d centre_camera = -(R_solid_camera.transpose() * camera_solid);
     const Vector3d half_m = bounds_half_m(solid);
     const Extent depth = extent_along(Vector3d::UnitZ(), centre_camera, R_solid_camera, half_m);
-    prepared_.push_back({solid, R_solid_camera, camera_solid, std::max(depth.least, 0.0)});
+    Prepared& prepared = prepared_.emplace_back(
+        Prepared{solid, R_solid_camera, camera_solid, std::max(depth.least, 0.0), 0, 0, 0, 0});
     if (depth.greatest <= 0.0) continue;
     nearest_first_.push_back(static_cast<int>(i));
     // A tile's column is the wedge between two planes through the camera's centre; half a pixel beyond the
     // outermost pixel centres belongs to it, so that rays between two pixels find their solids too.
-    const auto mark = [&](int tiles, double focal_px, double centre_px, int axis, char* seen) {
+    const auto range = [&](int tiles, double focal_px, double centre_px, int axis, int& begin, int& end) {
       const auto plane_at = [&](double edge_px) {  // positive on the side of greater image coordinates
         Vector3d n = Vector3d::Zero();
         n[axis] = focal_px;
         n.z() = centre_px - edge_px;
         return extent_along(n, centre_camera, R_solid_camera, half_m);
       };
+      begin = tiles;
+      end = 0;
       Extent low = plane_at(-0.5);
       for (int tile = 0; tile < tiles; ++tile) {
         const Extent high = plane_at((tile + 1) * kTile_px - 0.5);
-        seen[tile] = low.greatest >= 0.0 && high.least <= 0.0;
+        if (low.greatest >= 0.0 && high.least <= 0.0) {
+          begin = std::min(begin, tile);
+          end = tile + 1;
+        }
         low = high;
       }
     };
-    mark(columns_, camera.fx_px, camera.cx_px, 0, column_seen_.data() + i * columns);
-    mark(rows_, camera.fy_px, camera.cy_px, 1, row_seen_.data() + i * rows);
+    range(columns_, camera.fx_px, camera.cx_px, 0, prepared.column_begin, prepared.column_end);
+    range(rows_, camera.fy_px, camera.cy_px, 1, prepared.row_begin, prepared.row_end);
   }
   std::sort(nearest_first_.begin(), nearest_first_.end(), [this](int a, int b) {
     const double depth_a = prepared_[static_cast<std::size_t>(a)].nearest_m;
@@ -73,26 +75,21 @@ void ViewCaster::prepare(std::span<const Solid> solids, const Intrinsics& camera
     return depth_a < depth_b || (depth_a == depth_b && a < b);
   });
 
-  tile_solids_.clear();
-  tile_end_.clear();
-  for (std::size_t row = 0; row < rows; ++row)
-    for (std::size_t column = 0; column < columns; ++column) {
-      for (const int solid : nearest_first_) {
-        const auto s = static_cast<std::size_t>(solid);
-        if (column_seen_[s * columns + column] && row_seen_[s * rows + row]) tile_solids_.push_back(solid);
-      }
-      tile_end_.push_back(tile_solids_.size());
-    }
+  tiles_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+  for (std::vector<int>& tile : tiles_) tile.clear();
+  for (const int solid : nearest_first_) {
+    const Prepared& prepared = prepared_[static_cast<std::size_t>(solid)];
+    for (int row = prepared.row_begin; row < prepared.row_end; ++row)
+      for (int column = prepared.column_begin; column < prepared.column_end; ++column)
+        tiles_[static_cast<std::size_t>(row * columns_ + column)].push_back(solid);
+  }
 }
 
 std::span<const int> ViewCaster::candidates(double u_px, double v_px) const {
   const int column = static_cast<int>(std::floor((u_px + 0.5) / kTile_px));
   const int row = static_cast<int>(std::floor((v_px + 0.5) / kTile_px));
   if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return nearest_first_;
-  const auto tile =
-      static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
-  const std::size_t begin = tile == 0 ? 0 : tile_end_[tile - 1];
-  return {tile_solids_.data() + begin, tile_end_[tile] - begin};
+  return tiles_[static_cast<std::size_t>(row * columns_ + column)];
 }
 
 double ViewCaster::entry(const Prepared& prepared, double x, double y) const {

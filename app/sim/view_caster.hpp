@@ -37,6 +37,8 @@ class ViewCaster {
     Eigen::Matrix3d R_solid_camera;
     Eigen::Vector3d camera_solid;  ///< the camera's centre in the solid's frame
     double nearest_m;              ///< no point of the solid has a smaller depth
+    int column_begin, column_end;  ///< tiles that it may show in
+    int row_begin, row_end;
   };
   [[nodiscard]] double entry(const Prepared& prepared, double x, double y) const;
   [[nodiscard]] std::span<const int> candidates(double u_px, double v_px) const;
@@ -44,10 +46,9 @@ class ViewCaster {
   Intrinsics camera_;
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<Prepared> prepared_;     ///< one a solid, in the order given
-  std::vector<int> nearest_first_;     ///< all solids before the camera
-  std::vector<int> tile_solids_;       ///< nearest first within a tile, tiles one after the other
-  std::vector<std::size_t> tile_end_;  ///< tile i's solids end here; they start where tile i - 1's end
+  std::vector<Prepared> prepared_;       ///< one a solid, in the order given
+  std::vector<int> nearest_first_;       ///< all solids before the camera
+  std::vector<std::vector<int>> tiles_;  ///< row by row; the solids of each, nearest first
   std::vector<char> column_seen_,
       row_seen_;  ///< solid x column, solid x row: whether the solid may show there
 };
