@@ -32,9 +32,11 @@ void halve(const Image<DepthBounds>& fine, Image<DepthBounds>& coarse) {
 
 }  // namespace
 
-float truncation_m(float depth_m, double resolution_m, const FusionConfig& config) {
-  return std::max(config.truncation_voxels * static_cast<float>(resolution_m),
-                  config.truncation_sigmas * depth_sigma_m(depth_m));
+DepthBounds truncation_layer(float depth_m, double resolution_m, const FusionConfig& config) {
+  const auto voxel_m = static_cast<float>(resolution_m);
+  const float noise_m = config.truncation_sigmas * depth_sigma_m(depth_m);
+  return {depth_m - std::max(config.truncation_voxels * voxel_m, noise_m),
+          depth_m + std::max(config.hidden_voxels * voxel_m, noise_m)};
 }
 
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
@@ -50,8 +52,7 @@ void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionC
     } else if (z > config.max_range_m) {
       base.pixels[i] = {config.max_range_m, config.max_range_m};
     } else {
-      const float truncation = truncation_m(z, resolution_m, config);
-      base.pixels[i] = {z - truncation, z + truncation};
+      base.pixels[i] = truncation_layer(z, resolution_m, config);
     }
   }
   for (std::size_t level = 1; level < pyramid.levels.size(); ++level) {

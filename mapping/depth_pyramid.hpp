@@ -15,8 +15,8 @@ struct DepthBounds {
   float back_m = 0.0F;
 };
 
-/// Half the thickness (m) of the layer round a surface measured at depth_m in which signed distance is kept.
-float truncation_m(float depth_m, double resolution_m, const FusionConfig& config);
+/// The layer round a surface measured at depth_m in which signed distance is kept.
+DepthBounds truncation_layer(float depth_m, double resolution_m, const FusionConfig& config);
 
 /// levels[0] has the image's size, each next one half of it, rounded up.
 struct DepthPyramid {

@@ -95,7 +95,7 @@ class Descent {
       if (verdicts[i] == Verdict::kNothing) continue;
       RoomNode& child = tree_.ensure_child(node, i);
       if (verdicts[i] == Verdict::kFree) {
-        mark_free(child);
+        mark_free(child, weight_of(cells[i].centre.z()));
       } else {
         split(child, cells[i], hits_in[i]);
         if (!holds_anything(child)) tree_.deleteNodeChild(&node, i);
@@ -216,13 +216,13 @@ class Descent {
   }
 
   // The whole node is seen through.
-  void mark_free(RoomNode& node) {
+  void mark_free(RoomNode& node, float weight) {
     if (!tree_.nodeHasChildren(&node)) {
       miss(node);
-      if (node.has_sample()) fade_sample(node, {.free = true, .weight = 1.0F});
+      if (node.has_sample()) fade_sample(node, {.free = true, .weight = weight});
       return;
     }
-    for (unsigned i = 0; i < 8; ++i) mark_free(tree_.ensure_child(node, i));
+    for (unsigned i = 0; i < 8; ++i) mark_free(tree_.ensure_child(node, i), weight);
     tree_.summarise(node);
   }
 

@@ -1,0 +1,255 @@
+// mesh_file.cpp: meshes through assimp, with its limits made explicit.
+#include "mapping/mesh_file.hpp"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <assimp/Exporter.hpp>
+#include <assimp/Importer.hpp>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "mapping/ply_writer.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::uintmax_t kMaxFileBytes = 512U << 20U;  // 2 million triangles as text take some 300 MB
+
+struct Format {
+  const char* extension;
+  const char* assimp_id;  // for writing; null: written by ourselves
+};
+constexpr Format kFormats[] = {{".ply", nullptr}, {".obj", "objnomtl"}, {".stl", "stlb"}, {".glb", "glb2"}};
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& fault) {
+  throw Error(path.string() + ": " + fault);
+}
+
+const Format& format_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const Format& format : kFormats)
+    if (extension == format.extension) return format;
+  fail(path,
+       "the extension \"" + extension + "\" is no mesh format known here; use .ply, .obj, .stl or .glb");
+}
+
+[[noreturn]] void fail_for_size(const std::filesystem::path& path, std::uint64_t triangles) {
+  fail(path, "has " + std::to_string(triangles) + " triangles, more than " +
+                 std::to_string(kMaxMeshTriangles) + "; simplify it first");
+}
+
+// Refuses what is too large by its own word, before any memory is taken for it.
+void check_claimed_size(const std::filesystem::path& path, const Format& format) {
+  std::error_code unreadable;
+  if (!std::filesystem::exists(path, unreadable)) fail(path, "there is no such file");
+  if (!std::filesystem::is_regular_file(path, unreadable)) fail(path, "is not a file");
+  const std::uintmax_t bytes = std::filesystem::file_size(path, unreadable);
+  if (unreadable) fail(path, "cannot be read: " + unreadable.message());
+  if (bytes == 0) fail(path, "is empty; wanted a mesh");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(path, "cannot be opened; may you read it?");
+  if (std::strcmp(format.extension, ".stl") == 0) {
+    char header[84] = {};
+    file.read(header, sizeof(header));
+    std::uint32_t triangles = 0;
+    std::memcpy(&triangles, header + 80, sizeof(triangles));
+    if (file && bytes == 84 + 50 * std::uintmax_t{triangles} && triangles > kMaxMeshTriangles)
+      fail_for_size(path, triangles);
+  }
+  if (std::strcmp(format.extension, ".ply") == 0) {
+    std::string line;
+    for (int lines = 0; lines < 100 && std::getline(file, line) && line.rfind("end_header", 0) != 0; ++lines)
+      if (line.rfind("element face ", 0) == 0 &&
+          std::strtoull(line.c_str() + 13, nullptr, 10) > kMaxMeshTriangles)
+        fail_for_size(path, std::strtoull(line.c_str() + 13, nullptr, 10));
+  }
+  if (bytes > kMaxFileBytes)
+    fail(path, "has " + std::to_string(bytes >> 20U) + " MB, more than " +
+                   std::to_string(kMaxFileBytes >> 20U) + "; simplify it first");
+}
+
+std::uint8_t channel_of(float value01) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(value01, 0.0F, 1.0F) * 255.0F));
+}
+
+// Collects the meshes below a node, moved by its transforms.
+class Collector {
+ public:
+  Collector(const std::filesystem::path& path, const aiScene& scene) : path_(path), scene_(scene) {
+    has_normals_ = has_colours_ = true;
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+      has_normals_ = has_normals_ && scene.mMeshes[i]->HasNormals();
+      has_colours_ = has_colours_ && scene.mMeshes[i]->HasVertexColors(0);
+    }
+    if (scene.mRootNode) add(*scene.mRootNode, aiMatrix4x4(), 0);
+  }
+  Mesh take() { return std::move(mesh_); }
+
+ private:
+  void add(const aiNode& node, const aiMatrix4x4& T_file_parent, int depth) {
+    if (depth > 1000) fail(path_, "its nodes are nested too deeply");
+    const aiMatrix4x4 T_file_node = T_file_parent * node.mTransformation;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) add(*scene_.mMeshes[node.mMeshes[i]], T_file_node);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) add(*node.mChildren[i], T_file_node, depth + 1);
+  }
+
+  void add(const aiMesh& part, const aiMatrix4x4& T_file_node) {
+    const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+    if (mesh_.triangles.size() + part.mNumFaces > kMaxMeshTriangles)
+      fail_for_size(path_, mesh_.triangles.size() + part.mNumFaces);
+    const aiMatrix3x3 R = aiMatrix3x3(T_file_node);
+    const aiMatrix3x3 normal_matrix = aiMatrix3x3(R).Inverse().Transpose();
+    const bool mirrored = R.Determinant() < 0.0F;
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+      const aiVector3D p = T_file_node * part.mVertices[i];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+        fail(path_, "vertex " + std::to_string(mesh_.vertices.size()) + " is not finite; repair the mesh");
+      mesh_.vertices.emplace_back(p.x, p.y, p.z);
+      if (has_normals_) {
+        const aiVector3D n = normal_matrix * part.mNormals[i];
+        const Eigen::Vector3f normal(n.x, n.y, n.z);
+        mesh_.normals.push_back(normal.allFinite() ? Eigen::Vector3f(normal.normalized())
+                                                   : Eigen::Vector3f(Eigen::Vector3f::Zero()));
+      }
+      if (has_colours_) {
+        const aiColor4D& c = part.mColors[0][i];
+        mesh_.colours.push_back({channel_of(c.r), channel_of(c.g), channel_of(c.b)});
+      }
+    }
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+      const aiFace& face = part.mFaces[i];
+      if (face.mNumIndices != 3) continue;
+      Triangle triangle{};
+      for (unsigned k = 0; k < 3; ++k) {
+        if (face.mIndices[k] >= part.mNumVertices) fail(path_, "a triangle names a vertex that is not there");
+        triangle[k] = first + face.mIndices[mirrored ? 2 - k : k];
+      }
+      if (has_area(triangle)) mesh_.triangles.push_back(triangle);
+    }
+  }
+
+  [[nodiscard]] bool has_area(const Triangle& t) const {
+    const Eigen::Vector3d a = mesh_.vertices[t[0]].cast<double>();
+    const Eigen::Vector3d u = mesh_.vertices[t[1]].cast<double>() - a;
+    const Eigen::Vector3d v = mesh_.vertices[t[2]].cast<double>() - a;
+    return u.cross(v).squaredNorm() > 0.0;
+  }
+
+  const std::filesystem::path& path_;
+  const aiScene& scene_;
+  bool has_normals_ = false;
+  bool has_colours_ = false;
+  Mesh mesh_;
+};
+
+void require_writable(const Mesh& mesh, const std::filesystem::path& path) {
+  if (mesh.vertices.empty() || mesh.triangles.empty()) fail(path, "not written: the mesh has no triangles");
+  if ((!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) ||
+      (!mesh.colours.empty() && mesh.colours.size() != mesh.vertices.size()))
+    fail(path, "not written: the mesh has not one normal or one colour a vertex");
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle)
+      if (vertex >= mesh.vertices.size())
+        fail(path, "not written: a triangle names a vertex that is not there");
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    if (!vertex.allFinite()) fail(path, "not written: a vertex is not finite");
+}
+
+aiMesh* assimp_mesh(const Mesh& mesh) {
+  auto part = std::make_unique<aiMesh>();
+  part->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
+  part->mNumVertices = static_cast<unsigned>(mesh.vertices.size());
+  part->mVertices = new aiVector3D[mesh.vertices.size()];
+  if (!mesh.normals.empty()) part->mNormals = new aiVector3D[mesh.vertices.size()];
+  if (!mesh.colours.empty()) part->mColors[0] = new aiColor4D[mesh.vertices.size()];
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Eigen::Vector3f p = (mesh.origin + mesh.vertices[i].cast<double>()).cast<float>();
+    part->mVertices[i] = aiVector3D(p.x(), p.y(), p.z());
+    if (!mesh.normals.empty())
+      part->mNormals[i] = aiVector3D(mesh.normals[i].x(), mesh.normals[i].y(), mesh.normals[i].z());
+    if (!mesh.colours.empty()) {
+      const auto level = [](std::uint8_t c) { return static_cast<float>(c) / 255.0F; };
+      part->mColors[0][i] =
+          aiColor4D(level(mesh.colours[i].r), level(mesh.colours[i].g), level(mesh.colours[i].b), 1.0F);
+    }
+  }
+  part->mNumFaces = static_cast<unsigned>(mesh.triangles.size());
+  part->mFaces = new aiFace[mesh.triangles.size()];
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    part->mFaces[i].mNumIndices = 3;
+    part->mFaces[i].mIndices =
+        new unsigned[3]{mesh.triangles[i][0], mesh.triangles[i][1], mesh.triangles[i][2]};
+  }
+  return part.release();
+}
+
+// Through memory, because assimp does not notice a full disk.
+std::string assimp_bytes(const Mesh& mesh, const Format& format, const std::filesystem::path& path) {
+  aiScene scene;  // owns everything below
+  scene.mMaterials = new aiMaterial* [1] { new aiMaterial() };
+  scene.mNumMaterials = 1;
+  scene.mMeshes = new aiMesh* [1] { assimp_mesh(mesh) };
+  scene.mNumMeshes = 1;
+  scene.mRootNode = new aiNode("roomradar");
+  scene.mRootNode->mMeshes = new unsigned[1]{0};
+  scene.mRootNode->mNumMeshes = 1;
+  Assimp::Exporter exporter;
+  const aiExportDataBlob* blob = exporter.ExportToBlob(&scene, format.assimp_id);
+  if (!blob || blob->size == 0)
+    fail(path, std::string("the mesh cannot be turned into this format: ") + exporter.GetErrorString());
+  return {static_cast<const char*>(blob->data), blob->size};
+}
+
+}  // namespace
+
+Mesh read_mesh(const std::filesystem::path& path) {
+  const Format& format = format_of(path);
+  check_claimed_size(path, format);
+  // An .stl repeats its corners and knows facet normals only: corners are joined by place, normals left to
+  // the user.
+  const bool facets = std::strcmp(format.extension, ".stl") == 0;
+  Assimp::Importer importer;
+  importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                              aiComponent_TEXCOORDS | aiComponent_TANGENTS_AND_BITANGENTS |
+                                  aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS | aiComponent_TEXTURES |
+                                  aiComponent_LIGHTS | aiComponent_CAMERAS |
+                                  (facets ? static_cast<int>(aiComponent_NORMALS) : 0));
+  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  const aiScene* scene = importer.ReadFile(
+      path.string(), aiProcess_ValidateDataStructure | aiProcess_RemoveComponent | aiProcess_Triangulate |
+                         aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
+  if (!scene) {
+    std::string reason = importer.GetErrorString();
+    fail(path, "cannot be read as a mesh" +
+                   (reason.empty() ? std::string() : " (" + reason.substr(0, 200) + ")") +
+                   "; is it complete, and is its extension right?");
+  }
+  Mesh mesh = Collector(path, *scene).take();
+  if (mesh.triangles.empty()) fail(path, "holds no triangles with an area; wanted a surface mesh");
+  return mesh;
+}
+
+void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
+  const Format& format = format_of(path);
+  require_writable(mesh, path);
+  const std::string bytes = format.assimp_id ? assimp_bytes(mesh, format, path) : ply_bytes(mesh);
+  std::ofstream file(path, std::ios::binary);
+  if (!file) fail(path, "cannot be created; does its folder exist, and may you write there?");
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.flush();
+  if (!file) fail(path, "cannot be written; is the disk full?");
+}
+
+}  // namespace roomradar
