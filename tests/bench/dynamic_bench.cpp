@@ -1,0 +1,220 @@
+// dynamic_bench.cpp: what finding and meshing the moved pixels costs, and how right it is.
+// Scenes, seeds and frames are fixed: changing them breaks comparison with old numbers.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/sources/folder_source.hpp"
+#include "dynamic/depth_mesh.hpp"
+#include "dynamic/foreground.hpp"
+#include "mapping/surface.hpp"
+#include "radar/depth_pass.hpp"
+#include "tests/dynamic/foreground_judge.hpp"
+#include "tests/support/recordings.hpp"
+
+namespace roomradar::test {
+namespace {
+
+using Rows = nlohmann::json;
+
+double elapsed_ms(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Times {
+  std::vector<double> samples_ms;
+  [[nodiscard]] double percentile(double p) {
+    std::sort(samples_ms.begin(), samples_ms.end());
+    return samples_ms[static_cast<std::size_t>(p * static_cast<double>(samples_ms.size() - 1))];
+  }
+};
+
+// Puts a ball-shaped thing that covers a fifth of the image in front of the room.
+void put_in_front(Frame& frame) {
+  DepthImage& depth_m = frame.depth_m;
+  const double radius_px = std::sqrt(0.2 * depth_m.width * depth_m.height / M_PI);
+  for (int y = 0; y < depth_m.height; ++y) {
+    for (int x = 0; x < depth_m.width; ++x) {
+      const double r = std::hypot(x - depth_m.width / 2, y - depth_m.height / 2) / radius_px;
+      if (r < 1.0) depth_m.at(x, y) = static_cast<float>(0.8 - 0.2 * std::sqrt(1.0 - r * r));
+    }
+  }
+}
+
+void measure_times(Rows& rows) {
+  constexpr int kWarmUp = 10, kRepeats = 200;
+  SimOptions options;
+  options.frames = 1;
+  options.path = CameraPathKind::kView;
+  SimulatedSource source(options);
+  Frame frame;
+  if (source.next(frame).status != ReadStatus::kFrame) return;
+  ViewCaster caster;
+  DepthImage expected_m;
+  cast_room(source.room(), frame.depth_camera, source.truth().T_world_camera, caster, expected_m);
+  put_in_front(frame);
+
+  ForegroundScratch foreground_scratch;
+  LabelImage labels;
+  MaskImage moved_mask;
+  ForegroundCounts counts;
+  Times segmentation;
+  for (int i = 0; i < kWarmUp + kRepeats; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    counts = mark_foreground(frame.depth_m, expected_m, frame.depth_camera, {}, foreground_scratch, labels,
+                             moved_mask);
+    if (i >= kWarmUp) segmentation.samples_ms.push_back(elapsed_ms(start));
+  }
+  const double fraction =
+      static_cast<double>(counts.moved) / static_cast<double>(frame.depth_m.pixels.size());
+  rows.push_back({{"work", "segmentation"},
+                  {"width", frame.depth_m.width},
+                  {"height", frame.depth_m.height},
+                  {"foreground_fraction", fraction},
+                  {"median_ms", segmentation.percentile(0.5)},
+                  {"p95_ms", segmentation.percentile(0.95)},
+                  {"p99_ms", segmentation.percentile(0.99)}});
+
+  for (const int stride_px : {1, 2, 4}) {
+    DepthMeshConfig config;
+    config.stride_px = stride_px;
+    DepthMeshScratch scratch;
+    Mesh mesh;
+    Times masked, whole;
+    const Eigen::Isometry3d T_world_camera = source.truth().T_world_camera;
+    for (int i = 0; i < kWarmUp + kRepeats; ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      mesh_masked(frame.depth_m, moved_mask, frame.depth_camera, T_world_camera, config, scratch, mesh);
+      if (i >= kWarmUp) masked.samples_ms.push_back(elapsed_ms(start));
+    }
+    rows.push_back({{"work", "mesh of what moved"},
+                    {"stride_px", stride_px},
+                    {"triangles", mesh.triangles.size()},
+                    {"median_ms", masked.percentile(0.5)},
+                    {"p95_ms", masked.percentile(0.95)},
+                    {"p99_ms", masked.percentile(0.99)}});
+    for (int i = 0; i < kWarmUp + kRepeats / 4; ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, SurfacePolicy::kSkirt, config, scratch,
+                 mesh);
+      if (i >= kWarmUp) whole.samples_ms.push_back(elapsed_ms(start));
+    }
+    rows.push_back({{"work", "mesh of the whole frame with skirts"},
+                    {"stride_px", stride_px},
+                    {"triangles", mesh.triangles.size()},
+                    {"median_ms", whole.percentile(0.5)},
+                    {"p95_ms", whole.percentile(0.95)},
+                    {"p99_ms", whole.percentile(0.99)}});
+  }
+}
+
+// Movers in simulated rooms, camera standing as a hand holds it, against the exact room seen from the true
+// pose and from one that is 5 mm and 0.1 degrees off.
+void measure_masks(Rows& rows) {
+  for (const double shift_m : {0.0, 0.005}) {
+    MaskScore all;
+    for (const std::string& room : room_names()) {
+      for (const MoverKind mover : {MoverKind::kHand, MoverKind::kBall, MoverKind::kPerson}) {
+        SimOptions options;
+        options.room = room;
+        options.frames = 150;
+        options.path = CameraPathKind::kView;
+        options.movers = {mover};
+        const MaskScore score = judge_foreground(options, 10, shift_m, shift_m > 0.0 ? 0.1 : 0.0);
+        rows.push_back({{"work", "masks"},
+                        {"room", room},
+                        {"mover", std::string(to_string(mover))},
+                        {"pose_error_m", shift_m},
+                        {"frames", score.frames},
+                        {"iou", score.iou()},
+                        {"false_fraction", score.false_fraction()}});
+      }
+    }
+  }
+}
+
+// The kitchen: frames 0 to 399 make the map, by the recorded poses; in the rest nothing moves.
+void measure_still_kitchen(Rows& rows) {
+  const auto folder = recording("kitchen");
+  if (!folder) {
+    std::cout << "kitchen: SKIPPED, the recording is not here (set ROOMRADAR_DATA to its folder)\n";
+    return;
+  }
+  const auto source = open_folder(*folder);
+  StaticMap map(0.01);
+  Frame frame;
+  GlContext context;
+  DepthPass depth_pass(context);
+  GpuMesh room(context);
+  DepthImage expected_m;
+  ForegroundScratch scratch;
+  LabelImage labels;
+  MaskImage moved_mask;
+  ForegroundCounts all;
+  for (ReadResult read = source->next(frame); read.status != ReadStatus::kEnd; read = source->next(frame)) {
+    if (read.status != ReadStatus::kFrame || !frame.T_world_camera) continue;
+    if (frame.index < 400) {
+      if (frame.index % 2 == 0) map.fuse(frame, *frame.T_world_camera);
+      continue;
+    }
+    if (room.triangle_count() == 0) room.upload(extract_surface(map), MeshUsage::kStatic);
+    const MeshInstance instance{&room, Eigen::Isometry3d::Identity()};
+    depth_pass.render({&instance, 1}, frame.depth_camera, *frame.T_world_camera, expected_m);
+    const ForegroundCounts counts =
+        mark_foreground(frame.depth_m, expected_m, frame.depth_camera, {}, scratch, labels, moved_mask);
+    all.valid += counts.valid;
+    all.moved += counts.moved;
+    all.revealed += counts.revealed;
+    all.not_known += counts.not_known;
+  }
+  const auto fraction = [&](std::size_t pixels) {
+    return static_cast<double>(pixels) / static_cast<double>(std::max<std::size_t>(all.valid, 1));
+  };
+  rows.push_back({{"work", "nothing moves"},
+                  {"recording", "kitchen"},
+                  {"frames", "400:499"},
+                  {"resolution_m", 0.01},
+                  {"moved_fraction", fraction(all.moved)},
+                  {"revealed_fraction", fraction(all.revealed)},
+                  {"not_known_fraction", fraction(all.not_known)}});
+}
+
+int run(int argc, char** argv) {
+  const char* file = nullptr;
+  if (argc == 3 && std::strcmp(argv[1], "--json") == 0) file = argv[2];
+  if (argc != 1 && !file) {
+    std::cerr << "usage: dynamic_bench [--json FILE]\n";
+    return 2;
+  }
+  Rows rows = Rows::array();
+  measure_times(rows);
+  measure_masks(rows);
+  measure_still_kitchen(rows);
+  for (const auto& row : rows) std::cout << row.dump() << "\n";
+  if (!file) return 0;
+  std::ofstream out(file);
+  out << rows.dump(1) << "\n";
+  if (!out.flush()) {
+    std::cerr << file << ": cannot be written\n";
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace roomradar::test
+
+int main(int argc, char** argv) {
+  try {
+    return roomradar::test::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return 1;
+  }
+}
