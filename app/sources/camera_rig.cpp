@@ -139,7 +139,6 @@ Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_p
   if (m[1] != 0 || m[3] != 0 || m[6] != 0 || m[7] != 0 || m[8] != 1)
     throw Error(name + ": must be of the form fx 0 cx / 0 fy cy / 0 0 1");
   const Intrinsics camera{width_px, height_px, m[0], m[4], m[2], m[5]};
-  require_valid(camera, name.c_str());
   if (std::abs(camera.cx_px - width_px / 2.0) > width_px / 5.0 ||
       std::abs(camera.cy_px - height_px / 2.0) > height_px / 5.0) {
     std::ostringstream message;
@@ -149,6 +148,7 @@ Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_p
             << height_px << "; give the intrinsics of these images, or a camera.json";
     throw Error(message.str());
   }
+  require_valid(camera, name.c_str());
   return camera;
 }
 

@@ -21,9 +21,16 @@ Eigen::Isometry3d rigid(double rx_rad, double ry_rad, double rz_rad, const Eigen
 CameraRig figures(NominalRig kind) {
   switch (kind) {
     case NominalRig::kSevenScenes:
+      // Depth: published with the dataset, which says nothing of colour. Colour: fitted on the recording
+      // redkitchen. 154,000 points on the near side of depth jumps in 71 of its frames were projected into
+      // the colour images, and focal length, shift across, and rotation chosen so that they meet the
+      // strongest colour edges (gradients relative to their surroundings, blurred by 4, 2, then 1 px; pattern
+      // search). Every 12th and every 7th frame gave the same within 0.2 px and 0.3 mm; the edges meet within
+      // about 2 px by eye. The principal point and the shift along the axis were held: freed, they moved by 1
+      // px and 11 mm for a gain of 0.1 % in the score.
       return {{640, 480, 585.0, 585.0, 320.0, 240.0},
-              Intrinsics{640, 480, 527.0, 527.0, 320.0, 240.0},
-              rigid(0.0043, 0.0007, 0.0089, {-0.0248, 0.0006, 0.0})};
+              Intrinsics{640, 480, 526.7, 526.7, 320.0, 240.0},
+              rigid(0.0041, 0.0004, 0.0089, {-0.0248, 0.0003, 0.0})};
     case NominalRig::kTum:
       // "ROS default" of the benchmark's page, which it recommends where colour and depth are registered by
       // the driver.

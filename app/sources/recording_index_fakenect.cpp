@@ -32,6 +32,8 @@ std::optional<IndexLine> parse_index_line(std::string_view line) {
   if (dot == std::string_view::npos || dash == std::string_view::npos ||
       line.find('/') != std::string_view::npos)
     return {};
+  const std::string_view extension = line[0] == 'd' ? ".pgm" : line[0] == 'r' ? ".ppm" : ".dump";
+  if (line.substr(dot) != extension) return {};
   const auto ticks = parse_whole_number(line.substr(dash + 1, dot - dash - 1));
   if (!ticks || *ticks < 0 || *ticks > UINT32_MAX) return {};
   return IndexLine{line[0], static_cast<std::uint32_t>(*ticks)};

@@ -1,0 +1,30 @@
+// sources_replay_dump.cpp: prints one line a frame of a source, all that tells two frames apart; run under
+// fakenect.
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "app/sources/folder_source.hpp"
+#include "app/sources/kinect_source.hpp"
+#include "mapping/types/error.hpp"
+#include "tests/app/sources_fingerprint.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  try {
+    const std::string name = argv[1];
+    const auto source = name.starts_with("kinect:") ? roomradar::open_kinect(std::atoi(name.c_str() + 7))
+                                                    : roomradar::open_folder(name);
+    roomradar::Frame frame;
+    for (;;) {
+      const roomradar::ReadResult result = source->next(frame);
+      if (result.status == roomradar::ReadStatus::kEnd) return 0;
+      std::puts(result.status == roomradar::ReadStatus::kFrame ? roomradar::test::fingerprint(frame).c_str()
+                                                               : "frame skipped");
+    }
+  } catch (const roomradar::Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,225 @@
+// sources_units_test.cpp: the Kinect's units, the pairing of images, frame ranges and spooling.
+#include <gtest/gtest.h>
+
+#include "app/sources/frame_range.hpp"
+#include "app/sources/kinect_units.hpp"
+#include "app/sources/parse_numbers.hpp"
+#include "app/sources/spooled_source.hpp"
+#include "app/sources/stamp_pairing.hpp"
+#include "tests/app/sources_support.hpp"
+
+namespace roomradar {
+namespace {
+
+using test::contains;
+using test::error_of;
+using test::MadeSource;
+using test::read_all;
+
+TEST(KinectUnits, RawDepthHasTheFormulasValues) {
+  EXPECT_NEAR(raw_depth_m(500), 0.1236 * std::tan(500 / 2842.5 + 1.1863), 1e-6);
+  EXPECT_EQ(raw_depth_m(kRawNoDepth), 0.0F);
+}
+
+TEST(KinectUnits, RawDepthRisesToItsEndAndIsNoneBeyond) {
+  for (std::uint16_t raw = 1; raw <= kRawFarthest; ++raw)
+    ASSERT_GT(raw_depth_m(raw), raw_depth_m(raw - 1)) << raw;
+  EXPECT_LT(raw_depth_m(kRawFarthest), 10.0F);
+  for (int raw = kRawFarthest + 1; raw <= 65535; ++raw)
+    ASSERT_EQ(raw_depth_m(static_cast<std::uint16_t>(raw)), 0.0F) << raw;
+}
+
+TEST(KinectUnits, RawDepthComesBackFromItsMetres) {
+  for (std::uint16_t raw = 0; raw <= kRawFarthest; ++raw) ASSERT_EQ(raw_from_depth_m(raw_depth_m(raw)), raw);
+  for (const float none_m : {0.0F, 0.1F, 20.0F, -1.0F, std::nanf("")})
+    EXPECT_EQ(raw_from_depth_m(none_m), kRawNoDepth);
+}
+
+TEST(KinectUnits, UprightCameraFeelsGravityAlongItsY) {
+  const auto down = down_from_acceleration({0, 1, 0});
+  ASSERT_TRUE(down);
+  EXPECT_TRUE(down->isApprox(Eigen::Vector3d(0, 1, 0)));
+}
+
+TEST(KinectUnits, CameraThatLooksUpHasGravityBehindIt) {
+  const auto down =
+      down_from_acceleration({0, 0.8, 0.6});  // z of the accelerometer is forward, and forward is up
+  ASSERT_TRUE(down);
+  EXPECT_NEAR(down->z(), -0.6, 1e-12);
+  EXPECT_TRUE(acceleration_at_rest_g(*down).isApprox(Eigen::Vector3d(0, 0.8, 0.6)));
+}
+
+TEST(KinectUnits, AccelerationOfAMovedDeviceIsNoGravity) {
+  EXPECT_FALSE(down_from_acceleration({0, 0.7, 0}));
+  EXPECT_FALSE(down_from_acceleration({0, 1.3, 0}));
+  EXPECT_FALSE(down_from_acceleration({0, 0, 0}));
+  EXPECT_FALSE(down_from_acceleration({0, std::nan(""), 0}));
+}
+
+TEST(KinectUnits, ClockGoesOnWhereTheStampsWrap) {
+  KinectClock clock;
+  const double before_s = clock.seconds(0xffffff00U);
+  const double after_s = clock.seconds(0x100U);
+  EXPECT_NEAR(after_s - before_s, 512 / 60e6, 1e-9);
+  EXPECT_LT(clock.seconds(0xffffff00U), after_s);  // going back is seen as such
+}
+
+TEST(ParseNumbers, TakesWholeWordsOnly) {
+  EXPECT_EQ(parse_number("1.5e-3"), 1.5e-3);
+  EXPECT_EQ(parse_number("+2"), 2.0);
+  EXPECT_FALSE(parse_number("1.5x"));
+  EXPECT_FALSE(parse_number(""));
+  EXPECT_FALSE(parse_number("1,5"));
+  EXPECT_TRUE(std::isnan(*parse_number("nan")));
+  EXPECT_TRUE(std::isnan(*parse_number("-1.#IND000e+000")));
+  EXPECT_FALSE(parse_whole_number("3.0"));
+  EXPECT_EQ(split_words(" a\tb  c\r").size(), 3U);
+}
+
+std::vector<DepthColourPair> take_all(StampPairing& pairing) {
+  std::vector<DepthColourPair> pairs;
+  while (const auto pair = pairing.take()) pairs.push_back(*pair);
+  return pairs;
+}
+
+TEST(StampPairing, TakesTheNearerOfTheImagesBeforeAndAfter) {
+  StampPairing pairing({});
+  pairing.add_colour(0, 0.990);
+  pairing.add_depth(0, 1.000);
+  EXPECT_TRUE(take_all(pairing).empty());  // a nearer one may still come
+  pairing.add_colour(1, 1.004);
+  const auto pairs = take_all(pairing);
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_EQ(pairs[0].colour, 1);
+}
+
+TEST(StampPairing, UsesEachImageOnceAndNoneThatIsTooFar) {
+  StampPairing pairing({});
+  pairing.add_colour(0, 1.000);
+  pairing.add_depth(0, 1.001);
+  pairing.add_depth(1, 1.010);
+  pairing.add_colour(1, 1.0305);
+  pairing.finish();
+  const auto pairs = take_all(pairing);
+  ASSERT_EQ(pairs.size(), 2U);
+  EXPECT_EQ(pairs[0].colour, 0);
+  EXPECT_FALSE(pairs[1].colour);
+}
+
+TEST(StampPairing, DoesNotWaitWhereNothingNearerCanCome) {
+  StampPairing pairing(kDevicePairing);
+  pairing.add_colour(0, 0.990);
+  pairing.add_depth(0, 1.000);
+  EXPECT_EQ(take_all(pairing).size(), 1U);
+}
+
+TEST(StampPairing, DoesNotWaitPastTheNextDepthImage) {
+  StampPairing pairing(kDevicePairing);
+  pairing.add_depth(0, 1.000);
+  pairing.add_depth(1, 1.033);
+  const auto pairs = take_all(pairing);
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_FALSE(pairs[0].colour);
+}
+
+TEST(StampPairing, SaysWhichStampsGoBack) {
+  StampPairing pairing({});
+  for (const auto& [number, stamp_s] : {std::pair(0, 1.0), {1, 0.5}, {2, 1.0}, {3, 1.1}})
+    pairing.add_depth(number, stamp_s);
+  pairing.finish();
+  const auto pairs = take_all(pairing);
+  ASSERT_EQ(pairs.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(pairs[i].stamp_goes_back, i == 1 || i == 2) << i;
+}
+
+TEST(FrameRange, ReadsTwoWholeNumbers) {
+  const FrameRange range = parse_frame_range("400:499");
+  EXPECT_EQ(range.first, 400);
+  EXPECT_EQ(range.last, 499);
+  for (const char* bad : {"", ":", "5", "5:", ":5", "-1:5", "5:4", "a:b", "1:2:3", "1.0:2", " 1:2"})
+    EXPECT_TRUE(contains(error_of([&] { (void)parse_frame_range(bad); }), "400:499")) << bad;
+}
+
+TEST(FrameRange, IncludesBothEndsAndKeepsIndices) {
+  for (const bool knows : {true, false}) {
+    const auto source = limit_frames(std::make_unique<MadeSource>(10, knows, std::vector<int>{4}), 3, 6);
+    const auto all = read_all(*source);
+    ASSERT_EQ(all.frames.size(), 3U);
+    EXPECT_EQ(all.frames.front().index, 3);
+    EXPECT_EQ(all.frames.back().index, 6);
+    EXPECT_EQ(all.faults.size(), 1U);
+    EXPECT_EQ(source->frame_count(), 4);
+    EXPECT_EQ(source->rewind(), knows);
+    if (knows) {
+      EXPECT_EQ(read_all(*source).frames.size(), 3U);
+    }
+  }
+}
+
+TEST(FrameRange, OutsideTheRecordingNamesItsLength) {
+  EXPECT_TRUE(
+      contains(error_of([] { limit_frames(std::make_unique<MadeSource>(10, true), 5, 10); }), "10 frames"));
+  const auto source = limit_frames(std::make_unique<MadeSource>(10, false), 8, 10);
+  EXPECT_TRUE(contains(error_of([&] { (void)read_all(*source); }), "10 frames"));
+  EXPECT_FALSE(error_of([] { limit_frames(std::make_unique<MadeSource>(10, true), 5, 4); }).empty());
+  EXPECT_FALSE(error_of([] { limit_frames(std::make_unique<MadeSource>(10, true), -1, 4); }).empty());
+}
+
+void expect_same(const Frame& a, const Frame& b) {
+  EXPECT_EQ(a.index, b.index);
+  EXPECT_EQ(a.stamp_s, b.stamp_s);
+  EXPECT_EQ(a.depth_m.pixels, b.depth_m.pixels);
+  EXPECT_EQ(a.colour.pixels, b.colour.pixels);
+  EXPECT_EQ(a.colour.width, b.colour.width);
+  EXPECT_EQ(a.depth_camera, b.depth_camera);
+  EXPECT_EQ(a.colour_camera, b.colour_camera);
+  EXPECT_EQ(a.T_colour_depth.matrix(), b.T_colour_depth.matrix());
+  EXPECT_EQ(a.T_world_camera->matrix(), b.T_world_camera->matrix());
+  EXPECT_EQ(*a.down_camera, *b.down_camera);
+}
+
+TEST(SpooledSource, GivesTheSameAgainToTheBit) {
+  SpooledSource source(std::make_unique<MadeSource>(7, false, std::vector<int>{2}));
+  EXPECT_FALSE(source.frame_count());
+  const auto first = read_all(source);
+  EXPECT_EQ(source.frame_count(), 7);
+  ASSERT_TRUE(source.rewind());
+  const auto again = read_all(source);
+  ASSERT_EQ(first.frames.size(), 6U);
+  ASSERT_EQ(again.frames.size(), first.frames.size());
+  EXPECT_EQ(again.faults, first.faults);
+  for (std::size_t i = 0; i < first.frames.size(); ++i) expect_same(first.frames[i], again.frames[i]);
+}
+
+TEST(SpooledSource, ReadsOnWhereItHadStopped) {
+  SpooledSource source(std::make_unique<MadeSource>(7, false));
+  Frame frame;
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(source.next(frame).status, ReadStatus::kFrame);
+  source.rewind();
+  const auto all = read_all(source);
+  ASSERT_EQ(all.frames.size(), 7U);
+  for (int i = 0; i < 7; ++i) EXPECT_EQ(all.frames[static_cast<std::size_t>(i)].index, i);
+}
+
+TEST(SpooledSource, LeavesNothingBehind) {
+  const test::TemporaryFolder parent;
+  {
+    SpooledSource source(std::make_unique<MadeSource>(3, false), parent.path());
+    (void)read_all(source);
+    EXPECT_FALSE(std::filesystem::is_empty(parent.path()));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(parent.path()));
+  EXPECT_TRUE(contains(
+      error_of([&] { SpooledSource(std::make_unique<MadeSource>(1, false), parent.path() / "absent"); }),
+      "absent"));
+}
+
+TEST(SpooledSource, IsNotPutBeforeWhatRewindsByItself) {
+  EXPECT_EQ(dynamic_cast<SpooledSource*>(make_rewindable(std::make_unique<MadeSource>(3, true)).get()),
+            nullptr);
+  EXPECT_NE(dynamic_cast<SpooledSource*>(make_rewindable(std::make_unique<MadeSource>(3, false)).get()),
+            nullptr);
+}
+
+}  // namespace
+}  // namespace roomradar
