@@ -166,12 +166,12 @@ TEST_F(DepthPassTest, WallAt8MetresIsThereToATenthOfAMillimetre) {
 }
 
 TEST_F(DepthPassTest, FirstPixelIsCentredAtZeroZero) {
-  // A wall whose left upper corner projects to image coordinates (9.6, 4.4): pixel (10, 5) is the first
-  // inside.
-  const Eigen::Vector3d corner = back_project(kCamera, 9.6, 4.4, 2.0);
+  // A wall from image coordinates (9.9, 4.9) to (30.1, 20.1): half a pixel either way would win or lose a
+  // row.
+  const Eigen::Vector3f a = back_project(kCamera, 9.9, 4.9, 2.0).cast<float>();
+  const Eigen::Vector3f b = back_project(kCamera, 30.1, 20.1, 2.0).cast<float>();
   Mesh mesh;
-  const auto x = static_cast<float>(corner.x()), y = static_cast<float>(corner.y());
-  shapes::add_quad(mesh, {x, y, 2.0F}, {x, 9.0F, 2.0F}, {9.0F, 9.0F, 2.0F}, {9.0F, y, 2.0F});
+  shapes::add_quad(mesh, a, {a.x(), b.y(), 2.0F}, b, {b.x(), a.y(), 2.0F});
   GpuMesh gpu(context);
   gpu.upload(mesh, MeshUsage::kStatic);
   const MeshInstance instance{&gpu, Eigen::Isometry3d::Identity()};
@@ -179,7 +179,7 @@ TEST_F(DepthPassTest, FirstPixelIsCentredAtZeroZero) {
   pass.render({&instance, 1}, kCamera, Eigen::Isometry3d::Identity(), depth_m);
   for (int v = 0; v < kCamera.height_px; ++v) {
     for (int u = 0; u < kCamera.width_px; ++u) {
-      EXPECT_EQ(depth_m.at(u, v) > 0.0F, u >= 10 && v >= 5) << u << " " << v;
+      EXPECT_EQ(depth_m.at(u, v) > 0.0F, u >= 10 && u <= 30 && v >= 5 && v <= 20) << u << " " << v;
     }
   }
 }
