@@ -185,7 +185,7 @@ Colour landscape(const Material& m, float u_m, float v_m, float width_m, float h
   if (sun < 0.07F) colour = {1.0F, 0.93F, 0.68F};
   for (int hill = 0; hill < 4; ++hill) {
     const auto nearness = static_cast<float>(hill + 1) / 4.0F;
-    const float crest = 0.56F - 0.13F * static_cast<float>(hill) +
+    const float crest = 0.5F - 0.12F * static_cast<float>(hill) +
                         0.1F * fractal((1.2F + static_cast<float>(hill)) * x + offset, 0.3F,
                                        m.seed + static_cast<std::uint32_t>(hill) * 9U);
     if (y > crest) continue;

@@ -12,7 +12,7 @@ Room make_wall_room() {
   room.name = "wall";
   room.interior_min_world = {-3.6, -2.6, 0.0};
   room.interior_max_world = {3.6, 2.6, 2.8};
-  add_shell(room, {Pattern::kStone, {168, 166, 160}, {112, 108, 102}, 201, 0.55F},
+  add_shell(room, {Pattern::kStone, {188, 184, 176}, {124, 118, 110}, 201, 0.55F},
             {Pattern::kPlaster, {222, 216, 206}, {190, 178, 160}, 202, 0.7F},
             {Pattern::kPlaster, {240, 240, 238}, {228, 228, 224}, 203, 0.7F});
   const Material poster_frame{Pattern::kPlain, {60, 56, 52}, {40, 38, 36}, 204, 0.3F};
@@ -35,20 +35,20 @@ Room make_wall_room() {
       {Pattern::kWood, {200, 182, 150}, {166, 146, 112}, 217, 0.6F});
   // One crate on the floor, a visitor's target, and a bench far from it.
   const double crate_top_m = 0.4;
-  add(room, standing_at(0.0, 1.75, 0, 0.2), box({0, 0, 0.5 * crate_top_m}, {0.7, 0.5, crate_top_m}),
+  add(room, standing_at(0.0, 1.2, 0, 0.2), box({0, 0, 0.5 * crate_top_m}, {0.7, 0.5, crate_top_m}),
       {Pattern::kPlanks, {190, 150, 100}, {130, 94, 56}, 218, 0.55F});
   add_table(room, standing_at(2.2, -2.25, 0), {1.4, 0.4, 0.45},
             {Pattern::kWood, {150, 104, 66}, {100, 66, 40}, 219, 0.5F});
 
   room.lamps = {{{-1.2, 0.2, 2.6}, 2.8F, 0.3}, {{1.6, 0.2, 2.6}, 2.8F, 0.3}, {{0.0, -1.8, 2.4}, 1.2F, 0.3}};
-  room.focus_world = {0.0, 1.7, crate_top_m};
+  room.focus_world = {0.0, 1.15, crate_top_m};
   room.view_azimuth_rad = -0.5 * std::numbers::pi;
-  room.walk_centre_world = {0.0, -0.2, 1.5};
-  room.walk_half_m = {1.9, 0.8};
-  room.ball_from_world = {-1.4, 1.1, 0.0};
-  room.ball_to_world = {1.3, 1.1, 0.0};
-  room.person_from_world = {-1.6, 0.9, 0.0};
-  room.person_to_world = {1.6, 0.9, 0.0};
+  room.walk_centre_world = {0.0, -0.25, 1.5};
+  room.walk_half_m = {1.75, 1.2};
+  room.ball_from_world = {-1.4, 0.6, 0.0};
+  room.ball_to_world = {1.3, 0.6, 0.0};
+  room.person_from_world = {-1.6, 2.05, 0.0};
+  room.person_to_world = {1.6, 2.05, 0.0};
   return room;
 }
 

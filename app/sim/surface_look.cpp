@@ -187,7 +187,7 @@ float SurfaceLook::light_at(const Vector3d& p_world, const Vector3d& normal_worl
     open = 1.0 - 0.85 * closed;
   }
   // Light from everywhere, a little more from above.
-  double light = (0.24 + 0.06 * normal_world.z()) * open;
+  double light = (0.28 + 0.07 * normal_world.z()) * open;
   for (const Lamp& lamp : room_.lamps) {
     double seen = 0.0;
     for (const auto& [x, y, z] : kLampPoints) {
@@ -198,7 +198,7 @@ float SurfaceLook::light_at(const Vector3d& p_world, const Vector3d& normal_worl
       const double squared_m2 = std::max(way.squaredNorm(), 0.1);
       seen += facing / (squared_m2 * std::sqrt(squared_m2));
     }
-    light += 0.3 * lamp.power * seen / 6.0 * (0.6 + 0.4 * open);
+    light += 0.37 * lamp.power * seen / 6.0 * (0.6 + 0.4 * open);
   }
   return static_cast<float>(std::pow(light, 1.0 / kGamma));
 }

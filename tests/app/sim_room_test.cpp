@@ -1,0 +1,85 @@
+// Rooms: what touches does not overlap, the mesh lies on the exact surface, and there is space to do things
+// in.
+#include <gtest/gtest.h>
+
+#include "app/sim/counter_random.hpp"
+#include "app/sim/room.hpp"
+#include "app/sim/room_mesh.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3d;
+
+class SimRoom : public testing::TestWithParam<std::string> {};
+
+TEST_P(SimRoom, MeshVerticesLieOnTheSurfaceSoNoSolidsOverlap) {
+  const Room room = make_room(GetParam());
+  const Mesh mesh = room_mesh(room);
+  ASSERT_GT(mesh.triangles.size(), 300U);
+  double deepest_m = 0.0, farthest_m = 0.0;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    const double distance_m = signed_distance_m(room, mesh.origin + vertex.cast<double>());
+    deepest_m = std::min(deepest_m, distance_m);
+    farthest_m = std::max(farthest_m, distance_m);
+  }
+  EXPECT_GT(deepest_m, -1e-6);
+  EXPECT_LT(farthest_m, 1e-6);
+}
+
+TEST_P(SimRoom, RaysFromFreePointsEndWhereTheDistanceIsZero) {
+  const Room room = make_room(GetParam());
+  CounterRandom random(3, 3);
+  const Vector3d size = room.interior_max_world - room.interior_min_world;
+  for (int i = 0; i < 3000; ++i) {
+    const Vector3d p = room.interior_min_world +
+                       size.cwiseProduct(Vector3d(random.uniform(), random.uniform(), random.uniform()));
+    const double clear_m = signed_distance_m(room, p);
+    if (clear_m < 1e-6) continue;
+    const Vector3d direction =
+        Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
+    const auto hit = cast_ray(room, p, direction);
+    ASSERT_TRUE(hit) << "a ray left the room";
+    EXPECT_GE(hit->range_m, clear_m - 1e-9) << "nothing can be nearer than the distance";
+    EXPECT_NEAR(signed_distance_m(room, p + hit->range_m * direction), 0.0, 1e-8);
+    EXPECT_LT(hit->normal_world.dot(direction), 1e-9);
+    EXPECT_NEAR(hit->normal_world.norm(), 1.0, 1e-9);
+  }
+}
+
+TEST_P(SimRoom, FocusIsASurfaceWithSpaceForATeapot) {
+  const Room room = make_room(GetParam());
+  EXPECT_NEAR(signed_distance_m(room, room.focus_world), 0.0, 1e-9);
+  // A ball of 12 cm radius fits above the focus, and so does its way down from half a metre.
+  for (double height_m = 0.121; height_m < 0.5; height_m += 0.01)
+    EXPECT_GT(signed_distance_m(room, room.focus_world + Vector3d(0, 0, height_m)), 0.12);
+}
+
+TEST_P(SimRoom, WaysOfBallAndPersonAreFree) {
+  const Room room = make_room(GetParam());
+  const double ball_m = room.ball_from_world.z() > 0.1 ? 0.055 : 0.11;
+  for (double part = 0.0; part <= 1.0; part += 0.02) {
+    const Vector3d ball = room.ball_from_world + part * (room.ball_to_world - room.ball_from_world);
+    EXPECT_NEAR(signed_distance_m(room, ball + Vector3d(0, 0, ball_m)), ball_m, 1e-9)
+        << "the ball rolls on something";
+    const Vector3d person = room.person_from_world + part * (room.person_to_world - room.person_from_world);
+    for (double height_m = 0.45; height_m < 1.7; height_m += 0.1)
+      EXPECT_GT(signed_distance_m(room, person + Vector3d(0, 0, height_m)), 0.4);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EachRoom, SimRoom, testing::ValuesIn(room_names()));
+
+TEST(SimRoomNames, AnUnknownNameIsRefusedWithTheKnownOnes) {
+  try {
+    make_room("attic");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("attic"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("table, shelf, wall"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace roomradar

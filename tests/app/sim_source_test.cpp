@@ -1,0 +1,169 @@
+// Frames of the simulated source: determinism, ground truth against slow rays, and what a frame carries.
+#include <gtest/gtest.h>
+
+#include "app/sim/camera_path.hpp"
+#include "app/sim/counter_random.hpp"
+#include "app/sim/movers.hpp"
+#include "app/sim/room.hpp"
+#include "app/sim/simulated_source.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3d;
+
+Frame frame_of(SimulatedSource& source, std::int64_t index) {
+  Frame frame;
+  EXPECT_TRUE(source.seek(index));
+  EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);
+  EXPECT_EQ(frame.index, index);
+  return frame;
+}
+
+TEST(SimSource, FrameDependsOnOptionsAndIndexAlone) {
+  const SimOptions options =
+      parse_sim_spec("sim:table?frames=5&width=160&path=view&moving=hand,ball,person&seed=2");
+  SimulatedSource first(options), second(options);
+  Frame frame;
+  std::vector<Frame> in_order;
+  while (first.next(frame).status == ReadStatus::kFrame) in_order.push_back(frame);
+  ASSERT_EQ(in_order.size(), 5U);
+  EXPECT_EQ(first.next(frame).status, ReadStatus::kEnd);
+  EXPECT_EQ(frame.index, 4) << "the end leaves the frame as it was";
+  for (const std::int64_t index : {3, 0, 4, 1}) {
+    const Frame again = frame_of(second, index);
+    const Frame& before = in_order[static_cast<std::size_t>(index)];
+    EXPECT_EQ(again.depth_m.pixels, before.depth_m.pixels);
+    EXPECT_EQ(again.colour.pixels, before.colour.pixels);
+    EXPECT_EQ(again.T_world_camera->matrix(), before.T_world_camera->matrix());
+    EXPECT_EQ(again.stamp_s, before.stamp_s);
+  }
+  EXPECT_TRUE(first.rewind());
+  EXPECT_EQ(first.next(frame).status, ReadStatus::kFrame);
+  EXPECT_EQ(frame.depth_m.pixels, in_order[0].depth_m.pixels);
+  EXPECT_FALSE(first.seek(5));
+  EXPECT_FALSE(first.seek(-1));
+}
+
+TEST(SimSource, FrameCarriesCameraPoseGravityAndStamp) {
+  SimulatedSource source(parse_sim_spec("sim:wall?frames=4&width=160&rate=20"));
+  const Frame frame = frame_of(source, 3);
+  EXPECT_DOUBLE_EQ(frame.stamp_s, 0.15);
+  EXPECT_EQ(frame.depth_m.width, 160);
+  EXPECT_EQ(frame.depth_m.height, 120);
+  EXPECT_EQ(frame.depth_camera.width_px, 160);
+  EXPECT_EQ(frame.colour.width, 160);
+  ASSERT_TRUE(frame.T_world_camera && frame.down_camera);
+  EXPECT_LT((frame.T_world_camera->linear() * *frame.down_camera + Vector3d::UnitZ()).norm(), 1e-12);
+  EXPECT_GT(frame.down_camera->y(), 0.5) << "held upright: gravity points down in the image";
+  EXPECT_EQ(source.truth().T_world_camera.matrix(), frame.T_world_camera->matrix());
+  EXPECT_EQ(source.frame_count(), 4);
+  EXPECT_EQ(source.name(), "sim:wall?frames=4&rate=20&width=160");
+}
+
+TEST(SimSource, TruthAgreesWithSlowRaysThroughEverySolid) {
+  const SimOptions options =
+      parse_sim_spec("sim:table?frames=200&width=160&path=view&moving=hand,ball,person&seed=2");
+  SimulatedSource source(options);
+  CounterRandom random(1, 1);
+  std::vector<Mover> movers;
+  const double duration_s = 200.0 / 30.0;
+  const Vector3d viewer_world =
+      plan_camera_path(source.room(), CameraPathKind::kView, 2, duration_s).centre_world;
+  for (const MoverKind kind : options.movers)
+    movers.push_back(plan_mover(kind, source.room(), viewer_world, 2));
+  int moved = 0;
+  for (const std::int64_t index : {20, 75, 130}) {
+    const Frame frame = frame_of(source, index);
+    std::vector<Solid> solids = source.room().solids;
+    std::vector<std::size_t> ends;
+    for (const Mover& mover : movers) {
+      append_solids(mover, frame.stamp_s, solids);
+      ends.push_back(solids.size());
+    }
+    const SolidTree tree(solids);
+    for (int i = 0; i < 4000; ++i) {
+      const int x = static_cast<int>(random.uniform() * 160), y = static_cast<int>(random.uniform() * 120);
+      const Vector3d direction = frame.T_world_camera->linear() * back_project(frame.depth_camera, x, y, 1.0);
+      const auto hit = tree.cast(solids, frame.T_world_camera->translation(), direction, 100.0);
+      ASSERT_TRUE(hit);
+      std::uint8_t expected = 0;
+      if (hit->solid >= static_cast<int>(source.room().solids.size()))
+        for (expected = 1; hit->solid >= static_cast<int>(ends[expected - 1U]);) ++expected;
+      const bool in_range = hit->range_m >= 0.5 && hit->range_m <= 8.0;
+      EXPECT_NEAR(source.truth().depth_m.at(x, y), in_range ? hit->range_m : 0.0, 1e-5);
+      EXPECT_EQ(source.truth().mover.at(x, y), expected);
+      EXPECT_EQ(source.truth().moved.at(x, y), expected > 0 ? 255 : 0);
+      moved += expected > 0;
+    }
+  }
+  EXPECT_GT(moved, 300);
+}
+
+TEST(SimSource, HandPassesBeforeTheFocusAndWithdraws) {
+  SimulatedSource source(parse_sim_spec("sim:table?frames=180&width=64&path=view&moving=hand&noise=0"));
+  int hidden = 0, open = 0;
+  for (std::int64_t index = 0; index < 180; index += 6) {
+    const Frame frame = frame_of(source, index);
+    const Eigen::Vector2d uv =
+        project(frame.depth_camera, frame.T_world_camera->inverse() * source.room().focus_world);
+    const bool is_hand = source.truth().moved.at(static_cast<int>(std::lround(uv.x())),
+                                                 static_cast<int>(std::lround(uv.y()))) > 0;
+    (is_hand ? hidden : open)++;
+  }
+  EXPECT_GE(hidden, 3);
+  EXPECT_GE(open, 10);
+}
+
+TEST(SimSource, WithoutNoiseTheDepthIsTheTruth) {
+  SimulatedSource source(parse_sim_spec("sim:shelf?frames=10&width=160&noise=0"));
+  const Frame frame = frame_of(source, 5);
+  EXPECT_EQ(frame.depth_m.pixels, source.truth().depth_m.pixels);
+  std::size_t valid = 0;
+  for (const float depth_m : frame.depth_m.pixels) valid += depth_m > 0.0F;
+  EXPECT_GT(valid, frame.depth_m.pixels.size() * 99 / 100);
+}
+
+TEST(SimSource, NoisyDepthIsNearTheTruthForMostPixels) {
+  SimulatedSource source(parse_sim_spec("sim:table?frames=10&path=view"));
+  const Frame frame = frame_of(source, 5);
+  std::size_t valid = 0, close = 0;
+  for (std::size_t i = 0; i < frame.depth_m.pixels.size(); ++i) {
+    const float measured_m = frame.depth_m.pixels[i], exact_m = source.truth().depth_m.pixels[i];
+    ASSERT_TRUE(measured_m == 0.0F || (measured_m >= 0.5F && measured_m <= 8.0F));
+    if (measured_m == 0.0F || exact_m == 0.0F) continue;
+    ++valid;
+    close += std::abs(measured_m - exact_m) < 0.02F + 0.01F * exact_m * exact_m;
+  }
+  EXPECT_GT(valid, frame.depth_m.pixels.size() * 85 / 100);
+  EXPECT_LT(valid, frame.depth_m.pixels.size() * 99 / 100) << "a Kinect has shadows";
+  EXPECT_GT(close, valid * 96 / 100);
+}
+
+TEST(SimSource, ASeparateColourCameraSeesTheSamePointsBesideTheDepthCamera) {
+  SimulatedSource apart(parse_sim_spec("sim:table?frames=3&path=view&noise=0&width=320&colour=separate"));
+  SimulatedSource together(parse_sim_spec("sim:table?frames=3&path=view&noise=0&width=320"));
+  const Frame a = frame_of(apart, 1), b = frame_of(together, 1);
+  EXPECT_NEAR(a.T_colour_depth.translation().x(), -0.025, 1e-12);
+  EXPECT_EQ(a.depth_m.pixels, b.depth_m.pixels);
+  // The colour of a depth pixel's point, looked up in the colour camera, is the registered colour of that
+  // pixel.
+  std::size_t alike = 0, compared = 0;
+  for (int y = 40; y < 200; y += 3)
+    for (int x = 40; x < 280; x += 3) {
+      const double depth_m = a.depth_m.at(x, y);
+      if (depth_m <= 0.0) continue;
+      const Eigen::Vector2d uv =
+          project(a.colour_camera, a.T_colour_depth * back_project(a.depth_camera, x, y, depth_m));
+      const int u = static_cast<int>(std::lround(uv.x())), v = static_cast<int>(std::lround(uv.y()));
+      if (!a.colour.contains(u, v)) continue;
+      ++compared;
+      const Rgb p = a.colour.at(u, v), q = b.colour.at(x, y);
+      alike += std::abs(p.r - q.r) + std::abs(p.g - q.g) + std::abs(p.b - q.b) < 45;
+    }
+  ASSERT_GT(compared, 2000U);
+  EXPECT_GT(alike, compared * 85 / 100);
+}
+
+}  // namespace
+}  // namespace roomradar
