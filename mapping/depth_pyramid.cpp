@@ -33,10 +33,9 @@ void halve(const Image<DepthBounds>& fine, Image<DepthBounds>& coarse) {
 }  // namespace
 
 DepthBounds truncation_layer(float depth_m, double resolution_m, const FusionConfig& config) {
-  const auto voxel_m = static_cast<float>(resolution_m);
-  const float noise_m = config.truncation_sigmas * depth_sigma_m(depth_m);
-  return {depth_m - std::max(config.truncation_voxels * voxel_m, noise_m),
-          depth_m + std::max(config.hidden_voxels * voxel_m, noise_m)};
+  const float half_m = std::max(config.truncation_voxels * static_cast<float>(resolution_m),
+                                config.truncation_sigmas * depth_sigma_m(depth_m));
+  return {depth_m - half_m, depth_m + half_m};
 }
 
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,

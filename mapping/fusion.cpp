@@ -130,11 +130,7 @@ class Descent {
       } else if (observed[i].free) {
         miss(leaf);
       }
-      if (observed[i].sampled) {
-        add_sample(leaf, observed[i]);
-      } else if (observed[i].free && leaf.has_sample()) {
-        fade_sample(leaf, observed[i]);
-      }
+      if (observed[i].sampled) add_sample(leaf, observed[i]);
     }
     tree_.summarise(node);
   }
@@ -154,8 +150,6 @@ class Descent {
     if (!(depth > 0.0F)) return seen;
     if (depth > config_.max_range_m) {
       seen.free = z < config_.max_range_m;
-      seen.distance_m = config_.max_range_m - z;
-      seen.weight = weight_of(z);
       return seen;
     }
     const DepthBounds& bounds = pyramid_.levels.front().at(x, y);
@@ -204,12 +198,14 @@ class Descent {
     leaf.colour_count = std::min(static_cast<std::uint8_t>(leaf.colour_count + 1), kMaxColours);
   }
 
-  // The leaf is seen through, farther from any surface than the truncation: its distance is at least that.
-  // Once this is settled the sample goes, so that the leaf can merge with the free space around it.
-  void fade_sample(RoomNode& leaf, const Observation& seen) const {
+  // The leaf lies in a node that is seen through as a whole: its distance is at least the truncation. Once
+  // this is settled the sample goes, so that the leaf can merge with the free space around it. A leaf seen
+  // through by its own pixel alone keeps its sample: beside an edge, and on surfaces seen obliquely, that is
+  // noise more often than change.
+  void fade_sample(RoomNode& leaf, float weight) const {
     const float truncation = config_.truncation_voxels * static_cast<float>(tree_.getResolution());
-    const float sum = leaf.weight + seen.weight;
-    leaf.distance_m += (std::max(truncation, leaf.distance_m) - leaf.distance_m) * (seen.weight / sum);
+    const float sum = leaf.weight + weight;
+    leaf.distance_m += (std::max(truncation, leaf.distance_m) - leaf.distance_m) * (weight / sum);
     leaf.weight = std::min(sum, config_.max_weight);
     if (leaf.getLogOdds() <= config_.min_log_odds && leaf.distance_m > 0.7F * truncation)
       leaf.forget_sample();
@@ -219,7 +215,7 @@ class Descent {
   void mark_free(RoomNode& node, float weight) {
     if (!tree_.nodeHasChildren(&node)) {
       miss(node);
-      if (node.has_sample()) fade_sample(node, {.free = true, .weight = weight});
+      if (node.has_sample()) fade_sample(node, weight);
       return;
     }
     for (unsigned i = 0; i < 8; ++i) mark_free(tree_.ensure_child(node, i), weight);

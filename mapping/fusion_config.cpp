@@ -20,8 +20,6 @@ void require_valid(const FusionConfig& c) {
           "must be in 0..100 m");
   require(c.truncation_voxels >= 1.5F && c.truncation_voxels <= 100.0F, "truncation_voxels",
           c.truncation_voxels, "must be in 1.5..100, or the surface falls between samples");
-  require(c.hidden_voxels >= 1.5F && c.hidden_voxels <= 100.0F, "hidden_voxels", c.hidden_voxels,
-          "must be in 1.5..100, or the surface falls between samples");
   require(c.truncation_sigmas >= 0.0F && c.truncation_sigmas <= 10.0F, "truncation_sigmas",
           c.truncation_sigmas, "must be in 0..10");
   require(c.max_weight > 0.0F && std::isfinite(c.max_weight), "max_weight", c.max_weight, "must be > 0");

@@ -4,9 +4,9 @@
 namespace roomradar {
 
 struct FusionConfig {
-  float max_range_m = 5.0F;          ///< surfaces beyond are too noisy (sigma 4 cm); rays clear up to here
-  float truncation_voxels = 3.0F;    ///< signed distance is kept this far before a surface, at least,
-  float hidden_voxels = 5.0F;        ///< this far behind it, at least, or surfaces seen obliquely get holes,
+  float max_range_m = 5.0F;  ///< surfaces beyond are too noisy (sigma 4 cm); rays clear up to here
+  float truncation_voxels =
+      4.0F;  ///< signed distance is kept this far from a surface, at least (3 leave holes),
   float truncation_sigmas = 4.0F;    ///< and this many standard deviations of the measured depth
   float max_weight = 64.0F;          ///< cap of a sample's weight, so that what changed can be forgotten
   float hit_log_odds = 0.847298F;    ///< OctoMap's p = 0.7 for a voxel that a ray ends in
