@@ -13,12 +13,11 @@ constexpr int kMostMeasurements = 60;  // then the mean goes on as a moving one
 
 }  // namespace
 
-Keyframe make_keyframe(std::int64_t frame_index, const ViewPyramid& pyramid, const LiveView& live,
+Keyframe make_keyframe(std::int64_t frame_index, const ViewPyramid& pyramid,
                        const Eigen::Isometry3d& T_world_camera, const ViewConfig& config) {
   Keyframe keyframe;
   keyframe.frame_index = frame_index;
   keyframe.pyramid.levels = pyramid.levels;
-  keyframe.live = live;
   const Intrinsics& camera = pyramid.levels.front().camera;
   keyframe.measured.resize(camera.width_px, camera.height_px, 1);
   make_reference(keyframe.pyramid, T_world_camera, config, keyframe.reference);

@@ -12,11 +12,10 @@ struct Keyframe {
   ViewPyramid pyramid;             ///< the finest level's depth is the mean of all measurements so far
   Image<std::uint8_t> measured;    ///< how many measurements that is, a pixel
   ReferenceView reference;         ///< made from the pyramid; holds the pose
-  LiveView live;                   ///< the view as it was seen, to be aligned with other keyframes
   int improved_since_refresh = 0;  ///< views added since the reference was made
 };
 
-Keyframe make_keyframe(std::int64_t frame_index, const ViewPyramid& pyramid, const LiveView& live,
+Keyframe make_keyframe(std::int64_t frame_index, const ViewPyramid& pyramid,
                        const Eigen::Isometry3d& T_world_camera, const ViewConfig& config);
 
 /// Averages another view's depth into the keyframe's where both see the same surface. The reference stays as

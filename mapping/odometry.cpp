@@ -2,34 +2,27 @@
 #include "mapping/odometry.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
-#include "mapping/keyframe.hpp"
-#include "mapping/pose_graph.hpp"
+#include "mapping/place_matching.hpp"
 
 namespace roomradar {
 namespace {
-
-constexpr int kRefreshEvery = 5;        // views averaged into a keyframe between two makings of its reference
-constexpr std::size_t kNeighbours = 3;  // keyframes closer in number than this are neighbours, not loops
 
 /// A frame as it is kept: relative to a keyframe, so that it moves when the keyframe is moved.
 struct KeptFrame {
   std::int64_t frame_index = 0;
   double stamp_s = 0.0;
-  std::size_t keyframe = 0;
+  std::optional<std::size_t> keyframe;  ///< none: the pose is in the world, and fixed
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
   TrackStatus status = TrackStatus::kDiverged;
   bool trusted = false;
 };
 
-double angle_rad(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
-
-/// How far apart two views are, 1 being where they hardly see the same any more.
-double view_distance(const Eigen::Isometry3d& T) {
-  return T.translation().norm() / 0.8 + angle_rad(T) / (35.0 * std::numbers::pi / 180.0);
+bool has_pose(const Tracking& tracking) {
+  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
 }
 
 }  // namespace
@@ -39,107 +32,123 @@ struct Odometry::State {
   OdometryCounts counts;
   ViewPyramid pyramid;
   LiveView live;
-  std::vector<Keyframe> keyframes;
-  std::vector<PoseConstraint> constraints;
+  KeyframeGraph graph;
+  Places places;  ///< one a keyframe while tracking
   std::vector<KeptFrame> frames;
-  std::size_t current = 0;  ///< the keyframe that the last frame was aligned with
+  std::size_t current = 0;  ///< the keyframe that the last frame was aligned with first
   Eigen::Isometry3d T_world_last = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< motion from frame to frame
+  Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< the last motion from frame to frame
 
-  [[nodiscard]] std::vector<std::size_t> nearest_keyframes(const Eigen::Isometry3d& T_world_camera,
-                                                           std::size_t count, double furthest) const;
-  [[nodiscard]] Tracking align_with(const std::vector<std::size_t>& chosen,
-                                    const Eigen::Isometry3d& guess) const;
-  [[nodiscard]] bool needs_keyframe(const Tracking& tracking) const;
-  void add_keyframe(const Frame& frame, const Tracking& tracking);
-  void join(std::size_t older, std::size_t newer, bool& loop);
-  void solve_graph();
+  Tracking start(const Frame& frame);
+  [[nodiscard]] Tracking align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess) const;
+  Tracking recover(const Frame& frame);
+  void improve_current(const Tracking& tracking);
+  [[nodiscard]] bool is_far_from(std::size_t keyframe, const Tracking& tracking) const;
+  void choose_keyframe(const Frame& frame, Tracking& tracking);
+  void add_keyframe(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  void join_alike();
   void keep(const Frame& frame, const Tracking& tracking);
 };
 
-std::vector<std::size_t> Odometry::State::nearest_keyframes(const Eigen::Isometry3d& T_world_camera,
-                                                            std::size_t count, double furthest) const {
-  std::vector<std::pair<double, std::size_t>> found;
-  for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    const double distance = view_distance(keyframes[i].reference.T_world_view.inverse() * T_world_camera);
-    if (distance < furthest) found.emplace_back(distance, i);
+Tracking Odometry::State::start(const Frame& frame) {
+  Tracking tracking;
+  const auto enough = static_cast<std::size_t>(std::max(config.align.min_points, 1));
+  if (live.levels.front().size() < enough) {
+    tracking.status = TrackStatus::kTooFewPoints;
+    return tracking;
   }
-  std::sort(found.begin(), found.end());
-  std::vector<std::size_t> nearest;
-  for (const auto& [distance, i] : found) {
-    if (nearest.size() < count) nearest.push_back(i);
-  }
-  return nearest;
+  tracking.status = TrackStatus::kTracked;
+  tracking.overlap = tracking.inlier_fraction = 1.0;
+  add_keyframe(frame, tracking.T_world_camera);
+  return tracking;
 }
 
-Tracking Odometry::State::align_with(const std::vector<std::size_t>& chosen,
-                                     const Eigen::Isometry3d& guess) const {
-  std::vector<const ReferenceView*> references;
-  for (const std::size_t i : chosen) references.push_back(&keyframes[i].reference);
-  return align(live, references, guess, config.align);
+Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess) const {
+  constexpr double kUsefulReference =
+      0.7;  // view_distance(); past it too little of the frame meets the keyframe
+  const auto most = static_cast<std::size_t>(std::max(config.references, 1));
+  std::vector<const ReferenceView*> references{&graph.keyframes[first].reference};
+  for (const std::size_t i : keyframes_near(graph, T_world_guess, kUsefulReference)) {
+    if (i != first && references.size() < most) references.push_back(&graph.keyframes[i].reference);
+  }
+  return align(live, references, T_world_guess, config.align);
 }
 
-bool Odometry::State::needs_keyframe(const Tracking& tracking) const {
-  if (tracking.overlap < config.keyframe_overlap) return true;
-  const Eigen::Isometry3d T = keyframes[current].reference.T_world_view.inverse() * tracking.T_world_camera;
+Tracking Odometry::State::recover(const Frame& frame) {
+  const Tracking standing = align_near(current, T_world_last);
+  if (standing) return standing;
+  const Relocalisation found = relocalise(frame, places, config.relocalise);
+  if (!found) return standing;
+  const auto keyframe = static_cast<std::size_t>(found.keyframe);
+  const Tracking tracking = align_near(keyframe, found.T_world_camera);
+  if (!tracking) return standing;
+  ++counts.relocalised;
+  current = keyframe;
+  return tracking;
+}
+
+void Odometry::State::improve_current(const Tracking& tracking) {
+  Keyframe& keyframe = graph.keyframes[current];
+  improve_depth(keyframe, pyramid, tracking.T_world_camera);
+  if (keyframe.improved_since_refresh >= config.improve_every) refresh(keyframe, config.view);
+}
+
+bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking) const {
+  const Eigen::Isometry3d T =
+      graph.keyframes[keyframe].reference.T_world_view.inverse() * tracking.T_world_camera;
   return T.translation().norm() > config.keyframe_distance_m ||
-         angle_rad(T) > config.keyframe_angle_deg * std::numbers::pi / 180.0;
+         Eigen::AngleAxisd(T.linear()).angle() > config.keyframe_angle_deg * std::numbers::pi / 180.0;
 }
 
-void Odometry::State::join(std::size_t older, std::size_t newer, bool& loop) {
-  const Keyframe& a = keyframes[older];
-  const Keyframe& b = keyframes[newer];
-  const Eigen::Isometry3d& T_world_a = a.reference.T_world_view;
-  const Eigen::Isometry3d& T_world_b = b.reference.T_world_view;
-  const Tracking b_in_a = align(b.live, a.reference, T_world_b, config.align);
-  const Tracking a_in_b = align(a.live, b.reference, T_world_a, config.align);
-  const bool neighbours = newer - older < kNeighbours;
-  const auto good = [](const Tracking& t) {
-    return (t.status == TrackStatus::kTracked || t.status == TrackStatus::kDegenerate) && t.overlap > 0.25 &&
-           t.inlier_fraction > 0.5;
-  };
-  if (!good(b_in_a) || !good(a_in_b)) {
-    if (!neighbours) ++counts.loops_rejected;
+void Odometry::State::choose_keyframe(const Frame& frame, Tracking& tracking) {
+  const bool little_in_common = tracking.overlap < config.keyframe_overlap;
+  if (!little_in_common && !is_far_from(current, tracking)) return;
+  const std::vector<std::size_t> near = keyframes_near(graph, tracking.T_world_camera, 1.0);
+  if (!near.empty() && near.front() != current && !is_far_from(near.front(), tracking)) {
+    current = near.front();
     return;
   }
-  const Eigen::Isometry3d T_a_b = T_world_a.inverse() * b_in_a.T_world_camera;
-  const Eigen::Isometry3d T_b_a = T_world_b.inverse() * a_in_b.T_world_camera;
-  const Eigen::Isometry3d gap = T_a_b * T_b_a;
-  if (gap.translation().norm() > config.max_gap || angle_rad(gap) > config.max_gap) {
-    if (!neighbours) ++counts.loops_rejected;
-    return;
-  }
-  constraints.push_back({older, newer, T_a_b, b_in_a.information, !neighbours});
-  constraints.push_back({newer, older, T_b_a, a_in_b.information, !neighbours});
-  if (!neighbours) {
-    ++counts.loops_found;
-    loop = true;
-  }
+  add_keyframe(frame, tracking.T_world_camera);
+  tracking.T_world_camera = graph.keyframes[current].reference.T_world_view;
 }
 
-void Odometry::State::solve_graph() {
-  std::vector<Eigen::Isometry3d> poses;
-  for (const Keyframe& keyframe : keyframes) poses.push_back(keyframe.reference.T_world_view);
-  if (!optimise_pose_graph(poses, constraints).usable) return;
-  for (std::size_t i = 0; i < poses.size(); ++i) keyframes[i].reference.T_world_view = poses[i];
-}
-
-void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking) {
-  const std::vector<std::size_t> near = nearest_keyframes(
-      tracking.T_world_camera, static_cast<std::size_t>(config.loop_candidates), config.furthest);
-  keyframes.push_back(make_keyframe(frame.index, pyramid, live, tracking.T_world_camera, config.view));
-  current = keyframes.size() - 1;
+void Odometry::State::add_keyframe(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  graph.keyframes.push_back(make_keyframe(frame.index, pyramid, T_world_camera, config.view));
+  places.keyframes.push_back(describe_place(frame, T_world_camera, config.place));
   ++counts.keyframes;
-  bool loop = false;
-  for (const std::size_t older : near) join(older, current, loop);
-  if (config.solve_online && !near.empty()) solve_graph();
+  current = graph.keyframes.size() - 1;
+  join_alike();
+  join_newest(graph, config.align, config.graph);
+  for (std::size_t i = 0; i < graph.keyframes.size(); ++i) {
+    places.keyframes[i].T_world_camera = graph.keyframes[i].reference.T_world_view;
+  }
+}
+
+/// Joins the newest keyframe with one that looks alike but is thought to be far away: where the poses have
+/// drifted apart, appearance still knows the place.
+void Odometry::State::join_alike() {
+  constexpr int kMinMatches = 25, kMinInliers = 30;
+  constexpr std::size_t kCandidates = 2;
+  const Place& newest = places.keyframes.back();
+  const std::span<const Place> older(places.keyframes.data(), places.keyframes.size() - 1);
+  for (const std::size_t i : most_alike(newest, older, kCandidates, kMinMatches)) {
+    const Eigen::Isometry3d T_older_newest = older[i].T_world_camera.inverse() * newest.T_world_camera;
+    if (view_distance(T_older_newest) < config.graph.furthest) continue;
+    const PlaceMatch match = match_places(older[i], newest);
+    if (match.inliers < kMinInliers) continue;
+    join(graph, i, graph.keyframes.size() - 1, match.T_a_b, config.align, config.graph);
+  }
 }
 
 void Odometry::State::keep(const Frame& frame, const Tracking& tracking) {
-  const Eigen::Isometry3d T_keyframe_camera =
-      keyframes[current].reference.T_world_view.inverse() * tracking.T_world_camera;
-  frames.push_back({frame.index, frame.stamp_s, current, T_keyframe_camera, tracking.status,
-                    tracking.status == TrackStatus::kTracked});
+  KeptFrame kept{frame.index,     frame.stamp_s, std::nullopt, tracking.T_world_camera,
+                 tracking.status, bool{tracking}};
+  if (!graph.keyframes.empty()) {
+    kept.keyframe = current;
+    kept.T_keyframe_camera =
+        graph.keyframes[current].reference.T_world_view.inverse() * tracking.T_world_camera;
+  }
+  frames.push_back(kept);
 }
 
 Odometry::Odometry(const OdometryConfig& config) : state_(std::make_unique<State>()) {
@@ -154,60 +163,69 @@ Tracking Odometry::track(const Frame& frame) {
   ++s.counts.frames;
   make_pyramid(frame, s.config.view, s.pyramid);
   make_live(s.pyramid, s.live);
-  Tracking tracking;
-  if (s.keyframes.empty()) {
-    tracking.status = TrackStatus::kTracked;
-    s.add_keyframe(frame, tracking);
+  const bool first = s.graph.keyframes.empty();
+  Tracking tracking = first ? s.start(frame) : s.align_near(s.current, s.T_world_last * s.T_last_next);
+  if (!first && !has_pose(tracking)) tracking = s.recover(frame);
+
+  if (!has_pose(tracking)) {
+    ++s.counts.lost;
+    tracking.T_world_camera = s.T_world_last;
+    s.T_last_next.setIdentity();
     s.keep(frame, tracking);
     return tracking;
   }
-  const Eigen::Isometry3d guess = s.T_world_last * s.T_last_next;
-  std::vector<std::size_t> chosen{s.current};
-  for (const std::size_t i : s.nearest_keyframes(guess, static_cast<std::size_t>(s.config.references), 0.7)) {
-    if (i != s.current && chosen.size() < static_cast<std::size_t>(s.config.references)) chosen.push_back(i);
+  const Eigen::Isometry3d T_last_next = s.T_world_last.inverse() * tracking.T_world_camera;
+  if (tracking && !first) {
+    s.improve_current(tracking);
+    s.choose_keyframe(frame, tracking);
   }
-  tracking = s.align_with(chosen, guess);
-  if (tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate) {
-    s.T_last_next = s.T_world_last.inverse() * tracking.T_world_camera;
-    if (tracking) {
-      ++s.counts.tracked;
-      Keyframe& keyframe = s.keyframes[s.current];
-      improve_depth(keyframe, s.pyramid, tracking.T_world_camera);
-      if (keyframe.improved_since_refresh >= kRefreshEvery) refresh(keyframe, s.config.view);
-      if (s.needs_keyframe(tracking)) {
-        const std::vector<std::size_t> near = s.nearest_keyframes(tracking.T_world_camera, 1, 10.0);
-        const std::size_t before = s.current;
-        s.current = near.front();
-        if (s.needs_keyframe(tracking)) {
-          s.current = before;
-          s.add_keyframe(frame, tracking);
-          tracking.T_world_camera = s.keyframes[s.current].reference.T_world_view;
-        }
-      }
-    } else {
-      ++s.counts.degenerate;
-    }
-    s.T_world_last = tracking.T_world_camera;
-  } else {
-    ++s.counts.lost;
-    s.T_last_next.setIdentity();
-  }
+  ++(tracking ? s.counts.tracked : s.counts.degenerate);
+  s.T_last_next = T_last_next;
+  s.T_world_last = tracking.T_world_camera;
   s.keep(frame, tracking);
   return tracking;
 }
 
+void Odometry::add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  State& s = *state_;
+  ++s.counts.frames;
+  ++s.counts.tracked;
+  s.frames.push_back({frame.index, frame.stamp_s, std::nullopt, T_world_camera, TrackStatus::kTracked, true});
+  const double limit = view_distance(
+      Eigen::Translation3d(s.config.keyframe_distance_m, 0, 0) *
+      Eigen::AngleAxisd(s.config.keyframe_angle_deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX()));
+  const bool known =
+      std::any_of(s.places.keyframes.begin(), s.places.keyframes.end(), [&](const Place& place) {
+        return view_distance(place.T_world_camera.inverse() * T_world_camera) < limit;
+      });
+  if (known) return;
+  s.places.keyframes.push_back(describe_place(frame, T_world_camera, s.config.place));
+  ++s.counts.keyframes;
+}
+
 std::vector<TrackedFrame> Odometry::optimise() {
   State& s = *state_;
-  s.solve_graph();
+  join_all(s.graph, s.config.view, s.config.align, s.config.graph);
+  for (std::size_t i = 0; i < s.graph.keyframes.size(); ++i) {
+    s.places.keyframes[i].T_world_camera = s.graph.keyframes[i].reference.T_world_view;
+  }
   std::vector<TrackedFrame> trajectory;
   for (const KeptFrame& f : s.frames) {
-    trajectory.push_back({f.frame_index, f.stamp_s,
-                          s.keyframes[f.keyframe].reference.T_world_view * f.T_keyframe_camera, f.status,
-                          f.trusted});
+    const Eigen::Isometry3d T_world_camera =
+        f.keyframe ? s.graph.keyframes[*f.keyframe].reference.T_world_view * f.T_keyframe_camera
+                   : f.T_keyframe_camera;
+    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera, f.status, f.trusted});
   }
   return trajectory;
 }
 
-const OdometryCounts& Odometry::counts() const { return state_->counts; }
+Places Odometry::take_places() { return std::exchange(state_->places, {}); }
+
+OdometryCounts Odometry::counts() const {
+  OdometryCounts counts = state_->counts;
+  counts.loops_found = state_->graph.loops_found;
+  counts.loops_rejected = state_->graph.loops_rejected;
+  return counts;
+}
 
 }  // namespace roomradar

@@ -73,7 +73,6 @@ struct RelocaliseConfig {
   int candidates = 6;  ///< views that are tried, the most alike first
   int min_feature_inliers = 20;
   double min_depth_agreement = 0.7;
-  double max_reprojection_px = 3.0;
 };
 
 /// Finds the frame's camera among the places: ORB matches vote for views, perspective-n-point with RANSAC

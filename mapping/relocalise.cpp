@@ -1,0 +1,153 @@
+// relocalise.cpp: where in a known room a frame was taken.
+#include <algorithm>
+#include <cmath>
+
+#include "mapping/align.hpp"
+#include "mapping/place_matching.hpp"
+#include "mapping/places.hpp"
+
+namespace roomradar {
+namespace {
+
+void make_preview_pyramid(const Place& place, const ViewConfig& view, ViewPyramid& pyramid) {
+  DepthImage depth_m(place.preview_camera.width_px, place.preview_camera.height_px);
+  std::transform(place.preview_depth_mm.pixels.begin(), place.preview_depth_mm.pixels.end(),
+                 depth_m.pixels.begin(), [](std::uint16_t mm) { return 0.001F * static_cast<float>(mm); });
+  make_pyramid(depth_m, place.preview_camera, view, pyramid);
+}
+
+/// The preview as something to align with, at the origin.
+ReferenceView reference_of(const ViewPyramid& preview, const ViewConfig& view) {
+  ReferenceView reference;
+  make_reference(preview, Eigen::Isometry3d::Identity(), view, reference);
+  return reference;
+}
+
+struct Proof {
+  bool holds = false;
+  Eigen::Isometry3d T_place_camera = Eigen::Isometry3d::Identity();
+  double agreement = 0.0;
+};
+
+bool is_aligned(const Tracking& t) {
+  return t.status == TrackStatus::kTracked || t.status == TrackStatus::kDegenerate;
+}
+
+double angle_rad(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
+
+/// Refines a pose found by features with the view's depth: these must agree with each other and with the
+/// depth.
+Proof prove_with_features(const LiveView& live, const Place& place, const PlaceMatch& match,
+                          const RelocaliseConfig& config, const ViewConfig& view) {
+  constexpr double kMaxCorrection_m = 0.12, kMaxCorrection_rad = 0.12;
+  ViewPyramid preview;
+  make_preview_pyramid(place, view, preview);
+  const ReferenceView reference = reference_of(preview, view);
+  const Tracking t = align(live, reference, match.T_a_b, {.coarsest_level = 1, .gate_m = 0.15F});
+  Proof proof{.T_place_camera = t.T_world_camera, .agreement = t.inlier_fraction};
+  const Eigen::Isometry3d correction = match.T_a_b.inverse() * t.T_world_camera;
+  proof.holds = is_aligned(t) && t.overlap > 0.2 && t.inlier_fraction >= config.min_depth_agreement &&
+                correction.translation().norm() < kMaxCorrection_m &&
+                angle_rad(correction) < kMaxCorrection_rad;
+  return proof;
+}
+
+/// Without features a pose must be found from the view's own, fixed in all directions, overlap well, and come
+/// out the same when the view is aligned with the frame instead.
+Proof prove_with_depth(const LiveView& live, const ReferenceView& live_reference, const Place& place,
+                       const ViewConfig& view) {
+  constexpr double kMinAgreement = 0.85, kMinOverlap = 0.6, kMaxGap_m = 0.03, kMaxGap_rad = 0.03;
+  const AlignConfig wide{.coarsest_level = 2, .iterations = 12, .gate_m = 0.3F, .intensity_sigma = 0.0F};
+  Proof proof;
+  ViewPyramid preview;
+  make_preview_pyramid(place, view, preview);
+  const ReferenceView reference = reference_of(preview, view);
+  const Tracking there = align(live, reference, Eigen::Isometry3d::Identity(), wide);
+  proof.T_place_camera = there.T_world_camera;
+  proof.agreement = there.inlier_fraction;
+  if (!there || there.overlap < kMinOverlap || there.inlier_fraction < kMinAgreement) return proof;
+  LiveView place_live;
+  make_live(preview, place_live);
+  const Tracking back = align(place_live, live_reference, there.T_world_camera.inverse(), wide);
+  const Eigen::Isometry3d gap = there.T_world_camera * back.T_world_camera;
+  proof.holds = back && back.inlier_fraction >= kMinAgreement && gap.translation().norm() < kMaxGap_m &&
+                angle_rad(gap) < kMaxGap_rad;
+  return proof;
+}
+
+/// Keeps the better of two answers.
+void take(const Proof& proof, const Place& place, std::size_t position, int feature_inliers,
+          Relocalisation& best) {
+  const bool better = best.status != RelocalisationStatus::kFound || feature_inliers > best.feature_inliers ||
+                      (feature_inliers == best.feature_inliers && proof.agreement > best.depth_agreement);
+  if (!better) return;
+  best.status = RelocalisationStatus::kFound;
+  best.T_world_camera = place.T_world_camera * proof.T_place_camera;
+  best.keyframe = static_cast<std::int64_t>(position);
+  best.feature_inliers = feature_inliers;
+  best.depth_agreement = proof.agreement;
+}
+
+}  // namespace
+
+std::string_view to_string(RelocalisationStatus status) {
+  switch (status) {
+    case RelocalisationStatus::kFound:
+      return "found";
+    case RelocalisationStatus::kNoPlaces:
+      return "no places";
+    case RelocalisationStatus::kNoDepth:
+      return "no depth";
+    case RelocalisationStatus::kNoMatch:
+      return "no match";
+    case RelocalisationStatus::kUnproven:
+      return "unproven";
+  }
+  return "unknown";
+}
+
+Relocalisation relocalise(const Frame& frame, const Places& places, const RelocaliseConfig& config) {
+  Relocalisation best;
+  if (places.keyframes.empty()) {
+    best.status = RelocalisationStatus::kNoPlaces;
+    return best;
+  }
+  const ViewConfig view{.finest_width_px = config.place.preview_width_px, .normal_reach_px = 2};
+  ViewPyramid pyramid;
+  LiveView live;
+  make_pyramid(frame.depth_m, frame.depth_camera, view, pyramid);
+  make_live(pyramid, live);
+  constexpr std::size_t kMinPoints = 200;
+  if (live.levels.front().size() < kMinPoints) {
+    best.status = RelocalisationStatus::kNoDepth;
+    return best;
+  }
+
+  const Place here = describe_place(frame, Eigen::Isometry3d::Identity(), config.place);
+  const bool remembered_by_features =
+      std::any_of(places.keyframes.begin(), places.keyframes.end(),
+                  [](const Place& place) { return !place.descriptors.empty(); });
+  if (!frame.colour.empty() && remembered_by_features) {
+    const auto candidates =
+        most_alike(here, places.keyframes, static_cast<std::size_t>(std::max(config.candidates, 0)), 8);
+    for (const std::size_t i : candidates) {
+      const Place& place = places.keyframes[i];
+      const PlaceMatch match = match_places(place, here);
+      if (match.inliers < config.min_feature_inliers) continue;
+      const Proof proof = prove_with_features(live, place, match, config, view);
+      if (proof.holds) take(proof, place, i, match.inliers, best);
+      if (!proof.holds && !best) best.status = RelocalisationStatus::kUnproven;
+    }
+    return best;
+  }
+
+  ReferenceView live_reference;
+  make_reference(pyramid, Eigen::Isometry3d::Identity(), view, live_reference);
+  for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
+    const Proof proof = prove_with_depth(live, live_reference, places.keyframes[i], view);
+    if (proof.holds) take(proof, places.keyframes[i], i, 0, best);
+  }
+  return best;
+}
+
+}  // namespace roomradar
