@@ -228,17 +228,34 @@ inline bool same_surface(float a_m, float b_m, float slope) {
   return std::abs(a_m - b_m) <= 4.0F * depth_sigma_m(z) + slope * z;
 }
 
-// Collects the region around a strong pixel: neighbours that are strong, or weak and on the same surface.
-// Leaves it in scratch.region; returns its area in the world, as if it faced the camera (m2).
-float grow_region(const DepthImage& depth_m, std::uint32_t seed, std::uint8_t weak, std::uint8_t strong,
-                  const Intrinsics& camera, ForegroundScratch& scratch) {
+// One of the two ways to differ from the model.
+struct Difference {
+  std::uint8_t weak, strong;  // bits of evidence
+  float min_strong_fraction;
+  PixelLabel label;
+};
+
+struct Region {
+  std::size_t pixels = 0;  // the first of scratch.region
+  std::size_t strong_pixels = 0;
+  float area_m2 = 0.0F;  // as if it faced the camera
+};
+
+// Collects the region around a strong pixel into scratch.region: neighbours that are strong, or weak and on
+// the same surface.
+Region grow_region(const DepthImage& depth_m, std::uint32_t seed, const Difference& difference,
+                   const Intrinsics& camera, ForegroundScratch& scratch) {
+  const std::uint8_t weak = difference.weak;
+  const std::uint8_t strong = difference.strong;
   const auto width = static_cast<std::uint32_t>(depth_m.width);
   const auto height = static_cast<std::uint32_t>(depth_m.height);
   const float slope = 5.67F / static_cast<float>(std::min(camera.fx_px, camera.fy_px));
   std::uint32_t* region = scratch.region.data();
   std::size_t size = 0;
+  std::size_t strong_pixels = 0;
   float area = 0.0F;
   const auto take = [&](std::uint32_t pixel) {
+    strong_pixels += (scratch.evidence[pixel] & strong) != 0;
     scratch.evidence[pixel] |= kTaken;
     region[size++] = pixel;
     area += depth_m.pixels[pixel] * depth_m.pixels[pixel];
@@ -258,24 +275,24 @@ float grow_region(const DepthImage& depth_m, std::uint32_t seed, std::uint8_t we
     if (pixel >= width) visit(pixel - width);
     if (pixel + width < width * height) visit(pixel + width);
   }
-  scratch.region_size = size;
-  return area / static_cast<float>(camera.fx_px * camera.fy_px);
+  return {size, strong_pixels, area / static_cast<float>(camera.fx_px * camera.fy_px)};
 }
 
 // Labels the regions of one kind that are large enough; returns how many pixels they have.
-std::size_t label_regions(const DepthImage& depth_m, std::uint8_t weak, std::uint8_t strong, PixelLabel label,
-                          const Intrinsics& camera, const ForegroundConfig& config,
-                          ForegroundScratch& scratch, LabelImage& labels) {
+std::size_t label_regions(const DepthImage& depth_m, const Difference& difference, const Intrinsics& camera,
+                          const ForegroundConfig& config, ForegroundScratch& scratch, LabelImage& labels) {
   std::size_t labelled = 0;
   for (std::uint32_t seed = 0; seed < scratch.evidence.size(); ++seed) {
-    if ((scratch.evidence[seed] & strong) == 0 || (scratch.evidence[seed] & kTaken) != 0) continue;
-    const float area_m2 = grow_region(depth_m, seed, weak, strong, camera, scratch);
-    if (scratch.region_size < static_cast<std::size_t>(config.min_region_px) ||
-        area_m2 < config.min_region_m2) {
+    if ((scratch.evidence[seed] & difference.strong) == 0 || (scratch.evidence[seed] & kTaken) != 0) continue;
+    const Region region = grow_region(depth_m, seed, difference, camera, scratch);
+    const float strong_fraction =
+        static_cast<float>(region.strong_pixels) / static_cast<float>(region.pixels);
+    if (region.pixels < static_cast<std::size_t>(config.min_region_px) ||
+        region.area_m2 < config.min_region_m2 || strong_fraction < difference.min_strong_fraction) {
       continue;
     }
-    for (std::size_t i = 0; i < scratch.region_size; ++i) labels.pixels[scratch.region[i]] = label;
-    labelled += scratch.region_size;
+    for (std::size_t i = 0; i < region.pixels; ++i) labels.pixels[scratch.region[i]] = difference.label;
+    labelled += region.pixels;
   }
   return labelled;
 }
@@ -300,6 +317,10 @@ void require_valid(const ForegroundConfig& config) {
           "in 0..1");
   require(config.edge_error_rad >= 0.0F && config.edge_error_rad < 0.1F, "edge_error_rad",
           config.edge_error_rad, "in 0..0.1");
+  require(config.min_strong_fraction >= 0.0F && config.min_strong_fraction <= 1.0F, "min_strong_fraction",
+          config.min_strong_fraction, "in 0..1");
+  require(config.min_strong_fraction_revealed >= 0.0F && config.min_strong_fraction_revealed <= 1.0F,
+          "min_strong_fraction_revealed", config.min_strong_fraction_revealed, "in 0..1");
   require(config.hole_reach_px >= 0 && config.hole_reach_px <= 256, "hole_reach_px", config.hole_reach_px,
           "in 0..256");
   require(config.min_region_px >= 0, "min_region_px", config.min_region_px, ">= 0");
@@ -332,10 +353,11 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
     labels.pixels[i] = known ? PixelLabel::kStatic : PixelLabel::kNotKnown;
     counts.valid += live;
   }
-  counts.moved =
-      label_regions(depth_m, kWeakMoved, kStrongMoved, PixelLabel::kMoved, camera, config, scratch, labels);
-  counts.revealed = label_regions(depth_m, kWeakRevealed, kStrongRevealed, PixelLabel::kRevealed, camera,
-                                  config, scratch, labels);
+  const Difference moved{kWeakMoved, kStrongMoved, config.min_strong_fraction, PixelLabel::kMoved};
+  const Difference revealed{kWeakRevealed, kStrongRevealed, config.min_strong_fraction_revealed,
+                            PixelLabel::kRevealed};
+  counts.moved = label_regions(depth_m, moved, camera, config, scratch, labels);
+  counts.revealed = label_regions(depth_m, revealed, camera, config, scratch, labels);
   for (std::size_t i = 0; i < pixels; ++i) {
     moved_mask.pixels[i] = labels.pixels[i] == PixelLabel::kMoved ? 255 : 0;
     counts.not_known += depth_m.pixels[i] > 0.0F && labels.pixels[i] == PixelLabel::kNotKnown;

@@ -30,6 +30,12 @@ struct ForegroundConfig {
   int hole_reach_px = 16;  ///< how far from the model's edge a pixel without expected depth is still judged
   int min_region_px = 60;  ///< smaller regions are noise
   float min_region_m2 = 0.0003F;  ///< the same by size in the world: 3 cm2
+  /// Of a region's pixels, those that are strong. Regions by a distorted map or a wrong pose are weak nearly
+  /// everywhere (0 to 0.25 in a real kitchen mapped by poses 3 cm off); what moved is strong but for its rim.
+  float min_strong_fraction = 0.25F;
+  /// The same of a revealed region. What was taken away stands in the model, so the reach of its own edges
+  /// eats into it: of a thing 12 cm wide, a tenth is left.
+  float min_strong_fraction_revealed = 0.1F;
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const ForegroundConfig& config);
@@ -43,7 +49,6 @@ struct ForegroundScratch {
   std::vector<int> window;             // blocks to each side that an edge may be off
   std::vector<std::uint8_t> evidence;  // bits, see foreground.cpp
   std::vector<std::uint32_t> region;   // pixels of the region being grown
-  std::size_t region_size = 0;
 };
 
 struct ForegroundCounts {
