@@ -1,0 +1,190 @@
+// track_bench.cpp: error and time of tracking, and of finding a frame again, on recordings with known poses.
+//
+// usage: track_bench [--frames N] [--places N] [--json FILE] SOURCE...      SOURCE: a folder or sim:ROOM?...
+// One row a source: ATE RMSE over all frames, median RPE over 30 frames, time a frame. With --places N the
+// first N frames, at their recorded poses, become places, and the later frames are looked for in them.
+// Settings are the defaults of OdometryConfig; changing them breaks comparison with old numbers.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/sim/simulated_source.hpp"
+#include "app/sources/folder_source.hpp"
+#include "mapping/odometry.hpp"
+#include "mapping/trajectory.hpp"
+
+namespace roomradar {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Settings {
+  std::int64_t frames = 600;
+  std::int64_t places = 0;
+  std::string json;
+  std::vector<std::string> sources;
+};
+
+std::unique_ptr<FrameSource> open(const std::string& name) {
+  if (name.starts_with("sim:")) return std::make_unique<SimulatedSource>(parse_sim_spec(name));
+  return open_folder(name);
+}
+
+double since_ms(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+double percentile(std::vector<double> values, double part) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(part * static_cast<double>(values.size())))];
+}
+
+/// Median length (m) of the difference between both trajectories' motions over `step` frames.
+double relative_error_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& truth,
+                        std::size_t step) {
+  std::vector<double> errors_m;
+  for (std::size_t i = 0; i + step < std::min(estimate.size(), truth.size()); ++i) {
+    const Eigen::Isometry3d there = truth[i].T_world_camera.inverse() * truth[i + step].T_world_camera;
+    const Eigen::Isometry3d found = estimate[i].T_world_camera.inverse() * estimate[i + step].T_world_camera;
+    errors_m.push_back((there.inverse() * found).translation().norm());
+  }
+  return percentile(errors_m, 0.5);
+}
+
+nlohmann::json bench_tracking(const std::string& name, const Settings& settings) {
+  const std::unique_ptr<FrameSource> source = open(name);
+  Odometry odometry;
+  Frame frame;
+  std::vector<TimedPose> truth;
+  std::vector<double> times_ms;
+  double inliers = 0.0;
+  while (odometry.counts().frames < settings.frames) {
+    const ReadResult read = source->next(frame);
+    if (read.status == ReadStatus::kEnd) break;
+    if (read.status == ReadStatus::kSkipped) continue;
+    const auto start = Clock::now();
+    const Tracking tracking = odometry.track(frame);
+    times_ms.push_back(since_ms(start));
+    inliers += tracking.inlier_fraction;
+    truth.push_back(
+        {frame.index, frame.stamp_s, frame.T_world_camera.value_or(Eigen::Isometry3d::Identity())});
+  }
+  const auto start = Clock::now();
+  std::vector<TimedPose> estimate;
+  double furthest_m = 0.0;
+  for (const TrackedFrame& f : odometry.optimise()) {
+    estimate.push_back({f.frame_index, f.stamp_s, f.T_world_camera});
+    furthest_m = std::max(furthest_m, f.T_world_camera.translation().norm());
+  }
+  const double optimise_ms = since_ms(start);
+  const bool known = frame.T_world_camera.has_value();
+  const TrajectoryError ate = absolute_trajectory_error(estimate, truth);
+  const OdometryCounts counts = odometry.counts();
+  return {{"source", name},
+          {"frames", counts.frames},
+          {"tracked", counts.tracked},
+          {"degenerate", counts.degenerate},
+          {"lost", counts.lost},
+          {"relocalised", counts.relocalised},
+          {"keyframes", counts.keyframes},
+          {"loops", counts.loops_found},
+          {"loops_rejected", counts.loops_rejected},
+          {"ate_rmse_mm", known ? 1e3 * ate.rmse_m : -1.0},
+          {"ate_max_mm", known ? 1e3 * ate.max_m : -1.0},
+          {"rpe30_median_mm", known ? 1e3 * relative_error_m(estimate, truth, 30) : -1.0},
+          {"furthest_m", furthest_m},
+          {"inlier_mean", inliers / static_cast<double>(std::max<std::size_t>(times_ms.size(), 1))},
+          {"median_ms", percentile(times_ms, 0.5)},
+          {"p95_ms", percentile(times_ms, 0.95)},
+          {"optimise_ms", optimise_ms}};
+}
+
+nlohmann::json bench_places(const std::string& name, const Settings& settings) {
+  const std::unique_ptr<FrameSource> source = open(name);
+  Odometry odometry;
+  Places places;
+  Frame frame;
+  std::vector<double> times_ms, errors_mm;
+  int asked = 0, found = 0, right = 0;
+  for (std::int64_t count = 0; count < settings.frames;) {
+    const ReadResult read = source->next(frame);
+    if (read.status == ReadStatus::kEnd) break;
+    if (read.status == ReadStatus::kSkipped || !frame.T_world_camera) continue;
+    if (count++ < settings.places) {
+      odometry.add_posed(frame, *frame.T_world_camera);
+      continue;
+    }
+    if (places.keyframes.empty()) places = odometry.take_places();
+    ++asked;
+    const auto start = Clock::now();
+    const Relocalisation answer = relocalise(frame, places);
+    times_ms.push_back(since_ms(start));
+    if (!answer) continue;
+    ++found;
+    const Eigen::Isometry3d error = frame.T_world_camera->inverse() * answer.T_world_camera;
+    errors_mm.push_back(1e3 * error.translation().norm());
+    const double angle_deg = Eigen::AngleAxisd(error.linear()).angle() * 180.0 / 3.14159265358979;
+    right += error.translation().norm() < 0.05 && angle_deg < 5.0 ? 1 : 0;
+  }
+  return {{"source", name},
+          {"keyframes", places.keyframes.size()},
+          {"asked", asked},
+          {"found", found},
+          {"within_5cm_5deg", right},
+          {"error_median_mm", percentile(errors_mm, 0.5)},
+          {"error_max_mm", percentile(errors_mm, 1.0)},
+          {"median_ms", percentile(times_ms, 0.5)},
+          {"p95_ms", percentile(times_ms, 0.95)}};
+}
+
+Settings parse(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&] { return i + 1 < argc ? std::string(argv[++i]) : std::string(); };
+    if (word == "--frames") {
+      settings.frames = std::atoll(value().c_str());
+    } else if (word == "--places") {
+      settings.places = std::atoll(value().c_str());
+    } else if (word == "--json") {
+      settings.json = value();
+    } else {
+      settings.sources.push_back(word);
+    }
+  }
+  return settings;
+}
+
+}  // namespace
+}  // namespace roomradar
+
+int main(int argc, char** argv) {
+  try {
+    const roomradar::Settings settings = roomradar::parse(argc, argv);
+    if (settings.sources.empty()) {
+      std::fprintf(stderr, "usage: track_bench [--frames N] [--places N] [--json FILE] SOURCE...\n");
+      return 2;
+    }
+    nlohmann::json rows = nlohmann::json::array();
+    for (const std::string& source : settings.sources) {
+      rows.push_back(settings.places > 0 ? roomradar::bench_places(source, settings)
+                                         : roomradar::bench_tracking(source, settings));
+      std::printf("%s\n", rows.back().dump().c_str());
+      std::fflush(stdout);
+    }
+    if (!settings.json.empty()) std::ofstream(settings.json) << rows.dump(1) << '\n';
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "track_bench: %s\n", error.what());
+    return 1;
+  }
+}
