@@ -1,0 +1,82 @@
+// folder_swap.cpp: write beside, sync, rename; Linux calls, because the standard library can neither sync nor
+// exchange.
+#include "mapping/folder_swap.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int reason) {
+  throw Error(path.string() + ": " + what + ": " + std::strerror(reason) +
+              (reason == ENOSPC || reason == EDQUOT ? "; free some space and save again" : ""));
+}
+
+void sync(const fs::path& path, int kind) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | kind);
+  if (descriptor < 0) fail(path, "cannot be opened to sync it", errno);
+  const int result = ::fsync(descriptor);
+  const int reason = errno;
+  ::close(descriptor);
+  if (result != 0) fail(path, "does not reach the disk", reason);
+}
+
+fs::path parent_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+fs::path beside(const fs::path& target, const char* word) {
+  return parent_of(target) / (target.filename().string() + "." + word + "-" + std::to_string(::getpid()));
+}
+
+}  // namespace
+
+PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_(beside(target, "partial")) {
+  std::error_code fault;
+  fs::create_directories(parent_of(target), fault);
+  if (fault) fail(parent_of(target), "the folder cannot be made", fault.value());
+  fs::remove_all(partial_, fault);  // of an earlier process with this number
+  fs::create_directory(partial_, fault);
+  if (fault) fail(partial_, "the folder cannot be made", fault.value());
+}
+
+PartialFolder::~PartialFolder() {
+  std::error_code ignored;  // nothing can be done about it here, and the name tells what it is
+  fs::remove_all(partial_, ignored);
+}
+
+void PartialFolder::put_in_place() {
+  for (const fs::directory_entry& entry : fs::directory_iterator(partial_)) sync(entry.path(), 0);
+  sync(partial_, O_DIRECTORY);
+  if (!fs::exists(fs::symlink_status(target_))) {
+    if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) != 0 &&
+        ((errno != EINVAL && errno != ENOSYS) || ::rename(partial_.c_str(), target_.c_str()) != 0))
+      fail(target_, "cannot be put in place", errno);
+  } else if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+    if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be put in place", errno);
+    // A file system that cannot exchange: for a moment neither name is there, but one of them is whole at all
+    // times.
+    const fs::path aside = beside(target_, "before");
+    if (::rename(target_.c_str(), aside.c_str()) != 0) fail(target_, "cannot be moved aside", errno);
+    if (::rename(partial_.c_str(), target_.c_str()) != 0) {
+      const int reason = errno;
+      static_cast<void>(::rename(aside.c_str(), target_.c_str()));
+      fail(target_, "cannot be put in place", reason);
+    }
+    std::error_code ignored;
+    fs::remove_all(aside, ignored);
+  }
+  sync(parent_of(target_), O_DIRECTORY);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,27 @@
+// folder_swap.hpp: a folder that appears whole or not at all.
+#pragma once
+#include <filesystem>
+
+namespace roomradar {
+
+/// A new folder beside `target` (target.partial-PID), removed again unless it is put in place.
+class PartialFolder {
+ public:
+  /// Makes it, and the folders above. Throws Error if that cannot be done.
+  explicit PartialFolder(const std::filesystem::path& target);
+  ~PartialFolder();
+  PartialFolder(const PartialFolder&) = delete;
+  PartialFolder& operator=(const PartialFolder&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
+
+  /// Waits until all its files are on the disk, then makes it `target` in one step; what was there is removed
+  /// afterwards. Throws Error, with `target` as it was, if the disk or the file system does not do it.
+  void put_in_place();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path partial_;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,257 @@
+// map_folder.cpp: saving, checking, loading and exporting a map.
+#include "mapping/map_folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string_view>
+
+#include "mapping/folder_swap.hpp"
+#include "mapping/map_info_json.hpp"
+#include "mapping/mesh_file.hpp"
+#include "mapping/sha256.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kInfo = "map.json";
+constexpr const char* kOctree = "octree.ot";
+constexpr const char* kPlainOctree = "octree.bt";
+constexpr const char* kMesh = "mesh.ply";
+constexpr const char* kPlaces = "places.bin";
+constexpr const char* kTrajectory = "trajectory.txt";
+constexpr std::array<const char*, 5> kParts = {kOctree, kPlainOctree, kMesh, kPlaces, kTrajectory};
+constexpr std::uintmax_t kMaxInfoBytes = 1U << 20U;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& fault) {
+  throw Error(path.string() + ": " + fault);
+}
+
+fs::path tidy(const fs::path& folder) {
+  if (folder.empty()) throw Error("the map's folder has no name; give one, such as maps/kitchen");
+  fs::path path = folder.lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // a trailing slash
+  if (path.filename() == "." || path.filename() == ".." || !path.has_filename())
+    fail(folder, "is no name for a map's folder; give a new one, such as maps/kitchen");
+  return path;
+}
+
+// What save_map may replace: nothing, an empty folder, or one that holds a map and nothing else.
+void require_replaceable(const fs::path& folder) {
+  std::error_code fault;
+  const fs::file_status status = fs::symlink_status(folder, fault);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status)) fail(folder, "exists and is not a folder; choose another name for the map");
+  bool empty = true;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
+    empty = false;
+    const std::string name = entry.path().filename().string();
+    if (name != kInfo && std::find(kParts.begin(), kParts.end(), name) == kParts.end())
+      fail(folder,
+           "exists and holds \"" + name + "\", which is no part of a map; choose another name for the map");
+  }
+  if (fault) fail(folder, "cannot be listed: " + fault.message());
+  if (!empty && !fs::exists(folder / kInfo))
+    fail(folder,
+         std::string("exists and has no ") + kInfo + ", so it is no map; choose another name for the map");
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.flush();
+  if (!file) fail(path, "cannot be written; is the disk full?");
+}
+
+// Size and checksum; nothing if they are as map.json says.
+std::optional<std::string> fault_of(const fs::path& path, const MapFile& expected) {
+  std::error_code fault;
+  const fs::file_status status = fs::symlink_status(path, fault);
+  if (!fs::exists(status)) return path.string() + ": is missing";
+  if (!fs::is_regular_file(status)) return path.string() + ": is not a plain file";
+  const std::uintmax_t bytes = fs::file_size(path, fault);
+  if (fault) return path.string() + ": cannot be read: " + fault.message();
+  if (bytes != expected.bytes)
+    return path.string() + ": has " + std::to_string(bytes) + " bytes, and " + kInfo + " says " +
+           std::to_string(expected.bytes) +
+           (bytes < expected.bytes ? "; it is cut short" : "; it was altered");
+  try {
+    if (sha256_of_file(path) != expected.sha256)
+      return path.string() + ": was altered: its checksum is another";
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return std::nullopt;
+}
+
+// map.json may name the parts, all of them and nothing else: no path out of the folder can come from it.
+void require_parts(const MapInfo& info, const fs::path& where) {
+  for (const char* part : kParts)
+    if (!info.files.contains(part)) fail(where, std::string("does not list \"") + part + "\"");
+  for (const auto& [name, file] : info.files)
+    if (std::find(kParts.begin(), kParts.end(), name) == kParts.end())
+      fail(where, "lists \"" + name.substr(0, 100) + "\", which is no part of a map");
+}
+
+StaticMap read_octree(const fs::path& folder, const MapInfo& info) {
+  StaticMap octree = StaticMap::read_ot(folder / kOctree);
+  if (std::abs(octree.resolution_m() - info.resolution_m) > 1e-9 * info.resolution_m)
+    fail(folder / kOctree, "its resolution is not the one in " + std::string(kInfo));
+  return octree;
+}
+
+std::string in_megabytes(std::uint64_t bytes) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f MB", static_cast<double>(bytes) / 1e6);
+  return text.data();
+}
+
+std::string extents(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return "nothing";
+  const Eigen::Vector3d low = box.min();
+  const Eigen::Vector3d high = box.max();
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "x %.2f..%.2f m, y %.2f..%.2f m, z %.2f..%.2f m", low.x(), high.x(),
+                low.y(), high.y(), low.z(), high.z());
+  return text.data();
+}
+
+}  // namespace
+
+void save_map(const fs::path& folder, const SavedMap& map) {
+  const fs::path target = tidy(folder);
+  require_replaceable(target);
+  if (map.mesh.triangles.empty())
+    fail(target, "not saved: the map has no surface; were there frames with depth and trusted poses?");
+  PartialFolder partial(target);
+
+  map.octree.write_ot(partial.path() / kOctree);
+  map.octree.write_bt(partial.path() / kPlainOctree);
+  write_mesh(map.mesh, partial.path() / kMesh);
+  write_places(map.places, partial.path() / kPlaces);
+  write_trajectory(partial.path() / kTrajectory, map.trajectory);
+
+  MapInfo info = map.info;
+  info.format_version = kMapFormatVersion;
+  info.tool_version = ROOMRADAR_VERSION;
+  info.resolution_m = map.octree.resolution_m();
+  info.counts = map.octree.counts();
+  info.vertices = map.mesh.vertices.size();
+  info.triangles = map.mesh.triangles.size();
+  info.keyframes = map.places.keyframes.size();
+  info.poses = map.trajectory.size();
+  info.files.clear();
+  for (const char* part : kParts)
+    info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
+  write_text(partial.path() / kInfo, to_json(info));
+
+  partial.put_in_place();
+}
+
+MapInfo load_map_info(const fs::path& folder) {
+  std::error_code fault;
+  if (!fs::is_directory(folder, fault))
+    fail(folder, "there is no such map folder; make one with `roomradar prescan`");
+  const fs::path path = folder / kInfo;
+  if (!fs::is_regular_file(path, fault)) fail(path, "is missing, so the folder is no map");
+  if (fs::file_size(path, fault) > kMaxInfoBytes)
+    fail(path, "is larger than 1 MB, so it is no description of a map");
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file) fail(path, "cannot be read; may you read it?");
+  MapInfo info = parse_map_info(text, path.string());
+  require_parts(info, path);
+  return info;
+}
+
+SavedMap load_map(const fs::path& folder) {
+  MapInfo info = load_map_info(folder);
+  for (const auto& [name, file] : info.files)
+    if (const auto fault = fault_of(folder / name, file))
+      throw Error(*fault + "; take the map from a backup or scan the room again");
+  return {.info = info,
+          .octree = read_octree(folder, info),
+          .mesh = read_mesh(folder / kMesh),
+          .places = read_places(folder / kPlaces),
+          .trajectory = read_trajectory(folder / kTrajectory)};
+}
+
+std::vector<std::string> verify_map(const fs::path& folder) {
+  std::vector<std::string> faults;
+  const auto attempt = [&](const std::function<void()>& work) {
+    try {
+      work();
+    } catch (const std::exception& error) {
+      faults.emplace_back(error.what());
+    }
+  };
+  std::optional<MapInfo> info;
+  attempt([&] { info = load_map_info(folder); });
+  if (!info) return faults;
+  for (const char* part : kParts) {
+    if (auto fault = fault_of(folder / part, info->files.at(part))) {
+      faults.push_back(*fault);
+      continue;
+    }
+    const std::string_view name = part;
+    attempt([&] {
+      if (name == kOctree) static_cast<void>(read_octree(folder, *info));
+      if (name == kMesh) static_cast<void>(read_mesh(folder / part));
+      if (name == kPlaces) static_cast<void>(read_places(folder / part));
+      if (name == kTrajectory) static_cast<void>(read_trajectory(folder / part));
+    });
+  }
+  return faults;
+}
+
+void export_map(const fs::path& folder, const fs::path& path) {
+  const std::string extension = path.extension().string();
+  const bool octree = extension == ".ot" || extension == ".bt";
+  if (!octree && extension != ".ply" && extension != ".obj" && extension != ".stl" && extension != ".glb")
+    fail(path, "the extension \"" + extension +
+                   "\" is no format to export to; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
+                   "the mesh");
+  const MapInfo info = load_map_info(folder);
+  const char* part = extension == ".ot" ? kOctree : extension == ".bt" ? kPlainOctree : kMesh;
+  if (const auto fault = fault_of(folder / part, info.files.at(part))) throw Error(*fault);
+  if (!octree) return write_mesh(read_mesh(folder / part), path);
+  std::error_code fault;
+  fs::copy_file(folder / part, path, fs::copy_options::overwrite_existing, fault);
+  if (fault) fail(path, "cannot be written: " + fault.message());
+}
+
+std::string describe(const MapInfo& info) {
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    text += std::string(name) + std::string(16 - std::string_view(name).size(), ' ') + value + "\n";
+  };
+  std::array<char, 32> resolution{};
+  std::snprintf(resolution.data(), resolution.size(), "%g m", info.resolution_m);
+  line("source", info.source);
+  line("resolution", resolution.data());
+  line("frames",
+       std::to_string(info.frames_fused) + " fused of " + std::to_string(info.frames_read) + " read");
+  line("up", info.up_source);
+  line("octree", std::to_string(info.counts.occupied_leaves) + " occupied and " +
+                     std::to_string(info.counts.free_leaves) + " free leaves, " +
+                     std::to_string(info.counts.nodes) + " nodes, " + in_megabytes(info.counts.memory_bytes) +
+                     " in memory");
+  line("known", extents(info.counts.known_world));
+  line("occupied", extents(info.counts.occupied_world));
+  line("mesh", std::to_string(info.triangles) + " triangles, " + std::to_string(info.vertices) + " vertices");
+  line("places", std::to_string(info.keyframes) + " keyframes");
+  line("trajectory", std::to_string(info.poses) + " poses");
+  for (const auto& [name, file] : info.files) line(name.c_str(), in_megabytes(file.bytes));
+  for (const auto& [name, value] : info.settings) line(name.substr(0, 15).c_str(), value);
+  line("format", std::to_string(info.format_version) + ", by roomradar " + info.tool_version);
+  return text;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,11 @@
+// sha256.hpp: the checksum of a file.
+#pragma once
+#include <filesystem>
+#include <string>
+
+namespace roomradar {
+
+/// SHA-256 as 64 lower-case hexadecimal digits. Throws Error if the file cannot be read.
+std::string sha256_of_file(const std::filesystem::path& path);
+
+}  // namespace roomradar
