@@ -1,0 +1,82 @@
+// scenarios.hpp: drops and pushes onto surfaces that the camera cannot see now but saw in the prescan.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/sim/room.hpp"
+#include "app/sim/sim_options.hpp"
+#include "mapping/types/frame.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// What hides the surface that ought to stop the object.
+enum class Occluder {
+  kFurniture,  ///< the room itself, seen from where the camera stands now
+  kBox,        ///< a box carried between the camera and the surface
+  kHand,       ///< a hand and arm
+  kPerson,     ///< a person who stands between
+};
+std::string_view to_string(Occluder occluder);
+
+/// A room with the path of its prescan, which all its scenarios share: one map a room serves them all.
+struct ScenarioRoom {
+  Room room;
+  SimOptions prescan;                              ///< the frames to map the room from, without moving things
+  std::vector<Eigen::Isometry3d> T_world_prescan;  ///< every tenth pose of it
+};
+/// Throws Error if there is no such room.
+ScenarioRoom make_scenario_room(std::string_view name);
+
+/// One object that moves straight until something stops it.
+struct Scenario {
+  std::uint64_t seed = 0;
+  std::int64_t number = 0;
+  std::string room;
+  Occluder occluder = Occluder::kFurniture;
+  std::vector<Solid> occluder_solids;  ///< in the room while the object moves, not in the prescan
+  std::vector<Material> occluder_materials;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< while the object moves
+  Intrinsics depth_camera = kKinectDepthCamera;
+
+  Solid object;      ///< box, ball or cylinder of 4 to 30 cm, in its own frame
+  Mesh object_mesh;  ///< of the same
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< where it starts, clear of everything
+  Eigen::Vector3d direction_world = -Eigen::Vector3d::UnitZ();       ///< unit
+  double speed_m_s = 0.0;
+  double limit_m = 0.0;        ///< how far it moves if nothing stops it: 0.4 m beyond the true contact
+  double true_travel_m = 0.0;  ///< to the first contact with the room
+  Eigen::Vector3d contact_world = Eigen::Vector3d::Zero();  ///< where that is
+};
+
+/// Scenario `number` of a seed; the same whatever else was made. What holds of it:
+///  - every point of the room that could stop the object up to 5 cm behind the true contact is hidden from
+///  the
+///    camera, though the contact lies within its image;
+///  - each of those points was seen by at least three of T_world_prescan, from 0.6 to 3.5 m and not grazing;
+///  - the object starts at least 2 cm from the room, and its way keeps 4 cm from the occluder.
+/// Four scenarios of drops and four of pushes take turns, and in each four the kinds of occluder, which hide
+/// at least half of the stopping surface themselves; where a room has no place for one within 4,000 draws,
+/// the next kind is tried. Throws Error if the room has none for any kind.
+Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number);
+
+/// The depth frame that the camera delivers while the object moves: the room and the occluder, without
+/// colour.
+/// @param noise_scale  as in SimOptions; 0: exact
+void render_scenario(const Scenario& scenario, const Room& room, double noise_scale, Frame& frame);
+
+enum class Outcome {
+  kStoppedRight,
+  kPassedThrough,  ///< more than 2 cm beyond the true contact
+  kStoppedFalse,   ///< more than 3 cm before it
+};
+struct Verdict {
+  Outcome outcome = Outcome::kStoppedRight;
+  double error_m = 0.0;  ///< travelled less true; positive: too far
+};
+/// Judges how far a policy let the object move; a policy that found nothing to stop it gives limit_m.
+Verdict judge(const Scenario& scenario, double travelled_m);
+
+}  // namespace roomradar

@@ -1,0 +1,93 @@
+// simulate.cpp: frames to the recording writer, truth to files of its own.
+#include "app/sim/simulate.hpp"
+
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "app/sim/room.hpp"
+#include "app/sim/room_mesh.hpp"
+#include "app/sim/simulated_source.hpp"
+#include "app/sources/image_file.hpp"
+#include "mapping/mesh_file.hpp"
+#include "mapping/trajectory.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+void write_bytes(const std::filesystem::path& path, const char* bytes, std::size_t count) {
+  std::ofstream file(path, std::ios::binary);
+  file.write(bytes, static_cast<std::streamsize>(count));
+  file.close();
+  if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
+}
+
+void write_mask(const MaskImage& mask, const std::filesystem::path& path) {
+  // OpenCV wants writable memory, which it does not write to.
+  const cv::Mat view(mask.height, mask.width, CV_8UC1, const_cast<std::uint8_t*>(mask.pixels.data()));
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(".png", view, bytes)) throw Error(path.string() + ": cannot be encoded as PNG");
+  write_bytes(path, reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+std::string description(const SimOptions& options) {
+  nlohmann::ordered_json json;
+  json["format"] = "roomradar simulation";
+  json["version"] = 1;
+  json["source"] = sim_spec(options);
+  json["room"] = options.room;
+  json["seed"] = options.seed;
+  json["frames"] = options.frames;
+  json["rate_hz"] = options.rate_hz;
+  json["path"] = to_string(options.path);
+  json["movers"] = nlohmann::json::array();
+  for (const MoverKind kind : options.movers) json["movers"].push_back(to_string(kind));
+  json["noise_scale"] = options.noise_scale;
+  const Intrinsics& camera = options.depth_camera;
+  json["depth_camera"] = {{"width_px", camera.width_px}, {"height_px", camera.height_px},
+                          {"fx_px", camera.fx_px},       {"fy_px", camera.fy_px},
+                          {"cx_px", camera.cx_px},       {"cy_px", camera.cy_px}};
+  json["registered_colour"] = options.registered_colour;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace
+
+void simulate(const std::filesystem::path& folder, const SimOptions& options, RecordingFormat format,
+              const std::function<void(std::int64_t, std::int64_t)>& progress) {
+  SimulatedSource source(options);
+  RecordingWriter writer(folder, format);
+  const std::filesystem::path truth = folder / "truth";
+  const bool moves = !options.movers.empty();
+  std::error_code fault;
+  std::filesystem::create_directories(truth / "depth", fault);
+  for (const char* const masks : {"moved", "mover"})
+    if (moves && !fault) std::filesystem::create_directories(truth / masks, fault);
+  if (fault) throw Error(truth.string() + ": cannot be made: " + fault.message());
+  const std::string json = description(options);
+  write_bytes(truth / "sim.json", json.data(), json.size());
+  write_mesh(room_mesh(source.room()), truth / "room.ply");
+
+  std::vector<TimedPose> trajectory;
+  Frame frame;
+  while (source.next(frame).status == ReadStatus::kFrame) {
+    writer.write(frame);
+    char name[32];
+    std::snprintf(name, sizeof(name), "%06lld.png", static_cast<long long>(frame.index));
+    write_depth_file(source.truth().depth_m, DepthEncoding::kTum, truth / "depth" / name);
+    if (moves) {
+      write_mask(source.truth().moved, truth / "moved" / name);
+      write_mask(source.truth().mover, truth / "mover" / name);
+    }
+    trajectory.push_back({frame.index, frame.stamp_s, source.truth().T_world_camera});
+    if (progress) progress(frame.index + 1, options.frames);
+  }
+  writer.close();
+  write_trajectory(truth / "trajectory.txt", trajectory);
+}
+
+}  // namespace roomradar
