@@ -59,7 +59,7 @@ TEST(RealRecordings, CupIsAlignedAndOfItsOwnSize) {
   EXPECT_EQ(source->frame_count(), 207);
   Frame frame;
   ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
-  EXPECT_EQ(frame.depth_camera, (Intrinsics{640, 360, 460, 460, 319.5, 179.5}));
+  EXPECT_EQ(frame.depth_camera, (Intrinsics{640, 360, 320, 320, 319.5, 179.5}));
   EXPECT_EQ(frame.colour_camera, frame.depth_camera);
   EXPECT_FALSE(frame.T_world_camera);
 }
@@ -102,6 +102,88 @@ TEST(RealRecordings, PlanesWallsArePlumb) {
   const Eigen::Vector3d normal = Eigen::Vector3d(fit[0], fit[1], -1.0).normalized();
   const double off_plumb_deg = std::abs(std::asin(normal.dot(*frame.down_camera))) * 180 / M_PI;
   EXPECT_LT(off_plumb_deg, 4.0);  // 2.5 measured; with z's sign turned round it is 22
+}
+
+/// Brightness changes around a pixel, over the mean of the image.
+Image<float> edge_strength(const ColourImage& colour) {
+  Image<float> strength(colour.width, colour.height);
+  double sum = 0;
+  const auto grey = [&](int x, int y) {
+    const Rgb p = colour.at(x, y);
+    return static_cast<float>(p.r + p.g + p.b);
+  };
+  for (int y = 1; y + 1 < colour.height; ++y)
+    for (int x = 1; x + 1 < colour.width; ++x) {
+      const float strong = std::hypot(grey(x + 1, y) - grey(x - 1, y), grey(x, y + 1) - grey(x, y - 1));
+      strength.at(x, y) = std::sqrt(strong);
+      sum += strength.at(x, y);
+    }
+  const auto mean = static_cast<float>(sum / static_cast<double>(strength.pixels.size()));
+  for (float& value : strength.pixels) value /= mean;
+  return strength;
+}
+
+/// Where the near sides of the frame's depth jumps appear in its colour image.
+std::vector<Eigen::Vector2d> depth_edges_in_colour(const Frame& frame) {
+  std::vector<Eigen::Vector2d> points;
+  constexpr int kReach_px = 12;  // the projector's shadow lies between near and far
+  const DepthImage& depth_m = frame.depth_m;
+  for (int y = kReach_px; y + kReach_px < depth_m.height; ++y)
+    for (int x = kReach_px; x + kReach_px < depth_m.width; ++x) {
+      const float z = depth_m.at(x, y);
+      if (z < 0.5F || z > 3.0F) continue;
+      bool at_jump = false;
+      for (const auto& [dx, dy] : {std::pair(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
+        float far_m = 0;
+        for (int step = 1; step <= kReach_px && far_m == 0.0F; ++step)
+          far_m = depth_m.at(x + dx * step, y + dy * step);
+        at_jump |= far_m > 1.1F * z;
+      }
+      if (!at_jump) continue;
+      const Eigen::Vector3d p_depth = back_project(frame.depth_camera, x, y, z);
+      points.push_back(project(frame.colour_camera, frame.T_colour_depth * p_depth));
+    }
+  return points;
+}
+
+/// Mean edge strength of the colour images at the depth edges, moved by (dx, dy).
+double edge_agreement(const std::vector<Frame>& frames, int dx_px, int dy_px) {
+  double sum = 0;
+  std::size_t count = 0;
+  for (const Frame& frame : frames) {
+    const Image<float> strength = edge_strength(frame.colour);
+    for (const Eigen::Vector2d& p : depth_edges_in_colour(frame)) {
+      const int x = static_cast<int>(std::lround(p.x())) + dx_px;
+      const int y = static_cast<int>(std::lround(p.y())) + dy_px;
+      if (!strength.contains(x, y)) continue;
+      sum += strength.at(x, y);
+      ++count;
+    }
+  }
+  return sum / static_cast<double>(count);
+}
+
+void expect_best_where_it_is(const std::vector<Frame>& frames, int off_px) {
+  const double here = edge_agreement(frames, 0, 0);
+  for (const auto& [dx, dy] : {std::pair(off_px, 0), {-off_px, 0}, {0, off_px}, {0, -off_px}})
+    EXPECT_GT(here, edge_agreement(frames, dx, dy)) << dx << " " << dy;
+}
+
+TEST(RealRecordings, KitchensDepthEdgesMeetItsColourEdges) {
+  ROOMRADAR_RECORDING_OR_SKIP(folder, "kitchen");
+  const auto source = open_folder(folder);
+  std::vector<Frame> frames(10);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    ASSERT_TRUE(source->seek(static_cast<std::int64_t>(50 * i + 20)));
+    ASSERT_EQ(source->next(frames[i]).status, ReadStatus::kFrame);
+  }
+  expect_best_where_it_is(frames, 3);
+}
+
+TEST(RealRecordings, PlanesDepthEdgesMeetItsColourEdges) {
+  ROOMRADAR_RECORDING_OR_SKIP(folder, "fakenect-planes/planes");
+  const auto all = read_all(*open_folder(folder)).frames;
+  expect_best_where_it_is({all.at(3), all.at(10), all.at(28)}, 4);
 }
 
 #ifdef ROOMRADAR_REPLAY_DUMP
