@@ -210,6 +210,23 @@ TEST(Physics, RestsInAValleyOfTwoSteepSlopes) {
   EXPECT_NEAR(body.T_world_object.translation().x(), 0.0, 0.005);
 }
 
+TEST(Physics, SlidesAlongTheCreaseOfAValley) {
+  const double tilt = 50.0 * M_PI / 180.0;
+  const Room valley{.planes = {{Vec3(std::sin(tilt), 0, std::cos(tilt)), 0.0},
+                               {Vec3(-std::sin(tilt), 0, std::cos(tilt)), 0.0}},
+                    .boxes = {}};
+  PhysicsConfig config;
+  config.friction = 0.0;
+  Body body = body_at({0, 0, 0.4});
+  (void)run(body, valley, 1.0, config);
+  body.at_rest = false;
+  body.velocity_world_mps = {0, 1, 0};
+  const double from_y_m = body.T_world_object.translation().y();
+  (void)run(body, valley, 1.0 - 1e-9, config);
+  EXPECT_NEAR(body.T_world_object.translation().y() - from_y_m, 1.0, 0.02);
+  EXPECT_NEAR(body.T_world_object.translation().x(), 0.0, 0.005);
+}
+
 TEST(Physics, BouncesByItsRestitutionThenRests) {
   PhysicsConfig config;
   config.restitution = 0.5;
@@ -237,6 +254,25 @@ TEST(Physics, ARestingBodyIgnoresNoiseOfSomeMillimetres) {
   EXPECT_EQ(wakes, 0);
   EXPECT_EQ(before, body.T_world_object.translation());
   EXPECT_NEAR(height(body), 0.0, 0.010);
+}
+
+TEST(Physics, ARestingBodyStaysUntilItsSupportMovesByMoreThanNoise) {
+  const PhysicsConfig config;
+  for (const double moved_m : {0.007, -0.011, 0.011, -0.020}) {
+    Room room = kFloor;
+    Body body = body_at({0, 0, kHalf_m + 0.001});
+    body.at_rest = true;
+    room.planes[0].offset_m = moved_m;
+    const bool is_noise =
+        moved_m - 0.001 < config.wake_overlap_m && 0.001 - moved_m < config.wake_gap_m + 0.001;
+    EXPECT_EQ(advance(body, kFrame_s, std::cref(room), {}).woke, !is_noise) << moved_m;
+    if (is_noise) {
+      EXPECT_EQ(body.T_world_object.translation().z(), kHalf_m + 0.001);
+    } else {
+      (void)run(body, room, 1.0);
+      EXPECT_NEAR(height(body), moved_m, 0.002);
+    }
+  }
 }
 
 TEST(Physics, FallsAgainWhenItsSupportIsTakenAway) {

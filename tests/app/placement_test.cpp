@@ -122,6 +122,17 @@ TEST(Placement, AWallASlopeOrASmallStoolIsNoPlace) {
   EXPECT_FALSE(find_support(floor_m, kCamera, tilt * from_above, 0.1));
 }
 
+TEST(Placement, RidgesAreNoPlaceThoughEachStepIsSmall) {
+  const Eigen::Isometry3d from_above = looking({0, -1.0, 1.7}, {0, 0, 0.73});
+  std::vector<Box> boxes = {kTable};
+  EXPECT_TRUE(find_support(view_of(boxes, from_above), kCamera, from_above, 0.1));
+  for (double x = -0.6; x < 0.6; x += 0.16) boxes.push_back({{x, -0.4, 0.73}, {x + 0.08, 0.4, 0.764}});
+  PlacementConfig config;
+  config.room_to_spare_m = 0.0;
+  EXPECT_FALSE(find_support(view_of(boxes, from_above), kCamera, from_above, 0.1, config));
+  EXPECT_TRUE(find_support(view_of(boxes, from_above), kCamera, from_above, 0.025, config));
+}
+
 TEST(Placement, NothingSeenOrNonsenseFindsNothing) {
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   EXPECT_FALSE(find_support(DepthImage(320, 240), kCamera, T, 0.1));
