@@ -117,7 +117,7 @@ Contact CyberRadar::query(const MeshInstance& object, const Eigen::Vector3d& dir
   const auto has_bad_pose = [](const SceneMesh& s) {
     return s.instance.mesh != nullptr && !s.instance.T_world_mesh.matrix().allFinite();
   };
-  if (!(direction_norm > 0.0) || !std::isfinite(direction_norm) || !(distance_m > 0.0) ||
+  if (!direction_world.allFinite() || !(direction_norm > 0.0) || !(distance_m > 0.0) ||
       !(distance_m <= kMaxDistance_m) || object.mesh == nullptr || object.mesh->triangle_count() == 0 ||
       !object.T_world_mesh.matrix().allFinite() || std::any_of(scene.begin(), scene.end(), has_bad_pose)) {
     return {};

@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kStaticChunkTriangles = 1024;
 constexpr std::uint32_t kStreamedChunkTriangles = 512;
 
-enum Buffer : std::size_t { kPositions, kNormals, kColours, kIndices };
+enum Buffer : GLuint { kPositions, kNormals, kColours, kIndices };
 
 /// Whether the box is wholly outside one of the clip planes. Conservative: a box near a corner may count as
 /// inside.

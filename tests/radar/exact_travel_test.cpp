@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "mapping/types/error.hpp"
@@ -87,6 +88,7 @@ TEST(ExactTravel, GridAndBruteForceAgree) {
 TEST(ExactTravel, BadArgumentsAreRefused) {
   const Mesh box = shapes::box({1, 1, 1});
   EXPECT_THROW((void)exact_travel(box, at(0, 0, 0), {0, 0, 0}, 1.0, box, at(0, 0, 0)), Error);
+  EXPECT_THROW((void)exact_travel(box, at(0, 0, 0), {0, std::nan(""), 1}, 1.0, box, at(0, 0, 0)), Error);
   EXPECT_THROW(
       (void)exact_travel(box, at(0, 0, 0), kDown, std::numeric_limits<double>::quiet_NaN(), box, at(0, 0, 0)),
       Error);
