@@ -20,7 +20,8 @@ constexpr int kSlopeStep_px =
     4;  // slopes are taken over several pixels: a mesh from cells is a staircase at one
 
 // Evidence of one pixel, as bits.
-constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kWeakRevealed = 4, kStrongRevealed = 8, kTaken = 16;
+constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kWeakRevealed = 4, kStrongRevealed = 8, kTaken = 16,
+                       kDoubtful = 32;
 
 int blocks_along(int size_px) { return (size_px + kBlock_px - 1) / kBlock_px; }
 
@@ -101,17 +102,17 @@ void extremes_around(const DepthImage& expected_m, const Intrinsics& camera, con
   choose_windows(columns, rows, camera, config, scratch);
   spread(scratch.block_nearest_m, columns, rows, blocks_along(config.hole_reach_px), nearer, scratch);
   scratch.window_reach_m = scratch.spread_m;
-  scratch.window_nearest_m = scratch.block_nearest_m;
-  scratch.window_farthest_m = scratch.block_farthest_m;
+  scratch.grown_nearest_m = scratch.window_nearest_m = scratch.block_nearest_m;
+  scratch.grown_farthest_m = scratch.window_farthest_m = scratch.block_farthest_m;
   for (int reach = 1; reach <= kMaxWindow; ++reach) {
-    spread(scratch.block_nearest_m, columns, rows, 1, nearer, scratch);
-    scratch.block_nearest_m.swap(scratch.spread_m);
-    spread(scratch.block_farthest_m, columns, rows, 1, farther, scratch);
-    scratch.block_farthest_m.swap(scratch.spread_m);
+    spread(scratch.grown_nearest_m, columns, rows, 1, nearer, scratch);
+    scratch.grown_nearest_m.swap(scratch.spread_m);
+    spread(scratch.grown_farthest_m, columns, rows, 1, farther, scratch);
+    scratch.grown_farthest_m.swap(scratch.spread_m);
     for (std::size_t i = 0; i < scratch.window.size(); ++i) {
       if (scratch.window[i] != reach) continue;
-      scratch.window_nearest_m[i] = scratch.block_nearest_m[i];
-      scratch.window_farthest_m[i] = scratch.block_farthest_m[i];
+      scratch.window_nearest_m[i] = scratch.grown_nearest_m[i];
+      scratch.window_farthest_m[i] = scratch.grown_farthest_m[i];
     }
   }
 }
@@ -187,7 +188,8 @@ void weigh_row(const DepthImage& depth_m, const DepthImage& expected_m, int y, c
   for (int x = 0; x < width; ++x) {
     const float z = live[x];
     const int moved = (z < expected[x] - weak * sigma[x] ? kWeakMoved : 0) |
-                      (z < nearest[x] - strong * sigma[x] ? kStrongMoved : 0);
+                      (z < nearest[x] - strong * sigma[x] ? kStrongMoved : 0) |
+                      (z < expected[x] - strong * sigma[x] ? kDoubtful : 0);
     const int revealed = (z > expected[x] + weak * sigma[x] ? kWeakRevealed : 0) |
                          (z > farthest[x] + strong * sigma[x] ? kStrongRevealed : 0);
     const int known = z > 0.0F ? (expected[x] > 0.0F ? 0xFF : 0) : 0;
@@ -198,6 +200,40 @@ void weigh_row(const DepthImage& depth_m, const DepthImage& expected_m, int y, c
   for (int x = 0; x < width; ++x) {
     if (expected[x] > 0.0F || !(live[x] > 0.0F) || reach[x] == kNothing_m) continue;
     if (live[x] < reach[x] - strong * total_sigma_m(reach[x], 0.0F, config)) evidence[x] = kWeakMoved;
+  }
+}
+
+// Whether an expected surface within the window around block (column, row) lies at depth_m, give or take. A
+// block that holds an edge stands for its two sides, not for what is between them.
+bool is_expected_near(float depth_m, int column, int row, int columns, int rows,
+                      const ForegroundConfig& config, const ForegroundScratch& scratch) {
+  const int reach = scratch.window[static_cast<std::size_t>(row) * columns + column];
+  const float tolerance_m = config.strong_sigmas * total_sigma_m(depth_m, 0.0F, config);
+  for (int v = std::max(row - reach, 0); v <= std::min(row + reach, rows - 1); ++v) {
+    for (int u = std::max(column - reach, 0); u <= std::min(column + reach, columns - 1); ++u) {
+      const std::size_t block = static_cast<std::size_t>(v) * columns + u;
+      const float nearest = scratch.block_nearest_m[block];
+      const float farthest = scratch.block_farthest_m[block];
+      if (depth_m < nearest - tolerance_m || depth_m > farthest + tolerance_m) continue;
+      if (farthest - nearest <= 2.0F * tolerance_m) return true;
+      if (depth_m <= nearest + tolerance_m || depth_m >= farthest - tolerance_m) return true;
+    }
+  }
+  return false;
+}
+
+// A pixel behind a near edge's reach, as of a ball behind a box, is no less moved if its depth is neither the
+// near surface's nor the far one's.
+void settle_doubts(const DepthImage& depth_m, int y, const ForegroundConfig& config,
+                   ForegroundScratch& scratch) {
+  std::uint8_t* evidence = scratch.evidence.data() + depth_m.index(0, y);
+  const int columns = blocks_along(depth_m.width);
+  const int rows = blocks_along(depth_m.height);
+  for (int x = 0; x < depth_m.width; ++x) {
+    if ((evidence[x] & (kDoubtful | kStrongMoved)) != kDoubtful) continue;
+    if (!is_expected_near(depth_m.at(x, y), x / kBlock_px, y / kBlock_px, columns, rows, config, scratch)) {
+      evidence[x] |= kStrongMoved;
+    }
   }
 }
 
@@ -218,6 +254,7 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
     }
     sigmas_of_row(expected_m, y, camera, config, scratch);
     weigh_row(depth_m, expected_m, y, config, scratch);
+    settle_doubts(depth_m, y, config, scratch);
   }
 }
 

@@ -45,7 +45,8 @@ struct ForegroundScratch {
   std::vector<float> nearest_m, farthest_m, reach_m, sigma_m;  // one value a pixel of a row
   std::vector<float> padded_m;                                 // one row of expected depth with margins
   std::vector<float> block_nearest_m, block_farthest_m;        // one value a block of pixels
-  std::vector<float> window_nearest_m, window_farthest_m, window_reach_m, along_rows_m, spread_m;
+  std::vector<float> window_nearest_m, window_farthest_m, window_reach_m, grown_nearest_m, grown_farthest_m,
+      along_rows_m, spread_m;
   std::vector<int> window;             // blocks to each side that an edge may be off
   std::vector<std::uint8_t> evidence;  // bits, see foreground.cpp
   std::vector<std::uint32_t> region;   // pixels of the region being grown
