@@ -321,12 +321,13 @@ ScenarioRoom make_scenario_room(std::string_view name) {
 
 Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number) {
   constexpr std::uint64_t kDraws = 4000;
+  std::uint64_t room_key = 0;  // so that rooms differ in more than their furniture
+  for (const char letter : room.room.name) room_key = mixed(room_key + static_cast<unsigned char>(letter));
   const bool drop = number / static_cast<std::int64_t>(kOccluders.size()) % 2 == 0;
   for (std::size_t turn = 0; turn < kOccluders.size(); ++turn) {
     const Occluder occluder = kOccluders[(static_cast<std::size_t>(number) + turn) % kOccluders.size()];
     for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
-      CounterRandom random(hash_of(seed, static_cast<std::uint64_t>(number), 0x7363656e),
-                           turn * kDraws + draw);
+      CounterRandom random(hash_of(seed, static_cast<std::uint64_t>(number), room_key), turn * kDraws + draw);
       std::optional<Scenario> scenario = draw_scenario(room, occluder, drop, random);
       if (!scenario) continue;
       scenario->seed = seed;

@@ -52,6 +52,16 @@ void add_cylinder_points(const Vector3d& half_m, const Vector3d& direction, doub
   }
 }
 
+/// Gradient of the room's distance: away from the nearest surface.
+Vector3d outward(const Room& room, const Vector3d& p_world) {
+  constexpr double kStep_m = 1e-6;
+  Vector3d gradient;
+  for (int axis = 0; axis < 3; ++axis)
+    gradient[axis] = signed_distance_m(room, p_world + kStep_m * Vector3d::Unit(axis)) -
+                     signed_distance_m(room, p_world - kStep_m * Vector3d::Unit(axis));
+  return gradient.normalized();
+}
+
 }  // namespace
 
 std::vector<Vector3d> leading_core_points(const Solid& solid, const Vector3d& direction_solid,
@@ -73,7 +83,7 @@ std::vector<Vector3d> leading_core_points(const Solid& solid, const Vector3d& di
 SweptTravel swept_travel(const Room& room, const Solid& object, const Eigen::Isometry3d& T_world_object,
                          const Vector3d& direction_world, double limit_m, double spacing_m) {
   constexpr double kTouching_m = 1e-7;
-  constexpr double kLeastStep_m = 2e-5;  // sliding along a surface must come to an end
+  constexpr double kLeastStep_m = 1e-6;  // sliding along a surface must come to an end
   SweptTravel result;
   result.travel_m = limit_m;
   const Eigen::Isometry3d T_world_solid = T_world_object * object.T_world_solid;
@@ -84,7 +94,7 @@ SweptTravel swept_travel(const Room& room, const Solid& object, const Eigen::Iso
       const Vector3d p_world = start_world + travel_m * direction_world;
       const double clear_m = signed_distance_m(room, p_world) - object.round_m;
       if (clear_m < kTouching_m) {
-        result = {travel_m, true, p_world + object.round_m * direction_world};
+        result = {travel_m, true, p_world - object.round_m * outward(room, p_world)};
         break;
       }
       travel_m += std::max(clear_m, kLeastStep_m);
