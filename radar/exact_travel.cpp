@@ -136,8 +136,9 @@ std::optional<double> exact_travel(const Mesh& object, const Eigen::Isometry3d& 
                                    const Mesh& scene, const Eigen::Isometry3d& T_world_scene,
                                    ExactMethod method, double slack_m) {
   const double norm = direction_world.stableNorm();
-  if (!(norm > 0.0) || !std::isfinite(norm))
+  if (!direction_world.allFinite() || !(norm > 0.0)) {
     throw Error("exact_travel: direction must be finite and not zero");
+  }
   if (!(distance_m >= 0.0) || !std::isfinite(distance_m)) {
     throw Error("exact_travel: distance_m = " + std::to_string(distance_m) + ": must be finite and >= 0");
   }
