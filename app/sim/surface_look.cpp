@@ -80,6 +80,25 @@ Vector3d from_face(const Solid& solid, int face, double u, double v) {
   return p - signed_distance_local_m(solid, p) * normal_local(solid, p);
 }
 
+/// Whether nobody in the room can see the face: the outside of a wall, the foot of a cupboard, the side of a
+/// book between books. Judged at the points of a grid, so that a face of which a part is free counts as free.
+bool is_covered(const Room& room, const Solid& solid, int face) {
+  constexpr int kGrid = 8;
+  constexpr double kBefore_m = 0.001;
+  const Eigen::Vector2d half = face_half_m(solid, face);
+  for (int i = 0; i <= kGrid; ++i)
+    for (int j = 0; j <= kGrid; ++j) {
+      const auto inside = [](int at, double half_m) { return half_m * 0.98 * (2.0 * at / kGrid - 1.0); };
+      const Vector3d p = from_face(solid, face, inside(i, half.x()), inside(j, half.y()));
+      const Vector3d before_world = solid.T_world_solid * Vector3d(p + kBefore_m * normal_local(solid, p));
+      if ((before_world - room.interior_min_world).minCoeff() > 0.0 &&
+          (room.interior_max_world - before_world).minCoeff() > 0.0 &&
+          signed_distance_m(room, before_world) > 0.0)
+        return false;
+    }
+  return true;
+}
+
 std::uint8_t to_byte(float of) {
   return static_cast<std::uint8_t>(std::clamp(of, 0.0F, 1.0F) * 255.0F + 0.5F);
 }
@@ -108,18 +127,11 @@ void SurfaceLook::add_solid(const Solid& solid, const Material& material, double
     const bool is_cylinder = solid.shape == SolidShape::kCylinder;
     if (is_cylinder ? index < 4 : index == kCylinderSide) continue;
     const Eigen::Vector2d half = face_half_m(solid, index);
-    if (lit) {  // the outside of the walls is never seen
-      const Vector3d middle = from_face(solid, index, 0.0, 0.0);
-      const Vector3d before = solid.T_world_solid * Vector3d(middle + 0.001 * normal_local(solid, middle));
-      if ((before - room_.interior_min_world).minCoeff() < 0.0 ||
-          (room_.interior_max_world - before).minCoeff() < 0.0)
-        continue;
-    }
+    if (lit && is_covered(room_, solid, index)) continue;
     face.width_m = static_cast<float>(2.0 * half.x());
     face.height_m = static_cast<float>(2.0 * half.y());
-    constexpr double kMostTexels = 2048.0;
-    face.texel_m =
-        static_cast<float>(std::max({texel_m, face.width_m / kMostTexels, face.height_m / kMostTexels}));
+    // Walls and floors are seldom looked at from 1 m.
+    face.texel_m = static_cast<float>(half.minCoeff() > 1.0 ? 1.5 * texel_m : texel_m);
     Level level;
     level.width = std::max(1, static_cast<int>(std::ceil(face.width_m / face.texel_m)));
     level.height = std::max(1, static_cast<int>(std::ceil(face.height_m / face.texel_m)));
