@@ -10,7 +10,7 @@ namespace roomradar {
 ///
 /// @param tessellation  segments along each side of each of the 32 patches, 1 to 256; about 64 *
 /// tessellation^2
-///                      triangles (10 gives 6,240)
+///                      triangles (10 gives 6,320)
 /// @param height_m      from the base to the top of the knob, > 0; it is 2.04 times as long and 1.27 times as
 /// wide
 /// @throws Error if an argument is out of range
