@@ -131,8 +131,9 @@ class KinectSource final : public FrameSource {
     RawFrame raw;
     {
       std::unique_lock lock(mutex_);
-      const auto timeout = std::chrono::duration<double>(timeout_s_);
-      const bool arrived = changed_.wait_for(lock, timeout, [&] { return !ready_.empty() || ended_; });
+      const auto something = [&] { return !ready_.empty() || ended_; };
+      if (replay_) changed_.wait(lock, something);  // a recording may have long gaps
+      const bool arrived = changed_.wait_for(lock, std::chrono::duration<double>(timeout_s_), something);
       if (!arrived)
         throw Error(name_ + ": has sent no depth image for " + std::to_string(timeout_s_) +
                     " s; check its cable and power supply");

@@ -1,6 +1,7 @@
 // recording_index.cpp: tells the kinds of recordings apart, and lists those whose frames are numbered files.
 #include "app/sources/recording_index.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <map>
 #include <regex>
@@ -24,6 +25,14 @@ using FilesByNumber = std::map<std::int64_t, NumberedFiles>;
 const std::regex& seven_scenes_name() {
   static const std::regex pattern(R"(frame-(\d{1,9})\.(depth\.png|color\.png|color\.jpe?g|pose\.txt))");
   return pattern;
+}
+
+/// Sorted, so that of two files for one image (jpg and png) the same one is taken everywhere: the first.
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 bool holds_seven_scenes(const fs::path& folder) {
@@ -68,12 +77,13 @@ fs::path colour_folder(const fs::path& folder) {
 /// Files in `folder` named by a number and one of the extensions.
 void add_numbered(const fs::path& folder, std::initializer_list<std::string_view> extensions,
                   fs::path NumberedFiles::*which, FilesByNumber& files) {
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
-    const auto number = parse_whole_number(entry.path().stem().string());
-    if (!number || *number < 0) continue;
-    for (const std::string_view wanted : extensions)
-      if (extension == wanted) files[*number].*which = entry.path();
+  for (const fs::path& file : files_in(folder)) {
+    const auto number = parse_whole_number(file.stem().string());
+    const bool is_wanted =
+        std::find(extensions.begin(), extensions.end(), file.extension().string()) != extensions.end();
+    if (!is_wanted || !number || *number < 0) continue;
+    fs::path& slot = files[*number].*which;
+    if (slot.empty()) slot = file;
   }
 }
 
@@ -81,15 +91,16 @@ void add_numbered(const fs::path& folder, std::initializer_list<std::string_view
 
 RecordingIndex index_seven_scenes(const fs::path& folder) {
   FilesByNumber files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
+  for (const fs::path& file : files_in(folder)) {
+    const std::string name = file.filename().string();
     std::smatch match;
     if (!std::regex_match(name, match, seven_scenes_name())) continue;
     NumberedFiles& frame = files[std::stoll(match[1])];
     const std::string kind = match[2];
-    (kind.starts_with("depth")   ? frame.depth
-     : kind.starts_with("color") ? frame.colour
-                                 : frame.pose) = entry.path();
+    fs::path& slot = kind.starts_with("depth")   ? frame.depth
+                     : kind.starts_with("color") ? frame.colour
+                                                 : frame.pose;
+    if (slot.empty()) slot = file;
   }
   return {DepthEncoding::kMillimetres, NominalRig::kSevenScenes, frames_of(files, folder)};
 }

@@ -41,7 +41,7 @@ void add_line(std::ofstream& list, const fs::path& path, const std::string& line
     list.open(path);
     list << heading;
   }
-  list << line << '\n';
+  list << line << '\n' << std::flush;  // whole lines on disk, whatever happens to the program
   if (!list) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
 }
 
@@ -91,6 +91,7 @@ RecordingWriter::RecordingWriter(fs::path folder, RecordingFormat format)
 
 void RecordingWriter::write(const Frame& frame) {
   const std::string where = folder_.string() + ": frame " + std::to_string(frame.index) + "'s ";
+  require_valid(frame.depth_camera, (where + "depth camera").c_str());
   require_size(frame.depth_m, frame.depth_camera, where + "depth");
   if (!frame.colour.empty()) require_size(frame.colour, frame.colour_camera, where + "colour");
   if (frames_written_ > 0 && !(frame.stamp_s > last_stamp_s_))

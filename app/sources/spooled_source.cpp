@@ -14,7 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path make_temporary_folder(const fs::path& parent) {
+fs::path make_temporary_folder(fs::path parent) {
+  std::error_code fault;
+  if (parent.empty()) parent = fs::temp_directory_path(fault);
+  if (fault) throw Error("there is no folder for temporary files; set TMPDIR to one: " + fault.message());
   std::string pattern = (parent / "roomradar-spool-XXXXXX").string();
   if (!mkdtemp(pattern.data()))
     throw Error(parent.string() + ": no temporary folder can be made there: " + std::strerror(errno));
@@ -44,8 +47,7 @@ Frame without_images(const Frame& frame) {
 }  // namespace
 
 SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, const fs::path& parent_folder)
-    : source_(std::move(source)),
-      folder_(make_temporary_folder(parent_folder.empty() ? fs::temp_directory_path() : parent_folder)) {}
+    : source_(std::move(source)), folder_(make_temporary_folder(parent_folder)) {}
 
 SpooledSource::~SpooledSource() {
   std::error_code ignored;  // nobody is left to be told

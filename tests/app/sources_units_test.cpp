@@ -95,7 +95,7 @@ TEST(StampPairing, TakesTheNearerOfTheImagesBeforeAndAfter) {
 
 TEST(StampPairing, UsesEachImageOnceAndNoneThatIsTooFar) {
   StampPairing pairing({});
-  pairing.add_colour(0, 1.000);
+  pairing.add_colour(0, 1.005);
   pairing.add_depth(0, 1.001);
   pairing.add_depth(1, 1.010);
   pairing.add_colour(1, 1.0305);
