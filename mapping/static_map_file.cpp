@@ -193,7 +193,12 @@ void StaticMap::write_ot(const std::filesystem::path& path) const {
 
 void StaticMap::write_bt(const std::filesystem::path& path) const {
   PlainTree plain(octree_->tree);
-  write_stream(path, [&](std::ostream& stream) { plain.writeBinaryConst(stream); });
+  // OctoMap's own writeBinaryConst puts a word on stderr.
+  write_stream(path, [&](std::ostream& stream) {
+    stream << "# Octomap OcTree binary file\n#\nid OcTree\nsize " << plain.size() << "\nres "
+           << plain.getResolution() << "\ndata\n";
+    if (plain.size() > 0) plain.writeBinaryData(stream);
+  });
 }
 
 StaticMap StaticMap::read_ot(const std::filesystem::path& path, const FusionConfig& config) {
