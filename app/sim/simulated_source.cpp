@@ -7,6 +7,7 @@
 #include "app/sim/camera_path.hpp"
 #include "app/sim/counter_random.hpp"
 #include "app/sim/kinect_depth.hpp"
+#include "app/sim/mover_shadow.hpp"
 #include "app/sim/movers.hpp"
 #include "app/sim/room.hpp"
 #include "app/sim/surface_look.hpp"
@@ -20,6 +21,13 @@ using Eigen::Vector3d;
 /// The Kinect's colour camera stands 2.5 cm along the depth camera's +x and sees a little wider.
 constexpr double kColourOffset_m = 0.025;
 constexpr double kColourFocal = 525.0 / 585.0;
+
+Rgb dimmed(Rgb colour, float factor) {
+  const auto dim = [factor](std::uint8_t of) {
+    return static_cast<std::uint8_t>(static_cast<float>(of) * factor);
+  };
+  return factor < 1.0F ? Rgb{dim(colour.r), dim(colour.g), dim(colour.b)} : colour;
+}
 
 }  // namespace
 
@@ -55,6 +63,7 @@ struct SimulatedSource::State {
   void place_solids(double t_s) {
     solids.assign(room.solids.begin(), room.solids.end());
     for (const Mover& mover : movers) append_solids(mover, t_s, solids);
+    shadow.prepare(std::span<const Solid>(solids).subspan(room.solids.size()));
   }
   void fill_truth();
   void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
@@ -73,6 +82,7 @@ struct SimulatedSource::State {
   std::int64_t next_index = 0;
 
   std::vector<Solid> solids;  ///< the room's, then the movers', at the time of the current frame
+  MoverShadow shadow;
   ViewCaster depth_view, colour_view;
   ExactView depth_exact, colour_exact;
   KinectScratch scratch;
@@ -110,10 +120,16 @@ void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView
       const double cosine = std::max(exact.cosine.at(x, y), 0.2F);
       const double footprint_m = depth_m / (colour_camera.fx_px * cosine);
       Rgb& pixel = colour.at(x, y);
-      pixel = index < room.solids.size()
-                  ? room_look.shade(index, p_solid, normal_solid, footprint_m, solids[index].T_world_solid)
-                  : mover_look->shade(index - room.solids.size(), p_solid, normal_solid, footprint_m,
-                                      solids[index].T_world_solid);
+      const Eigen::Isometry3d& T_world_solid = solids[index].T_world_solid;
+      if (index < room.solids.size()) {
+        pixel = room_look.shade(index, p_solid, normal_solid, footprint_m, T_world_solid);
+        if (!movers.empty())
+          pixel = dimmed(pixel,
+                         shadow.factor(room, T_world_solid * p_solid, T_world_solid.linear() * normal_solid));
+      } else {
+        pixel =
+            mover_look->shade(index - room.solids.size(), p_solid, normal_solid, footprint_m, T_world_solid);
+      }
       if (noise_scale == 0.0F) continue;
       const std::uint64_t pixel_key = mixed(key + colour.index(x, y));
       const float brightness = 1.6F * noise_scale * gaussian(pixel_key);
