@@ -281,7 +281,7 @@ struct Region {
 // Collects the region around a strong pixel into scratch.region: neighbours that are strong, or weak and on
 // the same surface.
 Region grow_region(const DepthImage& depth_m, std::uint32_t seed, const Difference& difference,
-                   const Intrinsics& camera, ForegroundScratch& scratch) {
+                   int weak_reach_px, const Intrinsics& camera, ForegroundScratch& scratch) {
   const std::uint8_t weak = difference.weak;
   const std::uint8_t strong = difference.strong;
   const auto width = static_cast<std::uint32_t>(depth_m.width);
@@ -291,20 +291,26 @@ Region grow_region(const DepthImage& depth_m, std::uint32_t seed, const Differen
   std::size_t size = 0;
   std::size_t strong_pixels = 0;
   float area = 0.0F;
-  const auto take = [&](std::uint32_t pixel) {
+  const auto take = [&](std::uint32_t pixel, int steps) {
+    scratch.steps[pixel] = static_cast<std::uint8_t>(steps);
     strong_pixels += (scratch.evidence[pixel] & strong) != 0;
     scratch.evidence[pixel] |= kTaken;
     region[size++] = pixel;
     area += depth_m.pixels[pixel] * depth_m.pixels[pixel];
   };
-  take(seed);
+  take(seed, 0);
   for (std::size_t next = 0; next < size; ++next) {
     const std::uint32_t pixel = region[next];
     const float z = depth_m.pixels[pixel];
+    const int steps = scratch.steps[pixel] + 1;
     const auto visit = [&](std::uint32_t other) {
       const std::uint8_t evidence = scratch.evidence[other];
       if ((evidence & kTaken) != 0 || (evidence & (weak | strong)) == 0) return;
-      if ((evidence & strong) != 0 || same_surface(z, depth_m.pixels[other], slope)) take(other);
+      if ((evidence & strong) != 0) {
+        take(other, 0);
+      } else if (steps <= weak_reach_px && same_surface(z, depth_m.pixels[other], slope)) {
+        take(other, steps);
+      }
     };
     const std::uint32_t x = pixel % width;
     if (x > 0) visit(pixel - 1);
@@ -321,7 +327,7 @@ std::size_t label_regions(const DepthImage& depth_m, const Difference& differenc
   std::size_t labelled = 0;
   for (std::uint32_t seed = 0; seed < scratch.evidence.size(); ++seed) {
     if ((scratch.evidence[seed] & difference.strong) == 0 || (scratch.evidence[seed] & kTaken) != 0) continue;
-    const Region region = grow_region(depth_m, seed, difference, camera, scratch);
+    const Region region = grow_region(depth_m, seed, difference, config.weak_reach_px, camera, scratch);
     const float strong_fraction =
         static_cast<float>(region.strong_pixels) / static_cast<float>(region.pixels);
     if (region.pixels < static_cast<std::size_t>(config.min_region_px) ||
@@ -358,6 +364,8 @@ void require_valid(const ForegroundConfig& config) {
           config.min_strong_fraction, "in 0..1");
   require(config.min_strong_fraction_revealed >= 0.0F && config.min_strong_fraction_revealed <= 1.0F,
           "min_strong_fraction_revealed", config.min_strong_fraction_revealed, "in 0..1");
+  require(config.weak_reach_px >= 0 && config.weak_reach_px <= 255, "weak_reach_px", config.weak_reach_px,
+          "in 0..255");
   require(config.hole_reach_px >= 0 && config.hole_reach_px <= 256, "hole_reach_px", config.hole_reach_px,
           "in 0..256");
   require(config.min_region_px >= 0, "min_region_px", config.min_region_px, ">= 0");
@@ -375,6 +383,7 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   labels.resize(depth_m.width, depth_m.height, PixelLabel::kNotKnown);
   moved_mask.resize(depth_m.width, depth_m.height, 0);
   scratch.evidence.resize(pixels);
+  scratch.steps.resize(pixels);
   scratch.region.resize(pixels);
   if (pixels == 0) return {};
   scratch.padded_m.resize(width + 2 * kSlopeStep_px);

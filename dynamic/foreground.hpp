@@ -28,7 +28,10 @@ struct ForegroundConfig {
       0.02F;  ///< how far aside an edge of the model may stand: pose error and the map's distortion
   float edge_error_rad = 0.005F;  ///< the same by a turn of the pose, 0.3 degrees
   int hole_reach_px = 16;  ///< how far from the model's edge a pixel without expected depth is still judged
-  int min_region_px = 60;  ///< smaller regions are noise
+  /// How far over weak pixels a region grows from strong ones: to its rim, and not over all of a misplaced
+  /// table or chair that it touches, whose weakness would then count against it.
+  int weak_reach_px = 40;
+  int min_region_px = 60;         ///< smaller regions are noise
   float min_region_m2 = 0.0003F;  ///< the same by size in the world: 3 cm2
   /// Of a region's pixels, those that are strong. Regions by a distorted map or a wrong pose are weak nearly
   /// everywhere (0 to 0.25 in a real kitchen mapped by poses 3 cm off); what moved is strong but for its rim.
@@ -49,6 +52,7 @@ struct ForegroundScratch {
       along_rows_m, spread_m;
   std::vector<int> window;             // blocks to each side that an edge may be off
   std::vector<std::uint8_t> evidence;  // bits, see foreground.cpp
+  std::vector<std::uint8_t> steps;     // from a pixel of a region to a strong one
   std::vector<std::uint32_t> region;   // pixels of the region being grown
 };
 

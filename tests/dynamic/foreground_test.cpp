@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -231,6 +232,31 @@ TEST(Foreground, HandBesideANearEdgeKeepsItsRim) {
   add_noise(live_m, 6);
   const auto hand = [](int x, int y) { return x >= 300 && x < 380 && y >= 200 && y < 300; };
   EXPECT_GT(intersection_over_union(mark(live_m, expected_m).moved_mask, hand), 0.99);
+}
+
+TEST(Foreground, BallHalfBehindABoxIsFound) {
+  // All of the ball that shows is within an edge error's reach of the box, but neither at its depth nor the
+  // table's.
+  DepthImage expected_m = flat(1.7F);
+  fill_rectangle(expected_m, 200, 240, 400, 480, 1.0F);
+  DepthImage live_m = expected_m;
+  fill_rectangle(live_m, 280, 226, 330, 240, 1.4F);
+  add_noise(live_m, 8);
+  const auto ball = [](int x, int y) { return x >= 280 && x < 330 && y >= 226 && y < 240; };
+  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).moved_mask, ball), 0.95);
+}
+
+TEST(Foreground, HandOnAMisplacedSurfaceIsFoundAndTheSurfaceIsNot) {
+  // The left half of the wall stands 2 cm nearer than the map says: weak everywhere, far larger than the
+  // hand.
+  DepthImage live_m = flat(1.0F);
+  fill_rectangle(live_m, 0, 0, 320, 480, 0.98F);
+  const MaskImage without_hand = mark(live_m, flat(1.0F)).moved_mask;
+  EXPECT_EQ(std::count(without_hand.pixels.begin(), without_hand.pixels.end(), 255), 0);
+  fill_rectangle(live_m, 80, 100, 240, 260, 0.966F);  // too low a step to stop the region from growing
+  const MaskImage mask = mark(live_m, flat(1.0F)).moved_mask;
+  EXPECT_EQ(mask.at(160, 180), 255);
+  EXPECT_EQ(mask.at(60, 400), 0);
 }
 
 TEST(Foreground, WorksAtAnySizeOfImage) {
