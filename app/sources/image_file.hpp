@@ -26,7 +26,7 @@ void read_colour_file(const std::filesystem::path& path, ColourImage& colour);
 /// hold. Throws Error naming the file if it cannot be written whole (disk full).
 void write_depth_file(const DepthImage& depth_m, DepthEncoding encoding, const std::filesystem::path& path);
 
-/// Lossless: PPM where the path ends in .ppm, else PNG at its fastest. Throws Error as above.
+/// Lossless: PPM where the path ends in .ppm, else PNG. Throws Error as above.
 void write_colour_file(const ColourImage& colour, const std::filesystem::path& path);
 
 /// All 32 bits of each pixel, as a 16 bit PNG of twice the height: the upper halves above, the lower halves

@@ -12,6 +12,7 @@
 #include "app/sources/folder_source.hpp"
 #include "app/sources/frame_range.hpp"
 #include "app/sources/kinect_source.hpp"
+#include "app/sources/recording_writer.hpp"
 #include "tests/app/sources_fingerprint.hpp"
 #include "tests/app/sources_support.hpp"
 #include "tests/support/recordings.hpp"
@@ -213,6 +214,25 @@ TEST_P(Replay, GivesTheFramesOfTheFolderAndEnds) {
 }
 INSTANTIATE_TEST_SUITE_P(RealRecordings, Replay,
                          testing::Values("fakenect-planes/planes", "fakenect-planes/kinectcap"));
+#endif
+
+#ifdef ROOMRADAR_REPLAY_DUMP
+TEST(Kinect, RecordingOfOurOwnReplaysAsItIsRead) {
+  if (std::system("command -v fakenect > /dev/null") != 0) GTEST_SKIP() << "fakenect is not installed";
+  const test::TemporaryFolder folder;
+  RecordingWriter writer(folder.path() / "r", RecordingFormat::kFakenect);
+  for (int i = 0; i < 5; ++i) {
+    Frame frame = test::some_frame(i, 640, 480);
+    if (i == 2) frame.colour.resize(0, 0);
+    writer.write(frame);
+  }
+  writer.close();
+  std::vector<std::string> by_folder;
+  for (const Frame& frame : read_all(*open_folder(folder.path() / "r")).frames)
+    by_folder.push_back(test::fingerprint(frame));
+  ASSERT_EQ(by_folder.size(), 5U);
+  EXPECT_EQ(frames_by_fakenect(folder.path() / "r"), by_folder);
+}
 #endif
 
 TEST(Kinect, AbsentDeviceOrBuildIsSaidSo) {
