@@ -16,7 +16,7 @@ namespace roomradar {
 namespace {
 
 constexpr double kNear_m = 0.05;
-constexpr int kMaxSupersampled_px = 160'000;  // half of a 640 x 480 picture
+constexpr int kMaxSupersampled_px = 80'000;  // a quarter of a 640 x 480 picture
 
 constexpr const char* kVertexShader = R"(#version 450 core
 layout(location = 0) in vec3 p_local;
@@ -32,7 +32,8 @@ void main() {
   gl_Position = clip_from_local * vec4(p_local, 1.0);
   p_eye = (eye_from_local * vec4(p_local, 1.0)).xyz;
   normal_eye = mat3(eye_from_local) * normal_local;
-  albedo = pow(mix(colour_srgb, plain_srgb.rgb, plain_srgb.a), vec3(2.2));
+  albedo = mix(colour_srgb, plain_srgb.rgb, plain_srgb.a);
+  albedo *= albedo;  // a gamma of 2 stands for sRGB's: no powers a pixel
 }
 )";
 
@@ -60,13 +61,17 @@ void main() {
   vec3 ambient = mix(ground, sky, 0.5 + 0.5 * dot(n, up));
   float lambert = max(dot(n, to_light), 0.0);
   vec3 halfway = normalize(to_light + to_eye);
-  float highlight = pow(max(dot(n, halfway), 0.0), 90.0) * 3.0 * step(0.0, dot(n, to_light));
-  float fresnel = 0.04 + 0.96 * pow(1.0 - max(dot(n, to_eye), 0.0), 5.0);
+  float highlight = max(dot(n, halfway), 0.0);  // to the 64th
+  highlight *= highlight; highlight *= highlight; highlight *= highlight;
+  highlight *= highlight; highlight *= highlight; highlight *= highlight;
+  highlight *= 2.5 * step(0.0, dot(n, to_light));
+  float away = 1.0 - max(dot(n, to_eye), 0.0);
+  float fresnel = 0.04 + 0.96 * away * away * away * away * away;
   vec3 mirrored = mix(ground, sky, smoothstep(-0.3, 0.6, dot(reflect(-to_eye, n), up)));
   vec3 light = albedo * (ambient * 0.75 + lamp * lambert * 0.75)
              + exposure_gloss.y * (lamp * highlight + fresnel * mirrored);
   light *= exposure_gloss.x;
-  colour = vec4(pow(light / (1.0 + 0.15 * light), vec3(1.0 / 2.2)), 1.0);
+  colour = vec4(sqrt(light / (1.0 + 0.15 * light)), 1.0);
 }
 )";
 

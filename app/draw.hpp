@@ -31,7 +31,7 @@ class ObjectDrawer {
   ~ObjectDrawer();
 
   /// Draws the objects into `layer`, whose rectangle is just large enough for them; an empty rectangle if
-  /// none is in view. 2 x 2 samples a pixel, or one where the rectangle has more than 160,000 pixels.
+  /// none is in view. 2 x 2 samples a pixel, or one where the rectangle has more than 80,000 pixels.
   /// Near plane 0.05 m, no far end; the depth step is 6e-8 of the depth. Objects with a null mesh are left
   /// out. Reuses the layer's allocations.
   void draw(std::span<const DrawnObject> objects, const Intrinsics& camera,
