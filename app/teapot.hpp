@@ -8,11 +8,10 @@ namespace roomradar {
 /// counter-clockwise seen from outside, with a smooth normal a vertex. Neighbouring patches share their
 /// vertices.
 ///
-/// @param tessellation  n segments along each side of each of the 32 patches, 1 to 256; 64 n^2 - 8 n
-/// triangles from
-///                      n = 2 on (10 gives 6,320)
-/// @param height_m      from the base to the top of the knob, > 0; it is 2.04 times as long, 1.27 times as
-/// wide
+/// @param tessellation  n segments along each side of each of the 32 patches, 1 to 256; from n = 2 on that is
+///                      64 n^2 - 8 n triangles (10 gives 6,320)
+/// @param height_m      from the base to the top of the knob, > 0; the teapot is 2.04 times as long and 1.27
+///                      times as wide
 /// @throws Error if an argument is out of range
 /// Source: Martin Newell, University of Utah, 1975; control points as published in F. Crow, The Origins of
 /// the Teapot, IEEE Computer Graphics and Applications 7(1), 1987.

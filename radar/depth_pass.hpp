@@ -30,8 +30,7 @@ class DepthPass {
   /// Renders the nearest surface of all instances, sampled at pixel centres.
   ///
   /// @param scene           meshes with their poses; those with a null mesh are left out
-  /// @param camera          of the image to make; must be valid (require_valid), else depth_m comes back
-  /// empty
+  /// @param camera          of the image to make; if it is not one (require_valid), depth_m comes back empty
   /// @param T_world_camera  camera pose
   /// @param depth_m         gets camera's size; metres along the optical axis, 0 where nothing is
   /// @return triangles handed to the renderer

@@ -33,16 +33,14 @@ class GpuMesh {
   /// keeps what was there. kStreamed drops such triangles and counts them; it allocates nothing once a mesh
   /// as large was here. An empty mesh is fine and draws nothing.
   /// @throws Error if refused (kStatic), or if normals or colours are there but not one a vertex, or the
-  /// origin is not
-  ///         finite, or there are more than 2^31 / 3 triangles
+  ///         origin is not finite, or there are more than 2^31 / 3 triangles
   void upload(const Mesh& mesh, MeshUsage usage);
 
   /// Draws with the program in use those chunks that may be inside the clip volume (-w..w, -w..w, 0..w), both
   /// sides of a triangle or one as the GL state says. Attributes: 0 position (vec3, local), 1 normal (vec3,
   /// local; absent: 0 0 1), 2 colour (vec3, 0 to 1; absent: 0.8 grey).
   ///
-  /// @param clip_from_local  maps local points (relative to origin()) to clip space; see clip_from_local()
-  /// below
+  /// @param clip_from_local  maps local points (relative to origin()) to clip space: clip_from_local() below
   /// @return number of triangles handed to the renderer
   std::size_t draw(const Eigen::Matrix4d& clip_from_local) const;
 
