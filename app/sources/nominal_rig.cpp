@@ -34,13 +34,17 @@ CameraRig figures(NominalRig kind) {
     case NominalRig::kTum:
       // "ROS default" of the benchmark's page, which it recommends where colour and depth are registered by
       // the driver.
-      return {{640, 480, 525.0, 525.0, 319.5, 239.5}, Intrinsics{640, 480, 525.0, 525.0, 319.5, 239.5}, {}};
+      return {{640, 480, 525.0, 525.0, 319.5, 239.5},
+              Intrinsics{640, 480, 525.0, 525.0, 319.5, 239.5},
+              Eigen::Isometry3d::Identity()};
     case NominalRig::kAligned:
       // Colour cameras of the sensors that people record so are 69 to 90 degrees wide. 90 fits the recording
       // that this was tried on: on its table's plane the table's corners, a QR code's and a sheet of paper's
       // come out square at focal lengths of 310, 315 and 343 px (at 460, 69 degrees, they are off by 9, 15
       // and 12 degrees).
-      return {{640, 480, 320.0, 320.0, 319.5, 239.5}, Intrinsics{640, 480, 320.0, 320.0, 319.5, 239.5}, {}};
+      return {{640, 480, 320.0, 320.0, 319.5, 239.5},
+              Intrinsics{640, 480, 320.0, 320.0, 319.5, 239.5},
+              Eigen::Isometry3d::Identity()};
     case NominalRig::kKinect:
       // Depth, and the colour camera's principal point: Nicolas Burrus, "Kinect Calibration", 2011, of one
       // Kinect. Colour's focal length and the rotation: fitted as for 7-Scenes, to six frames of two raw

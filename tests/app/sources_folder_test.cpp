@@ -215,6 +215,7 @@ TEST(OpenFolder, ReadsNumberedFoldersAlignedAndInMillimetres) {
   const auto all = read_all(*open_folder(folder.path()));
   ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames));
   EXPECT_EQ(all.frames[2].depth_camera, all.frames[2].colour_camera);
+  EXPECT_TRUE(all.frames[2].T_colour_depth.matrix().isIdentity());
   EXPECT_NEAR(all.frames[2].stamp_s, 2 / 30.0, 1e-12);
   EXPECT_NEAR(all.frames[2].depth_m.at(3, 1), some_frame(2).depth_m.at(3, 1), 0.000501);
   EXPECT_EQ(all.frames[2].colour.pixels, some_frame(2).colour.pixels);
@@ -452,6 +453,7 @@ TEST(Tum, DepthIsInFiveThousandths) {
   write_text(folder.path() / "depth.txt", "1.0 depth/a.png\n");
   const auto all = read_all(*open_folder(folder.path()));
   EXPECT_EQ(all.frames.at(0).depth_m.at(2, 2), 2.0F);
+  EXPECT_TRUE(all.frames.at(0).T_colour_depth.matrix().isIdentity());
 }
 
 // ---- fakenect ----

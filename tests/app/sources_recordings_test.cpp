@@ -62,6 +62,7 @@ TEST(RealRecordings, CupIsAlignedAndOfItsOwnSize) {
   ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
   EXPECT_EQ(frame.depth_camera, (Intrinsics{640, 360, 320, 320, 319.5, 179.5}));
   EXPECT_EQ(frame.colour_camera, frame.depth_camera);
+  EXPECT_TRUE(frame.T_colour_depth.matrix().isIdentity());
   EXPECT_FALSE(frame.T_world_camera);
 }
 
