@@ -1,0 +1,82 @@
+// commands.hpp: what each roomradar command is given; one function each, in a file of its name.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "app/sources/frame_range.hpp"
+#include "app/sources/recording_writer.hpp"
+#include "dynamic/surface_policy.hpp"
+#include "mapping/prescan.hpp"
+
+namespace roomradar {
+
+struct PrescanCommand {
+  std::string source;
+  std::string map;
+  double resolution_m = 0.01;
+  PoseOrigin poses = PoseOrigin::kTracked;
+  std::optional<FrameRange> frames;
+  std::string report;
+};
+
+struct RunCommand {
+  std::string source;
+  std::string map;
+  PoseOrigin poses = PoseOrigin::kTracked;
+  std::optional<FrameRange> frames;
+  std::string object = "teapot";  ///< built in, or a mesh file
+  std::string script;             ///< events file; empty: the object is dropped over a level surface in view
+  SurfacePolicy surfaces = SurfacePolicy::kMap;
+  std::string video;
+  std::string pictures;  ///< folder for composed frames as PNG
+  std::int64_t pictures_every = 10;
+  std::string report;
+};
+
+struct MapInfoCommand {
+  std::string map;
+};
+struct MapVerifyCommand {
+  std::string map;
+};
+struct MapExportCommand {
+  std::string map;
+  std::string path;
+};
+
+struct SimulateCommand {
+  std::string folder;
+  std::string room = "table";
+  std::uint64_t seed = 1;
+  std::int64_t frames = 300;
+  std::string path = "scan";
+  std::string moving;  ///< hand,ball,person
+  RecordingFormat format = RecordingFormat::kTum;
+};
+
+struct RecordCommand {
+  std::string source;
+  std::string folder;
+  std::optional<FrameRange> frames;
+  RecordingFormat format = RecordingFormat::kTum;
+};
+
+struct FallthroughCommand {
+  int scenarios = 200;
+  std::uint64_t seed = 1;
+  std::string report;
+};
+
+/// Each does the whole work of its command, prints results on stdout and progress on stderr, and throws Error where the
+/// work fails. The return value is the exit status: 0, or 1 where the work was done and its answer is bad news.
+int run(const PrescanCommand& command);
+int run(const RunCommand& command);
+int run(const MapInfoCommand& command);
+int run(const MapVerifyCommand& command);
+int run(const MapExportCommand& command);
+int run(const SimulateCommand& command);
+int run(const RecordCommand& command);
+int run(const FallthroughCommand& command);
+
+}  // namespace roomradar

@@ -1,0 +1,62 @@
+// locator.cpp: alignment with the static model, relocalisation when that fails.
+#include "app/locator.hpp"
+
+namespace roomradar {
+namespace {
+
+bool is_located(const Tracking& tracking) {
+  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
+}
+
+/// Aligns the live view with the model as seen from the guess; twice where the guess was far off, for then the model
+/// showed other surfaces than the camera sees.
+Tracking align_with_model(Locator& locator, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera_guess,
+                          const ExpectedDepth& expected_depth) {
+  constexpr double kFarOff_m = 0.05;
+  constexpr double kFarOff_rad = 0.05;
+  Tracking tracking;
+  tracking.T_world_camera = T_world_camera_guess;
+  for (int round = 0; round < 2; ++round) {
+    const Eigen::Isometry3d T_world_view = tracking.T_world_camera;
+    make_pyramid(expected_depth(T_world_view), camera, locator.view, locator.expected_pyramid);
+    make_reference(locator.expected_pyramid, T_world_view, locator.view, locator.expected);
+    tracking = align(locator.live, locator.expected, T_world_view, locator.align);
+    const Eigen::Isometry3d T_view_camera = T_world_view.inverse() * tracking.T_world_camera;
+    const double turned_rad = Eigen::AngleAxisd(T_view_camera.linear()).angle();
+    if (!is_located(tracking) || (T_view_camera.translation().norm() < kFarOff_m && turned_rad < kFarOff_rad)) break;
+  }
+  return tracking;
+}
+
+}  // namespace
+
+Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
+                const ExpectedDepth& expected_depth) {
+  make_pyramid(frame, locator.view, locator.live_pyramid);
+  make_live(locator.live_pyramid, locator.live, moved_mask);
+
+  Tracking tracking;
+  if (locator.T_world_camera) {
+    const Eigen::Isometry3d predicted = *locator.T_world_camera * locator.T_last_now;
+    tracking = align_with_model(locator, frame.depth_camera, predicted, expected_depth);
+  }
+  if (!is_located(tracking)) {
+    make_live(locator.live_pyramid, locator.live);  // the mask belonged to a pose that no longer holds
+    const Relocalisation found = relocalise(frame, places, locator.relocalise);
+    if (found) tracking = align_with_model(locator, frame.depth_camera, found.T_world_camera, expected_depth);
+    locator.T_world_camera.reset();
+    if (is_located(tracking)) ++locator.relocalisations;
+  }
+
+  if (!is_located(tracking)) {
+    locator.T_last_now.setIdentity();
+    return tracking;
+  }
+  locator.T_last_now = locator.T_world_camera
+                           ? Eigen::Isometry3d(locator.T_world_camera->inverse() * tracking.T_world_camera)
+                           : Eigen::Isometry3d::Identity();
+  locator.T_world_camera = tracking.T_world_camera;
+  return tracking;
+}
+
+}  // namespace roomradar

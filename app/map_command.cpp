@@ -1,0 +1,28 @@
+// map_command.cpp: roomradar map info|verify|export: look at a saved map, check it, hand it to other programs.
+#include <cstdio>
+
+#include "app/commands.hpp"
+#include "mapping/map_folder.hpp"
+
+namespace roomradar {
+
+int run(const MapInfoCommand& command) {
+  std::printf("%s", describe(load_map_info(command.map)).c_str());
+  return 0;
+}
+
+int run(const MapVerifyCommand& command) {
+  const std::vector<std::string> faults = verify_map(command.map);
+  for (const std::string& fault : faults) std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
+  if (!faults.empty()) return 1;
+  std::printf("%s: sound\n", command.map.c_str());
+  return 0;
+}
+
+int run(const MapExportCommand& command) {
+  export_map(command.map, command.path);
+  std::printf("%s written\n", command.path.c_str());
+  return 0;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,47 @@
+// open_source.cpp: tells the kinds of source apart by their names.
+#include "app/open_source.hpp"
+
+#include <charconv>
+#include <filesystem>
+#include <utility>
+
+#include "app/sim/simulated_source.hpp"
+#include "app/sources/folder_source.hpp"
+#include "app/sources/kinect_source.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::string_view kKinect = "kinect:";
+constexpr std::string_view kSim = "sim:";
+
+int kinect_number(const std::string& source) {
+  int device = -1;
+  const char* begin = source.data() + kKinect.size();
+  const char* end = source.data() + source.size();
+  const auto parsed = std::from_chars(begin, end, device);
+  if (parsed.ec != std::errc() || parsed.ptr != end || device < 0)
+    throw Error(source + ": must be kinect:N with N the number of the device, from 0");
+  return device;
+}
+
+std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceOptions& options) {
+  if (source.starts_with(kKinect)) return open_kinect(kinect_number(source), options);
+  if (source.starts_with(kSim)) return std::make_unique<SimulatedSource>(parse_sim_spec(source));
+  if (!std::filesystem::exists(source))
+    throw Error(source + ": no such folder. A source is a folder with a recording (7-Scenes, TUM RGB-D, fakenect), " +
+                "kinect:N for a device, or sim:ROOM for the simulated one");
+  return open_folder(source, options);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
+                                         const SourceOptions& options) {
+  std::unique_ptr<FrameSource> opened = open_whole(source, options);
+  if (!frames) return opened;
+  return limit_frames(std::move(opened), frames->first, frames->last);
+}
+
+}  // namespace roomradar

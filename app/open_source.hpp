@@ -1,0 +1,18 @@
+// open_source.hpp: from what the user calls a source to its frames.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/sources/frame_range.hpp"
+#include "app/sources/source_options.hpp"
+#include "mapping/types/frame_source.hpp"
+
+namespace roomradar {
+
+/// `kinect:N`, `sim:ROOM[?key=value&...]`, or a folder, recognised by what is in it; only `frames` of it where given.
+/// Throws Error saying what SOURCE can be if it is none of these, and whatever opening it throws.
+std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
+                                         const SourceOptions& options = {});
+
+}  // namespace roomradar

@@ -1,0 +1,96 @@
+// prescan_command.cpp: roomradar prescan: scan a room once and keep it.
+#include <cstdio>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/open_source.hpp"
+#include "app/progress.hpp"
+#include "app/report.hpp"
+#include "app/sources/spooled_source.hpp"
+#include "mapping/map_folder.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+nlohmann::json results_of(const PrescanResult& scanned) {
+  const PrescanCounts& counts = scanned.counts;
+  const MapCounts octree = scanned.map.octree.counts();
+  nlohmann::json results = {
+      {"frames_tracked", counts.frames_tracked},
+      {"frames_fused", counts.frames_fused},
+      {"frames_lost", counts.frames_lost},
+      {"keyframes", counts.keyframes},
+      {"loops_found", counts.loops_found},
+      {"up_source", scanned.map.info.up_source},
+      {"map",
+       {{"leaves", octree.occupied_leaves + octree.free_leaves},
+        {"occupied_leaves", octree.occupied_leaves},
+        {"free_leaves", octree.free_leaves},
+        {"bytes", octree.memory_bytes},
+        {"triangles", scanned.map.mesh.triangles.size()}}},
+  };
+  results["ate_rmse_m"] = nullptr;  // only where the recording has poses of its own and ours were tracked
+  if (counts.against_recorded) {
+    results["ate_rmse_m"] = counts.against_recorded->rmse_m;
+    results["ate_max_m"] = counts.against_recorded->max_m;
+  }
+  if (!counts.last_fault.empty()) results["last_fault"] = counts.last_fault;
+  return results;
+}
+
+void print_summary(const PrescanCommand& command, const PrescanResult& scanned) {
+  const PrescanCounts& counts = scanned.counts;
+  std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, up from %s\n", command.map.c_str(),
+              static_cast<long long>(counts.frames_tracked), static_cast<long long>(counts.frames_read),
+              static_cast<long long>(counts.frames_fused), scanned.map.mesh.triangles.size(),
+              scanned.map.info.up_source.c_str());
+  if (counts.frames_skipped > 0) {
+    std::printf("%lld frames could not be read; the last fault: %s\n", static_cast<long long>(counts.frames_skipped),
+                counts.last_fault.c_str());
+  }
+  if (counts.against_recorded)
+    std::printf("trajectory against the recorded poses: RMSE %.1f mm, at most %.1f mm\n",
+                1e3 * counts.against_recorded->rmse_m, 1e3 * counts.against_recorded->max_m);
+}
+
+}  // namespace
+
+int run(const PrescanCommand& command) {
+  Report report;
+  report.command = "prescan";
+  report.source = command.source;
+  report.settings = {{"map", command.map},
+                     {"resolution_m", command.resolution_m},
+                     {"poses", command.poses == PoseOrigin::kTracked ? "tracked" : "recorded"}};
+  if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
+
+  PrescanConfig config;
+  config.resolution_m = command.resolution_m;
+  config.poses = command.poses;
+  require_can_become_map(command.map);
+  const std::unique_ptr<FrameSource> source = make_rewindable(open_source(command.source, command.frames));
+
+  std::unique_ptr<Progress> progress;
+  std::string stage_shown;
+  const auto show = [&](const std::string& stage, const std::string& note) {
+    if (stage != stage_shown) {
+      progress.reset();
+      progress = std::make_unique<Progress>(stage, source->frame_count());
+      stage_shown = stage;
+    }
+    progress->step(note);
+  };
+  const PrescanResult scanned = prescan(*source, config, report.times, show);
+  progress.reset();
+  report.times.timed("save", [&] { save_map(command.map, scanned.map); });
+
+  report.frames_read = scanned.counts.frames_read;
+  report.frames_skipped = scanned.counts.frames_skipped;
+  report.results = results_of(scanned);
+  write_report(report, command.report);
+  print_summary(command, scanned);
+  return 0;
+}
+
+}  // namespace roomradar

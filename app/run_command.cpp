@@ -1,0 +1,189 @@
+// run_command.cpp: roomradar run: augmented reality in a saved room.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "app/commands.hpp"
+#include "app/open_source.hpp"
+#include "app/picture_file.hpp"
+#include "app/progress.hpp"
+#include "app/report.hpp"
+#include "app/script.hpp"
+#include "app/session.hpp"
+#include "app/video_writer.hpp"
+#include "mapping/map_folder.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kVideoFramesPerS = 30.0;
+
+/// Without a script, the object falls onto the best level surface that the camera sees.
+Script drop_over_view(const std::string& object) {
+  ScriptEvent add;
+  add.frame = 0;
+  add.action = Action::kAdd;
+  add.name = "object";
+  add.mesh = object;
+  ScriptEvent drop;
+  drop.frame = 0;
+  drop.action = Action::kDrop;
+  drop.name = add.name;
+  return {{add, drop}};
+}
+
+/// Sums over the frames of a run, as the report wants them.
+struct RunTotals {
+  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0;
+  double moved_fraction = 0.0, dynamic_triangles = 0.0, static_triangles = 0.0;
+  double max_moved_fraction = 0.0;
+  double deepest_penetration_m = 0.0;
+  std::string last_fault;
+
+  void add(const FrameResult& frame) {
+    if (frame.status != FrameStatus::kDone) return;
+    ++located;
+    if (frame.tracking == TrackStatus::kDegenerate) ++degenerate;
+    contacts += frame.contacts;
+    const double fraction = frame.foreground.valid > 0 ? static_cast<double>(frame.foreground.moved) /
+                                                             static_cast<double>(frame.foreground.valid)
+                                                       : 0.0;
+    moved_fraction += fraction;
+    max_moved_fraction = std::max(max_moved_fraction, fraction);
+    dynamic_triangles += static_cast<double>(frame.dynamic_triangles);
+    static_triangles += static_cast<double>(frame.static_triangles_drawn);
+    deepest_penetration_m = std::max(deepest_penetration_m, frame.deepest_penetration_m);
+  }
+  [[nodiscard]] double per_frame(double sum) const { return located > 0 ? sum / static_cast<double>(located) : 0.0; }
+};
+
+nlohmann::json results_of(const RunTotals& totals, const Session& session) {
+  nlohmann::json objects = nlohmann::json::array();
+  for (const auto& object : session.objects()) {
+    const Eigen::Vector3d p = object->body.T_world_object.translation();
+    objects.push_back({{"name", object->body.name},
+                       {"in_room", object->in_room},
+                       {"at_rest", object->body.at_rest},
+                       {"position_m", {p.x(), p.y(), p.z()}}});
+  }
+  nlohmann::json results = {
+      {"frames_located", totals.located},
+      {"frames_degenerate", totals.degenerate},
+      {"moved_fraction_mean", totals.per_frame(totals.moved_fraction)},
+      {"moved_fraction_max", totals.max_moved_fraction},
+      {"dynamic_triangles_mean", totals.per_frame(totals.dynamic_triangles)},
+      {"static_triangles_drawn_mean", totals.per_frame(totals.static_triangles)},
+      {"contacts", totals.contacts},
+      {"deepest_penetration_m", totals.deepest_penetration_m},
+      {"objects", objects},
+  };
+  if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;
+  return results;
+}
+
+void print_summary(const RunTotals& totals, const Session& session) {
+  std::printf("located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
+              static_cast<long long>(totals.located), static_cast<long long>(totals.read),
+              100.0 * totals.per_frame(totals.moved_fraction), totals.per_frame(totals.dynamic_triangles));
+  for (const auto& object : session.objects()) {
+    const Eigen::Vector3d p = object->body.T_world_object.translation();
+    if (!object->in_room)
+      std::printf("%s: not in the room\n", object->body.name.c_str());
+    else
+      std::printf("%s: %s at %.3f %.3f %.3f m\n", object->body.name.c_str(),
+                  object->body.at_rest ? "at rest" : "moving", p.x(), p.y(), p.z());
+  }
+}
+
+std::string policy_name(SurfacePolicy policy) {
+  switch (policy) {
+    case SurfacePolicy::kHoles: return "holes";
+    case SurfacePolicy::kSkirt: return "skirt";
+    case SurfacePolicy::kMap: break;
+  }
+  return "map";
+}
+
+}  // namespace
+
+int run(const RunCommand& command) {
+  Report report;
+  report.command = "run";
+  report.source = command.source;
+  report.settings = {{"map", command.map},
+                     {"poses", command.poses == PoseOrigin::kTracked ? "tracked" : "recorded"},
+                     {"object", command.object},
+                     {"script", command.script},
+                     {"surfaces", policy_name(command.surfaces)}};
+  if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
+
+  const Script script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
+  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
+  const SavedMap map = load_map(command.map);
+  SessionConfig config;
+  config.poses = command.poses;
+  config.surfaces = command.surfaces;
+  config.make_picture = !command.video.empty() || !command.pictures.empty();
+  config.measure_penetration = !command.report.empty();
+  Session session(map, config);
+  report.renderer = session.renderer();
+  std::fprintf(stderr, "rendering with %s\n", session.renderer().c_str());
+
+  std::unique_ptr<VideoWriter> video;
+  if (!command.video.empty()) video = std::make_unique<VideoWriter>(command.video, kVideoFramesPerS);
+  if (!command.pictures.empty()) {
+    std::error_code failed;
+    std::filesystem::create_directories(command.pictures, failed);
+    if (failed) throw Error(command.pictures + ": the folder cannot be made: " + failed.message());
+  }
+
+  RunTotals totals;
+  Frame frame;
+  std::size_t next_event = 0;
+  bool quit = false;
+  double first_stamp_s = 0.0;
+  {
+    Progress progress("running", source->frame_count());
+    for (std::int64_t run_frame = 0; !quit; ++run_frame) {
+      const ReadResult read = report.times.timed("read", [&] { return source->next(frame); });
+      if (read.status == ReadStatus::kEnd) break;
+      ++totals.read;
+      if (read.status == ReadStatus::kSkipped) {
+        ++totals.skipped;
+        totals.last_fault = read.fault;
+        continue;
+      }
+      if (totals.read - totals.skipped == 1) first_stamp_s = frame.stamp_s;
+      for (; next_event < script.events.size() &&
+             is_due(script.events[next_event], run_frame, frame.stamp_s - first_stamp_s);
+           ++next_event) {
+        quit = quit || script.events[next_event].action == Action::kQuit;
+        session.apply(script.events[next_event]);
+      }
+      if (quit) break;
+      const FrameResult result = session.step(frame, report.times);
+      totals.add(result);
+      if (video) video->write(session.picture());
+      if (!command.pictures.empty() && run_frame % command.pictures_every == 0) {
+        char name[32];
+        std::snprintf(name, sizeof name, "%06lld.png", static_cast<long long>(frame.index));
+        write_png(session.picture(), std::filesystem::path(command.pictures) / name);
+      }
+      progress.step(result.status == FrameStatus::kDone ? "located" : "not located");
+    }
+  }
+  if (video) video->close();
+  if (totals.read == totals.skipped)
+    throw Error(command.source + ": there is not one readable frame" +
+                (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
+
+  report.frames_read = totals.read;
+  report.frames_skipped = totals.skipped;
+  report.results = results_of(totals, session);
+  write_report(report, command.report);
+  print_summary(totals, session);
+  return totals.located > 0 ? 0 : 1;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,239 @@
+// session.cpp: the path of one frame, top to bottom, and the steps it is made of.
+#include "app/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "app/placement.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from an object than this do not push it
+constexpr int kFineRadar_px = 512;
+
+/// Whether seen from one pose and the other the same pixels show the same surfaces, to a fraction of a pixel.
+bool is_same_view(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b) {
+  const Eigen::Isometry3d T_a_b = T_world_a.inverse() * T_world_b;
+  return T_a_b.translation().norm() < 2e-4 && Eigen::AngleAxisd(T_a_b.linear()).angle() < 2e-4;
+}
+
+}  // namespace
+
+Session::Session(const SavedMap& map, const SessionConfig& config)
+    : map_(map),
+      config_(config),
+      depth_pass_(context_),
+      radar_(context_, config.radar),
+      fine_radar_(context_, RadarConfig{.resolution_px = kFineRadar_px,
+                                        .overlap_tolerance_m = config.radar.overlap_tolerance_m}),
+      drawer_(context_),
+      static_mesh_(context_),
+      moved_mesh_(context_) {
+  require_valid(config.foreground);
+  require_valid(config.dynamic_mesh);
+  require_valid(config.physics);
+  require_valid(config.picture);
+  static_mesh_.upload(map.mesh, MeshUsage::kStatic);
+}
+
+FrameResult Session::step(const Frame& frame, StageTimes& times) {
+  return times.timed("frame", [&]() -> FrameResult {
+    FrameResult result;
+    const double dt_s = has_last_stamp_ ? std::max(0.0, frame.stamp_s - last_stamp_s_) : 0.0;
+    last_stamp_s_ = frame.stamp_s;
+    has_last_stamp_ = true;
+
+    const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
+    result.tracking = tracking.status;
+    if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
+      if (config_.make_picture) picture_ = frame.colour;
+      return result;
+    }
+    const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
+    result.static_triangles_drawn = times.timed("expected", [&] { return render_expected(frame, T_world_camera); });
+    result.foreground = times.timed("foreground", [&] { return find_moved(frame); });  // what moved?
+    times.timed("mesh", [&] { mesh_moved(frame, T_world_camera); });
+    release_waiting(frame, T_world_camera);
+    result.contacts = times.timed("physics", [&] { return move_objects(dt_s, times); });  // R, M, L
+    if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera); });
+
+    result.status = FrameStatus::kDone;
+    result.T_world_camera = T_world_camera;
+    result.dynamic_triangles = moved_mesh_.triangle_count();
+    if (config_.measure_penetration) result.deepest_penetration_m = penetration_m();
+    return result;
+  });
+}
+
+Tracking Session::locate_camera(const Frame& frame) {
+  if (config_.poses == PoseOrigin::kRecorded) {
+    Tracking tracking;
+    if (!frame.T_world_camera) return tracking;
+    tracking.status = TrackStatus::kTracked;
+    tracking.T_world_camera = map_.info.T_world_recorded * *frame.T_world_camera;
+    return tracking;
+  }
+  const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
+    render_expected(frame, T_world_camera);
+    return expected_depth_m_;
+  };
+  return locate(locator_, frame, map_.places, moved_mask_, expected_depth);
+}
+
+std::size_t Session::render_expected(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  const bool is_there = expected_triangles_ > 0 && expected_camera_ == frame.depth_camera &&
+                        is_same_view(T_world_expected_, T_world_camera);
+  if (!is_there) {
+    const MeshInstance room{&static_mesh_, Eigen::Isometry3d::Identity()};
+    expected_triangles_ = depth_pass_.render({&room, 1}, frame.depth_camera, T_world_camera, expected_depth_m_);
+    expected_camera_ = frame.depth_camera;
+    T_world_expected_ = T_world_camera;
+  }
+  return expected_triangles_;
+}
+
+ForegroundCounts Session::find_moved(const Frame& frame) {
+  return mark_foreground(frame.depth_m, expected_depth_m_, frame.depth_camera, config_.foreground,
+                         foreground_scratch_, labels_, moved_mask_);
+}
+
+void Session::mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  if (config_.surfaces == SurfacePolicy::kMap) {
+    mesh_masked(frame.depth_m, moved_mask_, frame.depth_camera, T_world_camera, config_.dynamic_mesh, mesh_scratch_,
+                moved_mesh_world_);
+  } else {
+    mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.dynamic_mesh,
+               mesh_scratch_, moved_mesh_world_);
+  }
+  moved_mesh_.upload(moved_mesh_world_, MeshUsage::kStreamed);
+}
+
+std::vector<SceneMesh> Session::scene_without(const VirtualObject* object) const {
+  std::vector<SceneMesh> scene;
+  if (config_.surfaces == SurfacePolicy::kMap)
+    scene.push_back({{&static_mesh_, Eigen::Isometry3d::Identity()}, Touched::kStatic});
+  scene.push_back({{&moved_mesh_, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
+  for (const auto& other : objects_) {
+    if (other.get() != object && other->in_room)
+      scene.push_back({{&other->shape, other->body.T_world_object}, Touched::kObject});
+  }
+  return scene;
+}
+
+int Session::move_objects(double dt_s, StageTimes& times) {
+  int contacts = 0;
+  double radar_ms = 0.0;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    const std::vector<SceneMesh> scene = scene_without(object.get());
+    const TravelQuery query = [&](const Eigen::Isometry3d& T_world_object, const Eigen::Vector3d& direction_world,
+                                  double distance_m) {
+      const auto start = std::chrono::steady_clock::now();
+      const Contact contact = radar_.query({&object->shape, T_world_object}, direction_world, distance_m, scene);
+      radar_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+      return contact;
+    };
+    PushDirections push;
+    if (config_.surfaces == SurfacePolicy::kMap)
+      push = push_directions(moved_mesh_world_, object->body.T_world_object * object->middle, kNearbyReach_m);
+    contacts += advance(object->body, dt_s, query, config_.physics, push.span()).contacts;
+  }
+  times.add_ms("radar", radar_ms);
+  return contacts;
+}
+
+double Session::penetration_m() {
+  double deepest_m = 0.0;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    const std::vector<SceneMesh> scene = scene_without(object.get());
+    const Contact below = fine_radar_.query({&object->shape, object->body.T_world_object},
+                                            config_.physics.gravity_world_mps2, 0.01, scene);
+    if (below.status == ContactStatus::kOverlap) deepest_m = std::max(deepest_m, -below.travel_m);
+  }
+  return deepest_m;
+}
+
+void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  // A source without colour shows its depth, seen by the depth camera.
+  const bool has_colour = !frame.colour.empty();
+  const Intrinsics& camera = has_colour ? frame.colour_camera : frame.depth_camera;
+  const Eigen::Isometry3d T_world_view =
+      has_colour ? Eigen::Isometry3d(T_world_camera * frame.T_colour_depth.inverse()) : T_world_camera;
+  if (!has_colour) shade_depth(frame.depth_m, camera, background_);
+
+  std::vector<DrawnObject> drawn;
+  std::vector<ShadowCaster> casters;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    drawn.push_back({.instance = {&object->shape, object->body.T_world_object}});
+    casters.push_back({&object->shadow, object->body.T_world_object});
+  }
+  drawer_.draw(drawn, camera, T_world_view, {}, layer_);
+
+  real_depth_m_.resize(camera.width_px, camera.height_px);
+  const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_);
+  if (rect.width > 0 && rect.height > 0) {
+    std::vector<MeshInstance> real;
+    if (config_.surfaces == SurfacePolicy::kMap) real.push_back({&static_mesh_, Eigen::Isometry3d::Identity()});
+    real.push_back({&moved_mesh_, Eigen::Isometry3d::Identity()});
+    depth_pass_.render(real, camera, T_world_view, rect, real_depth_m_);
+  }
+  compose(has_colour ? frame.colour : background_, camera, T_world_view, real_depth_m_, casters, layer_,
+          config_.picture, picture_);
+}
+
+VirtualObject& Session::object_named(const std::string& name) {
+  const auto found =
+      std::find_if(objects_.begin(), objects_.end(), [&](const auto& object) { return object->body.name == name; });
+  if (found == objects_.end()) throw Error("script: there is no object named " + name);
+  return **found;
+}
+
+void Session::apply(const ScriptEvent& event) {
+  const auto put = [&](VirtualObject& object, const Eigen::Vector3d& position_world) {
+    object.body.T_world_object.translation() = position_world;
+    object.body.velocity_world_mps = event.velocity_world_mps;
+    object.body.at_rest = false;
+    object.in_room = true;
+  };
+  switch (event.action) {
+    case Action::kAdd:
+      objects_.push_back(std::make_unique<VirtualObject>(context_, event.name,
+                                                         object_mesh(event.mesh, event.size_m.value_or(0.0))));
+      break;
+    case Action::kPlace:
+    case Action::kThrow: put(object_named(event.name), *event.position_world); break;
+    case Action::kDrop: {
+      VirtualObject& object = object_named(event.name);
+      if (!event.position_world) {
+        waiting_.push_back(event);
+        break;
+      }
+      put(object, *event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - object.lowest_m));
+      break;
+    }
+    case Action::kRemove: object_named(event.name).in_room = false; break;
+    case Action::kQuit: break;
+  }
+}
+
+void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  std::vector<ScriptEvent> still_waiting;
+  for (ScriptEvent& event : waiting_) {
+    const std::optional<Support> support = find_support(expected_depth_m_, frame.depth_camera, T_world_camera,
+                                                        object_named(event.name).footprint_radius_m);
+    if (!support) {
+      still_waiting.push_back(event);
+      continue;
+    }
+    event.position_world = support->point_world;
+    apply(event);
+  }
+  waiting_.swap(still_waiting);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,117 @@
+// session.hpp: augmented reality in a saved room: one frame in, one composed picture out.
+#pragma once
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/compose.hpp"
+#include "app/draw.hpp"
+#include "app/locator.hpp"
+#include "app/physics.hpp"
+#include "app/script.hpp"
+#include "app/virtual_object.hpp"
+#include "dynamic/depth_mesh.hpp"
+#include "dynamic/foreground.hpp"
+#include "dynamic/surface_policy.hpp"
+#include "mapping/map_folder.hpp"
+#include "mapping/prescan.hpp"
+#include "mapping/types/stage_times.hpp"
+#include "radar/cyber_radar.hpp"
+#include "radar/depth_pass.hpp"
+#include "radar/gl_context.hpp"
+
+namespace roomradar {
+
+struct SessionConfig {
+  PoseOrigin poses = PoseOrigin::kTracked;
+  SurfacePolicy surfaces = SurfacePolicy::kMap;
+  ForegroundConfig foreground;
+  DepthMeshConfig dynamic_mesh;
+  RadarConfig radar;
+  PhysicsConfig physics;
+  ComposeConfig picture;
+  bool make_picture = true;        ///< false: no drawing, only what moves the objects
+  bool measure_penetration = false;  ///< a finer radar looks after each frame how deep objects stand in surfaces
+};
+
+enum class FrameStatus {
+  kDone,
+  kNotLocated,  ///< the camera was not found in the room: objects hold still, the picture is the camera's own
+};
+
+struct FrameResult {
+  FrameStatus status = FrameStatus::kNotLocated;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< only if done
+  TrackStatus tracking = TrackStatus::kDiverged;
+  ForegroundCounts foreground;
+  std::size_t dynamic_triangles = 0;
+  std::size_t static_triangles_drawn = 0;  ///< for the expected depth
+  int contacts = 0;
+  double deepest_penetration_m = 0.0;  ///< >= 0, where it is measured
+};
+
+/// Everything a run keeps from frame to frame. The room is read only. Not thread safe; GL on the thread that made it.
+class Session {
+ public:
+  /// `map` must outlive the session. Throws Error if there is no GL, or a config is out of its rules.
+  Session(const SavedMap& map, const SessionConfig& config);
+
+  /// One frame, from sensor to picture. Stages timed: locate expected foreground mesh radar physics compose frame.
+  FrameResult step(const Frame& frame, StageTimes& times);
+
+  /// Adds, places, drops, throws or removes an object, before the frame it is due in. A drop over "a surface in view"
+  /// that has none waits for a frame that shows one.
+  void apply(const ScriptEvent& event);
+
+  [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
+  [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_; }
+  [[nodiscard]] const ColourImage& picture() const { return picture_; }
+  [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
+  [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
+  [[nodiscard]] const Mesh& moved_mesh_world() const { return moved_mesh_world_; }
+
+ private:
+  const SavedMap& map_;
+  SessionConfig config_;
+  GlContext context_;
+  DepthPass depth_pass_;
+  CyberRadar radar_;
+  CyberRadar fine_radar_;
+  ObjectDrawer drawer_;
+  GpuMesh static_mesh_;
+  GpuMesh moved_mesh_;
+  Locator locator_;
+
+  std::vector<std::unique_ptr<VirtualObject>> objects_;
+  std::vector<ScriptEvent> waiting_;  ///< drops that have found no surface yet
+  double last_stamp_s_ = 0.0;
+  bool has_last_stamp_ = false;
+
+  DepthImage expected_depth_m_;  ///< of the static model, for expected_camera_ at T_world_expected_
+  Intrinsics expected_camera_;
+  Eigen::Isometry3d T_world_expected_ = Eigen::Isometry3d::Identity();
+  std::size_t expected_triangles_ = 0;  ///< 0: nothing was rendered yet
+  DepthImage real_depth_m_;
+  ForegroundScratch foreground_scratch_;
+  LabelImage labels_;
+  MaskImage moved_mask_;
+  DepthMeshScratch mesh_scratch_;
+  Mesh moved_mesh_world_;
+  ObjectLayer layer_;
+  ColourImage background_;
+  ColourImage picture_;
+
+  Tracking locate_camera(const Frame& frame);
+  std::size_t render_expected(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  ForegroundCounts find_moved(const Frame& frame);
+  void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  [[nodiscard]] std::vector<SceneMesh> scene_without(const VirtualObject* object) const;
+  void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  int move_objects(double dt_s, StageTimes& times);
+  double penetration_m();
+  void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  VirtualObject& object_named(const std::string& name);
+};
+
+}  // namespace roomradar

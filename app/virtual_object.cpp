@@ -1,0 +1,44 @@
+// virtual_object.cpp: makes virtual objects from meshes.
+#include "app/virtual_object.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/teapot.hpp"
+#include "mapping/mesh_file.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kTeapotTessellation = 10;  // 6,240 triangles: round at arm's length
+constexpr double kTeapotHeight_m = 0.15;
+
+}  // namespace
+
+VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& mesh)
+    : shape(context), shadow(make_contact_shadow(mesh, Eigen::Matrix3d::Identity())) {
+  body.name = std::move(name);
+  shape.upload(mesh, MeshUsage::kStatic);
+  const Eigen::AlignedBox3d box = shape.bounds();
+  middle = box.center();
+  lowest_m = box.min().z();
+  const Eigen::Vector2d reach = box.min().head<2>().cwiseAbs().cwiseMax(box.max().head<2>().cwiseAbs());
+  footprint_radius_m = reach.maxCoeff();
+}
+
+Mesh object_mesh(const std::string& name_or_path, double size_m) {
+  Mesh mesh = name_or_path == "teapot" ? utah_teapot(kTeapotTessellation, kTeapotHeight_m) : read_mesh(name_or_path);
+  if (size_m <= 0.0) return mesh;
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);
+  const float longest_m = box.sizes().maxCoeff();
+  if (!(longest_m > 0.0F)) throw Error(name_or_path + ": all vertices are in one place; it cannot be scaled");
+  const float scale = static_cast<float>(size_m) / longest_m;
+  for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= scale;
+  mesh.origin *= static_cast<double>(scale);
+  return mesh;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,60 @@
+// prescan.hpp: from a recording of a room to its saved form: track, level, fuse, extract the surface.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "mapping/map_folder.hpp"
+#include "mapping/odometry.hpp"
+#include "mapping/surface.hpp"
+#include "mapping/trajectory.hpp"
+#include "mapping/types/frame_source.hpp"
+#include "mapping/types/stage_times.hpp"
+#include "mapping/up_direction.hpp"
+
+namespace roomradar {
+
+enum class PoseOrigin {
+  kTracked,   ///< found by odometry from depth and colour
+  kRecorded,  ///< taken from the recording; frames without one are not fused
+};
+
+struct PrescanConfig {
+  double resolution_m = 0.01;  ///< edge of the octree's smallest cells
+  PoseOrigin poses = PoseOrigin::kTracked;
+  OdometryConfig odometry;
+  SurfaceConfig surface;
+};
+
+/// What happened to the frames, and how well the trajectory fits the recorded one where there is one.
+struct PrescanCounts {
+  std::int64_t frames_read = 0;
+  std::int64_t frames_skipped = 0;  ///< unreadable ones
+  std::int64_t frames_tracked = 0;  ///< with a pose that is trusted
+  std::int64_t frames_fused = 0;
+  std::int64_t frames_lost = 0;  ///< without one; not fused
+  std::int64_t keyframes = 0;
+  std::int64_t loops_found = 0;
+  std::string last_fault;                           ///< of the last skipped frame
+  std::optional<TrajectoryError> against_recorded;  ///< where at least 3 frames came with poses; tracked only
+};
+
+struct PrescanResult {
+  SavedMap map;
+  PrescanCounts counts;
+};
+
+/// Called after each frame of a pass: the stage ("track" or "fuse"), and what became of the frame.
+using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
+
+/// Scans a room. The source is read twice: once to know where the camera was, once to fuse with the final
+/// poses. The map's world is the recording's own (recorded poses) or the first camera's (tracked), turned so
+/// that +z is up. Stages timed: read, track, fuse, surface, and frame (track and fuse of one frame together;
+/// no reading).
+///
+/// @throws Error if the source cannot be rewound, has no frame at all, or not one frame's pose is trusted
+PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
+                      const PrescanProgress& progress = {});
+
+}  // namespace roomradar

@@ -1,0 +1,226 @@
+// command_line_test.cpp: the program as a user runs it: exit status, messages, and nothing lost.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/recordings.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status = -1;
+  std::string out;  ///< stdout and stderr together
+};
+
+Outcome shell(const std::string& line) {
+  Outcome outcome;
+  FILE* pipe = popen((line + " 2>&1").c_str(), "r");
+  if (!pipe) return outcome;
+  char buffer[4096];
+  while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) outcome.out.append(buffer, n);
+  const int status = pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome;
+}
+
+Outcome roomradar(const std::string& arguments) { return shell(ROOMRADAR_PROGRAM " " + arguments); }
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void expect_fault(const Outcome& outcome, int status, const std::string& word) {
+  EXPECT_EQ(outcome.status, status) << outcome.out;
+  EXPECT_NE(outcome.out.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.out;
+}
+
+/// A small simulated room is scanned once for all tests here.
+class CommandLine : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fs::path(::testing::TempDir()) / ("roomradar_cli_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    scanned_ = roomradar("prescan 'sim:table?frames=40&width=160' --map " + map() + " --resolution 0.03 --report " +
+                         (folder_ / "prescan.json").string());
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+  static std::string map() { return (folder_ / "map").string(); }
+  /// A copy of the map that a test may break.
+  static fs::path broken_copy() {
+    const fs::path copy = folder_ / "broken";
+    fs::remove_all(copy);
+    fs::copy(map(), copy, fs::copy_options::recursive);
+    return copy;
+  }
+  inline static fs::path folder_;
+  inline static Outcome scanned_;
+};
+
+TEST_F(CommandLine, PrescanLeavesAMapThatVerifiesAndAReport) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  EXPECT_EQ(roomradar("map verify " + map()).status, 0);
+  const nlohmann::json report = nlohmann::json::parse(read_text(folder_ / "prescan.json"));
+  for (const char* key : {"command", "version", "source", "settings", "renderer", "frames_read", "frames_skipped", "stages",
+                          "peak_rss_mb", "wall_s", "frames_tracked", "frames_fused", "frames_lost", "ate_rmse_m", "map"})
+    EXPECT_TRUE(report.contains(key)) << key;
+  for (const char* stage : {"read", "track", "fuse", "surface", "save", "frame"})
+    EXPECT_TRUE(report["stages"].contains(stage)) << stage;
+  EXPECT_EQ(report["frames_read"], 40);
+  EXPECT_GT(report["map"]["triangles"], 1000);
+  EXPECT_LT(report["ate_rmse_m"], 0.05);
+}
+
+TEST_F(CommandLine, MapInfoAndEveryExportWork) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const Outcome info = roomradar("map info " + map());
+  EXPECT_EQ(info.status, 0);
+  EXPECT_NE(info.out.find("0.03"), std::string::npos) << info.out;
+  for (const char* extension : {"bt", "ot", "ply", "obj", "stl", "glb"}) {
+    const fs::path path = folder_ / (std::string("export.") + extension);
+    EXPECT_EQ(roomradar("map export " + map() + " " + path.string()).status, 0) << extension;
+    EXPECT_GT(fs::file_size(path), 1000U) << extension;
+  }
+  expect_fault(roomradar("map export " + map() + " " + (folder_ / "export.xyz").string()), 1, ".ply");
+}
+
+TEST_F(CommandLine, RunFindsItselfAndDropsTheTeapotOnTheTable) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path report_path = folder_ / "run.json";
+  const Outcome ran = roomradar("run 'sim:table?frames=60&width=160&path=view&seed=2' --map " + map() + " --poses recorded --report " +
+                                report_path.string() + " --pictures " + (folder_ / "pictures").string());
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
+  for (const char* stage : {"read", "locate", "expected", "foreground", "mesh", "radar", "physics", "compose", "frame"})
+    EXPECT_TRUE(report["stages"].contains(stage)) << stage;
+  EXPECT_EQ(report["frames_located"], 60);
+  ASSERT_EQ(report["objects"].size(), 1U);
+  EXPECT_TRUE(report["objects"][0]["at_rest"]) << report.dump(2);
+  EXPECT_LE(report["deepest_penetration_m"], 0.03);  // one cell of this coarse map
+  EXPECT_TRUE(fs::exists(folder_ / "pictures" / "000000.png"));
+}
+
+TEST_F(CommandLine, WrongUsageIsStatusTwo) {
+  EXPECT_EQ(roomradar("").status, 2);
+  EXPECT_EQ(roomradar("dance").status, 2);
+  EXPECT_EQ(roomradar("prescan").status, 2);
+  EXPECT_EQ(roomradar("--help").status, 0);
+  EXPECT_EQ(roomradar("prescan --help").status, 0);
+  const std::string prescan = "prescan sim:table --map " + (folder_ / "unused").string();
+  expect_fault(roomradar(prescan + " --resolution 0"), 2, "0.001");
+  expect_fault(roomradar(prescan + " --resolution nan"), 2, "0.001");
+  expect_fault(roomradar(prescan + " --resolution -0.01"), 2, "0.001");
+  expect_fault(roomradar(prescan + " --frames 9:3"), 2, "A:B");
+  expect_fault(roomradar(prescan + " --frames x"), 2, "A:B");
+  expect_fault(roomradar(prescan + " --poses guessed"), 2, "recorded|tracked");
+  EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
+  const std::string to = " --map " + (folder_ / "unused").string();
+  expect_fault(roomradar("prescan /no/such/folder" + to), 1, "/no/such/folder");
+  const fs::path empty = folder_ / "empty";
+  fs::create_directories(empty);
+  expect_fault(roomradar("prescan " + empty.string() + to), 1, empty.string());
+  expect_fault(roomradar("prescan sim:palace" + to), 1, "table");
+  expect_fault(roomradar("prescan kinect:x" + to), 1, "kinect:N");
+  expect_fault(roomradar("prescan 'sim:table?frames=10' --frames 8:12" + to), 1, "10");
+  EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, ARecordingWithoutAnyDepthIsRefusedInWords) {
+  const fs::path recording = folder_ / "blank";
+  ASSERT_EQ(roomradar("record 'sim:table?frames=5&width=160' " + recording.string() + " --format 7scenes").status, 0);
+  // Every depth image becomes one without a measurement: the same size, all 0.
+  for (const auto& entry : fs::directory_iterator(recording)) {
+    if (entry.path().string().ends_with(".depth.png"))
+      fs::copy_file(fs::path(ROOMRADAR_SOURCE_DIR) / "tests/data/no_depth_160x120.png", entry.path(),
+                    fs::copy_options::overwrite_existing);
+  }
+  expect_fault(roomradar("prescan " + recording.string() + " --map " + (folder_ / "unused").string()), 1, "depth");
+  expect_fault(roomradar("prescan " + recording.string() + " --poses recorded --map " + (folder_ / "unused").string()), 1,
+               "depth");
+  EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, ABrokenMapIsRefusedAndTheFileNamed) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string run = "run 'sim:table?frames=2&width=160' --map ";
+  expect_fault(roomradar(run + (folder_ / "no_map").string()), 1, "no_map");
+  for (const char* name : {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"}) {
+    fs::path copy = broken_copy();
+    fs::remove(copy / name);
+    expect_fault(roomradar(run + copy.string()), 1, name);
+    expect_fault(roomradar("map verify " + copy.string()), 1, name);
+
+    copy = broken_copy();
+    fs::resize_file(copy / name, fs::file_size(copy / name) / 2);
+    expect_fault(roomradar(run + copy.string()), 1, name);
+
+    copy = broken_copy();
+    std::string bytes = read_text(copy / name);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x20);
+    std::ofstream(copy / name, std::ios::binary) << bytes;
+    expect_fault(roomradar("map verify " + copy.string()), 1, name);
+  }
+  const fs::path later = broken_copy();
+  std::string json = read_text(later / "map.json");
+  const std::size_t at = json.find("\"format_version\": 1");
+  ASSERT_NE(at, std::string::npos) << json.substr(0, 300);
+  json.replace(at, 19, "\"format_version\": 9");
+  std::ofstream(later / "map.json", std::ios::binary) << json;
+  expect_fault(roomradar(run + later.string()), 1, "version");
+}
+
+TEST_F(CommandLine, ObjectMeshesThatCannotBeOnesAreNamed) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string run = "run 'sim:table?frames=2&width=160' --map " + map() + " --object ";
+  const auto object = [&](const char* name, const std::string& content) {
+    const fs::path path = folder_ / name;
+    std::ofstream(path, std::ios::binary) << content;
+    return path.string();
+  };
+  expect_fault(roomradar(run + "/no/such.obj"), 1, "/no/such.obj");
+  expect_fault(roomradar(run + object("no_faces.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), 1, "no_faces.obj");
+  expect_fault(roomradar(run + object("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), 1, "nan.obj");
+  expect_fault(roomradar(run + object("text.ply", "hello\n")), 1, "text.ply");
+  std::string huge = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                     "property float z\nelement face 10000000\nproperty list uchar int vertex_indices\nend_header\n";
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  huge.append(reinterpret_cast<const char*>(corners), sizeof corners);
+  const std::string face("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+  huge.reserve(huge.size() + 10'000'000 * face.size());
+  for (int i = 0; i < 10'000'000; ++i) huge += face;
+  expect_fault(roomradar(run + object("huge.ply", huge)), 1, "huge.ply");
+}
+
+TEST_F(CommandLine, AFullDiskLosesNothing) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string before = read_text(folder_ / "map" / "map.json");
+  const Outcome full = shell("ulimit -f 64; " ROOMRADAR_PROGRAM " prescan 'sim:table?frames=10&width=160' --resolution 0.03 --map " + map());
+  EXPECT_EQ(full.status, 1) << full.out;
+  EXPECT_NE(full.out.find("map"), std::string::npos) << full.out;
+  EXPECT_EQ(read_text(folder_ / "map" / "map.json"), before);
+  EXPECT_EQ(roomradar("map verify " + map()).status, 0);
+  for (const auto& entry : fs::directory_iterator(folder_))
+    EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+}
+
+TEST_F(CommandLine, AFolderThatIsNotAMapIsLeftAlone) {
+  const fs::path precious = folder_ / "precious";
+  fs::create_directories(precious);
+  std::ofstream(precious / "thesis.txt") << "years of work";
+  expect_fault(roomradar("prescan 'sim:table?frames=5&width=160' --map " + precious.string()), 1, "precious");
+  EXPECT_EQ(read_text(precious / "thesis.txt"), "years of work");
+}
+
+}  // namespace
+}  // namespace roomradar
