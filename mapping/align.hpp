@@ -44,8 +44,8 @@ struct AlignConfig {
   int min_points = 150;          ///< that must meet a reference at the finest level
   float min_inlier_fraction = 0.3F;
   float min_constraint =
-      0.003F;  ///< mean squared cosine between normals and a direction, below which the depth is
-               ///< said not to fix it: the normals' own noise looks like information there
+      0.001F;  ///< mean squared cosine between normals and a direction, below which the depth is
+               ///< said not to fix it: the normals' own noise looks like information
   float max_uncertainty_m = 0.01F;  ///< standard deviation past which a direction is held
   float max_correction_m = 0.5F;    ///< further (or by more radians) from the guess than this is kDiverged
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mapping/place_matching.hpp"
+#include "mapping/stillness.hpp"
 
 namespace roomradar {
 namespace {
@@ -38,10 +39,13 @@ struct Odometry::State {
   std::size_t current = 0;  ///< the keyframe that the last frame was aligned with first
   Eigen::Isometry3d T_world_last = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< the last motion from frame to frame
+  Image<float> last_moved_grey;                                   ///< what the camera saw when it last moved
+  Tracking last_moved;  ///< the answer for that frame; its pose is trusted
 
   Tracking start(const Frame& frame);
   [[nodiscard]] Tracking align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess) const;
   Tracking recover(const Frame& frame);
+  [[nodiscard]] bool is_plausible(const Tracking& tracking) const;
   void improve_current(const Tracking& tracking);
   [[nodiscard]] bool is_far_from(std::size_t keyframe, const Tracking& tracking) const;
   void choose_keyframe(const Frame& frame, Tracking& tracking);
@@ -75,8 +79,11 @@ Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d&
 }
 
 Tracking Odometry::State::recover(const Frame& frame) {
-  const Tracking standing = align_near(current, T_world_last);
-  if (standing) return standing;
+  Tracking standing = align_near(current, T_world_last);
+  if (standing && is_plausible(standing)) return standing;
+  standing.status = TrackStatus::kDiverged;
+  if (frame.colour.empty() && !last_moved_grey.empty())
+    return standing;  // a frame that lost its colour on the way
   const Relocalisation found = relocalise(frame, places, config.relocalise);
   if (!found) return standing;
   const auto keyframe = static_cast<std::size_t>(found.keyframe);
@@ -85,6 +92,15 @@ Tracking Odometry::State::recover(const Frame& frame) {
   ++counts.relocalised;
   current = keyframe;
   return tracking;
+}
+
+/// A hand does not change a camera's speed by more than this from one frame to the next; a sensor that
+/// recalibrates itself seems to.
+bool Odometry::State::is_plausible(const Tracking& tracking) const {
+  constexpr double kMost_m = 0.10, kMost_rad = 0.05;
+  if (!has_pose(tracking)) return false;
+  const Eigen::Isometry3d change = (T_world_last * T_last_next).inverse() * tracking.T_world_camera;
+  return change.translation().norm() < kMost_m && Eigen::AngleAxisd(change.linear()).angle() < kMost_rad;
 }
 
 void Odometry::State::improve_current(const Tracking& tracking) {
@@ -164,8 +180,15 @@ Tracking Odometry::track(const Frame& frame) {
   make_pyramid(frame, s.config.view, s.pyramid);
   make_live(s.pyramid, s.live);
   const bool first = s.graph.keyframes.empty();
+  if (!first && shows_the_same(s.last_moved_grey, s.pyramid.grey)) {
+    ++s.counts.tracked;
+    s.T_world_last = s.last_moved.T_world_camera;
+    s.T_last_next.setIdentity();
+    s.keep(frame, s.last_moved);
+    return s.last_moved;
+  }
   Tracking tracking = first ? s.start(frame) : s.align_near(s.current, s.T_world_last * s.T_last_next);
-  if (!first && !has_pose(tracking)) tracking = s.recover(frame);
+  if (!first && !s.is_plausible(tracking)) tracking = s.recover(frame);
 
   if (!has_pose(tracking)) {
     ++s.counts.lost;
@@ -180,8 +203,14 @@ Tracking Odometry::track(const Frame& frame) {
     s.choose_keyframe(frame, tracking);
   }
   ++(tracking ? s.counts.tracked : s.counts.degenerate);
-  s.T_last_next = T_last_next;
+  // What is not fixed by what is seen must not run on for ever with the speed it once had.
+  s.T_last_next = tracking ? T_last_next : exp_twist(0.5 * log_twist(T_last_next));
   s.T_world_last = tracking.T_world_camera;
+  s.last_moved_grey.resize(0, 0);
+  if (tracking) {
+    s.last_moved_grey = s.pyramid.grey;
+    s.last_moved = tracking;
+  }
   s.keep(frame, tracking);
   return tracking;
 }

@@ -244,12 +244,14 @@ void halve_depth(ViewPyramid& pyramid) {
 void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
                   ViewPyramid& pyramid) {
   make_depth_levels(depth_m, camera, config, pyramid);
+  pyramid.grey.resize(0, 0);
   for (ViewPyramid::Level& level : pyramid.levels) level.intensity.resize(0, 0);
 }
 
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid) {
   const int block = make_depth_levels(frame.depth_m, frame.depth_camera, config, pyramid);
   if (frame.colour.empty()) {
+    pyramid.grey.resize(0, 0);
     for (ViewPyramid::Level& level : pyramid.levels) level.intensity.resize(0, 0);
     return;
   }
