@@ -24,8 +24,8 @@ struct ForegroundConfig {
   float model_sigma_per_m = 0.002F;  ///< and what grows with depth: pose error, the sensor's own distortion
   float strong_sigmas = 4.0F;
   float weak_sigmas = 2.0F;
-  float edge_error_m =
-      0.02F;  ///< how far aside an edge of the model may stand: pose error and the map's distortion
+  /// How far aside an edge of the model may stand, by an error of the pose and the map's distortion.
+  float edge_error_m = 0.02F;
   float edge_error_rad = 0.005F;  ///< the same by a turn of the pose, 0.3 degrees
   int hole_reach_px = 16;  ///< how far from the model's edge a pixel without expected depth is still judged
   /// How far over weak pixels a region grows from strong ones: to its rim, and not over all of a misplaced
@@ -74,10 +74,11 @@ struct ForegroundCounts {
 /// @param moved_mask        255 where the label is kMoved, else 0; resized and set
 /// The three sizes must agree (asserted).
 ///
-/// A pixel starts a moved region only if it is nearer than every expected depth within the reach of an edge's
-/// error, so an edge that a pose error shifted, and a flying pixel on it, stay static. From there a region
-/// grows over pixels that are nearer than the model just there, across the live surface. Where the model has
-/// a hole no region starts; one may grow into it over what is nearer than all expected depth within
+/// A pixel starts a moved region only if it is nearer than the model there and either nearer than all of the
+/// model within the reach of an edge's error, or at a depth that no expected surface within it has: so an
+/// edge that a pose error shifted stays static, and what shows between two near edges does not. From there a
+/// region grows over pixels that are nearer than the model just there, across the live surface. Where the
+/// model has a hole no region starts; one may grow into it over what is nearer than all expected depth within
 /// hole_reach_px. Everything else in a hole, and all of an unmapped view, is kNotKnown: a hole proves
 /// nothing.
 ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
