@@ -10,7 +10,7 @@ namespace roomradar {
 enum class NominalRig {
   kSevenScenes,  ///< a Kinect v1 as 7-Scenes publishes it: depth and colour each from their own camera
   kTum,          ///< a Kinect v1 whose depth was registered to colour
-  kAligned,      ///< another sensor with colour aligned to depth
+  kNumbered,     ///< another sensor, of which nothing is known
   kKinect,       ///< a Kinect v1 through libfreenect, not registered
 };
 

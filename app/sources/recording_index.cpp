@@ -110,7 +110,7 @@ RecordingIndex index_numbered(const fs::path& folder) {
   add_numbered(folder / "depth", {".png"}, &NumberedFiles::depth, files);
   if (const fs::path colour = colour_folder(folder); !colour.empty())
     add_numbered(colour, {".jpg", ".jpeg", ".png"}, &NumberedFiles::colour, files);
-  return {DepthEncoding::kMillimetres, NominalRig::kAligned, frames_of(files, folder)};
+  return {DepthEncoding::kMillimetres, NominalRig::kNumbered, frames_of(files, folder)};
 }
 
 RecordingIndex index_recording(const fs::path& folder) {

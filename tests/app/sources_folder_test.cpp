@@ -209,13 +209,16 @@ TEST(OpenFolder, RefusesRecordingsWithoutFrames) {
     EXPECT_TRUE(contains(error_of([&] { open_folder(folder->path()); }), "no frames"));
 }
 
-TEST(OpenFolder, ReadsNumberedFoldersAlignedAndInMillimetres) {
+TEST(OpenFolder, ReadsNumberedFoldersInMillimetres) {
   const TemporaryFolder folder;
   write_numbered(folder.path());
   const auto all = read_all(*open_folder(folder.path()));
   ASSERT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames));
-  EXPECT_EQ(all.frames[2].depth_camera, all.frames[2].colour_camera);
-  EXPECT_TRUE(all.frames[2].T_colour_depth.matrix().isIdentity());
+  SourceOptions known;
+  known.depth_camera = Intrinsics{16, 12, 14, 14, 8, 6};
+  const auto aligned = read_all(*open_folder(folder.path(), known));
+  EXPECT_EQ(aligned.frames.at(2).colour_camera, *known.depth_camera);
+  EXPECT_TRUE(aligned.frames.at(2).T_colour_depth.matrix().isIdentity());
   EXPECT_NEAR(all.frames[2].stamp_s, 2 / 30.0, 1e-12);
   EXPECT_NEAR(all.frames[2].depth_m.at(3, 1), some_frame(2).depth_m.at(3, 1), 0.000501);
   EXPECT_EQ(all.frames[2].colour.pixels, some_frame(2).colour.pixels);

@@ -54,15 +54,14 @@ TEST(RealRecordings, KitchensLastHundredFramesAreAskedForByRange) {
   EXPECT_EQ(source->frame_count(), 100);
 }
 
-TEST(RealRecordings, CupIsAlignedAndOfItsOwnSize) {
+TEST(RealRecordings, CupIsOfItsOwnSizeAndHasNoPoses) {
   ROOMRADAR_RECORDING_OR_SKIP(folder, "cup");
   const auto source = open_folder(folder);
   EXPECT_EQ(source->frame_count(), 207);
   Frame frame;
   ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
-  EXPECT_EQ(frame.depth_camera, (Intrinsics{640, 360, 320, 320, 319.5, 179.5}));
-  EXPECT_EQ(frame.colour_camera, frame.depth_camera);
-  EXPECT_TRUE(frame.T_colour_depth.matrix().isIdentity());
+  EXPECT_EQ(frame.depth_camera, (Intrinsics{640, 360, 347, 347, 319.5, 179.5}));
+  EXPECT_EQ(frame.colour_camera.height_px, 360);
   EXPECT_FALSE(frame.T_world_camera);
 }
 
@@ -180,6 +179,17 @@ TEST(RealRecordings, KitchensDepthEdgesMeetItsColourEdges) {
     ASSERT_EQ(source->next(frames[i]).status, ReadStatus::kFrame);
   }
   expect_best_where_it_is(frames, 3);
+}
+
+TEST(RealRecordings, CupsDepthEdgesMeetItsColourEdges) {
+  ROOMRADAR_RECORDING_OR_SKIP(folder, "cup");
+  const auto source = open_folder(folder);
+  std::vector<Frame> frames(5);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    ASSERT_TRUE(source->seek(static_cast<std::int64_t>(40 * i)));
+    ASSERT_EQ(source->next(frames[i]).status, ReadStatus::kFrame);
+  }
+  expect_best_where_it_is(frames, 4);
 }
 
 TEST(RealRecordings, PlanesDepthEdgesMeetItsColourEdges) {
