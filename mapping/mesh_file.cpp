@@ -15,6 +15,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <sstream>
 #include <string>
 
 #include "mapping/ply_writer.hpp"
@@ -50,6 +51,23 @@ const Format& format_of(const std::filesystem::path& path) {
                  std::to_string(kMaxMeshTriangles) + "; simplify it first");
 }
 
+// assimp counts to what a .ply's header says, however short the file is.
+void check_ply_counts(const std::filesystem::path& path, std::istream& file, std::uintmax_t bytes) {
+  std::string line;
+  for (int lines = 0; std::getline(file, line) && line.rfind("end_header", 0) != 0; ++lines) {
+    if (lines > 200 || line.size() > 1000) fail(path, "its header has no end; wanted a .ply");
+    std::istringstream words(line);
+    std::string word, name;
+    std::uint64_t count = 0;
+    if (!(words >> word) || word != "element") continue;
+    if (!(words >> name >> count)) fail(path, "its header line \"" + line.substr(0, 80) + "\" has no count");
+    if (name == "face" && count > kMaxMeshTriangles) fail_for_size(path, count);
+    if (count > bytes)
+      fail(path, "is cut short: it promises " + std::to_string(count) + " of \"" + name.substr(0, 40) + "\"");
+  }
+  if (!file) fail(path, "its header has no end; wanted a .ply");
+}
+
 // Refuses what is too large by its own word, before any memory is taken for it.
 void check_claimed_size(const std::filesystem::path& path, const Format& format) {
   std::error_code unreadable;
@@ -68,13 +86,7 @@ void check_claimed_size(const std::filesystem::path& path, const Format& format)
     if (file && bytes == 84 + 50 * std::uintmax_t{triangles} && triangles > kMaxMeshTriangles)
       fail_for_size(path, triangles);
   }
-  if (std::strcmp(format.extension, ".ply") == 0) {
-    std::string line;
-    for (int lines = 0; lines < 100 && std::getline(file, line) && line.rfind("end_header", 0) != 0; ++lines)
-      if (line.rfind("element face ", 0) == 0 &&
-          std::strtoull(line.c_str() + 13, nullptr, 10) > kMaxMeshTriangles)
-        fail_for_size(path, std::strtoull(line.c_str() + 13, nullptr, 10));
-  }
+  if (std::strcmp(format.extension, ".ply") == 0) check_ply_counts(path, file, bytes);
   if (bytes > kMaxFileBytes)
     fail(path, "has " + std::to_string(bytes >> 20U) + " MB, more than " +
                    std::to_string(kMaxFileBytes >> 20U) + "; simplify it first");

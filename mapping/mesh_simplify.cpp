@@ -4,12 +4,16 @@
 #include <meshoptimizer.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <vector>
 
 namespace roomradar {
 namespace {
+
+constexpr float kThinnest_m = 1e-5F;
 
 // A mesh of these triangles (indices into `mesh`), with only the vertices that they use, in the order of
 // their use.
@@ -33,6 +37,14 @@ Mesh compacted(const Mesh& mesh, const std::vector<std::uint32_t>& corners) {
     }
   }
   return out;
+}
+
+// Shortest height of a triangle; 0 for two corners in one place.
+float height_m(const Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+  const Eigen::Vector3f u = mesh.vertices[b] - mesh.vertices[a];
+  const Eigen::Vector3f v = mesh.vertices[c] - mesh.vertices[a];
+  const float longest = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
+  return longest > 0.0F ? u.cross(v).norm() / longest : 0.0F;
 }
 
 float area_m2(const Mesh& mesh, const Triangle& t) {
@@ -62,6 +74,15 @@ Mesh simplified(const Mesh& mesh, float max_deviation_m) {
                        sizeof(Eigen::Vector3f), /*target_index_count=*/0, max_deviation_m / scale_m,
                        /*options=*/0, /*result_error=*/nullptr);
   corners.resize(kept);
+  // What is thinner than a file's floats can tell goes, so that a mesh reads back as it was written.
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < corners.size(); i += 3) {
+    if (height_m(mesh, corners[i], corners[i + 1], corners[i + 2]) < kThinnest_m) continue;
+    std::copy_n(corners.begin() + static_cast<std::ptrdiff_t>(i), 3,
+                corners.begin() + static_cast<std::ptrdiff_t>(used));
+    used += 3;
+  }
+  corners.resize(used);
   return compacted(mesh, corners);
 }
 

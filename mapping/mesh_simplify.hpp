@@ -5,9 +5,10 @@
 namespace roomradar {
 
 /// Collapses edges while the quadric error stays within max_deviation_m (> 0): the root mean square distance
-/// to the planes merged into a vertex, a bound in practice rather than by proof. Vertices keep their places,
-/// normals and colours; unused ones go. Open borders keep their course within the same error. Source: Garland
-/// and Heckbert, Surface Simplification Using Quadric Error Metrics, SIGGRAPH 1997, by meshoptimizer.
+/// to the planes merged into a vertex, a bound in practice rather than by proof. Triangles thinner than 0.01
+/// mm go. Vertices keep their places, normals and colours; unused ones go. Open borders keep their course
+/// within the same error. Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics,
+/// SIGGRAPH 1997, by meshoptimizer.
 Mesh simplified(const Mesh& mesh, float max_deviation_m);
 
 /// Drops connected pieces (by shared vertices) with less area than given, and all vertices that no triangle
