@@ -1,0 +1,197 @@
+// fusion_bench.cpp: time of fusing a frame, and agreement with OctoMap's insertPointCloud on the same frames,
+// same run.
+//
+// usage: fusion_bench [RECORDING] [--frames N] [--judged N] [--json FILE]
+// RECORDING has poses (default: the kitchen beside the project). Ours fuses the first N frames (300) at each
+// resolution, colour included; OctoMap inserts all pixels of `judged` of them (10), evenly spread, and a map
+// of ours with just these is compared with its. Times are of the thread's own processor time, so that other
+// programs do not count; reading is not timed. Settings are the defaults of FusionConfig; changing them
+// breaks comparison with old numbers.
+#include <octomap/OcTree.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "app/sources/folder_source.hpp"
+#include "mapping/static_map.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+struct Settings {
+  std::string recording = ROOMRADAR_DATA_DEFAULT "/kitchen";
+  std::int64_t frames = 300;
+  std::int64_t judged = 10;
+  std::string json;
+};
+
+double thread_ms() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
+}
+
+double percentile(std::vector<double> values, double part) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1,
+                         static_cast<std::size_t>(part * static_cast<double>(values.size())))];
+}
+
+// Calls visit(frame) for `count` frames with a pose, `step` apart.
+template <typename Visit>
+void for_frames(const std::string& recording, std::int64_t count, std::int64_t step, const Visit& visit) {
+  const std::unique_ptr<FrameSource> source = open_folder(recording);
+  Frame frame;
+  for (std::int64_t i = 0; i < count * step;) {
+    const ReadResult read = source->next(frame);
+    if (read.status == ReadStatus::kEnd) return;
+    if (read.status == ReadStatus::kSkipped) continue;
+    if (!frame.T_world_camera)
+      throw Error(recording + ": frame " + std::to_string(frame.index) + " has no pose");
+    if (i % step == 0) visit(frame);
+    ++i;
+  }
+}
+
+void insert_rays(octomap::OcTree& tree, const Frame& frame, float max_range_m) {
+  octomap::Pointcloud cloud;
+  for (int y = 0; y < frame.depth_m.height; ++y)
+    for (int x = 0; x < frame.depth_m.width; ++x) {
+      const float depth_m = frame.depth_m.at(x, y);
+      if (depth_m == 0.0F || depth_m > max_range_m) continue;
+      const Eigen::Vector3f p =
+          (*frame.T_world_camera * back_project(frame.depth_camera, x, y, depth_m)).cast<float>();
+      cloud.push_back(p.x(), p.y(), p.z());
+    }
+  const Eigen::Vector3f eye = frame.T_world_camera->translation().cast<float>();
+  tree.insertPointCloud(cloud, {eye.x(), eye.y(), eye.z()});
+}
+
+struct Agreement {
+  double agree = 0.0;  // of voxels known to both, the part with the same answer
+  double occupied_kept =
+      0.0;                 // of OctoMap's occupied voxels known to both, the part that is occupied in ours
+  double made_free = 0.0;  // of OctoMap's unknown voxels, the part that is free in ours
+};
+
+Agreement compare(const StaticMap& ours, const octomap::OcTree& reference) {
+  const Eigen::AlignedBox3d box = ours.counts().known_world;
+  std::mt19937_64 random(1);
+  std::size_t known = 0, agree = 0, occupied = 0, kept = 0, unknown = 0, made_free = 0;
+  for (int i = 0; i < 3'000'000; ++i) {
+    const auto between = [&](int axis) {
+      return std::uniform_real_distribution<double>(box.min()[axis], box.max()[axis])(random);
+    };
+    const Eigen::Vector3d p(between(0), between(1), between(2));
+    const Occupancy answer = ours.occupancy_at(p);
+    const octomap::OcTreeNode* node = reference.search(p.x(), p.y(), p.z());
+    if (!node) {
+      ++unknown;
+      made_free += answer == Occupancy::kFree;
+    } else if (answer != Occupancy::kUnknown) {
+      const bool is_occupied = reference.isNodeOccupied(node);
+      ++known;
+      agree += (answer == Occupancy::kOccupied) == is_occupied;
+      occupied += is_occupied;
+      kept += is_occupied && answer == Occupancy::kOccupied;
+    }
+  }
+  const auto part = [](std::size_t of, std::size_t all) {
+    return all == 0 ? 0.0 : static_cast<double>(of) / static_cast<double>(all);
+  };
+  return {part(agree, known), part(kept, occupied), part(made_free, unknown)};
+}
+
+nlohmann::json row(const char* method, double resolution_m, const std::vector<double>& times_ms) {
+  return {{"method", method},
+          {"resolution_m", resolution_m},
+          {"frames", times_ms.size()},
+          {"median_ms", percentile(times_ms, 0.5)},
+          {"p95_ms", percentile(times_ms, 0.95)}};
+}
+
+void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) {
+  std::vector<double> ours_ms;
+  StaticMap map(resolution_m);
+  for_frames(settings.recording, settings.frames, 1, [&](const Frame& frame) {
+    const double start = thread_ms();
+    static_cast<void>(map.fuse(frame, *frame.T_world_camera));
+    ours_ms.push_back(thread_ms() - start);
+  });
+  std::vector<double> reference_ms;
+  StaticMap judged(resolution_m);
+  octomap::OcTree reference(resolution_m);
+  const std::int64_t step =
+      std::max<std::int64_t>(settings.frames / std::max<std::int64_t>(settings.judged, 1), 1);
+  for_frames(settings.recording, settings.judged, step, [&](const Frame& frame) {
+    static_cast<void>(judged.fuse(frame, *frame.T_world_camera));
+    const double start = thread_ms();
+    insert_rays(reference, frame, judged.config().max_range_m);
+    reference_ms.push_back(thread_ms() - start);
+  });
+  const Agreement agreement = compare(judged, reference);
+  nlohmann::json ours = row("roomradar", resolution_m, ours_ms);
+  const MapCounts counts = map.counts();
+  ours["agree"] = agreement.agree;
+  ours["occupied_kept"] = agreement.occupied_kept;
+  ours["unknown_made_free"] = agreement.made_free;
+  ours["memory_mb"] = static_cast<double>(counts.memory_bytes) / 1e6;
+  ours["nodes"] = counts.nodes;
+  nlohmann::json theirs = row("insertPointCloud", resolution_m, reference_ms);
+  theirs["agree"] = 1.0;
+  for (const nlohmann::json& r : {ours, theirs}) {
+    std::printf("%s\n", r.dump().c_str());
+    rows.push_back(r);
+  }
+}
+
+int run(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const bool has_value = i + 1 < argc;
+    if (word == "--frames" && has_value) {
+      settings.frames = std::max(1L, std::atol(argv[++i]));
+    } else if (word == "--judged" && has_value) {
+      settings.judged = std::max(1L, std::atol(argv[++i]));
+    } else if (word == "--json" && has_value) {
+      settings.json = argv[++i];
+    } else if (word.rfind("--", 0) == 0) {
+      throw Error("usage: fusion_bench [RECORDING] [--frames N] [--judged N] [--json FILE]");
+    } else {
+      settings.recording = word;
+    }
+  }
+  nlohmann::json rows = nlohmann::json::array();
+  for (const double resolution_m : {0.05, 0.02, 0.01}) bench(settings, resolution_m, rows);
+  if (!settings.json.empty()) {
+    std::ofstream file(settings.json);
+    file << rows.dump(2) << "\n";
+    file.flush();
+    if (!file) throw Error(settings.json + ": cannot be written");
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace roomradar
+
+int main(int argc, char** argv) {
+  try {
+    return roomradar::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "fusion_bench: %s\n", error.what());
+    return 1;
+  }
+}
