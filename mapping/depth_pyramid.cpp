@@ -15,7 +15,7 @@ constexpr float kNoWord =
 constexpr int kHoleLevel = 2;                // cells of 4 x 4 pixels must hold some depth
 
 DepthBounds merged(const DepthBounds& a, const DepthBounds& b) {
-  return {std::min(a.front_m, b.front_m), std::max(a.back_m, b.back_m)};
+  return {std::min(a.front_m, b.front_m), std::max(a.back_m, b.back_m), std::min(a.nearest_m, b.nearest_m)};
 }
 
 void halve(const Image<DepthBounds>& fine, Image<DepthBounds>& coarse) {
@@ -35,7 +35,7 @@ void halve(const Image<DepthBounds>& fine, Image<DepthBounds>& coarse) {
 DepthBounds truncation_layer(float depth_m, double resolution_m, const FusionConfig& config) {
   const float half_m = std::max(config.truncation_voxels * static_cast<float>(resolution_m),
                                 config.truncation_sigmas * depth_sigma_m(depth_m));
-  return {depth_m - half_m, depth_m + half_m};
+  return {depth_m - half_m, depth_m + half_m, depth_m - half_m};
 }
 
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
@@ -47,9 +47,9 @@ void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionC
   for (std::size_t i = 0; i < depth_m.pixels.size(); ++i) {
     const float z = depth_m.pixels[i];
     if (!(z > 0.0F)) {
-      base.pixels[i] = {kNoWord, 0.0F};
+      base.pixels[i] = {kNoWord, 0.0F, kNoWord};
     } else if (z > config.max_range_m) {
-      base.pixels[i] = {config.max_range_m, config.max_range_m};
+      base.pixels[i] = {config.max_range_m, config.max_range_m, config.max_range_m};
     } else {
       base.pixels[i] = truncation_layer(z, resolution_m, config);
     }

@@ -13,6 +13,8 @@ namespace roomradar {
 struct DepthBounds {
   float front_m = 0.0F;
   float back_m = 0.0F;
+  float nearest_m = 0.0F;  ///< the front of those pixels that have depth; infinity if none has: what lies
+                           ///< nearer is seen through by them, and the others say nothing
 };
 
 /// The layer round a surface measured at depth_m in which signed distance is kept.

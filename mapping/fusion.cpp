@@ -23,7 +23,12 @@ struct Cell {
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();  // m, in the camera frame
 };
 
-enum class Verdict { kNothing, kFree, kSplit };
+enum class Verdict {
+  kNothing,   // hidden, or out of sight
+  kFree,      // seen through as a whole
+  kPartFree,  // what is seen of it is seen through; the rest is out of sight or has no depth
+  kSplit,     // a surface may be in it
+};
 
 // What one leaf gets from the pixel that its centre falls on.
 struct Observation {
@@ -82,14 +87,19 @@ class Descent {
     std::array<Verdict, 8> verdicts;
     bool nothing = true;
     bool free_only = true;
+    const bool settled = is_settled_free(node);
     for (unsigned i = 0; i < 8; ++i) {
       cells[i] = child_cell(cell, i);
       hits_in[i] = take_front(hits, cells[i]);
       verdicts[i] = hits_in[i].empty() ? classify(cells[i]) : Verdict::kSplit;
+      if (verdicts[i] == Verdict::kPartFree) {
+        const RoomNode* child = tree_.child(node, i);
+        verdicts[i] = settled || (child && is_settled_free(*child)) ? Verdict::kNothing : Verdict::kSplit;
+      }
       nothing &= verdicts[i] == Verdict::kNothing;
       free_only &= verdicts[i] != Verdict::kSplit;
     }
-    if (nothing || (free_only && is_settled_free(node))) return;
+    if (nothing || (free_only && settled)) return;
     open(node);
     for (unsigned i = 0; i < 8; ++i) {
       if (verdicts[i] == Verdict::kNothing) continue;
@@ -155,10 +165,10 @@ class Descent {
     const DepthBounds& bounds = pyramid_.levels.front().at(x, y);
     seen.free = z < depth;
     seen.sampled = z >= bounds.front_m && z <= bounds.back_m;
+    if (!seen.sampled) return seen;
     seen.distance_m = depth - z;
     seen.weight = weight_of(depth);
-    if (seen.sampled && has_colour_ && std::abs(seen.distance_m) < colour_distance_m_)
-      seen.colour = colour_at(p_camera);
+    if (has_colour_ && std::abs(seen.distance_m) < colour_distance_m_) seen.colour = colour_at(p_camera);
     return seen;
   }
 
@@ -256,6 +266,7 @@ class Descent {
                       pixel(right, frame_.depth_m.width), pixel(bottom, frame_.depth_m.height));
     if (low.z() > bounds.back_m) return Verdict::kNothing;
     if (whole && high.z() < bounds.front_m) return Verdict::kFree;
+    if (high.z() < bounds.nearest_m) return Verdict::kPartFree;
     return Verdict::kSplit;
   }
 
