@@ -123,7 +123,7 @@ int run(const RunCommand& command) {
   const SavedMap map = load_map(command.map);
   SessionConfig config;
   config.poses = command.poses;
-  config.surfaces = command.surfaces;
+  config.scene.surfaces = command.surfaces;
   config.make_picture = !command.video.empty() || !command.pictures.empty();
   config.measure_penetration = !command.report.empty();
   Session session(map, config);

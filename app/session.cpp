@@ -14,29 +14,21 @@ namespace {
 constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from an object than this do not push it
 constexpr int kFineRadar_px = 512;
 
-/// Whether seen from one pose and the other the same pixels show the same surfaces, to a fraction of a pixel.
-bool is_same_view(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b) {
-  const Eigen::Isometry3d T_a_b = T_world_a.inverse() * T_world_b;
-  return T_a_b.translation().norm() < 2e-4 && Eigen::AngleAxisd(T_a_b.linear()).angle() < 2e-4;
-}
-
 }  // namespace
 
 Session::Session(const SavedMap& map, const SessionConfig& config)
     : map_(map),
       config_(config),
-      depth_pass_(context_),
+      room_(context_),
+      scene_(context_, room_, config.scene),
       radar_(context_, config.radar),
       fine_radar_(context_, RadarConfig{.resolution_px = kFineRadar_px,
                                         .overlap_tolerance_m = config.radar.overlap_tolerance_m}),
-      drawer_(context_),
-      static_mesh_(context_),
-      moved_mesh_(context_) {
-  require_valid(config.foreground);
-  require_valid(config.dynamic_mesh);
+      depth_pass_(context_),
+      drawer_(context_) {
   require_valid(config.physics);
   require_valid(config.picture);
-  static_mesh_.upload(map.mesh, MeshUsage::kStatic);
+  room_.upload(map.mesh, MeshUsage::kStatic);
 }
 
 FrameResult Session::step(const Frame& frame, StageTimes& times) {
@@ -53,16 +45,17 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
       return result;
     }
     const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
-    result.static_triangles_drawn = times.timed("expected", [&] { return render_expected(frame, T_world_camera); });
-    result.foreground = times.timed("foreground", [&] { return find_moved(frame); });  // what moved?
-    times.timed("mesh", [&] { mesh_moved(frame, T_world_camera); });
+    result.static_triangles_drawn =
+        times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
+    result.foreground = times.timed("foreground", [&] { return scene_.find_moved(frame); });  // what moved?
+    times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera); });
     release_waiting(frame, T_world_camera);
     result.contacts = times.timed("physics", [&] { return move_objects(dt_s, times); });  // R, M, L
     if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera); });
 
     result.status = FrameStatus::kDone;
     result.T_world_camera = T_world_camera;
-    result.dynamic_triangles = moved_mesh_.triangle_count();
+    result.dynamic_triangles = scene_.moved_triangles();
     if (config_.measure_penetration) result.deepest_penetration_m = penetration_m();
     return result;
   });
@@ -77,45 +70,14 @@ Tracking Session::locate_camera(const Frame& frame) {
     return tracking;
   }
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
-    render_expected(frame, T_world_camera);
-    return expected_depth_m_;
+    scene_.render_expected(frame.depth_camera, T_world_camera);
+    return scene_.expected_depth_m();
   };
-  return locate(locator_, frame, map_.places, moved_mask_, expected_depth);
-}
-
-std::size_t Session::render_expected(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  const bool is_there = expected_triangles_ > 0 && expected_camera_ == frame.depth_camera &&
-                        is_same_view(T_world_expected_, T_world_camera);
-  if (!is_there) {
-    const MeshInstance room{&static_mesh_, Eigen::Isometry3d::Identity()};
-    expected_triangles_ = depth_pass_.render({&room, 1}, frame.depth_camera, T_world_camera, expected_depth_m_);
-    expected_camera_ = frame.depth_camera;
-    T_world_expected_ = T_world_camera;
-  }
-  return expected_triangles_;
-}
-
-ForegroundCounts Session::find_moved(const Frame& frame) {
-  return mark_foreground(frame.depth_m, expected_depth_m_, frame.depth_camera, config_.foreground,
-                         foreground_scratch_, labels_, moved_mask_);
-}
-
-void Session::mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  if (config_.surfaces == SurfacePolicy::kMap) {
-    mesh_masked(frame.depth_m, moved_mask_, frame.depth_camera, T_world_camera, config_.dynamic_mesh, mesh_scratch_,
-                moved_mesh_world_);
-  } else {
-    mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.dynamic_mesh,
-               mesh_scratch_, moved_mesh_world_);
-  }
-  moved_mesh_.upload(moved_mesh_world_, MeshUsage::kStreamed);
+  return locate(locator_, frame, map_.places, scene_.moved_mask(), expected_depth);
 }
 
 std::vector<SceneMesh> Session::scene_without(const VirtualObject* object) const {
-  std::vector<SceneMesh> scene;
-  if (config_.surfaces == SurfacePolicy::kMap)
-    scene.push_back({{&static_mesh_, Eigen::Isometry3d::Identity()}, Touched::kStatic});
-  scene.push_back({{&moved_mesh_, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
+  std::vector<SceneMesh> scene = scene_.meshes();
   for (const auto& other : objects_) {
     if (other.get() != object && other->in_room)
       scene.push_back({{&other->shape, other->body.T_world_object}, Touched::kObject});
@@ -136,9 +98,9 @@ int Session::move_objects(double dt_s, StageTimes& times) {
       radar_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
       return contact;
     };
-    PushDirections push;
-    if (config_.surfaces == SurfacePolicy::kMap)
-      push = push_directions(moved_mesh_world_, object->body.T_world_object * object->middle, kNearbyReach_m);
+    PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
+    if (config_.scene.surfaces == SurfacePolicy::kMap)
+      push = push_directions(scene_.moved_mesh_world(), object->body.T_world_object * object->middle, kNearbyReach_m);
     contacts += advance(object->body, dt_s, query, config_.physics, push.span()).contacts;
   }
   times.add_ms("radar", radar_ms);
@@ -178,8 +140,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_);
   if (rect.width > 0 && rect.height > 0) {
     std::vector<MeshInstance> real;
-    if (config_.surfaces == SurfacePolicy::kMap) real.push_back({&static_mesh_, Eigen::Isometry3d::Identity()});
-    real.push_back({&moved_mesh_, Eigen::Isometry3d::Identity()});
+    for (const SceneMesh& mesh : scene_.meshes()) real.push_back(mesh.instance);
     depth_pass_.render(real, camera, T_world_view, rect, real_depth_m_);
   }
   compose(has_colour ? frame.colour : background_, camera, T_world_view, real_depth_m_, casters, layer_,
@@ -224,7 +185,7 @@ void Session::apply(const ScriptEvent& event) {
 void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   std::vector<ScriptEvent> still_waiting;
   for (ScriptEvent& event : waiting_) {
-    const std::optional<Support> support = find_support(expected_depth_m_, frame.depth_camera, T_world_camera,
+    const std::optional<Support> support = find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
                                                         object_named(event.name).footprint_radius_m);
     if (!support) {
       still_waiting.push_back(event);

@@ -7,13 +7,11 @@
 
 #include "app/compose.hpp"
 #include "app/draw.hpp"
+#include "app/live_scene.hpp"
 #include "app/locator.hpp"
 #include "app/physics.hpp"
 #include "app/script.hpp"
 #include "app/virtual_object.hpp"
-#include "dynamic/depth_mesh.hpp"
-#include "dynamic/foreground.hpp"
-#include "dynamic/surface_policy.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/stage_times.hpp"
@@ -25,9 +23,7 @@ namespace roomradar {
 
 struct SessionConfig {
   PoseOrigin poses = PoseOrigin::kTracked;
-  SurfacePolicy surfaces = SurfacePolicy::kMap;
-  ForegroundConfig foreground;
-  DepthMeshConfig dynamic_mesh;
+  LiveSceneConfig scene;
   RadarConfig radar;
   PhysicsConfig physics;
   ComposeConfig picture;
@@ -67,45 +63,31 @@ class Session {
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_; }
   [[nodiscard]] const ColourImage& picture() const { return picture_; }
-  [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
-  [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
-  [[nodiscard]] const Mesh& moved_mesh_world() const { return moved_mesh_world_; }
+  [[nodiscard]] const LiveScene& scene() const { return scene_; }
 
  private:
   const SavedMap& map_;
   SessionConfig config_;
   GlContext context_;
-  DepthPass depth_pass_;
+  GpuMesh room_;
+  LiveScene scene_;
+  Locator locator_;
   CyberRadar radar_;
   CyberRadar fine_radar_;
+  DepthPass depth_pass_;
   ObjectDrawer drawer_;
-  GpuMesh static_mesh_;
-  GpuMesh moved_mesh_;
-  Locator locator_;
 
   std::vector<std::unique_ptr<VirtualObject>> objects_;
   std::vector<ScriptEvent> waiting_;  ///< drops that have found no surface yet
   double last_stamp_s_ = 0.0;
   bool has_last_stamp_ = false;
 
-  DepthImage expected_depth_m_;  ///< of the static model, for expected_camera_ at T_world_expected_
-  Intrinsics expected_camera_;
-  Eigen::Isometry3d T_world_expected_ = Eigen::Isometry3d::Identity();
-  std::size_t expected_triangles_ = 0;  ///< 0: nothing was rendered yet
-  DepthImage real_depth_m_;
-  ForegroundScratch foreground_scratch_;
-  LabelImage labels_;
-  MaskImage moved_mask_;
-  DepthMeshScratch mesh_scratch_;
-  Mesh moved_mesh_world_;
+  DepthImage real_depth_m_;  ///< as the colour camera sees it, where objects are
   ObjectLayer layer_;
   ColourImage background_;
   ColourImage picture_;
 
   Tracking locate_camera(const Frame& frame);
-  std::size_t render_expected(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
-  ForegroundCounts find_moved(const Frame& frame);
-  void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   [[nodiscard]] std::vector<SceneMesh> scene_without(const VirtualObject* object) const;
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   int move_objects(double dt_s, StageTimes& times);

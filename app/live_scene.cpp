@@ -1,0 +1,55 @@
+// live_scene.cpp: expected depth, moved pixels and their mesh, frame by frame.
+#include "app/live_scene.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Whether seen from one pose and the other the same pixels show the same surfaces: at 585 px of focal length 0.2 mrad
+/// are a tenth of a pixel, and so are 0.2 mm at 1 m.
+bool is_same_view(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b) {
+  const Eigen::Isometry3d T_a_b = T_world_a.inverse() * T_world_b;
+  return T_a_b.translation().norm() < 2e-4 && Eigen::AngleAxisd(T_a_b.linear()).angle() < 2e-4;
+}
+
+}  // namespace
+
+LiveScene::LiveScene(GlContext& context, const GpuMesh& room, const LiveSceneConfig& config)
+    : config_(config), room_(room), moved_mesh_(context), depth_pass_(context) {
+  require_valid(config.foreground);
+  require_valid(config.mesh);
+}
+
+std::size_t LiveScene::render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) {
+  if (expected_camera_ == camera && is_same_view(T_world_expected_, T_world_camera)) return expected_triangles_;
+  const MeshInstance room{&room_, Eigen::Isometry3d::Identity()};
+  expected_triangles_ = depth_pass_.render({&room, 1}, camera, T_world_camera, expected_depth_m_);
+  expected_camera_ = camera;
+  T_world_expected_ = T_world_camera;
+  return expected_triangles_;
+}
+
+ForegroundCounts LiveScene::find_moved(const Frame& frame) {
+  return mark_foreground(frame.depth_m, expected_depth_m_, frame.depth_camera, config_.foreground,
+                         foreground_scratch_, labels_, moved_mask_);
+}
+
+void LiveScene::mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  if (config_.surfaces == SurfacePolicy::kMap) {
+    mesh_masked(frame.depth_m, moved_mask_, frame.depth_camera, T_world_camera, config_.mesh, mesh_scratch_,
+                moved_mesh_world_);
+  } else {
+    mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh, mesh_scratch_,
+               moved_mesh_world_);
+  }
+  moved_mesh_.upload(moved_mesh_world_, MeshUsage::kStreamed);
+}
+
+std::vector<SceneMesh> LiveScene::meshes() const {
+  std::vector<SceneMesh> meshes;
+  if (config_.surfaces == SurfacePolicy::kMap)
+    meshes.push_back({{&room_, Eigen::Isometry3d::Identity()}, Touched::kStatic});
+  meshes.push_back({{&moved_mesh_, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
+  return meshes;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,66 @@
+// live_scene.hpp: what a virtual object can touch in a frame: the saved room's surface, and what the camera sees moved.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <vector>
+
+#include "dynamic/depth_mesh.hpp"
+#include "dynamic/foreground.hpp"
+#include "dynamic/surface_policy.hpp"
+#include "mapping/types/frame.hpp"
+#include "mapping/types/mesh.hpp"
+#include "radar/cyber_radar.hpp"
+#include "radar/depth_pass.hpp"
+#include "radar/gl_context.hpp"
+#include "radar/gpu_mesh.hpp"
+
+namespace roomradar {
+
+struct LiveSceneConfig {
+  SurfacePolicy surfaces = SurfacePolicy::kMap;
+  ForegroundConfig foreground = {};
+  DepthMeshConfig mesh = {};
+};
+
+/// Made anew from each frame: render_expected, find_moved, mesh_moved, in this order. Not thread safe.
+class LiveScene {
+ public:
+  /// `room` is the static mesh in the world; it and the context must outlive this. Throws Error if the config is out of
+  /// its rules.
+  LiveScene(GlContext& context, const GpuMesh& room, const LiveSceneConfig& config);
+
+  /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
+  /// Returns the triangles drawn for it.
+  std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
+  /// Labels the frame's pixels against the expected depth.
+  ForegroundCounts find_moved(const Frame& frame);
+  /// kMap: meshes the pixels that moved; kHoles, kSkirt: all pixels.
+  void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+
+  /// What can be touched: kMap: the room and what moved; kHoles, kSkirt: the frame's own mesh.
+  [[nodiscard]] std::vector<SceneMesh> meshes() const;
+
+  [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
+  [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
+  [[nodiscard]] const Mesh& moved_mesh_world() const { return moved_mesh_world_; }
+  [[nodiscard]] std::size_t moved_triangles() const { return moved_mesh_.triangle_count(); }
+
+ private:
+  LiveSceneConfig config_;
+  const GpuMesh& room_;
+  GpuMesh moved_mesh_;
+  DepthPass depth_pass_;
+
+  DepthImage expected_depth_m_;  ///< for expected_camera_ at T_world_expected_
+  Intrinsics expected_camera_;   ///< of no size: nothing was rendered yet
+  Eigen::Isometry3d T_world_expected_ = Eigen::Isometry3d::Identity();
+  std::size_t expected_triangles_ = 0;
+
+  ForegroundScratch foreground_scratch_;
+  LabelImage labels_;
+  MaskImage moved_mask_;
+  DepthMeshScratch mesh_scratch_;
+  Mesh moved_mesh_world_;
+};
+
+}  // namespace roomradar
