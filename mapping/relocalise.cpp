@@ -1,6 +1,8 @@
 // relocalise.cpp: where in a known room a frame was taken.
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "mapping/align.hpp"
 #include "mapping/place_matching.hpp"
@@ -75,17 +77,46 @@ Proof prove_with_depth(const LiveView& live, const ReferenceView& live_reference
   return proof;
 }
 
-/// Keeps the better of two answers.
-void take(const Proof& proof, const Place& place, std::size_t position, int feature_inliers,
-          Relocalisation& best) {
-  const bool better = best.status != RelocalisationStatus::kFound || feature_inliers > best.feature_inliers ||
-                      (feature_inliers == best.feature_inliers && proof.agreement > best.depth_agreement);
-  if (!better) return;
-  best.status = RelocalisationStatus::kFound;
-  best.T_world_camera = place.T_world_camera * proof.T_place_camera;
-  best.keyframe = static_cast<std::int64_t>(position);
-  best.feature_inliers = feature_inliers;
-  best.depth_agreement = proof.agreement;
+/// A view that was proven to be where the frame was taken.
+struct Witness {
+  std::size_t position = 0;  ///< in places.keyframes
+  int feature_inliers = 0;
+  Proof proof;
+};
+
+/// The answer of the best witness, refined over the depth of all that agree with it: each remembered pose has
+/// an error of its own.
+Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& live, const Places& places,
+                      const ViewConfig& view) {
+  constexpr double kAgree_m = 0.15, kAgree_rad = 0.1;
+  const Witness& best =
+      *std::max_element(witnesses.begin(), witnesses.end(), [](const Witness& a, const Witness& b) {
+        return std::pair(a.feature_inliers, a.proof.agreement) <
+               std::pair(b.feature_inliers, b.proof.agreement);
+      });
+  Relocalisation found{
+      .status = RelocalisationStatus::kFound,
+      .T_world_camera = places.keyframes[best.position].T_world_camera * best.proof.T_place_camera,
+      .keyframe = static_cast<std::int64_t>(best.position),
+      .feature_inliers = best.feature_inliers,
+      .depth_agreement = best.proof.agreement};
+  std::vector<ReferenceView> references;
+  for (const Witness& witness : witnesses) {
+    const Place& place = places.keyframes[witness.position];
+    const Eigen::Isometry3d gap =
+        found.T_world_camera.inverse() * place.T_world_camera * witness.proof.T_place_camera;
+    if (gap.translation().norm() > kAgree_m || angle_rad(gap) > kAgree_rad) continue;
+    ViewPyramid preview;
+    make_preview_pyramid(place, view, preview);
+    references.push_back(reference_of(preview, view));
+    references.back().T_world_view = place.T_world_camera;
+  }
+  if (references.size() < 2) return found;
+  std::vector<const ReferenceView*> pointers;
+  for (const ReferenceView& reference : references) pointers.push_back(&reference);
+  const Tracking refined = align(live, pointers, found.T_world_camera, {.coarsest_level = 1});
+  if (is_aligned(refined)) found.T_world_camera = refined.T_world_camera;
+  return found;
 }
 
 }  // namespace
@@ -107,10 +138,10 @@ std::string_view to_string(RelocalisationStatus status) {
 }
 
 Relocalisation relocalise(const Frame& frame, const Places& places, const RelocaliseConfig& config) {
-  Relocalisation best;
+  Relocalisation none;
   if (places.keyframes.empty()) {
-    best.status = RelocalisationStatus::kNoPlaces;
-    return best;
+    none.status = RelocalisationStatus::kNoPlaces;
+    return none;
   }
   const ViewConfig view{.finest_width_px = config.place.preview_width_px, .normal_reach_px = 2};
   ViewPyramid pyramid;
@@ -119,35 +150,33 @@ Relocalisation relocalise(const Frame& frame, const Places& places, const Reloca
   make_live(pyramid, live);
   constexpr std::size_t kMinPoints = 200;
   if (live.levels.front().size() < kMinPoints) {
-    best.status = RelocalisationStatus::kNoDepth;
-    return best;
+    none.status = RelocalisationStatus::kNoDepth;
+    return none;
   }
 
-  const Place here = describe_place(frame, Eigen::Isometry3d::Identity(), config.place);
+  std::vector<Witness> witnesses;
   const bool remembered_by_features =
       std::any_of(places.keyframes.begin(), places.keyframes.end(),
                   [](const Place& place) { return !place.descriptors.empty(); });
   if (!frame.colour.empty() && remembered_by_features) {
-    const auto candidates =
-        most_alike(here, places.keyframes, static_cast<std::size_t>(std::max(config.candidates, 0)), 8);
-    for (const std::size_t i : candidates) {
-      const Place& place = places.keyframes[i];
-      const PlaceMatch match = match_places(place, here);
+    constexpr int kMinMatches = 8;
+    const Place here = describe_place(frame, Eigen::Isometry3d::Identity(), config.place);
+    const auto most = static_cast<std::size_t>(std::max(config.candidates, 0));
+    for (const std::size_t i : most_alike(here, places.keyframes, most, kMinMatches)) {
+      const PlaceMatch match = match_places(places.keyframes[i], here);
       if (match.inliers < config.min_feature_inliers) continue;
-      const Proof proof = prove_with_features(live, place, match, config, view);
-      if (proof.holds) take(proof, place, i, match.inliers, best);
-      if (!proof.holds && !best) best.status = RelocalisationStatus::kUnproven;
+      none.status = RelocalisationStatus::kUnproven;
+      const Proof proof = prove_with_features(live, places.keyframes[i], match, config, view);
+      if (proof.holds) witnesses.push_back({i, match.inliers, proof});
     }
-    return best;
+  } else {
+    const ReferenceView live_reference = reference_of(pyramid, view);
+    for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
+      const Proof proof = prove_with_depth(live, live_reference, places.keyframes[i], view);
+      if (proof.holds) witnesses.push_back({i, 0, proof});
+    }
   }
-
-  ReferenceView live_reference;
-  make_reference(pyramid, Eigen::Isometry3d::Identity(), view, live_reference);
-  for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
-    const Proof proof = prove_with_depth(live, live_reference, places.keyframes[i], view);
-    if (proof.holds) take(proof, places.keyframes[i], i, 0, best);
-  }
-  return best;
+  return witnesses.empty() ? none : answer(witnesses, live, places, view);
 }
 
 }  // namespace roomradar
