@@ -119,8 +119,8 @@ int run(const RunCommand& command) {
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   const Script script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
-  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
   const SavedMap map = load_map(command.map);
+  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
   SessionConfig config;
   config.poses = command.poses;
   config.scene.surfaces = command.surfaces;

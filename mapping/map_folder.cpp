@@ -125,6 +125,8 @@ std::string extents(const Eigen::AlignedBox3d& box) {
 
 }  // namespace
 
+void require_can_become_map(const fs::path& folder) { require_replaceable(tidy(folder)); }
+
 void save_map(const fs::path& folder, const SavedMap& map) {
   const fs::path target = tidy(folder);
   require_replaceable(target);

@@ -52,6 +52,10 @@ struct SavedMap {
   std::vector<TimedPose> trajectory;
 };
 
+/// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it: a check to make
+/// before minutes of work.
+void require_can_become_map(const std::filesystem::path& folder);
+
 /// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step:
 /// afterwards `folder` is the whole new map, or, after an Error, whatever it was before. Parent folders are
 /// made. Throws Error if `folder` exists and is not a map (its files are left alone), or the disk does not
