@@ -156,18 +156,19 @@ int make_depth_levels(const DepthImage& depth_m, const Intrinsics& camera, const
   return block;
 }
 
-/// Plane through a pixel's surroundings: 5 x 5 samples `step` apart, those on the pixel's surface.
+/// Plane through a pixel's surroundings: (2 kHalf + 1)^2 samples `step` apart, those on the pixel's surface.
 /// False if they are too few or do not lie on a plane within the noise.
+template <int kHalf>
 bool fit_plane(const Image<float>& inverse_depth, int x, int y, int step, float& value, float& slope_u,
                float& slope_v) {
   const float q0 = inverse_depth.at(x, y);
   const float gate = kSameSurface * q0;
   // Sums over the samples, relative to the centre: n, u, v, uu, uv, vv, q, uq, vq, qq.
   float n = 0, su = 0, sv = 0, suu = 0, suv = 0, svv = 0, sq = 0, suq = 0, svq = 0, sqq = 0;
-  for (int j = -2; j <= 2; ++j) {
+  for (int j = -kHalf; j <= kHalf; ++j) {
     const float* row = inverse_depth.row(y + j * step) + x;
     const auto v = static_cast<float>(j);
-    for (int i = -2; i <= 2; ++i) {
+    for (int i = -kHalf; i <= kHalf; ++i) {
       const float q = row[i * step] - q0;
       const float w = std::abs(q) < gate ? 1.0F : 0.0F;
       const auto u = static_cast<float>(i);
@@ -176,14 +177,18 @@ bool fit_plane(const Image<float>& inverse_depth, int x, int y, int step, float&
       sq += wq, suq += wq * u, svq += wq * v, sqq += wq * q;
     }
   }
-  if (n < 10.0F) return false;
+  constexpr int kSamples = (2 * kHalf + 1) * (2 * kHalf + 1);
+  if (n < 0.4F * kSamples) return false;
   const float inverse_n = 1.0F / n;
   const float cuu = suu - su * su * inverse_n, cuv = suv - su * sv * inverse_n,
               cvv = svv - sv * sv * inverse_n;
   const float cuq = suq - su * sq * inverse_n, cvq = svq - sv * sq * inverse_n,
               cqq = sqq - sq * sq * inverse_n;
   const float determinant = cuu * cvv - cuv * cuv;
-  if (determinant < 30.0F) return false;  // nearly on one line; 25 samples have 2500
+  // Of all samples it is the square of each direction's sum of squares; near 0 they are nearly on one line.
+  constexpr float kSquares = kHalf == 1 ? 6.0F : 50.0F;
+  static_assert(kHalf == 1 || kHalf == 2);
+  if (determinant < 0.012F * kSquares * kSquares) return false;
   const float a = (cuq * cvv - cvq * cuv) / determinant, b = (cvq * cuu - cuq * cuv) / determinant;
   const float residual = std::max(cqq - a * cuq - b * cvq, 0.0F) * inverse_n;
   const float allowed = 3.0F * depth_sigma_m(1.0F / q0) * q0 * q0;
@@ -202,6 +207,7 @@ void fill_gradient(const Image<float>& intensity, int x, int y, ReferencePixel& 
   pixel.gradient_u = gu, pixel.gradient_v = gv;
 }
 
+template <int kHalf>
 void make_reference_level(const ViewPyramid::Level& level, int step, ReferenceLevel& out) {
   const ReferencePixel none{Eigen::Vector3f::Zero(), 0.0F, 0.0F, -1.0F, 0.0F, 0.0F};
   const Intrinsics& camera = level.camera;
@@ -209,12 +215,12 @@ void make_reference_level(const ViewPyramid::Level& level, int step, ReferenceLe
   out.pixels.resize(camera.width_px, camera.height_px, none);
   const auto fx = static_cast<float>(camera.fx_px), fy = static_cast<float>(camera.fy_px);
   const auto cx = static_cast<float>(camera.cx_px), cy = static_cast<float>(camera.cy_px);
-  const int border = 2 * step;
+  const int border = kHalf * step;
   for (int y = border; y < camera.height_px - border; ++y) {
     for (int x = border; x < camera.width_px - border; ++x) {
       if (level.inverse_depth_per_m.at(x, y) <= 0.0F) continue;
       float q = 0, a = 0, b = 0;
-      if (!fit_plane(level.inverse_depth_per_m, x, y, step, q, a, b)) continue;
+      if (!fit_plane<kHalf>(level.inverse_depth_per_m, x, y, step, q, a, b)) continue;
       // 1/z = n . ray / offset for a plane, so the slopes of 1/z give n / offset.
       const float du = static_cast<float>(x) - cx, dv = static_cast<float>(y) - cy;
       const Eigen::Vector3f n(a * fx, b * fy, q - a * du - b * dv);
@@ -271,8 +277,12 @@ void make_reference(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world
   reference.T_world_view = T_world_view;
   reference.levels.resize(pyramid.levels.size());
   for (std::size_t i = 0; i < pyramid.levels.size(); ++i) {
-    const int step = std::max(1, config.normal_reach_px >> (i + 1));
-    make_reference_level(pyramid.levels[i], step, reference.levels[i]);
+    const int reach_px = config.normal_reach_px >> i;
+    if (config.noisy) {
+      make_reference_level<2>(pyramid.levels[i], std::max(1, reach_px / 2), reference.levels[i]);
+    } else {
+      make_reference_level<1>(pyramid.levels[i], 1, reference.levels[i]);
+    }
   }
 }
 

@@ -16,6 +16,7 @@ struct ViewConfig {
   float max_depth_m = 6.0F;  ///< beyond this a Kinect v1 is off by more than 6 cm
   int normal_reach_px =
       4;  ///< a reference's planes are fitted to 5 x 5 samples this far to each side (finest level)
+  bool noisy = true;  ///< false, for rendered depth: 3 x 3 neighbours do, at a third of the time
 };
 
 /// An image's depth and intensity at several resolutions, from fine to coarse.

@@ -92,6 +92,21 @@ TEST(Align, FindsAKnownMotion) {
   EXPECT_GT(tracking.inlier_fraction, 0.9);
 }
 
+TEST(Align, FollowsARenderedViewWithoutColour) {
+  const Eigen::Isometry3d T = eye(), truth = T * kStep;
+  const ViewConfig rendered{.noisy = false};
+  ViewPyramid pyramid;
+  ReferenceView reference;
+  make_pyramid(test::exact_frame(corner_with_ball(), kCamera, T).depth_m, kCamera, rendered, pyramid);
+  make_reference(pyramid, T, rendered, reference);
+  Frame now = test::exact_frame(corner_with_ball(), kCamera, truth);
+  test::add_depth_noise(now, 4);
+  const Tracking tracking = align(live_of(now), reference, T);
+  EXPECT_EQ(tracking.status, TrackStatus::kTracked);
+  EXPECT_LT(translation_error_m(tracking, truth), kFit_m);
+  EXPECT_LT(rotation_error_rad(tracking, truth), kFit_rad);
+}
+
 TEST(Align, StandsTheNoiseOfAKinect) {
   const Eigen::Isometry3d T = eye(), truth = T * kStep;
   Frame before = test::exact_frame(corner_with_ball(), kCamera, T);
