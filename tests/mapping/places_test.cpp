@@ -181,6 +181,17 @@ TEST(Relocalise, SameLooksWithOtherDepthAreUnproven) {
   EXPECT_FALSE(relocalise(photograph, three_places()));
 }
 
+TEST(Relocalise, FeaturesWithoutTheDepthAreUnproven) {
+  // The upper part of the image is the room's, features and all; the lower part is something else, nearer.
+  Frame frame = painted(eye(0.0));
+  for (int y = 2 * frame.depth_m.height / 5; y < frame.depth_m.height; ++y) {
+    std::fill_n(frame.depth_m.row(y), frame.depth_m.width, 0.7F);
+  }
+  const Places one{{three_places().keyframes[1]}};
+  EXPECT_TRUE(relocalise(painted(eye(0.0)), one));
+  EXPECT_EQ(relocalise(frame, one).status, RelocalisationStatus::kUnproven);
+}
+
 TEST(Relocalise, WithoutColourTheDepthDecides) {
   Frame frame = painted(eye(0.05));
   frame.colour.resize(0, 0);
