@@ -14,8 +14,8 @@ namespace roomradar {
 struct ComposeConfig {
   float occlusion_tolerance_m = 0.006F;  ///< a real surface must be nearer by this at 1 m to hide the object
   float tolerance_per_m2 = 0.003F;       ///< and by this more per squared metre of distance: sensor noise
-  float occlusion_softness_m =
-      0.004F;                     ///< over this depth the object fades out: no hard line where it touches
+  /// Over this depth the object fades out: no hard line where it touches.
+  float occlusion_softness_m = 0.004F;
   float shadow_strength = 0.75F;  ///< 0 none .. 1: black where the object covers the whole sky
 };
 /// Throws Error "compose.shadow_strength = 2: must be in 0..1" and the like.

@@ -10,11 +10,11 @@
 namespace roomradar {
 namespace {
 
-constexpr int kUndersideCells =
-    24;                          // along the longer side: a cell of a 25 cm teapot is 1 cm, a shadow is soft
+// Along the longer side: a cell of a 25 cm teapot is 1 cm, a shadow is soft.
+constexpr int kUndersideCells = 24;
 constexpr double kSpread = 1.0;  // the table reaches this many longer sides past the footprint and below it
-constexpr double kAboveBottom_m =
-    0.04;  // a noisy surface may stand this much above the object's lowest point
+// A noisy surface may stand this much above the object's lowest point.
+constexpr double kAboveBottom_m = 0.04;
 constexpr double kFadeAbove_m = 0.02;
 constexpr std::array<double, 8> kLevels = {0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};  // of extent_m
 constexpr float kNothing = std::numeric_limits<float>::infinity();

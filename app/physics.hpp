@@ -23,18 +23,18 @@ struct Body {
 
 struct PhysicsConfig {
   Eigen::Vector3d gravity_world_mps2{0.0, 0.0, -9.81};
-  double restitution =
-      0.0;                  ///< part of the normal velocity that comes back, 0..1; below bounce_mps none does
+  /// Part of the normal velocity that comes back, 0..1; below bounce_mps none does.
+  double restitution = 0.0;
   double bounce_mps = 0.3;  ///< slower impacts do not bounce
   double friction = 0.5;    ///< Coulomb's coefficient, >= 0
-  double contact_margin_m =
-      0.001;  ///< gap kept to a surface; the radar samples, and sampling finds contact late
+  /// Gap kept to a surface; the radar samples, and sampling finds contact late.
+  double contact_margin_m = 0.001;
   double margin_per_pixel = 0.5;   ///< and this part of the radar's pixel size on top, where it tells one
   double max_margin_m = 0.004;     ///< the gap never grows past this
   double max_step_s = 1.0 / 30.0;  ///< a longer step is cut into such pieces
-  double max_advance_s =
-      0.5;             ///< time past this in one call is dropped (a stalled camera must not launch things)
-  int max_slides = 4;  ///< surfaces met one after the other in one piece of a step
+  /// Time past this in one call is dropped (a stalled camera must not launch things).
+  double max_advance_s = 0.5;
+  int max_slides = 4;           ///< surfaces met one after the other in one piece of a step
   double rest_drift_m = 0.012;  ///< stays within this on a support for rest_after_s: at rest
   double rest_after_s = 0.3;
   double wake_gap_m = 0.012;         ///< support sank by more than this: falls again; sensor noise is some mm
@@ -62,8 +62,8 @@ struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
   int contacts = 0;  ///< surfaces met
   int queries = 0;   ///< radar passes asked for
-  double deepest_overlap_m =
-      0.0;  ///< deepest overlap seen before it was resolved, by the shortest way out, >= 0
+  /// Deepest overlap seen before it was resolved, by the shortest way out, >= 0.
+  double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only
   bool touched_static = false;
   bool touched_dynamic = false;

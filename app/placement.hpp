@@ -16,8 +16,8 @@ struct PlacementConfig {
   double room_to_spare_m = 0.03;  ///< free and level all round the footprint
   double min_range_m = 0.4;       ///< from the camera, along its axis
   double max_range_m = 4.0;
-  double table_below_camera_m =
-      1.05;  ///< surfaces down to this below the camera are tables, lower ones the floor
+  /// Surfaces down to this below the camera are tables, lower ones the floor.
+  double table_below_camera_m = 1.05;
 };
 /// Throws Error "placement.cell_m = 0: must be in 0.005..0.1" and the like.
 void require_valid(const PlacementConfig& config);

@@ -28,8 +28,8 @@ struct ScriptEvent {
   std::string name;              ///< of the object; empty for kQuit
   std::string mesh;              ///< kAdd: `teapot`, or a mesh file, relative to the script's folder
   std::optional<double> size_m;  ///< kAdd: scaled so that its longest side is this; as it is if absent
-  std::optional<Eigen::Vector3d>
-      position_world;     ///< kPlace, kDrop, kThrow; kDrop without one: over a surface in view
+  /// kPlace, kDrop, kThrow; kDrop without one: over a surface in view.
+  std::optional<Eigen::Vector3d> position_world;
   double height_m = 0.3;  ///< kDrop: its lowest point starts this far above the position or surface
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow
 };

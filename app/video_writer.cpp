@@ -14,8 +14,8 @@ namespace roomradar {
 namespace {
 
 constexpr std::int64_t kFramesBetweenSpaceChecks = 15;
-constexpr std::uintmax_t kMinFreeBytes = 4U
-                                         << 20U;  // an encoder's buffers and the file's index must still fit
+// An encoder's buffers and the file's index must still fit.
+constexpr std::uintmax_t kMinFreeBytes = 4U << 20U;
 
 std::vector<std::string> codecs_for(const std::string& extension) {
   if (extension == ".mp4") return {"avc1", "mp4v"};

@@ -16,8 +16,8 @@ namespace {
 constexpr float kNothing_m = std::numeric_limits<float>::max();  // "nearest" where the model has nothing
 constexpr int kBlock_px = 4;   // extremes around a pixel are taken over whole blocks of this size
 constexpr int kMaxWindow = 6;  // blocks to each side
-constexpr int kSlopeStep_px =
-    4;  // slopes are taken over several pixels: a mesh from cells is a staircase at one
+// Slopes are taken over several pixels: a mesh from cells is a staircase at one.
+constexpr int kSlopeStep_px = 4;
 
 // Evidence of one pixel, as bits.
 constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kWeakRevealed = 4, kStrongRevealed = 8, kTaken = 16,
@@ -155,8 +155,8 @@ void sigmas_of_row(const DepthImage& expected_m, int y, const Intrinsics& camera
   const auto cx = static_cast<float>(camera.cx_px);
   const float v = static_cast<float>(y) - static_cast<float>(camera.cy_px);
   const float v_ray2 = v * v / (fy * fy) + 1.0F;
-  const ForegroundConfig settings =
-      config;  // a copy, so that the compiler sees that the loop does not write it
+  // A copy, so that the compiler sees that the loop does not write it.
+  const ForegroundConfig settings = config;
   for (int x = 0; x < width; ++x) {
     // With depth z(u, v) the surface normal is (fx z_u, fy z_v, -(z + u z_u + v z_v)), u and v from the
     // principal point; its product with the viewing ray (u / fx, v / fy, 1) is -z.

@@ -10,9 +10,9 @@
 namespace roomradar {
 namespace {
 
-constexpr float kNoWord =
-    std::numeric_limits<float>::infinity();  // front of a pixel that leaves it to its neighbours
-constexpr int kHoleLevel = 2;                // cells of 4 x 4 pixels must hold some depth
+// Front of a pixel that leaves it to its neighbours.
+constexpr float kNoWord = std::numeric_limits<float>::infinity();
+constexpr int kHoleLevel = 2;  // cells of 4 x 4 pixels must hold some depth
 
 DepthBounds merged(const DepthBounds& a, const DepthBounds& b) {
   return {std::min(a.front_m, b.front_m), std::max(a.back_m, b.back_m), std::min(a.nearest_m, b.nearest_m)};

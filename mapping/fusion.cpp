@@ -214,8 +214,9 @@ class Descent {
   // noise more often than change.
   void fade_sample(RoomNode& leaf, float weight) const {
     const float truncation = config_.truncation_voxels * static_cast<float>(tree_.getResolution());
-    const float sum = leaf.weight + weight;
-    leaf.distance_m += (std::max(truncation, leaf.distance_m) - leaf.distance_m) * (weight / sum);
+    const float gained = weight * config_.seen_through_gain;
+    const float sum = leaf.weight + gained;
+    leaf.distance_m += (std::max(truncation, leaf.distance_m) - leaf.distance_m) * (gained / sum);
     leaf.weight = std::min(sum, config_.max_weight);
     if (leaf.getLogOdds() <= config_.min_log_odds && leaf.distance_m > 0.7F * truncation)
       leaf.forget_sample();
@@ -321,8 +322,8 @@ class Descent {
   float fx_, fy_, cx_, cy_;
   float sigma_at_1m_;
   std::array<Eigen::Vector3f, kLeafDepth + 1> half_extent_;  // of a node's box along the camera's axes
-  std::array<std::array<Eigen::Vector3f, 8>, kLeafDepth + 1>
-      to_child_;  // from a node's centre to its children's
+  // From a node's centre to its children's.
+  std::array<std::array<Eigen::Vector3f, 8>, kLeafDepth + 1> to_child_;
   Eigen::Isometry3f T_colour_depth_;
   float colour_distance_m_ = 0.0F;
   bool has_colour_ = false;

@@ -28,8 +28,8 @@ struct MapInfo {
   std::int64_t frames_read = 0;
   std::int64_t frames_fused = 0;
   std::string up_source = "none";  ///< accelerometer, plane or none
-  Eigen::Isometry3d T_world_recorded =
-      Eigen::Isometry3d::Identity();            ///< recording's world to the map's, +z up
+  /// Recording's world to the map's, +z up.
+  Eigen::Isometry3d T_world_recorded = Eigen::Isometry3d::Identity();
   std::map<std::string, std::string> settings;  ///< what prescan ran with, by name
 
   int format_version = kMapFormatVersion;
@@ -40,8 +40,8 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
-  std::map<std::string, MapFile>
-      files;  ///< by name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt
+  /// By name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt.
+  std::map<std::string, MapFile> files;
 };
 
 struct SavedMap {
@@ -52,8 +52,8 @@ struct SavedMap {
   std::vector<TimedPose> trajectory;
 };
 
-/// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it: a check to make
-/// before minutes of work.
+/// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it: a check to
+/// make before minutes of work.
 void require_can_become_map(const std::filesystem::path& folder);
 
 /// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step:

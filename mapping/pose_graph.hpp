@@ -23,8 +23,8 @@ struct PoseGraphResult {
   bool usable = false;       ///< false: the poses were left as they were
   double cost_before = 0.0;  ///< half the sum of squared residuals, in standard deviations
   double cost_after = 0.0;
-  std::vector<double>
-      residual_sigma;  ///< one a constraint: length of its residual after, in standard deviations
+  /// One a constraint: length of its residual after, in standard deviations.
+  std::vector<double> residual_sigma;
 };
 
 /// Moves T_world_camera (all but the first, which is held) to minimise the constraints' residuals. Poses that

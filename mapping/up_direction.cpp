@@ -8,8 +8,8 @@
 namespace roomradar {
 namespace {
 
-constexpr int kStepsAcross =
-    80;  // normals from pixels 1/80 of the width apart: noise averaged, edges still apart
+// Normals from pixels 1/80 of the width apart: noise averaged, edges still apart.
+constexpr int kStepsAcross = 80;
 constexpr double kMaxSlope = 4.0;  // depth change over lateral distance: 76 degrees; steeper is an edge
 constexpr std::size_t kMaxNormals = 400'000;  // ~5 MB; later frames are thinned out by then anyway
 constexpr double kConeAboutCameraUp_deg = 60.0;

@@ -22,11 +22,11 @@ enum class Touched {
 
 struct [[nodiscard]] Contact {
   ContactStatus status = ContactStatus::kInvalidInput;  // unset means failed
-  double travel_m =
-      0.0;  ///< along the direction until touch; negative: depth of the overlap; kContact and kOverlap only
+  /// Along the direction until touch; negative: depth of the overlap; kContact and kOverlap only.
+  double travel_m = 0.0;
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< on the scene's surface
-  Eigen::Vector3d normal_world =
-      Eigen::Vector3d::Zero();  ///< unit, of the scene's triangle, turned to face the object
+  /// Unit, of the scene's triangle, turned to face the object.
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
   Touched touched = Touched::kNothing;
   double pixel_m = 0.0;  ///< side of a radar pixel: how far apart the samples are across the direction
 

@@ -10,8 +10,8 @@ namespace roomradar {
 /// origin_world + (i + 0.5) * pixel_m * x_world + (j + 0.5) * pixel_m * y_world, and depth runs along
 /// u_world.
 struct RadarVolume {
-  Eigen::Vector3d origin_world =
-      Eigen::Vector3d::Zero();  ///< corner of the rear plane, just behind the object
+  /// Corner of the rear plane, just behind the object.
+  Eigen::Vector3d origin_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d x_world = Eigen::Vector3d::UnitX();
   Eigen::Vector3d y_world = Eigen::Vector3d::UnitY();
   Eigen::Vector3d u_world = Eigen::Vector3d::UnitZ();  ///< unit, the direction of motion; x cross y = u

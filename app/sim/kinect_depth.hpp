@@ -9,8 +9,8 @@
 
 namespace roomradar {
 
-inline constexpr double kKinectBaseline_m =
-    0.075;  ///< the projector stands this far along the depth camera's +x
+/// The projector stands this far along the depth camera's +x.
+inline constexpr double kKinectBaseline_m = 0.075;
 inline constexpr double kKinectNearest_m = 0.5;
 inline constexpr double kKinectFarthest_m = 8.0;
 

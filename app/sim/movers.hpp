@@ -12,13 +12,13 @@ namespace roomradar {
 /// How one thing moves; its shape at any time follows from this alone.
 struct Mover {
   MoverKind kind = MoverKind::kHand;
-  Eigen::Vector3d from_world =
-      Eigen::Vector3d::Zero();  ///< withdrawn hand, one end of the ball's or person's way
+  /// Withdrawn hand, one end of the ball's or person's way.
+  Eigen::Vector3d from_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d to_world = Eigen::Vector3d::Zero();  ///< hand over the focus, other end of the way
-  Eigen::Vector3d arm_world =
-      Eigen::Vector3d::UnitX();  ///< hand: unit direction from the fingers to the elbow
-  double radius_m = 0.0;         ///< ball
-  double period_s = 1.0;         ///< there and back
+  /// Hand: unit direction from the fingers to the elbow.
+  Eigen::Vector3d arm_world = Eigen::Vector3d::UnitX();
+  double radius_m = 0.0;  ///< ball
+  double period_s = 1.0;  ///< there and back
   double phase_rad = 0.0;
   std::vector<Material> materials;  ///< one a solid
 };

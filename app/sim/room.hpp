@@ -30,14 +30,14 @@ struct Room {
   Eigen::Vector3d interior_max_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d focus_world = Eigen::Vector3d::Zero();  ///< what a visitor looks at; a surface point
   double view_azimuth_rad = 0.0;                          ///< from the focus towards where a visitor stands
-  Eigen::Vector3d walk_centre_world =
-      Eigen::Vector3d::Zero();  ///< of the ellipse that a scan walks along, eye height
+  /// Of the ellipse that a scan walks along, eye height.
+  Eigen::Vector3d walk_centre_world = Eigen::Vector3d::Zero();
   Eigen::Vector2d walk_half_m = Eigen::Vector2d::Ones();  ///< its half axes along x and y
-  Eigen::Vector3d ball_from_world =
-      Eigen::Vector3d::Zero();  ///< surface points between which a ball can roll
+  /// Surface points between which a ball can roll.
+  Eigen::Vector3d ball_from_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d ball_to_world = Eigen::Vector3d::Zero();
-  Eigen::Vector3d person_from_world =
-      Eigen::Vector3d::Zero();  ///< floor points between which a person can walk
+  /// Floor points between which a person can walk.
+  Eigen::Vector3d person_from_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d person_to_world = Eigen::Vector3d::Zero();
 };
 

@@ -22,8 +22,8 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-constexpr double kBeyond_m =
-    0.05;  // what could stop the object this far behind the contact must be hidden too
+// What could stop the object this far behind the contact must be hidden too.
+constexpr double kBeyond_m = 0.05;
 constexpr std::array kOccluders{Occluder::kFurniture, Occluder::kBox, Occluder::kHand, Occluder::kPerson};
 
 /// A surface point and its normal.

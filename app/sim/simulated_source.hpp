@@ -13,8 +13,8 @@ struct Room;
 
 /// What the sensor would have delivered without its faults, for the frame read last.
 struct SimTruth {
-  DepthImage
-      depth_m;      ///< exact depth of the pixel's centre ray, within the sensor's range; 0 = outside of it
+  /// Exact depth of the pixel's centre ray, within the sensor's range; 0 = outside of it.
+  DepthImage depth_m;
   MaskImage moved;  ///< 255 where the nearest surface is a moving thing
   MaskImage mover;  ///< 0 = the room, else 1 + the position of the mover in SimOptions::movers
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();

@@ -39,8 +39,8 @@ class SurfaceLook {
     float texel_m = 0.0F;
     std::vector<Level> levels;  ///< each half of the one before; empty: the face cannot be seen
     int light_columns = 0, light_rows = 0;
-    std::vector<float>
-        light;  ///< factor on the colour at the nodes of a grid that spans the face; empty: moves
+    /// Factor on the colour at the nodes of a grid that spans the face; empty: moves.
+    std::vector<float> light;
   };
   static constexpr int kFaces = 7;  ///< +x, -x, +y, -y, +z, -z, and a cylinder's side
 

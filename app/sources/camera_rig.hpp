@@ -11,8 +11,8 @@ namespace roomradar {
 struct CameraRig {
   Intrinsics depth_camera;
   std::optional<Intrinsics> colour_camera;  ///< nothing where there is no colour
-  Eigen::Isometry3d T_colour_depth =
-      Eigen::Isometry3d::Identity();  ///< depth-camera points to colour-camera points
+  /// Depth-camera points to colour-camera points.
+  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
 };
 
 /// camera.json:

@@ -164,8 +164,8 @@ class KinectSource final : public FrameSource {
   [[nodiscard]] std::string name() const override { return name_; }
 
  private:
-  static constexpr std::size_t kReadyFrames =
-      2;  // one being waited for, one in hand; more would only be late
+  // One being waited for, one in hand; more would only be late.
+  static constexpr std::size_t kReadyFrames = 2;
   static constexpr int kBadFramesInARow = 10;
   static constexpr int kInterrupted = -10;  // LIBUSB_ERROR_INTERRUPTED: a signal came in between; no fault
 

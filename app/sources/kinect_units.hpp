@@ -8,8 +8,8 @@
 namespace roomradar {
 
 constexpr std::uint16_t kRawNoDepth = 2047;
-constexpr double kKinectTicksPerSecond =
-    60e6;                                     ///< of the 32 bit stamps on its images; they wrap after 71.6 s
+/// Of the 32 bit stamps on its images; they wrap after 71.6 s.
+constexpr double kKinectTicksPerSecond = 60e6;
 constexpr double kKinectCountsPerG = 819.0;   ///< of its accelerometer (KXSD9 data sheet; libfreenect.h)
 constexpr std::uint16_t kRawFarthest = 1057;  ///< 9.88 m; past it one raw step is more than 0.5 m
 

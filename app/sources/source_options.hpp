@@ -11,8 +11,8 @@ struct SourceOptions {
   /// image's size. Where colour is registered to depth (TUM, numbered folders without camera.json) the colour
   /// camera follows.
   std::optional<Intrinsics> depth_camera;
-  double device_timeout_s =
-      5.0;  ///< a live device that sends nothing for as long as this is given up; 30 Hz is normal
+  /// A live device that sends nothing for as long as this is given up; 30 Hz is normal.
+  double device_timeout_s = 5.0;
 };
 
 }  // namespace roomradar

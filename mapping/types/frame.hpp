@@ -19,8 +19,8 @@ struct Frame {
 
   ColourImage colour;  ///< of colour_camera's size, or empty where the source has none
   Intrinsics colour_camera;
-  Eigen::Isometry3d T_colour_depth =
-      Eigen::Isometry3d::Identity();  ///< depth-camera points to colour-camera points
+  /// Depth-camera points to colour-camera points.
+  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
 
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< of the depth camera, in the recording's own world
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame

@@ -9,8 +9,8 @@
 
 namespace roomradar {
 
-using Triangle =
-    std::array<std::uint32_t, 3>;  ///< counter-clockwise seen from outside (from where the sensor stood)
+/// Counter-clockwise seen from outside (from where the sensor stood).
+using Triangle = std::array<std::uint32_t, 3>;
 
 /// Indexed triangles. A vertex stands at origin + vertices[i] in the mesh's frame (world, or an object's
 /// own).

@@ -145,8 +145,8 @@ TEST(ContactShadow, IsDarkestInContactAndFadesSidewaysAndDownwards) {
   }
   EXPECT_EQ(before, 0.0F);
   const float in_contact = sky_taken(shadow, {0, 0, 0.05F});
-  EXPECT_NEAR(sky_taken(shadow, {0, 0, 0.06F}), in_contact,
-              1e-3F);  // a noisy surface reaches above the bottom ...
+  // A noisy surface reaches above the bottom ...
+  EXPECT_NEAR(sky_taken(shadow, {0, 0, 0.06F}), in_contact, 1e-3F);
   EXPECT_NEAR(sky_taken(shadow, {0, 0, 0.08F}), in_contact / 2, 1e-3F);  // ... not by so much, though
   EXPECT_EQ(sky_taken(shadow, {0, 0, 0.10F}), 0.0F);
   EXPECT_EQ(sky_taken(shadow, {0, 0, -5.0F}), 0.0F);

@@ -106,8 +106,8 @@ TEST(Physics, FallsWithGravityWhereNothingIs) {
   Body body = body_at({0, 0, 10});
   (void)run(body, Room{}, 1.0 - 1e-9, {}, 1e-3);
   EXPECT_NEAR(body.velocity_world_mps.z(), -9.81, 1e-6);
-  EXPECT_NEAR(body.T_world_object.translation().z(), 10.0 - 9.81 / 2.0,
-              0.006);  // g dt / 2: first-order steps
+  // g dt / 2: first-order steps.
+  EXPECT_NEAR(body.T_world_object.translation().z(), 10.0 - 9.81 / 2.0, 0.006);
   EXPECT_FALSE(body.at_rest);
 }
 

@@ -75,8 +75,8 @@ TEST(Placement, FindsTheMiddleOfATable) {
 }
 
 TEST(Placement, PrefersTheTableToMoreFloor) {
-  const Eigen::Isometry3d T_world_camera =
-      looking({0, -2.0, 1.5}, {0.3, 0.3, 0.3});  // the floor is in the middle
+  // The floor is in the middle.
+  const Eigen::Isometry3d T_world_camera = looking({0, -2.0, 1.5}, {0.3, 0.3, 0.3});
   const auto support = find_support(view_of({kFloor, kTable}, T_world_camera), kCamera, T_world_camera, 0.1);
   ASSERT_TRUE(support);
   EXPECT_NEAR(support->point_world.z(), 0.73, 0.005);

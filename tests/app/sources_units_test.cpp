@@ -42,8 +42,8 @@ TEST(KinectUnits, UprightCameraFeelsGravityAlongItsY) {
 }
 
 TEST(KinectUnits, CameraThatLooksUpHasGravityBehindIt) {
-  const auto down =
-      down_from_acceleration({0, 0.8, 0.6});  // z of the accelerometer is forward, and forward is up
+  // z of the accelerometer is forward, and forward is up.
+  const auto down = down_from_acceleration({0, 0.8, 0.6});
   ASSERT_TRUE(down);
   EXPECT_NEAR(down->z(), -0.6, 1e-12);
   EXPECT_TRUE(acceleration_at_rest_g(*down).isApprox(Eigen::Vector3d(0, 0.8, 0.6)));

@@ -80,8 +80,8 @@ void insert_rays(octomap::OcTree& tree, const Frame& frame, float max_range_m) {
 
 struct Agreement {
   double agree = 0.0;  // of voxels known to both, the part with the same answer
-  double occupied_kept =
-      0.0;                 // of OctoMap's occupied voxels known to both, the part that is occupied in ours
+  // Of OctoMap's occupied voxels known to both, the part that is occupied in ours.
+  double occupied_kept = 0.0;
   double made_free = 0.0;  // of OctoMap's unknown voxels, the part that is free in ours
 };
 

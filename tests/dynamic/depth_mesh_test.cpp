@@ -209,8 +209,8 @@ TEST(DepthMesh, HoleInTheMiddleOfAHandStaysOpen) {
   const Mesh mesh = masked(depth_m, mask);
   expect_sound(mesh);
   const Mesh closed = masked(flat(0.7F), mask);
-  EXPECT_NEAR(area_m2(closed) - area_m2(mesh), (22.0 * 22.0 - 8.0) * 0.49 / (585.0 * 585.0),
-              1e-6);  // hole and its rim, less the corners
+  // Hole and its rim, less the corners.
+  EXPECT_NEAR(area_m2(closed) - area_m2(mesh), (22.0 * 22.0 - 8.0) * 0.49 / (585.0 * 585.0), 1e-6);
 }
 
 TEST(DepthMesh, WorksAtFortyCentimetresAndAtEightMetres) {

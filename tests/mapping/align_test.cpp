@@ -153,8 +153,8 @@ TEST(Align, OneWallFixesDistanceAndTiltAndHoldsTheRest) {
   EXPECT_FALSE(tracking);
   const Eigen::Vector3d position = tracking.T_world_camera.translation();
   EXPECT_NEAR(position.y(), truth.translation().y(), 0.001);
-  EXPECT_NEAR(position.x(), T.translation().x(),
-              0.004);  // held, up to the turn about the wall's mean distance
+  // Held, up to the turn about the wall's mean distance.
+  EXPECT_NEAR(position.x(), T.translation().x(), 0.004);
   EXPECT_NEAR(tracking.T_world_camera.linear().col(2).dot(truth.linear().col(2)), 1.0, 1e-6);
 }
 

@@ -169,8 +169,8 @@ TEST(Stillness, SeesAShiftOfHalfAPixelAndNotAHand) {
   EXPECT_TRUE(shows_the_same(before, before));
   EXPECT_TRUE(shows_the_same(before, with_hand));
   EXPECT_FALSE(shows_the_same(before, shifted));
-  EXPECT_FALSE(
-      shows_the_same(Image<float>(160, 120, 9.0F), Image<float>(160, 120, 9.0F)));  // no edges to tell by
+  // No edges to tell by.
+  EXPECT_FALSE(shows_the_same(Image<float>(160, 120, 9.0F), Image<float>(160, 120, 9.0F)));
   EXPECT_FALSE(shows_the_same(before, Image<float>()));
 }
 

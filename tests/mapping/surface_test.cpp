@@ -81,8 +81,8 @@ TEST(Surface, ABallIsRoundClosedAndLooksOutward) {
     for (int k = 0; k < 3; ++k)
       ++edges[{t[static_cast<std::size_t>(k)], t[static_cast<std::size_t>((k + 1) % 3)]}];
   }
-  EXPECT_NEAR(volume_m3, 4.0 / 3.0 * M_PI * 0.027,
-              0.01 * 0.113);  // positive: counter-clockwise seen from outside
+  // Positive: counter-clockwise seen from outside.
+  EXPECT_NEAR(volume_m3, 4.0 / 3.0 * M_PI * 0.027, 0.01 * 0.113);
   for (const auto& [edge, count] : edges) {
     ASSERT_EQ(count, 1);
     ASSERT_EQ(edges.count({edge.second, edge.first}), 1U) << "the ball has a hole";
@@ -98,8 +98,8 @@ TEST(Surface, SimplifyingStaysWithinItsBoundAndDropsMostOfAWall) {
   const Mesh ball = extract_surface(ball_map({0, 0, 0}, 0.3, 0.01), {.max_deviation_m = 0.002F});
   for (const Triangle& t : ball.triangles) {
     const Eigen::Vector3d middle = (place(ball, t[0]) + place(ball, t[1]) + place(ball, t[2])) / 3.0;
-    ASSERT_NEAR(middle.norm(), 0.3,
-                0.004 + 2 * 0.002);  // the ball's own error, and twice the mean-square bound
+    // The ball's own error, and twice the mean-square bound.
+    ASSERT_NEAR(middle.norm(), 0.3, 0.004 + 2 * 0.002);
   }
 }
 
