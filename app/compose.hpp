@@ -1,5 +1,4 @@
-// compose.hpp: put the virtual objects into the camera's picture: hidden by what is nearer, shadowing what is
-// below.
+// compose.hpp: put the virtual objects into the camera's picture, hidden by what is nearer, and with shadows.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -34,12 +33,10 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 
 /// The picture of the room with the objects in it.
 ///
-/// @param background       the camera's picture, of the camera's size; e.g. the live colour, or shade_depth
-/// of the depth
+/// @param background       the camera's picture, of its size: the live colour, or the depth by shade_depth
 /// @param camera           the (colour) camera
 /// @param T_world_camera   its pose
-/// @param real_depth_m     real surfaces as this camera sees them, of its size; 0: nothing known, hides
-/// nothing
+/// @param real_depth_m     real surfaces as this camera sees them, of its size; 0 hides nothing
 /// @param casters          objects that cast a soft shadow on real surfaces
 /// @param layer            the objects as this camera sees them (ObjectDrawer::draw)
 /// @param picture          of the camera's size; may not be `background`

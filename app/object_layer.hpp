@@ -1,5 +1,4 @@
-// object_layer.hpp: the virtual objects' picture and depth, finer than the camera's pixels, in a rectangle of
-// its image.
+// object_layer.hpp: the virtual objects' picture and depth, finer than the camera's pixels.
 #pragma once
 #include "mapping/types/image.hpp"
 #include "radar/projection.hpp"

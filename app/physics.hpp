@@ -1,5 +1,4 @@
-// physics.hpp: move a virtual object by what the radar answers, and by nothing else: fall, touch, slide,
-// rest.
+// physics.hpp: move a virtual object by what the radar answers alone: fall, touch, slide, rest.
 #pragma once
 #include <Eigen/Geometry>
 #include <functional>
@@ -71,17 +70,14 @@ struct [[nodiscard]] StepReport {
   bool woke = false;  ///< was at rest before and is not any more
 };
 
-/// Moves `body` on by dt_s: gravity, contact, Coulomb friction along the surface met, rest.
-/// Each piece of motion is first swept by the radar, so nothing is tunnelled through however large the step
-/// is.
+/// Moves `body` on by dt_s: gravity, contact, Coulomb friction along the surface met, rest. Each piece of
+/// motion is first swept by the radar, so nothing is tunnelled through however large the step is.
 ///
 /// @param dt_s   seconds since the last call, >= 0; 0 changes nothing
-/// @param query  the radar; asked once about what is below, once more a push direction, 1 to max_slides times
-/// a piece
-/// @param push_directions_world  unit directions from the body to where moving surfaces are (see
-/// push_directions):
-///        an overlap there moves the body away by the shortest of these ways; empty where nothing moves
-///        nearby
+/// @param query  the radar: asked once about what is below, once for each push direction, and 1 to max_slides
+///               times for each piece of motion
+/// @param push_directions_world  unit directions from the body to where moving surfaces are (push_directions);
+///               an overlap there moves the body away by the shortest of these ways; empty: nothing moves nearby
 /// A body at rest is asked about along gravity only (and along push_directions), and does not move by noise.
 /// A body at rest with a velocity is woken by it. Steps longer than max_advance_s count as that.
 StepReport advance(Body& body, double dt_s, const TravelQuery& query, const PhysicsConfig& config,

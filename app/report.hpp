@@ -1,5 +1,4 @@
-// report.hpp: the JSON file that a command leaves with --report: settings, times of each stage, memory,
-// results.
+// report.hpp: the JSON file that --report leaves: settings, times of each stage, memory, results.
 #pragma once
 #include <chrono>
 #include <filesystem>

@@ -66,8 +66,7 @@ struct ForegroundCounts {
 /// Compares a depth frame with what the static model would show at the same pose.
 ///
 /// @param depth_m           live depth, height x width, metres along the axis, 0 = no measurement
-/// @param expected_depth_m  the static model seen by the same camera, same size, 0 = the model has nothing
-/// there
+/// @param expected_depth_m  the static model as the same camera sees it, same size, 0 = it has nothing there
 /// @param camera            of both images
 /// @param scratch           reused; nothing is allocated from the second frame of a size on
 /// @param labels            resized and set

@@ -1,5 +1,4 @@
-// folder_swap.cpp: write beside, sync, rename; Linux calls, because the standard library can neither sync nor
-// exchange.
+// folder_swap.cpp: write beside, sync, rename, by Linux calls: the standard library can only rename.
 #include "mapping/folder_swap.hpp"
 
 #include <fcntl.h>

@@ -1,5 +1,4 @@
-// fusion.hpp: one depth frame into the octree, by what it proves about whole nodes. Private to the static
-// map.
+// fusion.hpp: one depth frame into the octree, by whole nodes. Private to the static map.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -1,5 +1,4 @@
-// keyframe_graph.cpp: keyframes, the measured motions between those that see the same, and the poses that fit
-// all.
+// keyframe_graph.cpp: joining keyframes that see the same, and solving for their poses.
 #include "mapping/keyframe_graph.hpp"
 
 #include <algorithm>

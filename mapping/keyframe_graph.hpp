@@ -1,5 +1,4 @@
-// keyframe_graph.hpp: keyframes, the measured motions between those that see the same, and the poses that fit
-// all.
+// keyframe_graph.hpp: keyframes, measured motions between them, and the poses that fit all.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>

@@ -1,5 +1,5 @@
-// room_octree.hpp: OctoMap's octree with a node that also knows how far the surface is. Private to the static
-// map: besides static_map*.cpp and fusion.cpp nobody includes it, or OctoMap.
+// room_octree.hpp: OctoMap's octree with a node that also knows how far the surface is.
+// Private to the static map: besides static_map* and fusion* nobody includes it, or OctoMap.
 #pragma once
 #include <octomap/OcTreeNode.h>
 #include <octomap/OccupancyOcTreeBase.h>

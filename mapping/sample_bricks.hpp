@@ -1,5 +1,4 @@
-// sample_bricks.hpp: the signed distances of a static map in small dense cubes, so that neighbours are found
-// fast.
+// sample_bricks.hpp: a static map's signed distances in small dense cubes, to find neighbours fast.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,5 +1,4 @@
-// static_map.hpp: the static room as an OctoMap octree: what is occupied, what is free, what nobody has seen,
-// and how far each voxel near a surface lies from it.
+// static_map.hpp: the static room as an octree: occupied, free or unknown, and distances near surfaces.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>

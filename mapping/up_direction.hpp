@@ -1,5 +1,4 @@
-// up_direction.hpp: which way is up in a recording, from the accelerometer or from the planes that the camera
-// saw.
+// up_direction.hpp: which way is up in a recording, from the accelerometer or from the planes seen.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>

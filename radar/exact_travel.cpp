@@ -1,5 +1,4 @@
-// exact_travel.cpp: gaps between projected triangles: linear over each overlap, so least where corners or
-// edges cross.
+// exact_travel.cpp: gaps between projected triangles, which are least where corners or edges cross.
 #include "radar/exact_travel.hpp"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// exact_travel.hpp: the radar's judge: how far one mesh may move until it touches another, in double
-// precision.
+// exact_travel.hpp: the radar's judge: how far one mesh may move until it touches another, exactly.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>

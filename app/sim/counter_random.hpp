@@ -1,5 +1,4 @@
-// counter_random.hpp: random numbers that depend on a seed and a position alone, not on what was drawn
-// before.
+// counter_random.hpp: random numbers that depend on a seed and a position alone.
 #pragma once
 #include <cstdint>
 

@@ -1,5 +1,4 @@
-// furniture.hpp: pieces of a room, each put down at a pose with its own frame's z = 0 on the floor or board
-// below.
+// furniture.hpp: pieces of a room, each put down at a pose; z = 0 is the floor or board below.
 #pragma once
 #include <cstdint>
 

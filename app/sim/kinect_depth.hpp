@@ -38,13 +38,10 @@ struct KinectScratch {
 };
 
 /// What the sensor reports for frame `frame_index`, by these steps:
-///  - lateral noise: each pixel looks in a direction off its centre by sigma_L = 0.8 + 0.035 theta / (pi/2 -
-///  theta) px;
+///  - lateral noise: each pixel looks off its centre by sigma_L = 0.8 + 0.035 theta / (pi/2 - theta) px;
 ///  - shadow: 0 where a solid stands between the projector and the surface;
-///  - dropouts: 0 where too little of the projector's light comes back (dark, grazing, far), with a ragged
-///  limit;
-///  - axial noise: sigma(z, theta) of mapping/types/depth_noise.hpp, less what quantisation adds, alike over
-///  ~3 pixels;
+///  - dropouts: 0 where too little light comes back (dark, grazing, far), with a ragged limit;
+///  - axial noise: sigma(z, theta) of depth_noise.hpp, less what quantisation adds, alike over some 3 pixels;
 ///  - quantisation of the disparity, and 0 outside of 0.5 to 8 m.
 /// @param infrared     part of the light that each solid returns
 /// @param noise_scale  times both sigmas; > 0

@@ -1,5 +1,4 @@
-// movers.cpp: poses over time of a hand with its arm, a rolling ball and a walking person, all of grown
-// solids.
+// movers.cpp: a hand with its arm, a rolling ball and a walking person over time, of grown solids.
 #include "app/sim/movers.hpp"
 
 #include <cmath>

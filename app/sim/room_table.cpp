@@ -1,5 +1,4 @@
-// room_table.cpp: a dining room: a table with four chairs and things on it, a cupboard, a window and
-// pictures.
+// room_table.cpp: a dining room: a table with four chairs and things on it, a cupboard, pictures.
 #include <numbers>
 
 #include "app/sim/furniture.hpp"

@@ -1,5 +1,4 @@
-// room_wall.cpp: a nearly empty room with one big wall, where geometry alone does not tell where the camera
-// is.
+// room_wall.cpp: a nearly empty room with one big wall: geometry alone does not tell where the camera is.
 #include <numbers>
 
 #include "app/sim/furniture.hpp"

@@ -53,8 +53,7 @@ struct Scenario {
 
 /// Scenario `number` of a seed; the same whatever else was made. What holds of it:
 ///  - every point of the room that could stop the object up to 5 cm behind the true contact is hidden from
-///  the
-///    camera, though the contact lies within its image;
+///    the camera, though the contact lies within its image;
 ///  - each of those points was seen by at least three of T_world_prescan, from 0.6 to 3.5 m and not grazing;
 ///  - the object starts at least 2 cm from the room, and its way keeps 4 cm from the occluder.
 /// Four scenarios of drops and four of pushes take turns, and in each four the kinds of occluder, which hide

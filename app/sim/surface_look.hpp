@@ -1,5 +1,4 @@
-// surface_look.hpp: colour of any surface point: textures and light worked out once, looked up for every
-// pixel.
+// surface_look.hpp: colour of any surface point: textures and light worked out once, then looked up.
 #pragma once
 #include <cstdint>
 #include <span>

@@ -1,5 +1,4 @@
-// swept_travel.cpp: leading points of boxes, cylinders and grown cores, and their way through exact
-// distances.
+// swept_travel.cpp: leading points of boxes, cylinders and grown cores on their way through the room.
 #include "app/sim/swept_travel.hpp"
 
 #include <algorithm>

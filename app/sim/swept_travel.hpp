@@ -1,5 +1,4 @@
-// swept_travel.hpp: how far a solid can move along a straight line before it touches a room, without any
-// sampling of the room.
+// swept_travel.hpp: how far a solid can move straight on before it touches a room, exactly.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>

@@ -1,5 +1,4 @@
-// view_caster.hpp: exact depth of a set of solids at any point of a pinhole camera's image, fast enough for
-// every pixel.
+// view_caster.hpp: exact depth of a set of solids at any point of an image, fast enough for every pixel.
 #pragma once
 #include <span>
 #include <vector>

@@ -1,5 +1,4 @@
-// kinect_units.hpp: what a Kinect v1 delivers, in metres, seconds and directions: the only place that knows
-// its units.
+// kinect_units.hpp: what a Kinect v1 delivers, in metres, seconds and directions; none else knows its units.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>

@@ -1,5 +1,4 @@
-// recording_index_fakenect.cpp: what a fakenect recording's INDEX.txt lists, paired as the live device's
-// images are.
+// recording_index_fakenect.cpp: what INDEX.txt lists, paired as the live device's images are.
 #include <array>
 #include <cstring>
 #include <fstream>

@@ -1,5 +1,4 @@
-// stamp_pairing.hpp: which colour image goes with which depth image: the one rule for all sources with
-// stamps.
+// stamp_pairing.hpp: which colour image goes with which depth image: one rule for all sources.
 #pragma once
 #include <cstdint>
 #include <deque>

@@ -1,5 +1,4 @@
-// error.hpp: the one exception type of the project, thrown where the program meets files, devices and
-// arguments.
+// error.hpp: the one exception type of the project, for where it meets files, devices and arguments.
 #pragma once
 #include <stdexcept>
 #include <string>

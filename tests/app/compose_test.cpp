@@ -1,5 +1,4 @@
-// compose_test.cpp: occlusion, edges and shadows on scenes whose picture is known; and what the drawer hands
-// over.
+// compose_test.cpp: occlusion, edges and shadows on scenes whose picture is known.
 #include "app/compose.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// Rooms: what touches does not overlap, the mesh lies on the exact surface, and there is space to do things
-// in.
+// Rooms: what touches does not overlap, the mesh lies on the surface, there is space to move.
 #include <gtest/gtest.h>
 
 #include "app/sim/counter_random.hpp"

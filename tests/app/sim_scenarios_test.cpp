@@ -1,5 +1,4 @@
-// Hidden-surface scenarios: the truth is exact, the surface is hidden now and was seen before, the judge is
-// fair.
+// Hidden-surface scenarios: the truth is exact, the surface hidden now but seen before, the judge fair.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,4 @@
-// sources_recordings_test.cpp: real recordings, and the same ones through the Kinect's own library by
-// fakenect.
+// sources_recordings_test.cpp: real recordings, read from disk and replayed by fakenect.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// sources_replay_dump.cpp: prints one line a frame of a source, all that tells two frames apart; run under
-// fakenect.
+// sources_replay_dump.cpp: prints one line a frame, all that tells two frames apart; run under fakenect.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

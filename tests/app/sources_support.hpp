@@ -1,5 +1,4 @@
-// sources_support.hpp: temporary folders, tiny frames, and reading a whole source for the tests of
-// app/sources.
+// sources_support.hpp: temporary folders, tiny frames, and reading a whole source.
 #pragma once
 #include <gtest/gtest.h>
 #include <stdlib.h>

@@ -1,5 +1,4 @@
-// fusion_bench.cpp: time of fusing a frame, and agreement with OctoMap's insertPointCloud on the same frames,
-// same run.
+// fusion_bench.cpp: time of fusing a frame, and agreement with OctoMap's insertPointCloud in the same run.
 //
 // usage: fusion_bench [RECORDING] [--frames N] [--judged N] [--json FILE]
 // RECORDING has poses (default: the kitchen beside the project). Ours fuses the first N frames (300) at each

@@ -1,5 +1,4 @@
-// depth_mesh_test.cpp: triangles through depth pixels: where they lie, which way they face, and where they
-// stop.
+// depth_mesh_test.cpp: triangles through depth pixels: where they lie, which way they face, where they stop.
 #include "dynamic/depth_mesh.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,4 @@
-// map_folder_test.cpp: a map comes back as it was saved, every way to break it is named, and no save loses
-// one.
+// map_folder_test.cpp: a map comes back as it was saved, and every way to break it is named.
 #include "mapping/map_folder.hpp"
 
 #include <gtest/gtest.h>
