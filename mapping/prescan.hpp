@@ -50,8 +50,8 @@ using PrescanProgress = std::function<void(const std::string& stage, const std::
 
 /// Scans a room. The source is read twice: once to know where the camera was, once to fuse with the final
 /// poses. The map's world is the recording's own (recorded poses) or the first camera's (tracked), turned so
-/// that +z is up. Stages timed: read, track, fuse, surface, and frame (track and fuse of one frame together;
-/// no reading).
+/// that +z is up. Stages timed: read, track, optimise, fuse, surface, and frame (track and fuse of one frame
+/// together; no reading).
 ///
 /// @throws Error if the source cannot be rewound, has no frame at all, or not one frame's pose is trusted
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,

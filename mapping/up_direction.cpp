@@ -11,7 +11,7 @@ namespace {
 // Normals from pixels 1/80 of the width apart: noise averaged, edges still apart.
 constexpr int kStepsAcross = 80;
 constexpr double kMaxSlope = 4.0;  // depth change over lateral distance: 76 degrees; steeper is an edge
-constexpr std::size_t kMaxNormals = 400'000;  // ~5 MB; later frames are thinned out by then anyway
+constexpr std::size_t kMaxNormals = 400'000;  // 5 MB; even, see keep()
 constexpr double kConeAboutCameraUp_deg = 60.0;
 constexpr double kModeWindow_deg = 5.0;
 constexpr double kMinSupport = 0.05;
@@ -63,7 +63,6 @@ void UpEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   const auto jump_per_m = static_cast<float>(kMaxSlope * step_px / frame.depth_camera.fx_px);
   for (int y = 0; y + step_px < frame.depth_m.height; y += step_px) {
     for (int x = 0; x + step_px < frame.depth_m.width; x += step_px) {
-      if (normals_world_.size() >= kMaxNormals) return;
       const float here_m = frame.depth_m.at(x, y);
       const float right_m = frame.depth_m.at(x + step_px, y);
       const float below_m = frame.depth_m.at(x, y + step_px);
@@ -74,9 +73,18 @@ void UpEstimator::add(const Frame& frame, const Eigen::Isometry3d& T_world_camer
       const Eigen::Vector3f p = point(x, y);
       const Eigen::Vector3f towards_camera = (point(x, y + step_px) - p).cross(point(x + step_px, y) - p);
       const float length = towards_camera.norm();
-      if (length > 0) normals_world_.emplace_back(R * (towards_camera / length));
+      if (length > 0) keep(R * (towards_camera / length));
     }
   }
+}
+
+void UpEstimator::keep(const Eigen::Vector3f& normal_world) {
+  if (normals_seen_++ % keep_every_ != 0) return;
+  normals_world_.push_back(normal_world);
+  if (normals_world_.size() < kMaxNormals) return;
+  for (std::size_t i = 0; i < kMaxNormals / 2; ++i) normals_world_[i] = normals_world_[2 * i];
+  normals_world_.resize(kMaxNormals / 2);
+  keep_every_ *= 2;
 }
 
 UpDirection UpEstimator::estimate() const {

@@ -9,7 +9,7 @@
 namespace roomradar {
 
 enum class UpSource {
-  kNone,           ///< nothing usable was seen: the first camera's -y is taken
+  kNone,           ///< nothing usable was seen: the mean of the cameras' -y is taken
   kAccelerometer,  ///< gravity measured by the device
   kPlane,          ///< normal of the dominant plane that lies roughly level for a camera held upright
 };
@@ -34,7 +34,13 @@ class UpEstimator {
   [[nodiscard]] UpDirection estimate() const;
 
  private:
+  /// Keeps the first of each keep_every_ normals. Full, it gives up every second one and takes half as many
+  /// from then on, so that all frames keep an equal say, however many there are.
+  void keep(const Eigen::Vector3f& normal_world);
+
   std::vector<Eigen::Vector3f> normals_world_;
+  std::size_t normals_seen_ = 0;
+  std::size_t keep_every_ = 1;
   Eigen::Vector3d down_sum_world_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d camera_up_sum_world_ = Eigen::Vector3d::Zero();
   std::size_t frames_ = 0;

@@ -72,6 +72,16 @@ TEST(UpDirection, NothingSeenMeansTheCamerasOwnUp) {
   EXPECT_LT(angle_deg(estimator.estimate().up_world, {0, -1, 0}), 1e-6);
 }
 
+TEST(UpDirection, FramesOfALongScanHaveTheSameSayFromFirstToLast) {
+  const Frame frame = room_frame(20.0);
+  const Eigen::Isometry3d T_world_tilted(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ()));
+  UpEstimator estimator;
+  for (int i = 0; i < 100; ++i) estimator.add(frame, T_world_tilted);
+  for (int i = 0; i < 200; ++i) estimator.add(frame, Eigen::Isometry3d::Identity());
+  const double pitch = 20.0 * std::numbers::pi / 180.0;
+  EXPECT_LT(angle_deg(estimator.estimate().up_world, {0.0, -std::cos(pitch), -std::sin(pitch)}), 0.2);
+}
+
 TEST(LevelRotation, TakesUpToZWithoutMovingAnything) {
   for (const Eigen::Vector3d& up :
        {Eigen::Vector3d(0, -1, 0), Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1),
