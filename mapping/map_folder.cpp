@@ -15,6 +15,7 @@
 #include "mapping/mesh_file.hpp"
 #include "mapping/sha256.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/version.hpp"
 
 namespace roomradar {
 namespace {
@@ -115,8 +116,7 @@ std::string in_megabytes(std::uint64_t bytes) {
 
 std::string extents(const Eigen::AlignedBox3d& box) {
   if (box.isEmpty()) return "nothing";
-  const Eigen::Vector3d low = box.min();
-  const Eigen::Vector3d high = box.max();
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), "x %.2f..%.2f m, y %.2f..%.2f m, z %.2f..%.2f m", low.x(), high.x(),
                 low.y(), high.y(), low.z(), high.z());
@@ -142,7 +142,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
 
   MapInfo info = map.info;
   info.format_version = kMapFormatVersion;
-  info.tool_version = ROOMRADAR_VERSION;
+  info.tool_version = kVersion;
   info.resolution_m = map.octree.resolution_m();
   info.counts = map.octree.counts();
   info.vertices = map.mesh.vertices.size();
