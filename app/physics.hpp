@@ -74,10 +74,10 @@ struct [[nodiscard]] StepReport {
 /// motion is first swept by the radar, so nothing is tunnelled through however large the step is.
 ///
 /// @param dt_s   seconds since the last call, >= 0; 0 changes nothing
-/// @param query  the radar: asked once about what is below, once for each push direction, and 1 to max_slides
-///               times for each piece of motion
-/// @param push_directions_world  unit directions from the body to where moving surfaces are (push_directions);
-///               an overlap there moves the body away by the shortest of these ways; empty: nothing moves nearby
+/// @param query  the radar: asked once about what is below, once for each push direction, and for each piece
+///               of motion 1 to max_slides times
+/// @param push_directions_world  unit directions from the body to moving surfaces (push_directions): an
+///               overlap there moves the body away by the shortest of these ways; may be empty
 /// A body at rest is asked about along gravity only (and along push_directions), and does not move by noise.
 /// A body at rest with a velocity is woken by it. Steps longer than max_advance_s count as that.
 StepReport advance(Body& body, double dt_s, const TravelQuery& query, const PhysicsConfig& config,

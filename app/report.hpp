@@ -1,6 +1,7 @@
 // report.hpp: the JSON file that --report leaves: settings, times of each stage, memory, results.
 #pragma once
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>

@@ -33,7 +33,7 @@ struct DepthMeshScratch {
 /// @param moved_mask      same size, not 0 = in
 /// @param T_world_camera  pose of the depth camera
 /// @param mesh            overwritten, allocations kept; origin at the camera's position, world axes, unit
-///                        normals, counter-clockwise towards the camera, no colours; empty if nothing is masked
+///                        normals, counter-clockwise towards the camera, no colours; empty if nothing is in
 void mesh_masked(const DepthImage& depth_m, const MaskImage& moved_mask, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
                  DepthMeshScratch& scratch, Mesh& mesh);

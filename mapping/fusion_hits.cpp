@@ -3,6 +3,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "mapping/fusion.hpp"
 #include "mapping/morton.hpp"

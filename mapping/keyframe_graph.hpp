@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "mapping/align.hpp"

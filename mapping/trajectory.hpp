@@ -17,7 +17,7 @@ struct TimedPose {
 /// come back within 1e-9. Throws Error if the file cannot be written.
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory);
 
-/// Reads that form; lines starting with # are comments. frame_index is the line's number, from 0.
+/// Reads that form; lines starting with # are comments. frame_index counts the poses, from 0.
 /// Throws Error naming file and line where a line has not 8 finite numbers or no usable quaternion.
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& path);
 

@@ -1,6 +1,7 @@
 // movers.cpp: a hand with its arm, a rolling ball and a walking person over time, of grown solids.
 #include "app/sim/movers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 

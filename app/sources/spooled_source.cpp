@@ -1,6 +1,7 @@
 // spooled_source.cpp: images in a temporary folder, everything else in memory.
 #include "app/sources/spooled_source.hpp"
 
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
