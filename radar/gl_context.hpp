@@ -39,13 +39,9 @@ class GlContext {
   /// Lets go of the context on the calling thread.
   void release() const;
 
-  /// The EGL handles (EGLDisplay, EGLConfig, EGLContext), for code that shares objects with this context.
-  [[nodiscard]] void* egl_display() const { return display_; }
-  [[nodiscard]] void* egl_context() const { return context_; }
-
  private:
-  void* display_ = nullptr;
-  void* context_ = nullptr;
+  void* display_ = nullptr;  // EGLDisplay
+  void* context_ = nullptr;  // EGLContext
   std::string renderer_;
   bool is_software_ = true;
 };
