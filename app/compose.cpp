@@ -10,15 +10,6 @@
 namespace roomradar {
 namespace {
 
-/// The smallest rectangle that holds both; one without pixels does not count.
-PixelRect united(const PixelRect& a, const PixelRect& b) {
-  if (a.width <= 0 || a.height <= 0) return b;
-  if (b.width <= 0 || b.height <= 0) return a;
-  const int x = std::min(a.x, b.x);
-  const int y = std::min(a.y, b.y);
-  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
-}
-
 /// Pixels that may show the space in which the shadow is tabulated.
 PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
                           const Eigen::Isometry3d& T_world_camera) {
@@ -28,28 +19,9 @@ PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
   const Eigen::Vector3d low(shadow.x0_m, shadow.y0_m, shadow.bottom_m - shadow.extent_m);
   const Eigen::Vector3d size(shadow.columns * shadow.cell_m, shadow.rows * shadow.cell_m,
                              1.1 * shadow.extent_m);
-  Eigen::AlignedBox2d seen;
-  int behind = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d offset(corner & 1 ? size.x() : 0.0, corner & 2 ? size.y() : 0.0,
-                                 corner & 4 ? size.z() : 0.0);
-    const Eigen::Vector3d p_world = caster.T_world_object.translation() + low + offset;
-    const Eigen::Vector3d p_camera = T_world_camera.inverse() * p_world;
-    if (p_camera.z() < kNear_m)
-      ++behind;
-    else
-      seen.extend(project(camera, p_camera));
-  }
-  if (behind == 8) return {};
-  if (behind > 0) return {0, 0, camera.width_px, camera.height_px};
-  const auto pixel = [](double at_px, int size_px) {
-    return static_cast<int>(std::clamp(at_px, -1.0, static_cast<double>(size_px)));
-  };
-  const int x0 = pixel(std::floor(seen.min().x()), camera.width_px);
-  const int y0 = pixel(std::floor(seen.min().y()), camera.height_px);
-  const int x1 = pixel(std::ceil(seen.max().x()), camera.width_px);
-  const int y1 = pixel(std::ceil(seen.max().y()), camera.height_px);
-  return clamped({x0, y0, x1 - x0 + 1, y1 - y0 + 1}, camera.width_px, camera.height_px);
+  const Eigen::Isometry3d T_camera_shadow =
+      T_world_camera.inverse() * Eigen::Translation3d(caster.T_world_object.translation());
+  return pixels_of(Eigen::AlignedBox3d(low, low + size), camera, T_camera_shadow, kNear_m);
 }
 
 std::uint8_t to_byte(float value) {

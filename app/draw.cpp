@@ -75,14 +75,6 @@ void main() {
 }
 )";
 
-PixelRect united(const PixelRect& a, const PixelRect& b) {
-  if (a.width <= 0 || a.height <= 0) return b;
-  if (b.width <= 0 || b.height <= 0) return a;
-  const int x = std::min(a.x, b.x);
-  const int y = std::min(a.y, b.y);
-  return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
-}
-
 }  // namespace
 
 struct ObjectDrawer::State {

@@ -25,7 +25,8 @@ bool is_finite(const Body& body) {
 /// Whether the radar's answer can be built on. A normal that is missing or does not face the object is
 /// replaced by the direction back, in place.
 bool make_usable(Contact& contact, const Vec3& direction) {
-  if (contact.status == ContactStatus::kInvalidInput) return false;
+  if (contact.status == ContactStatus::kInvalidInput || contact.status == ContactStatus::kNoAnswer)
+    return false;
   if (!contact) return true;
   if (!std::isfinite(contact.travel_m)) return false;
   const double length = contact.normal_world.norm();

@@ -7,6 +7,7 @@ namespace roomradar {
 enum class ContactStatus {
   kInvalidInput,  ///< direction zero or not finite, distance not finite or <= 0, object empty, a pose not
                   ///< finite
+  kNoAnswer,      ///< the renderer failed (out of memory, context lost): nothing is known
   kNoTarget,      ///< nothing in the way within the distance
   kContact,       ///< touches after travel_m >= 0
   kOverlap,       ///< a surface that opposes the motion is inside the object already; travel_m < 0

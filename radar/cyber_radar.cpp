@@ -11,6 +11,7 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "radar/draw_positions.hpp"
 #include "radar/gl_program.hpp"
 #include "radar/nearest_triangle.hpp"
 
@@ -18,12 +19,6 @@ namespace roomradar {
 namespace {
 
 constexpr double kMaxDistance_m = 1e4;  // beyond it a step of 32 bit depth is 0.6 mm
-
-constexpr const char* kVertexShader = R"(#version 450 core
-layout(location = 0) in vec3 p_local;
-layout(location = 0) uniform mat4 clip_from_local;
-void main() { gl_Position = clip_from_local * vec4(p_local, 1.0); }
-)";
 
 constexpr const char* kMaskShader = R"(#version 450 core
 void main() {}
@@ -56,12 +51,6 @@ void main() {
 }
 )";
 
-void set_clip(const MeshInstance& instance, const Eigen::Matrix4d& clip) {
-  const Eigen::Matrix4f clip_float = clip.cast<float>();
-  glUniformMatrix4fv(0, 1, GL_FALSE, clip_float.data());
-  instance.mesh->draw(clip);
-}
-
 }  // namespace
 
 void require_valid(const RadarConfig& config) {
@@ -82,9 +71,9 @@ CyberRadar::CyberRadar(GlContext& context, const RadarConfig& config) : config_(
     throw Error("radar.resolution_px = " + std::to_string(config.resolution_px) + ": " + context.renderer() +
                 " draws at most " + std::to_string(max_size_px));
   }
-  mask_program_ = make_program("radar mask", kVertexShader, kMaskShader);
-  range_program_ = make_program("radar range", kVertexShader, kRangeShader);
-  entry_program_ = make_program("radar entry", kVertexShader, kEntryShader);
+  mask_program_ = make_program("radar mask", kPositionShader, kMaskShader);
+  range_program_ = make_program("radar range", kPositionShader, kRangeShader);
+  entry_program_ = make_program("radar entry", kPositionShader, kEntryShader);
   glCreateTextures(GL_TEXTURE_2D, kLayerCount, textures_.data());
   glCreateFramebuffers(kLayerCount, framebuffers_.data());
   for (std::size_t layer = 0; layer < kLayerCount; ++layer) {
@@ -140,15 +129,19 @@ Contact CyberRadar::query(const MeshInstance& object, const Eigen::Vector3d& dir
   draw_mask(object);
   begin_layer(kEntry, entry_program_);  // cleared: as if the object were solid to its rear
   draw_range(scene);
-  double least_m = read_and_compare();
-  if (least_m <
-      -touching_m()) {  // an overlap, or only something in a hollow of the object? Look again, closer.
+  std::optional<double> least_m = read_and_compare();
+  // An overlap, or only something in a hollow of the object? Look again, closer.
+  if (least_m && *least_m < -touching_m()) {
     draw_entry(object);
     draw_range(scene);
     least_m = read_and_compare();
   }
-  if (!(least_m <= distance_m + touching_m())) return nothing;
-  return contact_at_least_gap(least_m, scene);
+  if (!least_m) {
+    nothing.status = ContactStatus::kNoAnswer;
+    return nothing;
+  }
+  if (!(*least_m <= distance_m + touching_m())) return nothing;
+  return contact_at_least_gap(*least_m, scene);
 }
 
 double CyberRadar::touching_m() const { return 1e-5 + 1e-6 * volume_.depth_m; }
@@ -171,14 +164,14 @@ void CyberRadar::begin_layer(Layer layer, unsigned program) const {
 
 void CyberRadar::draw_mask(const MeshInstance& object) const {
   begin_layer(kMask, mask_program_);
-  set_clip(object, clip_from_local(object, reflected_clip_from_world(volume_)));
+  draw_positions(object, reflected_clip_from_world(volume_));
 }
 
 void CyberRadar::draw_entry(const MeshInstance& object) const {
   begin_layer(kEntry, entry_program_);
   glBindTextureUnit(0, textures_[kMask]);
   glUniform1f(1, static_cast<float>(touching_m() / volume_.depth_m));
-  set_clip(object, clip_from_local(object, reflected_clip_from_world(volume_)));
+  draw_positions(object, reflected_clip_from_world(volume_));
 }
 
 void CyberRadar::draw_range(std::span<const SceneMesh> scene) const {
@@ -190,12 +183,13 @@ void CyberRadar::draw_range(std::span<const SceneMesh> scene) const {
   glUniform1f(2, static_cast<float>(tolerance_m / volume_.depth_m));
   const Eigen::Matrix4d clip = clip_from_world(volume_);
   for (const SceneMesh& s : scene) {
-    if (s.instance.mesh != nullptr) set_clip(s.instance, clip_from_local(s.instance, clip));
+    if (s.instance.mesh != nullptr) draw_positions(s.instance, clip);
   }
 }
 
-/// Reads M and R, fills the images, and returns the least L, infinite where L is defined nowhere.
-double CyberRadar::read_and_compare() {
+/// Reads M and R, fills the images, and returns the least L, infinite where L is defined nowhere; or nothing
+/// if the renderer does not hand them out.
+std::optional<double> CyberRadar::read_and_compare() {
   const std::size_t count = mask_m_.pixels.size();
   glBindBuffer(GL_PIXEL_PACK_BUFFER, readback_buffer_);
   for (const Layer layer : {kMask, kRange}) {
@@ -209,8 +203,7 @@ double CyberRadar::read_and_compare() {
   const auto size_bytes = static_cast<GLsizeiptr>(2 * count * sizeof(float));
   const auto* mask01 =
       static_cast<const float*>(glMapNamedBufferRange(readback_buffer_, 0, size_bytes, GL_MAP_READ_BIT));
-  double least_m = std::numeric_limits<double>::infinity();
-  if (mask01 == nullptr) return least_m;
+  if (mask01 == nullptr) return std::nullopt;
   const float* range01 = mask01 + count;
   const auto depth_m = static_cast<float>(volume_.depth_m);
   constexpr float kUndefined = std::numeric_limits<float>::quiet_NaN();

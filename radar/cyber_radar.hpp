@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
 #include <span>
 
 #include "mapping/types/image.hpp"
@@ -100,7 +101,7 @@ class CyberRadar {
   void draw_mask(const MeshInstance& object) const;
   void draw_entry(const MeshInstance& object) const;
   void draw_range(std::span<const SceneMesh> scene) const;
-  double read_and_compare();
+  std::optional<double> read_and_compare();
   [[nodiscard]] Contact contact_at_least_gap(double least_m, std::span<const SceneMesh> scene) const;
 };
 

@@ -9,16 +9,12 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "radar/draw_positions.hpp"
 #include "radar/gl_program.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr const char* kVertexShader = R"(#version 450 core
-layout(location = 0) in vec3 p_local;
-layout(location = 0) uniform mat4 clip_from_local;
-void main() { gl_Position = clip_from_local * vec4(p_local, 1.0); }
-)";
 constexpr const char* kFragmentShader = R"(#version 450 core
 void main() {}
 )";
@@ -40,7 +36,7 @@ void require_valid(const DepthPassConfig& config) {
 
 DepthPass::DepthPass(GlContext& /*context*/, const DepthPassConfig& config) : config_(config) {
   require_valid(config);
-  program_ = make_program("depth pass", kVertexShader, kFragmentShader);
+  program_ = make_program("depth pass", kPositionShader, kFragmentShader);
   glCreateFramebuffers(1, &framebuffer_);
   glNamedFramebufferDrawBuffer(framebuffer_, GL_NONE);
   glNamedFramebufferReadBuffer(framebuffer_, GL_NONE);
@@ -99,11 +95,7 @@ std::size_t DepthPass::render(std::span<const MeshInstance> scene, const Intrins
   const Eigen::Matrix4d clip_from_world =
       clip_from_camera(camera, config_.near_m, inside) * T_world_camera.inverse().matrix();
   for (const MeshInstance& instance : scene) {
-    if (instance.mesh == nullptr) continue;
-    const Eigen::Matrix4d clip = clip_from_local(instance, clip_from_world);
-    const Eigen::Matrix4f clip_float = clip.cast<float>();
-    glUniformMatrix4fv(0, 1, GL_FALSE, clip_float.data());
-    drawn += instance.mesh->draw(clip);
+    if (instance.mesh != nullptr) drawn += draw_positions(instance, clip_from_world);
   }
 
   glPixelStorei(GL_PACK_ROW_LENGTH, depth_m.width);
@@ -121,32 +113,8 @@ std::size_t DepthPass::render(std::span<const MeshInstance> scene, const Intrins
 
 PixelRect pixels_of(const MeshInstance& instance, const Intrinsics& camera,
                     const Eigen::Isometry3d& T_world_camera, double near_m) {
-  const PixelRect whole{0, 0, camera.width_px, camera.height_px};
-  if (instance.mesh == nullptr || instance.mesh->bounds().isEmpty()) return {};
-  const Eigen::AlignedBox3d bounds = instance.mesh->bounds();
-  const Eigen::Isometry3d T_camera_mesh = T_world_camera.inverse() * instance.T_world_mesh;
-  Eigen::AlignedBox2d seen;
-  int behind = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d p_camera =
-        T_camera_mesh * bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
-    if (!(p_camera.z() > near_m)) {
-      ++behind;
-    } else {
-      seen.extend(project(camera, p_camera));
-    }
-  }
-  if (behind == 8) return {};
-  if (behind > 0) return whole;
-  // Pixels whose centres may be covered; one to spare for the renderer's snapping of vertices.
-  const auto whole_px = [](double v_px, double limit_px) {
-    return static_cast<int>(std::clamp(v_px, -1.0, limit_px + 1.0));
-  };
-  const int x0 = whole_px(std::floor(seen.min().x()), camera.width_px);
-  const int y0 = whole_px(std::floor(seen.min().y()), camera.height_px);
-  const int x1 = whole_px(std::ceil(seen.max().x()), camera.width_px);
-  const int y1 = whole_px(std::ceil(seen.max().y()), camera.height_px);
-  return clamped({x0, y0, x1 - x0 + 1, y1 - y0 + 1}, camera.width_px, camera.height_px);
+  if (instance.mesh == nullptr) return {};
+  return pixels_of(instance.mesh->bounds(), camera, T_world_camera.inverse() * instance.T_world_mesh, near_m);
 }
 
 }  // namespace roomradar

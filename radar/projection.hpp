@@ -1,6 +1,6 @@
-// projection.hpp: the pinhole camera as a clip-space matrix, and depth-buffer values as metres.
+// projection.hpp: the pinhole camera as a clip-space matrix, pixels of boxes, depth-buffer values as metres.
 #pragma once
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "mapping/types/intrinsics.hpp"
 
@@ -14,6 +14,14 @@ struct PixelRect {
 
 /// The part of `rect` that lies within an image of this size; width or height 0 where nothing does.
 PixelRect clamped(const PixelRect& rect, int width_px, int height_px);
+
+/// The smallest rectangle that holds both; one without pixels does not count.
+PixelRect united(const PixelRect& a, const PixelRect& b);
+
+/// The smallest rectangle of whole pixels that holds a box as the camera sees it, within its image; the whole
+/// image where the box reaches behind near_m; width and height 0 where it is empty or out of sight.
+PixelRect pixels_of(const Eigen::AlignedBox3d& box, const Intrinsics& camera,
+                    const Eigen::Isometry3d& T_camera_box, double near_m);
 
 /// Clip space (x, y in -w..w, z in 0..w) from camera points (x right, y down, z forward), for a viewport of
 /// the size of `rect` that shows those pixels of the camera's image. Pixel (0, 0) of the image is centred at
