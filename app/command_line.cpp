@@ -45,8 +45,8 @@ void add_report_option(CLI::App& app, std::string& report) {
 
 /// Answers a word from a table; CLI11's own transformer would list the values as numbers.
 template <typename Value>
-void add_choice(CLI::App& app, const std::string& name, Value& value, const std::map<std::string, Value>& choices,
-                const std::string& help) {
+void add_choice(CLI::App& app, const std::string& name, Value& value,
+                const std::map<std::string, Value>& choices, const std::string& help) {
   std::string type;
   for (const auto& [word, meaning] : choices) type += (type.empty() ? "" : "|") + word;
   app.add_option_function<std::string>(
@@ -64,7 +64,8 @@ CLI::Validator resolution_rule() {
   return CLI::Validator(
       [](const std::string& text) -> std::string {
         double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.001 && value <= 1.0) return {};
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.001 && value <= 1.0)
+          return {};
         return "must be within 0.001 and 1 (metres), not " + text;
       },
       "", "resolution");
@@ -91,7 +92,8 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
   sub->add_option("--resolution", command.resolution_m, "edge of the smallest cells, metres (0.01)")
       ->check(resolution_rule())
       ->type_name("M");
-  add_choice(*sub, "--poses", command.poses, kPoses, "find the camera's poses (tracked), or take the recording's own");
+  add_choice(*sub, "--poses", command.poses, kPoses,
+             "find the camera's poses (tracked), or take the recording's own");
   add_frames_option(*sub, command.frames);
   add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });
@@ -104,14 +106,19 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   add_choice(*sub, "--poses", command.poses, kPoses,
              "find the camera in the map (tracked), or take the recording's own poses");
   add_frames_option(*sub, command.frames);
-  sub->add_option("--object", command.object, "virtual object: teapot (built in), or a mesh file")->type_name("MESH");
-  sub->add_option("--script", command.script, "events file; without it the object is dropped over a surface in view")
+  sub->add_option("--object", command.object, "virtual object: teapot (built in), or a mesh file")
+      ->type_name("MESH");
+  sub->add_option("--script", command.script,
+                  "events file; without it the object is dropped over a surface in view")
       ->type_name("FILE");
   add_choice(*sub, "--surfaces", command.surfaces, kSurfaces,
              "what can be touched: this frame's pixels, the same with skirts across depth edges,\n"
              "or the map and what moved (map)");
-  sub->add_option("--video", command.video, "write the composed pictures as .mp4, .avi or .mkv")->type_name("FILE");
-  sub->add_option("--pictures", command.pictures, "write composed pictures as PNG into this folder")->type_name("DIR");
+  sub->add_option("--video", command.video, "write the composed pictures as .mp4, .avi or .mkv")
+      ->type_name("FILE");
+  sub->add_option("--pictures", command.pictures,
+                  "write composed pictures and masks of what moved as PNG into this folder")
+      ->type_name("DIR");
   sub->add_option("--pictures-every", command.pictures_every, "one picture every N frames (10)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
@@ -125,12 +132,15 @@ void add_map(CLI::App& app, Arguments& arguments, std::function<int()>& work) {
   CLI::App* info = sub->add_subcommand("info", "what is in the map");
   info->add_option("DIR", arguments.map_info.map, "the map")->required();
   info->callback([&] { work = [&arguments] { return run(arguments.map_info); }; });
-  CLI::App* verify = sub->add_subcommand("verify", "check every file against its checksum; exit status 1 if one is off");
+  CLI::App* verify =
+      sub->add_subcommand("verify", "check every file against its checksum; exit status 1 if one is off");
   verify->add_option("DIR", arguments.map_verify.map, "the map")->required();
   verify->callback([&] { work = [&arguments] { return run(arguments.map_verify); }; });
   CLI::App* to_file = sub->add_subcommand("export", "write octree or mesh for other programs");
   to_file->add_option("DIR", arguments.map_export.map, "the map")->required();
-  to_file->add_option("FILE", arguments.map_export.path, "by extension: .ot .bt (octree), .ply .obj .stl .glb (mesh)")
+  to_file
+      ->add_option("FILE", arguments.map_export.path,
+                   "by extension: .ot .bt (octree), .ply .obj .stl .glb (mesh)")
       ->required();
   to_file->callback([&] { work = [&arguments] { return run(arguments.map_export); }; });
 }
@@ -143,7 +153,8 @@ void add_simulate(CLI::App& app, SimulateCommand& command, std::function<int()>&
   sub->add_option("--frames", command.frames, "how many (300)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
-  sub->add_option("--path", command.path, "scan (round the room) or view (looks at its focus)")->type_name("KIND");
+  sub->add_option("--path", command.path, "scan (round the room) or view (looks at its focus)")
+      ->type_name("KIND");
   sub->add_option("--moving", command.moving, "what moves: hand, ball, person; several with commas")
       ->type_name("LIST");
   add_choice(*sub, "--format", command.format, kFormats, "of the recording (tum)");
@@ -161,7 +172,8 @@ void add_record(CLI::App& app, RecordCommand& command, std::function<int()>& wor
 
 void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand(
-      "fallthrough", "drop and push objects behind occluders under each surface policy; simulated truth judges");
+      "fallthrough",
+      "drop and push objects behind occluders under each surface policy; simulated truth judges");
   sub->add_option("--scenarios", command.scenarios, "how many (200)")
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("N");
@@ -176,9 +188,10 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
   // The commands outlive this function inside `work`.
   const auto arguments = std::make_shared<Arguments>();
   std::function<int()> work;
-  CLI::App app("roomradar: prescan a room once with a Kinect, then run augmented reality in the saved map.\n"
-               "Exit status: 0 done, 1 the work failed (stderr says what and what to do), 2 wrong usage.",
-               "roomradar");
+  CLI::App app(
+      "roomradar: prescan a room once with a Kinect, then run augmented reality in the saved map.\n"
+      "Exit status: 0 done, 1 the work failed (stderr says what and what to do), 2 wrong usage.",
+      "roomradar");
   app.set_version_flag("--version", kVersion);
   app.require_subcommand(1);
   app.get_formatter()->column_width(32);

@@ -68,8 +68,9 @@ struct FallthroughCommand {
   std::string report;
 };
 
-/// Each does the whole work of its command, prints results on stdout and progress on stderr, and throws Error where the
-/// work fails. The return value is the exit status: 0, or 1 where the work was done and its answer is bad news.
+/// Each does the whole work of its command, prints results on stdout and progress on stderr, and throws Error
+/// where the work fails. The return value is the exit status: 0, or 1 where the work was done and its answer
+/// is bad news.
 int run(const PrescanCommand& command);
 int run(const RunCommand& command);
 int run(const MapInfoCommand& command);

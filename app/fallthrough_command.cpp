@@ -1,4 +1,5 @@
-// fallthrough_command.cpp: roomradar fallthrough: the same drops and pushes behind occluders under each surface policy.
+// fallthrough_command.cpp: roomradar fallthrough: the same drops and pushes behind occluders under each
+// surface policy.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -18,15 +19,15 @@ namespace {
 
 constexpr double kResolution_m = 0.01;
 constexpr double kFrameTime_s = 1.0 / 30.0;
-constexpr int kPrescanEvery = 5;  // one frame in five of the walk round the room: 8 cm or 7 degrees apart at most
+constexpr int kPrescanEvery =
+    5;  // one frame in five of the walk round the room: 8 cm or 7 degrees apart at most
 
 struct NamedPolicy {
   const char* name;
   SurfacePolicy policy;
 };
-constexpr std::array<NamedPolicy, 3> kPolicies = {{{"holes", SurfacePolicy::kHoles},
-                                                   {"skirt", SurfacePolicy::kSkirt},
-                                                   {"map", SurfacePolicy::kMap}}};
+constexpr std::array<NamedPolicy, 3> kPolicies = {
+    {{"holes", SurfacePolicy::kHoles}, {"skirt", SurfacePolicy::kSkirt}, {"map", SurfacePolicy::kMap}}};
 
 struct PolicyTotals {
   int passed = 0;
@@ -100,7 +101,8 @@ int run(const FallthroughCommand& command) {
   Report report;
   report.command = "fallthrough";
   report.source = "simulated rooms";
-  report.settings = {{"scenarios", command.scenarios}, {"seed", command.seed}, {"resolution_m", kResolution_m}};
+  report.settings = {
+      {"scenarios", command.scenarios}, {"seed", command.seed}, {"resolution_m", kResolution_m}};
 
   GlContext context;
   report.renderer = context.renderer();
@@ -144,9 +146,10 @@ int run(const FallthroughCommand& command) {
     }
   }
 
-  std::printf("%d scenarios, seed %llu, %s\n", command.scenarios, static_cast<unsigned long long>(command.seed),
-              context.renderer().c_str());
-  std::printf("%-8s %8s %12s %22s %16s\n", "surfaces", "passed", "false stops", "contact error, median", "frame, median");
+  std::printf("%d scenarios, seed %llu, %s\n", command.scenarios,
+              static_cast<unsigned long long>(command.seed), context.renderer().c_str());
+  std::printf("%-8s %8s %12s %22s %16s\n", "surfaces", "passed", "false stops", "contact error, median",
+              "frame, median");
   for (std::size_t i = 0; i < kPolicies.size(); ++i) {
     const PolicyTotals& t = totals[i];
     std::printf("%-8s %8d %12d %19.1f mm %13.1f ms\n", kPolicies[i].name, t.passed, t.false_stops,

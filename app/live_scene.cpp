@@ -4,8 +4,8 @@
 namespace roomradar {
 namespace {
 
-/// Whether seen from one pose and the other the same pixels show the same surfaces: at 585 px of focal length 0.2 mrad
-/// are a tenth of a pixel, and so are 0.2 mm at 1 m.
+/// Whether seen from one pose and the other the same pixels show the same surfaces: at 585 px of focal length
+/// 0.2 mrad are a tenth of a pixel, and so are 0.2 mm at 1 m.
 bool is_same_view(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b) {
   const Eigen::Isometry3d T_a_b = T_world_a.inverse() * T_world_b;
   return T_a_b.translation().norm() < 2e-4 && Eigen::AngleAxisd(T_a_b.linear()).angle() < 2e-4;
@@ -20,7 +20,8 @@ LiveScene::LiveScene(GlContext& context, const GpuMesh& room, const LiveSceneCon
 }
 
 std::size_t LiveScene::render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) {
-  if (expected_camera_ == camera && is_same_view(T_world_expected_, T_world_camera)) return expected_triangles_;
+  if (expected_camera_ == camera && is_same_view(T_world_expected_, T_world_camera))
+    return expected_triangles_;
   const MeshInstance room{&room_, Eigen::Isometry3d::Identity()};
   expected_triangles_ = depth_pass_.render({&room, 1}, camera, T_world_camera, expected_depth_m_);
   expected_camera_ = camera;
@@ -38,8 +39,8 @@ void LiveScene::mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_
     mesh_masked(frame.depth_m, moved_mask_, frame.depth_camera, T_world_camera, config_.mesh, mesh_scratch_,
                 moved_mesh_world_);
   } else {
-    mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh, mesh_scratch_,
-               moved_mesh_world_);
+    mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh,
+               mesh_scratch_, moved_mesh_world_);
   }
   moved_mesh_.upload(moved_mesh_world_, MeshUsage::kStreamed);
 }

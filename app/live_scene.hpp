@@ -1,4 +1,5 @@
-// live_scene.hpp: what a virtual object can touch in a frame: the saved room's surface, and what the camera sees moved.
+// live_scene.hpp: what a virtual object can touch in a frame: the saved room's surface, and what the camera
+// sees moved.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -25,8 +26,8 @@ struct LiveSceneConfig {
 /// Made anew from each frame: render_expected, find_moved, mesh_moved, in this order. Not thread safe.
 class LiveScene {
  public:
-  /// `room` is the static mesh in the world; it and the context must outlive this. Throws Error if the config is out of
-  /// its rules.
+  /// `room` is the static mesh in the world; it and the context must outlive this. Throws Error if the config
+  /// is out of its rules.
   LiveScene(GlContext& context, const GpuMesh& room, const LiveSceneConfig& config);
 
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.

@@ -8,9 +8,10 @@ bool is_located(const Tracking& tracking) {
   return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
 }
 
-/// Aligns the live view with the model as seen from the guess; twice where the guess was far off, for then the model
-/// showed other surfaces than the camera sees.
-Tracking align_with_model(Locator& locator, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera_guess,
+/// Aligns the live view with the model as seen from the guess; twice where the guess was far off, for then
+/// the model showed other surfaces than the camera sees.
+Tracking align_with_model(Locator& locator, const Intrinsics& camera,
+                          const Eigen::Isometry3d& T_world_camera_guess,
                           const ExpectedDepth& expected_depth) {
   constexpr double kFarOff_m = 0.05;
   constexpr double kFarOff_rad = 0.05;
@@ -18,12 +19,13 @@ Tracking align_with_model(Locator& locator, const Intrinsics& camera, const Eige
   tracking.T_world_camera = T_world_camera_guess;
   for (int round = 0; round < 2; ++round) {
     const Eigen::Isometry3d T_world_view = tracking.T_world_camera;
-    make_pyramid(expected_depth(T_world_view), camera, locator.view, locator.expected_pyramid);
-    make_reference(locator.expected_pyramid, T_world_view, locator.view, locator.expected);
+    make_pyramid(expected_depth(T_world_view), camera, locator.expected_view, locator.expected_pyramid);
+    make_reference(locator.expected_pyramid, T_world_view, locator.expected_view, locator.expected);
     tracking = align(locator.live, locator.expected, T_world_view, locator.align);
     const Eigen::Isometry3d T_view_camera = T_world_view.inverse() * tracking.T_world_camera;
     const double turned_rad = Eigen::AngleAxisd(T_view_camera.linear()).angle();
-    if (!is_located(tracking) || (T_view_camera.translation().norm() < kFarOff_m && turned_rad < kFarOff_rad)) break;
+    if (!is_located(tracking) || (T_view_camera.translation().norm() < kFarOff_m && turned_rad < kFarOff_rad))
+      break;
   }
   return tracking;
 }
@@ -32,7 +34,7 @@ Tracking align_with_model(Locator& locator, const Intrinsics& camera, const Eige
 
 Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
                 const ExpectedDepth& expected_depth) {
-  make_pyramid(frame, locator.view, locator.live_pyramid);
+  make_pyramid(frame, locator.live_view, locator.live_pyramid);
   make_live(locator.live_pyramid, locator.live, moved_mask);
 
   Tracking tracking;

@@ -1,4 +1,5 @@
-// map_command.cpp: roomradar map info|verify|export: look at a saved map, check it, hand it to other programs.
+// map_command.cpp: roomradar map info|verify|export: look at a saved map, check it, hand it to other
+// programs.
 #include <cstdio>
 
 #include "app/commands.hpp"

@@ -10,8 +10,9 @@
 
 namespace roomradar {
 
-/// `kinect:N`, `sim:ROOM[?key=value&...]`, or a folder, recognised by what is in it; only `frames` of it where given.
-/// Throws Error saying what SOURCE can be if it is none of these, and whatever opening it throws.
+/// `kinect:N`, `sim:ROOM[?key=value&...]`, or a folder, recognised by what is in it; only `frames` of it
+/// where given. Throws Error saying what SOURCE can be if it is none of these, and whatever opening it
+/// throws.
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const SourceOptions& options = {});
 

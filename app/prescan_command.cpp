@@ -46,9 +46,13 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned) 
               static_cast<long long>(counts.frames_fused), scanned.map.mesh.triangles.size(),
               scanned.map.info.up_source.c_str());
   if (counts.frames_skipped > 0) {
-    std::printf("%lld frames could not be read; the last fault: %s\n", static_cast<long long>(counts.frames_skipped),
-                counts.last_fault.c_str());
+    std::printf("%lld frames could not be read; the last fault: %s\n",
+                static_cast<long long>(counts.frames_skipped), counts.last_fault.c_str());
   }
+  if (scanned.map.info.up_source == to_string(UpSource::kNone))
+    std::printf(
+        "which way is up is not known: no gravity was recorded and no level surface stood out; the first "
+        "camera's upright is taken\n");
   if (counts.against_recorded)
     std::printf("trajectory against the recorded poses: RMSE %.1f mm, at most %.1f mm\n",
                 1e3 * counts.against_recorded->rmse_m, 1e3 * counts.against_recorded->max_m);

@@ -44,7 +44,8 @@ nlohmann::json to_json(const Report& report) {
 void write_report(const Report& report, const std::filesystem::path& path) {
   if (path.empty()) return;
   std::ofstream file(path);
-  file << to_json(report).dump(2) << '\n';
+  // A file's name need not be UTF-8, which JSON has to be.
+  file << to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
   file.flush();
   if (!file)
     throw Error(path.string() + ": the report cannot be written; does its folder exist, and is there room?");

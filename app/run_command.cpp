@@ -55,7 +55,9 @@ struct RunTotals {
     static_triangles += static_cast<double>(frame.static_triangles_drawn);
     deepest_penetration_m = std::max(deepest_penetration_m, frame.deepest_penetration_m);
   }
-  [[nodiscard]] double per_frame(double sum) const { return located > 0 ? sum / static_cast<double>(located) : 0.0; }
+  [[nodiscard]] double per_frame(double sum) const {
+    return located > 0 ? sum / static_cast<double>(located) : 0.0;
+  }
 };
 
 nlohmann::json results_of(const RunTotals& totals, const Session& session) {
@@ -83,9 +85,10 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
 }
 
 void print_summary(const RunTotals& totals, const Session& session) {
-  std::printf("located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
-              static_cast<long long>(totals.located), static_cast<long long>(totals.read),
-              100.0 * totals.per_frame(totals.moved_fraction), totals.per_frame(totals.dynamic_triangles));
+  std::printf(
+      "located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
+      static_cast<long long>(totals.located), static_cast<long long>(totals.read),
+      100.0 * totals.per_frame(totals.moved_fraction), totals.per_frame(totals.dynamic_triangles));
   for (const auto& object : session.objects()) {
     const Eigen::Vector3d p = object->body.T_world_object.translation();
     if (!object->in_room)
@@ -96,11 +99,24 @@ void print_summary(const RunTotals& totals, const Session& session) {
   }
 }
 
+/// The composed picture, and what moved as the depth camera saw it.
+void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& folder,
+                    std::int64_t frame_index) {
+  char number[24];
+  std::snprintf(number, sizeof number, "%06lld", static_cast<long long>(frame_index));
+  if (!session.picture().empty()) write_png(session.picture(), folder / (std::string(number) + ".png"));
+  if (result.status == FrameStatus::kDone)
+    write_png(session.scene().moved_mask(), folder / (std::string(number) + ".moved.png"));
+}
+
 std::string policy_name(SurfacePolicy policy) {
   switch (policy) {
-    case SurfacePolicy::kHoles: return "holes";
-    case SurfacePolicy::kSkirt: return "skirt";
-    case SurfacePolicy::kMap: break;
+    case SurfacePolicy::kHoles:
+      return "holes";
+    case SurfacePolicy::kSkirt:
+      return "skirt";
+    case SurfacePolicy::kMap:
+      break;
   }
   return "map";
 }
@@ -165,11 +181,8 @@ int run(const RunCommand& command) {
       const FrameResult result = session.step(frame, report.times);
       totals.add(result);
       if (video) video->write(session.picture());
-      if (!command.pictures.empty() && run_frame % command.pictures_every == 0) {
-        char name[32];
-        std::snprintf(name, sizeof name, "%06lld.png", static_cast<long long>(frame.index));
-        write_png(session.picture(), std::filesystem::path(command.pictures) / name);
-      }
+      if (!command.pictures.empty() && run_frame % command.pictures_every == 0)
+        write_pictures(session, result, std::filesystem::path(command.pictures), frame.index);
       progress.step(result.status == FrameStatus::kDone ? "located" : "not located");
     }
   }

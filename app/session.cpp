@@ -91,16 +91,18 @@ int Session::move_objects(double dt_s, StageTimes& times) {
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
     const std::vector<SceneMesh> scene = scene_without(object.get());
-    const TravelQuery query = [&](const Eigen::Isometry3d& T_world_object, const Eigen::Vector3d& direction_world,
-                                  double distance_m) {
+    const TravelQuery query = [&](const Eigen::Isometry3d& T_world_object,
+                                  const Eigen::Vector3d& direction_world, double distance_m) {
       const auto start = std::chrono::steady_clock::now();
-      const Contact contact = radar_.query({&object->shape, T_world_object}, direction_world, distance_m, scene);
+      const Contact contact =
+          radar_.query({&object->shape, T_world_object}, direction_world, distance_m, scene);
       radar_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
       return contact;
     };
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
     if (config_.scene.surfaces == SurfacePolicy::kMap)
-      push = push_directions(scene_.moved_mesh_world(), object->body.T_world_object * object->middle, kNearbyReach_m);
+      push = push_directions(scene_.moved_mesh_world(), object->body.T_world_object * object->middle,
+                             kNearbyReach_m);
     contacts += advance(object->body, dt_s, query, config_.physics, push.span()).contacts;
   }
   times.add_ms("radar", radar_ms);
@@ -148,8 +150,8 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
 }
 
 VirtualObject& Session::object_named(const std::string& name) {
-  const auto found =
-      std::find_if(objects_.begin(), objects_.end(), [&](const auto& object) { return object->body.name == name; });
+  const auto found = std::find_if(objects_.begin(), objects_.end(),
+                                  [&](const auto& object) { return object->body.name == name; });
   if (found == objects_.end()) throw Error("script: there is no object named " + name);
   return **found;
 }
@@ -163,11 +165,13 @@ void Session::apply(const ScriptEvent& event) {
   };
   switch (event.action) {
     case Action::kAdd:
-      objects_.push_back(std::make_unique<VirtualObject>(context_, event.name,
-                                                         object_mesh(event.mesh, event.size_m.value_or(0.0))));
+      objects_.push_back(std::make_unique<VirtualObject>(
+          context_, event.name, object_mesh(event.mesh, event.size_m.value_or(0.0))));
       break;
     case Action::kPlace:
-    case Action::kThrow: put(object_named(event.name), *event.position_world); break;
+    case Action::kThrow:
+      put(object_named(event.name), *event.position_world);
+      break;
     case Action::kDrop: {
       VirtualObject& object = object_named(event.name);
       if (!event.position_world) {
@@ -177,16 +181,20 @@ void Session::apply(const ScriptEvent& event) {
       put(object, *event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - object.lowest_m));
       break;
     }
-    case Action::kRemove: object_named(event.name).in_room = false; break;
-    case Action::kQuit: break;
+    case Action::kRemove:
+      object_named(event.name).in_room = false;
+      break;
+    case Action::kQuit:
+      break;
   }
 }
 
 void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   std::vector<ScriptEvent> still_waiting;
   for (ScriptEvent& event : waiting_) {
-    const std::optional<Support> support = find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
-                                                        object_named(event.name).footprint_radius_m);
+    const std::optional<Support> support =
+        find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
+                     object_named(event.name).footprint_radius_m);
     if (!support) {
       still_waiting.push_back(event);
       continue;

@@ -27,8 +27,9 @@ struct SessionConfig {
   RadarConfig radar;
   PhysicsConfig physics;
   ComposeConfig picture;
-  bool make_picture = true;        ///< false: no drawing, only what moves the objects
-  bool measure_penetration = false;  ///< a finer radar looks after each frame how deep objects stand in surfaces
+  bool make_picture = true;  ///< false: no drawing, only what moves the objects
+  bool measure_penetration =
+      false;  ///< a finer radar looks after each frame how deep objects stand in surfaces
 };
 
 enum class FrameStatus {
@@ -47,17 +48,19 @@ struct FrameResult {
   double deepest_penetration_m = 0.0;  ///< >= 0, where it is measured
 };
 
-/// Everything a run keeps from frame to frame. The room is read only. Not thread safe; GL on the thread that made it.
+/// Everything a run keeps from frame to frame. The room is read only. Not thread safe; GL on the thread that
+/// made it.
 class Session {
  public:
   /// `map` must outlive the session. Throws Error if there is no GL, or a config is out of its rules.
   Session(const SavedMap& map, const SessionConfig& config);
 
-  /// One frame, from sensor to picture. Stages timed: locate expected foreground mesh radar physics compose frame.
+  /// One frame, from sensor to picture. Stages timed: locate expected foreground mesh radar physics compose
+  /// frame.
   FrameResult step(const Frame& frame, StageTimes& times);
 
-  /// Adds, places, drops, throws or removes an object, before the frame it is due in. A drop over "a surface in view"
-  /// that has none waits for a frame that shows one.
+  /// Adds, places, drops, throws or removes an object, before the frame it is due in. A drop over "a surface
+  /// in view" that has none waits for a frame that shows one.
   void apply(const ScriptEvent& event);
 
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }

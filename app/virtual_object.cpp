@@ -29,7 +29,8 @@ VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& m
 }
 
 Mesh object_mesh(const std::string& name_or_path, double size_m) {
-  Mesh mesh = name_or_path == "teapot" ? utah_teapot(kTeapotTessellation, kTeapotHeight_m) : read_mesh(name_or_path);
+  Mesh mesh =
+      name_or_path == "teapot" ? utah_teapot(kTeapotTessellation, kTeapotHeight_m) : read_mesh(name_or_path);
   if (size_m <= 0.0) return mesh;
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(vertex);

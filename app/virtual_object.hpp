@@ -17,15 +17,15 @@ struct VirtualObject {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of its bounding box, in its own frame
   double lowest_m = 0.0;                             ///< z of its lowest point, in its own frame
   double footprint_radius_m = 0.0;                   ///< how far it reaches sideways from its origin
-  GpuMesh shape;  ///< what the radar and the picture see
+  GpuMesh shape;                                     ///< what the radar and the picture see
   ContactShadow shadow;
 
   /// Throws Error if the mesh cannot be a virtual object (no triangles, vertices that are not finite).
   VirtualObject(GlContext& context, std::string name, const Mesh& mesh);
 };
 
-/// The mesh that a user names: `teapot`, the built-in one, 0.15 m high, or a file that read_mesh reads. Scaled so
-/// that its longest side is size_m, if that is > 0. Throws Error naming the file and the fault.
+/// The mesh that a user names: `teapot`, the built-in one, 0.15 m high, or a file that read_mesh reads.
+/// Scaled so that its longest side is size_m, if that is > 0. Throws Error naming the file and the fault.
 Mesh object_mesh(const std::string& name_or_path, double size_m = 0.0);
 
 }  // namespace roomradar

@@ -109,6 +109,15 @@ CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t
   return best;
 }
 
+Eigen::Isometry3d looking_at(const Vector3d& eye_world, const Vector3d& target_world) {
+  const Vector3d z = (target_world - eye_world).normalized();
+  const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();  // level; y = z cross x looks down
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.linear() << x, z.cross(x), z;
+  T_world_camera.translation() = eye_world;
+  return T_world_camera;
+}
+
 Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s) {
   // The second sine evens out the speed: more angle where the ellipse is narrow.
   const double a = path.half_m.x(), b = path.half_m.y();
@@ -122,15 +131,11 @@ Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s) {
     position_world[static_cast<Eigen::Index>(axis)] += at(path.position_sway[axis], t_s);
     target_world[static_cast<Eigen::Index>(axis)] += at(path.target_sway[axis], t_s);
   }
-  const Vector3d z = (target_world - position_world).normalized();
-  const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();  // level; y = z cross x looks down
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  T_world_camera.linear() << x, z.cross(x), z;
+  Eigen::Isometry3d T_world_camera = looking_at(position_world, target_world);
   for (int axis = 0; axis < 3; ++axis)
     T_world_camera.linear() *=
         Eigen::AngleAxisd(at(path.turn_sway[static_cast<std::size_t>(axis)], t_s), Vector3d::Unit(axis))
             .toRotationMatrix();
-  T_world_camera.translation() = position_world;
   return T_world_camera;
 }
 

@@ -34,6 +34,9 @@ struct CameraPath {
 /// for once round at that speed it ends where it began.
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s);
 
+/// Pose of a camera held level at one point that looks at another, not straight up or down.
+Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world);
+
 /// The depth camera's pose t_s after the start.
 Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s);
 

@@ -142,15 +142,6 @@ bool place_object(const ScenarioRoom& from, const Patch& patch, bool drop, Count
   return true;
 }
 
-Isometry3d looking_at(const Vector3d& eye_world, const Vector3d& target_world) {
-  const Vector3d z = (target_world - eye_world).normalized();
-  const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();
-  Isometry3d T_world_camera = Isometry3d::Identity();
-  T_world_camera.linear() << x, z.cross(x), z;
-  T_world_camera.translation() = eye_world;
-  return T_world_camera;
-}
-
 bool draw_camera(const ScenarioRoom& from, CounterRandom& random, Scenario& scenario) {
   const double azimuth_rad = random.uniform(0.0, kTurn_rad), away_m = random.uniform(0.9, 2.6);
   const Vector3d eye_world(scenario.contact_world.x() + away_m * std::cos(azimuth_rad),
@@ -282,7 +273,7 @@ std::optional<Scenario> draw_scenario(const ScenarioRoom& from, Occluder occlude
   if (!patch || !was_seen(from, *patch) || !place_object(from, *patch, drop, random, scenario))
     return std::nullopt;
   const auto patches = stopping_patches(from.room, scenario, scenario.true_travel_m + kBeyond_m);
-  if (patches.empty() || patches.size() < 3) return std::nullopt;
+  if (patches.size() < 3) return std::nullopt;
   if (!std::all_of(patches.begin(), patches.end(),
                    [&](const auto& one) { return was_seen(from, one.second); }))
     return std::nullopt;

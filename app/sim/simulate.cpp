@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
 
@@ -19,19 +18,11 @@
 namespace roomradar {
 namespace {
 
-void write_bytes(const std::filesystem::path& path, const char* bytes, std::size_t count) {
+void write_text(const std::filesystem::path& path, const std::string& text) {
   std::ofstream file(path, std::ios::binary);
-  file.write(bytes, static_cast<std::streamsize>(count));
+  file << text;
   file.close();
   if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
-}
-
-void write_mask(const MaskImage& mask, const std::filesystem::path& path) {
-  // OpenCV wants writable memory, which it does not write to.
-  const cv::Mat view(mask.height, mask.width, CV_8UC1, const_cast<std::uint8_t*>(mask.pixels.data()));
-  std::vector<unsigned char> bytes;
-  if (!cv::imencode(".png", view, bytes)) throw Error(path.string() + ": cannot be encoded as PNG");
-  write_bytes(path, reinterpret_cast<const char*>(bytes.data()), bytes.size());
 }
 
 std::string description(const SimOptions& options) {
@@ -68,8 +59,7 @@ void simulate(const std::filesystem::path& folder, const SimOptions& options, Re
   for (const char* const masks : {"moved", "mover"})
     if (moves && !fault) std::filesystem::create_directories(truth / masks, fault);
   if (fault) throw Error(truth.string() + ": cannot be made: " + fault.message());
-  const std::string json = description(options);
-  write_bytes(truth / "sim.json", json.data(), json.size());
+  write_text(truth / "sim.json", description(options));
   write_mesh(room_mesh(source.room()), truth / "room.ply");
 
   std::vector<TimedPose> trajectory;
@@ -80,8 +70,8 @@ void simulate(const std::filesystem::path& folder, const SimOptions& options, Re
     std::snprintf(name, sizeof(name), "%06lld.png", static_cast<long long>(frame.index));
     write_depth_file(source.truth().depth_m, DepthEncoding::kTum, truth / "depth" / name);
     if (moves) {
-      write_mask(source.truth().moved, truth / "moved" / name);
-      write_mask(source.truth().mover, truth / "mover" / name);
+      write_mask_file(source.truth().moved, truth / "moved" / name);
+      write_mask_file(source.truth().mover, truth / "mover" / name);
     }
     trajectory.push_back({frame.index, frame.stamp_s, source.truth().T_world_camera});
     if (progress) progress(frame.index + 1, options.frames);

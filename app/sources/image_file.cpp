@@ -47,8 +47,8 @@ void write_bytes(const void* data, std::size_t size, const std::string& header,
 
 void write_png(const cv::Mat& image, const std::filesystem::path& path) {
   Bytes bytes;
-  // OpenCV's own choice of compression is its fastest: naming any level turns on slower filters (14 ms, not
-  // 7).
+  // OpenCV's own choice of compression is its fastest: naming any level turns on slower filters (14, not 7
+  // ms).
   if (!cv::imencode(".png", image, bytes)) throw Error(path.string() + ": cannot be encoded as PNG");
   write_bytes(bytes.data(), bytes.size(), "", path);
 }
@@ -157,6 +157,10 @@ void write_colour_file(const ColourImage& colour, const std::filesystem::path& p
   cv::Mat blue_first;
   cv::cvtColor(red_first, blue_first, cv::COLOR_RGB2BGR);
   write_png(blue_first, path);
+}
+
+void write_mask_file(const MaskImage& mask, const std::filesystem::path& path) {
+  write_png({mask.height, mask.width, CV_8UC1, const_cast<std::uint8_t*>(mask.pixels.data())}, path);
 }
 
 void write_exact_depth_file(const DepthImage& depth_m, const std::filesystem::path& path) {

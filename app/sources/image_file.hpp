@@ -29,6 +29,9 @@ void write_depth_file(const DepthImage& depth_m, DepthEncoding encoding, const s
 /// Lossless: PPM where the path ends in .ppm, else PNG. Throws Error as above.
 void write_colour_file(const ColourImage& colour, const std::filesystem::path& path);
 
+/// 8 bit grey PNG. Throws Error as above.
+void write_mask_file(const MaskImage& mask, const std::filesystem::path& path);
+
 /// All 32 bits of each pixel, as a 16 bit PNG of twice the height: the upper halves above, the lower halves
 /// below.
 void write_exact_depth_file(const DepthImage& depth_m, const std::filesystem::path& path);

@@ -259,7 +259,6 @@ class KinectSource final : public FrameSource {
   const std::string name_;
   const double timeout_s_;
   const bool replay_;
-  FreenectDevice device_;
   ImageSize depth_size_;
   ImageSize colour_size_;
   CameraRig rig_;
@@ -281,6 +280,7 @@ class KinectSource final : public FrameSource {
   bool ended_ = false;
   bool stop_ = false;
 
+  FreenectDevice device_;  // after all that its callbacks fill: it is closed before that goes
   std::thread thread_;
 };
 
