@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "mapping/fusion.hpp"
-#include "mapping/morton.hpp"
+#include "mapping/types/morton.hpp"
 
 namespace roomradar {
 namespace {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "mapping/types/morton.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -43,14 +45,6 @@ void cut_into_chunks(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTrian
   }
 }
 
-/// Spreads the lowest 10 bits so that two zeros stand between each.
-std::uint32_t spread_bits(std::uint32_t v) {
-  v = (v | (v << 16U)) & 0x030000FFU;
-  v = (v | (v << 8U)) & 0x0300F00FU;
-  v = (v | (v << 4U)) & 0x030C30C3U;
-  return (v | (v << 2U)) & 0x09249249U;
-}
-
 }  // namespace
 
 void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out) {
@@ -63,14 +57,14 @@ void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriang
 
   // One scale for all axes: cells are cubes, and a flat room does not get slabs.
   const float longest_m = box.isEmpty() ? 0.0F : box.sizes().maxCoeff();
-  const float scale = longest_m > 0.0F ? 1023.0F / longest_m : 0.0F;
-  std::vector<std::pair<std::uint32_t, Triangle>> keyed(out.triangles.size());
+  constexpr float kCells = 1023.0F;  // of some centimetres, in a room
+  const float scale = longest_m > 0.0F ? kCells / longest_m : 0.0F;
+  std::vector<std::pair<std::uint64_t, Triangle>> keyed(out.triangles.size());
   for (std::size_t i = 0; i < keyed.size(); ++i) {
     const Eigen::Vector3f cell = (centre(out.triangles[i]) - box.min()) * scale;
-    const std::uint32_t key = spread_bits(static_cast<std::uint32_t>(cell.x())) |
-                              (spread_bits(static_cast<std::uint32_t>(cell.y())) << 1U) |
-                              (spread_bits(static_cast<std::uint32_t>(cell.z())) << 2U);
-    keyed[i] = {key, out.triangles[i]};
+    keyed[i] = {morton_code(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                            static_cast<std::uint32_t>(cell.z())),
+                out.triangles[i]};
   }
   std::stable_sort(keyed.begin(), keyed.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <random>
 
-#include "mapping/morton.hpp"
 #include "mapping/static_map.hpp"
+#include "mapping/types/morton.hpp"
 #include "tests/support/exact_depth.hpp"
 
 namespace roomradar {

@@ -1,10 +1,10 @@
-// morton.hpp: octree keys as one number whose octal digits are the child indices from the root down.
+// morton.hpp: a cell of a cube as one number, so that neighbouring numbers are mostly neighbouring cells.
 #pragma once
 #include <cstdint>
 
 namespace roomradar {
 
-/// Moves bit i of a 16-bit key to bit 3 i.
+/// Moves bit i of a 16-bit coordinate to bit 3 i.
 constexpr std::uint64_t spread_bits(std::uint32_t key) {
   std::uint64_t x = key & 0xFFFFU;
   x = (x | x << 16U) & 0xFF00'00FFU;
@@ -14,7 +14,8 @@ constexpr std::uint64_t spread_bits(std::uint32_t key) {
   return x;
 }
 
-/// Keys in 0..65535. Digit d from the top is OctoMap's child index at depth d: x has weight 1, y 2, z 4.
+/// Coordinates in 0..65535. The octal digits are the child indices in an octree from the root down, x with
+/// weight 1, y 2, z 4, as OctoMap numbers the children of its 16-bit keys.
 constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return spread_bits(x) | spread_bits(y) << 1U | spread_bits(z) << 2U;
 }
