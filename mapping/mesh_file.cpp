@@ -53,9 +53,12 @@ const Format& format_of(const std::filesystem::path& path) {
 
 // assimp counts to what a .ply's header says, however short the file is.
 void check_ply_counts(const std::filesystem::path& path, std::istream& file, std::uintmax_t bytes) {
+  std::string start(64U << 10U, '\0');  // longer than any header that is one
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  std::istringstream header(start);
   std::string line;
-  for (int lines = 0; std::getline(file, line) && line.rfind("end_header", 0) != 0; ++lines) {
-    if (lines > 200 || line.size() > 1000) fail(path, "its header has no end; wanted a .ply");
+  while (std::getline(header, line) && line.rfind("end_header", 0) != 0) {
     std::istringstream words(line);
     std::string word, name;
     std::uint64_t count = 0;
@@ -65,7 +68,7 @@ void check_ply_counts(const std::filesystem::path& path, std::istream& file, std
     if (count > bytes)
       fail(path, "is cut short: it promises " + std::to_string(count) + " of \"" + name.substr(0, 40) + "\"");
   }
-  if (!file) fail(path, "its header has no end; wanted a .ply");
+  if (!header) fail(path, "its header has no end; wanted a .ply");
 }
 
 // Refuses what is too large by its own word, before any memory is taken for it.
@@ -121,6 +124,9 @@ class Collector {
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     if (mesh_.triangles.size() + part.mNumFaces > kMaxMeshTriangles)
       fail_for_size(path_, mesh_.triangles.size() + part.mNumFaces);
+    // A node may name a mesh any number of times; what has no triangles is no reason to copy it so often.
+    if (mesh_.vertices.size() + part.mNumVertices > 3 * kMaxMeshTriangles)
+      fail(path_, "has more than " + std::to_string(3 * kMaxMeshTriangles) + " vertices; simplify it first");
     const aiMatrix3x3 R = aiMatrix3x3(T_file_node);
     const aiMatrix3x3 normal_matrix = aiMatrix3x3(R).Inverse().Transpose();
     const bool mirrored = R.Determinant() < 0.0F;
