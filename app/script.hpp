@@ -34,7 +34,8 @@ struct ScriptEvent {
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow
 };
 
-/// In the order of the file. Numbers are finite; a name is added before it is used and not added twice.
+/// In the order of the file, which is the order in which they happen: one that is due waits for those before
+/// it. Numbers are finite; a name is added before it is used and not added twice.
 struct Script {
   std::vector<ScriptEvent> events;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "app/placement.hpp"
 #include "mapping/types/error.hpp"
@@ -32,33 +33,37 @@ Session::Session(const SavedMap& map, const SessionConfig& config)
 }
 
 FrameResult Session::step(const Frame& frame, StageTimes& times) {
-  return times.timed("frame", [&]() -> FrameResult {
-    FrameResult result;
-    const double dt_s = has_last_stamp_ ? std::max(0.0, frame.stamp_s - last_stamp_s_) : 0.0;
-    last_stamp_s_ = frame.stamp_s;
-    has_last_stamp_ = true;
+  FrameResult result = times.timed("frame", [&] { return pass_through(frame, times); });
+  if (config_.measure_penetration && result.status == FrameStatus::kDone)
+    result.deepest_penetration_m = penetration_m();
+  return result;
+}
 
-    const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
-    result.tracking = tracking.status;
-    if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
-      if (config_.make_picture) picture_ = frame.colour;
-      return result;
-    }
-    const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
-    result.static_triangles_drawn =
-        times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
-    result.foreground = times.timed("foreground", [&] { return scene_.find_moved(frame); });  // what moved?
-    times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera); });
-    release_waiting(frame, T_world_camera);
-    result.contacts = times.timed("physics", [&] { return move_objects(dt_s, times); });  // R, M, L
-    if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera); });
+FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
+  FrameResult result;
+  const double dt_s = has_last_stamp_ ? std::max(0.0, frame.stamp_s - last_stamp_s_) : 0.0;
+  last_stamp_s_ = frame.stamp_s;
+  has_last_stamp_ = true;
 
-    result.status = FrameStatus::kDone;
-    result.T_world_camera = T_world_camera;
-    result.dynamic_triangles = scene_.moved_triangles();
-    if (config_.measure_penetration) result.deepest_penetration_m = penetration_m();
+  const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
+  result.tracking = tracking.status;
+  if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
+    if (config_.make_picture) picture_ = background_of(frame);
     return result;
-  });
+  }
+  const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
+  result.static_triangles_drawn =
+      times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
+  result.foreground = times.timed("foreground", [&] { return scene_.find_moved(frame); });  // what moved?
+  times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera); });
+  release_waiting(frame, T_world_camera);
+  result.contacts = times.timed("physics", [&] { return move_objects(dt_s, times); });  // R, M, L
+  if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera); });
+
+  result.status = FrameStatus::kDone;
+  result.T_world_camera = T_world_camera;
+  result.dynamic_triangles = scene_.moved_triangles();
+  return result;
 }
 
 Tracking Session::locate_camera(const Frame& frame) {
@@ -113,21 +118,28 @@ double Session::penetration_m() {
   double deepest_m = 0.0;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
-    const std::vector<SceneMesh> scene = scene_without(object.get());
+    std::vector<SceneMesh> still = scene_without(object.get());
+    // A hand that reaches into an object is the hand's doing.
+    if (config_.scene.surfaces == SurfacePolicy::kMap)
+      std::erase_if(still, [](const SceneMesh& mesh) { return mesh.kind == Touched::kDynamic; });
     const Contact below = fine_radar_.query({&object->shape, object->body.T_world_object},
-                                            config_.physics.gravity_world_mps2, 0.01, scene);
+                                            config_.physics.gravity_world_mps2, 0.01, still);
     if (below.status == ContactStatus::kOverlap) deepest_m = std::max(deepest_m, -below.travel_m);
   }
   return deepest_m;
 }
 
+const ColourImage& Session::background_of(const Frame& frame) {
+  if (!frame.colour.empty()) return frame.colour;
+  shade_depth(frame.depth_m, frame.depth_camera, background_);
+  return background_;
+}
+
 void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  // A source without colour shows its depth, seen by the depth camera.
   const bool has_colour = !frame.colour.empty();
   const Intrinsics& camera = has_colour ? frame.colour_camera : frame.depth_camera;
   const Eigen::Isometry3d T_world_view =
       has_colour ? Eigen::Isometry3d(T_world_camera * frame.T_colour_depth.inverse()) : T_world_camera;
-  if (!has_colour) shade_depth(frame.depth_m, camera, background_);
 
   std::vector<DrawnObject> drawn;
   std::vector<ShadowCaster> casters;
@@ -145,8 +157,8 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
     for (const SceneMesh& mesh : scene_.meshes()) real.push_back(mesh.instance);
     depth_pass_.render(real, camera, T_world_view, rect, real_depth_m_);
   }
-  compose(has_colour ? frame.colour : background_, camera, T_world_view, real_depth_m_, casters, layer_,
-          config_.picture, picture_);
+  compose(background_of(frame), camera, T_world_view, real_depth_m_, casters, layer_, config_.picture,
+          picture_);
 }
 
 VirtualObject& Session::object_named(const std::string& name) {
@@ -163,6 +175,8 @@ void Session::apply(const ScriptEvent& event) {
     object.body.at_rest = false;
     object.in_room = true;
   };
+  // Whatever is said of an object now takes the place of a drop that it waits for.
+  std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
   switch (event.action) {
     case Action::kAdd:
       objects_.push_back(std::make_unique<VirtualObject>(
@@ -190,19 +204,13 @@ void Session::apply(const ScriptEvent& event) {
 }
 
 void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  std::vector<ScriptEvent> still_waiting;
-  for (ScriptEvent& event : waiting_) {
+  for (ScriptEvent& event : std::exchange(waiting_, {})) {
     const std::optional<Support> support =
         find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
                      object_named(event.name).footprint_radius_m);
-    if (!support) {
-      still_waiting.push_back(event);
-      continue;
-    }
-    event.position_world = support->point_world;
-    apply(event);
+    if (support) event.position_world = support->point_world;
+    apply(event);  // without a position it waits on
   }
-  waiting_.swap(still_waiting);
 }
 
 }  // namespace roomradar

@@ -28,8 +28,9 @@ struct SessionConfig {
   PhysicsConfig physics;
   ComposeConfig picture;
   bool make_picture = true;  ///< false: no drawing, only what moves the objects
-  bool measure_penetration =
-      false;  ///< a finer radar looks after each frame how deep objects stand in surfaces
+  /// A finer radar looks after each frame how deep objects stand, along gravity, in the room and in one
+  /// another.
+  bool measure_penetration = false;
 };
 
 enum class FrameStatus {
@@ -60,7 +61,8 @@ class Session {
   FrameResult step(const Frame& frame, StageTimes& times);
 
   /// Adds, places, drops, throws or removes an object, before the frame it is due in. A drop over "a surface
-  /// in view" that has none waits for a frame that shows one.
+  /// in view" that has none waits for a frame that shows one, or for the object's next event, which replaces
+  /// it.
   void apply(const ScriptEvent& event);
 
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
@@ -90,11 +92,14 @@ class Session {
   ColourImage background_;
   ColourImage picture_;
 
+  FrameResult pass_through(const Frame& frame, StageTimes& times);
   Tracking locate_camera(const Frame& frame);
   [[nodiscard]] std::vector<SceneMesh> scene_without(const VirtualObject* object) const;
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   int move_objects(double dt_s, StageTimes& times);
   double penetration_m();
+  /// The camera's picture; of a frame without colour its depth, shaded, as the depth camera sees it.
+  const ColourImage& background_of(const Frame& frame);
   void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   VirtualObject& object_named(const std::string& name);
 };
