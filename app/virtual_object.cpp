@@ -12,7 +12,7 @@
 namespace roomradar {
 namespace {
 
-constexpr int kTeapotTessellation = 10;  // 6,240 triangles: round at arm's length
+constexpr int kTeapotTessellation = 10;  // 6,320 triangles: round at arm's length
 constexpr double kTeapotHeight_m = 0.15;
 
 }  // namespace
@@ -21,11 +21,17 @@ VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& m
     : shape(context), shadow(make_contact_shadow(mesh, Eigen::Matrix3d::Identity())) {
   body.name = std::move(name);
   shape.upload(mesh, MeshUsage::kStatic);
+  if (shape.triangle_count() == 0)
+    throw Error(body.name + ": has no triangles; a virtual object is a surface");
   const Eigen::AlignedBox3d box = shape.bounds();
   middle = box.center();
   lowest_m = box.min().z();
-  const Eigen::Vector2d reach = box.min().head<2>().cwiseAbs().cwiseMax(box.max().head<2>().cwiseAbs());
-  footprint_radius_m = reach.maxCoeff();
+  for (const Triangle& triangle : shape.triangles()) {
+    for (const std::uint32_t vertex : triangle) {
+      const Eigen::Vector3d p = shape.origin() + shape.vertices()[vertex].cast<double>();
+      footprint_radius_m = std::max(footprint_radius_m, p.head<2>().norm());
+    }
+  }
 }
 
 Mesh object_mesh(const std::string& name_or_path, double size_m) {
