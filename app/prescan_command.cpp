@@ -22,6 +22,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
       {"frames_lost", counts.frames_lost},
       {"keyframes", counts.keyframes},
       {"loops_found", counts.loops_found},
+      {"ghost_voxels", counts.ghost_voxels},
       {"up_source", scanned.map.info.up_source},
       {"map",
        {{"leaves", octree.occupied_leaves + octree.free_leaves},
@@ -64,9 +65,8 @@ int run(const PrescanCommand& command) {
   Report report;
   report.command = "prescan";
   report.source = command.source;
-  report.settings = {{"map", command.map},
-                     {"resolution_m", command.resolution_m},
-                     {"poses", command.poses == PoseOrigin::kTracked ? "tracked" : "recorded"}};
+  report.settings = {
+      {"map", command.map}, {"resolution_m", command.resolution_m}, {"poses", to_string(command.poses)}};
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   PrescanConfig config;

@@ -109,18 +109,6 @@ void write_pictures(const Session& session, const FrameResult& result, const std
     write_png(session.scene().moved_mask(), folder / (std::string(number) + ".moved.png"));
 }
 
-std::string policy_name(SurfacePolicy policy) {
-  switch (policy) {
-    case SurfacePolicy::kHoles:
-      return "holes";
-    case SurfacePolicy::kSkirt:
-      return "skirt";
-    case SurfacePolicy::kMap:
-      break;
-  }
-  return "map";
-}
-
 }  // namespace
 
 int run(const RunCommand& command) {
@@ -128,10 +116,10 @@ int run(const RunCommand& command) {
   report.command = "run";
   report.source = command.source;
   report.settings = {{"map", command.map},
-                     {"poses", command.poses == PoseOrigin::kTracked ? "tracked" : "recorded"},
+                     {"poses", to_string(command.poses)},
                      {"object", command.object},
                      {"script", command.script},
-                     {"surfaces", policy_name(command.surfaces)}};
+                     {"surfaces", to_string(command.surfaces)}};
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   const Script script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
@@ -196,7 +184,10 @@ int run(const RunCommand& command) {
   report.results = results_of(totals, session);
   write_report(report, command.report);
   print_summary(totals, session);
-  return totals.located > 0 ? 0 : 1;
+  if (totals.located > 0 || quit) return 0;
+  std::fprintf(stderr, "roomradar: %s: no frame shows where in %s the camera is; was that room mapped?\n",
+               command.source.c_str(), command.map.c_str());
+  return 1;
 }
 
 }  // namespace roomradar

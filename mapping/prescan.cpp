@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "mapping/ghost_removal.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -76,6 +77,10 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
 
 }  // namespace
 
+std::string_view to_string(PoseOrigin poses) {
+  return poses == PoseOrigin::kTracked ? "tracked" : "recorded";
+}
+
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress) {
   PrescanResult result;
@@ -110,6 +115,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   // What was there?
   if (!source.rewind()) throw Error(source.name() + ": cannot be read a second time");
   PrescanCounts second_pass;
+  std::vector<FusedFrame> fused_frames;
   Frame frame;
   while (read(source, times, frame, second_pass)) {
     const auto pose = T_world_camera.find(frame.index);
@@ -119,11 +125,22 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     const double fuse_ms = ms_since(start);
     times.add_ms("fuse", fuse_ms);
     times.add_ms("frame", track_ms[frame.index] + fuse_ms);
-    if (fused == FuseStatus::kFused) ++counts.frames_fused;
+    if (fused == FuseStatus::kFused)
+      fused_frames.push_back({second_pass.frames_read - 1, frame.index, frame.depth_camera, pose->second});
     if (progress) progress("fuse", std::string(to_string(fused)));
   }
+  counts.frames_fused = static_cast<std::int64_t>(fused_frames.size());
   if (counts.frames_fused == 0)
     throw Error(source.name() + ": no frame could be fused; the depth images hold no usable measurement");
+
+  // What of that moved on?
+  if (config.remove_ghosts) {
+    const auto show = [&](const std::string& note) {
+      if (progress) progress("ghosts", note);
+    };
+    counts.ghost_voxels = remove_ghosts(source, fused_frames, config.ghosts, map.octree, times, show);
+  }
+
   map.mesh = times.timed("surface", [&] { return extract_surface(map.octree, config.surface); });
   if (map.mesh.triangles.empty())
     throw Error(source.name() + ": " + std::to_string(counts.frames_fused) + " frames show no surface at " +
@@ -135,7 +152,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   map.info.frames_fused = counts.frames_fused;
   map.info.up_source = to_string(found.up.source);
   map.info.settings = {{"resolution_m", std::to_string(config.resolution_m)},
-                       {"poses", config.poses == PoseOrigin::kTracked ? "tracked" : "recorded"}};
+                       {"poses", std::string(to_string(config.poses))}};
   if (config.poses == PoseOrigin::kRecorded) {
     map.info.T_world_recorded = T_level;
   } else {
