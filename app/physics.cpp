@@ -326,7 +326,7 @@ PushDirections push_directions(const Mesh& moving_world, const Eigen::Vector3d& 
     if (length < 0.2 * offset.norm() || length < 1e-6) continue;  // straight above or below: gravity's affair
     const Vec3 direction = level / length;
     if (result.count == 1 && direction.dot(result.direction_world[0]) > 0.97) continue;
-    result.direction_world[result.count++] = direction;
+    result.direction_world[static_cast<std::size_t>(result.count++)] = direction;
   }
   return result;
 }

@@ -1,6 +1,8 @@
 // physics.hpp: move a virtual object by what the radar answers alone: fall, touch, slide, rest.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <string>
@@ -87,9 +89,9 @@ StepReport advance(Body& body, double dt_s, const TravelQuery& query, const Phys
 /// mean of all vertices within reach_m of centre_world. None, one or two.
 struct PushDirections {
   int count = 0;
-  Eigen::Vector3d direction_world[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  std::array<Eigen::Vector3d, 2> direction_world{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   [[nodiscard]] std::span<const Eigen::Vector3d> span() const {
-    return {direction_world, static_cast<std::size_t>(count)};
+    return {direction_world.data(), static_cast<std::size_t>(count)};
   }
 };
 PushDirections push_directions(const Mesh& moving_world, const Eigen::Vector3d& centre_world, double reach_m,

@@ -57,6 +57,7 @@ std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen:
   }
   std::sort(found.begin(), found.end());
   std::vector<std::size_t> near;
+  near.reserve(found.size());
   for (const auto& [distance, i] : found) near.push_back(i);
   return near;
 }

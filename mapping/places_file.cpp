@@ -66,6 +66,7 @@ class Reader {
     return number;
   }
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+  [[nodiscard]] std::string path() const { return path_.string(); }
 
  private:
   std::string_view bytes_;
@@ -112,7 +113,7 @@ Place take_place(Reader& in) {
   in.take(camera.data(), camera.size(), "preview camera");
   place.preview_camera = {
       static_cast<int>(width), static_cast<int>(height), camera[0], camera[1], camera[2], camera[3]};
-  require_valid(place.preview_camera, "places: preview camera");
+  require_valid(place.preview_camera, (in.path() + ": a preview's camera").c_str());
   in.require(std::size_t{width} * height, sizeof(std::uint16_t), "preview depth");
   place.preview_depth_mm.resize(static_cast<int>(width), static_cast<int>(height));
   in.take(place.preview_depth_mm.pixels.data(), place.preview_depth_mm.pixels.size(), "preview depth");

@@ -113,6 +113,7 @@ Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& liv
   }
   if (references.size() < 2) return found;
   std::vector<const ReferenceView*> pointers;
+  pointers.reserve(references.size());
   for (const ReferenceView& reference : references) pointers.push_back(&reference);
   const Tracking refined = align(live, pointers, found.T_world_camera, {.coarsest_level = 1});
   if (is_aligned(refined)) found.T_world_camera = refined.T_world_camera;
