@@ -1,5 +1,4 @@
-// live_scene.hpp: what a virtual object can touch in a frame: the saved room's surface, and what the camera
-// sees moved.
+// live_scene.hpp: what a virtual object can touch in a frame: the saved room, and what has moved in it.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>

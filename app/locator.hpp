@@ -20,8 +20,8 @@ struct Locator {
   AlignConfig align;
   RelocaliseConfig relocalise;
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< of the last frame; nothing while lost
-  Eigen::Isometry3d T_last_now =
-      Eigen::Isometry3d::Identity();  ///< motion from the frame before to the last one
+  /// Motion from the frame before to the last one.
+  Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
   int relocalisations = 0;
 
   ViewPyramid live_pyramid, expected_pyramid;
@@ -32,11 +32,10 @@ struct Locator {
 /// Finds the frame's camera: by alignment with the expected depth at the pose predicted from the last motion,
 /// or, when that fails or nothing is known, by relocalisation among the places and alignment from there.
 ///
-/// @param moved_mask  pixels that moved in the frame before (255) and are left out; empty, or of the depth's
+/// @param moved_mask  of the frame before: pixels at 255 moved and are left out; empty, or of the depth's
 /// size
 /// @return with status kTracked or kDegenerate a pose to go on with (in kDegenerate the directions that the
-/// room does
-///         not fix are the prediction's); any other status: not located, and the next frame starts anew
+///         room does not fix are the prediction's); any other status: not located, the next frame starts anew
 Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
                 const ExpectedDepth& expected_depth);
 

@@ -1,5 +1,4 @@
-// map_command.cpp: roomradar map info|verify|export: look at a saved map, check it, hand it to other
-// programs.
+// map_command.cpp: roomradar map info|verify|export: look at a saved map, check it, hand it on.
 #include <cstdio>
 
 #include "app/commands.hpp"

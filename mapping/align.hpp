@@ -36,16 +36,16 @@ struct AlignConfig {
   int coarsest_level = 2;  ///< levels of the views that are used: from here ...
   int finest_level = 0;    ///< ... down to here
   int iterations = 6;      ///< at most, a level
-  float gate_m =
-      0.10F;  ///< distance to the reference's plane past which a point says nothing, at the coarsest
-              ///< level; half of it at the next finer one and so on, but never less than 3 cm
+  /// Distance to the reference's plane past which a point says nothing, at the coarsest level; half of it at
+  /// the next finer one and so on, but never less than 3 cm.
+  float gate_m = 0.10F;
   float robust_sigma = 2.5F;     ///< distance in standard deviations at which a point's weight is 1/4
   float intensity_sigma = 8.0F;  ///< grey levels of 255; 0 leaves the colour out
   int min_points = 150;          ///< that must meet a reference at the finest level
   float min_inlier_fraction = 0.3F;
-  float min_constraint =
-      0.001F;  ///< mean squared cosine between normals and a direction, below which the depth is
-               ///< said not to fix it: the normals' own noise looks like information
+  /// Mean squared cosine between normals and a direction, below which the depth is said not to fix it: the
+  /// normals' own noise looks like information.
+  float min_constraint = 0.001F;
   float max_uncertainty_m = 0.01F;  ///< standard deviation past which a direction is held
   float max_correction_m = 0.5F;    ///< further (or by more radians) from the guess than this is kDiverged
 };

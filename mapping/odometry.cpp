@@ -68,8 +68,8 @@ Tracking Odometry::State::start(const Frame& frame) {
 }
 
 Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess) const {
-  constexpr double kUsefulReference =
-      0.7;  // view_distance(); past it too little of the frame meets the keyframe
+  // view_distance(); past it too little of the frame meets the keyframe.
+  constexpr double kUsefulReference = 0.7;
   const auto most = static_cast<std::size_t>(std::max(config.references, 1));
   std::vector<const ReferenceView*> references{&graph.keyframes[first].reference};
   for (const std::size_t i : keyframes_near(graph, T_world_guess, kUsefulReference)) {

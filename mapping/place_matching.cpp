@@ -14,11 +14,11 @@
 namespace roomradar {
 namespace {
 
-constexpr int kMaxDistance_bits =
-    60;  // of 256; unrelated descriptors differ in 128, and rarely in less than 80
+// Of 256; unrelated descriptors differ in 128, and rarely in less than 80.
+constexpr int kMaxDistance_bits = 60;
 constexpr float kRatio = 0.85F;
-constexpr int kSamples =
-    400;  // with a third of the matches right, 1 - (1 - 1/27)^400 = 0.9999997 to hit a good triple
+// With a third of the matches right, 1 - (1 - 1/27)^400 = 0.9999997 to hit a good triple.
+constexpr int kSamples = 400;
 constexpr std::size_t kMinMatches = 6;
 
 struct Bits {

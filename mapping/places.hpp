@@ -63,8 +63,8 @@ struct [[nodiscard]] Relocalisation {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< only if found
   std::int64_t keyframe = -1;  ///< position in places.keyframes of the view that proved it
   int feature_inliers = 0;     ///< 0 where the depth alone decided
-  double depth_agreement =
-      0.0;  ///< of the preview's pixels seen by both, the part that agrees within the noise
+  /// Of the preview's pixels seen by both, the part that agrees within the noise.
+  double depth_agreement = 0.0;
   explicit operator bool() const { return status == RelocalisationStatus::kFound; }
 };
 
@@ -75,10 +75,10 @@ struct RelocaliseConfig {
   double min_depth_agreement = 0.7;
 };
 
-/// Finds the frame's camera among the places: ORB matches vote for views, perspective-n-point with RANSAC
-/// gives a pose, alignment with the view's depth refines it, and the depth must agree. Where either side has
-/// no colour, the depth alone is tried against every preview, with a stricter test. Deterministic. Never
-/// throws for any frame.
+/// Finds the frame's camera among the places: ORB matches vote for views, RANSAC over their 3D points gives a
+/// pose, alignment with the view's depth refines it, and the depth must agree. Where either side has no
+/// colour, the depth alone is tried against every preview, with a stricter test. Deterministic. Never throws
+/// for any frame.
 Relocalisation relocalise(const Frame& frame, const Places& places, const RelocaliseConfig& config = {});
 
 }  // namespace roomradar

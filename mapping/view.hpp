@@ -14,8 +14,8 @@ struct ViewConfig {
   int levels = 3;             ///< of the pyramid, each half the size of the one before
   float min_depth_m = 0.3F;
   float max_depth_m = 6.0F;  ///< beyond this a Kinect v1 is off by more than 6 cm
-  int normal_reach_px =
-      4;  ///< a reference's planes are fitted to 5 x 5 samples this far to each side (finest level)
+  /// A reference's planes are fitted to 5 x 5 samples this far to each side (finest level).
+  int normal_reach_px = 4;
   bool noisy = true;  ///< false, for rendered depth: 3 x 3 neighbours do, at a third of the time
 };
 
@@ -29,8 +29,8 @@ struct ViewPyramid {
     Image<float> intensity;            ///< 0..255, -1: none; empty: no colour at all
   };
   std::vector<Level> levels;
-  Image<float>
-      grey;  ///< scratch: the colour image's intensity, averaged down to about the finest level's size
+  /// Scratch: the colour image's intensity, averaged down to about the finest level's size.
+  Image<float> grey;
 };
 
 /// Depth halved until it is at most finest_width_px wide, and colour as seen from the depth camera, in
