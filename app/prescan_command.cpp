@@ -22,7 +22,6 @@ nlohmann::json results_of(const PrescanResult& scanned) {
       {"frames_lost", counts.frames_lost},
       {"keyframes", counts.keyframes},
       {"loops_found", counts.loops_found},
-      {"ghost_voxels", counts.ghost_voxels},
       {"up_source", scanned.map.info.up_source},
       {"map",
        {{"leaves", octree.occupied_leaves + octree.free_leaves},
