@@ -1,0 +1,100 @@
+// session_test.cpp: virtual objects, and frames in which they cannot be put, on a floor that is known.
+#include "app/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mapping/types/error.hpp"
+#include "tests/support/exact_depth.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr Intrinsics kCamera{160, 120, 146.0, 146.0, 79.5, 59.5};
+const Eigen::Isometry3d kAtTheFloor = test::looking_at({0.0, -1.2, 1.2}, {0.0, 0.0, 0.0});
+const Eigen::Isometry3d kAtTheSky = test::looking_at({0.0, -1.2, 1.2}, {0.0, 0.0, 3.0});
+
+/// A level floor of 4 x 4 m at z = 0.
+SavedMap floor_map() {
+  SavedMap map;
+  map.mesh.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
+  map.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return map;
+}
+
+/// What a camera without colour sees of it.
+Frame depth_only(std::int64_t index, const std::optional<Eigen::Isometry3d>& T_world_camera) {
+  Frame frame;
+  frame.index = index;
+  frame.stamp_s = static_cast<double>(index) / 30.0;
+  frame.depth_camera = kCamera;
+  frame.depth_m.resize(kCamera.width_px, kCamera.height_px, 2.0F);
+  frame.T_world_camera = T_world_camera;
+  return frame;
+}
+
+SessionConfig by_recorded_poses() {
+  SessionConfig config;
+  config.poses = PoseOrigin::kRecorded;
+  return config;
+}
+
+ScriptEvent event(Action action) {
+  ScriptEvent event;
+  event.action = action;
+  event.name = "pot";
+  event.mesh = "teapot";
+  return event;
+}
+
+TEST(Session, FrameWithoutColourThatIsNotLocatedShowsItsDepth) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  EXPECT_EQ(session.step(depth_only(0, std::nullopt), times).status, FrameStatus::kNotLocated);
+  EXPECT_EQ(session.picture().width, kCamera.width_px);
+  EXPECT_EQ(session.picture().height, kCamera.height_px);
+}
+
+TEST(Session, DropWaitsForAFrameThatShowsALevelSurface) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.apply(event(Action::kAdd));
+  session.apply(event(Action::kDrop));
+  static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
+  EXPECT_FALSE(session.objects().front()->in_room);
+  static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
+  EXPECT_TRUE(session.objects().front()->in_room);
+  EXPECT_NEAR(session.objects().front()->body.T_world_object.translation().z(), 0.3,
+              0.02);  // the drop's height
+}
+
+TEST(Session, RemovedObjectDoesNotComeInByADropThatWaited) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.apply(event(Action::kAdd));
+  session.apply(event(Action::kDrop));
+  static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
+  session.apply(event(Action::kRemove));
+  static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
+  EXPECT_FALSE(session.objects().front()->in_room);
+}
+
+TEST(VirtualObject, FootprintReachesToACorner) {
+  GlContext context;
+  Mesh plate;
+  plate.vertices = {{-0.3F, -0.4F, 0.1F}, {0.3F, -0.4F, 0.1F}, {0.3F, 0.4F, 0.1F}};
+  plate.triangles = {{0, 1, 2}};
+  const VirtualObject object(context, "plate", plate);
+  EXPECT_NEAR(object.footprint_radius_m, 0.5, 1e-6);
+  EXPECT_NEAR(object.lowest_m, 0.1, 1e-6);
+}
+
+TEST(VirtualObject, MeshWithoutTrianglesIsRefused) {
+  GlContext context;
+  EXPECT_THROW(VirtualObject(context, "nothing", Mesh{}), Error);
+}
+
+}  // namespace
+}  // namespace roomradar
