@@ -48,8 +48,6 @@ class ViewCaster {
   std::vector<Prepared> prepared_;       ///< one a solid, in the order given
   std::vector<int> nearest_first_;       ///< all solids before the camera
   std::vector<std::vector<int>> tiles_;  ///< row by row; the solids of each, nearest first
-  /// Solid x column, solid x row: whether the solid may show there.
-  std::vector<char> column_seen_, row_seen_;
 };
 
 }  // namespace roomradar

@@ -60,12 +60,6 @@ void require_size(const Image<Pixel>& image, const Intrinsics& camera, const std
 
 }  // namespace
 
-RecordingFormat parse_recording_format(std::string_view text) {
-  for (const auto format : {RecordingFormat::kTum, RecordingFormat::kSevenScenes, RecordingFormat::kFakenect})
-    if (text == to_string(format)) return format;
-  throw Error("format '" + std::string(text) + "': must be tum, 7scenes or fakenect");
-}
-
 std::string_view to_string(RecordingFormat format) {
   switch (format) {
     case RecordingFormat::kTum:

@@ -13,8 +13,7 @@ namespace roomradar {
 
 enum class RecordingFormat { kTum, kSevenScenes, kFakenect };
 
-/// "tum", "7scenes" or "fakenect"; throws Error that lists these otherwise.
-RecordingFormat parse_recording_format(std::string_view text);
+/// "tum", "7scenes" or "fakenect".
 std::string_view to_string(RecordingFormat format);
 
 /// Writes a recording frame by frame. What comes back through open_folder:

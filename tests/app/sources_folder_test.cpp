@@ -182,11 +182,6 @@ TEST(RecordingWriter, SaysThatTheDiskIsFull) {
   }
 }
 
-TEST(RecordingFormat, IsReadByName) {
-  EXPECT_EQ(parse_recording_format("7scenes"), RecordingFormat::kSevenScenes);
-  EXPECT_TRUE(contains(error_of([] { (void)parse_recording_format("bag"); }), "tum, 7scenes or fakenect"));
-}
-
 // ---- recognising ----
 
 TEST(OpenFolder, SaysWhatItLookedFor) {

@@ -148,21 +148,6 @@ TEST_F(Picture, ColourComesBackExactly) {
   }
 }
 
-TEST_F(Picture, DepthIsBlackWhereThereIsNoneAndRedderWhereItIsNear) {
-  DepthImage depth_m(40, 10);
-  for (int x = 1; x < 40; ++x)
-    for (int y = 0; y < 10; ++y) depth_m.at(x, y) = 0.5F + 0.1F * static_cast<float>(x);
-  const std::string path = (folder_ / "d.png").string();
-  write_png(depth_m, path);
-  cv::Mat bgr = cv::imread(path);
-  EXPECT_EQ(bgr.at<cv::Vec3b>(5, 0), cv::Vec3b(0, 0, 0));
-  EXPECT_GT(bgr.at<cv::Vec3b>(5, 4)[2], bgr.at<cv::Vec3b>(5, 4)[0]);
-  EXPECT_GT(bgr.at<cv::Vec3b>(5, 35)[0], bgr.at<cv::Vec3b>(5, 35)[2]);
-  write_png(DepthImage(8, 8), path);  // nothing measured
-  bgr = cv::imread(path);
-  EXPECT_EQ(cv::countNonZero(bgr.reshape(1)), 0);
-}
-
 TEST_F(Picture, AMaskComesBackExactly) {
   MaskImage mask(9, 7);
   mask.at(3, 2) = 255;
@@ -176,7 +161,6 @@ TEST_F(Picture, AMaskComesBackExactly) {
 
 TEST_F(Picture, RefusesEmptyImagesMissingFoldersAndFullDisks) {
   EXPECT_THROW(write_png(ColourImage{}, folder_ / "e.png"), Error);
-  EXPECT_THROW(write_png(DepthImage{}, folder_ / "e.png"), Error);
   EXPECT_THROW(write_png(MaskImage{}, folder_ / "e.png"), Error);
   EXPECT_THROW(write_png(square_at(0, 20, 20), folder_ / "none" / "p.png"), Error);
   EXPECT_TRUE(throws_on_a_full_disk([&] { write_png(square_at(0, 640, 480), folder_ / "f.png"); }, 100));
