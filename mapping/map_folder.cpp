@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -214,7 +215,9 @@ std::vector<std::string> verify_map(const fs::path& folder) {
 }
 
 void export_map(const fs::path& folder, const fs::path& path) {
-  const std::string extension = path.extension().string();
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool octree = extension == ".ot" || extension == ".bt";
   if (!octree && extension != ".ply" && extension != ".obj" && extension != ".stl" && extension != ".glb")
     fail(path, "the extension \"" + extension +

@@ -286,7 +286,7 @@ TEST_F(MapFolder, AFullDiskLeavesTheOldMapAndNothingElse) {
 TEST_F(MapFolder, EveryExportIsReadable) {
   const fs::path out = folder_.path() / "out";
   fs::create_directory(out);
-  for (const char* extension : {".ply", ".obj", ".stl", ".glb"}) {
+  for (const char* extension : {".ply", ".obj", ".stl", ".glb", ".PLY"}) {
     export_map(map_, out / (std::string("room") + extension));
     EXPECT_EQ(read_mesh(out / (std::string("room") + extension)).triangles.size(),
               room_.mesh.triangles.size())
