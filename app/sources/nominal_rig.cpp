@@ -8,8 +8,8 @@
 namespace roomradar {
 namespace {
 
-/// x right of the depth camera is where the Kinect's colour camera stands, 2.5 cm aside, towards the
-/// projector.
+/// A rotation by a vector (rad), then a shift. A Kinect's colour camera stands 2.5 cm along +x of its depth
+/// camera, towards the projector: in T_colour_depth the shift is negative.
 Eigen::Isometry3d rigid(double rx_rad, double ry_rad, double rz_rad, const Eigen::Vector3d& t_m) {
   const Eigen::Vector3d r(rx_rad, ry_rad, rz_rad);
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
