@@ -46,6 +46,13 @@ ScriptEvent event(Action action) {
   return event;
 }
 
+/// A pot that is to be dropped, and no level surface in view yet.
+void let_a_drop_wait(Session& session, StageTimes& times) {
+  session.apply(event(Action::kAdd));
+  session.apply(event(Action::kDrop));
+  static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
+}
+
 TEST(Session, FrameWithoutColourThatIsNotLocatedShowsItsDepth) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
@@ -59,9 +66,7 @@ TEST(Session, DropWaitsForAFrameThatShowsALevelSurface) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  session.apply(event(Action::kAdd));
-  session.apply(event(Action::kDrop));
-  static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
+  let_a_drop_wait(session, times);
   EXPECT_FALSE(session.objects().front()->in_room);
   static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
   EXPECT_TRUE(session.objects().front()->in_room);
@@ -73,9 +78,7 @@ TEST(Session, RemovedObjectDoesNotComeInByADropThatWaited) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  session.apply(event(Action::kAdd));
-  session.apply(event(Action::kDrop));
-  static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
+  let_a_drop_wait(session, times);
   session.apply(event(Action::kRemove));
   static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
   EXPECT_FALSE(session.objects().front()->in_room);
