@@ -34,8 +34,8 @@ class FrameSource {
   /// Goes back to the first frame and returns true, or returns false if this source cannot (a live device).
   virtual bool rewind() = 0;
 
-  /// Goes to frame `index` (0 .. frame_count() - 1) without reading those between, so that next() delivers it, and
-  /// returns true; or returns false, changing nothing, if this source can only go frame by frame.
+  /// Goes to frame `index` (0 .. frame_count() - 1) without reading those between, so that next() delivers
+  /// it, and returns true; or returns false, changing nothing, if this source can only go frame by frame.
   virtual bool seek(std::int64_t /*index*/) { return false; }
 
   /// Frames from first to last, bad ones included, where known beforehand.

@@ -49,8 +49,8 @@ class CommandLine : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = fs::path(::testing::TempDir()) / ("roomradar_cli_" + std::to_string(getpid()));
     fs::create_directories(folder_);
-    scanned_ = roomradar("prescan 'sim:table?frames=40&width=160' --map " + map() + " --resolution 0.03 --report " +
-                         (folder_ / "prescan.json").string());
+    scanned_ = roomradar("prescan 'sim:table?frames=40&width=160' --map " + map() +
+                         " --resolution 0.03 --report " + (folder_ / "prescan.json").string());
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
   static std::string map() { return (folder_ / "map").string(); }
@@ -69,8 +69,9 @@ TEST_F(CommandLine, PrescanLeavesAMapThatVerifiesAndAReport) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   EXPECT_EQ(roomradar("map verify " + map()).status, 0);
   const nlohmann::json report = nlohmann::json::parse(read_text(folder_ / "prescan.json"));
-  for (const char* key : {"command", "version", "source", "settings", "renderer", "frames_read", "frames_skipped", "stages",
-                          "peak_rss_mb", "wall_s", "frames_tracked", "frames_fused", "frames_lost", "ate_rmse_m", "map"})
+  for (const char* key :
+       {"command", "version", "source", "settings", "renderer", "frames_read", "frames_skipped", "stages",
+        "peak_rss_mb", "wall_s", "frames_tracked", "frames_fused", "frames_lost", "ate_rmse_m", "map"})
     EXPECT_TRUE(report.contains(key)) << key;
   for (const char* stage : {"read", "track", "fuse", "surface", "save", "frame"})
     EXPECT_TRUE(report["stages"].contains(stage)) << stage;
@@ -95,11 +96,13 @@ TEST_F(CommandLine, MapInfoAndEveryExportWork) {
 TEST_F(CommandLine, RunFindsItselfAndDropsTheTeapotOnTheTable) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const fs::path report_path = folder_ / "run.json";
-  const Outcome ran = roomradar("run 'sim:table?frames=60&width=160&path=view&seed=2' --map " + map() + " --poses recorded --report " +
-                                report_path.string() + " --pictures " + (folder_ / "pictures").string());
+  const Outcome ran = roomradar("run 'sim:table?frames=60&width=160&path=view&seed=2' --map " + map() +
+                                " --poses recorded --report " + report_path.string() + " --pictures " +
+                                (folder_ / "pictures").string());
   ASSERT_EQ(ran.status, 0) << ran.out;
   const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
-  for (const char* stage : {"read", "locate", "expected", "foreground", "mesh", "radar", "physics", "compose", "frame"})
+  for (const char* stage :
+       {"read", "locate", "expected", "foreground", "mesh", "radar", "physics", "compose", "frame"})
     EXPECT_TRUE(report["stages"].contains(stage)) << stage;
   EXPECT_EQ(report["frames_located"], 60);
   ASSERT_EQ(report["objects"].size(), 1U);
@@ -138,16 +141,20 @@ TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
 
 TEST_F(CommandLine, ARecordingWithoutAnyDepthIsRefusedInWords) {
   const fs::path recording = folder_ / "blank";
-  ASSERT_EQ(roomradar("record 'sim:table?frames=5&width=160' " + recording.string() + " --format 7scenes").status, 0);
+  ASSERT_EQ(
+      roomradar("record 'sim:table?frames=5&width=160' " + recording.string() + " --format 7scenes").status,
+      0);
   // Every depth image becomes one without a measurement: the same size, all 0.
   for (const auto& entry : fs::directory_iterator(recording)) {
     if (entry.path().string().ends_with(".depth.png"))
       fs::copy_file(fs::path(ROOMRADAR_SOURCE_DIR) / "tests/data/no_depth_160x120.png", entry.path(),
                     fs::copy_options::overwrite_existing);
   }
-  expect_fault(roomradar("prescan " + recording.string() + " --map " + (folder_ / "unused").string()), 1, "depth");
-  expect_fault(roomradar("prescan " + recording.string() + " --poses recorded --map " + (folder_ / "unused").string()), 1,
+  expect_fault(roomradar("prescan " + recording.string() + " --map " + (folder_ / "unused").string()), 1,
                "depth");
+  expect_fault(
+      roomradar("prescan " + recording.string() + " --poses recorded --map " + (folder_ / "unused").string()),
+      1, "depth");
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
 
@@ -155,7 +162,8 @@ TEST_F(CommandLine, ABrokenMapIsRefusedAndTheFileNamed) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const std::string run = "run 'sim:table?frames=2&width=160' --map ";
   expect_fault(roomradar(run + (folder_ / "no_map").string()), 1, "no_map");
-  for (const char* name : {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"}) {
+  for (const char* name :
+       {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"}) {
     fs::path copy = broken_copy();
     fs::remove(copy / name);
     expect_fault(roomradar(run + copy.string()), 1, name);
@@ -192,8 +200,9 @@ TEST_F(CommandLine, ObjectMeshesThatCannotBeOnesAreNamed) {
   expect_fault(roomradar(run + object("no_faces.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), 1, "no_faces.obj");
   expect_fault(roomradar(run + object("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), 1, "nan.obj");
   expect_fault(roomradar(run + object("text.ply", "hello\n")), 1, "text.ply");
-  std::string huge = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                     "property float z\nelement face 10000000\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string huge =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 10000000\nproperty list uchar int vertex_indices\nend_header\n";
   const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   huge.append(reinterpret_cast<const char*>(corners), sizeof corners);
   const std::string face("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
@@ -205,7 +214,9 @@ TEST_F(CommandLine, ObjectMeshesThatCannotBeOnesAreNamed) {
 TEST_F(CommandLine, AFullDiskLosesNothing) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const std::string before = read_text(folder_ / "map" / "map.json");
-  const Outcome full = shell("ulimit -f 64; " ROOMRADAR_PROGRAM " prescan 'sim:table?frames=10&width=160' --resolution 0.03 --map " + map());
+  const Outcome full = shell("ulimit -f 64; " ROOMRADAR_PROGRAM
+                             " prescan 'sim:table?frames=10&width=160' --resolution 0.03 --map " +
+                             map());
   EXPECT_EQ(full.status, 1) << full.out;
   EXPECT_NE(full.out.find("map"), std::string::npos) << full.out;
   EXPECT_EQ(read_text(folder_ / "map" / "map.json"), before);
