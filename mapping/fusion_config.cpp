@@ -23,6 +23,8 @@ void require_valid(const FusionConfig& c) {
   require(c.truncation_sigmas >= 0.0F && c.truncation_sigmas <= 10.0F, "truncation_sigmas",
           c.truncation_sigmas, "must be in 0..10");
   require(c.max_weight > 0.0F && std::isfinite(c.max_weight), "max_weight", c.max_weight, "must be > 0");
+  require(c.seen_through_gain > 0.0F && std::isfinite(c.seen_through_gain), "seen_through_gain",
+          c.seen_through_gain, "must be > 0");
   require(c.hit_log_odds > 0.0F && std::isfinite(c.hit_log_odds), "hit_log_odds", c.hit_log_odds,
           "must be > 0");
   require(c.miss_log_odds < 0.0F && std::isfinite(c.miss_log_odds), "miss_log_odds", c.miss_log_odds,
