@@ -99,6 +99,7 @@ int run(const FallthroughCommand& command) {
   report.settings = {
       {"scenarios", command.scenarios}, {"seed", command.seed}, {"resolution_m", kResolution_m}};
 
+  require_writable(command.report);
   GlContext context;
   report.renderer = context.renderer();
   CyberRadar radar(context);

@@ -2,6 +2,7 @@
 #include "app/report.hpp"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <fstream>
 
@@ -39,6 +40,13 @@ nlohmann::json to_json(const Report& report) {
   };
   json.update(report.results);
   return json;
+}
+
+void require_writable(const std::filesystem::path& path) {
+  if (path.empty()) return;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
+    throw Error(path.string() + ": the report cannot be written: its folder is not there or not writable");
 }
 
 void write_report(const Report& report, const std::filesystem::path& path) {

@@ -122,6 +122,7 @@ int run(const RunCommand& command) {
                      {"surfaces", to_string(command.surfaces)}};
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
+  require_writable(command.report);
   const Script script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
   const SavedMap map = load_map(command.map);
   const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
@@ -133,6 +134,10 @@ int run(const RunCommand& command) {
   Session session(map, config);
   report.renderer = session.renderer();
   std::fprintf(stderr, "rendering with %s\n", session.renderer().c_str());
+
+  // Objects are loaded now, so that a wrong mesh is said before the first frame and not when its turn comes.
+  for (const ScriptEvent& event : script.events)
+    if (event.action == Action::kAdd) session.apply(event);
 
   std::unique_ptr<VideoWriter> video;
   if (!command.video.empty()) video = std::make_unique<VideoWriter>(command.video, kVideoFramesPerS);
@@ -162,8 +167,9 @@ int run(const RunCommand& command) {
       for (; next_event < script.events.size() &&
              is_due(script.events[next_event], run_frame, frame.stamp_s - first_stamp_s);
            ++next_event) {
-        quit = quit || script.events[next_event].action == Action::kQuit;
-        session.apply(script.events[next_event]);
+        const ScriptEvent& event = script.events[next_event];
+        quit = quit || event.action == Action::kQuit;
+        if (event.action != Action::kAdd) session.apply(event);
       }
       if (quit) break;
       const FrameResult result = session.step(frame, report.times);

@@ -48,7 +48,10 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
   result.tracking = tracking.status;
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
-    if (config_.make_picture) picture_ = background_of(frame);
+    if (config_.make_picture) {
+      view_of(frame);
+      picture_ = background_;
+    }
     return result;
   }
   const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
@@ -129,17 +132,20 @@ double Session::penetration_m() {
   return deepest_m;
 }
 
-const ColourImage& Session::background_of(const Frame& frame) {
-  if (!frame.colour.empty()) return frame.colour;
+Session::PictureView Session::view_of(const Frame& frame) {
+  if (!frame.colour.empty()) {
+    colour_view_ = {frame.colour_camera, frame.T_colour_depth};
+    background_ = frame.colour;
+  }
+  if (colour_view_) return *colour_view_;
   shade_depth(frame.depth_m, frame.depth_camera, background_);
-  return background_;
+  return {frame.depth_camera, Eigen::Isometry3d::Identity()};
 }
 
 void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  const bool has_colour = !frame.colour.empty();
-  const Intrinsics& camera = has_colour ? frame.colour_camera : frame.depth_camera;
-  const Eigen::Isometry3d T_world_view =
-      has_colour ? Eigen::Isometry3d(T_world_camera * frame.T_colour_depth.inverse()) : T_world_camera;
+  const PictureView view = view_of(frame);
+  const Intrinsics& camera = view.camera;
+  const Eigen::Isometry3d T_world_view = T_world_camera * view.T_view_depth.inverse();
 
   std::vector<DrawnObject> drawn;
   std::vector<ShadowCaster> casters;
@@ -157,8 +163,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
     for (const SceneMesh& mesh : scene_.meshes()) real.push_back(mesh.instance);
     depth_pass_.render(real, camera, T_world_view, rect, real_depth_m_);
   }
-  compose(background_of(frame), camera, T_world_view, real_depth_m_, casters, layer_, config_.picture,
-          picture_);
+  compose(background_, camera, T_world_view, real_depth_m_, casters, layer_, config_.picture, picture_);
 }
 
 VirtualObject& Session::object_named(const std::string& name) {

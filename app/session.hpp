@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -87,7 +88,12 @@ class Session {
   double last_stamp_s_ = 0.0;
   bool has_last_stamp_ = false;
 
-  DepthImage real_depth_m_;  ///< as the colour camera sees it, where objects are
+  struct PictureView {
+    Intrinsics camera;
+    Eigen::Isometry3d T_view_depth = Eigen::Isometry3d::Identity();  ///< depth-camera points to this camera's
+  };
+  std::optional<PictureView> colour_view_;  ///< of the last frame with colour
+  DepthImage real_depth_m_;                 ///< as the colour camera sees it, where objects are
   ObjectLayer layer_;
   ColourImage background_;
   ColourImage picture_;
@@ -98,8 +104,9 @@ class Session {
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   int move_objects(double dt_s, StageTimes& times);
   double penetration_m();
-  /// The camera's picture; of a frame without colour its depth, shaded, as the depth camera sees it.
-  const ColourImage& background_of(const Frame& frame);
+  /// Sets background_ and says which camera saw it: the frame's colour; where this one frame has none, the
+  /// last colour there was; in a recording without any, the depth, shaded, as the depth camera sees it.
+  PictureView view_of(const Frame& frame);
   void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   VirtualObject& object_named(const std::string& name);
 };

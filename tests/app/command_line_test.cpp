@@ -139,6 +139,20 @@ TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
 
+TEST_F(CommandLine, WhatCannotBeWrittenOrLoadedIsSaidBeforeTheWork) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  expect_fault(roomradar("prescan " + source + " --map " + (folder_ / "unused").string() +
+                         " --report /no/such/r.json"),
+               1, "/no/such/r.json");
+  expect_fault(roomradar("run " + source + " --map " + map() + " --report /no/such/r.json"), 1,
+               "/no/such/r.json");
+  const fs::path script = folder_ / "events.txt";
+  std::ofstream(script) << "frame 90000 add pot /no/such/pot.obj\n";
+  expect_fault(roomradar("run " + source + " --map " + map() + " --script " + script.string()), 1,
+               "/no/such/pot.obj");
+}
+
 TEST_F(CommandLine, ARecordingWithoutAnyDepthIsRefusedInWords) {
   const fs::path recording = folder_ / "blank";
   ASSERT_EQ(
