@@ -62,6 +62,20 @@ TEST(Session, FrameWithoutColourThatIsNotLocatedShowsItsDepth) {
   EXPECT_EQ(session.picture().height, kCamera.height_px);
 }
 
+TEST(Session, OneFrameWithoutColourKeepsTheLastPicture) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame coloured = depth_only(0, kAtTheFloor);
+  coloured.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
+  coloured.colour.resize(320, 240, {10, 200, 30});
+  for (const Frame& frame : {coloured, depth_only(1, kAtTheFloor), depth_only(2, std::nullopt)}) {
+    static_cast<void>(session.step(frame, times));
+    EXPECT_EQ(session.picture().width, 320) << frame.index;
+    EXPECT_EQ(session.picture().pixels, coloured.colour.pixels) << frame.index;
+  }
+}
+
 TEST(Session, DropWaitsForAFrameThatShowsALevelSurface) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
