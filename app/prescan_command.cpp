@@ -22,6 +22,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
       {"frames_lost", counts.frames_lost},
       {"keyframes", counts.keyframes},
       {"loops_found", counts.loops_found},
+      {"ghost_voxels", counts.ghost_voxels},
       {"up_source", scanned.map.info.up_source},
       {"map",
        {{"leaves", octree.occupied_leaves + octree.free_leaves},
@@ -72,6 +73,7 @@ int run(const PrescanCommand& command) {
   config.resolution_m = command.resolution_m;
   config.poses = command.poses;
   require_can_become_map(command.map);
+  require_writable(command.report);
   const std::unique_ptr<FrameSource> source = make_rewindable(open_source(command.source, command.frames));
 
   std::unique_ptr<Progress> progress;

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "mapping/ghost_removal.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -114,6 +115,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   // What was there?
   if (!source.rewind()) throw Error(source.name() + ": cannot be read a second time");
   PrescanCounts second_pass;
+  std::vector<FusedFrame> fused_frames;
   Frame frame;
   while (read(source, times, frame, second_pass)) {
     const auto pose = T_world_camera.find(frame.index);
@@ -123,11 +125,22 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     const double fuse_ms = ms_since(start);
     times.add_ms("fuse", fuse_ms);
     times.add_ms("frame", track_ms[frame.index] + fuse_ms);
-    if (fused == FuseStatus::kFused) ++counts.frames_fused;
+    if (fused == FuseStatus::kFused)
+      fused_frames.push_back({second_pass.frames_read - 1, frame.index, frame.depth_camera, pose->second});
     if (progress) progress("fuse", std::string(to_string(fused)));
   }
+  counts.frames_fused = static_cast<std::int64_t>(fused_frames.size());
   if (counts.frames_fused == 0)
     throw Error(source.name() + ": no frame could be fused; the depth images hold no usable measurement");
+
+  // What of that moved on?
+  if (config.remove_ghosts) {
+    const auto show = [&](const std::string& note) {
+      if (progress) progress("ghosts", note);
+    };
+    counts.ghost_voxels = remove_ghosts(source, fused_frames, config.ghosts, map.octree, times, show);
+  }
+
   map.mesh = times.timed("surface", [&] { return extract_surface(map.octree, config.surface); });
   if (map.mesh.triangles.empty())
     throw Error(source.name() + ": " + std::to_string(counts.frames_fused) + " frames show no surface at " +

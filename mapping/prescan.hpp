@@ -1,4 +1,5 @@
-// prescan.hpp: from a recording of a room to its saved form: track, level, fuse, extract the surface.
+// prescan.hpp: from a recording of a room to its saved form: track, level, fuse, remove ghosts, extract the
+// surface.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -6,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "mapping/ghosts.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/odometry.hpp"
 #include "mapping/surface.hpp"
@@ -28,6 +30,8 @@ struct PrescanConfig {
   double resolution_m = 0.01;  ///< edge of the octree's smallest cells
   PoseOrigin poses = PoseOrigin::kTracked;
   OdometryConfig odometry;
+  bool remove_ghosts = true;  ///< take out of the map what moved on during the scan
+  GhostConfig ghosts;
   SurfaceConfig surface;
 };
 
@@ -40,7 +44,8 @@ struct PrescanCounts {
   std::int64_t frames_lost = 0;  ///< without one; not fused
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
-  std::string last_fault;                           ///< of the last skipped frame
+  std::int64_t ghost_voxels = 0;  ///< surface that later, or earlier, frames see through; taken out
+  std::string last_fault;         ///< of the last skipped frame
   std::optional<TrajectoryError> against_recorded;  ///< where at least 3 frames came with poses; tracked only
 };
 
@@ -49,7 +54,7 @@ struct PrescanResult {
   PrescanCounts counts;
 };
 
-/// Called after each frame of a pass: the stage ("track" or "fuse"), and what became of the frame.
+/// Called after each frame of a pass: the stage ("track", "fuse" or "ghosts"), and what became of the frame.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
 /// Scans a room. The source is read twice: once to know where the camera was, once to fuse with the final

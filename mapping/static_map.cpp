@@ -67,6 +67,31 @@ const RoomNode* leaf_at(const RoomOcTree& tree, const Eigen::Vector3d& p_world, 
   return node;
 }
 
+// Decides on every sample below a node. True if the node holds anything afterwards.
+bool revise(RoomOcTree& tree, RoomNode& node, const Key& key, unsigned depth, float free_log_odds,
+            const std::function<SampleFate(const SurfaceSample&)>& decide) {
+  if (depth == kLeafDepth) {
+    if (!node.has_sample()) return true;
+    const SampleFate fate = decide(sample_of(node, key));
+    if (fate == SampleFate::kKeep) return true;
+    node.forget_sample();
+    if (fate == SampleFate::kFree) node.setLogOdds(free_log_odds);
+    return node.getLogOdds() != 0.0F;
+  }
+  if (!tree.nodeHasChildren(&node)) return true;
+  for (unsigned i = 0; i < 8; ++i) {
+    RoomNode* child = tree.child(node, i);
+    if (child && !revise(tree, *child, child_key(key, depth, i), depth + 1, free_log_odds, decide))
+      tree.deleteNodeChild(&node, i);
+  }
+  if (!tree.nodeHasChildren(&node)) {
+    node.free_empty_child_table();
+    return false;
+  }
+  tree.summarise(node);
+  return true;
+}
+
 double checked_resolution(double resolution_m) {
   if (!(resolution_m >= 0.001 && resolution_m <= 1.0))
     throw Error("resolution = " + std::to_string(resolution_m) + " m: must be within 0.001 and 1 m");
@@ -137,6 +162,12 @@ void StaticMap::visit_samples(const std::function<void(const SurfaceSample&)>& v
   visit_leaves(octree_->tree, [&](const RoomNode& leaf, const Key& key, unsigned) {
     if (leaf.has_sample()) visit(sample_of(leaf, key));
   });
+}
+
+void StaticMap::revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide) {
+  RoomOcTree& tree = octree_->tree;
+  RoomNode* root = tree.getRoot();
+  if (root && !revise(tree, *root, Key::Zero(), 0, octree_->config.min_log_odds, decide)) tree.remove_root();
 }
 
 double StaticMap::resolution_m() const { return octree_->tree.getResolution(); }

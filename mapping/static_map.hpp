@@ -38,6 +38,13 @@ struct SurfaceSample {
   bool has_colour = false;
 };
 
+/// What becomes of a sample when the map is revised.
+enum class SampleFate {
+  kKeep,
+  kForget,  ///< its signed distance and colour go; whether it is occupied stays
+  kFree,    ///< it goes, and the voxel becomes as free as it can be
+};
+
 struct MapCounts {
   std::size_t occupied_leaves = 0;
   std::size_t free_leaves = 0;
@@ -68,6 +75,9 @@ class StaticMap {
   [[nodiscard]] std::optional<SurfaceSample> sample_at(const Eigen::Vector3d& p_world) const;
   /// Calls `visit` for each voxel that holds a signed distance, in Morton order (deterministic).
   void visit_samples(const std::function<void(const SurfaceSample&)>& visit) const;
+
+  /// Asks for the fate of each voxel that holds a signed distance, in the same order.
+  void revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide);
 
   [[nodiscard]] double resolution_m() const;
   /// Half the edge of the cube around the world's origin that voxels can exist in, m.

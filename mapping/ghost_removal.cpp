@@ -1,0 +1,81 @@
+// ghost_removal.cpp: two more passes over the recording: find the ghosts, then look again at where they were.
+#include "mapping/ghost_removal.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "mapping/ghost_zone.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+// Reads chosen frames in the order of the recording, without those between where the source can.
+class ChosenFrames {
+ public:
+  ChosenFrames(FrameSource& source, StageTimes& times) : source_(source), times_(times) {
+    if (!source.rewind()) throw Error(source.name() + ": cannot be read once more");
+  }
+
+  // False if the source does not deliver it now as it did before.
+  bool read(const FusedFrame& chosen, Frame& frame) {
+    return times_.timed("read", [&] {
+      if (position_ != chosen.position && source_.seek(chosen.position)) position_ = chosen.position;
+      while (position_ <= chosen.position) {
+        const ReadResult result = source_.next(frame);
+        if (result.status == ReadStatus::kEnd) return false;
+        if (position_++ == chosen.position)
+          return result.status == ReadStatus::kFrame && frame.index == chosen.frame_index;
+      }
+      return false;
+    });
+  }
+
+ private:
+  FrameSource& source_;
+  StageTimes& times_;
+  std::int64_t position_ = 0;
+};
+
+}  // namespace
+
+std::int64_t remove_ghosts(FrameSource& source, std::span<const FusedFrame> fused, const GhostConfig& config,
+                           StaticMap& map, StageTimes& times,
+                           const std::function<void(const std::string& note)>& progress) {
+  // What is seen through?
+  GhostVotes votes(map, config);
+  Frame frame;
+  const std::size_t stride = 1 + (fused.size() - 1) / static_cast<std::size_t>(config.max_looks);
+  ChosenFrames first_pass(source, times);
+  for (std::size_t i = 0; i < fused.size(); i += stride) {
+    if (!first_pass.read(fused[i], frame)) continue;
+    times.timed("ghosts", [&] { votes.look(frame, fused[i].T_world_camera); });
+    if (progress) progress("looked");
+  }
+  const GhostVotes::Verdicts verdicts = votes.verdicts();
+  if (verdicts.ghosts.empty()) return 0;
+
+  // Out with it, and with all samples that it may have spoiled.
+  const GhostZone zone = times.timed("ghosts", [&] { return GhostZone(verdicts, map.resolution_m()); });
+  times.timed("ghosts", [&] {
+    map.revise_samples([&](const SurfaceSample& sample) {
+      if (zone.is_ghost(sample.voxel)) return SampleFate::kFree;
+      return zone.holds(sample.voxel) ? SampleFate::kForget : SampleFate::kKeep;
+    });
+  });
+
+  // What is there without it?
+  ChosenFrames second_pass(source, times);
+  for (const FusedFrame& chosen : fused) {
+    if (!zone.in_view(chosen.depth_camera, chosen.T_world_camera)) continue;
+    if (!second_pass.read(chosen, frame)) continue;
+    times.timed("ghosts", [&] {
+      zone.mask(frame.depth_camera, chosen.T_world_camera, frame.depth_m);
+      map.fuse(frame, chosen.T_world_camera);
+    });
+    if (progress) progress("fused again");
+  }
+  return static_cast<std::int64_t>(verdicts.ghosts.size());
+}
+
+}  // namespace roomradar

@@ -1,0 +1,43 @@
+// ghost_zone.hpp: the space round ghosts, and what frames say about it without the things that left them.
+#pragma once
+#include <Eigen/Geometry>
+#include <bitset>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "mapping/ghosts.hpp"
+
+namespace roomradar {
+
+/// All cells of 4^3 voxels that hold a ghost, and their neighbours: four voxels round each ghost and more,
+/// which is as far as signed distance is kept from a surface at up to 2.5 m.
+class GhostZone {
+ public:
+  GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m);
+
+  [[nodiscard]] bool holds(const VoxelIndex& voxel) const;
+  [[nodiscard]] bool is_ghost(const VoxelIndex& voxel) const;
+  /// Whether any of the zone may be in the camera's image.
+  [[nodiscard]] bool in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const;
+
+  /// Leaves depth only in pixels that end near the zone, at surface that is still there and not at a ghost,
+  /// both within two voxels: the others do not tell what the zone's samples are.
+  void mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m) const;
+
+ private:
+  struct Marks {
+    std::bitset<8> cells;        // of its 2^3 cells, those in the zone
+    std::bitset<8> ghost_cells;  // ... and those that hold a ghost
+    std::bitset<512> ghost;
+    std::bitset<512> near_ghost;
+    std::bitset<512> near_still;
+  };
+  [[nodiscard]] const Marks* marks_of(const VoxelIndex& voxel) const;
+
+  double resolution_m_;
+  std::unordered_map<std::uint64_t, Marks> marks_;  // of the bricks that hold a ghost, and their neighbours
+  std::vector<VoxelIndex> bricks_;                  // their lowest voxels
+};
+
+}  // namespace roomradar

@@ -1,0 +1,216 @@
+// ghosts.cpp: the votes of frames on the map's surface, brick by brick.
+#include "mapping/ghosts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <unordered_map>
+#include <utility>
+
+#include "mapping/sample_bricks.hpp"
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr float kNearest_m = 0.1F;  // nothing is projected from nearer to the camera's plane
+
+void require(bool holds, const char* field, float value, const char* rule) {
+  if (!holds) throw Error(std::string("ghosts.") + field + " = " + std::to_string(value) + ": " + rule);
+}
+
+// False if nothing within radius_m of the centre can be in the image.
+bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_camera, double radius_m) {
+  if (centre_camera.z() < kNearest_m - radius_m) return false;
+  const double nearest_z = std::max(centre_camera.z() - radius_m, static_cast<double>(kNearest_m));
+  const double margin_px = 2.0 * radius_m * std::max(camera.fx_px, camera.fy_px) / nearest_z;
+  if (centre_camera.z() < 2.0 * radius_m) return true;  // too near to tell so simply
+  const Eigen::Vector2d pixel = project(camera, centre_camera);
+  return pixel.x() > -margin_px && pixel.y() > -margin_px && pixel.x() < camera.width_px + margin_px &&
+         pixel.y() < camera.height_px + margin_px;
+}
+
+Eigen::Vector3i in_brick(std::uint16_t offset) {
+  static_assert(kBrickEdge == 8);
+  return {offset & 7, offset >> 3 & 7, offset >> 6};
+}
+
+std::uint64_t code_of(const VoxelIndex& voxel) {
+  const Eigen::Array3i key = voxel.array() + (1 << 20);
+  return static_cast<std::uint64_t>(key.x()) | static_cast<std::uint64_t>(key.y()) << 21U |
+         static_cast<std::uint64_t>(key.z()) << 42U;
+}
+
+// For each voxel, how many hang together with it, itself among them: those in cells of 4^3 voxels that touch.
+std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) {
+  const auto cell_of = [](const VoxelIndex& voxel) -> VoxelIndex {
+    return voxel.unaryExpr([](int v) { return v >> 2; });
+  };
+  struct Cell {
+    VoxelIndex index;
+    std::size_t voxels = 0;
+    std::size_t together = 0;  // voxels of all cells that it hangs together with
+  };
+  std::vector<Cell> cells;
+  std::unordered_map<std::uint64_t, std::size_t> position;
+  for (const VoxelIndex& voxel : voxels) {
+    const auto [found, is_new] = position.try_emplace(code_of(cell_of(voxel)), cells.size());
+    if (is_new) cells.push_back({cell_of(voxel)});
+    ++cells[found->second].voxels;
+  }
+  std::vector<std::size_t> group;
+  std::vector<std::uint8_t> reached(cells.size(), 0);
+  for (std::size_t seed = 0; seed < cells.size(); ++seed) {
+    if (reached[seed] != 0) continue;
+    group.assign(1, seed);
+    reached[seed] = 1;
+    std::size_t count = 0;
+    for (std::size_t done = 0; done < group.size(); ++done) {
+      const Cell& cell = cells[group[done]];
+      count += cell.voxels;
+      for (int i = 0; i < 27; ++i) {
+        const auto found =
+            position.find(code_of(cell.index + VoxelIndex(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+        if (found == position.end() || reached[found->second] != 0) continue;
+        reached[found->second] = 1;
+        group.push_back(found->second);
+      }
+    }
+    for (const std::size_t member : group) cells[member].together = count;
+  }
+  std::vector<std::size_t> together;
+  together.reserve(voxels.size());
+  for (const VoxelIndex& voxel : voxels)
+    together.push_back(cells[position.at(code_of(cell_of(voxel)))].together);
+  return together;
+}
+
+}  // namespace
+
+void require_valid(const GhostConfig& c) {
+  require(c.margin_m > 0.0F && std::isfinite(c.margin_m), "margin_m", c.margin_m, "must be > 0");
+  require(c.margin_sigmas >= 0.0F && std::isfinite(c.margin_sigmas), "margin_sigmas", c.margin_sigmas,
+          "must be >= 0");
+  require(c.window_radius_m >= 0.0F && c.window_radius_m <= 1.0F, "window_radius_m", c.window_radius_m,
+          "must be in 0..1 m");
+  require(c.min_measured_share >= 0.0F && c.min_measured_share <= 1.0F, "min_measured_share",
+          c.min_measured_share, "must be in 0..1");
+  require(c.min_through >= 1, "min_through", static_cast<float>(c.min_through), "must be 1 or more");
+  require(c.min_through_share >= 0.0F && c.min_through_share <= 1.0F, "min_through_share",
+          c.min_through_share, "must be in 0..1");
+  require(c.min_extent_m >= 0.0F && std::isfinite(c.min_extent_m), "min_extent_m", c.min_extent_m,
+          "must be >= 0");
+  require(c.max_looks >= 1 && c.max_looks <= 60'000, "max_looks", static_cast<float>(c.max_looks),
+          "must be in 1..60000");
+}
+
+GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
+    : resolution_m_(map.resolution_m()), config_(config) {
+  require_valid(config);
+  const auto voxel_m = static_cast<float>(resolution_m_);
+  map.visit_samples([&](const SurfaceSample& sample) {
+    if (sample.occupancy != Occupancy::kOccupied && std::abs(sample.distance_m) > voxel_m) return;
+    const VoxelIndex first = sample.voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
+    if (bricks_.empty() || bricks_.back().first != first) bricks_.push_back({first, 0});
+    Votes& votes = votes_.emplace_back();
+    votes.offset = brick_offset(sample.voxel - first) & 511U;
+    votes.occupied = sample.occupancy == Occupancy::kOccupied ? 1U : 0U;
+    bricks_.back().end = votes_.size();
+  });
+}
+
+void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  const DepthImage& depth_m = frame.depth_m;
+  const Intrinsics& camera = frame.depth_camera;
+  if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px) return;
+  build_windows(depth_m, windows_);
+
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  const Eigen::Matrix3f R_camera_voxels = (T_camera_world.linear() * resolution_m_).cast<float>();
+  std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps;  // from the middle of a brick's first voxel
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < kBrickEdge; ++i)
+      steps[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] =
+          R_camera_voxels.col(axis) * static_cast<float>(i);
+  const double brick_radius_m = 0.5 * std::sqrt(3.0) * kBrickEdge * resolution_m_;
+  const auto fx = static_cast<float>(camera.fx_px);
+  const auto fy = static_cast<float>(camera.fy_px);
+  const auto cx = static_cast<float>(camera.cx_px);
+  const auto cy = static_cast<float>(camera.cy_px);
+  const auto width = static_cast<float>(depth_m.width);
+  const auto height = static_cast<float>(depth_m.height);
+
+  std::size_t begin = 0;
+  for (const Brick& brick : bricks_) {
+    const std::size_t first = std::exchange(begin, brick.end);
+    const Eigen::Vector3d low_world = brick.first.cast<double>() * resolution_m_;
+    const Eigen::Vector3d middle_world =
+        low_world + Eigen::Vector3d::Constant(0.5 * kBrickEdge * resolution_m_);
+    if (!may_be_seen(camera, T_camera_world * middle_world, brick_radius_m)) continue;
+    const Eigen::Vector3f first_camera =
+        (T_camera_world * (low_world + Eigen::Vector3d::Constant(0.5 * resolution_m_))).cast<float>();
+    for (std::size_t i = first; i < brick.end; ++i) {
+      Votes& votes = votes_[i];
+      const std::size_t offset = votes.offset;
+      const Eigen::Vector3f p_camera =
+          first_camera + steps[0][offset & 7U] + steps[1][offset >> 3U & 7U] + steps[2][offset >> 6U];
+      const float z = p_camera.z();
+      if (!(z > kNearest_m)) continue;
+      const float u = fx * p_camera.x() / z + cx + 0.5F;
+      const float v = fy * p_camera.y() / z + cy + 0.5F;
+      if (!(u >= 0.0F && v >= 0.0F && u < width && v < height)) continue;
+      const int x = static_cast<int>(u);
+      const int y = static_cast<int>(v);
+      const float measured_m = depth_m.at(x, y);
+      if (!(measured_m > 0.0F)) continue;
+      const auto margin_m = [this](float depth) {
+        return std::max(config_.margin_m, config_.margin_sigmas * depth_sigma_m(depth));
+      };
+      if (std::abs(measured_m - z) <= margin_m(measured_m)) {
+        ++votes.seen;
+        continue;
+      }
+      if (measured_m < z) continue;
+      const int radius_px =
+          std::min(static_cast<int>(std::ceil(config_.window_radius_m * fx / z)), kMaxWindowRadius_px);
+      const WindowDepth window = window_depth(windows_, x, y, radius_px);
+      if (window.nearest_m - z > margin_m(window.nearest_m) &&
+          window.measured_share >= config_.min_measured_share)
+        ++votes.through;
+    }
+  }
+}
+
+GhostVotes::Verdicts GhostVotes::verdicts() const {
+  std::vector<VoxelIndex> seen_through;
+  std::vector<std::uint8_t> occupied;
+  Verdicts verdicts;
+  std::size_t next = 0;
+  for (const Brick& brick : bricks_) {
+    for (; next < brick.end; ++next) {
+      const Votes& votes = votes_[next];
+      const VoxelIndex voxel = brick.first + in_brick(votes.offset);
+      const auto share = static_cast<float>(votes.seen + votes.through) * config_.min_through_share;
+      if (votes.through >= config_.min_through && static_cast<float>(votes.through) >= share) {
+        seen_through.push_back(voxel);
+        occupied.push_back(votes.occupied);
+      } else if (votes.occupied != 0) {
+        verdicts.still.push_back(voxel);
+      }
+    }
+  }
+  const double edge_voxels = static_cast<double>(config_.min_extent_m) / resolution_m_;
+  const std::vector<std::size_t> together = voxels_together(seen_through);
+  for (std::size_t i = 0; i < seen_through.size(); ++i) {
+    if (static_cast<double>(together[i]) >= 2.0 * edge_voxels * edge_voxels)
+      verdicts.ghosts.push_back(seen_through[i]);
+    else if (occupied[i] != 0)
+      verdicts.still.push_back(seen_through[i]);
+  }
+  return verdicts;
+}
+
+}  // namespace roomradar

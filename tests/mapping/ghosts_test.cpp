@@ -1,0 +1,271 @@
+// ghosts_test.cpp: what moved on goes from the map, what stayed stays.
+#include "mapping/ghosts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "mapping/ghost_removal.hpp"
+#include "mapping/surface.hpp"
+#include "mapping/types/error.hpp"
+#include "tests/support/exact_depth.hpp"
+#include "tests/support/painted_frame.hpp"
+
+namespace roomradar {
+namespace {
+
+using test::exact_frame;
+using test::looking_at;
+using test::Scene;
+
+constexpr Intrinsics kCamera{160, 120, 146.0, 146.0, 79.5, 59.5};
+constexpr double kResolution_m = 0.02;
+
+// A recording in memory.
+class FrameList final : public FrameSource {
+ public:
+  explicit FrameList(std::vector<Frame> frames, bool can_seek = true)
+      : frames_(std::move(frames)), can_seek_(can_seek) {}
+  ReadResult next(Frame& frame) override {
+    if (position_ >= frames_.size()) return {ReadStatus::kEnd, {}};
+    frame = frames_[position_++];
+    return {ReadStatus::kFrame, {}};
+  }
+  bool rewind() override {
+    position_ = 0;
+    return true;
+  }
+  bool seek(std::int64_t index) override {
+    if (!can_seek_) return false;
+    position_ = static_cast<std::size_t>(index);
+    return true;
+  }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override {
+    return static_cast<std::int64_t>(frames_.size());
+  }
+  [[nodiscard]] std::string name() const override { return "frames in memory"; }
+  [[nodiscard]] const std::vector<Frame>& frames() const { return frames_; }
+
+ private:
+  std::vector<Frame> frames_;
+  bool can_seek_;
+  std::size_t position_ = 0;
+};
+
+struct Scan {
+  StaticMap map{kResolution_m};
+  std::int64_t ghosts = 0;
+};
+
+// Fuses all frames at their own poses, moved by up to pose_noise_m, and removes ghosts.
+Scan scan(FrameList source, double pose_noise_m = 0.0) {
+  Scan scan;
+  std::vector<FusedFrame> fused;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off(-pose_noise_m, pose_noise_m);
+  for (const Frame& frame : source.frames()) {
+    Eigen::Isometry3d T_world_camera = *frame.T_world_camera;
+    if (pose_noise_m > 0.0)
+      T_world_camera.translation() += Eigen::Vector3d(off(random), off(random), off(random));
+    if (scan.map.fuse(frame, T_world_camera) != FuseStatus::kFused) continue;
+    const auto position = static_cast<std::int64_t>(fused.size());
+    fused.push_back({position, frame.index, frame.depth_camera, T_world_camera});
+  }
+  StageTimes times;
+  scan.ghosts = remove_ghosts(source, fused, {}, scan.map, times);
+  return scan;
+}
+
+// `count` frames from a camera that sways a little before the wall; scene_at(i) is what stands there.
+template <typename SceneAt>
+std::vector<Frame> record(int count, const SceneAt& scene_at, unsigned noise_seed = 1) {
+  std::vector<Frame> frames;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d eye(0.15 * std::sin(0.3 * i), 0.0, 0.05 * std::cos(0.3 * i));
+    Frame frame = exact_frame(scene_at(i), kCamera, looking_at(eye, {0.0, 2.0, 0.0}));
+    frame.index = i;
+    test::add_depth_noise(frame, noise_seed + static_cast<unsigned>(i));
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+Scene wall() { return test::plane(Eigen::Vector3d::UnitY(), 2.0); }
+Scene before_wall(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  return test::nearest_of(wall(), test::box({low, high}));
+}
+
+// Vertices of the surface, in the world.
+std::vector<Eigen::Vector3d> surface_of(const StaticMap& map) {
+  const Mesh mesh = extract_surface(map, {.min_component_area_m2 = 0.0F, .max_deviation_m = 0.0F});
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Eigen::Vector3f& v : mesh.vertices) vertices.emplace_back(mesh.origin + v.cast<double>());
+  return vertices;
+}
+
+std::int64_t count_before_wall(const std::vector<Eigen::Vector3d>& vertices, double margin_m) {
+  return std::count_if(vertices.begin(), vertices.end(),
+                       [=](const auto& v) { return v.y() < 2.0 - margin_m; });
+}
+
+std::int64_t occupied_before_wall(const StaticMap& map, double margin_m) {
+  std::int64_t count = 0;
+  map.visit_samples([&](const SurfaceSample& sample) {
+    const double y = (sample.voxel.y() + 0.5) * kResolution_m;
+    count += sample.occupancy == Occupancy::kOccupied && y < 2.0 - margin_m;
+  });
+  return count;
+}
+
+TEST(Ghosts, ABoxThatWasThereForHalfOfTheFramesVanishesAndTheWallBehindIsThere) {
+  // 20 cm wide, its face 7 cm before the wall: its signed distances reach into the wall's.
+  const auto frames = record(40, [](int i) {
+    return i < 20 ? before_wall({-0.1, 1.93, -0.1}, {0.1, 2.1, 0.1}) : wall();
+  });
+  const Scan scanned = scan(FrameList(frames));
+  EXPECT_GT(scanned.ghosts, 50);  // its face alone is 10 x 10 voxels
+  const auto vertices = surface_of(scanned.map);
+  EXPECT_EQ(count_before_wall(vertices, 0.03), 0);
+  EXPECT_EQ(occupied_before_wall(scanned.map, 0.04), 0);
+  // The wall where the box hid it: a vertex for each voxel, 1 cm off at most.
+  const auto behind = std::count_if(vertices.begin(), vertices.end(), [](const auto& v) {
+    return std::abs(v.x()) < 0.08 && std::abs(v.z()) < 0.08 && std::abs(v.y() - 2.0) < 0.01;
+  });
+  EXPECT_GE(behind, 49);
+}
+
+TEST(Ghosts, WhatCameLaterAndStayedForHalfOfTheFramesVanishesToo) {
+  const auto frames = record(40, [](int i) {
+    return i >= 20 ? before_wall({-0.1, 1.6, -0.1}, {0.1, 1.8, 0.1}) : wall();
+  });
+  const Scan scanned = scan(FrameList(frames));
+  EXPECT_EQ(count_before_wall(surface_of(scanned.map), 0.03), 0);
+  EXPECT_EQ(scanned.map.occupancy_at({0.0, 1.61, 0.0}), Occupancy::kFree);
+}
+
+TEST(Ghosts, AThinPoleStaysThoughThePosesAreACentimetreOff) {
+  // 4 cm wide, 3 pixels at this camera.
+  const auto frames = record(40, [](int) { return before_wall({-0.02, 1.5, -1.0}, {0.02, 1.54, 1.0}); });
+  const Scan scanned = scan(FrameList(frames), 0.01);
+  std::int64_t occupied = 0;
+  scanned.map.visit_samples([&](const SurfaceSample& sample) {
+    occupied += sample.occupancy == Occupancy::kOccupied && sample.voxel.y() * kResolution_m < 1.6;
+  });
+  EXPECT_EQ(scanned.ghosts, 0);
+  EXPECT_GE(occupied, 50);  // 1.2 m of it are in view: 60 voxels
+}
+
+TEST(Ghosts, WhatIsNeverSeenThroughIsLeftAsItIs) {
+  const auto frames = record(12, [](int) { return before_wall({-0.1, 1.6, -0.1}, {0.1, 1.8, 0.1}); });
+  const Scan scanned = scan(FrameList(frames));
+  EXPECT_EQ(scanned.ghosts, 0);
+  StaticMap fused_only(kResolution_m);
+  for (const Frame& frame : frames)
+    ASSERT_EQ(fused_only.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+  std::vector<SurfaceSample> expected, found;
+  fused_only.visit_samples([&](const SurfaceSample& sample) { expected.push_back(sample); });
+  scanned.map.visit_samples([&](const SurfaceSample& sample) { found.push_back(sample); });
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ASSERT_EQ(found[i].voxel, expected[i].voxel);
+    ASSERT_EQ(found[i].distance_m, expected[i].distance_m);
+  }
+}
+
+TEST(Ghosts, FramesWithoutDepthBehindAGhostAreNoEvidence) {
+  const Scene with_box = before_wall({-0.1, 1.6, -0.1}, {0.1, 1.8, 0.1});
+  auto frames = record(40, [&](int i) { return i < 20 ? with_box : wall(); });
+  // Where the box was, and round it, the later frames have no depth.
+  for (int i = 20; i < 40; ++i)
+    for (int y = 30; y < 90; ++y)
+      for (int x = 40; x < 120; ++x) frames[static_cast<std::size_t>(i)].depth_m.at(x, y) = 0.0F;
+  const Scan scanned = scan(FrameList(frames));
+  EXPECT_EQ(scanned.ghosts, 0);
+  EXPECT_EQ(scanned.map.occupancy_at({0.0, 1.61, 0.0}), Occupancy::kOccupied);
+}
+
+TEST(Ghosts, TheSameFramesGiveTheSameMapWhetherTheSourceCanSeekOrNot) {
+  const auto frames = record(30, [](int i) {
+    return i % 3 == 0 ? before_wall({-0.1, 1.6, -0.1}, {0.1, 1.8, 0.1}) : wall();
+  });
+  const Scan a = scan(FrameList(frames, true));
+  const Scan b = scan(FrameList(frames, false));
+  EXPECT_GT(a.ghosts, 50);
+  EXPECT_EQ(a.ghosts, b.ghosts);
+  std::vector<SurfaceSample> samples_a, samples_b;
+  a.map.visit_samples([&](const SurfaceSample& sample) { samples_a.push_back(sample); });
+  b.map.visit_samples([&](const SurfaceSample& sample) { samples_b.push_back(sample); });
+  ASSERT_EQ(samples_a.size(), samples_b.size());
+  for (std::size_t i = 0; i < samples_a.size(); ++i) {
+    ASSERT_EQ(samples_a[i].voxel, samples_b[i].voxel);
+    ASSERT_EQ(samples_a[i].distance_m, samples_b[i].distance_m);
+    ASSERT_EQ(samples_a[i].weight, samples_b[i].weight);
+  }
+}
+
+TEST(Ghosts, FramesThatDoNotFitTheirCameraSayNothing) {
+  StaticMap map(kResolution_m);
+  const auto frames = record(3, [](int) { return wall(); });
+  for (const Frame& frame : frames) ASSERT_EQ(map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+  GhostVotes votes(map);
+  Frame wrong = frames[0];
+  wrong.depth_camera.width_px = 80;
+  for (int i = 0; i < 5; ++i) votes.look(wrong, *wrong.T_world_camera);
+  votes.look(Frame{}, Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(votes.verdicts().ghosts.empty());
+  EXPECT_FALSE(votes.verdicts().still.empty());
+}
+
+TEST(Ghosts, AnEmptyMapHasNone) {
+  const StaticMap map(kResolution_m);
+  GhostVotes votes(map);
+  votes.look(record(1, [](int) { return wall(); })[0], Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(votes.verdicts().ghosts.empty());
+}
+
+TEST(Ghosts, ConfigsOutOfTheirRulesAreRefused) {
+  EXPECT_THROW(require_valid(GhostConfig{.margin_m = 0.0F}), Error);
+  EXPECT_THROW(require_valid(GhostConfig{.window_radius_m = -1.0F}), Error);
+  EXPECT_THROW(require_valid(GhostConfig{.min_through = 0}), Error);
+  EXPECT_THROW(require_valid(GhostConfig{.min_through_share = std::nanf("")}), Error);
+  EXPECT_THROW(require_valid(GhostConfig{.max_looks = 0}), Error);
+  EXPECT_NO_THROW(require_valid(GhostConfig{}));
+}
+
+TEST(DepthWindows, AgreeWithLookingAtEachPixel) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> depth(0.5F, 5.0F);
+  for (const auto& [width, height] : {std::pair{97, 71}, {40, 200}, {5, 3}, {1, 1}}) {
+    DepthImage depth_m(width, height);
+    for (float& d : depth_m.pixels) d = random() % 3 == 0 ? 0.0F : depth(random);
+    DepthWindows windows;
+    build_windows(depth_m, windows);
+    for (int i = 0; i < 2000; ++i) {
+      const int x = static_cast<int>(random() % static_cast<unsigned>(width));
+      const int y = static_cast<int>(random() % static_cast<unsigned>(height));
+      const int radius = static_cast<int>(random() % (kMaxWindowRadius_px + 1));
+      float nearest = std::numeric_limits<float>::infinity();
+      int measured = 0;
+      for (int v = y - radius; v <= y + radius; ++v)
+        for (int u = x - radius; u <= x + radius; ++u)
+          if (depth_m.contains(u, v) && depth_m.at(u, v) > 0.0F) {
+            nearest = std::min(nearest, depth_m.at(u, v));
+            ++measured;
+          }
+      const WindowDepth window = window_depth(windows, x, y, radius);
+      const bool inside = x >= radius && y >= radius && x + radius < width && y + radius < height;
+      if (inside) {
+        EXPECT_EQ(window.nearest_m, nearest);
+      }
+      EXPECT_LE(window.nearest_m, nearest);  // at the border more may count as in it, never less
+      const auto pixels = static_cast<float>((2 * radius + 1) * (2 * radius + 1));
+      EXPECT_FLOAT_EQ(window.measured_share, static_cast<float>(measured) / pixels);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace roomradar
