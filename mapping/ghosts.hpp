@@ -17,13 +17,13 @@ struct GhostConfig {
   float margin_sigmas = 4.0F;
   /// ... in every pixel of a window of this radius at the sample's depth, so that a pose that is a little off
   /// does not see past the edges of static things.
-  float window_radius_m = 0.04F;
+  float window_radius_m = 0.03F;
   float min_measured_share = 0.5F;  ///< of the window's pixels must have depth, the middle one always
   int min_through = 3;              ///< so many frames must see through a sample
   float min_through_share = 0.1F;   ///< and so many of those that see it or see through it
   /// Samples seen through that hang together are a ghost if they cover a square of this edge, at two samples
   /// for each face of a voxel; fewer are tracking errors at the edges of static things.
-  float min_extent_m = 0.1F;
+  float min_extent_m = 0.15F;
   int max_looks = 170;  ///< frames looked at, spread over the recording
 };
 

@@ -57,10 +57,10 @@ struct PrescanResult {
 /// Called after each frame of a pass: the stage ("track", "fuse" or "ghosts"), and what became of the frame.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
-/// Scans a room. The source is read twice: once to know where the camera was, once to fuse with the final
-/// poses. The map's world is the recording's own (recorded poses) or the first camera's (tracked), turned so
-/// that +z is up. Stages timed: read, track, optimise, fuse, surface, and frame (track and fuse of one frame
-/// together; no reading).
+/// Scans a room. The source is read to know where the camera was, again to fuse with the final poses, and in
+/// part twice more where something moved on and has to go from the map. The map's world is the recording's
+/// own (recorded poses) or the first camera's (tracked), turned so that +z is up. Stages timed: read, track,
+/// optimise, fuse, ghosts, surface, and frame (track and fuse of one frame together; no reading).
 ///
 /// @throws Error if the source cannot be rewound, has no frame at all, or not one frame's pose is trusted
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
