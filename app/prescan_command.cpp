@@ -72,6 +72,9 @@ int run(const PrescanCommand& command) {
   PrescanConfig config;
   config.resolution_m = command.resolution_m;
   config.poses = command.poses;
+  // Recorded poses may disagree with the depth by more than what tells a ghost from a wall; there it would
+  // eat walls.
+  config.remove_ghosts = command.poses == PoseOrigin::kTracked;
   require_can_become_map(command.map);
   require_writable(command.report);
   const std::unique_ptr<FrameSource> source = make_rewindable(open_source(command.source, command.frames));

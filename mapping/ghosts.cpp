@@ -92,6 +92,8 @@ std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) 
 
 void require_valid(const GhostConfig& c) {
   require(c.margin_m > 0.0F && std::isfinite(c.margin_m), "margin_m", c.margin_m, "must be > 0");
+  require(c.margin_per_m >= 0.0F && std::isfinite(c.margin_per_m), "margin_per_m", c.margin_per_m,
+          "must be >= 0");
   require(c.margin_sigmas >= 0.0F && std::isfinite(c.margin_sigmas), "margin_sigmas", c.margin_sigmas,
           "must be >= 0");
   require(c.window_radius_m >= 0.0F && c.window_radius_m <= 1.0F, "window_radius_m", c.window_radius_m,
@@ -167,7 +169,8 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
       const float measured_m = depth_m.at(x, y);
       if (!(measured_m > 0.0F)) continue;
       const auto margin_m = [this](float depth) {
-        return std::max(config_.margin_m, config_.margin_sigmas * depth_sigma_m(depth));
+        return std::max(
+            {config_.margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
       };
       if (std::abs(measured_m - z) <= margin_m(measured_m)) {
         ++votes.seen;
