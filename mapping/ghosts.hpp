@@ -15,9 +15,9 @@ struct GhostConfig {
   /// standard deviations of the measurement: noise and tracking errors are less.
   float margin_m = 0.03F;
   float margin_sigmas = 4.0F;
-  /// And by this more a metre of depth: a pose that is off by 2 degrees shifts a slanted surface by so much,
-  /// and sensors other than the Kinect are noisier far away.
-  float margin_per_m = 0.04F;
+  /// And by this more a metre of depth: a pose that is off by 1.7 degrees shifts a slanted surface by so
+  /// much, and sensors other than the Kinect are noisier far away.
+  float margin_per_m = 0.03F;
   /// ... in every pixel of a window of this radius at the sample's depth, so that a pose that is a little off
   /// does not see past the edges of static things.
   float window_radius_m = 0.03F;

@@ -24,7 +24,7 @@ struct UpDirection {
 /// Collects evidence frame by frame; frames whose pose is not trusted are not to be added.
 class UpEstimator {
  public:
-  /// Takes the frame's gravity, and the normals of its depth at a grid of 80 across, both turned into the
+  /// Takes the frame's gravity, and the normals of its depth at a grid of 20 across, both turned into the
   /// world.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 

@@ -121,9 +121,10 @@ std::int64_t occupied_before_wall(const StaticMap& map, double margin_m) {
 }
 
 TEST(Ghosts, ABoxThatWasThereForHalfOfTheFramesVanishesAndTheWallBehindIsThere) {
-  // 20 cm wide, its face 7 cm before the wall: its signed distances reach into the wall's.
+  // 20 cm wide, its face 9 cm before the wall, at 2 m: more than the margin, and its signed distances still
+  // reach into the wall's.
   const auto frames = record(40, [](int i) {
-    return i < 20 ? before_wall({-0.1, 1.93, -0.1}, {0.1, 2.1, 0.1}) : wall();
+    return i < 20 ? before_wall({-0.1, 1.91, -0.1}, {0.1, 2.1, 0.1}) : wall();
   });
   const Scan scanned = scan(FrameList(frames));
   EXPECT_GT(scanned.ghosts, 50);  // its face alone is 10 x 10 voxels
