@@ -108,6 +108,7 @@ int run(const FallthroughCommand& command) {
     rooms.emplace(name, std::make_unique<MappedRoom>(context, name, report.times));
 
   std::array<PolicyTotals, kPolicies.size()> totals;
+  nlohmann::json failures = nlohmann::json::array();
   {
     Progress progress("scenarios", command.scenarios);
     Frame frame;
@@ -137,6 +138,14 @@ int run(const FallthroughCommand& command) {
         if (came_m < scenario.limit_m) totals[i].contact_errors_m.push_back(std::abs(verdict.error_m));
         if (verdict.outcome == Outcome::kPassedThrough) ++totals[i].passed;
         if (verdict.outcome == Outcome::kStoppedFalse) ++totals[i].false_stops;
+        if (verdict.outcome != Outcome::kStoppedRight)
+          failures.push_back(
+              {{"scenario", number},
+               {"room", name},
+               {"occluder", to_string(scenario.occluder)},
+               {"surfaces", to_string(kPolicies[i])},
+               {"outcome", verdict.outcome == Outcome::kPassedThrough ? "passed" : "false stop"},
+               {"error_m", verdict.error_m}});
       }
       progress.step(name);
     }
@@ -157,6 +166,7 @@ int run(const FallthroughCommand& command) {
                                         {"frame_median_ms", median(t.frame_ms)}};
   }
   report.results["scenarios"] = command.scenarios;
+  report.results["failures"] = failures;
   write_report(report, command.report);
   return 0;
 }
