@@ -47,7 +47,6 @@ Tracking locate(Locator& locator, const Frame& frame, const Places& places, cons
     const Relocalisation found = relocalise(frame, places, locator.relocalise);
     if (found) tracking = align_with_model(locator, frame.depth_camera, found.T_world_camera, expected_depth);
     locator.T_world_camera.reset();
-    if (is_located(tracking)) ++locator.relocalisations;
   }
 
   if (!is_located(tracking)) {

@@ -22,7 +22,6 @@ struct Locator {
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< of the last frame; nothing while lost
   /// Motion from the frame before to the last one.
   Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
-  int relocalisations = 0;
 
   ViewPyramid live_pyramid, expected_pyramid;
   LiveView live;
