@@ -1,6 +1,8 @@
 // static_map.cpp: fusing into and asking the octree.
 #include "mapping/static_map.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -36,21 +38,21 @@ Key child_key(const Key& key, unsigned depth, unsigned i) {
 
 // Calls visit(node, key of its lowest voxel, depth) for every leaf, in Morton order.
 template <typename Visit>
-void visit_leaves(const RoomOcTree& tree, const RoomNode& node, const Key& key, unsigned depth,
+void for_leaves(const RoomOcTree& tree, const RoomNode& node, const Key& key, unsigned depth,
                   const Visit& visit) {
   bool is_leaf = true;
   for (unsigned i = 0; depth < kLeafDepth && i < 8; ++i) {
     const RoomNode* child = tree.child(node, i);
     if (!child) continue;
     is_leaf = false;
-    visit_leaves(tree, *child, child_key(key, depth, i), depth + 1, visit);
+    for_leaves(tree, *child, child_key(key, depth, i), depth + 1, visit);
   }
   if (is_leaf) visit(node, key, depth);
 }
 
 template <typename Visit>
-void visit_leaves(const RoomOcTree& tree, const Visit& visit) {
-  if (const RoomNode* root = tree.getRoot()) visit_leaves(tree, *root, Key::Zero(), 0, visit);
+void for_leaves(const RoomOcTree& tree, const Visit& visit) {
+  if (const RoomNode* root = tree.getRoot()) for_leaves(tree, *root, Key::Zero(), 0, visit);
 }
 
 // The leaf that holds a point, or null.
@@ -90,6 +92,42 @@ bool revise(RoomOcTree& tree, RoomNode& node, const Key& key, unsigned depth, fl
   }
   tree.summarise(node);
   return true;
+}
+
+// Adds to every leaf at or below a node.
+void add_log_odds(RoomOcTree& tree, RoomNode& node, float log_odds, const FusionConfig& config) {
+  if (!tree.nodeHasChildren(&node)) {
+    node.setLogOdds(std::clamp(node.getLogOdds() + log_odds, config.min_log_odds, config.max_log_odds));
+    return;
+  }
+  for (unsigned i = 0; i < 8; ++i) add_log_odds(tree, tree.ensure_child(node, i), log_odds, config);
+  tree.summarise(node);
+}
+
+// Changes the node at a key and depth, made where there is none, and sums up those above it.
+template <typename Change>
+void change_node(RoomOcTree& tree, RoomNode& node, const Key& key, unsigned depth, unsigned target_depth,
+                 const Change& change) {
+  if (depth == target_depth) return change(node);
+  if (node.getLogOdds() != 0.0F && !tree.nodeHasChildren(&node)) tree.expandNode(&node);
+  const unsigned shift = kLeafDepth - 1 - depth;
+  const auto digit = [&](int axis) { return static_cast<unsigned>(key[axis] >> shift) & 1U; };
+  RoomNode& child = tree.ensure_child(node, digit(0) | digit(1) << 1U | digit(2) << 2U);
+  change_node(tree, child, key, depth + 1, target_depth, change);
+  tree.summarise(node);
+}
+
+void require_cube(const VoxelIndex& lowest, int edge_voxels) {
+  const Key key = lowest.array() + kKeyOrigin;
+  const bool sound = edge_voxels > 0 && edge_voxels <= 1 << kLeafDepth &&
+                     std::has_single_bit(static_cast<unsigned>(edge_voxels)) &&
+                     (lowest.array() >= -kKeyOrigin).all() && (lowest.array() < kKeyOrigin).all() &&
+                     key.unaryExpr([&](int k) { return k & (edge_voxels - 1); }).isZero();
+  if (sound) return;
+  throw Error(
+      "voxel " + std::to_string(lowest.x()) + " " + std::to_string(lowest.y()) + " " +
+      std::to_string(lowest.z()) + " with an edge of " + std::to_string(edge_voxels) +
+      " is no leaf of an octree: it must lie within +-32768, on a multiple of its edge, a power of two");
 }
 
 double checked_resolution(double resolution_m) {
@@ -159,9 +197,51 @@ std::optional<SurfaceSample> StaticMap::sample_at(const Eigen::Vector3d& p_world
 }
 
 void StaticMap::visit_samples(const std::function<void(const SurfaceSample&)>& visit) const {
-  visit_leaves(octree_->tree, [&](const RoomNode& leaf, const Key& key, unsigned) {
+  for_leaves(octree_->tree, [&](const RoomNode& leaf, const Key& key, unsigned) {
     if (leaf.has_sample()) visit(sample_of(leaf, key));
   });
+}
+
+void StaticMap::visit_leaves(const std::function<void(const MapLeaf&)>& visit) const {
+  for_leaves(octree_->tree, [&](const RoomNode& leaf, const Key& key, unsigned depth) {
+    if (leaf.getLogOdds() != 0.0F)
+      visit({(key - kKeyOrigin).matrix(), 1 << (kLeafDepth - depth), leaf.getLogOdds()});
+  });
+}
+
+void StaticMap::add_evidence(const MapLeaf& leaf) {
+  require_cube(leaf.lowest_voxel, leaf.edge_voxels);
+  if (!std::isfinite(leaf.log_odds)) throw Error("log-odds of a leaf must be finite");
+  if (leaf.log_odds == 0.0F) return;
+  RoomOcTree& tree = octree_->tree;
+  const auto depth =
+      kLeafDepth - static_cast<unsigned>(std::countr_zero(static_cast<unsigned>(leaf.edge_voxels)));
+  change_node(tree, tree.ensure_root(), leaf.lowest_voxel.array() + kKeyOrigin, 0, depth,
+              [&](RoomNode& node) { add_log_odds(tree, node, leaf.log_odds, octree_->config); });
+}
+
+void StaticMap::add_evidence(const SurfaceSample& sample) {
+  require_cube(sample.voxel, 1);
+  if (!std::isfinite(sample.distance_m) || !(sample.weight > 0.0F) || !std::isfinite(sample.weight))
+    throw Error("a sample's distance must be finite, its weight finite and > 0");
+  RoomOcTree& tree = octree_->tree;
+  change_node(
+      tree, tree.ensure_root(), sample.voxel.array() + kKeyOrigin, 0, kLeafDepth, [&](RoomNode& leaf) {
+        const float sum = leaf.weight + sample.weight;
+        const float part = sample.weight / sum;
+        if (sample.has_colour) {
+          const float colour_part = leaf.colour_count > 0 ? part : 1.0F;
+          const auto blend = [colour_part](std::uint8_t own, std::uint8_t other) {
+            const float mean = static_cast<float>(own) + static_cast<float>(other - own) * colour_part;
+            return static_cast<std::uint8_t>(std::lround(mean));
+          };
+          leaf.colour = {blend(leaf.colour.r, sample.colour.r), blend(leaf.colour.g, sample.colour.g),
+                         blend(leaf.colour.b, sample.colour.b)};
+          leaf.colour_count = std::max<std::uint8_t>(leaf.colour_count, 1);
+        }
+        leaf.distance_m += (sample.distance_m - leaf.distance_m) * part;
+        leaf.weight = std::min(sum, octree_->config.max_weight);
+      });
 }
 
 void StaticMap::revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide) {
@@ -171,13 +251,16 @@ void StaticMap::revise_samples(const std::function<SampleFate(const SurfaceSampl
 }
 
 double StaticMap::resolution_m() const { return octree_->tree.getResolution(); }
+std::size_t StaticMap::memory_bytes() const {
+  return octree_->tree.size() * (sizeof(RoomNode) + sizeof(void*));  // one table of 8 pointers for 8 children
+}
 double StaticMap::reach_m() const { return resolution_m() * kKeyOrigin; }
 const FusionConfig& StaticMap::config() const { return octree_->config; }
 
 MapCounts StaticMap::counts() const {
   MapCounts counts;
   const RoomOcTree& tree = octree_->tree;
-  visit_leaves(tree, [&](const RoomNode& leaf, const Key& key, unsigned depth) {
+  for_leaves(tree, [&](const RoomNode& leaf, const Key& key, unsigned depth) {
     if (leaf.has_sample()) ++counts.sampled_leaves;
     const Occupancy occupancy = occupancy_of(leaf);
     if (occupancy == Occupancy::kUnknown) return;

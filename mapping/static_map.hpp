@@ -34,8 +34,15 @@ struct SurfaceSample {
   Occupancy occupancy = Occupancy::kUnknown;
   float distance_m = 0.0F;  ///< signed, along the viewing axis; > 0 on the free side
   float weight = 0.0F;      ///< sum of (sigma at 1 m / sigma)^2 over the frames, capped
-  Rgb colour;
+  Rgb colour{};
   bool has_colour = false;
+};
+
+/// A leaf of the octree, of any size: a cube of one answer.
+struct MapLeaf {
+  VoxelIndex lowest_voxel = VoxelIndex::Zero();  ///< each coordinate a multiple of edge_voxels
+  int edge_voxels = 1;                           ///< a power of two
+  float log_odds = 0.0F;                         ///< of being occupied: > 0 occupied, < 0 free, 0 unknown
 };
 
 /// What becomes of a sample when the map is revised.
@@ -76,6 +83,16 @@ class StaticMap {
   /// Calls `visit` for each voxel that holds a signed distance, in Morton order (deterministic).
   void visit_samples(const std::function<void(const SurfaceSample&)>& visit) const;
 
+  /// Calls `visit` for each free or occupied leaf, as large as it is stored, in Morton order (deterministic).
+  void visit_leaves(const std::function<void(const MapLeaf&)>& visit) const;
+
+  /// Adds what another map of this resolution knows: its log-odds to all voxels of the cube, clamped as for
+  /// frames. Throws Error if the cube is none of the octree's or the log-odds are not finite.
+  void add_evidence(const MapLeaf& leaf);
+  /// The same for a voxel's signed distance and colour, weighted as measured; its occupancy is not looked at.
+  /// Throws Error if the voxel is past the octree's reach, or a number is not finite or the weight not > 0.
+  void add_evidence(const SurfaceSample& sample);
+
   /// Asks for the fate of each voxel that holds a signed distance, in the same order.
   void revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide);
 
@@ -83,6 +100,8 @@ class StaticMap {
   /// Half the edge of the cube around the world's origin that voxels can exist in, m.
   [[nodiscard]] double reach_m() const;
   [[nodiscard]] const FusionConfig& config() const;
+  /// Of the octree's nodes; at once, so that a cap can be kept after each frame.
+  [[nodiscard]] std::size_t memory_bytes() const;
   /// Walks the whole tree: some 20 ms a million nodes.
   [[nodiscard]] MapCounts counts() const;
 

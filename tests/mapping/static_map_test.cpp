@@ -238,6 +238,84 @@ TEST(StaticMap, EachResolutionWithinTheRulesWorksAndOthersAreNamed) {
   EXPECT_NE(error_of([] { StaticMap(0.01, {.max_range_m = -1.0F}); }).find("max_range_m"), std::string::npos);
 }
 
+// The map that a map's leaves and samples say it is.
+StaticMap rebuilt(const StaticMap& from) {
+  StaticMap to(from.resolution_m());
+  from.visit_leaves([&](const MapLeaf& leaf) { to.add_evidence(leaf); });
+  from.visit_samples([&](const SurfaceSample& sample) { to.add_evidence(sample); });
+  return to;
+}
+
+TEST(StaticMap, ItsLeavesAndSamplesAreAllThereIs) {
+  StaticMap map(0.02);
+  map.fuse(exact_frame(
+               test::nearest_of(test::sphere({1.5, 0, 0}, 0.4), test::plane(Eigen::Vector3d::UnitX(), 2.5)),
+               kCamera, kAtOrigin, Rgb{7, 8, 9}),
+           kAtOrigin);
+  expect_equal(map, rebuilt(map));
+}
+
+TEST(StaticMap, LeavesTileWhatIsKnownInMortonOrder) {
+  StaticMap map(0.02);
+  map.fuse(wall_at(2.01), kAtOrigin);
+  std::size_t free = 0, occupied = 0, largest = 0;
+  map.visit_leaves([&](const MapLeaf& leaf) {
+    const Eigen::Vector3d middle =
+        (leaf.lowest_voxel.cast<double>().array() + 0.5 * leaf.edge_voxels).matrix() * map.resolution_m();
+    ASSERT_EQ(map.occupancy_at(middle), leaf.log_odds > 0.0F ? Occupancy::kOccupied : Occupancy::kFree);
+    ++(leaf.log_odds > 0.0F ? occupied : free);
+    largest = std::max(largest, static_cast<std::size_t>(leaf.edge_voxels));
+  });
+  EXPECT_EQ(free, map.counts().free_leaves);
+  EXPECT_EQ(occupied, map.counts().occupied_leaves);
+  EXPECT_GE(largest, 8U);  // 16 cm of free space
+}
+
+TEST(StaticMap, EvidenceAddsUpWithinTheClampingAndCubesReachEveryVoxel) {
+  StaticMap map(0.02);
+  map.fuse(wall_at(2.01), kAtOrigin);
+  const MapLeaf cube{{96, -16, -16}, 16, -1.0F};  // x in 1.92..2.24 m: through the wall
+  for (int i = 0; i < 20; ++i) map.add_evidence(cube);
+  for (double x_m = 1.93; x_m < 2.24; x_m += 0.02)
+    EXPECT_EQ(map.occupancy_at({x_m, -0.01, -0.01}), Occupancy::kFree);
+  EXPECT_EQ(map.occupancy_at({2.01, 0.4, 0}), Occupancy::kOccupied);
+  map.visit_leaves([&](const MapLeaf& leaf) {
+    ASSERT_GE(leaf.log_odds, map.config().min_log_odds - 1e-3F);
+    ASSERT_LE(leaf.log_odds, map.config().max_log_odds + 1e-3F);
+  });
+  map.add_evidence(MapLeaf{{100, -1, -1}, 1, 9.0F});
+  EXPECT_EQ(map.occupancy_at({2.01, -0.01, -0.01}), Occupancy::kOccupied);
+}
+
+TEST(StaticMap, SamplesOfTwoMapsMeetByTheirWeights) {
+  StaticMap map(0.02);
+  map.add_evidence(SurfaceSample{
+      .voxel = {5, 5, 5}, .distance_m = 0.01F, .weight = 3.0F, .colour = {10, 0, 90}, .has_colour = true});
+  map.add_evidence(SurfaceSample{
+      .voxel = {5, 5, 5}, .distance_m = 0.03F, .weight = 1.0F, .colour = {50, 0, 10}, .has_colour = true});
+  const auto sample = map.sample_at({0.11, 0.11, 0.11});
+  ASSERT_TRUE(sample);
+  EXPECT_NEAR(sample->distance_m, 0.015F, 1e-5);
+  EXPECT_NEAR(sample->weight, 4.0F, 0.05);
+  EXPECT_EQ(sample->colour, (Rgb{20, 0, 70}));
+  EXPECT_EQ(sample->occupancy, Occupancy::kUnknown);
+}
+
+TEST(StaticMap, EvidenceThatCannotBeIsNamed) {
+  StaticMap map(0.02);
+  for (const MapLeaf& bad :
+       {MapLeaf{{0, 0, 0}, 3, 1.0F}, MapLeaf{{1, 0, 0}, 2, 1.0F}, MapLeaf{{32768, 0, 0}, 1, 1.0F},
+        MapLeaf{{0, 0, 0}, 0, 1.0F}, MapLeaf{{0, 0, 0}, -4, 1.0F}})
+    EXPECT_NE(error_of([&] { map.add_evidence(bad); }).find("no leaf of an octree"), std::string::npos);
+  EXPECT_NE(error_of([&] {
+              map.add_evidence(MapLeaf{{0, 0, 0}, 1, std::nanf("")});
+            }).find("finite"),
+            std::string::npos);
+  EXPECT_NE(error_of([&] { map.add_evidence(SurfaceSample{.weight = 0.0F}); }).find("weight"),
+            std::string::npos);
+  EXPECT_EQ(map.counts().nodes, 0U);
+}
+
 class StaticMapFile : public ::testing::Test {
  protected:
   StaticMapFile() : map_(0.0123456789) {
