@@ -95,6 +95,10 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
   add_choice(*sub, "--poses", command.poses, kPoses,
              "find the camera's poses (tracked), or take the recording's own");
   add_frames_option(*sub, command.frames);
+  sub->add_option("--hold-out", command.hold_out,
+                  "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them")
+      ->check(CLI::Range(std::int64_t{2}, std::int64_t{1'000'000}))
+      ->type_name("N");
   add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });
 }

@@ -17,6 +17,7 @@ struct PrescanCommand {
   double resolution_m = 0.01;
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
+  std::int64_t hold_out = 0;  ///< N > 0: every Nth frame judges the map instead of making it
   std::string report;
 };
 

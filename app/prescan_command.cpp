@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/held_out.hpp"
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
@@ -40,7 +41,13 @@ nlohmann::json results_of(const PrescanResult& scanned) {
   return results;
 }
 
-void print_summary(const PrescanCommand& command, const PrescanResult& scanned) {
+nlohmann::json to_json(const HeldOutScore& score) {
+  return {{"frames", score.frames}, {"pixels", score.pixels}, {"median_m", score.median_m},
+          {"bias_m", score.bias_m}, {"cover", score.cover},   {"outliers", score.outliers}};
+}
+
+void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
+                   const std::optional<HeldOutScore>& held_out) {
   const PrescanCounts& counts = scanned.counts;
   std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, up from %s\n", command.map.c_str(),
               static_cast<long long>(counts.frames_tracked), static_cast<long long>(counts.frames_read),
@@ -57,6 +64,9 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned) 
   if (counts.against_recorded)
     std::printf("trajectory against the recorded poses: RMSE %.1f mm, at most %.1f mm\n",
                 1e3 * counts.against_recorded->rmse_m, 1e3 * counts.against_recorded->max_m);
+  if (held_out)
+    std::printf("%lld frames held out: depth against the mesh %.1f mm median, %.2f %% covered\n",
+                static_cast<long long>(held_out->frames), 1e3 * held_out->median_m, 1e2 * held_out->cover);
 }
 
 }  // namespace
@@ -67,11 +77,13 @@ int run(const PrescanCommand& command) {
   report.source = command.source;
   report.settings = {
       {"map", command.map}, {"resolution_m", command.resolution_m}, {"poses", to_string(command.poses)}};
+  if (command.hold_out > 0) report.settings["hold_out"] = command.hold_out;
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   PrescanConfig config;
   config.resolution_m = command.resolution_m;
   config.poses = command.poses;
+  config.hold_out = command.hold_out;
   // Recorded poses may disagree with the depth by more than what tells a ghost from a wall; there it would
   // eat walls.
   config.remove_ghosts = command.poses == PoseOrigin::kTracked;
@@ -96,8 +108,16 @@ int run(const PrescanCommand& command) {
   report.frames_read = scanned.counts.frames_read;
   report.frames_skipped = scanned.counts.frames_skipped;
   report.results = results_of(scanned);
+  std::optional<HeldOutScore> held_out;
+  if (command.hold_out > 0) {
+    const HeldOutScore score = report.times.timed("held_out", [&] {
+      return score_held_out(*source, scanned.map.mesh, scanned.map.trajectory, command.hold_out);
+    });
+    report.results["held_out"] = to_json(score);
+    held_out = score;
+  }
   write_report(report, command.report);
-  print_summary(command, scanned);
+  print_summary(command, scanned, held_out);
   return 0;
 }
 

@@ -77,6 +77,10 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
 
 }  // namespace
 
+bool is_held_out(std::int64_t frame_index, std::int64_t hold_out) {
+  return hold_out > 0 && frame_index % hold_out == hold_out / 2;
+}
+
 std::string_view to_string(PoseOrigin poses) {
   return poses == PoseOrigin::kTracked ? "tracked" : "recorded";
 }
@@ -120,6 +124,10 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   while (read(source, times, frame, second_pass)) {
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end()) continue;
+    if (is_held_out(frame.index, config.hold_out)) {
+      ++counts.frames_held_out;
+      continue;
+    }
     const Clock::time_point start = Clock::now();
     const FuseStatus fused = map.octree.fuse(frame, pose->second);
     const double fuse_ms = ms_since(start);
@@ -153,6 +161,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   map.info.up_source = to_string(found.up.source);
   map.info.settings = {{"resolution_m", std::to_string(config.resolution_m)},
                        {"poses", std::string(to_string(config.poses))}};
+  if (config.hold_out > 0) map.info.settings["hold_out"] = std::to_string(config.hold_out);
   if (config.poses == PoseOrigin::kRecorded) {
     map.info.T_world_recorded = T_level;
   } else {

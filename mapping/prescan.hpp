@@ -30,10 +30,15 @@ struct PrescanConfig {
   double resolution_m = 0.01;  ///< edge of the octree's smallest cells
   PoseOrigin poses = PoseOrigin::kTracked;
   OdometryConfig odometry;
+  std::int64_t hold_out = 0;  ///< N > 0: frames that is_held_out names are tracked, but not fused
   bool remove_ghosts = true;  ///< take out of the map what moved on during the scan
   GhostConfig ghosts;
   SurfaceConfig surface;
 };
+
+/// Every hold_out-th frame, from the middle of the first so many on: frame_index mod N = N / 2. None for N
+/// < 1.
+bool is_held_out(std::int64_t frame_index, std::int64_t hold_out);
 
 /// What happened to the frames, and how well the trajectory fits the recorded one where there is one.
 struct PrescanCounts {
@@ -41,7 +46,8 @@ struct PrescanCounts {
   std::int64_t frames_skipped = 0;  ///< unreadable ones
   std::int64_t frames_tracked = 0;  ///< with a pose that is trusted
   std::int64_t frames_fused = 0;
-  std::int64_t frames_lost = 0;  ///< without one; not fused
+  std::int64_t frames_lost = 0;      ///< without one; not fused
+  std::int64_t frames_held_out = 0;  ///< tracked, and kept from the map to judge it
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
   std::int64_t ghost_voxels = 0;  ///< surface that later, or earlier, frames see through; taken out

@@ -50,7 +50,7 @@ class CommandLine : public ::testing::Test {
     folder_ = fs::path(::testing::TempDir()) / ("roomradar_cli_" + std::to_string(getpid()));
     fs::create_directories(folder_);
     scanned_ = roomradar("prescan 'sim:table?frames=40&width=160' --map " + map() +
-                         " --resolution 0.03 --report " + (folder_ / "prescan.json").string());
+                         " --resolution 0.03 --hold-out 10 --report " + (folder_ / "prescan.json").string());
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
   static std::string map() { return (folder_ / "map").string(); }
@@ -78,6 +78,11 @@ TEST_F(CommandLine, PrescanLeavesAMapThatVerifiesAndAReport) {
   EXPECT_EQ(report["frames_read"], 40);
   EXPECT_GT(report["map"]["triangles"], 1000);
   EXPECT_LT(report["ate_rmse_m"], 0.05);
+  EXPECT_EQ(report["frames_tracked"], 40);
+  EXPECT_EQ(report["frames_fused"], 36);
+  EXPECT_EQ(report["held_out"]["frames"], 4);
+  EXPECT_LT(report["held_out"]["median_m"], 0.03);
+  EXPECT_GT(report["held_out"]["cover"], 0.5);
 }
 
 TEST_F(CommandLine, MapInfoAndEveryExportWork) {
@@ -123,6 +128,7 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar(prescan + " --resolution -0.01"), 2, "0.001");
   expect_fault(roomradar(prescan + " --frames 9:3"), 2, "A:B");
   expect_fault(roomradar(prescan + " --frames x"), 2, "A:B");
+  expect_fault(roomradar(prescan + " --hold-out 1"), 2, "--hold-out");
   expect_fault(roomradar(prescan + " --poses guessed"), 2, "recorded|tracked");
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
