@@ -113,18 +113,31 @@ void measure(const Mesh& mesh, const Eigen::Vector3d& area_along_border, BorderL
 std::vector<BorderLoop> border_loops(const Mesh& mesh) {
   const HalfEdges edges(mesh);
   std::vector<bool> walked(3 * mesh.triangles.size(), false);
+  std::vector<std::uint32_t> place_on_path(mesh.vertices.size(), kNone);
+  std::vector<std::uint32_t> path;  // border edges walked that are in no loop yet
   std::vector<BorderLoop> loops;
-  for (std::uint32_t first = 0; first < walked.size(); ++first) {
-    if (walked[first] || !edges.is_border(first)) continue;
+  const auto close_loop = [&](std::size_t from) {
     BorderLoop loop;
     Eigen::Vector3d area_along_border = Eigen::Vector3d::Zero();
-    for (std::uint32_t e = first; e != kNone && !walked[e]; e = edges.next_on_border(e)) {
-      walked[e] = true;
-      loop.vertices.push_back(edges.start(e));
-      area_along_border += doubled_area(mesh, mesh.triangles[e / 3]);
+    for (std::size_t i = from; i < path.size(); ++i) {
+      place_on_path[edges.start(path[i])] = kNone;
+      loop.vertices.push_back(edges.start(path[i]));
+      area_along_border += doubled_area(mesh, mesh.triangles[path[i] / 3]);
     }
+    path.resize(from);
     measure(mesh, area_along_border, loop);
     loops.push_back(std::move(loop));
+  };
+  for (std::uint32_t first = 0; first < walked.size(); ++first) {
+    if (walked[first] || !edges.is_border(first)) continue;
+    for (std::uint32_t e = first; e != kNone && !walked[e]; e = edges.next_on_border(e)) {
+      // A path that comes back to a vertex has gone round a hole that touches another one there.
+      if (place_on_path[edges.start(e)] != kNone) close_loop(place_on_path[edges.start(e)]);
+      place_on_path[edges.start(e)] = static_cast<std::uint32_t>(path.size());
+      walked[e] = true;
+      path.push_back(e);
+    }
+    close_loop(0);
   }
   std::stable_sort(loops.begin(), loops.end(),
                    [](const BorderLoop& a, const BorderLoop& b) { return a.length_m > b.length_m; });

@@ -23,9 +23,9 @@ struct BorderLoop {
   bool encloses_surface = false;
 };
 
-/// All border loops of a mesh, longest first, ties by their lowest vertex. Where borders touch at a vertex
-/// the loops are parted along the triangles' fans, so that each border edge is in exactly one loop. An edge
-/// used twice in one direction (no orientable surface has one) counts as no border.
+/// All border loops of a mesh, longest first, ties by their lowest vertex. A loop passes each of its vertices
+/// once: holes that touch at a vertex are two loops. Each border edge is in exactly one. An edge used twice
+/// in one direction (no orientable surface has one) counts as no border.
 std::vector<BorderLoop> border_loops(const Mesh& mesh);
 
 }  // namespace roomradar
