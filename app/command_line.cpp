@@ -99,6 +99,13 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
                   "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them")
       ->check(CLI::Range(std::int64_t{2}, std::int64_t{1'000'000}))
       ->type_name("N");
+  sub->add_flag("--resume", command.resume,
+                "go on with the scan of this map that was cut off (DIR.unfinished), or else\n"
+                "add what SOURCE shows to the map that is in DIR");
+  sub->add_option("--checkpoint-every", command.checkpoint_every_s,
+                  "seconds between two checkpoints (3); 0: none, then nothing can be resumed")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->type_name("S");
   add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });
 }

@@ -18,6 +18,8 @@ struct PrescanCommand {
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
   std::int64_t hold_out = 0;  ///< N > 0: every Nth frame judges the map instead of making it
+  bool resume = false;              ///< go on with a scan that was cut off, or with a map that is there
+  double checkpoint_every_s = 3.0;  ///< 0: none
   std::string report;
 };
 

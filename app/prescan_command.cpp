@@ -4,10 +4,9 @@
 
 #include "app/commands.hpp"
 #include "app/held_out.hpp"
-#include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
-#include "app/sources/spooled_source.hpp"
+#include "app/unfinished_scan.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/types/error.hpp"
 
@@ -69,6 +68,16 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
                 static_cast<long long>(held_out->frames), 1e3 * held_out->median_m, 1e2 * held_out->cover);
 }
 
+/// The map is saved: the checkpoints go, and what was wrong with them is said.
+void finish(Checkpoints& checkpoints) {
+  for (const std::string& fault : checkpoints.faults())
+    std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
+  checkpoints.remove();
+  if (checkpoints.failures() > 0)
+    std::fprintf(stderr, "roomradar: %s: %lld checkpoints could not be written; is the disk full?\n",
+                 checkpoints.folder().c_str(), static_cast<long long>(checkpoints.failures()));
+}
+
 }  // namespace
 
 int run(const PrescanCommand& command) {
@@ -89,7 +98,9 @@ int run(const PrescanCommand& command) {
   config.remove_ghosts = command.poses == PoseOrigin::kTracked;
   require_can_become_map(command.map);
   require_writable(command.report);
-  const std::unique_ptr<FrameSource> source = make_rewindable(open_source(command.source, command.frames));
+  ScanStart start = start_scan(command);
+  const std::unique_ptr<FrameSource>& source = start.source;
+  if (start.map) config.resolution_m = start.map->octree.resolution_m();
 
   std::unique_ptr<Progress> progress;
   std::string stage_shown;
@@ -101,9 +112,11 @@ int run(const PrescanCommand& command) {
     }
     progress->step(note);
   };
-  const PrescanResult scanned = prescan(*source, config, report.times, show);
+  const PrescanResult scanned =
+      prescan(*source, config, report.times, show, {start.checkpoints.get(), std::move(start.map)});
   progress.reset();
   report.times.timed("save", [&] { save_map(command.map, scanned.map); });
+  if (start.checkpoints) finish(*start.checkpoints);
 
   report.frames_read = scanned.counts.frames_read;
   report.frames_skipped = scanned.counts.frames_skipped;

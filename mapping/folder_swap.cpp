@@ -21,15 +21,6 @@ namespace fs = std::filesystem;
               (reason == ENOSPC || reason == EDQUOT ? "; free some space and save again" : ""));
 }
 
-void sync(const fs::path& path, int kind) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | kind);
-  if (descriptor < 0) fail(path, "cannot be opened to sync it", errno);
-  const int result = ::fsync(descriptor);
-  const int reason = errno;
-  ::close(descriptor);
-  if (result != 0) fail(path, "does not reach the disk", reason);
-}
-
 fs::path parent_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
@@ -39,6 +30,15 @@ fs::path beside(const fs::path& target, const char* word) {
 }
 
 }  // namespace
+
+void sync_to_disk(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path, "cannot be opened to sync it", errno);
+  const int result = ::fsync(descriptor);
+  const int reason = errno;
+  ::close(descriptor);
+  if (result != 0) fail(path, "does not reach the disk", reason);
+}
 
 PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_(beside(target, "partial")) {
   std::error_code fault;
@@ -55,8 +55,8 @@ PartialFolder::~PartialFolder() {
 }
 
 void PartialFolder::put_in_place() {
-  for (const fs::directory_entry& entry : fs::directory_iterator(partial_)) sync(entry.path(), 0);
-  sync(partial_, O_DIRECTORY);
+  for (const fs::directory_entry& entry : fs::directory_iterator(partial_)) sync_to_disk(entry.path());
+  sync_to_disk(partial_);
   if (!fs::exists(fs::symlink_status(target_))) {
     if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) != 0 &&
         ((errno != EINVAL && errno != ENOSYS) || ::rename(partial_.c_str(), target_.c_str()) != 0))
@@ -75,7 +75,7 @@ void PartialFolder::put_in_place() {
     std::error_code ignored;
     fs::remove_all(aside, ignored);
   }
-  sync(parent_of(target_), O_DIRECTORY);
+  sync_to_disk(parent_of(target_));
 }
 
 }  // namespace roomradar

@@ -4,6 +4,10 @@
 
 namespace roomradar {
 
+/// Waits until a file, or the list of names in a folder, is on the disk. Throws Error if it does not get
+/// there.
+void sync_to_disk(const std::filesystem::path& path);
+
 /// A new folder beside `target` (target.partial-PID), removed again unless it is put in place.
 class PartialFolder {
  public:

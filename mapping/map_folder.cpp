@@ -36,15 +36,6 @@ constexpr std::uintmax_t kMaxInfoBytes = 1U << 20U;
   throw Error(path.string() + ": " + fault);
 }
 
-fs::path tidy(const fs::path& folder) {
-  if (folder.empty()) throw Error("the map's folder has no name; give one, such as maps/kitchen");
-  fs::path path = folder.lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();  // a trailing slash
-  if (path.filename() == "." || path.filename() == ".." || !path.has_filename())
-    fail(folder, "is no name for a map's folder; give a new one, such as maps/kitchen");
-  return path;
-}
-
 // What save_map may replace: nothing, an empty folder, or one that holds a map and nothing else.
 void require_replaceable(const fs::path& folder) {
   std::error_code fault;
@@ -126,10 +117,19 @@ std::string extents(const Eigen::AlignedBox3d& box) {
 
 }  // namespace
 
-void require_can_become_map(const fs::path& folder) { require_replaceable(tidy(folder)); }
+fs::path tidy_map_name(const fs::path& folder) {
+  if (folder.empty()) throw Error("the map's folder has no name; give one, such as maps/kitchen");
+  fs::path path = folder.lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // a trailing slash
+  if (path.filename() == "." || path.filename() == ".." || !path.has_filename())
+    fail(folder, "is no name for a map's folder; give a new one, such as maps/kitchen");
+  return path;
+}
+
+void require_can_become_map(const fs::path& folder) { require_replaceable(tidy_map_name(folder)); }
 
 void save_map(const fs::path& folder, const SavedMap& map) {
-  const fs::path target = tidy(folder);
+  const fs::path target = tidy_map_name(folder);
   require_replaceable(target);
   if (map.mesh.triangles.empty())
     fail(target, "not saved: the map has no surface; were there frames with depth and trusted poses?");

@@ -52,6 +52,9 @@ struct SavedMap {
   std::vector<TimedPose> trajectory;
 };
 
+/// The folder's name without `.`, `..` and a slash at its end. Throws Error if that is no name for a map.
+std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
+
 /// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it: a check to
 /// make before minutes of work.
 void require_can_become_map(const std::filesystem::path& folder);

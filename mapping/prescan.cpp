@@ -5,7 +5,11 @@
 #include <map>
 #include <utility>
 
+#include "mapping/checkpoints.hpp"
 #include "mapping/ghost_removal.hpp"
+#include "mapping/map_merge.hpp"
+#include "mapping/prescan_state.hpp"
+#include "mapping/registration.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -37,42 +41,88 @@ Tracking recorded_pose(const Frame& frame) {
   return tracking;
 }
 
-/// Where the camera was in each frame, and which way is up there.
-struct Whereabouts {
-  std::vector<TrackedFrame> frames;
-  Places places;
-  UpDirection up;
-  std::vector<TimedPose> recorded;
-};
+/// Passes over frames that a checkpoint has behind it, without reading them where the source can.
+void skip_frames(FrameSource& source, std::int64_t count) {
+  Frame frame;
+  std::int64_t position = source.seek(count - 1) ? count - 1 : 0;
+  while (position < count && source.next(frame).status != ReadStatus::kEnd) ++position;
+  if (position < count)
+    throw Error(source.name() + ": has " + std::to_string(position) +
+                " frames, but the scan to be resumed had read " + std::to_string(count) +
+                "; is it the same recording?");
+}
+
+/// Writes the state beside the work when it is time; between two frames that is put off while the last one is
+/// being written.
+template <typename Pass>
+void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, bool between_frames = true) {
+  if (!checkpoints || !checkpoints->is_due(/*wait=*/!between_frames)) return;
+  checkpoints->write(stage,
+                     [&](const auto& into, const auto& previous) { write_state(pass, into, previous); });
+}
 
 Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, StageTimes& times,
-                             const PrescanProgress& progress, PrescanCounts& counts,
+                             const PrescanProgress& progress, TrackingPass& pass, Checkpoints* /*checkpoints*/,
                              std::map<std::int64_t, double>& track_ms) {
-  Odometry odometry(config.odometry);
-  UpEstimator up;
-  Whereabouts found;
   Frame frame;
-  while (read(source, times, frame, counts)) {
+  while (read(source, times, frame, pass.counts)) {
     const Clock::time_point start = Clock::now();
     Tracking tracking;
     if (config.poses == PoseOrigin::kTracked) {
-      tracking = odometry.track(frame);
+      tracking = pass.odometry.track(frame);
     } else {
       tracking = recorded_pose(frame);
-      if (tracking) odometry.add_posed(frame, tracking.T_world_camera);
+      if (tracking) pass.odometry.add_posed(frame, tracking.T_world_camera);
     }
     track_ms[frame.index] = ms_since(start);
     times.add_ms("track", track_ms[frame.index]);
-    if (tracking) up.add(frame, tracking.T_world_camera);
-    if (frame.T_world_camera) found.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
+    if (tracking) pass.up.add(frame, tracking.T_world_camera);
+    if (frame.T_world_camera) pass.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
     if (progress) progress("track", std::string(to_string(tracking.status)));
   }
-  found.frames = times.timed("optimise", [&] { return odometry.optimise(); });
-  found.up = up.estimate();
-  counts.keyframes = odometry.counts().keyframes;
-  counts.loops_found = odometry.counts().loops_found;
-  found.places = odometry.take_places();
+  Whereabouts found;
+  found.frames = times.timed("optimise", [&] { return pass.odometry.optimise(); });
+  found.up = pass.up.estimate();
+  found.recorded = std::move(pass.recorded);
+  pass.counts.keyframes = pass.odometry.counts().keyframes;
+  pass.counts.loops_found = pass.odometry.counts().loops_found;
+  found.places = pass.odometry.take_places();
   return found;
+}
+
+/// From the tracker's world to the map's: to one that is there already, or else turned so that +z is up.
+Eigen::Isometry3d place_in_world(const Whereabouts& found, const std::optional<SavedMap>& map,
+                                 const std::string& source) {
+  if (!map) return level_rotation(found.up.up_world);
+  constexpr std::size_t kPoints = 12'000;
+  const Registration registration =
+      register_to(map->octree, map->places, found.places, surface_of(found.places, kPoints));
+  if (!registration)
+    throw Error(source +
+                ": cannot be placed in the map that it is to be added to: " + describe(registration) +
+                "; the map is as it was. Begin where the map was scanned, or save as another map");
+  return registration.T_a_b;
+}
+
+/// The first pass, from its start or from a checkpoint; or its result, as a checkpoint of the second has it.
+FusingPass track(FrameSource& source, const PrescanConfig& config, StageTimes& times,
+                 const PrescanProgress& progress, PrescanStart& start,
+                 std::map<std::int64_t, double>& track_ms) {
+  const std::optional<Checkpoint> checkpoint = start.checkpoints ? start.checkpoints->resume() : std::nullopt;
+  if (checkpoint && checkpoint->stage == kFusingStage) return read_fusing_pass(*checkpoint);
+  TrackingPass pass(config.odometry);
+  if (checkpoint) {
+    pass = read_tracking_pass(*checkpoint, config.odometry);
+    skip_frames(source, pass.counts.frames_read);
+  }
+  FusingPass fusing;
+  fusing.found = find_whereabouts(source, config, times, progress, pass, start.checkpoints, track_ms);
+  fusing.counts = pass.counts;
+  if (fusing.counts.frames_read > fusing.counts.frames_skipped)
+    fusing.T_world_found = place_in_world(fusing.found, start.map, source.name());
+  fusing.octree = start.map ? std::move(start.map->octree) : StaticMap(config.resolution_m);
+  keep(start.checkpoints, kFusingStage, fusing, /*between_frames=*/false);
+  return fusing;
 }
 
 }  // namespace
@@ -86,27 +136,27 @@ std::string_view to_string(PoseOrigin poses) {
 }
 
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
-                      const PrescanProgress& progress) {
+                      const PrescanProgress& progress, PrescanStart start) {
   PrescanResult result;
-  result.map.octree = StaticMap(config.resolution_m);
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;
 
   // Where was the camera?
   std::map<std::int64_t, double> track_ms;
-  Whereabouts found = find_whereabouts(source, config, times, progress, counts, track_ms);
+  FusingPass fusing = track(source, config, times, progress, start, track_ms);
+  Whereabouts& found = fusing.found;
+  counts = fusing.counts;
   if (counts.frames_read == counts.frames_skipped)
     throw Error(source.name() + ": there is not one readable frame" +
                 (counts.last_fault.empty() ? "" : "; the last fault: " + counts.last_fault));
 
-  // Turn the world so that +z is up.
-  const Eigen::Isometry3d T_level = level_rotation(found.up.up_world);
-  transform(found.places, T_level);
+  // Where is that in the map's world?
   std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
   for (const TrackedFrame& tracked : found.frames) {
     if (!tracked.trusted) continue;
-    T_world_camera[tracked.frame_index] = T_level * tracked.T_world_camera;
+    T_world_camera[tracked.frame_index] = fusing.T_world_found * tracked.T_world_camera;
     map.trajectory.push_back({tracked.frame_index, tracked.stamp_s, T_world_camera[tracked.frame_index]});
+    if (is_held_out(tracked.frame_index, config.hold_out)) ++counts.frames_held_out;
   }
   counts.frames_tracked = static_cast<std::int64_t>(T_world_camera.size());
   counts.frames_lost = counts.frames_read - counts.frames_skipped - counts.frames_tracked;
@@ -119,25 +169,28 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   // What was there?
   if (!source.rewind()) throw Error(source.name() + ": cannot be read a second time");
   PrescanCounts second_pass;
-  std::vector<FusedFrame> fused_frames;
+  second_pass.frames_read = fusing.frames_read;
+  if (fusing.frames_read > 0) skip_frames(source, fusing.frames_read);
   Frame frame;
   while (read(source, times, frame, second_pass)) {
+    fusing.frames_read = second_pass.frames_read;
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end()) continue;
-    if (is_held_out(frame.index, config.hold_out)) {
-      ++counts.frames_held_out;
-      continue;
-    }
-    const Clock::time_point start = Clock::now();
-    const FuseStatus fused = map.octree.fuse(frame, pose->second);
-    const double fuse_ms = ms_since(start);
+    if (is_held_out(frame.index, config.hold_out)) continue;
+    const Clock::time_point began = Clock::now();
+    const FuseStatus fused = fusing.octree.fuse(frame, pose->second);
+    const double fuse_ms = ms_since(began);
     times.add_ms("fuse", fuse_ms);
-    times.add_ms("frame", track_ms[frame.index] + fuse_ms);
+    if (const auto ms = track_ms.find(frame.index); ms != track_ms.end())
+      times.add_ms("frame", ms->second + fuse_ms);
     if (fused == FuseStatus::kFused)
-      fused_frames.push_back({second_pass.frames_read - 1, frame.index, frame.depth_camera, pose->second});
+      fusing.fused.push_back({fusing.frames_read - 1, frame.index, frame.depth_camera, pose->second});
     if (progress) progress("fuse", std::string(to_string(fused)));
+    keep(start.checkpoints, kFusingStage, fusing);
   }
-  counts.frames_fused = static_cast<std::int64_t>(fused_frames.size());
+  keep(start.checkpoints, kFusingStage, fusing, /*between_frames=*/false);
+  map.octree = std::move(fusing.octree);
+  counts.frames_fused = static_cast<std::int64_t>(fusing.fused.size());
   if (counts.frames_fused == 0)
     throw Error(source.name() + ": no frame could be fused; the depth images hold no usable measurement");
 
@@ -146,7 +199,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     const auto show = [&](const std::string& note) {
       if (progress) progress("ghosts", note);
     };
-    counts.ghost_voxels = remove_ghosts(source, fused_frames, config.ghosts, map.octree, times, show);
+    counts.ghost_voxels = remove_ghosts(source, fusing.fused, config.ghosts, map.octree, times, show);
   }
 
   map.mesh = times.timed("surface", [&] { return extract_surface(map.octree, config.surface); });
@@ -154,6 +207,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     throw Error(source.name() + ": " + std::to_string(counts.frames_fused) + " frames show no surface at " +
                 std::to_string(config.resolution_m) + " m; try another --resolution");
   map.places = std::move(found.places);
+  transform(map.places, fusing.T_world_found);
 
   map.info.source = source.name();
   map.info.frames_read = counts.frames_read;
@@ -163,13 +217,19 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
                        {"poses", std::string(to_string(config.poses))}};
   if (config.hold_out > 0) map.info.settings["hold_out"] = std::to_string(config.hold_out);
   if (config.poses == PoseOrigin::kRecorded) {
-    map.info.T_world_recorded = T_level;
+    map.info.T_world_recorded = fusing.T_world_found;
   } else {
     const TrajectoryError error = absolute_trajectory_error(map.trajectory, found.recorded);
     if (error.poses > 0) {
       counts.against_recorded = error;
       map.info.T_world_recorded = error.T_reference_estimate.inverse();
     }
+  }
+  if (start.map) {
+    append_session(*start.map, map);
+    start.map->octree = std::move(map.octree);
+    start.map->mesh = std::move(map.mesh);
+    map = std::move(*start.map);
   }
   return result;
 }

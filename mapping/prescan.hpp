@@ -63,13 +63,25 @@ struct PrescanResult {
 /// Called after each frame of a pass: the stage ("track", "fuse" or "ghosts"), and what became of the frame.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
+class Checkpoints;
+
+/// What a prescan goes on from, where it does not begin anew.
+struct PrescanStart {
+  /// Where the state is written now and then during both passes; if there is one already the work goes on
+  /// from it, and the source must deliver the same frames again. Null: none is written.
+  Checkpoints* checkpoints = nullptr;
+  /// A map to which is added what the source shows. Its world and its resolution stay.
+  std::optional<SavedMap> map;
+};
+
 /// Scans a room. The source is read to know where the camera was, again to fuse with the final poses, and in
 /// part twice more where something moved on and has to go from the map. The map's world is the recording's
 /// own (recorded poses) or the first camera's (tracked), turned so that +z is up. Stages timed: read, track,
 /// optimise, fuse, ghosts, surface, and frame (track and fuse of one frame together; no reading).
 ///
-/// @throws Error if the source cannot be rewound, has no frame at all, or not one frame's pose is trusted
+/// @throws Error if the source cannot be rewound, has no frame at all, or not one frame's pose is trusted; if
+/// the start's map does not show the room that the source shows, or too little of it to be certain
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
-                      const PrescanProgress& progress = {});
+                      const PrescanProgress& progress = {}, PrescanStart start = {});
 
 }  // namespace roomradar

@@ -33,6 +33,21 @@ class UpEstimator {
   /// head), if at least 5 % of the normals support it; else that mean itself with kNone.
   [[nodiscard]] UpDirection estimate() const;
 
+  /// All of its state, to or from a ByteWriter or ByteReader.
+  template <typename Archive>
+  void transfer_fields(Archive& archive) {
+    transfer(archive, normals_world_);
+    transfer(archive, normals_seen_);
+    transfer(archive, keep_every_);
+    transfer(archive, down_sum_world_);
+    transfer(archive, camera_up_sum_world_);
+    transfer(archive, frames_);
+    transfer(archive, frames_with_gravity_);
+    if constexpr (Archive::kReads) {
+      if (keep_every_ == 0) archive.fail("is damaged: no normal is kept");
+    }
+  }
+
  private:
   /// Keeps the first of each keep_every_ normals. Full, it gives up every second one and takes half as many
   /// from then on, so that all frames keep an equal say, however many there are.

@@ -1,6 +1,11 @@
-// spooled_source.cpp: images in a temporary folder, everything else in memory.
+// spooled_source.cpp: images in files, everything else in memory and, where it is kept, in a list beside
+// them.
+//
+// list.bin: "RRSPOOL1", the source's name, then for each frame the bytes of its entry with their number (u32)
+// before them; 0 for the end of the source.
 #include "app/sources/spooled_source.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -8,12 +13,16 @@
 #include <utility>
 
 #include "app/sources/image_file.hpp"
+#include "mapping/types/byte_archive.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kList = "list.bin";
+constexpr std::string_view kMagic = "RRSPOOL1";
 
 fs::path make_temporary_folder(fs::path parent) {
   std::error_code fault;
@@ -47,10 +56,109 @@ Frame without_images(const Frame& frame) {
 
 }  // namespace
 
+template <typename Archive>
+void SpooledSource::transfer_entry(Archive& archive, Entry& entry) {
+  Frame& frame = entry.frame;
+  transfer(archive, entry.fault);
+  if (!entry.fault.empty()) return;
+  transfer(archive, frame.index);
+  transfer(archive, frame.stamp_s);
+  transfer(archive, frame.depth_camera);
+  bool coloured = frame.colour_camera.width_px > 0;
+  transfer(archive, coloured);
+  if (coloured) transfer(archive, frame.colour_camera);
+  transfer(archive, frame.T_colour_depth);
+  transfer(archive, frame.T_world_camera);
+  transfer(archive, frame.down_camera);
+}
+
+SpooledSource::Left SpooledSource::read_list(const fs::path& folder) {
+  const fs::path path = folder / kList;
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file) throw Error(path.string() + ": cannot be read, so the live scan that was cut off is lost");
+  ByteReader list(bytes, path.string());
+  std::string magic(kMagic.size(), '\0');
+  list.raw(magic.data(), magic.size());
+  if (magic != kMagic) list.fail("is no list of spooled frames, or of another version");
+  Left left;
+  transfer(list, left.name);
+  left.sound_bytes = bytes.size() - list.left();
+  try {
+    while (list.left() > 0 && !left.at_end) {
+      std::uint32_t size = 0;
+      transfer(list, size);
+      list.require(size, 1);
+      Entry entry;
+      if (size > 0) transfer_entry(list, entry);
+      left.at_end = size == 0;
+      if (size > 0) left.entries.push_back(std::move(entry));
+      left.sound_bytes = bytes.size() - list.left();
+    }
+  } catch (const Error&) {
+    // The process was killed while it wrote this entry: its frame was never used.
+  }
+  return left;
+}
+
+SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, fs::path folder, bool kept)
+    : source_(std::move(source)),
+      folder_(std::move(folder)),
+      kept_(kept),
+      name_(source_ ? source_->name() : std::string{}) {}
+
 SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, const fs::path& parent_folder)
-    : source_(std::move(source)), folder_(make_temporary_folder(parent_folder)) {}
+    : SpooledSource(std::move(source), make_temporary_folder(parent_folder), /*kept=*/false) {}
+
+std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> source,
+                                                   const fs::path& folder) {
+  std::error_code fault;
+  fs::create_directories(folder, fault);
+  if (fault) throw Error(folder.string() + ": the folder cannot be made: " + fault.message());
+  std::unique_ptr<SpooledSource> spooled(new SpooledSource(std::move(source), folder, /*kept=*/true));
+  const fs::path path = folder / kList;
+  if (fs::exists(path)) {
+    Left left = read_list(folder);
+    fs::resize_file(path, left.sound_bytes);
+    spooled->take(std::move(left));
+    spooled->list_.open(path, std::ios::binary | std::ios::app);
+  } else {
+    ByteWriter head;
+    head.raw(kMagic.data(), kMagic.size());
+    transfer(head, spooled->name_);
+    spooled->list_.open(path, std::ios::binary);
+    spooled->list_ << head.bytes() << std::flush;
+  }
+  if (!spooled->list_) throw Error(path.string() + ": cannot be written; is the disk full?");
+  return spooled;
+}
+
+bool SpooledSource::has_end(const fs::path& folder) {
+  return fs::exists(folder / kList) && read_list(folder).at_end;
+}
+
+void SpooledSource::take(Left left) {
+  name_ = std::move(left.name);
+  entries_ = std::move(left.entries);
+  at_end_ = left.at_end;
+  if (entries_.empty()) return;
+  stamp_offset_s_.reset();
+  for (const Entry& entry : entries_) index_offset_ = std::max(index_offset_ + 1, entry.frame.index + 1);
+}
+
+/// Null for the end of the source.
+void SpooledSource::append(Entry* entry) {
+  if (!kept_) return;
+  ByteWriter bytes;
+  if (entry) transfer_entry(bytes, *entry);
+  const auto size = static_cast<std::uint32_t>(bytes.bytes().size());
+  list_.write(reinterpret_cast<const char*>(&size), sizeof size);
+  list_ << bytes.bytes() << std::flush;
+  if (!list_) throw Error((folder_ / kList).string() + ": cannot be written; is the disk full?");
+}
 
 SpooledSource::~SpooledSource() {
+  if (kept_) return;
   std::error_code ignored;  // nobody is left to be told
   fs::remove_all(folder_, ignored);
 }
@@ -62,18 +170,32 @@ ReadResult SpooledSource::next(Frame& frame) {
 
 ReadResult SpooledSource::read_on(Frame& frame) {
   if (at_end_) return {ReadStatus::kEnd, {}};
-  ReadResult result = source_->next(frame);
+  const auto most = source_->frame_count();
+  ReadResult result;  // the end, if earlier processes have read all that was asked for
+  if (!most || static_cast<std::int64_t>(entries_.size()) < *most) result = source_->next(frame);
   if (result.status == ReadStatus::kEnd) {
+    append(nullptr);
     at_end_ = true;
     return result;
   }
+  Entry entry;
   if (result.status == ReadStatus::kSkipped) {
-    entries_.push_back({Frame{}, result.fault});
+    entry.fault = result.fault;
   } else {
+    constexpr double kFrame_s = 1.0 / 30.0;
+    if (!stamp_offset_s_) {
+      double last_s = 0.0;
+      for (const Entry& before : entries_) last_s = std::max(last_s, before.frame.stamp_s);
+      stamp_offset_s_ = last_s + kFrame_s - frame.stamp_s;
+    }
+    frame.index += index_offset_;
+    frame.stamp_s += *stamp_offset_s_;
     write_exact_depth_file(frame.depth_m, depth_file(folder_, entries_.size()));
     if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder_, entries_.size()));
-    entries_.push_back({without_images(frame), {}});
+    entry.frame = without_images(frame);
   }
+  append(&entry);
+  entries_.push_back(std::move(entry));
   ++position_;
   return result;
 }
@@ -111,7 +233,7 @@ std::optional<std::int64_t> SpooledSource::frame_count() const {
   return source_->frame_count();
 }
 
-std::string SpooledSource::name() const { return source_->name(); }
+std::string SpooledSource::name() const { return name_; }
 
 std::unique_ptr<FrameSource> make_rewindable(std::unique_ptr<FrameSource> source) {
   if (source->rewind()) return source;

@@ -1,6 +1,8 @@
 // sources_units_test.cpp: the Kinect's units, the pairing of images, frame ranges and spooling.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "app/sources/frame_range.hpp"
 #include "app/sources/kinect_units.hpp"
 #include "app/sources/parse_numbers.hpp"
@@ -212,6 +214,46 @@ TEST(SpooledSource, LeavesNothingBehind) {
   EXPECT_TRUE(contains(
       error_of([&] { SpooledSource(std::make_unique<MadeSource>(1, false), parent.path() / "absent"); }),
       "absent"));
+}
+
+TEST(SpooledSource, KeptGoesOnInALaterProcess) {
+  const test::TemporaryFolder parent;
+  const std::filesystem::path folder = parent.path() / "spool";
+  Frame frame;
+  std::vector<Frame> first;
+  {
+    const auto source =
+        SpooledSource::kept(std::make_unique<MadeSource>(9, false, std::vector<int>{1}), folder);
+    for (int i = 0; i < 4; ++i)
+      if (source->next(frame).status == ReadStatus::kFrame) first.push_back(frame);
+  }
+  EXPECT_FALSE(SpooledSource::has_end(folder));
+  // The process was killed while it wrote a fifth entry.
+  std::filesystem::resize_file(folder / "list.bin", std::filesystem::file_size(folder / "list.bin") - 3);
+  {
+    const auto source = SpooledSource::kept(std::make_unique<MadeSource>(3, false), folder);
+    const auto all = read_all(*source);
+    ASSERT_EQ(all.faults.size(), 1U);
+    ASSERT_EQ(all.frames.size(), 5U);  // two, and the device's three
+    for (std::size_t i = 0; i < 2; ++i) expect_same(all.frames[i], first[i]);
+    for (std::size_t i = 1; i < all.frames.size(); ++i) {
+      EXPECT_EQ(all.frames[i].index, all.frames[i - 1].index + (i == 1 ? 2 : 1));
+      EXPECT_GT(all.frames[i].stamp_s, all.frames[i - 1].stamp_s);
+    }
+  }
+  ASSERT_TRUE(SpooledSource::has_end(folder));
+  const auto source = SpooledSource::kept(nullptr, folder);
+  EXPECT_EQ(read_all(*source).frames.size(), 5U);
+  ASSERT_TRUE(source->rewind());
+  EXPECT_EQ(read_all(*source).frames.size(), 5U);
+}
+
+TEST(SpooledSource, AListThatIsNoneIsRefused) {
+  const test::TemporaryFolder parent;
+  std::ofstream(parent.path() / "list.bin") << "something else";
+  EXPECT_TRUE(
+      contains(error_of([&] { SpooledSource::kept(std::make_unique<MadeSource>(1, false), parent.path()); }),
+               "list.bin"));
 }
 
 TEST(SpooledSource, IsNotPutBeforeWhatRewindsByItself) {

@@ -1,0 +1,83 @@
+// unfinished_scan.cpp: what lies at the map's place and beside it decides how a prescan begins.
+#include "app/unfinished_scan.hpp"
+
+#include <cstdio>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "app/open_source.hpp"
+#include "app/sources/spooled_source.hpp"
+#include "mapping/sha256.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kNewMap = "a new map";
+
+fs::path unfinished_beside(const fs::path& map) {
+  return map.parent_path() / (map.filename().string() + ".unfinished");
+}
+
+/// A scan that was cut off, and is not to be resumed: what can be read again may go.
+void give_up_unfinished(const fs::path& folder) {
+  if (!fs::exists(folder)) return;
+  if (fs::exists(folder / "spool"))
+    throw Error(folder.string() +
+                ": holds a live scan that was cut off; go on with it by --resume, or delete "
+                "the folder to begin anew");
+  std::fprintf(stderr, "%s: a scan that was cut off is given up; --resume would have gone on with it\n",
+               folder.c_str());
+  Checkpoints unfinished(folder, {}, 0.0);
+  unfinished.ensure_folder();  // nobody else is at work on it
+  unfinished.remove();
+}
+
+bool is_to_extend(bool resume, const fs::path& folder, const fs::path& map) {
+  if (!resume) return false;
+  if (fs::exists(folder)) return fs::exists(folder / "work.json") && identity_of(folder)["into"] != kNewMap;
+  if (fs::exists(map / "map.json")) return true;
+  throw Error(map.string() + ": there is nothing to resume: no map, and no scan that was cut off (" +
+              folder.string() + "); leave --resume away to begin a new map");
+}
+
+}  // namespace
+
+ScanStart start_scan(const PrescanCommand& command) {
+  ScanStart start;
+  const fs::path map = tidy_map_name(command.map);
+  const fs::path folder = unfinished_beside(map);
+  if (!command.resume) give_up_unfinished(folder);
+  const bool extend = is_to_extend(command.resume, folder, map);
+  if (extend) start.map = load_map(map);
+
+  const fs::path spool = folder / "spool";
+  const bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
+  if (!spooled) start.source = open_source(command.source, command.frames);
+  const bool live = spooled || !start.source->rewind();
+  if (command.checkpoint_every_s > 0.0) {
+    std::map<std::string, std::string> identity{
+        {"source", command.source},
+        {"resolution", std::to_string(command.resolution_m)},
+        {"poses", std::string(to_string(command.poses))},
+        {"frames", command.frames
+                       ? std::to_string(command.frames->first) + ":" + std::to_string(command.frames->last)
+                       : "all"},
+        {"hold-out", std::to_string(command.hold_out)},
+        {"into", extend ? sha256_of_file(map / "map.json") : kNewMap}};
+    if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
+    start.checkpoints = std::make_unique<Checkpoints>(folder, identity, command.checkpoint_every_s);
+  }
+  if (live && start.checkpoints) {
+    start.checkpoints->ensure_folder();
+    start.source = SpooledSource::kept(std::move(start.source), spool);
+  } else {
+    start.source = make_rewindable(std::move(start.source));
+  }
+  return start;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,26 @@
+// unfinished_scan.hpp: how a prescan begins: anew, where it was cut off, or in a map that is there already.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "mapping/checkpoints.hpp"
+#include "mapping/map_folder.hpp"
+#include "mapping/types/frame_source.hpp"
+
+namespace roomradar {
+
+/// What a prescan is given to work with.
+struct ScanStart {
+  std::unique_ptr<Checkpoints> checkpoints;  ///< null: none are asked for
+  std::unique_ptr<FrameSource> source;       ///< rewinds; a live one is spooled beside the checkpoints
+  std::optional<SavedMap> map;               ///< to be extended by what the source shows
+};
+
+/// Opens the source and decides by --resume and by what lies at the map's place and beside it
+/// (MAP.unfinished).
+/// @throws Error if there is nothing to resume, or what is there was begun by another command, or without
+/// --resume if a live scan would be lost, and as open_source does
+ScanStart start_scan(const PrescanCommand& command);
+
+}  // namespace roomradar

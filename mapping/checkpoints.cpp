@@ -1,0 +1,300 @@
+// checkpoints.cpp: numbered folders, each written by a forked child: beside, synced, renamed.
+#include "mapping/checkpoints.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "mapping/folder_swap.hpp"
+#include "mapping/sha256.hpp"
+#include "mapping/types/error.hpp"
+#include "mapping/types/version.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kWork = "work.json";
+constexpr const char* kLock = "lock";
+constexpr const char* kWriting = "checkpoint.writing";
+constexpr const char* kManifest = "manifest.json";
+constexpr std::string_view kPrefix = "checkpoint-";
+constexpr std::int64_t kKept = 2;
+constexpr std::uintmax_t kMaxJsonBytes = 16U << 20U;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& fault) {
+  throw Error(path.string() + ": " + fault);
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) fail(path, "cannot be written; is the disk full?");
+}
+
+Json read_json(const fs::path& path) {
+  std::error_code fault;
+  if (!fs::is_regular_file(fs::symlink_status(path, fault)) || fs::file_size(path, fault) > kMaxJsonBytes)
+    fail(path, "is missing, or is no description of a checkpoint");
+  std::ifstream file(path, std::ios::binary);
+  Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (json.is_discarded() || !json.is_object()) fail(path, "is damaged");
+  return json;
+}
+
+/// Relative to the folder.
+std::vector<fs::path> files_below(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_directory()) files.push_back(entry.path().lexically_relative(folder));
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// What was carried over keeps its description: it need not be read again.
+Json description_of(const fs::path& into, const fs::path& file, const fs::path& previous,
+                    const Json& before) {
+  const auto was = before.find(file.generic_string());
+  std::error_code fault;
+  if (was != before.end() && fs::equivalent(previous / file, into / file, fault)) return *was;
+  return {{"bytes", fs::file_size(into / file)}, {"sha256", sha256_of_file(into / file)}};
+}
+
+/// Checks all files; throws Error naming the one that is not as it was written.
+Checkpoint read_checkpoint(const fs::path& folder) {
+  const Json manifest = read_json(folder / kManifest);
+  const auto stage = manifest.find("stage");
+  const auto files = manifest.find("files");
+  if (stage == manifest.end() || !stage->is_string() || files == manifest.end() || !files->is_object())
+    fail(folder / kManifest, "is damaged");
+  std::size_t listed = 1;  // the manifest itself
+  for (const auto& [name, expected] : files->items()) {
+    const fs::path path = folder / name;
+    const fs::path inside = fs::path(name).lexically_normal();
+    if (inside.is_absolute() || inside.empty() || *inside.begin() == "..")
+      fail(folder / kManifest, "is damaged: it names a file outside its folder");
+    std::error_code fault;
+    if (!fs::is_regular_file(fs::symlink_status(path, fault))) fail(path, "is missing");
+    const bool sound = expected.is_object() && expected.value("bytes", Json{}).is_number_unsigned() &&
+                       expected.value("sha256", Json{}).is_string() &&
+                       fs::file_size(path) == expected["bytes"].get<std::uintmax_t>() &&
+                       sha256_of_file(path) == expected["sha256"].get<std::string>();
+    if (!sound) fail(path, "is damaged");
+    ++listed;
+  }
+  if (files_below(folder).size() != listed) fail(folder, "holds files that are not its own");
+  return {stage->get<std::string>(), folder};
+}
+
+/// Numbers of the checkpoints in a folder, the newest first.
+std::vector<std::int64_t> numbers_in(const fs::path& folder) {
+  std::vector<std::int64_t> numbers;
+  std::error_code fault;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
+    const std::string name = entry.path().filename().string();
+    std::int64_t number = 0;
+    if (!name.starts_with(kPrefix)) continue;
+    const char* const end = name.data() + name.size();
+    const auto parsed = std::from_chars(name.data() + kPrefix.size(), end, number);
+    if (parsed.ec == std::errc() && parsed.ptr == end && number > 0) numbers.push_back(number);
+  }
+  std::sort(numbers.rbegin(), numbers.rend());
+  return numbers;
+}
+
+}  // namespace
+
+Checkpoints::Checkpoints(fs::path folder, std::map<std::string, std::string> identity, double every_s)
+    : folder_(std::move(folder)),
+      identity_(std::move(identity)),
+      every_s_(every_s),
+      last_start_(std::chrono::steady_clock::now()) {
+  identity_["roomradar"] = kVersion;
+}
+
+Checkpoints::~Checkpoints() {
+  reap(/*wait=*/true);
+  if (lock_ >= 0) ::close(lock_);
+}
+
+void Checkpoints::take_lock() {
+  if (lock_ >= 0) return;
+  const fs::path path = folder_ / kLock;
+  lock_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock_ < 0) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
+  // The writer of a process that was killed has the lock for a moment longer.
+  for (int attempt = 0; attempt < 30; ++attempt) {
+    if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  ::close(std::exchange(lock_, -1));
+  fail(folder_, "another roomradar is at work on this scan; wait for it, or choose another name for the map");
+}
+
+void Checkpoints::ensure_folder() {
+  if (lock_ >= 0) return;
+  std::error_code fault;
+  fs::create_directories(folder_, fault);
+  if (fault) fail(folder_, "the folder cannot be made: " + fault.message());
+  take_lock();
+  if (fs::exists(folder_ / kWork)) return;
+  write_text(folder_ / "work.json.writing", Json{{"work", identity_}}.dump(2) + "\n");
+  fs::rename(folder_ / "work.json.writing", folder_ / kWork);
+  sync_to_disk(folder_ / kWork);
+}
+
+std::optional<Checkpoint> Checkpoints::resume() {
+  if (!fs::exists(folder_)) return std::nullopt;
+  ensure_folder();
+  const std::map<std::string, std::string> found = identity_of(folder_);
+  for (const auto& [name, value] : identity_) {
+    const auto was = found.find(name);
+    if (was != found.end() && was->second == value) continue;
+    fail(folder_, "the scan there was begun with " + name + " " +
+                      (was == found.end() ? "not set" : "\"" + was->second + "\"") + ", and now it is \"" +
+                      value + "\"; resume it with the same, or delete the folder to begin anew");
+  }
+  for (const std::int64_t number : numbers_in(folder_)) {
+    last_number_ = std::max(last_number_, number);
+    try {
+      Checkpoint checkpoint = read_checkpoint(numbered(number));
+      last_number_ = number;
+      return checkpoint;
+    } catch (const std::exception& fault) {
+      faults_.push_back(std::string(fault.what()) + "; the checkpoint is passed over");
+      std::error_code ignored;
+      fs::remove_all(numbered(number), ignored);
+    }
+  }
+  last_number_ = 0;
+  return std::nullopt;
+}
+
+bool Checkpoints::is_due(bool wait) {
+  reap(wait);
+  return writer_ < 0 && std::chrono::steady_clock::now() - last_start_ >= every_s_;
+}
+
+void Checkpoints::write(const std::string& stage, const WriteFiles& write_files) {
+  reap(/*wait=*/true);
+  last_start_ = std::chrono::steady_clock::now();
+  try {
+    ensure_folder();
+  } catch (const Error&) {
+    ++failures_;
+    return;
+  }
+  const pid_t parent = ::getpid();
+  writer_ = ::fork();
+  if (writer_ > 0) return;
+  if (writer_ < 0) {  // no memory for a child: then the work has to wait
+    const bool written = try_to_write(stage, write_files);
+    ++(written ? last_number_ : failures_);
+    return;
+  }
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);
+  static_cast<void>(::nice(5) + 1);
+  ::_exit(try_to_write(stage, write_files) ? 0 : 1);
+}
+
+bool Checkpoints::try_to_write(const std::string& stage, const WriteFiles& write_files) const {
+  try {
+    write_numbered(last_number_ + 1, stage, write_files);
+    return true;
+  } catch (const std::exception&) {
+    std::error_code ignored;
+    fs::remove_all(folder_ / kWriting, ignored);
+    return false;
+  }
+}
+
+void Checkpoints::write_numbered(std::int64_t number, const std::string& stage,
+                                 const WriteFiles& write_files) const {
+  const fs::path into = folder_ / kWriting;
+  fs::remove_all(into);
+  fs::create_directory(into);
+  const fs::path previous = last_number_ > 0 ? numbered(last_number_) : fs::path{};
+  const Json before = previous.empty() ? Json::object() : read_json(previous / kManifest).at("files");
+  write_files(into, previous);
+  Json manifest{{"stage", stage}, {"files", Json::object()}};
+  for (const fs::path& file : files_below(into)) {
+    manifest["files"][file.generic_string()] = description_of(into, file, previous, before);
+    sync_to_disk(into / file);
+  }
+  write_text(into / kManifest, manifest.dump(1) + "\n");
+  sync_to_disk(into / kManifest);
+  sync_to_disk(into);
+  fs::remove_all(numbered(number));  // damaged, or of a count that began anew
+  fs::rename(into, numbered(number));
+  sync_to_disk(folder_);
+  for (const std::int64_t other : numbers_in(folder_)) {
+    if (other <= number - kKept || other > number) fs::remove_all(numbered(other));
+  }
+}
+
+void Checkpoints::reap(bool wait) {
+  if (writer_ < 0) return;
+  int status = 0;
+  pid_t ended = 0;
+  do {
+    ended = ::waitpid(writer_, &status, wait ? 0 : WNOHANG);
+  } while (ended < 0 && errno == EINTR);
+  if (ended == 0) return;
+  writer_ = -1;
+  if (ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0)
+    ++last_number_;
+  else
+    ++failures_;
+}
+
+void Checkpoints::remove() {
+  reap(/*wait=*/true);
+  if (lock_ < 0 && !fs::exists(folder_)) return;
+  std::error_code ignored;  // the work is done; a folder left behind says what it is
+  fs::remove_all(folder_, ignored);
+  if (lock_ >= 0) ::close(std::exchange(lock_, -1));
+}
+
+fs::path Checkpoints::numbered(std::int64_t number) const {
+  return folder_ / (std::string(kPrefix) + std::to_string(number));
+}
+
+std::map<std::string, std::string> identity_of(const fs::path& folder) {
+  const Json json = read_json(folder / kWork);
+  const auto work = json.find("work");
+  if (work == json.end() || !work->is_object()) fail(folder / kWork, "is damaged");
+  std::map<std::string, std::string> identity;
+  for (const auto& [name, value] : work->items()) {
+    if (!value.is_string()) fail(folder / kWork, "is damaged");
+    identity[name] = value.get<std::string>();
+  }
+  return identity;
+}
+
+bool carry_over(const fs::path& from, const fs::path& to) {
+  std::error_code fault;
+  if (!fs::is_regular_file(from, fault)) return false;
+  fs::create_hard_link(from, to, fault);
+  if (!fault) return true;
+  return fs::copy_file(from, to, fault) && !fault;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,89 @@
+// checkpoints.hpp: the state of long work on disk, so that work that was cut off can go on where it was.
+#pragma once
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace roomradar {
+
+/// A state that was read back: every file's size and checksum are right.
+struct Checkpoint {
+  std::string stage;             ///< as it was given to write()
+  std::filesystem::path folder;  ///< holds the files that were written; only to be read
+};
+
+/// The folder of one unfinished piece of work: `work.json` (what the work is), `lock`, and the last two
+/// checkpoints, each a folder that appears whole or not at all. A checkpoint is written by a forked child,
+/// which sees the state as it was and lets the work go on; it dies with its parent. The folder comes into
+/// being with the first checkpoint. One process at a time may have it.
+class Checkpoints {
+ public:
+  /// Writes a state's files into `into`, an empty folder. `previous`, unless empty, is the checkpoint before:
+  /// files that have not changed may be linked from there with carry_over(). Runs in a child process: what it
+  /// changes in memory is lost.
+  using WriteFiles =
+      std::function<void(const std::filesystem::path& into, const std::filesystem::path& previous)>;
+
+  /// @param folder    where checkpoints go
+  /// @param identity  what the work is, by name: source, settings. Work of another identity cannot go on
+  ///                  from a checkpoint.
+  /// @param every_s   seconds between two checkpoints, at least
+  Checkpoints(std::filesystem::path folder, std::map<std::string, std::string> identity, double every_s);
+  /// Waits for a checkpoint that is being written. The folder stays, unless remove() was called.
+  ~Checkpoints();
+  Checkpoints(const Checkpoints&) = delete;
+  Checkpoints& operator=(const Checkpoints&) = delete;
+
+  /// The newest sound checkpoint in the folder. Damaged ones are passed over, and named in faults(). Nothing
+  /// if there is none. Throws Error if the folder holds other work than `identity` says, naming the
+  /// difference, or another process has it.
+  std::optional<Checkpoint> resume();
+
+  /// Whether the time for a checkpoint has come and the last one is written, which it can wait for.
+  bool is_due(bool wait = false);
+  /// Writes a checkpoint beside the work; takes some milliseconds itself. A failure (disk full) leaves the
+  /// one before, and is counted in failures().
+  void write(const std::string& stage, const WriteFiles& write_files);
+  /// The work is done: the folder goes.
+  void remove();
+
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  /// Makes the folder and takes its lock now, for whoever puts files of its own beside the checkpoints.
+  void ensure_folder();
+  /// One sentence for each damaged checkpoint that resume() passed over.
+  [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
+  [[nodiscard]] std::int64_t failures() const { return failures_; }
+
+ private:
+  void take_lock();
+  void reap(bool wait);
+  bool try_to_write(const std::string& stage, const WriteFiles& write_files) const;
+  void write_numbered(std::int64_t number, const std::string& stage, const WriteFiles& write_files) const;
+  [[nodiscard]] std::filesystem::path numbered(std::int64_t number) const;
+
+  std::filesystem::path folder_;
+  std::map<std::string, std::string> identity_;
+  std::chrono::duration<double> every_s_;
+  std::chrono::steady_clock::time_point last_start_;
+  std::int64_t last_number_ = 0;  ///< of the last whole checkpoint; 0: none
+  int lock_ = -1;
+  pid_t writer_ = -1;
+  std::int64_t failures_ = 0;
+  std::vector<std::string> faults_;
+};
+
+/// What the work in such a folder is. Throws Error if its work.json is missing or damaged.
+std::map<std::string, std::string> identity_of(const std::filesystem::path& folder);
+
+/// Makes `to` the same file as `from` without copying it (by a hard link; a copy where links fail). False if
+/// there is no such file.
+bool carry_over(const std::filesystem::path& from, const std::filesystem::path& to);
+
+}  // namespace roomradar

@@ -1,0 +1,151 @@
+// map_merge.cpp: one octree's leaves and samples resampled in the other's grid.
+#include "mapping/map_merge.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Visits the cubes of a grid that together are the voxels whose centres lie in a box of another frame: each
+/// voxel once, as large cubes as fit.
+class Cover {
+ public:
+  Cover(const Eigen::Isometry3d& T_grid_box, double voxel_m)
+      : T_grid_box_(T_grid_box),
+        T_box_grid_(T_grid_box.inverse()),
+        reach_(T_box_grid_.linear().cwiseAbs() * Eigen::Vector3d::Ones()),
+        voxel_m_(voxel_m) {}
+
+  template <typename Visit>
+  void operator()(const Eigen::AlignedBox3d& box, const Visit& visit) const {
+    // Corners of the box in the grid, in voxels.
+    const Eigen::Vector3d centre = T_grid_box_ * box.center() / voxel_m_;
+    const Eigen::Vector3d half = T_grid_box_.linear().cwiseAbs() * box.sizes() / (2.0 * voxel_m_);
+    const auto across = static_cast<unsigned>(std::max(std::floor(box.sizes().minCoeff() / voxel_m_), 1.0));
+    const int edge = static_cast<int>(std::bit_floor(across));
+    const VoxelIndex low = ((centre - half) / edge).array().floor().cast<int>() * edge;
+    const VoxelIndex high = (centre + half).array().ceil().cast<int>();
+    for (int z = low.z(); z < high.z(); z += edge)
+      for (int y = low.y(); y < high.y(); y += edge)
+        for (int x = low.x(); x < high.x(); x += edge) descend({x, y, z}, edge, box, visit);
+  }
+
+ private:
+  template <typename Visit>
+  void descend(const VoxelIndex& low, int edge, const Eigen::AlignedBox3d& box, const Visit& visit) const {
+    const Eigen::Vector3d centre_box =
+        T_box_grid_ * ((low.cast<double>() + Eigen::Vector3d::Constant(0.5 * edge)) * voxel_m_);
+    if (edge == 1) {
+      const bool inside =
+          (centre_box.array() >= box.min().array()).all() && (centre_box.array() < box.max().array()).all();
+      if (inside) visit(low, edge);
+      return;
+    }
+    const Eigen::Vector3d half = reach_ * (0.5 * edge * voxel_m_);
+    const double slack_m = 1e-6 * voxel_m_;
+    const Eigen::Array3d under = centre_box.array() - half.array(), over = centre_box.array() + half.array();
+    if ((under >= box.max().array()).any() || (over <= box.min().array()).any()) return;
+    if ((under >= box.min().array() - slack_m).all() && (over <= box.max().array() + slack_m).all())
+      return visit(low, edge);
+    for (int i = 0; i < 8; ++i) {
+      const VoxelIndex child = low + VoxelIndex(i & 1, (i >> 1) & 1, (i >> 2) & 1) * (edge / 2);
+      descend(child, edge / 2, box, visit);
+    }
+  }
+
+  Eigen::Isometry3d T_grid_box_, T_box_grid_;
+  Eigen::Vector3d reach_;  ///< half extents in the box's frame of a cube with half edge 1
+  double voxel_m_;
+};
+
+bool same_grid(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T) {
+  return T.matrix().isIdentity(1e-12) && std::abs(a.resolution_m() - b.resolution_m()) < 1e-12;
+}
+
+}  // namespace
+
+void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, StaticMap& into) {
+  if (same_grid(from, into, T_into_from)) {
+    from.visit_leaves([&](const MapLeaf& leaf) { into.add_evidence(leaf); });
+    from.visit_samples([&](const SurfaceSample& sample) { into.add_evidence(sample); });
+    return;
+  }
+  const double voxel_m = from.resolution_m();
+  const Cover cover(T_into_from, into.resolution_m());
+  const auto box_of = [&](const VoxelIndex& low, int edge) {
+    const Eigen::Vector3d corner = low.cast<double>() * voxel_m;
+    return Eigen::AlignedBox3d(corner, corner + Eigen::Vector3d::Constant(edge * voxel_m));
+  };
+  from.visit_leaves([&](const MapLeaf& leaf) {
+    cover(box_of(leaf.lowest_voxel, leaf.edge_voxels), [&](const VoxelIndex& low, int edge) {
+      into.add_evidence(MapLeaf{low, edge, leaf.log_odds});
+    });
+  });
+  const Eigen::Isometry3d T_from_into = T_into_from.inverse();
+  from.visit_samples([&](const SurfaceSample& sample) {
+    cover(box_of(sample.voxel, 1), [&](const VoxelIndex& voxel, int) {
+      const Eigen::Vector3d p_into =
+          (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * into.resolution_m();
+      const auto at = distance_at(from, T_from_into * p_into);
+      if (!at) return;  // at the rim of what is known
+      SurfaceSample resampled = sample;
+      resampled.voxel = voxel;
+      resampled.distance_m = static_cast<float>(at->distance_m);
+      into.add_evidence(resampled);
+    });
+  });
+}
+
+void append_session(SavedMap& map, const SavedMap& session) {
+  constexpr double kFrame_s = 1.0 / 30.0;
+  double shift_s = 0.0;
+  if (!map.trajectory.empty() && !session.trajectory.empty())
+    shift_s = std::max(0.0, map.trajectory.back().stamp_s + kFrame_s - session.trajectory.front().stamp_s);
+  for (TimedPose pose : session.trajectory) {
+    pose.stamp_s += shift_s;
+    map.trajectory.push_back(pose);
+  }
+  map.places.keyframes.insert(map.places.keyframes.end(), session.places.keyframes.begin(),
+                              session.places.keyframes.end());
+  map.info.source += "; " + session.info.source;
+  map.info.frames_read += session.info.frames_read;
+  map.info.frames_fused += session.info.frames_fused;
+}
+
+Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config) {
+  Registration there =
+      register_to(a.octree, a.places, b.places, sample_surface(b.mesh, config.points), config);
+  if (!there) return there;
+  const Registration back =
+      judge_registration(b.octree, sample_surface(a.mesh, config.points), there.T_a_b.inverse(), config);
+  there.agreement = std::min(there.agreement, back.agreement);
+  there.status = back.status;
+  return there;
+}
+
+SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b,
+                    const SurfaceConfig& surface) {
+  if (b.octree.resolution_m() < a.octree.resolution_m()) {
+    StaticMap finer(b.octree.resolution_m(), a.octree.config());
+    add_map(a.octree, Eigen::Isometry3d::Identity(), finer);
+    a.octree = std::move(finer);
+  }
+  add_map(b.octree, T_a_b, a.octree);
+  a.mesh = extract_surface(a.octree, surface);
+  SavedMap session;
+  session.info = b.info;
+  session.places = b.places;
+  transform(session.places, T_a_b);
+  session.trajectory = b.trajectory;
+  for (TimedPose& pose : session.trajectory) pose.T_world_camera = T_a_b * pose.T_world_camera;
+  append_session(a, session);
+  return a;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,138 @@
+// prescan_state.cpp: the fields of a prescan's state, and the files that hold them.
+//
+// state.bin: "RRSTATE1" and then the fields, in the order of the functions below; numbers little-endian,
+// lists with their length (u64) before them. Beside it, in the first pass, odometry/
+// (odometry_checkpoint.cpp), and in the second octree.ot and places.bin as in a map.
+#include "mapping/prescan_state.hpp"
+
+#include <fstream>
+#include <string>
+
+#include "mapping/types/byte_archive.hpp"
+
+namespace roomradar {
+
+namespace fs = std::filesystem;
+
+template <typename Archive>
+void transfer(Archive& archive, PrescanCounts& counts) {
+  for (std::int64_t* count :
+       {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked, &counts.frames_fused,
+        &counts.frames_lost, &counts.keyframes, &counts.loops_found, &counts.ghost_voxels}) {
+    transfer(archive, *count);
+    if constexpr (Archive::kReads) {
+      if (*count < 0) archive.fail("is damaged: a count is negative");
+    }
+  }
+  transfer(archive, counts.last_fault);
+}
+
+template <typename Archive>
+void transfer(Archive& archive, TimedPose& pose) {
+  transfer(archive, pose.frame_index);
+  transfer(archive, pose.stamp_s);
+  transfer(archive, pose.T_world_camera);
+}
+
+template <typename Archive>
+void transfer(Archive& archive, TrackedFrame& frame) {
+  transfer(archive, frame.frame_index);
+  transfer(archive, frame.stamp_s);
+  transfer(archive, frame.T_world_camera);
+  transfer(archive, frame.status, TrackStatus::kDiverged);
+  transfer(archive, frame.trusted);
+}
+
+template <typename Archive>
+void transfer(Archive& archive, UpDirection& up) {
+  transfer(archive, up.source, UpSource::kPlane);
+  transfer(archive, up.up_world);
+  transfer(archive, up.support);
+}
+
+template <typename Archive>
+void transfer(Archive& archive, FusedFrame& frame) {
+  transfer(archive, frame.position);
+  transfer(archive, frame.frame_index);
+  transfer(archive, frame.depth_camera);
+  transfer(archive, frame.T_world_camera);
+}
+
+namespace {
+
+constexpr const char* kState = "state.bin";
+constexpr const char* kOctree = "octree.ot";
+constexpr const char* kPlaces = "places.bin";
+constexpr std::string_view kMagic = "RRSTATE1";
+
+template <typename Archive>
+void transfer_state(Archive& archive, TrackingPass& pass) {
+  transfer(archive, pass.counts);
+  pass.up.transfer_fields(archive);
+  transfer(archive, pass.recorded);
+}
+
+template <typename Archive>
+void transfer_state(Archive& archive, FusingPass& pass) {
+  transfer(archive, pass.counts);
+  transfer(archive, pass.found.frames);
+  transfer(archive, pass.found.up);
+  transfer(archive, pass.found.recorded);
+  transfer(archive, pass.T_world_found);
+  transfer(archive, pass.frames_read);
+  transfer(archive, pass.fused);
+}
+
+template <typename Pass>
+void write_fields(Pass& pass, const fs::path& path) {
+  ByteWriter archive;
+  archive.raw(kMagic.data(), kMagic.size());
+  transfer_state(archive, pass);
+  std::ofstream file(path, std::ios::binary);
+  file.write(archive.bytes().data(), static_cast<std::streamsize>(archive.bytes().size()));
+  file.close();
+  if (!file) throw Error(path.string() + ": cannot be written; is the disk full?");
+}
+
+template <typename Pass>
+void read_fields(const fs::path& path, Pass& pass) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file) throw Error(path.string() + ": cannot be read");
+  ByteReader archive(bytes, path.string());
+  std::string magic(kMagic.size(), '\0');
+  archive.raw(magic.data(), magic.size());
+  if (magic != kMagic) archive.fail("is no prescan's state, or of another version");
+  transfer_state(archive, pass);
+  archive.require_end();
+}
+
+}  // namespace
+
+void write_state(TrackingPass& pass, const fs::path& into, const fs::path& /*previous*/) {
+  write_fields(pass, into / kState);
+}
+
+void write_state(FusingPass& pass, const fs::path& into, const fs::path& previous) {
+  write_fields(pass, into / kState);
+  // The places do not change in this pass.
+  if (previous.empty() || !fs::exists(previous / kOctree) || !carry_over(previous / kPlaces, into / kPlaces))
+    write_places(pass.found.places, into / kPlaces);
+  pass.octree.write_ot(into / kOctree);
+}
+
+TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConfig& config) {
+  TrackingPass pass(config);
+  read_fields(checkpoint.folder / kState, pass);
+  return pass;
+}
+
+FusingPass read_fusing_pass(const Checkpoint& checkpoint) {
+  FusingPass pass;
+  read_fields(checkpoint.folder / kState, pass);
+  pass.found.places = read_places(checkpoint.folder / kPlaces);
+  pass.octree = StaticMap::read_ot(checkpoint.folder / kOctree);
+  return pass;
+}
+
+}  // namespace roomradar

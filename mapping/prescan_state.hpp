@@ -1,0 +1,53 @@
+// prescan_state.hpp: all that a prescan knows in the middle of its work, and its form on disk.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "mapping/checkpoints.hpp"
+#include "mapping/ghost_removal.hpp"
+#include "mapping/prescan.hpp"
+
+namespace roomradar {
+
+/// The first pass: where was the camera?
+struct TrackingPass {
+  explicit TrackingPass(const OdometryConfig& config) : odometry(config) {}
+  PrescanCounts counts;  ///< so many frames are read
+  Odometry odometry;
+  UpEstimator up;
+  std::vector<TimedPose> recorded;
+};
+
+/// Its result: where the camera was in each frame, and which way is up there.
+struct Whereabouts {
+  std::vector<TrackedFrame> frames;
+  Places places;
+  UpDirection up;
+  std::vector<TimedPose> recorded;
+};
+
+/// The second pass: what was there?
+struct FusingPass {
+  PrescanCounts counts;  ///< of the first pass
+  Whereabouts found;
+  Eigen::Isometry3d T_world_found = Eigen::Isometry3d::Identity();  ///< the tracker's world to the map's
+  std::int64_t frames_read = 0;                                     ///< in this pass
+  StaticMap octree{0.01};
+  std::vector<FusedFrame> fused;
+};
+
+inline constexpr const char* kTrackingStage = "track";
+inline constexpr const char* kFusingStage = "fuse";
+
+/// Writes the state's files into a checkpoint's folder; see Checkpoints::WriteFiles. The state is only read.
+void write_state(TrackingPass& pass, const std::filesystem::path& into,
+                 const std::filesystem::path& previous);
+void write_state(FusingPass& pass, const std::filesystem::path& into, const std::filesystem::path& previous);
+
+/// Reads a checkpoint of that stage: the work goes on exactly as it would have. The files are not trusted.
+/// Throws Error naming the file and the fault.
+TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConfig& config);
+FusingPass read_fusing_pass(const Checkpoint& checkpoint);
+
+}  // namespace roomradar

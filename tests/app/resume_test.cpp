@@ -1,0 +1,170 @@
+// resume_test.cpp: the program, killed at any moment, goes on to the map that it would have made.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSource = "sim:table?frames=60&width=128";
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class ResumeTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] fs::path map() const { return temporary_.path() / "map"; }
+  [[nodiscard]] fs::path unfinished() const { return temporary_.path() / "map.unfinished"; }
+  [[nodiscard]] std::string said() const { return text_of(temporary_.path() / "said"); }
+
+  /// Starts the program; what it says goes to said().
+  [[nodiscard]] pid_t start(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), ROOMRADAR_PROGRAM);
+    const pid_t child = fork();
+    if (child != 0) return child;
+    const int said = open((temporary_.path() / "said").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    dup2(said, STDOUT_FILENO);
+    dup2(said, STDERR_FILENO);
+    std::vector<char*> raw;
+    for (std::string& argument : arguments) raw.push_back(argument.data());
+    raw.push_back(nullptr);
+    execv(raw.front(), raw.data());
+    _exit(127);
+  }
+  static int status_of(pid_t child) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+  [[nodiscard]] int run(const std::vector<std::string>& arguments) const {
+    return status_of(start(arguments));
+  }
+
+  [[nodiscard]] std::vector<std::string> scan(const fs::path& to, bool resume) const {
+    std::vector<std::string> arguments = {
+        "prescan", kSource, "--map", to, "--resolution", "0.04", "--checkpoint-every", "0.01"};
+    if (resume) arguments.emplace_back("--resume");
+    return arguments;
+  }
+  /// Starts a scan and kills it as soon as `moment` has come. False if the scan was done before.
+  [[nodiscard]] bool cut_off(bool resume, const std::function<bool()>& moment) const {
+    const pid_t child = start(scan(map(), resume));
+    while (!moment()) {
+      if (waitpid(child, nullptr, WNOHANG) == child) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    kill(child, SIGKILL);
+    return status_of(child) == 128 + SIGKILL;
+  }
+  /// Number of the newest checkpoint, 0 if there is none.
+  [[nodiscard]] int newest() const {
+    int number = 0;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(unfinished(), ignored)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with("checkpoint-")) number = std::max(number, std::stoi(name.substr(11)));
+    }
+    return number;
+  }
+  void expect_same_map(const fs::path& a, const fs::path& b) const {
+    for (const char* file :
+         {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"})
+      EXPECT_TRUE(text_of(a / file) == text_of(b / file)) << file;
+  }
+
+  test::TemporaryFolder temporary_;
+};
+
+TEST_F(ResumeTest, KilledAgainAndAgainTheMapIsTheVerySame) {
+  const fs::path uncut = temporary_.path() / "uncut";
+  ASSERT_EQ(run(scan(uncut, false)), 0) << said();
+  std::mt19937 random(1);
+  int killed = 0;
+  for (bool resume = false; killed < 12; resume = true, ++killed) {
+    // Until there is a checkpoint more, and then for a random while, mostly into the next one's writing.
+    const int before = newest();
+    std::optional<std::chrono::steady_clock::time_point> end;
+    const bool cut = cut_off(resume, [&] {
+      const auto now = std::chrono::steady_clock::now();
+      if (!end && newest() > before) end = now + std::chrono::milliseconds(random() % 60);
+      return end && now >= *end;
+    });
+    if (!cut) break;
+    if (fs::exists(map())) expect_same_map(map(), uncut);  // killed after it was put in place
+  }
+  if (killed == 12) {
+    ASSERT_EQ(run(scan(map(), true)), 0) << said();
+  }
+  EXPECT_GT(killed, 2);
+  ASSERT_TRUE(fs::exists(map())) << said();
+  expect_same_map(map(), uncut);
+  EXPECT_FALSE(fs::exists(unfinished()));
+}
+
+TEST_F(ResumeTest, KilledInTheMiddleOfACheckpointTheOneBeforeHolds) {
+  const fs::path uncut = temporary_.path() / "uncut";
+  ASSERT_EQ(run(scan(uncut, false)), 0) << said();
+  ASSERT_TRUE(
+      cut_off(false, [&] { return newest() > 0 && fs::exists(unfinished() / "checkpoint.writing"); }));
+  ASSERT_EQ(run(scan(map(), true)), 0) << said();
+  expect_same_map(map(), uncut);
+}
+
+TEST_F(ResumeTest, TheMapThatIsThereStaysUntilTheNewOneIsWhole) {
+  ASSERT_EQ(run({"prescan", "sim:table?frames=10&width=128&seed=5", "--map", map(), "--resolution", "0.08"}),
+            0);
+  const std::string before = text_of(map() / "map.json");
+  ASSERT_TRUE(cut_off(false, [&] { return newest() > 0; }));
+  EXPECT_EQ(run({"map", "verify", map()}), 0) << said();
+  EXPECT_EQ(text_of(map() / "map.json"), before);
+  ASSERT_EQ(run(scan(map(), true)), 0) << said();
+  EXPECT_NE(text_of(map() / "map.json"), before);
+  EXPECT_EQ(run({"map", "verify", map()}), 0) << said();
+}
+
+TEST_F(ResumeTest, OtherSettingsAreRefusedAndADamagedCheckpointIsPassedOver) {
+  ASSERT_TRUE(cut_off(false, [&] { return newest() > 0; }));
+  EXPECT_EQ(run({"prescan", kSource, "--map", map(), "--resolution", "0.05", "--resume"}), 1);
+  EXPECT_NE(said().find("resolution"), std::string::npos) << said();
+  EXPECT_EQ(
+      run({"prescan", "sim:wall?frames=60&width=128", "--map", map(), "--resolution", "0.04", "--resume"}),
+      1);
+  EXPECT_NE(said().find("source"), std::string::npos) << said();
+
+  for (const auto& entry : fs::directory_iterator(unfinished())) {
+    if (!entry.path().filename().string().starts_with("checkpoint-")) continue;
+    fs::resize_file(entry.path() / "state.bin", fs::file_size(entry.path() / "state.bin") / 2);
+  }
+  ASSERT_EQ(run(scan(map(), true)), 0) << said();
+  EXPECT_NE(said().find("state.bin: is damaged"), std::string::npos) << said();
+  EXPECT_EQ(run({"map", "verify", map()}), 0) << said();
+}
+
+TEST_F(ResumeTest, NothingToResumeIsSaid) {
+  EXPECT_EQ(run(scan(map(), true)), 1);
+  EXPECT_NE(said().find("nothing to resume"), std::string::npos) << said();
+  EXPECT_FALSE(fs::exists(map()));
+}
+
+}  // namespace
+}  // namespace roomradar
