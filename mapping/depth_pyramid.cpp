@@ -10,16 +10,49 @@
 namespace roomradar {
 namespace {
 
-// Front of a pixel that leaves it to its neighbours.
-constexpr float kNoWord = std::numeric_limits<float>::infinity();
-constexpr int kHoleLevel = 2;  // cells of 4 x 4 pixels must hold some depth
+constexpr float kNothing_m = std::numeric_limits<float>::infinity();
+// Front of a cell that leaves it to its neighbours.
+constexpr std::int16_t kNoWord = std::numeric_limits<std::int16_t>::max();
+constexpr float kFarthestStep = 32'000.0F;
+constexpr std::size_t kHoleLevel = 2;  // cells of 4 x 4 pixels must hold some depth
 
 DepthBounds merged(const DepthBounds& a, const DepthBounds& b) {
-  return {std::min(a.front_m, b.front_m), std::max(a.back_m, b.back_m), std::min(a.nearest_m, b.nearest_m)};
+  return {std::min(a.front, b.front), std::min(a.nearest, b.nearest), std::min(a.behind, b.behind),
+          std::min(a.unused, b.unused)};
+}
+
+// The row of cells that two rows of the image give.
+void bound_rows(const float* upper, const float* lower, int width, double resolution_m,
+                const FusionConfig& config, DepthPyramid& pyramid, DepthBounds* cells) {
+  float* nearest = pyramid.row_nearest_m.data();    // of what was measured
+  float* farthest = pyramid.row_farthest_m.data();  // likewise, within max_range_m
+  float* deepest = pyramid.row_deepest_m.data();    // at any range
+  const float max_range_m = config.max_range_m;
+  for (int x = 0; x < width; ++x) {
+    const float a = upper[x], b = lower[x];
+    nearest[x] = std::min(a > 0.0F ? a : kNothing_m, b > 0.0F ? b : kNothing_m);
+    farthest[x] = std::max(a <= max_range_m ? a : 0.0F, b <= max_range_m ? b : 0.0F);
+    deepest[x] = std::max(a, b);
+  }
+  const float steps_per_m = pyramid.steps_per_m;
+  for (int x = 0; x < (width + 1) / 2; ++x) {
+    const float near_m = std::min(nearest[2 * x], nearest[2 * x + 1]);
+    const float far_m = std::max(farthest[2 * x], farthest[2 * x + 1]);
+    const bool past_range = std::max(deepest[2 * x], deepest[2 * x + 1]) > max_range_m;
+    const float in_range_m = std::min(near_m, max_range_m);
+    const float front_m =
+        near_m > max_range_m ? max_range_m : in_range_m - half_layer_m(in_range_m, resolution_m, config);
+    const float layer_end_m = far_m > 0.0F ? far_m + half_layer_m(far_m, resolution_m, config) : 0.0F;
+    const float behind_m = std::max(layer_end_m, past_range ? max_range_m : 0.0F);
+    const int front =
+        near_m == kNothing_m ? kNoWord : static_cast<int>(std::max(front_m, 0.0F) * steps_per_m);
+    const int behind = -static_cast<int>(behind_m * steps_per_m) - 1;
+    cells[x] = {static_cast<std::int16_t>(front), static_cast<std::int16_t>(front),
+                static_cast<std::int16_t>(behind), 0};
+  }
 }
 
 void halve(const Image<DepthBounds>& fine, Image<DepthBounds>& coarse) {
-  coarse.resize((fine.width + 1) / 2, (fine.height + 1) / 2);
   for (int y = 0; y < coarse.height; ++y) {
     const DepthBounds* upper = fine.row(2 * y);
     const DepthBounds* lower = fine.row(std::min(2 * y + 1, fine.height - 1));
@@ -30,40 +63,46 @@ void halve(const Image<DepthBounds>& fine, Image<DepthBounds>& coarse) {
   }
 }
 
+void resize_once(Image<DepthBounds>& cells, int width, int height) {
+  if (cells.width != width || cells.height != height) cells.resize(width, height);
+}
+
 }  // namespace
 
-DepthBounds truncation_layer(float depth_m, double resolution_m, const FusionConfig& config) {
-  const float half_m = std::max(config.truncation_voxels * static_cast<float>(resolution_m),
-                                config.truncation_sigmas * depth_sigma_m(depth_m));
-  return {depth_m - half_m, depth_m + half_m, depth_m - half_m};
+float half_layer_m(float depth_m, double resolution_m, const FusionConfig& config) {
+  return std::max(config.truncation_voxels * static_cast<float>(resolution_m),
+                  config.truncation_sigmas * depth_sigma_m(depth_m));
 }
 
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid) {
-  const auto longest = static_cast<unsigned>(std::max({depth_m.width, depth_m.height, 1}));
+  pyramid.steps_per_m =
+      kFarthestStep / (config.max_range_m + half_layer_m(config.max_range_m, resolution_m, config));
+  const auto longest = static_cast<unsigned>(std::max({depth_m.width, depth_m.height, 2}));
   pyramid.levels.resize(static_cast<std::size_t>(std::bit_width(longest - 1)) + 1);
-  Image<DepthBounds>& base = pyramid.levels.front();
-  base.resize(depth_m.width, depth_m.height);
-  for (std::size_t i = 0; i < depth_m.pixels.size(); ++i) {
-    const float z = depth_m.pixels[i];
-    if (!(z > 0.0F)) {
-      base.pixels[i] = {kNoWord, 0.0F, kNoWord};
-    } else if (z > config.max_range_m) {
-      base.pixels[i] = {config.max_range_m, config.max_range_m, config.max_range_m};
-    } else {
-      base.pixels[i] = truncation_layer(z, resolution_m, config);
-    }
-  }
-  for (std::size_t level = 1; level < pyramid.levels.size(); ++level) {
+  int width = (depth_m.width + 1) / 2;
+  int height = (depth_m.height + 1) / 2;
+  const auto even_width = 2 * static_cast<std::size_t>(width);
+  pyramid.row_nearest_m.assign(even_width, kNothing_m);
+  pyramid.row_farthest_m.assign(even_width, 0.0F);
+  pyramid.row_deepest_m.assign(even_width, 0.0F);
+  resize_once(pyramid.levels[1], width, height);
+  for (int y = 0; y < height; ++y)
+    bound_rows(depth_m.row(2 * y), depth_m.row(std::min(2 * y + 1, depth_m.height - 1)), depth_m.width,
+               resolution_m, config, pyramid, pyramid.levels[1].row(y));
+  for (std::size_t level = 2; level < pyramid.levels.size(); ++level) {
+    width = (width + 1) / 2;
+    height = (height + 1) / 2;
+    resize_once(pyramid.levels[level], width, height);
     halve(pyramid.levels[level - 1], pyramid.levels[level]);
     if (level != kHoleLevel) continue;
     for (DepthBounds& cell : pyramid.levels[level].pixels)
-      if (cell.front_m == kNoWord) cell.front_m = 0.0F;
+      if (cell.front == kNoWord) cell.front = 0;
   }
 }
 
 DepthBounds bounds_within(const DepthPyramid& pyramid, int left, int top, int right, int bottom) {
-  const auto span = static_cast<unsigned>(std::max(right - left, bottom - top));
+  const auto span = static_cast<unsigned>(std::max({right - left, bottom - top, 1}));
   const int level =
       std::min(static_cast<int>(std::bit_width(span)), static_cast<int>(pyramid.levels.size()) - 1);
   const Image<DepthBounds>& cells = pyramid.levels[static_cast<std::size_t>(level)];

@@ -1,4 +1,4 @@
-// fusion_hits.cpp: the voxels that a frame's rays end in, as sorted Morton codes.
+// fusion_hits.cpp: the voxels that a frame's rays end in, block by block.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,23 +11,77 @@
 namespace roomradar {
 namespace {
 
-constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
+constexpr int kNoKey = -1;
 
-// Least-significant-digit radix sort, over the bits that differ at all: a frame sees a small part of the
-// tree.
-void sort_codes(std::vector<std::uint64_t>& codes, std::vector<std::uint64_t>& buffer) {
+// Least-significant-digit radix sort by code, over the bits that differ at all: a frame sees a small part of
+// the tree.
+void sort_by_code(std::vector<BlockHits>& hits, std::vector<BlockHits>& buffer) {
   constexpr int kDigitBits = 11;
   constexpr std::uint64_t kDigitMask = (1U << kDigitBits) - 1;
   std::uint64_t differing = 0;
-  for (const std::uint64_t code : codes) differing |= code ^ codes.front();
-  buffer.resize(codes.size());
+  for (const BlockHits& hit : hits) differing |= hit.block_code() ^ hits.front().block_code();
+  buffer.resize(hits.size());
   for (int shift = 0; shift < static_cast<int>(std::bit_width(differing)); shift += kDigitBits) {
     std::array<std::uint32_t, kDigitMask + 1> next{};
-    for (const std::uint64_t code : codes) ++next[(code >> shift) & kDigitMask];
+    for (const BlockHits& hit : hits) ++next[(hit.block_code() >> shift) & kDigitMask];
     std::uint32_t start = 0;
     for (std::uint32_t& count : next) start += std::exchange(count, start);
-    for (const std::uint64_t code : codes) buffer[next[(code >> shift) & kDigitMask]++] = code;
-    codes.swap(buffer);
+    for (const BlockHits& hit : hits) buffer[next[(hit.block_code() >> shift) & kDigitMask]++] = hit;
+    hits.swap(buffer);
+  }
+}
+
+// Each block once, with the voxels of all its hits.
+void merge_sorted(std::vector<BlockHits>& hits) {
+  std::size_t merged = 0;
+  for (std::size_t i = 1; i < hits.size(); ++i) {
+    if (hits[i].block_code() == hits[merged].block_code())
+      hits[merged].add(hits[i].voxels());
+    else
+      hits[++merged] = hits[i];
+  }
+  if (!hits.empty()) hits.resize(merged + 1);
+}
+
+// Keys of the voxels that one row's rays end in. They are float offsets from the camera's own voxel, which is
+// found in double: exact enough anywhere in the tree.
+struct RowOfRays {
+  Eigen::Vector3f per_x, at_zero;  // voxels for each metre of depth: direction(x) = per_x * ray_x + at_zero
+  Eigen::Vector3f camera_within_voxel;
+  Eigen::Vector3i camera_key;
+  float max_range_m = 0.0F;
+};
+
+// Writes one coordinate of the keys, kNoKey where nothing is hit. Returns bits that no key has.
+int end_voxels(const RowOfRays& rays, int axis, const float* depth_m, const float* ray_x, int width,
+               int* keys) {
+  const float per_x = rays.per_x[axis], at_zero = rays.at_zero[axis];
+  const float within = rays.camera_within_voxel[axis], max_range_m = rays.max_range_m;
+  const int camera_key = rays.camera_key[axis];
+  int out_of_reach = 0;
+  for (int x = 0; x < width; ++x) {
+    const float z = depth_m[x];
+    const bool hits = z > 0.0F && z <= max_range_m;
+    const float voxels = (per_x * ray_x[x] + at_zero) * (hits ? z : 0.0F) + within;
+    int key = static_cast<int>(voxels);
+    key -= static_cast<float>(key) > voxels ? 1 : 0;
+    key += camera_key;
+    out_of_reach |= hits ? key & ~0xFFFF : 0;
+    keys[x] = hits ? key : kNoKey;
+  }
+  return out_of_reach;
+}
+
+// Most neighbours share their voxel; what still comes twice goes after sorting.
+void mark_new(const std::vector<int> (&above)[3], const std::vector<int> (&row)[3], int width,
+              std::uint8_t* is_new) {
+  // Each row has a kNoKey before its first pixel.
+  const int *ax = above[0].data() + 1, *ay = above[1].data() + 1, *az = above[2].data() + 1;
+  const int *x = row[0].data() + 1, *y = row[1].data() + 1, *z = row[2].data() + 1;
+  for (int i = 0; i < width; ++i) {
+    const int from_left = (x[i] ^ x[i - 1]) | (y[i] ^ y[i - 1]) | (z[i] ^ z[i - 1]);
+    const int from_above = (x[i] ^ ax[i]) | (y[i] ^ ay[i]) | (z[i] ^ az[i]);
+    is_new[i] = static_cast<std::uint8_t>((x[i] != kNoKey) & (from_left != 0) & (from_above != 0));
   }
 }
 
@@ -37,54 +91,51 @@ HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_came
                        const FusionConfig& config, FusionScratch& scratch) {
   const Intrinsics& camera = frame.depth_camera;
   const DepthImage& depth_m = frame.depth_m;
-  // Keys are float offsets from the camera's own voxel, which is found in double: exact enough anywhere in
-  // the tree.
+  const auto is_measured = [](float z) { return z > 0.0F; };
+  if (std::none_of(depth_m.pixels.begin(), depth_m.pixels.end(), is_measured)) return HitStatus::kNone;
   const Eigen::Matrix3f R_voxels = (T_world_camera.linear() / resolution_m).cast<float>();
   const Eigen::Vector3d camera_voxels = T_world_camera.translation() / resolution_m;
   if (!(camera_voxels.cwiseAbs().maxCoeff() < 1e6)) return HitStatus::kOutOfReach;
-  const Eigen::Vector3i camera_key = camera_voxels.array().floor().cast<int>();
-  const Eigen::Vector3f within_voxel = (camera_voxels - camera_key.cast<double>()).cast<float>();
-  const Eigen::Array3i first_key = camera_key.array() + kKeyOrigin;
-  const auto inverse_fx = static_cast<float>(1.0 / camera.fx_px);
+  const Eigen::Vector3i camera_voxel = camera_voxels.array().floor().cast<int>();
+  RowOfRays rays;
+  rays.per_x = R_voxels.col(0);
+  rays.camera_within_voxel = (camera_voxels - camera_voxel.cast<double>()).cast<float>();
+  rays.camera_key = camera_voxel.array() + kKeyOrigin;
+  rays.max_range_m = config.max_range_m;
 
+  const int width = depth_m.width;
+  const auto columns = static_cast<std::size_t>(width);
   scratch.hits.clear();
-  scratch.row_keys.assign(static_cast<std::size_t>(depth_m.width), kNoKey);
-  bool measured = false;
+  scratch.is_new.assign(columns, 0);
+  scratch.ray_x.resize(columns);
+  for (int x = 0; x < width; ++x)
+    scratch.ray_x[static_cast<std::size_t>(x)] = static_cast<float>((x - camera.cx_px) / camera.fx_px);
+  for (auto& row : scratch.row_keys)
+    for (std::vector<int>& keys : row) keys.assign(columns + 1, kNoKey);
   for (int y = 0; y < depth_m.height; ++y) {
-    const float* row = depth_m.row(y);
-    const auto ray_y = static_cast<float>((y - camera.cy_px) / camera.fy_px);
-    const Eigen::Vector3f row_direction = R_voxels.col(1) * ray_y + R_voxels.col(2);
-    std::uint64_t left = kNoKey;
-    for (int x = 0; x < depth_m.width; ++x) {
-      const float z = row[x];
-      std::uint64_t& above = scratch.row_keys[static_cast<std::size_t>(x)];
-      if (!(z > 0.0F)) {
-        above = kNoKey;
-        continue;
-      }
-      measured = true;
-      if (z > config.max_range_m) {
-        above = kNoKey;
-        continue;
-      }
-      const float ray_x = (static_cast<float>(x) - static_cast<float>(camera.cx_px)) * inverse_fx;
-      const Eigen::Array3f voxels = (R_voxels.col(0) * ray_x + row_direction) * z + within_voxel;
-      const Eigen::Array3i key = voxels.floor().cast<int>() + first_key;
-      if ((key < 0).any() || (key > 0xFFFF).any()) return HitStatus::kOutOfReach;
-      const std::uint64_t packed = static_cast<std::uint64_t>(key.x()) |
-                                   static_cast<std::uint64_t>(key.y()) << 16U |
-                                   static_cast<std::uint64_t>(key.z()) << 32U;
-      // Most neighbours share their voxel; what still comes twice goes after sorting.
-      if (packed != left && packed != above)
-        scratch.hits.push_back(morton_code(static_cast<std::uint32_t>(key.x()),
-                                           static_cast<std::uint32_t>(key.y()),
-                                           static_cast<std::uint32_t>(key.z())));
-      left = above = packed;
+    auto& above = scratch.row_keys[y % 2];
+    auto& row = scratch.row_keys[1 - y % 2];
+    rays.at_zero = R_voxels.col(1) * static_cast<float>((y - camera.cy_px) / camera.fy_px) + R_voxels.col(2);
+    int out_of_reach = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      out_of_reach |=
+          end_voxels(rays, axis, depth_m.row(y), scratch.ray_x.data(), width, row[axis].data() + 1);
+    if (out_of_reach != 0) return HitStatus::kOutOfReach;
+    mark_new(above, row, width, scratch.is_new.data());
+    for (std::size_t x = 0; x < columns; ++x) {
+      if (scratch.is_new[x] == 0) continue;
+      const std::uint64_t code =
+          morton_code(static_cast<std::uint32_t>(row[0][x + 1]), static_cast<std::uint32_t>(row[1][x + 1]),
+                      static_cast<std::uint32_t>(row[2][x + 1]));
+      const unsigned voxel = 1U << (code & 7U);
+      if (!scratch.hits.empty() && scratch.hits.back().block_code() == code >> 3U)
+        scratch.hits.back().add(voxel);
+      else
+        scratch.hits.emplace_back(code >> 3U, voxel);
     }
   }
-  if (!measured) return HitStatus::kNone;
-  if (!scratch.hits.empty()) sort_codes(scratch.hits, scratch.sort_buffer);
-  scratch.hits.erase(std::unique(scratch.hits.begin(), scratch.hits.end()), scratch.hits.end());
+  if (!scratch.hits.empty()) sort_by_code(scratch.hits, scratch.sort_buffer);
+  merge_sorted(scratch.hits);
   return HitStatus::kCollected;
 }
 

@@ -1,9 +1,7 @@
-// room_octree.cpp: the node's data and the tree's upkeep.
+// room_octree.cpp: the node's data, and OctoMap's acquaintance with the tree.
 #include "mapping/room_octree.hpp"
 
-#include <algorithm>
 #include <istream>
-#include <limits>
 #include <ostream>
 
 namespace roomradar {
@@ -59,7 +57,9 @@ std::ostream& RoomNode::writeData(std::ostream& stream) const {
 }
 
 std::istream& RoomNode::readData(std::istream& stream) {
-  forget_sample();
+  distance_m = weight = 0.0F;
+  colour = Rgb{};
+  colour_count = 0;
   std::uint8_t sampled = 0;
   get(stream, value);
   get(stream, sampled);
@@ -79,33 +79,14 @@ RoomOcTree::RoomOcTree(double resolution_m) : OccupancyOcTreeBase<RoomNode>(reso
 }
 
 bool RoomOcTree::isNodeCollapsible(const RoomNode* node) const {
-  const RoomNode* first = child(*node, 0);
-  if (!first || first->has_sample() || nodeHasChildren(first)) return false;
-  for (unsigned i = 1; i < 8; ++i) {
-    const RoomNode* other = child(*node, i);
-    if (!other || other->getLogOdds() != first->getLogOdds() || other->has_sample() || nodeHasChildren(other))
+  for (unsigned i = 0; i < 8; ++i) {
+    if (!nodeChildExists(node, i)) return false;
+    const RoomNode* child = getNodeChild(node, i);
+    if (child->has_sample() || nodeHasChildren(child) ||
+        child->getLogOdds() != getNodeChild(node, 0)->getLogOdds())
       return false;
   }
   return true;
-}
-
-RoomNode& RoomOcTree::ensure_root() {
-  if (!root) {
-    root = new RoomNode();
-    tree_size = 1;
-  }
-  size_changed = true;
-  return *root;
-}
-
-void RoomOcTree::remove_root() { clear(); }
-
-void RoomOcTree::summarise(RoomNode& node) {
-  float greatest = -std::numeric_limits<float>::infinity();
-  for (unsigned i = 0; i < 8; ++i)
-    if (const RoomNode* c = child(node, i)) greatest = std::max(greatest, c->getLogOdds());
-  node.setLogOdds(greatest);
-  pruneNode(&node);
 }
 
 }  // namespace roomradar

@@ -7,8 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "mapping/fusion.hpp"
-#include "mapping/room_octree.hpp"
 #include "mapping/static_map_octree.hpp"
 #include "mapping/types/error.hpp"
 
@@ -17,104 +15,115 @@ namespace {
 
 using Key = Eigen::Array3i;
 
-Occupancy occupancy_of(const RoomNode& leaf) {
-  if (leaf.getLogOdds() == 0.0F) return Occupancy::kUnknown;
-  return leaf.getLogOdds() > 0.0F ? Occupancy::kOccupied : Occupancy::kFree;
+Occupancy occupancy_of(LogOdds log_odds) {
+  if (log_odds == 0) return Occupancy::kUnknown;
+  return log_odds > 0 ? Occupancy::kOccupied : Occupancy::kFree;
 }
 
-SurfaceSample sample_of(const RoomNode& leaf, const Key& key) {
+SurfaceSample sample_of(const BlockOctree& tree, const LeafBlock& block, unsigned i, const Key& key) {
   return {.voxel = (key - kKeyOrigin).matrix(),
-          .occupancy = occupancy_of(leaf),
-          .distance_m = leaf.distance_m,
-          .weight = leaf.weight,
-          .colour = leaf.colour,
-          .has_colour = leaf.colour_count > 0};
+          .occupancy = occupancy_of(block.log_odds[i]),
+          .distance_m = block.distance[i] * tree.units().distance_m,
+          .weight = block.weight[i] * tree.units().weight,
+          .colour = tree.colour(block, i),
+          .has_colour = (block.coloured >> i & 1U) != 0};
 }
 
-Key child_key(const Key& key, unsigned depth, unsigned i) {
-  const int edge = 1 << (kLeafDepth - depth - 1);
-  return key + Key(i & 1U ? edge : 0, i & 2U ? edge : 0, i & 4U ? edge : 0);
+// What holds one voxel: a leaf block and the voxel's place in it, or a node that is no block.
+struct Found {
+  Key key = Key::Zero();
+  Slot node;
+  const LeafBlock* block = nullptr;
+  unsigned i = 0;
+
+  [[nodiscard]] LogOdds log_odds() const { return block ? block->log_odds[i] : node.log_odds(); }
+};
+
+Found find(const BlockOctree& tree, const Eigen::Vector3d& p_world) {
+  const Eigen::Array3d voxel = (p_world / tree.resolution_m()).array().floor() + kKeyOrigin;
+  if (!(voxel >= 0.0).all() || !(voxel <= 65535.0).all()) return {};
+  Found found{.key = voxel.cast<int>(), .node = tree.root};
+  NodePlace place;
+  for (; found.node.is_block() && place.depth < kLeafDepth - 1; ++place.depth)
+    found.node = tree.inner(found.node).slots[place.towards(found.key)];
+  if (!found.node.is_block()) return found;
+  found.block = &tree.leaves(found.node);
+  found.i = place.towards(found.key);
+  return found;
 }
 
-// Calls visit(node, key of its lowest voxel, depth) for every leaf, in Morton order.
-template <typename Visit>
-void for_leaves(const RoomOcTree& tree, const RoomNode& node, const Key& key, unsigned depth,
-                  const Visit& visit) {
-  bool is_leaf = true;
-  for (unsigned i = 0; depth < kLeafDepth && i < 8; ++i) {
-    const RoomNode* child = tree.child(node, i);
-    if (!child) continue;
-    is_leaf = false;
-    for_leaves(tree, *child, child_key(key, depth, i), depth + 1, visit);
+// Adding log-odds to all there is in a node, within the clamping.
+class AddLogOdds {
+ public:
+  AddLogOdds(BlockOctree& tree, const FusionConfig& config, float log_odds)
+      : tree_(tree), config_(config), added_(log_odds) {}
+
+  [[nodiscard]] Slot to_node(Slot node, unsigned depth) const {
+    if (!node.is_block()) return Slot::cube(sum(node.log_odds()));
+    if (depth == kLeafDepth - 1) return to_voxels(node, 0xFFU);
+    InnerBlock& block = tree_.inner(node);
+    for (Slot& slot : block.slots) slot = to_node(slot, depth + 1);
+    return tree_.settle(node, block);
   }
-  if (is_leaf) visit(node, key, depth);
-}
-
-template <typename Visit>
-void for_leaves(const RoomOcTree& tree, const Visit& visit) {
-  if (const RoomNode* root = tree.getRoot()) for_leaves(tree, *root, Key::Zero(), 0, visit);
-}
-
-// The leaf that holds a point, or null.
-const RoomNode* leaf_at(const RoomOcTree& tree, const Eigen::Vector3d& p_world, Key& key) {
-  const Eigen::Array3d voxel = (p_world / tree.getResolution()).array().floor() + kKeyOrigin;
-  if (!(voxel >= 0.0).all() || !(voxel <= 65535.0).all()) return nullptr;
-  key = voxel.cast<int>();
-  const RoomNode* node = tree.getRoot();
-  for (unsigned depth = 0; node && depth < kLeafDepth && tree.nodeHasChildren(node); ++depth) {
-    const unsigned shift = kLeafDepth - 1 - depth;
-    const auto digit = [&](int axis) { return static_cast<unsigned>(key[axis] >> shift) & 1U; };
-    node = tree.child(*node, digit(0) | digit(1) << 1U | digit(2) << 2U);
+  [[nodiscard]] Slot to_voxels(Slot node, unsigned which) const {
+    return change_leaves(tree_, node, [&](LeafBlock& block) {
+      for (unsigned i = 0; i < 8; ++i)
+        if ((which >> i & 1U) != 0) block.log_odds[i] = sum(block.log_odds[i]);
+    });
   }
-  return node;
+
+ private:
+  [[nodiscard]] LogOdds sum(LogOdds before) const {
+    const float unit = tree_.units().log_odds;
+    const float after =
+        std::clamp(static_cast<float>(before) * unit + added_, config_.min_log_odds, config_.max_log_odds);
+    const auto steps = static_cast<LogOdds>(std::lround(after / unit));
+    return steps == 0 ? LogOdds{1} : steps;
+  }
+  BlockOctree& tree_;
+  const FusionConfig& config_;
+  float added_;
+};
+
+// Averages a sample of another map into voxel i.
+void add_sample(BlockOctree& tree, LeafBlock& block, unsigned i, const SurfaceSample& sample) {
+  const BlockUnits& units = tree.units();
+  const float weight = std::clamp(std::round(sample.weight / units.weight), 1.0F, 65535.0F);
+  const float sum = static_cast<float>(block.weight[i]) + weight;
+  const float part = weight / sum;
+  if (sample.has_colour) {
+    Rgb& own = tree.colours(block).colours[i];
+    const float colour_part = (block.coloured >> i & 1U) != 0 ? part : 1.0F;
+    const auto mean = [colour_part](std::uint8_t a, std::uint8_t b) {
+      return static_cast<std::uint8_t>(std::lround(a + static_cast<float>(b - a) * colour_part));
+    };
+    own = {mean(own.r, sample.colour.r), mean(own.g, sample.colour.g), mean(own.b, sample.colour.b)};
+    block.coloured |= static_cast<std::uint8_t>(1U << i);
+  }
+  const auto own_distance = static_cast<float>(block.distance[i]);
+  const float distance = own_distance + (sample.distance_m / units.distance_m - own_distance) * part;
+  block.distance[i] = static_cast<std::int16_t>(std::lround(std::clamp(distance, -32767.0F, 32767.0F)));
+  block.weight[i] = static_cast<std::uint16_t>(std::min(sum, 65535.0F));
 }
 
-// Decides on every sample below a node. True if the node holds anything afterwards.
-bool revise(RoomOcTree& tree, RoomNode& node, const Key& key, unsigned depth, float free_log_odds,
+// Decides on every sample below a node. Gives what the node has become.
+Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free,
             const std::function<SampleFate(const SurfaceSample&)>& decide) {
-  if (depth == kLeafDepth) {
-    if (!node.has_sample()) return true;
-    const SampleFate fate = decide(sample_of(node, key));
-    if (fate == SampleFate::kKeep) return true;
-    node.forget_sample();
-    if (fate == SampleFate::kFree) node.setLogOdds(free_log_odds);
-    return node.getLogOdds() != 0.0F;
-  }
-  if (!tree.nodeHasChildren(&node)) return true;
-  for (unsigned i = 0; i < 8; ++i) {
-    RoomNode* child = tree.child(node, i);
-    if (child && !revise(tree, *child, child_key(key, depth, i), depth + 1, free_log_odds, decide))
-      tree.deleteNodeChild(&node, i);
-  }
-  if (!tree.nodeHasChildren(&node)) {
-    node.free_empty_child_table();
-    return false;
-  }
-  tree.summarise(node);
-  return true;
-}
-
-// Adds to every leaf at or below a node.
-void add_log_odds(RoomOcTree& tree, RoomNode& node, float log_odds, const FusionConfig& config) {
-  if (!tree.nodeHasChildren(&node)) {
-    node.setLogOdds(std::clamp(node.getLogOdds() + log_odds, config.min_log_odds, config.max_log_odds));
-    return;
-  }
-  for (unsigned i = 0; i < 8; ++i) add_log_odds(tree, tree.ensure_child(node, i), log_odds, config);
-  tree.summarise(node);
-}
-
-// Changes the node at a key and depth, made where there is none, and sums up those above it.
-template <typename Change>
-void change_node(RoomOcTree& tree, RoomNode& node, const Key& key, unsigned depth, unsigned target_depth,
-                 const Change& change) {
-  if (depth == target_depth) return change(node);
-  if (node.getLogOdds() != 0.0F && !tree.nodeHasChildren(&node)) tree.expandNode(&node);
-  const unsigned shift = kLeafDepth - 1 - depth;
-  const auto digit = [&](int axis) { return static_cast<unsigned>(key[axis] >> shift) & 1U; };
-  RoomNode& child = tree.ensure_child(node, digit(0) | digit(1) << 1U | digit(2) << 2U);
-  change_node(tree, child, key, depth + 1, target_depth, change);
-  tree.summarise(node);
+  if (!node.is_block()) return node;
+  if (place.depth == kLeafDepth - 1)
+    return change_leaves(tree, node, [&](LeafBlock& block) {
+      for (unsigned i = 0; i < 8; ++i) {
+        if (block.weight[i] == 0) continue;
+        const SampleFate fate = decide(sample_of(tree, block, i, place.child(i).key));
+        if (fate == SampleFate::kKeep) continue;
+        forget_sample(block, i);
+        if (fate == SampleFate::kFree) block.log_odds[i] = free;
+      }
+    });
+  InnerBlock& block = tree.inner(node);
+  for (unsigned i = 0; i < 8; ++i)
+    block.slots[i] = revise(tree, block.slots[i], place.child(i), free, decide);
+  return tree.settle(node, block);
 }
 
 void require_cube(const VoxelIndex& lowest, int edge_voxels) {
@@ -128,6 +137,11 @@ void require_cube(const VoxelIndex& lowest, int edge_voxels) {
       "voxel " + std::to_string(lowest.x()) + " " + std::to_string(lowest.y()) + " " +
       std::to_string(lowest.z()) + " with an edge of " + std::to_string(edge_voxels) +
       " is no leaf of an octree: it must lie within +-32768, on a multiple of its edge, a power of two");
+}
+
+const FusionConfig& checked(const FusionConfig& config) {
+  require_valid(config);
+  return config;
 }
 
 double checked_resolution(double resolution_m) {
@@ -156,9 +170,7 @@ bool is_rigid(const Eigen::Isometry3d& T) {
 }  // namespace
 
 StaticMap::Octree::Octree(double resolution_m, const FusionConfig& fusion)
-    : config(fusion), tree(checked_resolution(resolution_m)) {
-  require_valid(fusion);
-}
+    : config(checked(fusion)), tree(checked_resolution(resolution_m), config) {}
 
 StaticMap::StaticMap(double resolution_m, const FusionConfig& config)
     : octree_(std::make_unique<Octree>(resolution_m, config)) {}
@@ -184,28 +196,29 @@ FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_
 }
 
 Occupancy StaticMap::occupancy_at(const Eigen::Vector3d& p_world) const {
-  Key key;
-  const RoomNode* leaf = leaf_at(octree_->tree, p_world, key);
-  return leaf ? occupancy_of(*leaf) : Occupancy::kUnknown;
+  return occupancy_of(find(octree_->tree, p_world).log_odds());
 }
 
 std::optional<SurfaceSample> StaticMap::sample_at(const Eigen::Vector3d& p_world) const {
-  Key key;
-  const RoomNode* leaf = leaf_at(octree_->tree, p_world, key);
-  if (!leaf || !leaf->has_sample()) return std::nullopt;
-  return sample_of(*leaf, key);
+  const Found found = find(octree_->tree, p_world);
+  if (!found.block || found.block->weight[found.i] == 0) return std::nullopt;
+  return sample_of(octree_->tree, *found.block, found.i, found.key);
 }
 
 void StaticMap::visit_samples(const std::function<void(const SurfaceSample&)>& visit) const {
-  for_leaves(octree_->tree, [&](const RoomNode& leaf, const Key& key, unsigned) {
-    if (leaf.has_sample()) visit(sample_of(leaf, key));
-  });
+  const BlockOctree& tree = octree_->tree;
+  for_each_part(
+      tree, tree.root, {}, [](const NodePlace&, LogOdds) {},
+      [&](const NodePlace& place, const LeafBlock& block) {
+        for (unsigned i = 0; i < 8; ++i)
+          if (block.weight[i] != 0) visit(sample_of(tree, block, i, place.child(i).key));
+      });
 }
 
 void StaticMap::visit_leaves(const std::function<void(const MapLeaf&)>& visit) const {
-  for_leaves(octree_->tree, [&](const RoomNode& leaf, const Key& key, unsigned depth) {
-    if (leaf.getLogOdds() != 0.0F)
-      visit({(key - kKeyOrigin).matrix(), 1 << (kLeafDepth - depth), leaf.getLogOdds()});
+  const BlockOctree& tree = octree_->tree;
+  for_each_leaf(tree, [&](const NodePlace& place, LogOdds log_odds) {
+    visit({(place.key - kKeyOrigin).matrix(), place.edge_voxels(), log_odds * tree.units().log_odds});
   });
 }
 
@@ -213,69 +226,58 @@ void StaticMap::add_evidence(const MapLeaf& leaf) {
   require_cube(leaf.lowest_voxel, leaf.edge_voxels);
   if (!std::isfinite(leaf.log_odds)) throw Error("log-odds of a leaf must be finite");
   if (leaf.log_odds == 0.0F) return;
-  RoomOcTree& tree = octree_->tree;
-  const auto depth =
-      kLeafDepth - static_cast<unsigned>(std::countr_zero(static_cast<unsigned>(leaf.edge_voxels)));
-  change_node(tree, tree.ensure_root(), leaf.lowest_voxel.array() + kKeyOrigin, 0, depth,
-              [&](RoomNode& node) { add_log_odds(tree, node, leaf.log_odds, octree_->config); });
+  BlockOctree& tree = octree_->tree;
+  const int log2_edge = std::countr_zero(static_cast<unsigned>(leaf.edge_voxels));
+  const unsigned depth = kLeafDepth - static_cast<unsigned>(log2_edge);
+  const NodePlace target{std::min(depth, kLeafDepth - 1), leaf.lowest_voxel.array() + kKeyOrigin};
+  const AddLogOdds add(tree, octree_->config, leaf.log_odds);
+  tree.root = change_node(tree, tree.root, {}, target, [&](Slot node) {
+    return depth < kLeafDepth ? add.to_node(node, depth)
+                              : add.to_voxels(node, 1U << target.towards(target.key));
+  });
 }
 
 void StaticMap::add_evidence(const SurfaceSample& sample) {
   require_cube(sample.voxel, 1);
   if (!std::isfinite(sample.distance_m) || !(sample.weight > 0.0F) || !std::isfinite(sample.weight))
     throw Error("a sample's distance must be finite, its weight finite and > 0");
-  RoomOcTree& tree = octree_->tree;
-  change_node(
-      tree, tree.ensure_root(), sample.voxel.array() + kKeyOrigin, 0, kLeafDepth, [&](RoomNode& leaf) {
-        const float sum = leaf.weight + sample.weight;
-        const float part = sample.weight / sum;
-        if (sample.has_colour) {
-          const float colour_part = leaf.colour_count > 0 ? part : 1.0F;
-          const auto blend = [colour_part](std::uint8_t own, std::uint8_t other) {
-            const float mean = static_cast<float>(own) + static_cast<float>(other - own) * colour_part;
-            return static_cast<std::uint8_t>(std::lround(mean));
-          };
-          leaf.colour = {blend(leaf.colour.r, sample.colour.r), blend(leaf.colour.g, sample.colour.g),
-                         blend(leaf.colour.b, sample.colour.b)};
-          leaf.colour_count = std::max<std::uint8_t>(leaf.colour_count, 1);
-        }
-        leaf.distance_m += (sample.distance_m - leaf.distance_m) * part;
-        leaf.weight = std::min(sum, octree_->config.max_weight);
-      });
+  BlockOctree& tree = octree_->tree;
+  const NodePlace target{kLeafDepth - 1, sample.voxel.array() + kKeyOrigin};
+  tree.root = change_node(tree, tree.root, {}, target, [&](Slot node) {
+    return change_leaves(
+        tree, node, [&](LeafBlock& block) { add_sample(tree, block, target.towards(target.key), sample); });
+  });
 }
 
 void StaticMap::revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide) {
-  RoomOcTree& tree = octree_->tree;
-  RoomNode* root = tree.getRoot();
-  if (root && !revise(tree, *root, Key::Zero(), 0, octree_->config.min_log_odds, decide)) tree.remove_root();
+  BlockOctree& tree = octree_->tree;
+  const long free = std::lround(octree_->config.min_log_odds / tree.units().log_odds);
+  tree.root = revise(tree, tree.root, {}, static_cast<LogOdds>(free), decide);
 }
 
-double StaticMap::resolution_m() const { return octree_->tree.getResolution(); }
-std::size_t StaticMap::memory_bytes() const {
-  return octree_->tree.size() * (sizeof(RoomNode) + sizeof(void*));  // one table of 8 pointers for 8 children
-}
+double StaticMap::resolution_m() const { return octree_->tree.resolution_m(); }
 double StaticMap::reach_m() const { return resolution_m() * kKeyOrigin; }
 const FusionConfig& StaticMap::config() const { return octree_->config; }
+std::size_t StaticMap::memory_bytes() const { return octree_->tree.memory_bytes(); }
 
 MapCounts StaticMap::counts() const {
   MapCounts counts;
-  const RoomOcTree& tree = octree_->tree;
-  for_leaves(tree, [&](const RoomNode& leaf, const Key& key, unsigned depth) {
-    if (leaf.has_sample()) ++counts.sampled_leaves;
-    const Occupancy occupancy = occupancy_of(leaf);
-    if (occupancy == Occupancy::kUnknown) return;
-    const Eigen::Vector3d low = (key - kKeyOrigin).cast<double>().matrix() * tree.getResolution();
-    const Eigen::AlignedBox3d box(low, low + Eigen::Vector3d::Constant(tree.getNodeSize(depth)));
+  const BlockOctree& tree = octree_->tree;
+  for_each_leaf(tree, [&](const NodePlace& place, LogOdds log_odds) {
+    const Eigen::Vector3d low = (place.key - kKeyOrigin).cast<double>().matrix() * tree.resolution_m();
+    const Eigen::Vector3d edges = Eigen::Vector3d::Constant(place.edge_voxels() * tree.resolution_m());
+    const Eigen::AlignedBox3d box(low, low + edges);
     counts.known_world.extend(box);
-    if (occupancy == Occupancy::kFree) {
+    if (log_odds < 0) {
       ++counts.free_leaves;
     } else {
       ++counts.occupied_leaves;
       counts.occupied_world.extend(box);
     }
   });
-  counts.nodes = tree.size();
-  counts.memory_bytes = tree.memoryUsage();
+  visit_samples([&](const SurfaceSample&) { ++counts.sampled_leaves; });
+  counts.nodes = count_nodes(tree, tree.root, 0);
+  counts.memory_bytes = memory_bytes();
   return counts;
 }
 

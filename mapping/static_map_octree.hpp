@@ -1,7 +1,7 @@
 // static_map_octree.hpp: what a StaticMap owns. Private to static_map*.cpp.
 #pragma once
+#include "mapping/block_octree.hpp"
 #include "mapping/fusion.hpp"
-#include "mapping/room_octree.hpp"
 #include "mapping/static_map.hpp"
 
 namespace roomradar {
@@ -9,7 +9,7 @@ namespace roomradar {
 struct StaticMap::Octree {
   Octree(double resolution_m, const FusionConfig& fusion);
   FusionConfig config;
-  RoomOcTree tree;
+  BlockOctree tree;
   FusionScratch scratch;
 };
 

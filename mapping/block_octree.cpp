@@ -1,0 +1,32 @@
+// block_octree.cpp: the tree's units and size.
+#include "mapping/block_octree.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapping/depth_pyramid.hpp"
+
+namespace roomradar {
+
+BlockUnits::BlockUnits(double resolution_m, const FusionConfig& config)
+    : log_odds(std::max(std::abs(config.min_log_odds), config.max_log_odds) / 32767.0F),
+      distance_m(half_layer_m(config.max_range_m, resolution_m, config) / 32767.0F),
+      weight(config.max_weight / 65535.0F) {}
+
+BlockOctree::BlockOctree(double resolution_m, const FusionConfig& config)
+    : resolution_m_(resolution_m), units_(resolution_m, config) {}
+
+std::size_t count_nodes(const BlockOctree& tree, Slot node, unsigned depth) {
+  if (node.is_unknown()) return 0;
+  std::size_t nodes = 1;
+  if (!node.is_block()) return nodes;
+  if (depth < kLeafDepth - 1) {
+    for (const Slot child : tree.inner(node).slots) nodes += count_nodes(tree, child, depth + 1);
+  } else {
+    const LeafBlock& block = tree.leaves(node);
+    for (unsigned i = 0; i < 8; ++i) nodes += block.holds(i) ? 1 : 0;
+  }
+  return nodes;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,215 @@
+// float8.hpp: eight numbers at once, one for each of eight siblings: by AVX2, and plainly, with one answer.
+// Neither fuses a product with a sum, so that a map is the same, bit for bit, on every machine; the files
+// that compute with them are compiled with -ffp-contract=off.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
+namespace roomradar {
+
+/// One yes or no for each of the eight, and eight floats. The loops are what a compiler makes its own vector
+/// instructions of. NaN compares as false.
+struct PlainMask8 {
+  std::array<bool, 8> v;
+  static PlainMask8 of_bits(unsigned bits) {
+    PlainMask8 m;
+    for (unsigned i = 0; i < 8; ++i) m.v[i] = (bits >> i & 1U) != 0;
+    return m;
+  }
+  [[nodiscard]] unsigned bits() const {
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(v[i]) << i;
+    return bits;
+  }
+};
+
+struct PlainFloat8 {
+  using Mask = PlainMask8;
+  alignas(32) std::array<float, 8> v;
+
+  PlainFloat8() = default;
+  PlainFloat8(float all) { v.fill(all); }
+  template <typename Number>
+  static PlainFloat8 load(const std::array<Number, 8>& from) {
+    PlainFloat8 out;
+    for (unsigned i = 0; i < 8; ++i) out.v[i] = static_cast<float>(from[i]);
+    return out;
+  }
+  void store(std::array<float, 8>& to) const { to = v; }
+  /// Towards zero; must be within int.
+  void store_truncated(std::array<int, 8>& to) const {
+    for (unsigned i = 0; i < 8; ++i) to[i] = static_cast<int>(v[i]);
+  }
+  /// To the nearest, a half upwards; what is outside the 16 bits becomes the nearest within.
+  template <typename Int16>
+  void store_rounded(std::array<Int16, 8>& to) const {
+    for (unsigned i = 0; i < 8; ++i) {
+      const float within =
+          std::clamp(std::floor(v[i] + 0.5F), static_cast<float>(std::numeric_limits<Int16>::min()),
+                     static_cast<float>(std::numeric_limits<Int16>::max()));
+      to[i] = static_cast<Int16>(within);
+    }
+  }
+  /// base[index], 0 where the mask says no; indices are whole and below 2^24.
+  static PlainFloat8 gather(const float* base, const PlainFloat8& index, const Mask& mask) {
+    PlainFloat8 out;
+    for (unsigned i = 0; i < 8; ++i) out.v[i] = mask.v[i] ? base[static_cast<int>(index.v[i])] : 0.0F;
+    return out;
+  }
+};
+
+namespace plain {
+template <typename Op>
+PlainFloat8 each(const PlainFloat8& a, const PlainFloat8& b, const Op& op) {
+  PlainFloat8 out;
+  for (unsigned i = 0; i < 8; ++i) out.v[i] = op(a.v[i], b.v[i]);
+  return out;
+}
+template <typename Op>
+PlainMask8 test(const PlainFloat8& a, const PlainFloat8& b, const Op& op) {
+  PlainMask8 out;
+  for (unsigned i = 0; i < 8; ++i) out.v[i] = op(a.v[i], b.v[i]);
+  return out;
+}
+}  // namespace plain
+
+inline PlainFloat8 operator+(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::each(a, b, [](float x, float y) { return x + y; });
+}
+inline PlainFloat8 operator-(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::each(a, b, [](float x, float y) { return x - y; });
+}
+inline PlainFloat8 operator*(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::each(a, b, [](float x, float y) { return x * y; });
+}
+inline PlainFloat8 operator/(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::each(a, b, [](float x, float y) { return x / y; });
+}
+/// The second where one is NaN.
+inline PlainFloat8 min(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::each(a, b, [](float x, float y) { return x < y ? x : y; });
+}
+inline PlainFloat8 max(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::each(a, b, [](float x, float y) { return x > y ? x : y; });
+}
+inline PlainFloat8 floor(const PlainFloat8& a) {
+  return plain::each(a, a, [](float x, float) { return std::floor(x); });
+}
+inline PlainMask8 operator<(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::test(a, b, [](float x, float y) { return x < y; });
+}
+inline PlainMask8 operator<=(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::test(a, b, [](float x, float y) { return x <= y; });
+}
+inline PlainMask8 operator==(const PlainFloat8& a, const PlainFloat8& b) {
+  return plain::test(a, b, [](float x, float y) { return x == y; });
+}
+inline PlainMask8 operator&(const PlainMask8& a, const PlainMask8& b) {
+  PlainMask8 out;
+  for (unsigned i = 0; i < 8; ++i) out.v[i] = a.v[i] && b.v[i];
+  return out;
+}
+inline PlainMask8 operator|(const PlainMask8& a, const PlainMask8& b) {
+  PlainMask8 out;
+  for (unsigned i = 0; i < 8; ++i) out.v[i] = a.v[i] || b.v[i];
+  return out;
+}
+inline PlainFloat8 select(const PlainMask8& mask, const PlainFloat8& yes, const PlainFloat8& no) {
+  PlainFloat8 out;
+  for (unsigned i = 0; i < 8; ++i) out.v[i] = mask.v[i] ? yes.v[i] : no.v[i];
+  return out;
+}
+
+#if defined(__AVX2__)
+
+struct Avx2Mask8 {
+  __m256 v;
+  static Avx2Mask8 of_bits(unsigned bits) {
+    const __m256i one_each = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+    const __m256i own = _mm256_and_si256(_mm256_set1_epi32(static_cast<int>(bits)), one_each);
+    return {_mm256_castsi256_ps(_mm256_cmpeq_epi32(own, one_each))};
+  }
+  [[nodiscard]] unsigned bits() const { return static_cast<unsigned>(_mm256_movemask_ps(v)); }
+};
+
+struct Avx2Float8 {
+  using Mask = Avx2Mask8;
+  __m256 v;
+
+  Avx2Float8() = default;
+  Avx2Float8(__m256 all) : v(all) {}
+  Avx2Float8(float all) : v(_mm256_set1_ps(all)) {}
+  static Avx2Float8 load(const std::array<float, 8>& from) { return _mm256_loadu_ps(from.data()); }
+  static Avx2Float8 load(const std::array<std::int16_t, 8>& from) {
+    return _mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(eight(from)));
+  }
+  static Avx2Float8 load(const std::array<std::uint16_t, 8>& from) {
+    return _mm256_cvtepi32_ps(_mm256_cvtepu16_epi32(eight(from)));
+  }
+  void store(std::array<float, 8>& to) const { _mm256_storeu_ps(to.data(), v); }
+  void store_truncated(std::array<int, 8>& to) const {
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to.data()), _mm256_cvttps_epi32(v));
+  }
+  void store_rounded(std::array<std::int16_t, 8>& to) const {
+    const __m256i whole = rounded();
+    put(_mm_packs_epi32(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1)), to);
+  }
+  void store_rounded(std::array<std::uint16_t, 8>& to) const {
+    const __m256i whole = rounded();
+    put(_mm_packus_epi32(_mm256_castsi256_si128(whole), _mm256_extracti128_si256(whole, 1)), to);
+  }
+  static Avx2Float8 gather(const float* base, const Avx2Float8& index, const Mask& mask) {
+    return _mm256_mask_i32gather_ps(_mm256_setzero_ps(), base, _mm256_cvttps_epi32(index.v), mask.v, 4);
+  }
+
+ private:
+  template <typename Int16>
+  static __m128i eight(const std::array<Int16, 8>& from) {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from.data()));
+  }
+  template <typename Int16>
+  static void put(__m128i eight, std::array<Int16, 8>& to) {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to.data()), eight);
+  }
+  [[nodiscard]] __m256i rounded() const {
+    return _mm256_cvttps_epi32(_mm256_floor_ps(_mm256_add_ps(v, _mm256_set1_ps(0.5F))));
+  }
+};
+
+inline Avx2Float8 operator+(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_add_ps(a.v, b.v); }
+inline Avx2Float8 operator-(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_sub_ps(a.v, b.v); }
+inline Avx2Float8 operator*(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_mul_ps(a.v, b.v); }
+inline Avx2Float8 operator/(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_div_ps(a.v, b.v); }
+inline Avx2Float8 min(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_min_ps(a.v, b.v); }
+inline Avx2Float8 max(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_max_ps(a.v, b.v); }
+inline Avx2Float8 floor(const Avx2Float8& a) { return _mm256_floor_ps(a.v); }
+inline Avx2Mask8 operator<(const Avx2Float8& a, const Avx2Float8& b) {
+  return {_mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ)};
+}
+inline Avx2Mask8 operator<=(const Avx2Float8& a, const Avx2Float8& b) {
+  return {_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)};
+}
+inline Avx2Mask8 operator==(const Avx2Float8& a, const Avx2Float8& b) {
+  return {_mm256_cmp_ps(a.v, b.v, _CMP_EQ_OQ)};
+}
+inline Avx2Mask8 operator&(const Avx2Mask8& a, const Avx2Mask8& b) { return {_mm256_and_ps(a.v, b.v)}; }
+inline Avx2Mask8 operator|(const Avx2Mask8& a, const Avx2Mask8& b) { return {_mm256_or_ps(a.v, b.v)}; }
+inline Avx2Float8 select(const Avx2Mask8& mask, const Avx2Float8& yes, const Avx2Float8& no) {
+  return _mm256_blendv_ps(no.v, yes.v, mask.v);
+}
+
+#endif
+
+/// The fastest of what the compiler may use.
+#if defined(__AVX2__)
+using Float8 = Avx2Float8;
+#else
+using Float8 = PlainFloat8;
+#endif
+
+}  // namespace roomradar
