@@ -244,7 +244,7 @@ Vector6d log_twist(const Eigen::Isometry3d& T) {
   return twist;
 }
 
-Tracking align(const LiveView& live, std::span<const ReferenceView* const> references,
+Tracking align(const LiveView& live, std::span<const PosedReference> references,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config) {
   Tracking result;
   if (!T_world_camera_guess.matrix().allFinite()) return result;
@@ -265,11 +265,11 @@ Tracking align(const LiveView& live, std::span<const ReferenceView* const> refer
     for (int iteration = 0; iteration < config.iterations; ++iteration) {
       total = Pass{};
       for (std::size_t k = 0; k < references.size(); ++k) {
-        const ReferenceView& reference = *references[k];
+        const ReferenceView& reference = *references[k].view;
         if (static_cast<std::size_t>(level) >= reference.levels.size()) continue;
         Pass pass;
         pass_points(points, reference.levels[static_cast<std::size_t>(level)],
-                    reference.T_world_view.inverse() * T_world_camera, limits, exposures[k], pass);
+                    references[k].T_world_view.inverse() * T_world_camera, limits, exposures[k], pass);
         exposures[k] = match_exposure(pass);
         total.depth.H += pass.depth.H, total.depth.g += pass.depth.g, total.depth.weight += pass.depth.weight;
         total.colour.H += pass.colour.H, total.colour.g += pass.colour.g;
@@ -316,8 +316,8 @@ Tracking align(const LiveView& live, std::span<const ReferenceView* const> refer
 
 Tracking align(const LiveView& live, const ReferenceView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config) {
-  const ReferenceView* const one = &reference;
-  return align(live, std::span<const ReferenceView* const>(&one, 1), T_world_camera_guess, config);
+  const PosedReference one{&reference, reference.T_world_view};
+  return align(live, std::span<const PosedReference>(&one, 1), T_world_camera_guess, config);
 }
 
 }  // namespace roomradar

@@ -50,6 +50,12 @@ struct AlignConfig {
   float max_correction_m = 0.5F;    ///< further (or by more radians) from the guess than this is kDiverged
 };
 
+/// A reference and where it stands; the pose that the view itself has is not looked at.
+struct PosedReference {
+  const ReferenceView* view = nullptr;
+  Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
+};
+
 /// Finds T_world_camera such that the image's points lie on the planes that the references show at the pixels
 /// where these points project, and show the same intensity, up to one gain and offset a reference.
 /// Gauss-Newton from coarse to fine; weights by the depths' standard deviations, robust to parts of the image
@@ -58,10 +64,10 @@ struct AlignConfig {
 /// Source: Chen and Medioni 1992 (point to plane); Newcombe et al., KinectFusion, ISMAR 2011 (projective
 /// association); Zhang, Kaess, Singh, On Degeneracy of Optimization-based State Estimation Problems, ICRA
 /// 2016.
-Tracking align(const LiveView& live, std::span<const ReferenceView* const> references,
+Tracking align(const LiveView& live, std::span<const PosedReference> references,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 
-/// The same with one reference.
+/// The same with one reference, at the pose that it has itself.
 Tracking align(const LiveView& live, const ReferenceView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 

@@ -13,23 +13,49 @@ constexpr int kMostMeasurements = 60;  // then the mean goes on as a moving one
 
 }  // namespace
 
-Keyframe make_keyframe(std::int64_t frame_index, const ViewPyramid& pyramid,
-                       const Eigen::Isometry3d& T_world_camera, const ViewConfig& config) {
-  Keyframe keyframe;
-  keyframe.frame_index = frame_index;
-  keyframe.pyramid.levels = pyramid.levels;
-  const Intrinsics& camera = pyramid.levels.front().camera;
-  keyframe.measured.resize(camera.width_px, camera.height_px, 1);
-  make_reference(keyframe.pyramid, T_world_camera, config, keyframe.reference);
-  return keyframe;
+StoredView store(const ViewPyramid& pyramid, const Image<std::uint8_t>& measured) {
+  const ViewPyramid::Level& finest = pyramid.levels.front();
+  StoredView view;
+  view.camera = finest.camera;
+  view.measured = measured;
+  view.inverse_depth.resize(finest.camera.width_px, finest.camera.height_px);
+  std::transform(finest.inverse_depth_per_m.pixels.begin(), finest.inverse_depth_per_m.pixels.end(),
+                 view.inverse_depth.pixels.begin(), [](float q) {
+                   const float steps = q / kInverseDepthStep_per_m + 0.5F;
+                   return static_cast<std::uint16_t>(std::min(std::max(steps, 0.0F), 65535.0F));
+                 });
+  if (finest.intensity.empty()) return view;
+  view.intensity.resize(finest.camera.width_px, finest.camera.height_px);
+  std::transform(finest.intensity.pixels.begin(), finest.intensity.pixels.end(),
+                 view.intensity.pixels.begin(), [](float grey) {
+                   return grey < 0.0F ? std::uint8_t{0}
+                                      : static_cast<std::uint8_t>(std::clamp(grey + 0.5F, 1.0F, 255.0F));
+                 });
+  return view;
 }
 
-void improve_depth(Keyframe& keyframe, const ViewPyramid& view, const Eigen::Isometry3d& T_world_view) {
-  const Eigen::Isometry3d T_view_keyframe = T_world_view.inverse() * keyframe.reference.T_world_view;
-  const Eigen::Matrix3f R = T_view_keyframe.linear().cast<float>();
-  const Eigen::Vector3f t = T_view_keyframe.translation().cast<float>();
-  ViewPyramid::Level& own = keyframe.pyramid.levels.front();
-  const ViewPyramid::Level& other = view.levels.front();
+void restore(const StoredView& view, const ViewConfig& config, ViewPyramid& pyramid) {
+  pyramid.levels.resize(static_cast<std::size_t>(std::max(config.levels, 1)));
+  ViewPyramid::Level& finest = pyramid.levels.front();
+  finest.camera = view.camera;
+  finest.inverse_depth_per_m.resize(view.camera.width_px, view.camera.height_px);
+  std::transform(view.inverse_depth.pixels.begin(), view.inverse_depth.pixels.end(),
+                 finest.inverse_depth_per_m.pixels.begin(),
+                 [](std::uint16_t steps) { return static_cast<float>(steps) * kInverseDepthStep_per_m; });
+  finest.intensity.resize(view.intensity.width, view.intensity.height);
+  std::transform(view.intensity.pixels.begin(), view.intensity.pixels.end(), finest.intensity.pixels.begin(),
+                 [](std::uint8_t grey) { return grey == 0 ? -1.0F : static_cast<float>(grey); });
+  pyramid.grey.resize(0, 0);
+  halve_depth(pyramid);
+  halve_intensity(pyramid);
+}
+
+void improve_depth(ViewPyramid& pyramid, Image<std::uint8_t>& measured, const ViewPyramid& other_view,
+                   const Eigen::Isometry3d& T_other_pyramid) {
+  const Eigen::Matrix3f R = T_other_pyramid.linear().cast<float>();
+  const Eigen::Vector3f t = T_other_pyramid.translation().cast<float>();
+  ViewPyramid::Level& own = pyramid.levels.front();
+  const ViewPyramid::Level& other = other_view.levels.front();
   const auto fx = static_cast<float>(other.camera.fx_px), fy = static_cast<float>(other.camera.fy_px);
   const auto cx = static_cast<float>(other.camera.cx_px), cy = static_cast<float>(other.camera.cy_px);
   const auto end_u = static_cast<float>(other.camera.width_px - 1),
@@ -41,7 +67,7 @@ void improve_depth(Keyframe& keyframe, const ViewPyramid& view, const Eigen::Iso
     for (int x = 0; x < own.camera.width_px; ++x) {
       float& q = own.inverse_depth_per_m.at(x, y);
       if (q <= 0.0F) continue;
-      // Everything is divided by the keyframe's depth: the point is ray + q t, and its inverse depth there q
+      // Everything is divided by the own depth: the point is ray + q t, and its inverse depth there q
       // / z.
       const Eigen::Vector3f ray = row_ray + static_cast<float>(x) * ray_step;
       const Eigen::Vector3f p = ray + q * t;
@@ -61,20 +87,12 @@ void improve_depth(Keyframe& keyframe, const ViewPyramid& view, const Eigen::Iso
       const float seen = (1.0F - dv) * ((1.0F - du) * upper[0] + du * upper[1]) +
                          dv * ((1.0F - du) * lower[0] + du * lower[1]);
       // q / (ray.z + q t.z) = seen, solved for q.
-      const float measured = seen * ray.z() / (1.0F - seen * t.z());
-      std::uint8_t& n = keyframe.measured.at(x, y);
-      q += (measured - q) / static_cast<float>(n + 1);
+      const float found = seen * ray.z() / (1.0F - seen * t.z());
+      std::uint8_t& n = measured.at(x, y);
+      q += (found - q) / static_cast<float>(n + 1);
       if (n < kMostMeasurements) ++n;
     }
   }
-  ++keyframe.improved_since_refresh;
-}
-
-void refresh(Keyframe& keyframe, const ViewConfig& config) {
-  halve_depth(keyframe.pyramid);
-  make_reference(keyframe.pyramid, Eigen::Isometry3d(keyframe.reference.T_world_view), config,
-                 keyframe.reference);
-  keyframe.improved_since_refresh = 0;
 }
 
 }  // namespace roomradar

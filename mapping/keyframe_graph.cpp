@@ -2,7 +2,10 @@
 #include "mapping/keyframe_graph.hpp"
 
 #include <algorithm>
+#include <array>
+#include <future>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace roomradar {
@@ -23,21 +26,53 @@ std::vector<std::size_t> spread(const std::vector<std::size_t>& items, std::size
   return chosen;
 }
 
-void join_older(KeyframeGraph& graph, std::size_t newer, int most, const AlignConfig& align,
-                const KeyframeGraphConfig& config) {
-  const Eigen::Isometry3d T_world_newer = graph.keyframes[newer].reference.T_world_view;
-  std::vector<std::size_t> older = keyframes_near(graph, T_world_newer, config.furthest);
+/// Both constraints between two keyframes, if they can be joined.
+std::optional<std::array<PoseConstraint, 2>> joint(const KeyframeGraph& graph, std::size_t older,
+                                                   std::size_t newer, const Eigen::Isometry3d& T_older_newer,
+                                                   const JoinConfig& config, WarmKeyframes& warm) {
+  const auto a = warm.get(older, *graph.keyframes[older].view, config.view);
+  const auto b = warm.get(newer, *graph.keyframes[newer].view, config.view);
+  const Tracking b_in_a = align(b->live, a->reference, T_older_newer, config.align);
+  if (!is_joint(b_in_a, config.graph)) return std::nullopt;
+  const Tracking a_in_b = align(a->live, b->reference, T_older_newer.inverse(), config.align);
+  const Eigen::Isometry3d gap = b_in_a.T_world_camera * a_in_b.T_world_camera;
+  if (!is_joint(a_in_b, config.graph) || gap.translation().norm() > config.graph.max_gap_m ||
+      Eigen::AngleAxisd(gap.linear()).angle() > config.graph.max_gap_rad ||
+      !is_within_drift(graph, older, newer, b_in_a.T_world_camera, config.graph)) {
+    return std::nullopt;
+  }
+  const bool loop = newer - older >= kNeighbours;
+  return std::array<PoseConstraint, 2>{
+      PoseConstraint{older, newer, b_in_a.T_world_camera, b_in_a.information, loop},
+      PoseConstraint{newer, older, a_in_b.T_world_camera, a_in_b.information, loop}};
+}
+
+/// Joins one keyframe with at most `most` older ones; constraints and counts are added to `found`.
+void join_older(const KeyframeGraph& graph, std::size_t newer, int most, const JoinConfig& config,
+                WarmKeyframes& warm, KeyframeGraph& found) {
+  const Eigen::Isometry3d T_world_newer = graph.keyframes[newer].T_world_camera;
+  std::vector<std::size_t> older = keyframes_near(graph, T_world_newer, config.graph.furthest);
   std::erase_if(older, [&](std::size_t i) { return i >= newer; });
   for (const std::size_t i : spread(older, static_cast<std::size_t>(std::max(most, 1)))) {
-    join(graph, i, newer, graph.keyframes[i].reference.T_world_view.inverse() * T_world_newer, align, config);
+    const auto pair =
+        joint(graph, i, newer, graph.keyframes[i].T_world_camera.inverse() * T_world_newer, config, warm);
+    if (pair) found.constraints.insert(found.constraints.end(), pair->begin(), pair->end());
+    if (newer - i >= kNeighbours) ++(pair ? found.loops_found : found.loops_rejected);
   }
 }
 
-void solve(KeyframeGraph& graph) {
+void take(KeyframeGraph& graph, const KeyframeGraph& found) {
+  graph.constraints.insert(graph.constraints.end(), found.constraints.begin(), found.constraints.end());
+  graph.loops_found += found.loops_found;
+  graph.loops_rejected += found.loops_rejected;
+}
+
+void solve_free(KeyframeGraph& graph, const std::vector<bool>& held) {
   std::vector<Eigen::Isometry3d> poses;
-  for (const Keyframe& keyframe : graph.keyframes) poses.push_back(keyframe.reference.T_world_view);
-  if (!optimise_pose_graph(poses, graph.constraints).usable) return;
-  for (std::size_t i = 0; i < poses.size(); ++i) graph.keyframes[i].reference.T_world_view = poses[i];
+  poses.reserve(graph.keyframes.size());
+  for (const Keyframe& keyframe : graph.keyframes) poses.push_back(keyframe.T_world_camera);
+  if (!is_usable(optimise_pose_graph(poses, graph.constraints, graph.anchors, held).status)) return;
+  for (std::size_t i = 0; i < poses.size(); ++i) graph.keyframes[i].T_world_camera = poses[i];
 }
 
 }  // namespace
@@ -51,8 +86,7 @@ std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen:
                                         double furthest) {
   std::vector<std::pair<double, std::size_t>> found;
   for (std::size_t i = 0; i < graph.keyframes.size(); ++i) {
-    const double distance =
-        view_distance(graph.keyframes[i].reference.T_world_view.inverse() * T_world_camera);
+    const double distance = view_distance(graph.keyframes[i].T_world_camera.inverse() * T_world_camera);
     if (distance < furthest) found.emplace_back(distance, i);
   }
   std::sort(found.begin(), found.end());
@@ -62,50 +96,62 @@ std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen:
   return near;
 }
 
-bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
-          const AlignConfig& align_config, const KeyframeGraphConfig& config) {
+bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t newer,
+                     const Eigen::Isometry3d& T_older_newer, const KeyframeGraphConfig& config) {
   const Keyframe& a = graph.keyframes[older];
   const Keyframe& b = graph.keyframes[newer];
-  const bool loop = newer - older >= kNeighbours;
-  LiveView live_a, live_b;
-  make_live(a.pyramid, live_a);
-  make_live(b.pyramid, live_b);
-  const Eigen::Isometry3d& T_world_a = a.reference.T_world_view;
-  const Eigen::Isometry3d& T_world_b = b.reference.T_world_view;
-  const Tracking b_in_a = align(live_b, a.reference, T_world_a * T_older_newer, align_config);
-  const Tracking a_in_b = align(live_a, b.reference, T_world_b * T_older_newer.inverse(), align_config);
-  const Eigen::Isometry3d T_a_b = T_world_a.inverse() * b_in_a.T_world_camera;
-  const Eigen::Isometry3d T_b_a = T_world_b.inverse() * a_in_b.T_world_camera;
-  const Eigen::Isometry3d gap = T_a_b * T_b_a;
-  if (!is_joint(b_in_a, config) || !is_joint(a_in_b, config) || gap.translation().norm() > config.max_gap_m ||
-      Eigen::AngleAxisd(gap.linear()).angle() > config.max_gap_rad) {
-    if (loop) ++graph.loops_rejected;
-    return false;
-  }
-  graph.constraints.push_back({older, newer, T_a_b, b_in_a.information, loop});
-  graph.constraints.push_back({newer, older, T_b_a, a_in_b.information, loop});
-  if (loop) ++graph.loops_found;
-  return true;
+  const Eigen::Isometry3d change = (a.T_world_camera.inverse() * b.T_world_camera).inverse() * T_older_newer;
+  const double most = config.drift_m + config.drift_part * std::abs(b.way_m - a.way_m);
+  return change.translation().norm() < most && Eigen::AngleAxisd(change.linear()).angle() < most;
 }
 
-void join_newest(KeyframeGraph& graph, const AlignConfig& align_config, const KeyframeGraphConfig& config) {
+bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
+          const JoinConfig& config, WarmKeyframes& warm) {
+  const auto pair = joint(graph, older, newer, T_older_newer, config, warm);
+  if (pair) graph.constraints.insert(graph.constraints.end(), pair->begin(), pair->end());
+  if (newer - older >= kNeighbours) ++(pair ? graph.loops_found : graph.loops_rejected);
+  return pair.has_value();
+}
+
+void join_newest(KeyframeGraph& graph, const JoinConfig& config, WarmKeyframes& warm) {
   if (graph.keyframes.size() < 2) return;
-  const std::size_t before = graph.constraints.size();
-  join_older(graph, graph.keyframes.size() - 1, config.joins_at_once, align_config, config);
-  if (graph.constraints.size() > before) solve(graph);
+  KeyframeGraph found;
+  join_older(graph, graph.keyframes.size() - 1, config.graph.joins_at_once, config, warm, found);
+  take(graph, found);
 }
 
-void join_all(KeyframeGraph& graph, const ViewConfig& view, const AlignConfig& align_config,
-              const KeyframeGraphConfig& config) {
-  for (Keyframe& keyframe : graph.keyframes) {
-    if (keyframe.improved_since_refresh > 0) refresh(keyframe, view);
-  }
+void join_all(KeyframeGraph& graph, const JoinConfig& config) {
   graph.constraints.clear();
   graph.loops_found = graph.loops_rejected = 0;
-  for (std::size_t newer = 1; newer < graph.keyframes.size(); ++newer) {
-    join_older(graph, newer, config.joins, align_config, config);
-  }
-  solve(graph);
+  const auto join_range = [&](std::size_t begin, std::size_t end) {
+    WarmKeyframes warm(config.graph.warm);
+    KeyframeGraph found;
+    for (std::size_t newer = begin; newer < end; ++newer) {
+      join_older(graph, newer, config.graph.joins, config, warm, found);
+    }
+    return found;
+  };
+  // Later keyframes have more older ones to be joined with.
+  const std::size_t count = graph.keyframes.size(), middle = count * 6 / 10;
+  auto later = std::async(std::launch::async, join_range, std::max<std::size_t>(middle, 1), count);
+  const KeyframeGraph first = join_range(1, middle);
+  take(graph, first);
+  take(graph, later.get());
+}
+
+void solve(KeyframeGraph& graph) {
+  std::vector<bool> held(graph.keyframes.size(), false);
+  if (!held.empty() && graph.anchors.empty()) held.front() = true;
+  solve_free(graph, held);
+}
+
+void solve_near_newest(KeyframeGraph& graph, double furthest) {
+  if (graph.keyframes.size() < 2) return;
+  std::vector<bool> held(graph.keyframes.size(), true);
+  for (const std::size_t i : keyframes_near(graph, graph.keyframes.back().T_world_camera, furthest))
+    held[i] = false;
+  if (graph.anchors.empty()) held.front() = true;
+  solve_free(graph, held);
 }
 
 }  // namespace roomradar

@@ -22,8 +22,9 @@ struct OdometryConfig {
   double keyframe_distance_m = 0.10;  ///< a view further than this from every keyframe becomes one
   double keyframe_angle_deg = 8.0;
   double keyframe_overlap = 0.7;  ///< or one that has less than this in common with the nearest
-  int references = 3;             ///< keyframes that a frame is aligned with at once
+  int references = 2;             ///< keyframes that a frame is aligned with at once
   int improve_every = 5;          ///< views averaged into a keyframe before its reference is made anew
+  int join_frames = 4;            ///< after so many frames a new keyframe is joined with the others
 };
 
 /// A frame's place in the trajectory.
@@ -44,16 +45,27 @@ struct OdometryCounts {
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;     ///< pairs of keyframes, not neighbours in time, that are joined
   std::int64_t loops_rejected = 0;  ///< pairs that should see the same and did not align both ways
+  std::int64_t anchored = 0;        ///< keyframes that were found in the known places
 };
 
+struct OdometrySnapshot;
+
 /// Tracks a camera against keyframes, closes loops, and gives all poses at the end. The world is the first
-/// usable frame's camera, unless frames come with poses (add_posed). Not thread safe.
+/// usable frame's camera, unless frames come with poses (add_posed) or the camera is found in known places.
+/// New keyframes are joined with the others on a second thread; when their answer is taken over is counted in
+/// frames, so that the poses do not depend on the threads. Not thread safe.
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config = {});
   Odometry(Odometry&&) noexcept;
   Odometry& operator=(Odometry&&) noexcept;
   ~Odometry();
+
+  /// Gives places of a map made before, in its world and held there; before the first frame. Frames are
+  /// looked for in them, and once one is found the odometry's world is the map's, also for the frames before.
+  void know(Places known);
+  /// Whether the world is that of the known places.
+  [[nodiscard]] bool is_located() const;
 
   /// The pose of the next frame, as far as it is known now. After a loss the frame is looked for near where
   /// the camera was and in all keyframes. The frame's images must have its cameras' sizes.
@@ -70,6 +82,14 @@ class Odometry {
   Places take_places();
 
   [[nodiscard]] OdometryCounts counts() const;
+
+  /// Waits for what the second thread does and takes it over; before a snapshot or a fork.
+  void settle();
+  /// All that is known, to go on from. Views are shared, not copied. Only after settle().
+  [[nodiscard]] OdometrySnapshot snapshot() const;
+  /// Goes on from a snapshot; known places must be given again. What it holds must fit together
+  /// (load_odometry() sees to that).
+  Odometry(const OdometryConfig& config, OdometrySnapshot snapshot);
 
  private:
   struct State;

@@ -112,10 +112,10 @@ Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& liv
     references.back().T_world_view = place.T_world_camera;
   }
   if (references.size() < 2) return found;
-  std::vector<const ReferenceView*> pointers;
-  pointers.reserve(references.size());
-  for (const ReferenceView& reference : references) pointers.push_back(&reference);
-  const Tracking refined = align(live, pointers, found.T_world_camera, {.coarsest_level = 1});
+  std::vector<PosedReference> posed;
+  posed.reserve(references.size());
+  for (const ReferenceView& reference : references) posed.push_back({&reference, reference.T_world_view});
+  const Tracking refined = align(live, posed, found.T_world_camera, {.coarsest_level = 1});
   if (is_aligned(refined)) found.T_world_camera = refined.T_world_camera;
   return found;
 }

@@ -57,7 +57,7 @@ void halve(const Image<float>& fine, const Value& value, Image<float>& coarse) {
 }
 
 /// Intensity of half the image's size: mean of those that belong to the surface that was kept.
-void halve_intensity(const ViewPyramid::Level& fine, ViewPyramid::Level& coarse) {
+void halve_intensity_of(const ViewPyramid::Level& fine, ViewPyramid::Level& coarse) {
   coarse.intensity.resize(coarse.camera.width_px, coarse.camera.height_px, -1.0F);
   for (int y = 0; y < coarse.camera.height_px; ++y) {
     for (int x = 0; x < coarse.camera.width_px; ++x) {
@@ -252,6 +252,16 @@ void halve_depth(ViewPyramid& pyramid) {
   }
 }
 
+void halve_intensity(ViewPyramid& pyramid) {
+  for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
+    if (pyramid.levels[i - 1].intensity.empty()) {
+      pyramid.levels[i].intensity.resize(0, 0);
+    } else {
+      halve_intensity_of(pyramid.levels[i - 1], pyramid.levels[i]);
+    }
+  }
+}
+
 void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
                   ViewPyramid& pyramid) {
   make_depth_levels(depth_m, camera, config, pyramid);
@@ -267,9 +277,7 @@ void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyr
     return;
   }
   register_intensity(frame, block, pyramid.grey, pyramid.levels.front());
-  for (std::size_t i = 1; i < pyramid.levels.size(); ++i) {
-    halve_intensity(pyramid.levels[i - 1], pyramid.levels[i]);
-  }
+  halve_intensity(pyramid);
 }
 
 void make_reference(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world_view,

@@ -45,6 +45,9 @@ void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const Vie
 /// Makes the depth of all levels but the finest anew from the finest's.
 void halve_depth(ViewPyramid& pyramid);
 
+/// The same of the intensity, where the finest level has any; the depth of all levels must be there.
+void halve_intensity(ViewPyramid& pyramid);
+
 /// What a reference pixel says about points near it. 32 bytes: looking one up touches one cache line.
 struct alignas(32) ReferencePixel {
   Eigen::Vector3f normal;        ///< unit, towards the camera; zero: no surface here

@@ -185,12 +185,12 @@ TEST(Align, SeveralReferencesAreMetAtOnce) {
   const Eigen::Isometry3d T = eye(), other = T * moved(-0.08, 0.02, 0, 0, -0.05, 0), truth = T * kStep;
   const ReferenceView a = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
   const ReferenceView b = reference_of(test::exact_frame(corner_with_ball(), kCamera, other), other);
-  const std::array<const ReferenceView*, 2> both{&a, &b};
+  const std::array<PosedReference, 2> both{PosedReference{&a, T}, PosedReference{&b, other}};
   const LiveView live = live_of(test::exact_frame(corner_with_ball(), kCamera, truth));
   const Tracking tracking = align(live, both, T);
   EXPECT_EQ(tracking.status, TrackStatus::kTracked);
   EXPECT_LT(translation_error_m(tracking, truth), kFit_m);
-  EXPECT_EQ(align(live, std::span<const ReferenceView* const>(), T).status, TrackStatus::kTooFewPoints);
+  EXPECT_EQ(align(live, std::span<const PosedReference>(), T).status, TrackStatus::kTooFewPoints);
 }
 
 TEST(Align, A300MetreOffsetChangesNothing) {
