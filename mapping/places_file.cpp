@@ -5,73 +5,19 @@
 // each pixel), number of features (u32), their points (3 f32 each), their descriptors (32 bytes each). At the
 // end the FNV-1a hash (u64) of all bytes before it.
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <string>
-#include <type_traits>
 
+#include "mapping/binary_file.hpp"
 #include "mapping/places.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the file is written as memory has it");
-
 constexpr std::string_view kMagic = "RRPLACES";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kMaxPreview_px = 4096;  // a side
-constexpr std::size_t kHash_bytes = sizeof(std::uint64_t);
-
-std::uint64_t fnv1a(std::string_view bytes) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
-  return hash;
-}
-
-template <typename Number>
-void put(std::string& out, const Number* numbers, std::size_t count) {
-  static_assert(std::is_arithmetic_v<Number>);
-  out.append(reinterpret_cast<const char*>(numbers), count * sizeof(Number));
-}
-template <typename Number>
-void put(std::string& out, Number number) {
-  put(out, &number, 1);
-}
-
-/// Takes numbers from the front of a buffer; what is not there is an Error.
-class Reader {
- public:
-  Reader(std::string_view bytes, const std::filesystem::path& path) : bytes_(bytes), path_(path) {}
-
-  [[noreturn]] void fail(const std::string& fault) const {
-    throw Error(path_.string() + ": " + fault + "; make the map again or take it from a backup");
-  }
-  /// Before memory is taken for `count` items: are they there?
-  void require(std::size_t count, std::size_t item_bytes, const char* what) const {
-    if (count > bytes_.size() / item_bytes) fail(std::string("cut short: ") + what + " missing");
-  }
-  template <typename Number>
-  void take(Number* numbers, std::size_t count, const char* what) {
-    require(count, sizeof(Number), what);
-    if (count > 0) std::memcpy(numbers, bytes_.data(), count * sizeof(Number));
-    bytes_.remove_prefix(count * sizeof(Number));
-  }
-  template <typename Number>
-  Number take(const char* what) {
-    Number number{};
-    take(&number, 1, what);
-    return number;
-  }
-  [[nodiscard]] std::size_t left() const { return bytes_.size(); }
-  [[nodiscard]] std::string path() const { return path_.string(); }
-
- private:
-  std::string_view bytes_;
-  const std::filesystem::path& path_;
-};
 
 void put_place(std::string& out, const Place& place) {
   put(out, place.frame_index);
@@ -91,7 +37,7 @@ void put_place(std::string& out, const Place& place) {
   for (const Descriptor& bits : place.descriptors) put(out, bits.data(), bits.size());
 }
 
-Place take_place(Reader& in) {
+Place take_place(BinaryReader& in) {
   Place place;
   place.frame_index = in.take<std::int64_t>("frame index");
   std::array<double, 12> pose{};
@@ -130,54 +76,22 @@ Place take_place(Reader& in) {
   return place;
 }
 
-std::string read_whole(const std::filesystem::path& path) {
-  std::error_code fault;
-  const auto size = std::filesystem::file_size(path, fault);
-  if (fault) throw Error(path.string() + ": cannot be read: " + fault.message());
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(size, '\0');
-  if (!file || !file.read(bytes.data(), static_cast<std::streamsize>(size))) {
-    throw Error(path.string() + ": cannot be read");
-  }
-  return bytes;
-}
-
 }  // namespace
 
 void write_places(const Places& places, const std::filesystem::path& path) {
-  std::string out(kMagic);
-  put(out, kVersion);
+  std::string out;
   put(out, static_cast<std::uint32_t>(places.keyframes.size()));
   for (const Place& place : places.keyframes) put_place(out, place);
-  put(out, fnv1a(out));
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(out.data(), static_cast<std::streamsize>(out.size()));
-  file.close();
-  if (!file) throw Error(path.string() + ": cannot be written; is the disk full or the folder read-only?");
+  write_binary(path, kMagic, kVersion, out);
 }
 
 Places read_places(const std::filesystem::path& path) {
-  const std::string bytes = read_whole(path);
-  Reader in(bytes, path);
-  if (std::string_view(bytes).substr(0, kMagic.size()) != kMagic) in.fail("not a file of places");
-  std::array<char, kMagic.size()> magic{};
-  in.take(magic.data(), magic.size(), "beginning");
-  const auto version = in.take<std::uint32_t>("version");
-  if (version != kVersion) {
-    in.fail("version " + std::to_string(version) + ", this program reads version " +
-            std::to_string(kVersion));
-  }
-  if (in.left() < kHash_bytes) in.fail("cut short: checksum missing");
-  std::uint64_t hash = 0;
-  std::memcpy(&hash, bytes.data() + bytes.size() - kHash_bytes, kHash_bytes);
-  if (hash != fnv1a(std::string_view(bytes).substr(0, bytes.size() - kHash_bytes))) {
-    in.fail("cut short or altered: the checksum is wrong");
-  }
+  const std::string bytes = read_binary(path, kMagic, kVersion);
+  BinaryReader in(bytes, path);
   Places places;
   const auto count = in.take<std::uint32_t>("number of views");
   for (std::uint32_t i = 0; i < count; ++i) places.keyframes.push_back(take_place(in));
-  if (in.left() != kHash_bytes)
-    in.fail(std::to_string(in.left()) + " bytes where 8 are left to the checksum");
+  if (in.left() != 0) in.fail(std::to_string(in.left()) + " bytes more than the views take");
   return places;
 }
 

@@ -124,7 +124,7 @@ TEST(PlacesFile, WhatIsCutOrAlteredIsRefused) {
   write_bytes(path, later);
   EXPECT_NE(refusal(path).find("version 9"), std::string::npos) << refusal(path);
   write_bytes(path, "garbage that is no file of places at all");
-  EXPECT_NE(refusal(path).find("not a file of places"), std::string::npos);
+  EXPECT_NE(refusal(path).find("not a file of this kind"), std::string::npos);
   EXPECT_NE(refusal(folder.path() / "absent.bin").find("absent.bin"), std::string::npos);
 }
 

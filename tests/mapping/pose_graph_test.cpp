@@ -125,8 +125,75 @@ TEST(PoseGraph, WhatNothingMeasuresStaysFinite) {
     constraint.information.col(2).setZero();
   }
   std::vector<Eigen::Isometry3d> poses = disturbed(c.truth);
-  optimise_pose_graph(poses, c.constraints);
+  const PoseGraphResult result = optimise_pose_graph(poses, c.constraints);
   for (const Eigen::Isometry3d& T : poses) EXPECT_TRUE(T.matrix().allFinite());
+  EXPECT_EQ(result.status, PoseGraphStatus::kUnderdetermined);
+  EXPECT_EQ(result.untied, 0U);
+  EXPECT_GE(result.free_directions, 1U);
+  EXPECT_NE(describe(result).find(std::to_string(result.free_directions) + " directions"), std::string::npos);
+}
+
+TEST(PoseGraph, ParallelConstraintsThatMissADirectionLeaveItFree) {
+  // Two cameras, three measurements between them, and none knows the way along x (a corridor).
+  Matrix6d corridor = 1e4 * Matrix6d::Identity();
+  corridor(0, 0) = 0.0;
+  const Eigen::Isometry3d T = pose(1, 0.2, 0.1, 0.0);
+  const std::vector<PoseConstraint> constraints(3, {0, 1, T, corridor, false});
+  std::vector<Eigen::Isometry3d> poses{Eigen::Isometry3d::Identity(), pose(1.5, 0, 0, 0.1)};
+  const PoseGraphResult result = optimise_pose_graph(poses, constraints);
+  EXPECT_EQ(result.status, PoseGraphStatus::kUnderdetermined);
+  EXPECT_EQ(result.free_directions, 1U);
+  EXPECT_NEAR(poses[1].translation().y(), 0.2, 1e-6);
+  EXPECT_NEAR(poses[1].translation().z(), 0.1, 1e-6);
+  EXPECT_NEAR(poses[1].translation().x(), 1.5, 0.05);  // kept near where it was
+}
+
+TEST(PoseGraph, NothingHeldAndNothingAnchoredStays) {
+  const Circle c = circle();
+  const std::vector<Eigen::Isometry3d> before = disturbed(c.truth);
+  std::vector<Eigen::Isometry3d> poses = before;
+  const PoseGraphResult result =
+      optimise_pose_graph(poses, c.constraints, {}, std::vector<bool>(poses.size(), false));
+  EXPECT_EQ(result.untied, poses.size());
+  EXPECT_EQ(result.status, PoseGraphStatus::kUnderdetermined);
+  for (std::size_t i = 0; i < poses.size(); ++i) EXPECT_TRUE(poses[i].isApprox(before[i])) << i;
+}
+
+TEST(PoseGraph, AnchorsSayWhereInTheWorldItIs) {
+  const Circle c = circle();
+  const Eigen::Isometry3d T_map_world = pose(3, -2, 0.5, 1.0);
+  std::vector<PoseAnchor> anchors;
+  for (const std::size_t i : {std::size_t{2}, std::size_t{6}})
+    anchors.push_back({i, T_map_world * c.truth[i], 1e4 * Matrix6d::Identity()});
+  anchors.push_back({4, pose(9, 9, 9, 0), 1e4 * Matrix6d::Identity()});  // taken for another place
+  anchors.push_back({99, pose(0, 0, 0, 0), Matrix6d::Identity()});       // not there
+  std::vector<Eigen::Isometry3d> poses = c.truth, truth = c.truth;
+  for (Eigen::Isometry3d& T : poses) T = T_map_world * pose(0.1, 0.1, 0, 0.05) * T;
+  for (Eigen::Isometry3d& T : truth) T = T_map_world * T;
+  const PoseGraphResult result =
+      optimise_pose_graph(poses, c.constraints, anchors, std::vector<bool>(poses.size(), false));
+  EXPECT_EQ(result.status, PoseGraphStatus::kSolved);
+  EXPECT_LT(worst_error_m(poses, truth), 0.02);
+}
+
+TEST(PoseGraph, HeldPosesStayAndOthersMove) {
+  const Circle c = circle();
+  std::vector<Eigen::Isometry3d> poses = disturbed(c.truth);
+  poses[4] = c.truth[4];
+  std::vector<bool> held(poses.size(), false);
+  held[0] = held[4] = true;
+  EXPECT_EQ(optimise_pose_graph(poses, c.constraints, {}, held).status, PoseGraphStatus::kSolved);
+  EXPECT_EQ(poses[4].matrix(), c.truth[4].matrix());
+  EXPECT_LT(worst_error_m(poses, c.truth), 1e-6);
+}
+
+TEST(PoseGraph, APoseThatIsNoNumberIsSaid) {
+  const Circle c = circle();
+  std::vector<Eigen::Isometry3d> poses = c.truth;
+  poses[3].translation().x() = std::numeric_limits<double>::quiet_NaN();
+  const PoseGraphResult result = optimise_pose_graph(poses, c.constraints);
+  EXPECT_EQ(result.status, PoseGraphStatus::kNotFinite);
+  EXPECT_EQ(poses[5].matrix(), c.truth[5].matrix());
 }
 
 TEST(PoseGraph, PosesWithoutAWayToTheFirstStay) {

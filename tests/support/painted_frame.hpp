@@ -22,9 +22,10 @@ inline std::uint8_t cube_grey(const Eigen::Vector3d& p_world) {
 }
 
 /// Paints what the frame's depth shows as seen at T_world_camera; colour is aligned with depth. Four samples
-/// a pixel soften the cubes' edges.
-inline void paint(Frame& frame, const Eigen::Isometry3d& T_world_camera, double gain = 1.0,
-                  double offset = 0.0) {
+/// a pixel soften the cubes' edges. `grey_of` gives a world point's grey level.
+template <typename Grey>
+void paint_with(const Grey& grey_of, Frame& frame, const Eigen::Isometry3d& T_world_camera, double gain = 1.0,
+                double offset = 0.0) {
   frame.colour.resize(frame.depth_camera.width_px, frame.depth_camera.height_px);
   frame.colour_camera = frame.depth_camera;
   for (int y = 0; y < frame.depth_m.height; ++y) {
@@ -34,13 +35,18 @@ inline void paint(Frame& frame, const Eigen::Isometry3d& T_world_camera, double 
       double sum = 0.0;
       for (const double dv : {-0.25, 0.25}) {
         for (const double du : {-0.25, 0.25}) {
-          sum += cube_grey(T_world_camera * back_project(frame.depth_camera, x + du, y + dv, depth_m));
+          sum += grey_of(T_world_camera * back_project(frame.depth_camera, x + du, y + dv, depth_m));
         }
       }
       const auto grey = static_cast<std::uint8_t>(std::clamp(gain * sum / 4.0 + offset, 0.0, 255.0));
       frame.colour.at(x, y) = {grey, grey, grey};
     }
   }
+}
+
+inline void paint(Frame& frame, const Eigen::Isometry3d& T_world_camera, double gain = 1.0,
+                  double offset = 0.0) {
+  paint_with(cube_grey, frame, T_world_camera, gain, offset);
 }
 
 /// A Kinect's axial noise, independent from pixel to pixel.

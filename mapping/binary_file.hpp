@@ -1,0 +1,68 @@
+// binary_file.hpp: numbers to and from binary files, the reading side trusting nothing.
+#pragma once
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+namespace roomradar {
+
+static_assert(std::endian::native == std::endian::little, "files are written as memory has it");
+
+template <typename Number>
+void put(std::string& out, const Number* numbers, std::size_t count) {
+  static_assert(std::is_arithmetic_v<Number>);
+  out.append(reinterpret_cast<const char*>(numbers), count * sizeof(Number));
+}
+template <typename Number>
+void put(std::string& out, Number number) {
+  put(out, &number, 1);
+}
+
+/// Takes numbers from the front of a file's bytes; what is not there is an Error that names the file. Bytes
+/// and path must outlive the reader.
+class BinaryReader {
+ public:
+  BinaryReader(std::string_view bytes, const std::filesystem::path& path) : bytes_(bytes), path_(path) {}
+
+  [[noreturn]] void fail(const std::string& fault) const;
+  /// Before memory is taken for `count` items: are they there?
+  void require(std::size_t count, std::size_t item_bytes, const char* what) const {
+    if (count > bytes_.size() / item_bytes) fail(std::string("cut short: ") + what + " missing");
+  }
+  template <typename Number>
+  void take(Number* numbers, std::size_t count, const char* what) {
+    static_assert(std::is_arithmetic_v<Number>);
+    require(count, sizeof(Number), what);
+    if (count > 0) std::memcpy(numbers, bytes_.data(), count * sizeof(Number));
+    bytes_.remove_prefix(count * sizeof(Number));
+  }
+  template <typename Number>
+  Number take(const char* what) {
+    Number number{};
+    take(&number, 1, what);
+    return number;
+  }
+  /// The same, and fails if it is not finite.
+  double take_finite(const char* what);
+  [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+  [[nodiscard]] std::string path() const { return path_.string(); }
+
+ private:
+  std::string_view bytes_;
+  const std::filesystem::path& path_;
+};
+
+/// `magic`, then `version`, then `body`, then a checksum of all that. Throws Error if it cannot be written.
+void write_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
+                  std::string_view body);
+
+/// The body of such a file. Throws Error naming the file and the fault if it is missing, cut short, altered,
+/// of another kind or of another version.
+std::string read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version);
+
+}  // namespace roomradar
