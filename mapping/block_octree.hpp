@@ -7,7 +7,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 
 #include "mapping/block_pool.hpp"
 #include "mapping/fusion_config.hpp"
@@ -151,12 +150,18 @@ class BlockOctree {
  private:
   // No two slots name the same block: alike are cubes, or unknown.
   static bool alike(const InnerBlock& block) {
-    return std::memcmp(&block.slots[0], &block.slots[1], 7 * sizeof(Slot)) == 0;
+    bool same = true;
+    for (const Slot slot : block.slots) same &= slot == block.slots[0];
+    return same;
   }
   static bool alike(const LeafBlock& block) {
-    static constexpr decltype(block.weight) kNoSample{};
-    return block.weight == kNoSample &&
-           std::memcmp(&block.log_odds[0], &block.log_odds[1], 7 * sizeof(LogOdds)) == 0;
+    unsigned weight = 0;
+    int differing = 0;
+    for (unsigned i = 0; i < 8; ++i) {
+      weight |= block.weight[i];
+      differing |= block.log_odds[i] ^ block.log_odds[0];
+    }
+    return weight == 0 && differing == 0;
   }
 
   double resolution_m_;

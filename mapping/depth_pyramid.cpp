@@ -53,18 +53,27 @@ void bound_rows(const float* upper, const float* lower, int width, double resolu
 }
 
 void halve(const Image<DepthBounds>& fine, Image<DepthBounds>& coarse) {
+  const int fine_cells = fine.width - 1;
   for (int y = 0; y < coarse.height; ++y) {
     const DepthBounds* upper = fine.row(2 * y);
     const DepthBounds* lower = fine.row(std::min(2 * y + 1, fine.height - 1));
     DepthBounds* out = coarse.row(y);
-    for (int x = 0; x < fine.width / 2; ++x)
+    for (int x = 0; x < fine_cells / 2; ++x)
       out[x] = merged(merged(upper[2 * x], upper[2 * x + 1]), merged(lower[2 * x], lower[2 * x + 1]));
-    if (fine.width % 2 == 1) out[coarse.width - 1] = merged(upper[fine.width - 1], lower[fine.width - 1]);
+    if (fine_cells % 2 == 1) out[fine_cells / 2] = merged(upper[fine_cells - 1], lower[fine_cells - 1]);
   }
 }
 
+// A cell without any depth leaves its word to others no longer: nothing is free there.
+void block_holes(Image<DepthBounds>& cells) {
+  for (DepthBounds& cell : cells.pixels)
+    if (cell.front == kNoWord && cell.behind != kNoWord) cell.front = 0;
+}
+
+constexpr DepthBounds kSaysNothing{kNoWord, kNoWord, kNoWord, kNoWord};
+
 void resize_once(Image<DepthBounds>& cells, int width, int height) {
-  if (cells.width != width || cells.height != height) cells.resize(width, height);
+  if (cells.width != width + 1 || cells.height != height) cells.resize(width + 1, height, kSaysNothing);
 }
 
 }  // namespace
@@ -95,21 +104,10 @@ void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionC
     height = (height + 1) / 2;
     resize_once(pyramid.levels[level], width, height);
     halve(pyramid.levels[level - 1], pyramid.levels[level]);
-    if (level != kHoleLevel) continue;
-    for (DepthBounds& cell : pyramid.levels[level].pixels)
-      if (cell.front == kNoWord) cell.front = 0;
+    if (level > kHoleLevel) continue;
+    block_holes(pyramid.levels[level - 1]);
+    if (level == kHoleLevel) block_holes(pyramid.levels[level]);
   }
-}
-
-DepthBounds bounds_within(const DepthPyramid& pyramid, int left, int top, int right, int bottom) {
-  const auto span = static_cast<unsigned>(std::max({right - left, bottom - top, 1}));
-  const int level =
-      std::min(static_cast<int>(std::bit_width(span)), static_cast<int>(pyramid.levels.size()) - 1);
-  const Image<DepthBounds>& cells = pyramid.levels[static_cast<std::size_t>(level)];
-  const DepthBounds* upper = cells.row(top >> level);
-  const DepthBounds* lower = cells.row(bottom >> level);
-  return merged(merged(upper[left >> level], upper[right >> level]),
-                merged(lower[left >> level], lower[right >> level]));
 }
 
 }  // namespace roomradar

@@ -36,6 +36,7 @@ struct FusionScratch {
   std::vector<float> ray_x;
   std::vector<int> row_keys[2][3];  ///< of the row before and this one: x, y and z
   std::vector<std::uint8_t> is_new;
+  std::vector<std::uint32_t> columns;
 };
 
 enum class HitStatus { kCollected, kNone, kOutOfReach };

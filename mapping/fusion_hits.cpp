@@ -61,13 +61,13 @@ int end_voxels(const RowOfRays& rays, int axis, const float* depth_m, const floa
   int out_of_reach = 0;
   for (int x = 0; x < width; ++x) {
     const float z = depth_m[x];
-    const bool hits = z > 0.0F && z <= max_range_m;
-    const float voxels = (per_x * ray_x[x] + at_zero) * (hits ? z : 0.0F) + within;
-    int key = static_cast<int>(voxels);
-    key -= static_cast<float>(key) > voxels ? 1 : 0;
-    key += camera_key;
-    out_of_reach |= hits ? key & ~0xFFFF : 0;
-    keys[x] = hits ? key : kNoKey;
+    const float within_range_m = z < max_range_m ? z : max_range_m;
+    const float voxels = (per_x * ray_x[x] + at_zero) * within_range_m + within;
+    const int truncated = static_cast<int>(voxels);
+    const int key = truncated - (static_cast<float>(truncated) > voxels) + camera_key;
+    const int hits = -static_cast<int>((z > 0.0F) & (z <= max_range_m));  // all bits or none
+    out_of_reach |= hits & key & ~0xFFFF;
+    keys[x] = (hits & key) | (~hits & kNoKey);
   }
   return out_of_reach;
 }
@@ -82,6 +82,27 @@ void mark_new(const std::vector<int> (&above)[3], const std::vector<int> (&row)[
     const int from_left = (x[i] ^ x[i - 1]) | (y[i] ^ y[i - 1]) | (z[i] ^ z[i - 1]);
     const int from_above = (x[i] ^ ax[i]) | (y[i] ^ ay[i]) | (z[i] ^ az[i]);
     is_new[i] = static_cast<std::uint8_t>((x[i] != kNoKey) & (from_left != 0) & (from_above != 0));
+  }
+}
+
+// The columns that are marked. Always written, so that the processor has nothing to guess.
+std::size_t marked(const std::vector<std::uint8_t>& is_new, std::vector<std::uint32_t>& columns) {
+  std::size_t count = 0;
+  for (std::size_t x = 0; x < is_new.size(); ++x) {
+    columns[count] = static_cast<std::uint32_t>(x);
+    count += is_new[x];
+  }
+  return count;
+}
+
+void add_hits(const std::vector<int> (&row)[3], const std::vector<std::uint32_t>& columns, std::size_t count,
+              std::vector<BlockHits>& hits) {
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::size_t x = columns[n] + 1;
+    const auto key_x = static_cast<unsigned>(row[0][x]), key_y = static_cast<unsigned>(row[1][x]),
+               key_z = static_cast<unsigned>(row[2][x]);
+    const unsigned voxel = 1U << ((key_x & 1U) | (key_y & 1U) << 1U | (key_z & 1U) << 2U);
+    hits.emplace_back(morton_code(key_x >> 1U, key_y >> 1U, key_z >> 1U), voxel);
   }
 }
 
@@ -106,7 +127,8 @@ HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_came
   const int width = depth_m.width;
   const auto columns = static_cast<std::size_t>(width);
   scratch.hits.clear();
-  scratch.is_new.assign(columns, 0);
+  scratch.is_new.resize(columns);
+  scratch.columns.resize(columns + 1);
   scratch.ray_x.resize(columns);
   for (int x = 0; x < width; ++x)
     scratch.ray_x[static_cast<std::size_t>(x)] = static_cast<float>((x - camera.cx_px) / camera.fx_px);
@@ -122,17 +144,7 @@ HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_came
           end_voxels(rays, axis, depth_m.row(y), scratch.ray_x.data(), width, row[axis].data() + 1);
     if (out_of_reach != 0) return HitStatus::kOutOfReach;
     mark_new(above, row, width, scratch.is_new.data());
-    for (std::size_t x = 0; x < columns; ++x) {
-      if (scratch.is_new[x] == 0) continue;
-      const std::uint64_t code =
-          morton_code(static_cast<std::uint32_t>(row[0][x + 1]), static_cast<std::uint32_t>(row[1][x + 1]),
-                      static_cast<std::uint32_t>(row[2][x + 1]));
-      const unsigned voxel = 1U << (code & 7U);
-      if (!scratch.hits.empty() && scratch.hits.back().block_code() == code >> 3U)
-        scratch.hits.back().add(voxel);
-      else
-        scratch.hits.emplace_back(code >> 3U, voxel);
-    }
+    add_hits(row, scratch.columns, marked(scratch.is_new, scratch.columns), scratch.hits);
   }
   if (!scratch.hits.empty()) sort_by_code(scratch.hits, scratch.sort_buffer);
   merge_sorted(scratch.hits);

@@ -13,13 +13,21 @@
 
 namespace roomradar {
 
-/// What a measurement at depth_m weighs: the variance at 1 m over its own, at most 1.
-template <typename Float>
-Float weight_of_sigma(const Float& sigma_m, float sigma_at_1m) {
-  using std::min;
-  const Float ratio = Float(sigma_at_1m) / sigma_m;
-  return min(ratio * ratio, Float(1.0F));
+/// What a measurement weighs: the variance at 1 m over its own, at most 1.
+inline float weight_at(float depth_m) {
+  const float ratio = depth_sigma_m(1.0F) / depth_sigma_m(depth_m);
+  return std::min(ratio * ratio, 1.0F);
 }
+
+/// What the pixels that the centres of eight voxels fall on say about them.
+template <typename Float8>
+struct Observed {
+  EightPoints<Float8> p_camera;  ///< the centres
+  Float8 distance_m;             ///< the measured depth less the centre's
+  Float8 sigma_m;                ///< of the measured depth
+  unsigned free = 0;             ///< bit i: centre i is seen through
+  unsigned sampled = 0;          ///< it is within the truncation of the measured surface
+};
 
 template <typename Float8>
 class LeafUpdate {
@@ -49,9 +57,7 @@ class LeafUpdate {
     return Slot::cube(static_cast<LogOdds>(after == 0.0F ? 1.0F : after));
   }
 
-  /// The eight voxels of a node, from the pixels that their centres fall on. hit: bit i: a ray ends in voxel
-  /// i. refresh_colour: a colour that is settled is averaged on, too. Gives what the node has become.
-  Slot update(Slot node, const EightPoints<Float8>& p_camera, unsigned hit, bool refresh_colour) {
+  [[nodiscard]] Observed<Float8> observe(const EightPoints<Float8>& p_camera) const {
     const Float8 inverse_z = Float8(1.0F) / p_camera.z;
     const Float8 u = floor(p_camera.x * camera_.fx * inverse_z + (camera_.cx + 0.5F));
     const Float8 v = floor(p_camera.y * camera_.fy * inverse_z + (camera_.cy + 0.5F));
@@ -61,41 +67,35 @@ class LeafUpdate {
     const auto measured = Float8(0.0F) < depth_m;
     const Float8 distance_m = depth_m - p_camera.z;
     const Float8 sigma_m = sigma_of(depth_m);
+    const auto free = measured & (p_camera.z < min(depth_m, config_.max_range_m));
     const auto sampled = measured & (depth_m <= config_.max_range_m) &
                          (absolute(distance_m) <= max(truncation_m_, sigma_m * config_.truncation_sigmas));
-    const auto free = measured & (p_camera.z < min(depth_m, config_.max_range_m));
-    const unsigned missed = free.bits() & ~hit;
-    if ((hit | missed | sampled.bits()) == 0) return node;
-    if (hit == 0 && sampled.bits() == 0 && node == settled_free()) return node;
+    return {p_camera, distance_m, sigma_m, free.bits(), sampled.bits()};
+  }
 
+  /// hit: bit i: a ray ends in voxel i. refresh_colour: a colour that is settled is averaged on, too. Gives
+  /// what the node of the eight has become.
+  Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
+    const unsigned missed = observed.free & ~hit;
+    const unsigned sampled = observed.sampled;
+    if ((hit | missed | sampled) == 0) return node;
+    if ((hit | sampled) == 0 && node == settled_free()) return node;
     LeafBlock made;
     if (!node.is_block()) made = opened_leaves(node);
     LeafBlock& block = node.is_block() ? tree_.leaves(node) : made;
     if ((hit | missed) != 0) add_log_odds(block, hit, missed);
-    if (sampled.bits() != 0) add_samples(block, p_camera, distance_m, sigma_m, sampled, refresh_colour);
+    if (sampled != 0) add_samples(block, observed, refresh_colour);
     return tree_.settle(node, block);
   }
 
-  /// All eight are seen through, from so far that the frame weighs `weight`. A sample's distance is at least
-  /// the truncation then. Once this is settled the sample goes, so that the voxel can merge with the free
-  /// space around it. A voxel seen through by its own pixel alone keeps its sample: beside an edge, and on
-  /// surfaces seen obliquely, that is noise more often than change.
-  Slot mark_free(Slot node, float weight) {
+  /// All eight are seen through, from so far that the frame weighs `weight`; clear: and so is what is round
+  /// them: then a sample's distance is at least the truncation. Once this is settled the sample goes, so that
+  /// the voxel can merge with the free space around it. A voxel seen through by its own pixel alone keeps its
+  /// sample: beside an edge, and on surfaces seen obliquely, that is noise more often than change.
+  Slot mark_free(Slot node, float weight, bool clear) {
     LeafBlock& block = tree_.leaves(node);
     add_log_odds(block, 0, 0xFFU);
-    const BlockUnits& units = tree_.units();
-    const Float8 own_weight = Float8::load(block.weight);
-    const Float8 gained(std::max(weight * config_.seen_through_gain / units.weight, 1.0F));
-    const Float8 distance = Float8::load(block.distance);
-    const Float8 truncation(truncation_m_ / units.distance_m);
-    const Float8 sum = own_weight + gained;
-    const Float8 further = distance + (max(truncation, distance) - distance) * (gained / sum);
-    const auto sampled = Float8(0.0F) < own_weight;
-    const auto forgotten = (Float8::load(block.log_odds) <= min_) & (truncation * 0.7F < further);
-    const auto kept = Float8::Mask::of_bits(sampled.bits() & ~forgotten.bits());
-    select(kept, further, 0.0F).store_rounded(block.distance);
-    select(kept, sum, 0.0F).store_rounded(block.weight);
-    block.coloured &= static_cast<std::uint8_t>(kept.bits());
+    if (clear) fade_samples(block, weight);
     return tree_.settle(node, block);
   }
 
@@ -123,22 +123,38 @@ class LeafUpdate {
     select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
   }
 
-  void add_samples(LeafBlock& block, const EightPoints<Float8>& p_camera, const Float8& distance_m,
-                   const Float8& sigma_m, const typename Float8::Mask& sampled, bool refresh_colour) {
+  void fade_samples(LeafBlock& block, float weight) const {
     const BlockUnits& units = tree_.units();
     const Float8 own_weight = Float8::load(block.weight);
-    const Float8 weight =
-        max(floor(weight_of_sigma(sigma_m, depth_sigma_m(1.0F)) * (1.0F / units.weight) + 0.5F), 1.0F);
+    const Float8 gained(std::max(weight * config_.seen_through_gain / units.weight, 1.0F));
+    const Float8 distance = Float8::load(block.distance);
+    const Float8 truncation(truncation_m_ / units.distance_m);
+    const Float8 sum = own_weight + gained;
+    const Float8 further = distance + (max(truncation, distance) - distance) * (gained / sum);
+    const auto sampled = Float8(0.0F) < own_weight;
+    const auto forgotten = (Float8::load(block.log_odds) <= min_) & (truncation * 0.7F < further);
+    const auto kept = Float8::Mask::of_bits(sampled.bits() & ~forgotten.bits());
+    select(kept, further, 0.0F).store_rounded(block.distance);
+    select(kept, sum, 0.0F).store_rounded(block.weight);
+    block.coloured &= static_cast<std::uint8_t>(kept.bits());
+  }
+
+  void add_samples(LeafBlock& block, const Observed<Float8>& observed, bool refresh_colour) {
+    const BlockUnits& units = tree_.units();
+    const Float8 own_weight = Float8::load(block.weight);
+    const Float8 ratio = Float8(depth_sigma_m(1.0F)) / observed.sigma_m;
+    const Float8 weight = max(floor(min(ratio * ratio, 1.0F) * (1.0F / units.weight) + 0.5F), 1.0F);
     const Float8 sum = own_weight + weight;
     const Float8 part = weight / sum;
     const Float8 distance = Float8::load(block.distance);
-    const Float8 mean = distance + (distance_m * (1.0F / units.distance_m) - distance) * part;
+    const Float8 mean = distance + (observed.distance_m * (1.0F / units.distance_m) - distance) * part;
+    const auto sampled = Float8::Mask::of_bits(observed.sampled);
     select(sampled, mean, distance).store_rounded(block.distance);
     select(sampled, sum, own_weight).store_rounded(block.weight);
     if (!has_colour_) return;
-    unsigned take = (sampled & (absolute(distance_m) < colour_distance_m_)).bits();
+    unsigned take = observed.sampled & (absolute(observed.distance_m) < colour_distance_m_).bits();
     if (!refresh_colour) take &= ~block.coloured | (Float8(kSettledPart) <= part).bits();
-    if (take != 0) add_colours(block, p_camera, max(part, kSettledPart), take);
+    if (take != 0) add_colours(block, observed.p_camera, max(part, kSettledPart), take);
   }
 
   void add_colours(LeafBlock& block, const EightPoints<Float8>& p_camera, const Float8& part, unsigned take) {

@@ -38,7 +38,8 @@ class ChildOffsets {
   ChildOffsets(const Eigen::Matrix3d& R_camera_world, double resolution_m) {
     for (unsigned depth = 0; depth < kLeafDepth; ++depth) {
       const double quarter_m = resolution_m * std::ldexp(1.0, static_cast<int>(kLeafDepth - depth)) / 4;
-      half_extent_[depth] = (R_camera_world.cwiseAbs().rowwise().sum() * quarter_m).cast<float>();
+      half_extent_[depth] =
+          (R_camera_world.cwiseAbs().rowwise().sum() * (quarter_m - resolution_m / 2)).cast<float>();
       for (unsigned i = 0; i < 8; ++i) {
         const Eigen::Vector3d towards(i & 1U ? 1.0 : -1.0, i & 2U ? 1.0 : -1.0, i & 4U ? 1.0 : -1.0);
         to_child_[depth][i] = R_camera_world * towards * quarter_m;
@@ -51,7 +52,8 @@ class ChildOffsets {
   [[nodiscard]] const Eigen::Vector3d& to_child(unsigned depth, unsigned i) const {
     return to_child_[depth][i];
   }
-  /// Half the box along the camera's axes that holds a child of a node at `depth`, m.
+  /// Half the box along the camera's axes that holds the centres of all voxels in a child of a node at
+  /// `depth`, m: what is asked about a voxel is asked about its centre.
   [[nodiscard]] const Eigen::Vector3f& half_extent(unsigned depth) const { return half_extent_[depth]; }
   template <typename Float8>
   [[nodiscard]] EightPoints<Float8> centres(unsigned depth, const Eigen::Vector3d& parent_camera) const {
@@ -110,32 +112,30 @@ Verdicts judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, 
   const auto out_of_sight =
       (right < zero) | (bottom < zero) | (Float8(camera.width) < left) | (Float8(camera.height) < top);
   nothing |= ~straddles & out_of_sight.bits();
-  unsigned open = 0xFFU & ~nothing & ~straddles;
+  const unsigned open = 0xFFU & ~nothing & ~straddles;
   if (open == 0) return {.nothing = nothing};
 
   const auto in_sight = (zero <= left) & (zero <= top) & (right <= camera.width) & (bottom <= camera.height);
   const unsigned whole = in_sight.bits();
-  alignas(32) std::array<int, 8> first_x, first_y, last_x, last_y, near_steps, far_steps;
+  alignas(32) std::array<int, 8> first_x, first_y, last_x, last_y;
   const Float8 x_end(camera.width - 1.0F), y_end(camera.height - 1.0F);
   min(max(left, zero), x_end).store_truncated(first_x);
   min(max(right, zero), x_end).store_truncated(last_x);
   min(max(top, zero), y_end).store_truncated(first_y);
   min(max(bottom, zero), y_end).store_truncated(last_y);
-  const Float8 last_step(1e6F);
-  min(near_z * pyramid.steps_per_m, last_step).store_truncated(near_steps);
-  min(far_z * pyramid.steps_per_m, last_step).store_truncated(far_steps);
-  Verdicts verdicts{.nothing = nothing};
-  for (; open != 0; open &= open - 1) {
-    const auto i = static_cast<unsigned>(std::countr_zero(open));
+  std::array<std::int16_t, 8> front{}, nearest{}, behind{};
+  for (unsigned left_over = open; left_over != 0; left_over &= left_over - 1) {
+    const auto i = static_cast<unsigned>(std::countr_zero(left_over));
     const DepthBounds bounds = bounds_within(pyramid, first_x[i], first_y[i], last_x[i], last_y[i]);
-    if (near_steps[i] > -bounds.behind)
-      verdicts.nothing |= 1U << i;
-    else if ((whole >> i & 1U) != 0 && far_steps[i] < bounds.front)
-      verdicts.free |= 1U << i;
-    else if (far_steps[i] < bounds.nearest)
-      verdicts.part_free |= 1U << i;
+    front[i] = bounds.front;
+    nearest[i] = bounds.nearest;
+    behind[i] = bounds.behind;
   }
-  return verdicts;
+  const Float8 near_steps = near_z * pyramid.steps_per_m, far_steps = far_z * pyramid.steps_per_m;
+  const unsigned hidden = open & (zero < near_steps + Float8::load(behind)).bits();
+  const unsigned free = open & whole & ~hidden & (far_steps < Float8::load(front)).bits();
+  const unsigned part_free = open & ~hidden & ~free & (far_steps < Float8::load(nearest)).bits();
+  return {.nothing = nothing | hidden, .free = free, .part_free = part_free};
 }
 
 }  // namespace roomradar
