@@ -78,6 +78,8 @@ struct Arguments {
   MapInfoCommand map_info;
   MapVerifyCommand map_verify;
   MapExportCommand map_export;
+  MapMergeCommand map_merge;
+  MapDiffCommand map_diff;
   SimulateCommand simulate;
   RecordCommand record;
   FallthroughCommand fallthrough;
@@ -138,7 +140,8 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
 }
 
 void add_map(CLI::App& app, Arguments& arguments, std::function<int()>& work) {
-  CLI::App* sub = app.add_subcommand("map", "look at a saved map, check it, export it");
+  CLI::App* sub =
+      app.add_subcommand("map", "look at a saved map, check it, export it, join two, compare two");
   sub->require_subcommand(1);
   CLI::App* info = sub->add_subcommand("info", "what is in the map");
   info->add_option("DIR", arguments.map_info.map, "the map")->required();
@@ -154,6 +157,26 @@ void add_map(CLI::App& app, Arguments& arguments, std::function<int()>& work) {
                    "by extension: .ot .bt (octree), .ply .obj .stl .glb (mesh)")
       ->required();
   to_file->callback([&] { work = [&arguments] { return run(arguments.map_export); }; });
+  CLI::App* merge = sub->add_subcommand(
+      "merge",
+      "join two maps of one room, each having seen a part of it; B is placed in A by views that both have\n"
+      "and by their surfaces, and refused where that is not certain");
+  merge->add_option("A", arguments.map_merge.a, "its world becomes that of both")->required();
+  merge->add_option("B", arguments.map_merge.b, "is added; the finer resolution of the two is taken")
+      ->required();
+  merge->add_option("--map", arguments.map_merge.map, "folder to save the map of both in")
+      ->required()
+      ->type_name("DIR");
+  add_report_option(*merge, arguments.map_merge.report);
+  merge->callback([&] { work = [&arguments] { return run(arguments.map_merge); }; });
+  CLI::App* diff = sub->add_subcommand(
+      "diff", "what appeared in B and what vanished since A, where both know; in A's world");
+  diff->add_option("A", arguments.map_diff.a, "the map before")->required();
+  diff->add_option("B", arguments.map_diff.b, "the map after")->required();
+  add_report_option(*diff, arguments.map_diff.report);
+  diff->add_option("--picture", arguments.map_diff.picture, "draw A, what appeared green, what vanished red")
+      ->type_name("FILE.png");
+  diff->callback([&] { work = [&arguments] { return run(arguments.map_diff); }; });
 }
 
 void add_simulate(CLI::App& app, SimulateCommand& command, std::function<int()>& work) {

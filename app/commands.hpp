@@ -17,7 +17,7 @@ struct PrescanCommand {
   double resolution_m = 0.01;
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
-  std::int64_t hold_out = 0;  ///< N > 0: every Nth frame judges the map instead of making it
+  std::int64_t hold_out = 0;        ///< N > 0: every Nth frame judges the map instead of making it
   bool resume = false;              ///< go on with a scan that was cut off, or with a map that is there
   double checkpoint_every_s = 3.0;  ///< 0: none
   std::string report;
@@ -46,6 +46,19 @@ struct MapVerifyCommand {
 struct MapExportCommand {
   std::string map;
   std::string path;
+};
+
+struct MapMergeCommand {
+  std::string a;
+  std::string b;
+  std::string map;
+  std::string report;
+};
+struct MapDiffCommand {
+  std::string a;
+  std::string b;
+  std::string report;
+  std::string picture;
 };
 
 struct SimulateCommand {
@@ -79,6 +92,8 @@ int run(const RunCommand& command);
 int run(const MapInfoCommand& command);
 int run(const MapVerifyCommand& command);
 int run(const MapExportCommand& command);
+int run(const MapMergeCommand& command);
+int run(const MapDiffCommand& command);
 int run(const SimulateCommand& command);
 int run(const RecordCommand& command);
 int run(const FallthroughCommand& command);

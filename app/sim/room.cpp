@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "app/sim/furniture.hpp"
 #include "app/sim/rooms.hpp"
 #include "mapping/types/error.hpp"
 
@@ -13,7 +14,7 @@ const std::vector<std::string>& room_names() {
   return names;
 }
 
-Room make_room(std::string_view name) {
+Room make_room(std::string_view name, bool crate) {
   Room room;
   if (name == "table") {
     room = make_table_room();
@@ -25,6 +26,12 @@ Room make_room(std::string_view name) {
     std::string known;
     for (const std::string& one : room_names()) known.append(known.empty() ? "" : ", ").append(one);
     throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known);
+  }
+  if (crate) {
+    const Eigen::Vector3d foot = 0.5 * (room.ball_from_world + room.ball_to_world);
+    add(room, standing_at(foot.x(), foot.y(), foot.z(), 0.3),
+        box({0, 0, 0.5 * kCrateSize_m.z()}, kCrateSize_m),
+        {Pattern::kPoster, {206, 120, 60}, {60, 44, 36}, 71, 0.6F});
   }
   room.tree = SolidTree(room.solids);
   return room;

@@ -43,8 +43,12 @@ struct Room {
 
 /// The names that make_room knows.
 const std::vector<std::string>& room_names();
+/// @param crate  one more thing than usual: a crate where else a ball could roll
 /// Throws Error listing the known names if `name` is none of them.
-Room make_room(std::string_view name);
+Room make_room(std::string_view name, bool crate = false);
+
+/// How large that crate is.
+inline const Eigen::Vector3d kCrateSize_m{0.24, 0.18, 0.22};
 
 /// Distance (m) from a point to the nearest surface; negative inside a solid. Exact outside, and inside as
 /// long as no touching neighbour is deeper: there the depth within one solid, which is a lower bound of the

@@ -68,6 +68,9 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
       if (found == std::end(kAllMovers)) refuse(key, one, "some of hand, ball, person, with commas between");
       options.movers.push_back(*found);
     }
+  } else if (key == "crate") {
+    if (value != "0" && value != "1") refuse(key, value, "0 or 1");
+    options.crate = value == "1";
   } else if (key == "width") {
     const int width_px = number<int>(key, value, "the image's width, 64 to 1920, a multiple of 4");
     if (width_px < 64 || width_px > 1920 || width_px % 4 != 0)
@@ -80,7 +83,7 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
     options.registered_colour = value == "registered";
   } else {
     throw Error("sim: no option is called '" + std::string(key) +
-                "'; known are: seed, frames, rate, path, moving, noise, width, colour");
+                "'; known are: seed, frames, rate, path, moving, noise, crate, width, colour");
   }
 }
 
@@ -136,6 +139,7 @@ std::string sim_spec(const SimOptions& options) {
   std::string moving;
   for (const MoverKind kind : options.movers) append_with_comma(moving, to_string(kind), ",");
   if (!moving.empty()) say("moving", moving);
+  if (options.crate) say("crate", "1");
   if (options.noise_scale != usual.noise_scale) say("noise", without_trailing_zeros(options.noise_scale));
   if (options.depth_camera.width_px != usual.depth_camera.width_px)
     say("width", std::to_string(options.depth_camera.width_px));

@@ -31,6 +31,7 @@ struct SimOptions {
   double rate_hz = 30.0;       ///< frames a second, > 0
   CameraPathKind path = CameraPathKind::kScan;
   std::vector<MoverKind> movers;  ///< each at most once
+  bool crate = false;             ///< one more thing in the room: a crate where a ball could roll
   double noise_scale = 1.0;       ///< times the Kinect's noise; 0: clean depth, without shadow or dropouts
   Intrinsics depth_camera = kKinectDepthCamera;
   bool registered_colour = true;  ///< false: a colour camera of its own, 2.5 cm beside the depth camera
@@ -38,7 +39,8 @@ struct SimOptions {
 
 /// Reads `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
 ///   seed, frames, rate, path (scan, view), moving (hand, ball, person; several with commas), noise (0 = off,
-///   1 = Kinect), width (of the image, 4:3, 64 to 1920 pixels), colour (registered, separate).
+///   1 = Kinect), crate (0, 1: one more thing in the room), width (of the image, 4:3, 64 to 1920 pixels),
+///   colour (registered, separate).
 /// Throws Error naming the key or value that is not known, or out of range, and listing what is.
 SimOptions parse_sim_spec(std::string_view spec);
 

@@ -33,7 +33,7 @@ Rgb dimmed(Rgb colour, float factor) {
 
 struct SimulatedSource::State {
   explicit State(const SimOptions& chosen)
-      : options(chosen), room(make_room(chosen.room)), room_look(room, finest_texel_m(chosen)) {
+      : options(chosen), room(make_room(chosen.room, chosen.crate)), room_look(room, finest_texel_m(chosen)) {
     const double duration_s = static_cast<double>(options.frames) / options.rate_hz;
     path = plan_camera_path(room, options.path, options.seed, duration_s);
     const Vector3d viewer_world =

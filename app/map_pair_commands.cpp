@@ -1,0 +1,89 @@
+// map_pair_commands.cpp: roomradar map merge|diff: two maps of one room.
+#include <cstdio>
+#include <utility>
+
+#include "app/commands.hpp"
+#include "app/map_picture.hpp"
+#include "app/picture_file.hpp"
+#include "app/report.hpp"
+#include "mapping/map_diff.hpp"
+#include "mapping/map_merge.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Throws Error where it is not certain how they stand to each other.
+Registration require_registered(const SavedMap& a, const SavedMap& b, const std::string& name_a,
+                                const std::string& name_b, Report& report) {
+  Registration found = report.times.timed("register", [&] { return register_maps(a, b); });
+  if (!found)
+    throw Error(name_b + ": cannot be placed in " + name_a + ": " + describe(found) +
+                "; both must have seen a good part of the same room");
+  std::printf("%s in %s: %s\n", name_b.c_str(), name_a.c_str(), describe(found).c_str());
+  nlohmann::json T_a_b = nlohmann::json::array();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) T_a_b.push_back(found.T_a_b.matrix()(row, column));
+  report.results["registration"] = {{"T_a_b", T_a_b},
+                                    {"agreeing_views", found.agreeing_views},
+                                    {"overlap", found.overlap},
+                                    {"agreement", found.agreement},
+                                    {"residual_m", found.residual_m}};
+  return found;
+}
+
+nlohmann::json list(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+}  // namespace
+
+int run(const MapMergeCommand& command) {
+  Report report;
+  report.command = "map merge";
+  report.source = command.a + ", " + command.b;
+  report.settings = {{"a", command.a}, {"b", command.b}, {"map", command.map}};
+  require_can_become_map(command.map);
+  require_writable(command.report);
+  SavedMap a = load_map(command.a);
+  const SavedMap b = load_map(command.b);
+  const Registration found = require_registered(a, b, command.a, command.b, report);
+  const SavedMap both = report.times.timed("merge", [&] { return merge_maps(std::move(a), b, found.T_a_b); });
+  report.times.timed("save", [&] { save_map(command.map, both); });
+  report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree.memory_bytes()}};
+  write_report(report, command.report);
+  std::printf("%s: %zu triangles, %zu places\n", command.map.c_str(), both.mesh.triangles.size(),
+              both.places.keyframes.size());
+  return 0;
+}
+
+int run(const MapDiffCommand& command) {
+  Report report;
+  report.command = "map diff";
+  report.source = command.a + ", " + command.b;
+  report.settings = {{"a", command.a}, {"b", command.b}};
+  require_writable(command.report);
+  require_writable(command.picture);
+  const SavedMap a = load_map(command.a);
+  const SavedMap b = load_map(command.b);
+  const Registration found = require_registered(a, b, command.a, command.b, report);
+  const std::vector<Change> changes =
+      report.times.timed("diff", [&] { return diff_maps(a.octree, b.octree, found.T_a_b); });
+
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Change& change : changes) {
+    const Eigen::Vector3d &at = change.position_world, size = change.box_world.sizes();
+    std::printf("%s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m, %.1f litres\n", to_string(change.kind).data(),
+                at.x(), at.y(), at.z(), size.x(), size.y(), size.z(), 1e3 * change.volume_m3);
+    rows.push_back({{"kind", to_string(change.kind)},
+                    {"position_m", list(at)},
+                    {"size_m", list(size)},
+                    {"area_m2", change.area_m2},
+                    {"volume_m3", change.volume_m3}});
+  }
+  if (changes.empty()) std::printf("nothing appeared, nothing vanished\n");
+  report.results["changes"] = std::move(rows);
+  if (!command.picture.empty()) write_png(draw_changes(a.mesh, changes), command.picture);
+  write_report(report, command.report);
+  return 0;
+}
+
+}  // namespace roomradar
