@@ -189,7 +189,11 @@ std::optional<Checkpoint> Checkpoints::resume() {
 
 bool Checkpoints::is_due(bool wait) {
   reap(wait);
-  return writer_ < 0 && std::chrono::steady_clock::now() - last_start_ >= every_s_;
+  return writer_ < 0 && since_last_s() >= every_s_.count();
+}
+
+double Checkpoints::since_last_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_start_).count();
 }
 
 void Checkpoints::write(const std::string& stage, const WriteFiles& write_files) {

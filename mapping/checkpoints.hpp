@@ -48,6 +48,8 @@ class Checkpoints {
 
   /// Whether the time for a checkpoint has come and the last one is written, which it can wait for.
   bool is_due(bool wait = false);
+  /// Since the last one was begun, or this object made.
+  [[nodiscard]] double since_last_s() const;
   /// Writes a checkpoint beside the work; takes some milliseconds itself. A failure (disk full) leaves the
   /// one before, and is counted in failures().
   void write(const std::string& stage, const WriteFiles& write_files);

@@ -330,6 +330,8 @@ void Odometry::add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_ca
   ++s.kept.counts.keyframes;
 }
 
+bool Odometry::is_settled() const { return !state_->job.valid(); }
+
 void Odometry::settle() {
   State& s = *state_;
   s.take_over_job();

@@ -83,6 +83,8 @@ class Odometry {
 
   [[nodiscard]] OdometryCounts counts() const;
 
+  /// Whether the second thread has nothing to do, so that settle() neither waits nor moves a pose.
+  [[nodiscard]] bool is_settled() const;
   /// Waits for what the second thread does and takes it over; before a snapshot or a fork.
   void settle();
   /// All that is known, to go on from. Views are shared, not copied. Only after settle().

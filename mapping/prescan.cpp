@@ -61,8 +61,18 @@ void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, bool between_
                      [&](const auto& into, const auto& previous) { write_state(pass, into, previous); });
 }
 
+/// The same in the first pass, where no other thread may be at work at the fork. To settle the odometry moves
+/// poses by what noise does, so that is put off as long as it would not do so by itself.
+void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass) {
+  constexpr double kLatest_s = 4.0;
+  if (!checkpoints || !(pass.odometry.is_settled() || checkpoints->since_last_s() > kLatest_s)) return;
+  if (!checkpoints->is_due()) return;
+  pass.odometry.settle();
+  keep(checkpoints, kTrackingStage, pass);
+}
+
 Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, StageTimes& times,
-                             const PrescanProgress& progress, TrackingPass& pass, Checkpoints* /*checkpoints*/,
+                             const PrescanProgress& progress, TrackingPass& pass, Checkpoints* checkpoints,
                              std::map<std::int64_t, double>& track_ms) {
   Frame frame;
   while (read(source, times, frame, pass.counts)) {
@@ -79,6 +89,7 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
     if (frame.T_world_camera) pass.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
     if (progress) progress("track", std::string(to_string(tracking.status)));
+    keep_tracking(checkpoints, pass);
   }
   Whereabouts found;
   found.frames = times.timed("optimise", [&] { return pass.odometry.optimise(); });
@@ -91,17 +102,18 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
 }
 
 /// From the tracker's world to the map's: to one that is there already, or else turned so that +z is up.
-Eigen::Isometry3d place_in_world(const Whereabouts& found, const std::optional<SavedMap>& map,
-                                 const std::string& source) {
+Eigen::Isometry3d place_in_world(const Odometry& odometry, const Whereabouts& found,
+                                 const std::optional<SavedMap>& map, const std::string& source) {
   if (!map) return level_rotation(found.up.up_world);
   constexpr std::size_t kPoints = 12'000;
-  const Registration registration =
-      register_to(map->octree, map->places, found.places, surface_of(found.places, kPoints));
-  if (!registration)
-    throw Error(source +
-                ": cannot be placed in the map that it is to be added to: " + describe(registration) +
+  const std::vector<Eigen::Vector3d> surface = surface_of(found.places, kPoints);
+  const Registration placed = odometry.is_located()
+                                  ? judge_registration(map->octree, surface, Eigen::Isometry3d::Identity())
+                                  : register_to(map->octree, map->places, found.places, surface);
+  if (!placed)
+    throw Error(source + ": cannot be placed in the map that it is to be added to: " + describe(placed) +
                 "; the map is as it was. Begin where the map was scanned, or save as another map");
-  return registration.T_a_b;
+  return placed.T_a_b;
 }
 
 /// The first pass, from its start or from a checkpoint; or its result, as a checkpoint of the second has it.
@@ -115,11 +127,12 @@ FusingPass track(FrameSource& source, const PrescanConfig& config, StageTimes& t
     pass = read_tracking_pass(*checkpoint, config.odometry);
     skip_frames(source, pass.counts.frames_read);
   }
+  if (start.map && config.poses == PoseOrigin::kTracked) pass.odometry.know(start.map->places);
   FusingPass fusing;
   fusing.found = find_whereabouts(source, config, times, progress, pass, start.checkpoints, track_ms);
   fusing.counts = pass.counts;
   if (fusing.counts.frames_read > fusing.counts.frames_skipped)
-    fusing.T_world_found = place_in_world(fusing.found, start.map, source.name());
+    fusing.T_world_found = place_in_world(pass.odometry, fusing.found, start.map, source.name());
   fusing.octree = start.map ? std::move(start.map->octree) : StaticMap(config.resolution_m);
   keep(start.checkpoints, kFusingStage, fusing, /*between_frames=*/false);
   return fusing;

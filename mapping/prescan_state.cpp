@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+#include "mapping/odometry_checkpoint.hpp"
 #include "mapping/types/byte_archive.hpp"
 
 namespace roomradar {
@@ -61,6 +62,7 @@ void transfer(Archive& archive, FusedFrame& frame) {
 namespace {
 
 constexpr const char* kState = "state.bin";
+constexpr const char* kOdometry = "odometry";
 constexpr const char* kOctree = "octree.ot";
 constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRSTATE1";
@@ -109,8 +111,10 @@ void read_fields(const fs::path& path, Pass& pass) {
 
 }  // namespace
 
-void write_state(TrackingPass& pass, const fs::path& into, const fs::path& /*previous*/) {
+void write_state(TrackingPass& pass, const fs::path& into, const fs::path& previous) {
   write_fields(pass, into / kState);
+  fs::create_directory(into / kOdometry);
+  save_odometry(pass.odometry, into / kOdometry, previous.empty() ? fs::path{} : previous / kOdometry);
 }
 
 void write_state(FusingPass& pass, const fs::path& into, const fs::path& previous) {
@@ -124,6 +128,7 @@ void write_state(FusingPass& pass, const fs::path& into, const fs::path& previou
 TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConfig& config) {
   TrackingPass pass(config);
   read_fields(checkpoint.folder / kState, pass);
+  pass.odometry = load_odometry(checkpoint.folder / kOdometry, config);
   return pass;
 }
 
