@@ -108,6 +108,11 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
                   "seconds between two checkpoints (3); 0: none, then nothing can be resumed")
       ->check(CLI::Range(0.0, 86400.0))
       ->type_name("S");
+  sub->add_option("--max-memory", command.max_memory_mb,
+                  "stop before the process takes more than so many megabytes; what was fused so far\n"
+                  "is saved as a whole map, and the exit status is 1")
+      ->check(CLI::Range(1.0, 1e7))
+      ->type_name("MB");
   add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });
 }

@@ -1,4 +1,5 @@
 // prescan_command.cpp: roomradar prescan: scan a room once and keep it.
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -8,6 +9,7 @@
 #include "app/report.hpp"
 #include "app/unfinished_scan.hpp"
 #include "mapping/map_folder.hpp"
+#include "mapping/memory_use.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -23,6 +25,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
       {"keyframes", counts.keyframes},
       {"loops_found", counts.loops_found},
       {"ghost_voxels", counts.ghost_voxels},
+      {"stopped_for_memory", counts.stopped_for_memory},
       {"up_source", scanned.map.info.up_source},
       {"map",
        {{"leaves", octree.occupied_leaves + octree.free_leaves},
@@ -68,6 +71,30 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
                 static_cast<long long>(held_out->frames), 1e3 * held_out->median_m, 1e2 * held_out->cover);
 }
 
+/// Says what the scan will take, before it begins. Throws Error if it cannot even begin under the cap.
+void announce_memory(FrameSource& source, const PrescanConfig& config, Report& report) {
+  constexpr double kMB = 1e6, kLeast_bytes = 60e6;
+  const auto cap_bytes = static_cast<double>(config.max_memory_bytes);
+  const auto now_bytes = static_cast<double>(resident_bytes());
+  if (cap_bytes > 0.0 && now_bytes + kLeast_bytes > cap_bytes)
+    throw Error("--max-memory " + std::to_string(std::llround(cap_bytes / kMB)) +
+                ": is too little to begin with; give at least " +
+                std::to_string(std::llround((now_bytes + kLeast_bytes) / kMB) + 1));
+  const std::optional<MemoryEstimate> estimate = estimate_memory(source, config.resolution_m);
+  if (!estimate) return;
+  std::fprintf(stderr, "expected: octree %.0f MB, process %.0f MB at the most, for %lld frames%s\n",
+               estimate->octree_bytes / kMB, estimate->process_bytes / kMB,
+               static_cast<long long>(estimate->frames), estimate->length_known ? "" : " (a minute)");
+  if (cap_bytes > 0.0 && estimate->process_bytes > cap_bytes)
+    std::fprintf(stderr,
+                 "which is more than --max-memory %.0f: the scan may stop on its way; a coarser "
+                 "--resolution takes less\n",
+                 cap_bytes / kMB);
+  report.results["memory_estimate"] = {{"octree_mb", estimate->octree_bytes / kMB},
+                                       {"process_mb", estimate->process_bytes / kMB},
+                                       {"frames", estimate->frames}};
+}
+
 /// The map is saved: the checkpoints go, and what was wrong with them is said.
 void finish(Checkpoints& checkpoints) {
   for (const std::string& fault : checkpoints.faults())
@@ -87,12 +114,14 @@ int run(const PrescanCommand& command) {
   report.settings = {
       {"map", command.map}, {"resolution_m", command.resolution_m}, {"poses", to_string(command.poses)}};
   if (command.hold_out > 0) report.settings["hold_out"] = command.hold_out;
+  if (command.max_memory_mb > 0.0) report.settings["max_memory_mb"] = command.max_memory_mb;
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   PrescanConfig config;
   config.resolution_m = command.resolution_m;
   config.poses = command.poses;
   config.hold_out = command.hold_out;
+  config.max_memory_bytes = static_cast<std::size_t>(1e6 * command.max_memory_mb);
   // Recorded poses may disagree with the depth by more than what tells a ghost from a wall; there it would
   // eat walls.
   config.remove_ghosts = command.poses == PoseOrigin::kTracked;
@@ -101,6 +130,7 @@ int run(const PrescanCommand& command) {
   ScanStart start = start_scan(command);
   const std::unique_ptr<FrameSource>& source = start.source;
   if (start.map) config.resolution_m = start.map->octree.resolution_m();
+  announce_memory(*source, config, report);
 
   std::unique_ptr<Progress> progress;
   std::string stage_shown;
@@ -120,7 +150,7 @@ int run(const PrescanCommand& command) {
 
   report.frames_read = scanned.counts.frames_read;
   report.frames_skipped = scanned.counts.frames_skipped;
-  report.results = results_of(scanned);
+  report.results.update(results_of(scanned));
   std::optional<HeldOutScore> held_out;
   if (command.hold_out > 0) {
     const HeldOutScore score = report.times.timed("held_out", [&] {
@@ -131,7 +161,13 @@ int run(const PrescanCommand& command) {
   }
   write_report(report, command.report);
   print_summary(command, scanned, held_out);
-  return 0;
+  if (!scanned.counts.stopped_for_memory) return 0;
+  std::fprintf(
+      stderr,
+      "roomradar: %s: stopped by --max-memory %.0f: the map of the first %lld frames is saved and whole; "
+      "a coarser --resolution or more memory takes in the rest\n",
+      command.source.c_str(), command.max_memory_mb, static_cast<long long>(scanned.counts.frames_fused));
+  return 1;
 }
 
 }  // namespace roomradar

@@ -8,6 +8,7 @@
 #include "mapping/checkpoints.hpp"
 #include "mapping/ghost_removal.hpp"
 #include "mapping/map_merge.hpp"
+#include "mapping/memory_use.hpp"
 #include "mapping/prescan_state.hpp"
 #include "mapping/registration.hpp"
 #include "mapping/types/error.hpp"
@@ -52,6 +53,12 @@ void skip_frames(FrameSource& source, std::int64_t count) {
                 "; is it the same recording?");
 }
 
+/// Whether more frames would take more memory than allowed. What comes after them needs some, too.
+bool is_full(const PrescanConfig& config, double needed_later_bytes) {
+  return config.max_memory_bytes > 0 && static_cast<double>(resident_bytes()) + needed_later_bytes >
+                                            static_cast<double>(config.max_memory_bytes);
+}
+
 /// Writes the state beside the work when it is time; between two frames that is put off while the last one is
 /// being written.
 template <typename Pass>
@@ -90,6 +97,9 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
     if (frame.T_world_camera) pass.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
     if (progress) progress("track", std::string(to_string(tracking.status)));
     keep_tracking(checkpoints, pass);
+    // The octree and its surface come when the tracker has gone.
+    pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
+    if (pass.counts.stopped_for_memory) break;
   }
   Whereabouts found;
   found.frames = times.timed("optimise", [&] { return pass.odometry.optimise(); });
@@ -185,7 +195,8 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   second_pass.frames_read = fusing.frames_read;
   if (fusing.frames_read > 0) skip_frames(source, fusing.frames_read);
   Frame frame;
-  while (read(source, times, frame, second_pass)) {
+  release_unused_memory();
+  while (fusing.frames_read < counts.frames_read && read(source, times, frame, second_pass)) {
     fusing.frames_read = second_pass.frames_read;
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end()) continue;
@@ -200,6 +211,10 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
       fusing.fused.push_back({fusing.frames_read - 1, frame.index, frame.depth_camera, pose->second});
     if (progress) progress("fuse", std::string(to_string(fused)));
     keep(start.checkpoints, kFusingStage, fusing);
+    if (is_full(config, kSurfaceMemory * static_cast<double>(fusing.octree.memory_bytes()))) {
+      counts.stopped_for_memory = true;
+      break;
+    }
   }
   keep(start.checkpoints, kFusingStage, fusing, /*between_frames=*/false);
   map.octree = std::move(fusing.octree);

@@ -34,6 +34,8 @@ struct PrescanConfig {
   bool remove_ghosts = true;  ///< take out of the map what moved on during the scan
   GhostConfig ghosts;
   SurfaceConfig surface;
+  /// Of the process; 0: no cap. Before it is reached the scan stops, and what was fused so far is the map.
+  std::size_t max_memory_bytes = 0;
 };
 
 /// Every hold_out-th frame, from the middle of the first so many on: frame_index mod N = N / 2. None for N
@@ -50,8 +52,9 @@ struct PrescanCounts {
   std::int64_t frames_held_out = 0;  ///< tracked, and kept from the map to judge it
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
-  std::int64_t ghost_voxels = 0;  ///< surface that later, or earlier, frames see through; taken out
-  std::string last_fault;         ///< of the last skipped frame
+  std::int64_t ghost_voxels = 0;    ///< surface that later, or earlier, frames see through; taken out
+  bool stopped_for_memory = false;  ///< not all of the source is in the map
+  std::string last_fault;           ///< of the last skipped frame
   std::optional<TrajectoryError> against_recorded;  ///< where at least 3 frames came with poses; tracked only
 };
 

@@ -25,6 +25,7 @@ void transfer(Archive& archive, PrescanCounts& counts) {
       if (*count < 0) archive.fail("is damaged: a count is negative");
     }
   }
+  transfer(archive, counts.stopped_for_memory);
   transfer(archive, counts.last_fault);
 }
 

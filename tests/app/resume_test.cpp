@@ -188,5 +188,52 @@ TEST_F(ResumeTest, NothingToResumeIsSaid) {
   EXPECT_FALSE(fs::exists(map()));
 }
 
+TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
+  const auto scan_table = [&](const char* source, bool resume) {
+    std::vector<std::string> arguments = {"prescan", source, "--map", map(), "--resolution", "0.03"};
+    if (resume) arguments.emplace_back("--resume");
+    return arguments;
+  };
+  ASSERT_EQ(run(scan_table("sim:table?frames=60&width=160", false)), 0) << said();
+  const SavedMap before = load_map(map());
+  const std::string json = text_of(map() / "map.json");
+  EXPECT_EQ(run(scan_table("sim:shelf?frames=30&width=160", true)), 1);
+  EXPECT_NE(said().find("cannot be placed"), std::string::npos) << said();
+  EXPECT_EQ(text_of(map() / "map.json"), json);
+
+  // The same walk once more with less noise, and a crate that was not there.
+  ASSERT_EQ(run(scan_table("sim:table?frames=60&width=160&noise=0.7&crate=1", true)), 0) << said();
+  const SavedMap after = load_map(map());
+  EXPECT_EQ(after.info.frames_fused, before.info.frames_fused + 60);
+  EXPECT_GT(after.places.keyframes.size(), before.places.keyframes.size());
+  EXPECT_EQ(after.trajectory.size(), before.trajectory.size() + 60);
+  EXPECT_TRUE(after.info.T_world_recorded.isApprox(before.info.T_world_recorded, 1e-12));
+  EXPECT_NEAR(after.octree.resolution_m(), 0.03, 1e-12);
+  for (std::size_t i = 0; i < before.trajectory.size(); ++i)
+    EXPECT_TRUE(after.trajectory[i].T_world_camera.isApprox(before.trajectory[i].T_world_camera, 1e-9));
+  const std::vector<Change> changes = diff_maps(before.octree, after.octree, Eigen::Isometry3d::Identity());
+  ASSERT_LE(changes.size(), 1U);
+  for (const Change& change : changes) EXPECT_LT(change.box_world.sizes().maxCoeff(), 0.5);
+}
+
+TEST_F(ResumeTest, StopsBeforeTheCapAndKeepsWhatItHas) {
+  const auto scan_under = [&](const std::string& cap) {
+    return std::vector<std::string>{
+        "prescan", "sim:table?frames=300&width=320", "--map", map(), "--max-memory", cap};
+  };
+  EXPECT_EQ(run(scan_under("1")), 1);
+  const std::size_t at = said().find("at least ");
+  ASSERT_NE(at, std::string::npos) << said();
+  EXPECT_FALSE(fs::exists(map()));
+  EXPECT_EQ(run(scan_under(std::to_string(std::stoi(said().substr(at + 9))))), 1);
+  EXPECT_NE(said().find("expected: octree"), std::string::npos) << said();
+  EXPECT_NE(said().find("stopped by --max-memory"), std::string::npos) << said();
+  EXPECT_EQ(run({"map", "verify", map()}), 0) << said();
+  const MapInfo info = load_map_info(map());
+  EXPECT_GE(info.frames_fused, 1);
+  EXPECT_LT(info.frames_fused, 300);
+  EXPECT_FALSE(fs::exists(unfinished()));
+}
+
 }  // namespace
 }  // namespace roomradar
