@@ -69,10 +69,13 @@ int run(const MapDiffCommand& command) {
       report.times.timed("diff", [&] { return diff_maps(a.octree, b.octree, found.T_a_b); });
 
   nlohmann::json rows = nlohmann::json::array();
+  if (!changes.empty())
+    std::printf("%-8s  %7s %7s %7s  %6s %6s %6s  %7s\n", "", "x m", "y m", "z m", "size x", "y", "z m",
+                "litres");
   for (const Change& change : changes) {
     const Eigen::Vector3d &at = change.position_world, size = change.box_world.sizes();
-    std::printf("%s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m, %.1f litres\n", to_string(change.kind).data(),
-                at.x(), at.y(), at.z(), size.x(), size.y(), size.z(), 1e3 * change.volume_m3);
+    std::printf("%-8s  %7.2f %7.2f %7.2f  %6.2f %6.2f %6.2f  %7.1f\n", to_string(change.kind).data(), at.x(),
+                at.y(), at.z(), size.x(), size.y(), size.z(), 1e3 * change.volume_m3);
     rows.push_back({{"kind", to_string(change.kind)},
                     {"position_m", list(at)},
                     {"size_m", list(size)},

@@ -25,6 +25,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
       {"keyframes", counts.keyframes},
       {"loops_found", counts.loops_found},
       {"ghost_voxels", counts.ghost_voxels},
+      {"frames_resumed", counts.frames_resumed},
       {"stopped_for_memory", counts.stopped_for_memory},
       {"up_source", scanned.map.info.up_source},
       {"map",

@@ -43,7 +43,9 @@ Tracking recorded_pose(const Frame& frame) {
 }
 
 /// Passes over frames that a checkpoint has behind it, without reading them where the source can.
-void skip_frames(FrameSource& source, std::int64_t count) {
+void skip_frames(FrameSource& source, std::int64_t count, const char* stage,
+                 const PrescanProgress& progress) {
+  for (std::int64_t i = 0; progress && i < count; ++i) progress(stage, "resumed");
   Frame frame;
   std::int64_t position = source.seek(count - 1) ? count - 1 : 0;
   while (position < count && source.next(frame).status != ReadStatus::kEnd) ++position;
@@ -62,20 +64,23 @@ bool is_full(const PrescanConfig& config, double needed_later_bytes) {
 /// Writes the state beside the work when it is time; between two frames that is put off while the last one is
 /// being written.
 template <typename Pass>
-void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, bool between_frames = true) {
+void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, StageTimes& times,
+          bool between_frames = true) {
   if (!checkpoints || !checkpoints->is_due(/*wait=*/!between_frames)) return;
-  checkpoints->write(stage,
-                     [&](const auto& into, const auto& previous) { write_state(pass, into, previous); });
+  times.timed("checkpoint", [&] {
+    checkpoints->write(stage,
+                       [&](const auto& into, const auto& previous) { write_state(pass, into, previous); });
+  });
 }
 
 /// The same in the first pass, where no other thread may be at work at the fork. To settle the odometry moves
 /// poses by what noise does, so that is put off as long as it would not do so by itself.
-void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass) {
+void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass, StageTimes& times) {
   constexpr double kLatest_s = 4.0;
   if (!checkpoints || !(pass.odometry.is_settled() || checkpoints->since_last_s() > kLatest_s)) return;
   if (!checkpoints->is_due()) return;
   pass.odometry.settle();
-  keep(checkpoints, kTrackingStage, pass);
+  keep(checkpoints, kTrackingStage, pass, times);
 }
 
 Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, StageTimes& times,
@@ -96,7 +101,7 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
     if (frame.T_world_camera) pass.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
     if (progress) progress("track", std::string(to_string(tracking.status)));
-    keep_tracking(checkpoints, pass);
+    keep_tracking(checkpoints, pass, times);
     // The octree and its surface come when the tracker has gone.
     pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
     if (pass.counts.stopped_for_memory) break;
@@ -131,11 +136,16 @@ FusingPass track(FrameSource& source, const PrescanConfig& config, StageTimes& t
                  const PrescanProgress& progress, PrescanStart& start,
                  std::map<std::int64_t, double>& track_ms) {
   const std::optional<Checkpoint> checkpoint = start.checkpoints ? start.checkpoints->resume() : std::nullopt;
-  if (checkpoint && checkpoint->stage == kFusingStage) return read_fusing_pass(*checkpoint);
+  if (checkpoint && checkpoint->stage == kFusingStage) {
+    FusingPass fusing = read_fusing_pass(*checkpoint);
+    fusing.counts.frames_resumed = fusing.frames_read;
+    return fusing;
+  }
   TrackingPass pass(config.odometry);
   if (checkpoint) {
     pass = read_tracking_pass(*checkpoint, config.odometry);
-    skip_frames(source, pass.counts.frames_read);
+    pass.counts.frames_resumed = pass.counts.frames_read;
+    skip_frames(source, pass.counts.frames_read, kTrackingStage, progress);
   }
   if (start.map && config.poses == PoseOrigin::kTracked) pass.odometry.know(start.map->places);
   FusingPass fusing;
@@ -144,7 +154,7 @@ FusingPass track(FrameSource& source, const PrescanConfig& config, StageTimes& t
   if (fusing.counts.frames_read > fusing.counts.frames_skipped)
     fusing.T_world_found = place_in_world(pass.odometry, fusing.found, start.map, source.name());
   fusing.octree = start.map ? std::move(start.map->octree) : StaticMap(config.resolution_m);
-  keep(start.checkpoints, kFusingStage, fusing, /*between_frames=*/false);
+  keep(start.checkpoints, kFusingStage, fusing, times, /*between_frames=*/false);
   return fusing;
 }
 
@@ -193,7 +203,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   if (!source.rewind()) throw Error(source.name() + ": cannot be read a second time");
   PrescanCounts second_pass;
   second_pass.frames_read = fusing.frames_read;
-  if (fusing.frames_read > 0) skip_frames(source, fusing.frames_read);
+  if (fusing.frames_read > 0) skip_frames(source, fusing.frames_read, kFusingStage, progress);
   Frame frame;
   release_unused_memory();
   while (fusing.frames_read < counts.frames_read && read(source, times, frame, second_pass)) {
@@ -210,25 +220,27 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     if (fused == FuseStatus::kFused)
       fusing.fused.push_back({fusing.frames_read - 1, frame.index, frame.depth_camera, pose->second});
     if (progress) progress("fuse", std::string(to_string(fused)));
-    keep(start.checkpoints, kFusingStage, fusing);
+    keep(start.checkpoints, kFusingStage, fusing, times);
     if (is_full(config, kSurfaceMemory * static_cast<double>(fusing.octree.memory_bytes()))) {
       counts.stopped_for_memory = true;
       break;
     }
   }
-  keep(start.checkpoints, kFusingStage, fusing, /*between_frames=*/false);
-  map.octree = std::move(fusing.octree);
+  keep(start.checkpoints, kFusingStage, fusing, times, /*between_frames=*/false);
   counts.frames_fused = static_cast<std::int64_t>(fusing.fused.size());
   if (counts.frames_fused == 0)
     throw Error(source.name() + ": no frame could be fused; the depth images hold no usable measurement");
 
   // What of that moved on?
-  if (config.remove_ghosts) {
+  if (config.remove_ghosts && !fusing.ghost_voxels) {
     const auto show = [&](const std::string& note) {
       if (progress) progress("ghosts", note);
     };
-    counts.ghost_voxels = remove_ghosts(source, fusing.fused, config.ghosts, map.octree, times, show);
+    fusing.ghost_voxels = remove_ghosts(source, fusing.fused, config.ghosts, fusing.octree, times, show);
+    keep(start.checkpoints, kFusingStage, fusing, times, /*between_frames=*/false);
   }
+  counts.ghost_voxels = fusing.ghost_voxels.value_or(0);
+  map.octree = std::move(fusing.octree);
 
   map.mesh = times.timed("surface", [&] { return extract_surface(map.octree, config.surface); });
   if (map.mesh.triangles.empty())

@@ -53,6 +53,7 @@ struct PrescanCounts {
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
   std::int64_t ghost_voxels = 0;    ///< surface that later, or earlier, frames see through; taken out
+  std::int64_t frames_resumed = 0;  ///< that a checkpoint had behind it, in the pass that it was of
   bool stopped_for_memory = false;  ///< not all of the source is in the map
   std::string last_fault;           ///< of the last skipped frame
   std::optional<TrajectoryError> against_recorded;  ///< where at least 3 frames came with poses; tracked only

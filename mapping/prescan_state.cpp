@@ -84,6 +84,7 @@ void transfer_state(Archive& archive, FusingPass& pass) {
   transfer(archive, pass.T_world_found);
   transfer(archive, pass.frames_read);
   transfer(archive, pass.fused);
+  transfer(archive, pass.ghost_voxels);
 }
 
 template <typename Pass>

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "mapping/checkpoints.hpp"
@@ -35,6 +36,7 @@ struct FusingPass {
   std::int64_t frames_read = 0;                                     ///< in this pass
   StaticMap octree{0.01};
   std::vector<FusedFrame> fused;
+  std::optional<std::int64_t> ghost_voxels;  ///< once they are out of the octree
 };
 
 inline constexpr const char* kTrackingStage = "track";
