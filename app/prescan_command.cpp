@@ -129,6 +129,11 @@ int run(const PrescanCommand& command) {
   require_can_become_map(command.map);
   require_writable(command.report);
   ScanStart start = start_scan(command);
+  if (start.is_done) {
+    std::printf("%s: holds %s already; there is nothing to resume\n", command.map.c_str(),
+                command.source.c_str());
+    return 0;
+  }
   const std::unique_ptr<FrameSource>& source = start.source;
   if (start.map) config.resolution_m = start.map->octree.resolution_m();
   announce_memory(*source, config, report);

@@ -36,12 +36,19 @@ void give_up_unfinished(const fs::path& folder) {
   unfinished.remove();
 }
 
+bool is_unfinished(const fs::path& folder) { return fs::exists(folder / "work.json"); }
+
 bool is_to_extend(bool resume, const fs::path& folder, const fs::path& map) {
   if (!resume) return false;
-  if (fs::exists(folder)) return fs::exists(folder / "work.json") && identity_of(folder)["into"] != kNewMap;
+  if (is_unfinished(folder)) return identity_of(folder)["into"] != kNewMap;
   if (fs::exists(map / "map.json")) return true;
   throw Error(map.string() + ": there is nothing to resume: no map, and no scan that was cut off (" +
               folder.string() + "); leave --resume away to begin a new map");
+}
+
+/// Whether a map has a recording's frames already: then the scan to be resumed had come to its end.
+bool holds(const MapInfo& map, const FrameSource& source) {
+  return ("; " + map.source + "; ").find("; " + source.name() + "; ") != std::string::npos;
 }
 
 }  // namespace
@@ -52,12 +59,21 @@ ScanStart start_scan(const PrescanCommand& command) {
   const fs::path folder = unfinished_beside(map);
   if (!command.resume) give_up_unfinished(folder);
   const bool extend = is_to_extend(command.resume, folder, map);
-  if (extend) start.map = load_map(map);
+  std::error_code ignored;
+  fs::remove_all(done_beside(folder), ignored);
 
   const fs::path spool = folder / "spool";
   const bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
   if (!spooled) start.source = open_source(command.source, command.frames);
   const bool live = spooled || !start.source->rewind();
+  const std::string into = extend ? sha256_of_file(map / "map.json") : kNewMap;
+  if (extend) start.map = load_map(map);
+  if (extend && !live && holds(start.map->info, *start.source) &&
+      (!is_unfinished(folder) || identity_of(folder)["into"] != into)) {
+    Checkpoints(folder, {}, 0.0).remove();
+    start.is_done = true;
+    return start;
+  }
   if (command.checkpoint_every_s > 0.0) {
     std::map<std::string, std::string> identity{
         {"source", command.source},
@@ -67,7 +83,7 @@ ScanStart start_scan(const PrescanCommand& command) {
                        ? std::to_string(command.frames->first) + ":" + std::to_string(command.frames->last)
                        : "all"},
         {"hold-out", std::to_string(command.hold_out)},
-        {"into", extend ? sha256_of_file(map / "map.json") : kNewMap}};
+        {"into", into}};
     if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
     start.checkpoints = std::make_unique<Checkpoints>(folder, identity, command.checkpoint_every_s);
   }

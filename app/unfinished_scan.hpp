@@ -15,6 +15,7 @@ struct ScanStart {
   std::unique_ptr<Checkpoints> checkpoints;  ///< null: none are asked for
   std::unique_ptr<FrameSource> source;       ///< rewinds; a live one is spooled beside the checkpoints
   std::optional<SavedMap> map;               ///< to be extended by what the source shows
+  bool is_done = false;                      ///< to be resumed, but the map holds all of this recording
 };
 
 /// Opens the source and decides by --resume and by what lies at the map's place and beside it

@@ -272,14 +272,18 @@ void Checkpoints::reap(bool wait) {
 void Checkpoints::remove() {
   reap(/*wait=*/true);
   if (lock_ < 0 && !fs::exists(folder_)) return;
-  std::error_code ignored;  // the work is done; a folder left behind says what it is
-  fs::remove_all(folder_, ignored);
+  // In one step, so that work that is done is never taken for work that was cut off.
+  std::error_code ignored;
+  fs::rename(folder_, done_beside(folder_), ignored);
+  fs::remove_all(done_beside(folder_), ignored);
   if (lock_ >= 0) ::close(std::exchange(lock_, -1));
 }
 
 fs::path Checkpoints::numbered(std::int64_t number) const {
   return folder_ / (std::string(kPrefix) + std::to_string(number));
 }
+
+fs::path done_beside(const fs::path& folder) { return folder.string() + ".done"; }
 
 std::map<std::string, std::string> identity_of(const fs::path& folder) {
   const Json json = read_json(folder / kWork);

@@ -81,6 +81,9 @@ class Checkpoints {
   std::vector<std::string> faults_;
 };
 
+/// What such a folder is called while it is removed; one that a crash left behind is of no use.
+std::filesystem::path done_beside(const std::filesystem::path& folder);
+
 /// What the work in such a folder is. Throws Error if its work.json is missing or damaged.
 std::map<std::string, std::string> identity_of(const std::filesystem::path& folder);
 

@@ -204,6 +204,10 @@ TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
   // The same walk once more with less noise, and a crate that was not there.
   ASSERT_EQ(run(scan_table("sim:table?frames=60&width=160&noise=0.7&crate=1", true)), 0) << said();
   const SavedMap after = load_map(map());
+  const std::string extended = text_of(map() / "map.json");
+  EXPECT_EQ(run(scan_table("sim:table?frames=60&width=160&noise=0.7&crate=1", true)), 0) << said();
+  EXPECT_NE(said().find("nothing to resume"), std::string::npos) << said();
+  EXPECT_EQ(text_of(map() / "map.json"), extended);
   EXPECT_EQ(after.info.frames_fused, before.info.frames_fused + 60);
   EXPECT_GT(after.places.keyframes.size(), before.places.keyframes.size());
   EXPECT_EQ(after.trajectory.size(), before.trajectory.size() + 60);
