@@ -6,6 +6,7 @@
 #include <future>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace roomradar {
@@ -26,45 +27,42 @@ std::vector<std::size_t> spread(const std::vector<std::size_t>& items, std::size
   return chosen;
 }
 
-/// Both constraints between two keyframes, if they can be joined.
-std::optional<std::array<PoseConstraint, 2>> joint(const KeyframeGraph& graph, std::size_t older,
-                                                   std::size_t newer, const Eigen::Isometry3d& T_older_newer,
-                                                   const JoinConfig& config, WarmKeyframes& warm) {
-  const auto a = warm.get(older, *graph.keyframes[older].view, config.view);
-  const auto b = warm.get(newer, *graph.keyframes[newer].view, config.view);
-  const Tracking b_in_a = align(b->live, a->reference, T_older_newer, config.align);
-  if (!is_joint(b_in_a, config.graph)) return std::nullopt;
-  const Tracking a_in_b = align(a->live, b->reference, T_older_newer.inverse(), config.align);
-  const Eigen::Isometry3d gap = b_in_a.T_world_camera * a_in_b.T_world_camera;
-  if (!is_joint(a_in_b, config.graph) || gap.translation().norm() > config.graph.max_gap_m ||
-      Eigen::AngleAxisd(gap.linear()).angle() > config.graph.max_gap_rad ||
-      !is_within_drift(graph, older, newer, b_in_a.T_world_camera, config.graph)) {
+/// Both constraints between two keyframes from how each was aligned with the other, if they can be joined.
+std::optional<std::array<PoseConstraint, 2>> agreement(const KeyframeGraph& graph, std::size_t older,
+                                                       std::size_t newer, const Tracking& newer_in_older,
+                                                       const Tracking& older_in_newer,
+                                                       const KeyframeGraphConfig& config) {
+  const Eigen::Isometry3d gap = newer_in_older.T_world_camera * older_in_newer.T_world_camera;
+  if (!is_joint(newer_in_older, config) || !is_joint(older_in_newer, config) ||
+      gap.translation().norm() > config.max_gap_m ||
+      Eigen::AngleAxisd(gap.linear()).angle() > config.max_gap_rad ||
+      !is_within_drift(graph, older, newer, newer_in_older.T_world_camera, config)) {
     return std::nullopt;
   }
   const bool loop = newer - older >= kNeighbours;
   return std::array<PoseConstraint, 2>{
-      PoseConstraint{older, newer, b_in_a.T_world_camera, b_in_a.information, loop},
-      PoseConstraint{newer, older, a_in_b.T_world_camera, a_in_b.information, loop}};
+      PoseConstraint{older, newer, newer_in_older.T_world_camera, newer_in_older.information, loop},
+      PoseConstraint{newer, older, older_in_newer.T_world_camera, older_in_newer.information, loop}};
 }
 
-/// Joins one keyframe with at most `most` older ones; constraints and counts are added to `found`.
-void join_older(const KeyframeGraph& graph, std::size_t newer, int most, const JoinConfig& config,
-                WarmKeyframes& warm, KeyframeGraph& found) {
-  const Eigen::Isometry3d T_world_newer = graph.keyframes[newer].T_world_camera;
-  std::vector<std::size_t> older = keyframes_near(graph, T_world_newer, config.graph.furthest);
+/// Takes over what two keyframes agreed on, and counts. Returns whether they did.
+bool add(KeyframeGraph& graph, std::size_t older, std::size_t newer,
+         const std::optional<std::array<PoseConstraint, 2>>& pair) {
+  if (pair) graph.constraints.insert(graph.constraints.end(), pair->begin(), pair->end());
+  if (newer - older >= kNeighbours) ++(pair ? graph.loops_found : graph.loops_rejected);
+  return pair.has_value();
+}
+
+/// At most `most` keyframes older than this one that look where it looks.
+std::vector<std::size_t> older_near(const KeyframeGraph& graph, std::size_t newer, int most,
+                                    double furthest) {
+  std::vector<std::size_t> older = keyframes_near(graph, graph.keyframes[newer].T_world_camera, furthest);
   std::erase_if(older, [&](std::size_t i) { return i >= newer; });
-  for (const std::size_t i : spread(older, static_cast<std::size_t>(std::max(most, 1)))) {
-    const auto pair =
-        joint(graph, i, newer, graph.keyframes[i].T_world_camera.inverse() * T_world_newer, config, warm);
-    if (pair) found.constraints.insert(found.constraints.end(), pair->begin(), pair->end());
-    if (newer - i >= kNeighbours) ++(pair ? found.loops_found : found.loops_rejected);
-  }
+  return spread(older, static_cast<std::size_t>(std::max(most, 1)));
 }
 
-void take(KeyframeGraph& graph, const KeyframeGraph& found) {
-  graph.constraints.insert(graph.constraints.end(), found.constraints.begin(), found.constraints.end());
-  graph.loops_found += found.loops_found;
-  graph.loops_rejected += found.loops_rejected;
+Eigen::Isometry3d relative(const KeyframeGraph& graph, std::size_t a, std::size_t b) {
+  return graph.keyframes[a].T_world_camera.inverse() * graph.keyframes[b].T_world_camera;
 }
 
 void solve_free(KeyframeGraph& graph, const std::vector<bool>& held) {
@@ -107,36 +105,62 @@ bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t 
 
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const JoinConfig& config, WarmKeyframes& warm) {
-  const auto pair = joint(graph, older, newer, T_older_newer, config, warm);
-  if (pair) graph.constraints.insert(graph.constraints.end(), pair->begin(), pair->end());
-  if (newer - older >= kNeighbours) ++(pair ? graph.loops_found : graph.loops_rejected);
-  return pair.has_value();
+  const auto a = warm.get(older, *graph.keyframes[older].view, config.view);
+  const auto b = warm.get(newer, *graph.keyframes[newer].view, config.view);
+  const Tracking b_in_a = align(b->live, a->reference, T_older_newer, config.align);
+  const Tracking a_in_b = align(a->live, b->reference, T_older_newer.inverse(), config.align);
+  return add(graph, older, newer, agreement(graph, older, newer, b_in_a, a_in_b, config.graph));
 }
 
 void join_newest(KeyframeGraph& graph, const JoinConfig& config, WarmKeyframes& warm) {
   if (graph.keyframes.size() < 2) return;
-  KeyframeGraph found;
-  join_older(graph, graph.keyframes.size() - 1, config.graph.joins_at_once, config, warm, found);
-  take(graph, found);
+  const std::size_t newest = graph.keyframes.size() - 1;
+  for (const std::size_t i : older_near(graph, newest, config.graph.joins_at_once, config.graph.furthest)) {
+    join(graph, i, newest, relative(graph, i, newest), config, warm);
+  }
 }
 
 void join_all(KeyframeGraph& graph, const JoinConfig& config) {
+  // Sorted by reference, so that each is made once and only one is held.
+  struct Half {
+    std::size_t reference, live;
+    Tracking live_in_reference;
+  };
+  std::vector<Half> halves;
+  for (std::size_t newer = 1; newer < graph.keyframes.size(); ++newer) {
+    for (const std::size_t older : older_near(graph, newer, config.graph.joins, config.graph.furthest)) {
+      halves.push_back({older, newer, {}});
+      halves.push_back({newer, older, {}});
+    }
+  }
+  const auto by_reference = [](const Half& a, const Half& b) {
+    return std::pair(a.reference, a.live) < std::pair(b.reference, b.live);
+  };
+  std::sort(halves.begin(), halves.end(), by_reference);
+  const auto align_all = [&](std::span<Half> part) {
+    WarmKeyframes references(1, WarmParts::kReference), lives(config.graph.warm, WarmParts::kLive);
+    for (Half& half : part) {
+      const auto a = references.get(half.reference, *graph.keyframes[half.reference].view, config.view);
+      const auto b = lives.get(half.live, *graph.keyframes[half.live].view, config.view);
+      half.live_in_reference =
+          align(b->live, a->reference, relative(graph, half.reference, half.live), config.align);
+    }
+  };
+  const std::span<Half> all(halves);
+  auto second = std::async(std::launch::async, align_all, all.subspan(all.size() / 2));
+  align_all(all.first(all.size() / 2));
+  second.get();
+
   graph.constraints.clear();
   graph.loops_found = graph.loops_rejected = 0;
-  const auto join_range = [&](std::size_t begin, std::size_t end) {
-    WarmKeyframes warm(config.graph.warm);
-    KeyframeGraph found;
-    for (std::size_t newer = begin; newer < end; ++newer) {
-      join_older(graph, newer, config.graph.joins, config, warm, found);
-    }
-    return found;
-  };
-  // Later keyframes have more older ones to be joined with.
-  const std::size_t count = graph.keyframes.size(), middle = count * 6 / 10;
-  auto later = std::async(std::launch::async, join_range, std::max<std::size_t>(middle, 1), count);
-  const KeyframeGraph first = join_range(1, middle);
-  take(graph, first);
-  take(graph, later.get());
+  for (const Half& there : halves) {
+    if (there.reference > there.live) continue;
+    const auto back =
+        std::lower_bound(halves.begin(), halves.end(), Half{there.live, there.reference, {}}, by_reference);
+    add(graph, there.reference, there.live,
+        agreement(graph, there.reference, there.live, there.live_in_reference, back->live_in_reference,
+                  config.graph));
+  }
 }
 
 void solve(KeyframeGraph& graph) {

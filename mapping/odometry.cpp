@@ -345,6 +345,7 @@ std::vector<TrackedFrame> Odometry::optimise() {
   settle();
   if (!s.kept.graph.keyframes.empty()) {
     KeyframeGraph graph = s.kept.graph;
+    s.warm = WarmKeyframes(s.config.graph.warm);  // of no use now, and large
     join_all(graph, job_config(s.config).join);
     solve(graph);
     s.move_keyframes(graph.keyframes);

@@ -6,12 +6,13 @@
 
 namespace roomradar {
 
-std::shared_ptr<const WarmKeyframe> warm(const StoredView& view, const ViewConfig& config) {
+std::shared_ptr<const WarmKeyframe> warm(const StoredView& view, const ViewConfig& config, WarmParts parts) {
   auto made = std::make_shared<WarmKeyframe>();
   ViewPyramid pyramid;
   restore(view, config, pyramid);
-  make_reference(pyramid, Eigen::Isometry3d::Identity(), config, made->reference);
-  make_live(pyramid, made->live);
+  if (parts != WarmParts::kLive)
+    make_reference(pyramid, Eigen::Isometry3d::Identity(), config, made->reference);
+  if (parts != WarmParts::kReference) make_live(pyramid, made->live);
   return made;
 }
 
@@ -26,7 +27,7 @@ std::shared_ptr<const WarmKeyframe> WarmKeyframes::find(std::size_t keyframe) {
 std::shared_ptr<const WarmKeyframe> WarmKeyframes::get(std::size_t keyframe, const StoredView& view,
                                                        const ViewConfig& config) {
   if (auto held = find(keyframe)) return held;
-  put(keyframe, warm(view, config));
+  put(keyframe, warm(view, config, parts_));
   return entries_.back().held;
 }
 

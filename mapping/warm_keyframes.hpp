@@ -8,19 +8,24 @@
 
 namespace roomradar {
 
-/// A keyframe ready to be aligned with others, both ways. Its pose is the keyframe's; 4 MB at 320 x 240.
+/// A keyframe ready to be aligned with others, both ways. Its pose is the keyframe's; 4 MB at 320 x 240, of
+/// which 0.7 MB are the live view.
 struct WarmKeyframe {
   ReferenceView reference;
   LiveView live;
 };
 
-std::shared_ptr<const WarmKeyframe> warm(const StoredView& view, const ViewConfig& config);
+enum class WarmParts { kAll, kLive, kReference };  ///< the other part is empty
+
+std::shared_ptr<const WarmKeyframe> warm(const StoredView& view, const ViewConfig& config,
+                                         WarmParts parts = WarmParts::kAll);
 
 /// Holds at most `capacity` of them, and forgets those that were not asked for the longest. What is handed
 /// out stays whole after it is forgotten. Copies share what they hold. Not thread safe; copies are apart.
 class WarmKeyframes {
  public:
-  explicit WarmKeyframes(std::size_t capacity) : capacity_(capacity) {}
+  explicit WarmKeyframes(std::size_t capacity, WarmParts parts = WarmParts::kAll)
+      : capacity_(capacity), parts_(parts) {}
 
   /// Null if it is not held.
   std::shared_ptr<const WarmKeyframe> find(std::size_t keyframe);
@@ -36,6 +41,7 @@ class WarmKeyframes {
     std::shared_ptr<const WarmKeyframe> held;
   };
   std::size_t capacity_;
+  WarmParts parts_;
   std::vector<Entry> entries_;  // the one asked for last comes last
 };
 
