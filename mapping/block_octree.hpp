@@ -5,6 +5,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -155,13 +156,10 @@ class BlockOctree {
     return same;
   }
   static bool alike(const LeafBlock& block) {
-    unsigned weight = 0;
-    int differing = 0;
-    for (unsigned i = 0; i < 8; ++i) {
-      weight |= block.weight[i];
-      differing |= block.log_odds[i] ^ block.log_odds[0];
-    }
-    return weight == 0 && differing == 0;
+    using Words = std::array<std::uint64_t, 2>;
+    const auto weight = std::bit_cast<Words>(block.weight), log_odds = std::bit_cast<Words>(block.log_odds);
+    const std::uint64_t first = static_cast<std::uint16_t>(block.log_odds[0]) * 0x0001'0001'0001'0001U;
+    return (weight[0] | weight[1] | (log_odds[0] ^ first) | (log_odds[1] ^ first)) == 0;
   }
 
   double resolution_m_;

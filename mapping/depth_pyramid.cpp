@@ -14,7 +14,7 @@ constexpr float kNothing_m = std::numeric_limits<float>::infinity();
 // Front of a cell that leaves it to its neighbours.
 constexpr std::int16_t kNoWord = std::numeric_limits<std::int16_t>::max();
 constexpr float kFarthestStep = 32'000.0F;
-constexpr std::size_t kHoleLevel = 2;  // cells of 4 x 4 pixels must hold some depth
+constexpr int kHoleLevel = 2;  // cells of 4 x 4 pixels must hold some depth
 
 DepthBounds merged(const DepthBounds& a, const DepthBounds& b) {
   return {std::min(a.front, b.front), std::min(a.nearest, b.nearest), std::min(a.behind, b.behind),
@@ -52,28 +52,39 @@ void bound_rows(const float* upper, const float* lower, int width, double resolu
   }
 }
 
-void halve(const Image<DepthBounds>& fine, Image<DepthBounds>& coarse) {
-  const int fine_cells = fine.width - 1;
-  for (int y = 0; y < coarse.height; ++y) {
-    const DepthBounds* upper = fine.row(2 * y);
-    const DepthBounds* lower = fine.row(std::min(2 * y + 1, fine.height - 1));
-    DepthBounds* out = coarse.row(y);
-    for (int x = 0; x < fine_cells / 2; ++x)
+void halve(DepthPyramid& pyramid, int level) {
+  const int fine_across = pyramid.cells_across(level - 1), fine_down = pyramid.cells_down(level - 1);
+  for (int y = 0; y < pyramid.cells_down(level); ++y) {
+    const DepthBounds* upper = pyramid.row(level - 1, 2 * y);
+    const DepthBounds* lower = pyramid.row(level - 1, std::min(2 * y + 1, fine_down - 1));
+    DepthBounds* out = pyramid.row(level, y);
+    for (int x = 0; x < fine_across / 2; ++x)
       out[x] = merged(merged(upper[2 * x], upper[2 * x + 1]), merged(lower[2 * x], lower[2 * x + 1]));
-    if (fine_cells % 2 == 1) out[fine_cells / 2] = merged(upper[fine_cells - 1], lower[fine_cells - 1]);
+    if (fine_across % 2 == 1) out[fine_across / 2] = merged(upper[fine_across - 1], lower[fine_across - 1]);
   }
 }
 
 // A cell without any depth leaves its word to others no longer: nothing is free there.
-void block_holes(Image<DepthBounds>& cells) {
-  for (DepthBounds& cell : cells.pixels)
-    if (cell.front == kNoWord && cell.behind != kNoWord) cell.front = 0;
+void block_holes(DepthPyramid& pyramid, int level) {
+  for (int y = 0; y < pyramid.cells_down(level); ++y)
+    for (int x = 0; x < pyramid.cells_across(level); ++x) {
+      DepthBounds& cell = pyramid.row(level, y)[x];
+      cell.front = cell.front == kNoWord ? std::int16_t{0} : cell.front;
+    }
 }
 
-constexpr DepthBounds kSaysNothing{kNoWord, kNoWord, kNoWord, kNoWord};
-
-void resize_once(Image<DepthBounds>& cells, int width, int height) {
-  if (cells.width != width + 1 || cells.height != height) cells.resize(width + 1, height, kSaysNothing);
+void resize(int width_px, int height_px, DepthPyramid& pyramid) {
+  if (pyramid.width_px == width_px && pyramid.height_px == height_px) return;
+  pyramid.width_px = width_px;
+  pyramid.height_px = height_px;
+  pyramid.levels = std::bit_width(static_cast<unsigned>(std::max({width_px, height_px, 2}) - 1));
+  pyramid.stride = pyramid.cells_across(1) + 1;  // pairs of cells are read, also at the end of a row
+  pyramid.cells.assign((std::size_t{1} << pyramid.levels) * static_cast<std::size_t>(pyramid.stride),
+                       {kNoWord, kNoWord, kNoWord, kNoWord});
+  const auto even_width = 2 * static_cast<std::size_t>(pyramid.cells_across(1));
+  pyramid.row_nearest_m.assign(even_width, kNothing_m);
+  pyramid.row_farthest_m.assign(even_width, 0.0F);
+  pyramid.row_deepest_m.assign(even_width, 0.0F);
 }
 
 }  // namespace
@@ -87,26 +98,14 @@ void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionC
                    DepthPyramid& pyramid) {
   pyramid.steps_per_m =
       kFarthestStep / (config.max_range_m + half_layer_m(config.max_range_m, resolution_m, config));
-  const auto longest = static_cast<unsigned>(std::max({depth_m.width, depth_m.height, 2}));
-  pyramid.levels.resize(static_cast<std::size_t>(std::bit_width(longest - 1)) + 1);
-  int width = (depth_m.width + 1) / 2;
-  int height = (depth_m.height + 1) / 2;
-  const auto even_width = 2 * static_cast<std::size_t>(width);
-  pyramid.row_nearest_m.assign(even_width, kNothing_m);
-  pyramid.row_farthest_m.assign(even_width, 0.0F);
-  pyramid.row_deepest_m.assign(even_width, 0.0F);
-  resize_once(pyramid.levels[1], width, height);
-  for (int y = 0; y < height; ++y)
+  resize(depth_m.width, depth_m.height, pyramid);
+  for (int y = 0; y < pyramid.cells_down(1); ++y)
     bound_rows(depth_m.row(2 * y), depth_m.row(std::min(2 * y + 1, depth_m.height - 1)), depth_m.width,
-               resolution_m, config, pyramid, pyramid.levels[1].row(y));
-  for (std::size_t level = 2; level < pyramid.levels.size(); ++level) {
-    width = (width + 1) / 2;
-    height = (height + 1) / 2;
-    resize_once(pyramid.levels[level], width, height);
-    halve(pyramid.levels[level - 1], pyramid.levels[level]);
-    if (level > kHoleLevel) continue;
-    block_holes(pyramid.levels[level - 1]);
-    if (level == kHoleLevel) block_holes(pyramid.levels[level]);
+               resolution_m, config, pyramid, pyramid.row(1, y));
+  for (int level = 2; level <= pyramid.levels; ++level) {
+    halve(pyramid, level);
+    if (level <= kHoleLevel) block_holes(pyramid, level - 1);
+    if (level == kHoleLevel) block_holes(pyramid, level);
   }
 }
 

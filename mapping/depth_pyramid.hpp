@@ -27,12 +27,21 @@ struct DepthBounds {
   std::int16_t unused = 0;
 };
 
+/// Level i has cells of 2^i pixels each way, i = 1..levels. All stand below each other in one sheet, so that
+/// a cell's place is found by a little arithmetic; what is in the sheet beside them says nothing.
 struct DepthPyramid {
   float steps_per_m = 0.0F;
-  /// levels[i] has cells of 2^i pixels each way, and one more column that says nothing. levels[0] is not
-  /// kept: single pixels are what the image is for.
-  std::vector<Image<DepthBounds>> levels;
+  int width_px = 0, height_px = 0;
+  int levels = 0;
+  int stride = 0;                                                   ///< cells from one row to the next
+  std::vector<DepthBounds> cells;                                   ///< 2^levels rows
   std::vector<float> row_nearest_m, row_farthest_m, row_deepest_m;  // of two rows of the image
+
+  /// The first row of a level: 0, 1/2, 3/4, ... of all.
+  [[nodiscard]] int first_row(int level) const { return (1 << levels) - (2 << (levels - level)); }
+  [[nodiscard]] DepthBounds* row(int level, int y) { return cells.data() + (first_row(level) + y) * stride; }
+  [[nodiscard]] int cells_across(int level) const { return ((width_px - 1) >> level) + 1; }
+  [[nodiscard]] int cells_down(int level) const { return ((height_px - 1) >> level) + 1; }
 };
 
 /// Pixels without depth prove nothing; a hole smaller than 4 x 4 pixels (2 x 2 in rectangles of six and less)
@@ -41,30 +50,27 @@ struct DepthPyramid {
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid);
 
-/// Of a rectangle (borders included) within the image: on the finest level where it spans at most four cells
-/// each way.
-inline DepthBounds bounds_within(const DepthPyramid& pyramid, int left, int top, int right, int bottom) {
+/// Up to 4 x 4 cells of one level. Always so many are looked at, some of them twice: a branch would cost
+/// more.
+struct CellRect {
+  int at = 0;                           ///< place of the first in the sheet
+  int column = 0;                       ///< from the first to the last but one across, or 0
+  int second = 0, third = 0, last = 0;  ///< from the first row to the second, the last but one, the last
+};
+
+/// The bounds of all that is in the cells.
+inline DepthBounds bounds_within(const DepthPyramid& pyramid, const CellRect& rect) {
   using Pair = std::int16_t __attribute__((vector_size(2 * sizeof(DepthBounds))));  // of neighbouring cells
-  const auto span = static_cast<unsigned>(std::max(right - left, bottom - top));
-  const int level = std::clamp(static_cast<int>(std::bit_width((span + 2) / 3 - (span > 0 ? 1 : 0))), 1,
-                               static_cast<int>(pyramid.levels.size()) - 1);
-  const Image<DepthBounds>& cells = pyramid.levels[static_cast<std::size_t>(level)];
-  const auto pair_at = [](const DepthBounds* cell) {
-    Pair pair;
-    std::memcpy(&pair, cell, sizeof(pair));
-    return pair;
-  };
+  const DepthBounds* first = pyramid.cells.data() + rect.at;
   const auto least = [](const Pair& a, const Pair& b) { return a < b ? a : b; };
-  const int first = left >> level;
-  const int second = std::max((right >> level) - 1, first);
-  const int top_row = top >> level, last_row = bottom >> level;
-  const auto in_row = [&](int y) {
-    const DepthBounds* row = cells.pixels.data() + y * cells.width;
-    return least(pair_at(row + first), pair_at(row + second));
+  const auto in_row = [&](int row) {
+    Pair left, right;
+    std::memcpy(&left, first + row, sizeof(left));
+    std::memcpy(&right, first + row + rect.column, sizeof(right));
+    return least(left, right);
   };
-  // Always four rows, some of them the same: a branch would cost more.
-  const Pair upper = least(in_row(top_row), in_row(std::min(top_row + 1, last_row)));
-  const Pair both = least(upper, least(in_row(std::max(last_row - 1, top_row)), in_row(last_row)));
+  const Pair both =
+      least(least(in_row(0), in_row(rect.second)), least(in_row(rect.third), in_row(rect.last)));
   const Pair bounds = least(both, __builtin_shufflevector(both, both, 4, 5, 6, 7, 0, 1, 2, 3));
   DepthBounds of_all;
   std::memcpy(static_cast<void*>(&of_all), &bounds, sizeof(of_all));

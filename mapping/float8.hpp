@@ -4,8 +4,10 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #if defined(__AVX2__)
 #include <immintrin.h>
 #endif
@@ -100,6 +102,12 @@ inline PlainFloat8 max(const PlainFloat8& a, const PlainFloat8& b) {
 inline PlainFloat8 floor(const PlainFloat8& a) {
   return plain::each(a, a, [](float x, float) { return std::floor(x); });
 }
+/// The greatest power of two that is not above each, of its magnitude; for normal numbers.
+inline PlainFloat8 power_of_two_within(const PlainFloat8& a) {
+  return plain::each(a, a, [](float x, float) {
+    return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0x7F80'0000U);
+  });
+}
 inline PlainMask8 operator<(const PlainFloat8& a, const PlainFloat8& b) {
   return plain::test(a, b, [](float x, float y) { return x < y; });
 }
@@ -188,6 +196,9 @@ inline Avx2Float8 operator/(const Avx2Float8& a, const Avx2Float8& b) { return _
 inline Avx2Float8 min(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_min_ps(a.v, b.v); }
 inline Avx2Float8 max(const Avx2Float8& a, const Avx2Float8& b) { return _mm256_max_ps(a.v, b.v); }
 inline Avx2Float8 floor(const Avx2Float8& a) { return _mm256_floor_ps(a.v); }
+inline Avx2Float8 power_of_two_within(const Avx2Float8& a) {
+  return _mm256_and_ps(a.v, _mm256_castsi256_ps(_mm256_set1_epi32(0x7F80'0000)));
+}
 inline Avx2Mask8 operator<(const Avx2Float8& a, const Avx2Float8& b) {
   return {_mm256_cmp_ps(a.v, b.v, _CMP_LT_OQ)};
 }

@@ -85,8 +85,8 @@ class Descent {
     const bool children_hold_leaves = depth + 1 == kLeafDepth - 1;
     prefetch_children(block, free | split, children_hold_leaves);
     unsigned clear = free;
-    if ((free & blocks_in(block)) != 0) {
-      clear &= ~blocks_in(block) | judge_children(depth, cell.centre, kClearance).free;
+    if (const unsigned in_doubt = free == 0 ? 0 : free & blocks_in(block); in_doubt != 0) {
+      clear &= ~in_doubt | judge_children(depth, cell.centre, kClearance).free;
       if (!children_hold_leaves) {
         split |= free & ~clear;
         free &= clear;

@@ -101,10 +101,10 @@ class LeafUpdate {
 
  private:
   // Samples so far from the surface take its colour: its triangles' corners lie among them.
-  static constexpr float kColourVoxels = 2.0F;
+  static constexpr float kColourVoxels = 1.5F;
   // A measurement that weighs less than this part of all before leaves the colour as it is, but now and then;
   // then it counts as this part: rounded to whole levels, less would change nothing.
-  static constexpr float kSettledPart = 1.0F / 16.0F;
+  static constexpr float kSettledPart = 1.0F / 8.0F;
 
   static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
   [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }

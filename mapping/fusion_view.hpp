@@ -117,25 +117,40 @@ Verdicts judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, 
 
   const auto in_sight = (zero <= left) & (zero <= top) & (right <= camera.width) & (bottom <= camera.height);
   const unsigned whole = in_sight.bits();
-  alignas(32) std::array<int, 8> first_x, first_y, last_x, last_y;
+  // The rectangles, in whole pixels within the image, and the finest cells of which they span four.
   const Float8 x_end(camera.width - 1.0F), y_end(camera.height - 1.0F);
-  min(max(left, zero), x_end).store_truncated(first_x);
-  min(max(right, zero), x_end).store_truncated(last_x);
-  min(max(top, zero), y_end).store_truncated(first_y);
-  min(max(bottom, zero), y_end).store_truncated(last_y);
-  std::array<std::int16_t, 8> front{}, nearest{}, behind{};
+  const Float8 left_px = floor(min(max(left, zero), x_end)), right_px = floor(min(max(right, zero), x_end));
+  const Float8 top_px = floor(min(max(top, zero), y_end)), bottom_px = floor(min(max(bottom, zero), y_end));
+  const Float8 span_px = max(right_px - left_px, bottom_px - top_px);
+  const auto coarsest_px = static_cast<float>(1 << pyramid.levels);
+  const Float8 cell_px =
+      min(max(power_of_two_within((span_px - 0.5F) * (1.0F / 3.0F)) * 2.0F, 2.0F), coarsest_px);
+  const Float8 cells_per_px = Float8(1.0F) / cell_px;
+  const Float8 column = floor(left_px * cells_per_px), last_column = floor(right_px * cells_per_px);
+  const Float8 row = floor(top_px * cells_per_px), last_row = floor(bottom_px * cells_per_px);
+  const Float8 level_row = Float8(coarsest_px) - cells_per_px * (2.0F * coarsest_px);
+  const auto stride = static_cast<float>(pyramid.stride);
+  const Float8 rows = last_row - row, one(1.0F);
+  alignas(32) std::array<int, 8> at, columns_on, second, third, last;
+  ((level_row + row) * stride + column).store_truncated(at);
+  max(last_column - column - one, zero).store_truncated(columns_on);
+  (min(rows, one) * stride).store_truncated(second);
+  (max(rows - one, zero) * stride).store_truncated(third);
+  (rows * stride).store_truncated(last);
+  alignas(32) std::array<int, 8> near_steps, far_steps;
+  const Float8 last_step(1e6F);
+  min(near_z * pyramid.steps_per_m, last_step).store_truncated(near_steps);
+  min(far_z * pyramid.steps_per_m, last_step).store_truncated(far_steps);
+  unsigned hidden = 0, before_all = 0, before_measured = 0;
   for (unsigned left_over = open; left_over != 0; left_over &= left_over - 1) {
     const auto i = static_cast<unsigned>(std::countr_zero(left_over));
-    const DepthBounds bounds = bounds_within(pyramid, first_x[i], first_y[i], last_x[i], last_y[i]);
-    front[i] = bounds.front;
-    nearest[i] = bounds.nearest;
-    behind[i] = bounds.behind;
+    const DepthBounds bounds = bounds_within(pyramid, {at[i], columns_on[i], second[i], third[i], last[i]});
+    hidden |= static_cast<unsigned>(near_steps[i] > -bounds.behind) << i;
+    before_all |= static_cast<unsigned>(far_steps[i] < bounds.front) << i;
+    before_measured |= static_cast<unsigned>(far_steps[i] < bounds.nearest) << i;
   }
-  const Float8 near_steps = near_z * pyramid.steps_per_m, far_steps = far_z * pyramid.steps_per_m;
-  const unsigned hidden = open & (zero < near_steps + Float8::load(behind)).bits();
-  const unsigned free = open & whole & ~hidden & (far_steps < Float8::load(front)).bits();
-  const unsigned part_free = open & ~hidden & ~free & (far_steps < Float8::load(nearest)).bits();
-  return {.nothing = nothing | hidden, .free = free, .part_free = part_free};
+  const unsigned free = before_all & whole & ~hidden;
+  return {.nothing = nothing | hidden, .free = free, .part_free = before_measured & ~hidden & ~free};
 }
 
 }  // namespace roomradar

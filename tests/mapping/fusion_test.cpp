@@ -139,7 +139,13 @@ TEST(DepthPyramid, BoundsHoldForEveryRectangle) {
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
     const int left = below(37), top = below(23);
     const int right = left + below(37 - left), bottom = top + below(23 - top);
-    const DepthBounds bounds = bounds_within(pyramid, left, top, right, bottom);
+    int level = 1;
+    while (std::max((right >> level) - (left >> level), (bottom >> level) - (top >> level)) > 3) ++level;
+    const int across = (right >> level) - (left >> level), down = (bottom >> level) - (top >> level);
+    const DepthBounds bounds = bounds_within(
+        pyramid, {(pyramid.first_row(level) + (top >> level)) * pyramid.stride + (left >> level),
+                  std::max(across - 1, 0), std::min(down, 1) * pyramid.stride,
+                  std::max(down - 1, 0) * pyramid.stride, down * pyramid.stride});
     for (int y = top; y <= bottom; ++y)
       for (int x = left; x <= right; ++x) {
         const float z = depth_m.at(x, y);
