@@ -105,7 +105,7 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
                 "go on with the scan of this map that was cut off (DIR.unfinished), or else\n"
                 "add what SOURCE shows to the map that is in DIR");
   sub->add_option("--checkpoint-every", command.checkpoint_every_s,
-                  "seconds between two checkpoints (3); 0: none, then nothing can be resumed")
+                  "seconds between two checkpoints (2.5); 0: none, then nothing can be resumed")
       ->check(CLI::Range(0.0, 86400.0))
       ->type_name("S");
   sub->add_option("--max-memory", command.max_memory_mb,

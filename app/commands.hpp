@@ -19,7 +19,7 @@ struct PrescanCommand {
   std::optional<FrameRange> frames;
   std::int64_t hold_out = 0;        ///< N > 0: every Nth frame judges the map instead of making it
   bool resume = false;              ///< go on with a scan that was cut off, or with a map that is there
-  double checkpoint_every_s = 3.0;  ///< 0: none
+  double checkpoint_every_s = 2.5;  ///< 0: none
   double max_memory_mb = 0.0;       ///< of the process, 10^6 bytes; 0: no cap
   std::string report;
 };
