@@ -85,10 +85,10 @@ class MapPairs : public ::testing::Test {
   }
 };
 
-TEST_F(MapPairs, AreRegisteredWithinHalfAVoxel) {
+TEST_F(MapPairs, AreRegisteredWithinAFifthOfAVoxel) {
   const Registration found = register_maps(a(), b());
   ASSERT_TRUE(found) << describe(found);
-  EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.5 * kVoxel_m) << describe(found);
+  EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
   EXPECT_LT(found.residual_m, 0.25 * kVoxel_m);
   EXPECT_GT(found.agreement, 0.95);
   EXPECT_GT(found.overlap, 0.3);
