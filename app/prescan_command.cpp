@@ -1,4 +1,5 @@
 // prescan_command.cpp: roomradar prescan: scan a room once and keep it.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -14,6 +15,17 @@
 
 namespace roomradar {
 namespace {
+
+nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+nlohmann::json to_json(const Hole& hole) {
+  return {{"kind", to_string(hole.kind)},
+          {"position_m", to_json(hole.position_world)},
+          {"size_m", hole.size_m},
+          {"area_m2", hole.area_m2},
+          {"look_direction", to_json(hole.look_direction_world)},
+          {"stand_m", hole.stand_world ? to_json(*hole.stand_world) : nlohmann::json(nullptr)}};
+}
 
 nlohmann::json results_of(const PrescanResult& scanned) {
   const PrescanCounts& counts = scanned.counts;
@@ -35,6 +47,8 @@ nlohmann::json results_of(const PrescanResult& scanned) {
         {"bytes", octree.memory_bytes},
         {"triangles", scanned.map.mesh.triangles.size()}}},
   };
+  results["holes"] = nlohmann::json::array();
+  for (const Hole& hole : scanned.holes) results["holes"].push_back(to_json(hole));
   results["ate_rmse_m"] = nullptr;  // only where the recording has poses of its own and ours were tracked
   if (counts.against_recorded) {
     results["ate_rmse_m"] = counts.against_recorded->rmse_m;
@@ -94,6 +108,17 @@ void announce_memory(FrameSource& source, const PrescanConfig& config, Report& r
   report.results["memory_estimate"] = {{"octree_mb", estimate->octree_bytes / kMB},
                                        {"process_mb", estimate->process_bytes / kMB},
                                        {"frames", estimate->frames}};
+}
+
+/// The largest holes of those that a scan from more places would close.
+void print_holes(const std::vector<Hole>& holes) {
+  constexpr std::size_t kShown = 5;
+  const std::size_t inside = static_cast<std::size_t>(std::count_if(
+      holes.begin(), holes.end(), [](const Hole& hole) { return hole.kind != HoleKind::kOuterBorder; }));
+  if (inside == 0) std::printf("nothing inside of the scan is left unseen\n");
+  for (std::size_t i = 0; i < std::min(inside, kShown); ++i)
+    std::printf("not seen: %s\n", describe(holes[i]).c_str());
+  if (inside > kShown) std::printf("and %zu smaller ones\n", inside - kShown);
 }
 
 /// The map is saved: the checkpoints go, and what was wrong with them is said.
@@ -167,6 +192,7 @@ int run(const PrescanCommand& command) {
   }
   write_report(report, command.report);
   print_summary(command, scanned, held_out);
+  print_holes(scanned.holes);
   if (!scanned.counts.stopped_for_memory) return 0;
   std::fprintf(
       stderr,

@@ -7,11 +7,22 @@
 
 namespace roomradar {
 
+/// What a line of progress shows.
+struct ProgressState {
+  std::string what;                   ///< "track", "fuse": what the user waits for
+  std::int64_t done = 0;              ///< steps
+  std::optional<std::int64_t> total;  ///< where known
+  double per_s = 0.0;                 ///< steps a second, of late; 0: not known yet
+  std::string note;                   ///< "tracked; 12.4 m2 seen"
+};
+
+/// "track [######      ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". The bar only if asked for, and
+/// only where the total is known, as is the time left.
+std::string progress_line(const ProgressState& state, bool with_bar);
+
 /// A bar that redraws itself where stderr is a terminal, a line every few seconds where it is not.
 class Progress {
  public:
-  /// @param what   "tracking", "fusing": what the user waits for
-  /// @param total  steps in all, where known
   Progress(std::string what, std::optional<std::int64_t> total);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -22,15 +33,15 @@ class Progress {
   void step(const std::string& note = {});
 
  private:
+  using Time = std::chrono::steady_clock::time_point;
   void show(bool last);
 
-  std::string what_;
-  std::optional<std::int64_t> total_;
-  std::int64_t done_ = 0;
-  std::string note_;
+  ProgressState state_;
   bool is_terminal_;
-  std::chrono::steady_clock::time_point started_;
-  std::chrono::steady_clock::time_point shown_;
+  Time started_;
+  Time shown_;
+  Time counted_;                   ///< since when steps are counted for the rate
+  std::int64_t counted_from_ = 0;  ///< steps that were done then
 };
 
 }  // namespace roomradar

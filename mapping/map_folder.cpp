@@ -30,10 +30,16 @@ constexpr const char* kMesh = "mesh.ply";
 constexpr const char* kPlaces = "places.bin";
 constexpr const char* kTrajectory = "trajectory.txt";
 constexpr std::array<const char*, 5> kParts = {kOctree, kPlainOctree, kMesh, kPlaces, kTrajectory};
+constexpr const char* kCoverage = "coverage.png";  // the only one that a map may lack
+constexpr std::uintmax_t kMaxPictureBytes = 1U << 26U;
 constexpr std::uintmax_t kMaxInfoBytes = 1U << 20U;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& fault) {
   throw Error(path.string() + ": " + fault);
+}
+
+bool is_part(const std::string& name) {
+  return name == kCoverage || std::find(kParts.begin(), kParts.end(), name) != kParts.end();
 }
 
 // What save_map may replace: nothing, an empty folder, or one that holds a map and nothing else.
@@ -46,7 +52,7 @@ void require_replaceable(const fs::path& folder) {
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
     empty = false;
     const std::string name = entry.path().filename().string();
-    if (name != kInfo && std::find(kParts.begin(), kParts.end(), name) == kParts.end())
+    if (name != kInfo && !is_part(name))
       fail(folder,
            "exists and holds \"" + name + "\", which is no part of a map; choose another name for the map");
   }
@@ -84,13 +90,21 @@ std::optional<std::string> fault_of(const fs::path& path, const MapFile& expecte
   return std::nullopt;
 }
 
-// map.json may name the parts, all of them and nothing else: no path out of the folder can come from it.
+// map.json names the parts, all of them, perhaps the picture, and nothing else: no path out of the folder can
+// come from it.
 void require_parts(const MapInfo& info, const fs::path& where) {
   for (const char* part : kParts)
     if (!info.files.contains(part)) fail(where, std::string("does not list \"") + part + "\"");
   for (const auto& [name, file] : info.files)
-    if (std::find(kParts.begin(), kParts.end(), name) == kParts.end())
-      fail(where, "lists \"" + name.substr(0, 100) + "\", which is no part of a map");
+    if (!is_part(name)) fail(where, "lists \"" + name.substr(0, 100) + "\", which is no part of a map");
+}
+
+std::vector<std::uint8_t> read_picture(const fs::path& path) {
+  if (fs::file_size(path) > kMaxPictureBytes) fail(path, "is larger than 64 MB, so it is no map's picture");
+  std::ifstream file(path, std::ios::binary);
+  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file) fail(path, "cannot be read; may you read it?");
+  return bytes;
 }
 
 StaticMap read_octree(const fs::path& folder, const MapInfo& info) {
@@ -140,6 +154,8 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   write_mesh(map.mesh, partial.path() / kMesh);
   write_places(map.places, partial.path() / kPlaces);
   write_trajectory(partial.path() / kTrajectory, map.trajectory);
+  if (!map.coverage_png.empty())
+    write_text(partial.path() / kCoverage, {map.coverage_png.begin(), map.coverage_png.end()});
 
   MapInfo info = map.info;
   info.format_version = kMapFormatVersion;
@@ -151,7 +167,9 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   info.keyframes = map.places.keyframes.size();
   info.poses = map.trajectory.size();
   info.files.clear();
-  for (const char* part : kParts)
+  std::vector<std::string> parts(kParts.begin(), kParts.end());
+  if (!map.coverage_png.empty()) parts.emplace_back(kCoverage);
+  for (const std::string& part : parts)
     info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
   write_text(partial.path() / kInfo, to_json(info));
 
@@ -183,7 +201,9 @@ SavedMap load_map(const fs::path& folder) {
           .octree = read_octree(folder, info),
           .mesh = read_mesh(folder / kMesh),
           .places = read_places(folder / kPlaces),
-          .trajectory = read_trajectory(folder / kTrajectory)};
+          .trajectory = read_trajectory(folder / kTrajectory),
+          .coverage_png = info.files.contains(kCoverage) ? read_picture(folder / kCoverage)
+                                                         : std::vector<std::uint8_t>{}};
 }
 
 std::vector<std::string> verify_map(const fs::path& folder) {
@@ -198,13 +218,13 @@ std::vector<std::string> verify_map(const fs::path& folder) {
   std::optional<MapInfo> info;
   attempt([&] { info = load_map_info(folder); });
   if (!info) return faults;
-  for (const char* part : kParts) {
-    if (auto fault = fault_of(folder / part, info->files.at(part))) {
+  for (const auto& [name, file] : info->files) {
+    const fs::path part = name;
+    if (auto fault = fault_of(folder / part, file)) {
       faults.push_back(*fault);
       continue;
     }
-    const std::string_view name = part;
-    attempt([&] {
+    attempt([&, &name = name] {
       if (name == kOctree) static_cast<void>(read_octree(folder, *info));
       if (name == kMesh) static_cast<void>(read_mesh(folder / part));
       if (name == kPlaces) static_cast<void>(read_places(folder / part));

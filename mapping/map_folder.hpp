@@ -40,7 +40,7 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
-  /// By name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt.
+  /// By name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt, and coverage.png if there is one.
   std::map<std::string, MapFile> files;
 };
 
@@ -50,6 +50,7 @@ struct SavedMap {
   Mesh mesh;
   Places places;
   std::vector<TimedPose> trajectory;
+  std::vector<std::uint8_t> coverage_png;  ///< a picture of what was seen; empty: none
 };
 
 /// The folder's name without `.`, `..` and a slash at its end. Throws Error if that is no name for a map.

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "mapping/coverage.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -145,6 +146,7 @@ SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_
   session.trajectory = b.trajectory;
   for (TimedPose& pose : session.trajectory) pose.T_world_camera = T_a_b * pose.T_world_camera;
   append_session(a, session);
+  a.coverage_png = survey_coverage(a).picture_png;
   return a;
 }
 

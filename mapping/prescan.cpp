@@ -6,11 +6,13 @@
 #include <utility>
 
 #include "mapping/checkpoints.hpp"
+#include "mapping/coverage.hpp"
 #include "mapping/ghost_removal.hpp"
 #include "mapping/map_merge.hpp"
 #include "mapping/memory_use.hpp"
 #include "mapping/prescan_state.hpp"
 #include "mapping/registration.hpp"
+#include "mapping/seen_area.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -87,6 +89,7 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
                              const PrescanProgress& progress, TrackingPass& pass, Checkpoints* checkpoints,
                              std::map<std::int64_t, double>& track_ms) {
   Frame frame;
+  SeenArea seen;
   while (read(source, times, frame, pass.counts)) {
     const Clock::time_point start = Clock::now();
     Tracking tracking;
@@ -100,7 +103,8 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
     times.add_ms("track", track_ms[frame.index]);
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
     if (frame.T_world_camera) pass.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
-    if (progress) progress("track", std::string(to_string(tracking.status)));
+    if (tracking) seen.add(frame, tracking.T_world_camera);
+    if (progress) progress("track", std::string(to_string(tracking.status)) + ", " + describe(seen));
     keep_tracking(checkpoints, pass, times);
     // The octree and its surface come when the tracker has gone.
     pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
@@ -271,6 +275,11 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     start.map->mesh = std::move(map.mesh);
     map = std::move(*start.map);
   }
+
+  // What was not seen?
+  Coverage coverage = times.timed("coverage", [&] { return survey_coverage(map); });
+  map.coverage_png = std::move(coverage.picture_png);
+  result.holes = std::move(coverage.holes);
   return result;
 }
 

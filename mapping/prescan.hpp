@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "mapping/ghosts.hpp"
+#include "mapping/holes.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/odometry.hpp"
 #include "mapping/surface.hpp"
@@ -61,10 +62,12 @@ struct PrescanCounts {
 
 struct PrescanResult {
   SavedMap map;
+  std::vector<Hole> holes;  ///< where the scan has not looked, largest first of each kind
   PrescanCounts counts;
 };
 
-/// Called after each frame of a pass: the stage ("track", "fuse" or "ghosts"), and what became of the frame.
+/// Called after each frame of a pass: the stage ("track", "fuse" or "ghosts"), and what became of the frame;
+/// while tracking also how much surface was seen so far, and in the last second.
 using PrescanProgress = std::function<void(const std::string& stage, const std::string& note)>;
 
 class Checkpoints;
@@ -81,7 +84,7 @@ struct PrescanStart {
 /// Scans a room. The source is read to know where the camera was, again to fuse with the final poses, and in
 /// part twice more where something moved on and has to go from the map. The map's world is the recording's
 /// own (recorded poses) or the first camera's (tracked), turned so that +z is up. Stages timed: read, track,
-/// optimise, fuse, ghosts, surface, and frame (track and fuse of one frame together; no reading).
+/// optimise, fuse, ghosts, surface, coverage, and frame (track and fuse of one frame together; no reading).
 ///
 /// @throws Error if the source cannot be rewound, has no frame at all, or not one frame's pose is trusted; if
 /// the start's map does not show the room that the source shows, or too little of it to be certain

@@ -22,6 +22,34 @@ constexpr Material kShoes{Pattern::kPlain, {50, 42, 38}, {34, 28, 26}, 305, 0.2F
 constexpr Material kHair{Pattern::kFabric, {62, 42, 30}, {44, 30, 22}, 306, 0.12F};
 constexpr Material kBall{Pattern::kCarpet, {216, 60, 44}, {248, 240, 226}, 307, 0.6F};
 
+/// The time of a steady walk that has come as far.
+double steady_time_s(const Mover& mover, double t_s) {
+  constexpr double kStand_s = 2.0, kGo_s = 2.0;
+  switch (mover.pace) {
+    case Pace::kSteady:
+      return t_s;
+    case Pace::kSlow:
+      return t_s / 3.0;
+    case Pace::kLeaves:
+      return 0.0;
+    case Pace::kWaits: {
+      const double rounds = std::floor(t_s / (kStand_s + kGo_s));
+      const double gone = std::max(t_s - rounds * (kStand_s + kGo_s) - kStand_s, 0.0) / kGo_s;
+      return kGo_s * (rounds + gone * gone * (3.0 - 2.0 * gone));  // starts and stops gently
+    }
+  }
+  return t_s;
+}
+
+/// How far out of the room it has gone: faster and faster, up to a quick walk.
+double way_out_m(const Mover& mover, double t_s) {
+  constexpr double kSpeedUp_s = 0.5, kSpeed_m_per_s = 1.5;
+  if (mover.pace != Pace::kLeaves || t_s <= mover.leaves_at_s) return 0.0;
+  const double since_s = t_s - mover.leaves_at_s;
+  const double speeding_s = std::min(since_s, kSpeedUp_s);
+  return kSpeed_m_per_s * (0.5 * speeding_s * speeding_s / kSpeedUp_s + (since_s - speeding_s));
+}
+
 /// 0 at the start of a period, 1 in its middle, smooth.
 double there_and_back(const Mover& mover, double t_s) {
   return 0.5 - 0.5 * std::cos(kTurn_rad * t_s / mover.period_s + mover.phase_rad);
@@ -112,10 +140,13 @@ void append_person(const Mover& mover, double t_s, std::vector<Solid>& solids) {
 
 }  // namespace
 
-Mover plan_mover(MoverKind kind, const Room& room, const Vector3d& viewer_world, std::uint64_t seed) {
+Mover plan_mover(MoverKind kind, const Room& room, const Vector3d& viewer_world, std::uint64_t seed,
+                 Pace pace, double duration_s) {
   CounterRandom random(hash_of(seed, 0x6d6f7665), static_cast<std::uint64_t>(kind));
   Mover mover;
   mover.kind = kind;
+  mover.pace = pace;
+  mover.leaves_at_s = 0.5 * duration_s;
   switch (kind) {
     case MoverKind::kHand: {
       const Vector3d to_viewer = (viewer_world - room.focus_world).normalized();
@@ -148,18 +179,29 @@ Mover plan_mover(MoverKind kind, const Room& room, const Vector3d& viewer_world,
       mover.materials.insert(mover.materials.end(), {kTrousers, kShirt, kSkin, kSkin, kHair});
       break;
   }
+  const Vector3d middle = 0.5 * (mover.from_world + mover.to_world);
+  const Vector3d outwards(middle.x() - room.walk_centre_world.x(), middle.y() - room.walk_centre_world.y(),
+                          0.0);
+  if (outwards.norm() > 0.1) mover.out_world = outwards.normalized();
   return mover;
 }
 
 void append_solids(const Mover& mover, double t_s, std::vector<Solid>& solids) {
+  const std::size_t before = solids.size();
+  const double steady_s = steady_time_s(mover, t_s);
   switch (mover.kind) {
     case MoverKind::kHand:
-      return append_hand(mover, t_s, solids);
+      append_hand(mover, steady_s, solids);
+      break;
     case MoverKind::kBall:
-      return append_ball(mover, t_s, solids);
+      append_ball(mover, steady_s, solids);
+      break;
     case MoverKind::kPerson:
-      return append_person(mover, t_s, solids);
+      append_person(mover, steady_s, solids);
+      break;
   }
+  const Vector3d out_world = way_out_m(mover, t_s) * mover.out_world;
+  for (std::size_t i = before; i < solids.size(); ++i) solids[i].T_world_solid.pretranslate(out_world);
 }
 
 }  // namespace roomradar

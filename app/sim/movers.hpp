@@ -20,11 +20,16 @@ struct Mover {
   double radius_m = 0.0;  ///< ball
   double period_s = 1.0;  ///< there and back
   double phase_rad = 0.0;
-  std::vector<Material> materials;  ///< one a solid
+  Pace pace = Pace::kSteady;
+  double leaves_at_s = 0.0;                              ///< Pace::kLeaves only
+  Eigen::Vector3d out_world = Eigen::Vector3d::UnitX();  ///< unit, level: the way out of the room
+  std::vector<Material> materials;                       ///< one a solid
 };
 
 /// @param viewer_world  where a viewer's camera stands: the hand passes between it and the room's focus
-Mover plan_mover(MoverKind kind, const Room& room, const Eigen::Vector3d& viewer_world, std::uint64_t seed);
+/// @param duration_s    of the recording: who leaves does so in its middle
+Mover plan_mover(MoverKind kind, const Room& room, const Eigen::Vector3d& viewer_world, std::uint64_t seed,
+                 Pace pace = Pace::kSteady, double duration_s = 0.0);
 
 /// Appends the thing's solids at time t_s, as many and in the same order at any time. All positions have
 /// continuous derivatives in time.

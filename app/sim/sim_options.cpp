@@ -12,6 +12,7 @@ namespace roomradar {
 namespace {
 
 constexpr MoverKind kAllMovers[] = {MoverKind::kHand, MoverKind::kBall, MoverKind::kPerson};
+constexpr Pace kAllPaces[] = {Pace::kSteady, Pace::kSlow, Pace::kWaits, Pace::kLeaves};
 constexpr CameraPathKind kAllPaths[] = {CameraPathKind::kScan, CameraPathKind::kView};
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -71,6 +72,11 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
   } else if (key == "crate") {
     if (value != "0" && value != "1") refuse(key, value, "0 or 1");
     options.crate = value == "1";
+  } else if (key == "pace") {
+    const auto* const found = std::find_if(std::begin(kAllPaces), std::end(kAllPaces),
+                                           [&](Pace pace) { return to_string(pace) == value; });
+    if (found == std::end(kAllPaces)) refuse(key, value, "steady, slow, waits or leaves");
+    options.pace = *found;
   } else if (key == "width") {
     const int width_px = number<int>(key, value, "the image's width, 64 to 1920, a multiple of 4");
     if (width_px < 64 || width_px > 1920 || width_px % 4 != 0)
@@ -83,7 +89,7 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
     options.registered_colour = value == "registered";
   } else {
     throw Error("sim: no option is called '" + std::string(key) +
-                "'; known are: seed, frames, rate, path, moving, noise, crate, width, colour");
+                "'; known are: seed, frames, rate, path, moving, pace, noise, crate, width, colour");
   }
 }
 
@@ -99,6 +105,20 @@ std::string_view to_string(MoverKind kind) {
       return "ball";
     case MoverKind::kPerson:
       return "person";
+  }
+  return "?";
+}
+
+std::string_view to_string(Pace pace) {
+  switch (pace) {
+    case Pace::kSteady:
+      return "steady";
+    case Pace::kSlow:
+      return "slow";
+    case Pace::kWaits:
+      return "waits";
+    case Pace::kLeaves:
+      return "leaves";
   }
   return "?";
 }
@@ -140,6 +160,7 @@ std::string sim_spec(const SimOptions& options) {
   for (const MoverKind kind : options.movers) append_with_comma(moving, to_string(kind), ",");
   if (!moving.empty()) say("moving", moving);
   if (options.crate) say("crate", "1");
+  if (options.pace != usual.pace) say("pace", std::string(to_string(options.pace)));
   if (options.noise_scale != usual.noise_scale) say("noise", without_trailing_zeros(options.noise_scale));
   if (options.depth_camera.width_px != usual.depth_camera.width_px)
     say("width", std::to_string(options.depth_camera.width_px));

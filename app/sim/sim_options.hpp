@@ -18,8 +18,16 @@ enum class MoverKind {
   kBall,    ///< a ball that rolls to and fro
   kPerson,  ///< a person-sized body that walks through the room
 };
+/// When the things that move do so.
+enum class Pace {
+  kSteady,  ///< all the time
+  kSlow,    ///< at a third of that speed
+  kWaits,   ///< stand still for 2 s, go on for 2 s, and so on
+  kLeaves,  ///< stand still from the first frame on, and leave the room when half of the frames are over
+};
 std::string_view to_string(CameraPathKind kind);
 std::string_view to_string(MoverKind kind);
+std::string_view to_string(Pace pace);
 
 /// The Kinect's depth camera at its full size.
 inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 240.0};
@@ -31,6 +39,7 @@ struct SimOptions {
   double rate_hz = 30.0;       ///< frames a second, > 0
   CameraPathKind path = CameraPathKind::kScan;
   std::vector<MoverKind> movers;  ///< each at most once
+  Pace pace = Pace::kSteady;      ///< of all movers
   bool crate = false;             ///< one more thing in the room: a crate where a ball could roll
   double noise_scale = 1.0;       ///< times the Kinect's noise; 0: clean depth, without shadow or dropouts
   Intrinsics depth_camera = kKinectDepthCamera;
@@ -38,9 +47,9 @@ struct SimOptions {
 };
 
 /// Reads `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
-///   seed, frames, rate, path (scan, view), moving (hand, ball, person; several with commas), noise (0 = off,
-///   1 = Kinect), crate (0, 1: one more thing in the room), width (of the image, 4:3, 64 to 1920 pixels),
-///   colour (registered, separate).
+///   seed, frames, rate, path (scan, view), moving (hand, ball, person; several with commas), pace (steady,
+///   slow, waits, leaves), noise (0 = off, 1 = Kinect), crate (0, 1: one more thing in the room), width (of
+///   the image, 4:3, 64 to 1920 pixels), colour (registered, separate).
 /// Throws Error naming the key or value that is not known, or out of range, and listing what is.
 SimOptions parse_sim_spec(std::string_view spec);
 

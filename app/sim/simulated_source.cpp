@@ -40,7 +40,8 @@ struct SimulatedSource::State {
         plan_camera_path(room, CameraPathKind::kView, options.seed, duration_s).centre_world;
     std::vector<Material> materials;
     for (std::size_t i = 0; i < options.movers.size(); ++i) {
-      movers.push_back(plan_mover(options.movers[i], room, viewer_world, options.seed));
+      movers.push_back(
+          plan_mover(options.movers[i], room, viewer_world, options.seed, options.pace, duration_s));
       append_solids(movers.back(), 0.0, solids);
       materials.insert(materials.end(), movers.back().materials.begin(), movers.back().materials.end());
       mover_of_solid.resize(solids.size(), static_cast<std::uint8_t>(i + 1));

@@ -26,7 +26,7 @@ TEST(SimSpec, SetsWhatItNamesAndLeavesTheRest) {
 TEST(SimSpec, ComesBackFromItsOptions) {
   for (const char* const spec :
        {"sim:table", "sim:wall?seed=12", "sim:shelf?seed=3&frames=90&path=view&moving=hand,person&noise=0.5",
-        "sim:table?rate=15&width=160&colour=separate"})
+        "sim:table?rate=15&width=160&colour=separate", "sim:table?moving=person&pace=leaves"})
     EXPECT_EQ(sim_spec(parse_sim_spec(spec)), spec);
 }
 
@@ -58,6 +58,7 @@ TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
       {"sim:table?moving=cat", "hand, ball, person"},
       {"sim:table?moving=hand,hand", "once"},
       {"sim:table?moving=", "hand, ball, person"},
+      {"sim:table?pace=run", "steady, slow, waits or leaves"},
       {"sim:table?width=63", "width"},
       {"sim:table?width=99999999999", "width"},
       {"sim:table?colour=red", "registered or separate"},

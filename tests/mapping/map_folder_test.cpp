@@ -126,6 +126,19 @@ TEST_F(MapFolder, ComesBackAsItWasSaved) {
   EXPECT_TRUE(read.trajectory[4].T_world_camera.isApprox(room_.trajectory[4].T_world_camera, 1e-9));
 }
 
+TEST_F(MapFolder, ThePictureOfCoverageComesBackAndMayBeMissing) {
+  EXPECT_TRUE(load_map(map_).coverage_png.empty());
+  EXPECT_FALSE(fs::exists(map_ / "coverage.png"));
+  room_.coverage_png = {0x89, 'P', 'N', 'G', 0, 13, 10, 255};
+  save_map(map_, room_);
+  EXPECT_TRUE(verify_map(map_).empty());
+  EXPECT_EQ(load_map(map_).coverage_png, room_.coverage_png);
+  put_text(map_ / "coverage.png", "PNG");
+  expect_fault("coverage.png", "cut short");
+  fs::remove(map_ / "coverage.png");
+  expect_fault("coverage.png", "missing");
+}
+
 TEST_F(MapFolder, SavingAgainReplacesTheMapAndLeavesNothingBeside) {
   room_.info.source = "another";
   save_map(map_, room_);
