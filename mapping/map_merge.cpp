@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "mapping/coverage.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/coverage.hpp"
 
 namespace roomradar {
 namespace {
