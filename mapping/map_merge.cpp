@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "mapping/coverage.hpp"
-#include "mapping/coverage.hpp"
 
 namespace roomradar {
 namespace {
