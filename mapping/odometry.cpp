@@ -24,7 +24,7 @@ double length(const Eigen::Isometry3d& T) {
 }
 
 KeyframeJobConfig job_config(const OdometryConfig& config) {
-  return {{config.view, config.align, config.graph}, config.place, config.relocalise};
+  return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
 }
 
 }  // namespace
