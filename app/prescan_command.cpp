@@ -46,6 +46,8 @@ nlohmann::json results_of(const PrescanResult& scanned) {
         {"free_leaves", octree.free_leaves},
         {"bytes", octree.memory_bytes},
         {"triangles", scanned.map.mesh.triangles.size()}}},
+      {"surface",
+       {{"full_triangles", scanned.surface.full_triangles}, {"deviation_m", scanned.surface.deviation_m}}},
   };
   results["holes"] = nlohmann::json::array();
   for (const Hole& hole : scanned.holes) results["holes"].push_back(to_json(hole));

@@ -1,18 +1,25 @@
-// mesh_simplify.hpp: fewer triangles for the same surface.
+// mesh_simplify.hpp: fewer triangles for the same surface, within a bound that is kept.
 #pragma once
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
-/// Collapses edges while the quadric error stays within max_deviation_m (> 0): the root mean square distance
-/// to the planes merged into a vertex, a bound in practice rather than by proof. Triangles thinner than 0.01
-/// mm go. Vertices keep their places, normals and colours; unused ones go. Open borders keep their course
-/// within the same error. Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics,
-/// SIGGRAPH 1997, by meshoptimizer.
-Mesh simplified(const Mesh& mesh, float max_deviation_m);
+/// A mesh with fewer triangles, and how far it lies from the one it was made from.
+struct SimplifiedMesh {
+  Mesh mesh;
+  /// Greatest distance from either surface to the other that was measured (m), on points spacing_m apart on
+  /// both, all vertices included. Not above the bound; between those points it may be a little more.
+  float deviation_m = 0.0F;
+};
 
-/// Drops connected pieces (by shared vertices) with less area than given, and all vertices that no triangle
-/// uses.
-Mesh without_specks(const Mesh& mesh, float min_component_area_m2);
+/// Collapses edges, cheapest first by their quadric error, to where the planes round them meet best: flat
+/// parts become few large triangles, bent ones keep small ones. Every vertex of `mesh` stays within
+/// max_deviation_m (> 0) of the triangles that take its place, collapse by collapse. Then both surfaces are
+/// measured against each other; where they lie farther apart than the bound, `mesh` is kept as it is and the
+/// rest done again. The surface's pieces, holes and handles stay, and edges with two triangles keep two.
+/// Colours and normals are means over what was merged. Triangles flatter than 0.01 mm are not made.
+/// Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics, SIGGRAPH 1997; Klein,
+/// Liebich, Strasser, Mesh reduction with error control, IEEE Visualization 1996 (the bound).
+SimplifiedMesh simplified(const Mesh& mesh, float max_deviation_m, float spacing_m);
 
 }  // namespace roomradar

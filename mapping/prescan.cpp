@@ -246,7 +246,8 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   counts.ghost_voxels = fusing.ghost_voxels.value_or(0);
   map.octree = std::move(fusing.octree);
 
-  map.mesh = times.timed("surface", [&] { return extract_surface(map.octree, config.surface); });
+  map.mesh =
+      times.timed("surface", [&] { return extract_surface(map.octree, config.surface, &result.surface); });
   if (map.mesh.triangles.empty())
     throw Error(source.name() + ": " + std::to_string(counts.frames_fused) + " frames show no surface at " +
                 std::to_string(config.resolution_m) + " m; try another --resolution");

@@ -64,6 +64,7 @@ struct PrescanResult {
   SavedMap map;
   std::vector<Hole> holes;  ///< where the scan has not looked, largest first of each kind
   PrescanCounts counts;
+  SurfaceFacts surface;
 };
 
 /// Called after each frame of a pass: the stage ("track", "fuse" or "ghosts"), and what became of the frame;

@@ -4,7 +4,7 @@
 namespace roomradar {
 namespace {
 
-static_assert(sizeof(BrickSample) == 8);
+static_assert(sizeof(BrickSample) == 12);
 constexpr int kBrickShift = 3;
 static_assert(1 << kBrickShift == kBrickEdge);
 
@@ -27,8 +27,8 @@ SampleBricks::SampleBricks(const StaticMap& map, float min_weight) {
       bricks_.emplace_back().first = first;
     }
     bricks_.back().samples[brick_offset(sample.voxel - first)] = {.distance_m = sample.distance_m,
+                                                                  .weight = sample.weight,
                                                                   .colour = sample.colour,
-                                                                  .known = true,
                                                                   .has_colour = sample.has_colour};
   });
 }

@@ -12,9 +12,11 @@ namespace roomradar {
 
 struct BrickSample {
   float distance_m = 0.0F;
+  float weight = 0.0F;  ///< as SurfaceSample's; 0: nothing is known here
   Rgb colour;
-  bool known : 1 = false;
-  bool has_colour : 1 = false;
+  bool has_colour = false;
+
+  [[nodiscard]] bool known() const { return weight > 0.0F; }
 };
 
 inline constexpr int kBrickEdge = 8;  // voxels
@@ -30,6 +32,8 @@ class SampleBricks {
   SampleBricks(const StaticMap& map, float min_weight);
 
   [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
+  /// Samples may be changed; where the bricks are may not.
+  [[nodiscard]] std::vector<Brick>& bricks() { return bricks_; }
   static constexpr std::size_t kNone = ~std::size_t{0};
   /// Position in bricks() of the brick whose lowest voxel is `first`, or kNone.
   [[nodiscard]] std::size_t find(const VoxelIndex& first) const;

@@ -1,0 +1,141 @@
+// mesh_distance.cpp: triangles in a hashed grid, and points spread over a mesh.
+#include "mapping/mesh_distance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "mapping/triangle_distance.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kReachesACube = 4.0F;  // a query looks into one to eight cubes
+constexpr unsigned kHashBits = 18;
+
+// 21 bits an axis; a mesh reaches over fewer cubes.
+std::uint64_t code_of(const Eigen::Array3i& cube) {
+  const auto field = [](int coordinate) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(coordinate + 16)) & 0x1F'FFFFU;
+  };
+  return field(cube.x()) | field(cube.y()) << 21U | field(cube.z()) << 42U;
+}
+
+std::uint64_t mixed(std::uint64_t code) { return code * 0x9E3779B97F4A7C15U; }
+std::size_t hash_of(std::uint64_t code) { return mixed(code) >> (64 - kHashBits); }
+// Tells cubes of one hash apart; two that it does not cost time, not truth.
+std::uint32_t tag_of(std::uint64_t code) { return static_cast<std::uint32_t>(mixed(code) >> 14U); }
+
+}  // namespace
+
+SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
+    : mesh_(mesh),
+      reach_m_(reach_m),
+      edge_m_(kReachesACube * reach_m),
+      first_of_hash_((1U << kHashBits) + 1, 0) {
+  if (!mesh.vertices.empty()) {
+    low_ = mesh.vertices.front();
+    for (const Eigen::Vector3f& vertex : mesh.vertices) low_ = low_.cwiseMin(vertex);
+  }
+  const auto for_each_entry = [&](const auto& visit) {
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto& [a, b, c] = mesh.triangles[t];
+      for_each_cube(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c],
+                    [&](std::uint64_t cube) { visit(cube, t); });
+    }
+  };
+  for_each_entry([&](std::uint64_t cube, std::uint32_t) { ++first_of_hash_[hash_of(cube) + 1]; });
+  for (std::size_t h = 1; h < first_of_hash_.size(); ++h) first_of_hash_[h] += first_of_hash_[h - 1];
+  entries_.resize(first_of_hash_.back());
+  std::vector<std::uint32_t> next(first_of_hash_.begin(), first_of_hash_.end() - 1);
+  for_each_entry([&](std::uint64_t cube, std::uint32_t triangle) {
+    entries_[next[hash_of(cube)]++] = {tag_of(cube), triangle};
+  });
+}
+
+// A large triangle is halved along its longest side until its parts' boxes touch few cubes.
+template <typename Visit>
+void SurfaceNear::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
+                                const Visit& visit) const {
+  const auto cube_of = [&](const Eigen::Vector3f& p) -> Eigen::Array3i {
+    return ((p - low_) / edge_m_).array().floor().cast<int>();
+  };
+  const Eigen::Array3i low = cube_of(a.cwiseMin(b).cwiseMin(c));
+  const Eigen::Array3i high = cube_of(a.cwiseMax(b).cwiseMax(c));
+  if ((high - low).maxCoeff() <= 1) {
+    for (int z = low.z(); z <= high.z(); ++z)
+      for (int y = low.y(); y <= high.y(); ++y)
+        for (int x = low.x(); x <= high.x(); ++x) visit(code_of({x, y, z}));
+    return;
+  }
+  const float ab = (b - a).squaredNorm();
+  const float bc = (c - b).squaredNorm();
+  const float ca = (a - c).squaredNorm();
+  if (ab >= bc && ab >= ca) {
+    for_each_cube(a, (a + b) / 2, c, visit);
+    for_each_cube((a + b) / 2, b, c, visit);
+  } else if (bc >= ca) {
+    for_each_cube(b, (b + c) / 2, a, visit);
+    for_each_cube((b + c) / 2, c, a, visit);
+  } else {
+    for_each_cube(c, (c + a) / 2, b, visit);
+    for_each_cube((c + a) / 2, a, b, visit);
+  }
+}
+
+float SurfaceNear::distance_m(const Eigen::Vector3f& p, float enough_m) const {
+  float nearest = reach_m_ * reach_m_;
+  bool found = false;
+  const Eigen::Array3f place = (p - low_).array();
+  const Eigen::Array3i low = ((place - reach_m_) / edge_m_).floor().cast<int>();
+  const Eigen::Array3i high = ((place + reach_m_) / edge_m_).floor().cast<int>();
+  for (int z = low.z(); z <= high.z(); ++z)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int x = low.x(); x <= high.x(); ++x) {
+        const std::uint64_t wanted = code_of({x, y, z});
+        const std::size_t hash = hash_of(wanted);
+        const std::uint32_t tag = tag_of(wanted);
+        for (std::uint32_t i = first_of_hash_[hash]; i < first_of_hash_[hash + 1]; ++i) {
+          if (entries_[i].cube != tag) continue;
+          const auto& [a, b, c] = mesh_.triangles[entries_[i].triangle];
+          const float distance =
+              squared_distance_to_triangle(p, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+          if (distance > nearest) continue;
+          if (distance <= enough_m * enough_m) return std::sqrt(distance);
+          nearest = distance;
+          found = true;
+        }
+      }
+  return found ? std::sqrt(nearest) : kInfinity;
+}
+
+float greatest_distance_m(const Mesh& mesh, const SurfaceNear& other, float spacing_m, float limit_m,
+                          std::vector<FarPoint>& beyond_limit) {
+  float greatest = 0.0F;  // what is nearer than this does not change it
+  const auto ask = [&](const Eigen::Vector3f& p) {
+    const float distance = other.distance_m(p, greatest);
+    if (distance <= limit_m) greatest = std::max(greatest, distance);
+    if (distance > limit_m) beyond_limit.push_back({p, distance});
+  };
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const auto& [i, j, k] : mesh.triangles) {
+    used[i] = used[j] = used[k] = true;
+    const Eigen::Vector3f& a = mesh.vertices[i];
+    const Eigen::Vector3f ab = mesh.vertices[j] - a;
+    const Eigen::Vector3f ac = mesh.vertices[k] - a;
+    const float longest = std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}));
+    const int parts = std::max(2, static_cast<int>(std::ceil(longest / spacing_m)));
+    // Sides included, which is where surfaces bend; corners come later, each once.
+    const float step = 1.0F / static_cast<float>(parts);
+    for (int u = 0; u <= parts; ++u)
+      for (int v = u == 0 ? 1 : 0; u + v <= parts - (u == 0 || v == 0 ? 1 : 0); ++v)
+        ask(a + static_cast<float>(u) * step * ab + static_cast<float>(v) * step * ac);
+  }
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) ask(mesh.vertices[v]);
+  return greatest;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,46 @@
+// quadric.hpp: the sum of squared distances to a set of weighted planes, as a function of the point.
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+namespace roomradar {
+
+/// Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics, SIGGRAPH 1997,
+/// section 5.
+struct Quadric {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d b = Eigen::Vector3d::Zero();
+  double c = 0.0;
+  double weight = 0.0;  ///< of all planes together
+
+  /// The plane through `point` with this unit normal.
+  void add_plane(const Eigen::Vector3d& unit_normal, const Eigen::Vector3d& point, double plane_weight) {
+    const double offset = -unit_normal.dot(point);
+    A += plane_weight * unit_normal * unit_normal.transpose();
+    b += plane_weight * offset * unit_normal;
+    c += plane_weight * offset * offset;
+    weight += plane_weight;
+  }
+  Quadric& operator+=(const Quadric& other) {
+    A += other.A;
+    b += other.b;
+    c += other.c;
+    weight += other.weight;
+    return *this;
+  }
+  /// Weighted sum of squared distances from p to the planes, >= 0.
+  [[nodiscard]] double at(const Eigen::Vector3d& p) const {
+    const double sum = p.dot(A * p) + 2.0 * b.dot(p) + c;
+    return sum > 0.0 ? sum : 0.0;
+  }
+  /// The point nearest to all planes; along directions that the planes hardly fix, near `guess`.
+  [[nodiscard]] Eigen::Vector3d nearest_to_all(const Eigen::Vector3d& guess) const {
+    constexpr double kHardly = 5e-3;  // of the best fixed direction; noise on a flat wall fixes less
+    const double trace = A.trace();
+    if (!(trace > 0.0)) return guess;
+    const Eigen::Matrix3d held = A + kHardly * trace * Eigen::Matrix3d::Identity();
+    return guess - held.inverse() * (A * guess + b);
+  }
+};
+
+}  // namespace roomradar

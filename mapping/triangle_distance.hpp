@@ -1,0 +1,40 @@
+// triangle_distance.hpp: from a point to a triangle.
+#pragma once
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace roomradar {
+
+/// Squared distance from p to the nearest point of the triangle a, b, c, in its units squared; right also for
+/// triangles without area. Source: Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
+inline float squared_distance_to_triangle(const Eigen::Vector3f& p, const Eigen::Vector3f& a,
+                                          const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
+  const Eigen::Vector3f ab = b - a;
+  const Eigen::Vector3f ac = c - a;
+  const Eigen::Vector3f ap = p - a;
+  const float d1 = ab.dot(ap);
+  const float d2 = ac.dot(ap);
+  if (d1 <= 0.0F && d2 <= 0.0F) return ap.squaredNorm();
+  const Eigen::Vector3f bp = p - b;
+  const float d3 = ab.dot(bp);
+  const float d4 = ac.dot(bp);
+  if (d3 >= 0.0F && d4 <= d3) return bp.squaredNorm();
+  const Eigen::Vector3f cp = p - c;
+  const float d5 = ab.dot(cp);
+  const float d6 = ac.dot(cp);
+  if (d6 >= 0.0F && d5 <= d6) return cp.squaredNorm();
+  const float vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0F && d1 >= 0.0F && d3 <= 0.0F) return (ap - d1 / std::max(d1 - d3, 1e-30F) * ab).squaredNorm();
+  const float vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0F && d2 >= 0.0F && d6 <= 0.0F) return (ap - d2 / std::max(d2 - d6, 1e-30F) * ac).squaredNorm();
+  const float va = d3 * d6 - d5 * d4;
+  const float along_b = d4 - d3;
+  const float along_c = d5 - d6;
+  if (va <= 0.0F && along_b >= 0.0F && along_c >= 0.0F)
+    return (bp - along_b / std::max(along_b + along_c, 1e-30F) * (c - b)).squaredNorm();
+  const Eigen::Vector3f normal = ab.cross(ac);
+  const float along_normal = normal.dot(ap);
+  return along_normal * along_normal / std::max(normal.squaredNorm(), 1e-30F);
+}
+
+}  // namespace roomradar
