@@ -162,11 +162,16 @@ struct Step {
 
 /// Solves for the step. Rotation is scaled by the points' mean distance so that all directions are lengths.
 /// What the depth alone does not fix is taken out of its part, the colour's part is added, and what is still
-/// not fixed is held.
-Step solve(const System& depth, const System& colour, double length_m, const AlignConfig& config) {
+/// not fixed is held. `fixed` projects on the directions that coarser levels found fixed by depth; this level
+/// takes out of it what it does not find fixed, for finer ones, whose normals are noisier.
+Step solve(const System& depth, const System& colour, double length_m, const AlignConfig& config,
+           Matrix6d& fixed) {
   Vector6d scale;
   scale << 1.0, 1.0, 1.0, 1.0 / length_m, 1.0 / length_m, 1.0 / length_m;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> by_depth(scale.asDiagonal() * depth.H * scale.asDiagonal());
+  const Matrix6d depth_H = fixed * (scale.asDiagonal() * depth.H * scale.asDiagonal()) * fixed;
+  const Vector6d depth_g = fixed * scale.cwiseProduct(depth.g);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> by_depth(depth_H);
+  fixed.setZero();
   Matrix6d H = scale.asDiagonal() * colour.H * scale.asDiagonal();
   Vector6d g = scale.cwiseProduct(colour.g);
   for (int i = 0; i < 6; ++i) {
@@ -174,7 +179,8 @@ Step solve(const System& depth, const System& colour, double length_m, const Ali
     if (strength <= static_cast<double>(config.min_constraint) * depth.weight) continue;
     const Vector6d direction = by_depth.eigenvectors().col(i);
     H += strength * direction * direction.transpose();
-    g += direction * direction.dot(scale.cwiseProduct(depth.g));
+    g += direction * direction.dot(depth_g);
+    fixed += direction * direction.transpose();
   }
   const double least = 1.0 / (kIndependentPart * static_cast<double>(config.max_uncertainty_m) *
                               static_cast<double>(config.max_uncertainty_m));
@@ -257,11 +263,13 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
   const int last = static_cast<int>(live.levels.size()) - 1;
   Step step;
   Pass total;
+  Matrix6d fixed = Matrix6d::Identity();  // by depth, as far as coarser levels know
   for (int level = std::min(config.coarsest_level, last); level >= std::min(config.finest_level, last);
        --level) {
     const std::vector<LivePoint>& points = live.levels[static_cast<std::size_t>(level)];
     const double length_m = std::max(mean_distance_m(points), 0.1);
     const Limits limits = limits_at(level, config);
+    const Matrix6d fixed_coarser = fixed;
     for (int iteration = 0; iteration < config.iterations; ++iteration) {
       total = Pass{};
       for (std::size_t k = 0; k < references.size(); ++k) {
@@ -288,7 +296,8 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
       }
       total.depth.mirror();
       total.colour.mirror();
-      step = solve(total.depth, total.colour, length_m, config);
+      fixed = fixed_coarser;
+      step = solve(total.depth, total.colour, length_m, config, fixed);
       T_world_camera = T_world_camera * exp_twist(step.twist);
       const double moved_m = step.twist.head<3>().norm() + length_m * step.twist.tail<3>().norm();
       if (iteration > 0 && moved_m < (level == config.finest_level ? 1e-4 : 5e-4)) break;

@@ -79,6 +79,30 @@ TEST(Odometry, AJumpThatNoHandMakesIsNotTrusted) {
   EXPECT_LT(after.T_world_camera.translation().norm(), 0.005);
 }
 
+TEST(Odometry, BeforeOneBareWallItSaysSoAndHoldsWhatItCannotSee) {
+  // The camera backs off from a wall without a mark on it: the distance and two tilts are seen, the rest is
+  // the motion model's, and no such frame may be fused.
+  const test::Scene wall = test::plane({0, 1, 0}, 2.5);
+  const Eigen::Isometry3d start = test::looking_at({0, 0.5, 1.2}, {0, 2.5, 1.2});
+  Odometry odometry;
+  const auto bare_frame = [&](int i) {
+    Frame frame = frame_at(start * Eigen::Translation3d(0, 0, -0.01 * i), i, wall);
+    frame.colour.resize(0, 0);
+    return frame;
+  };
+  EXPECT_TRUE(odometry.track(bare_frame(0)));
+  for (int i = 1; i < 8; ++i) {
+    const Tracking tracking = odometry.track(bare_frame(i));
+    EXPECT_EQ(tracking.status, TrackStatus::kDegenerate) << i;
+    EXPECT_EQ(tracking.held_directions, 3) << i;
+    EXPECT_NEAR(tracking.T_world_camera.translation().z(), -0.01 * i, 0.003) << i;
+    EXPECT_LT(tracking.T_world_camera.translation().head<2>().norm(), 0.003) << i;
+  }
+  EXPECT_EQ(odometry.counts().degenerate, 7);
+  const std::vector<TrackedFrame> all = odometry.optimise();
+  for (std::size_t i = 1; i < all.size(); ++i) EXPECT_FALSE(all[i].trusted) << i;
+}
+
 TEST(Odometry, BeginsWithTheFirstFrameThatShowsAnything) {
   Odometry odometry;
   EXPECT_EQ(odometry.track(dark_frame(0)).status, TrackStatus::kTooFewPoints);
