@@ -16,6 +16,7 @@ namespace {
 // Vertices are held nearer than the bound, as the surface between them lies farther off here and there; with
 // more, repairs cost more triangles than this saves.
 constexpr float kOfBound = 0.6F;
+constexpr int kMostRounds = 10;
 constexpr float kTightening = 0.4F;
 constexpr float kLeastOfBound = 0.2F;  // below, a vertex is kept as it is
 
@@ -57,8 +58,8 @@ SimplifiedMesh simplified(const Mesh& mesh, float max_deviation_m, float spacing
   if (mesh.triangles.empty()) return {mesh, 0.0F};
   const SurfaceNear full_surface(mesh, max_deviation_m);
   std::vector<float> tolerance_m(mesh.vertices.size(), kOfBound * max_deviation_m);
-  // Ends when no vertex may move at the latest, as the mesh does not change then.
-  for (float radius_m = spacing_m;; radius_m *= 1.5F) {
+  float radius_m = spacing_m;
+  for (int round = 0; round < kMostRounds; ++round, radius_m *= 1.5F) {
     SimplifiedMesh result{collapsed(mesh, full_surface, tolerance_m), 0.0F};
     std::vector<FarPoint> far;
     result.deviation_m = greatest_distance_m(result.mesh, full_surface, spacing_m, max_deviation_m, far);
@@ -70,6 +71,7 @@ SimplifiedMesh simplified(const Mesh& mesh, float max_deviation_m, float spacing
     }
     tighten_around(mesh, far, radius_m, kLeastOfBound * max_deviation_m, tolerance_m);
   }
+  return {mesh, 0.0F};  // no room was seen to need so many; the bound comes first
 }
 
 }  // namespace roomradar
