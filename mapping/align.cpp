@@ -13,8 +13,15 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Residuals of neighbouring pixels share their error: a Kinect v1 matches blocks of 9 x 9 pixels. The
-// information of all of them together is taken as that of one in fifty.
+// information of all of them together is taken as that of one in fifty where the finest level is half as fine
+// as the sensor's image, and of more where its pixels lie farther apart.
 constexpr double kIndependentPart = 0.02;
+constexpr double kIndependentFocal_px = 292.5;
+
+double independent_part(const Intrinsics& finest_camera) {
+  const double spacing = kIndependentFocal_px / finest_camera.fx_px;
+  return std::clamp(kIndependentPart * spacing * spacing, kIndependentPart, 1.0);
+}
 
 /// Normal equations of residuals r = r0 + J twist, J = (m, p x m), packed: 21 of J'wJ, 6 of J'wr.
 struct Normals {
@@ -162,10 +169,11 @@ struct Step {
 
 /// Solves for the step. Rotation is scaled by the points' mean distance so that all directions are lengths.
 /// What the depth alone does not fix is taken out of its part, the colour's part is added, and what is still
-/// not fixed is held. `fixed` projects on the directions that coarser levels found fixed by depth; this level
-/// takes out of it what it does not find fixed, for finer ones, whose normals are noisier.
-Step solve(const System& depth, const System& colour, double length_m, const AlignConfig& config,
-           Matrix6d& fixed) {
+/// not fixed is held. `independent` is the part of the points whose errors are their own. `fixed` projects on
+/// the directions that coarser levels found fixed by depth; this level takes out of it what it does not find
+/// fixed, for finer ones, whose normals are noisier.
+Step solve(const System& depth, const System& colour, double length_m, double independent,
+           const AlignConfig& config, Matrix6d& fixed) {
   Vector6d scale;
   scale << 1.0, 1.0, 1.0, 1.0 / length_m, 1.0 / length_m, 1.0 / length_m;
   const Matrix6d depth_H = fixed * (scale.asDiagonal() * depth.H * scale.asDiagonal()) * fixed;
@@ -182,7 +190,7 @@ Step solve(const System& depth, const System& colour, double length_m, const Ali
     g += direction * direction.dot(depth_g);
     fixed += direction * direction.transpose();
   }
-  const double least = 1.0 / (kIndependentPart * static_cast<double>(config.max_uncertainty_m) *
+  const double least = 1.0 / (independent * static_cast<double>(config.max_uncertainty_m) *
                               static_cast<double>(config.max_uncertainty_m));
   const Eigen::SelfAdjointEigenSolver<Matrix6d> both(H);
   Step step;
@@ -199,7 +207,7 @@ Step solve(const System& depth, const System& colour, double length_m, const Ali
   step.twist = scale.cwiseProduct(step.twist);
   const Vector6d inverse_scale = scale.cwiseInverse();
   step.information =
-      kIndependentPart * (inverse_scale.asDiagonal() * step.information * inverse_scale.asDiagonal());
+      independent * (inverse_scale.asDiagonal() * step.information * inverse_scale.asDiagonal());
   return step;
 }
 
@@ -259,6 +267,9 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
   if (references.empty() || live.levels.empty()) return result;
 
   Eigen::Isometry3d T_world_camera = T_world_camera_guess;
+  const ReferenceView& first = *references.front().view;
+  const double independent =
+      first.levels.empty() ? kIndependentPart : independent_part(first.levels.front().camera);
   std::vector<Exposure> exposures(references.size());
   const int last = static_cast<int>(live.levels.size()) - 1;
   Step step;
@@ -297,7 +308,7 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
       total.depth.mirror();
       total.colour.mirror();
       fixed = fixed_coarser;
-      step = solve(total.depth, total.colour, length_m, config, fixed);
+      step = solve(total.depth, total.colour, length_m, independent, config, fixed);
       T_world_camera = T_world_camera * exp_twist(step.twist);
       const double moved_m = step.twist.head<3>().norm() + length_m * step.twist.tail<3>().norm();
       if (iteration > 0 && moved_m < (level == config.finest_level ? 1e-4 : 5e-4)) break;
