@@ -53,10 +53,6 @@ struct MappedRoom {
   }
 };
 
-double ms_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// Moves the scenario's object frame by frame until the radar stops it; how far it came.
 double travelled_m(const Scenario& scenario, const Eigen::Isometry3d& T_map_world, const GpuMesh& object,
                    const std::vector<SceneMesh>& scene, CyberRadar& radar, double& query_ms) {

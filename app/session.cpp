@@ -104,7 +104,7 @@ int Session::move_objects(double dt_s, StageTimes& times) {
       const auto start = std::chrono::steady_clock::now();
       const Contact contact =
           radar_.query({&object->shape, T_world_object}, direction_world, distance_m, scene);
-      radar_ms += std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+      radar_ms += ms_since(start);
       return contact;
     };
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move

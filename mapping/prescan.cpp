@@ -1,6 +1,7 @@
 // prescan.cpp: the prescan from first frame to finished map, top to bottom.
 #include "mapping/prescan.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <utility>
@@ -19,10 +20,6 @@ namespace roomradar {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// The next readable frame, or false at the end.
 bool read(FrameSource& source, StageTimes& times, Frame& frame, PrescanCounts& counts) {
@@ -85,12 +82,26 @@ void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass, StageTimes& tim
   keep(checkpoints, kTrackingStage, pass, times);
 }
 
-Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, StageTimes& times,
-                             const PrescanProgress& progress, TrackingPass& pass, Checkpoints* checkpoints,
-                             std::map<std::int64_t, double>& track_ms) {
+/// What all steps of one prescan share.
+struct Work {
+  FrameSource& source;
+  const PrescanConfig& config;
+  StageTimes& times;
+  const PrescanProgress& progress;
+  Checkpoints* checkpoints = nullptr;
+  std::map<std::int64_t, double> track_ms;  // by frame index
+
+  void show(const std::string& stage, const std::string& note) const {
+    if (progress) progress(stage, note);
+  }
+};
+
+/// Reads the source to its end and says where the camera was in each frame.
+Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
+  const PrescanConfig& config = work.config;
   Frame frame;
   SeenArea seen;
-  while (read(source, times, frame, pass.counts)) {
+  while (read(work.source, work.times, frame, pass.counts)) {
     const Clock::time_point start = Clock::now();
     Tracking tracking;
     if (config.poses == PoseOrigin::kTracked) {
@@ -99,19 +110,19 @@ Whereabouts find_whereabouts(FrameSource& source, const PrescanConfig& config, S
       tracking = recorded_pose(frame);
       if (tracking) pass.odometry.add_posed(frame, tracking.T_world_camera);
     }
-    track_ms[frame.index] = ms_since(start);
-    times.add_ms("track", track_ms[frame.index]);
+    work.track_ms[frame.index] = ms_since(start);
+    work.times.add_ms("track", work.track_ms[frame.index]);
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
     if (frame.T_world_camera) pass.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
     if (tracking) seen.add(frame, tracking.T_world_camera);
-    if (progress) progress("track", std::string(to_string(tracking.status)) + ", " + describe(seen));
-    keep_tracking(checkpoints, pass, times);
+    work.show(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
+    keep_tracking(work.checkpoints, pass, work.times);
     // The octree and its surface come when the tracker has gone.
     pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
     if (pass.counts.stopped_for_memory) break;
   }
   Whereabouts found;
-  found.frames = times.timed("optimise", [&] { return pass.odometry.optimise(); });
+  found.frames = work.times.timed("optimise", [&] { return pass.odometry.optimise(); });
   found.up = pass.up.estimate();
   found.recorded = std::move(pass.recorded);
   pass.counts.keyframes = pass.odometry.counts().keyframes;
@@ -136,30 +147,91 @@ Eigen::Isometry3d place_in_world(const Odometry& odometry, const Whereabouts& fo
 }
 
 /// The first pass, from its start or from a checkpoint; or its result, as a checkpoint of the second has it.
-FusingPass track(FrameSource& source, const PrescanConfig& config, StageTimes& times,
-                 const PrescanProgress& progress, PrescanStart& start,
-                 std::map<std::int64_t, double>& track_ms) {
-  const std::optional<Checkpoint> checkpoint = start.checkpoints ? start.checkpoints->resume() : std::nullopt;
+FusingPass track(Work& work, std::optional<SavedMap>& map) {
+  const std::optional<Checkpoint> checkpoint = work.checkpoints ? work.checkpoints->resume() : std::nullopt;
   if (checkpoint && checkpoint->stage == kFusingStage) {
     FusingPass fusing = read_fusing_pass(*checkpoint);
     fusing.counts.frames_resumed = fusing.frames_read;
     return fusing;
   }
-  TrackingPass pass(config.odometry);
+  TrackingPass pass(work.config.odometry);
   if (checkpoint) {
-    pass = read_tracking_pass(*checkpoint, config.odometry);
+    pass = read_tracking_pass(*checkpoint, work.config.odometry);
     pass.counts.frames_resumed = pass.counts.frames_read;
-    skip_frames(source, pass.counts.frames_read, kTrackingStage, progress);
+    skip_frames(work.source, pass.counts.frames_read, kTrackingStage, work.progress);
   }
-  if (start.map && config.poses == PoseOrigin::kTracked) pass.odometry.know(start.map->places);
+  if (map && work.config.poses == PoseOrigin::kTracked) pass.odometry.know(map->places);
   FusingPass fusing;
-  fusing.found = find_whereabouts(source, config, times, progress, pass, start.checkpoints, track_ms);
+  fusing.found = find_whereabouts(work, pass);
   fusing.counts = pass.counts;
-  if (fusing.counts.frames_read > fusing.counts.frames_skipped)
-    fusing.T_world_found = place_in_world(pass.odometry, fusing.found, start.map, source.name());
-  fusing.octree = start.map ? std::move(start.map->octree) : StaticMap(config.resolution_m);
-  keep(start.checkpoints, kFusingStage, fusing, times, /*between_frames=*/false);
+  if (fusing.counts.frames_read == fusing.counts.frames_skipped)
+    throw Error(work.source.name() + ": there is not one readable frame" +
+                (fusing.counts.last_fault.empty() ? "" : "; the last fault: " + fusing.counts.last_fault));
+  fusing.T_world_found = place_in_world(pass.odometry, fusing.found, map, work.source.name());
+  fusing.octree = map ? std::move(map->octree) : StaticMap(work.config.resolution_m);
+  keep(work.checkpoints, kFusingStage, fusing, work.times, /*between_frames=*/false);
   return fusing;
+}
+
+/// The trusted poses, in the map's world.
+std::vector<TimedPose> trusted_poses(const FusingPass& pass) {
+  std::vector<TimedPose> poses;
+  for (const TrackedFrame& tracked : pass.found.frames) {
+    if (tracked.trusted)
+      poses.push_back({tracked.frame_index, tracked.stamp_s, pass.T_world_found * tracked.T_world_camera});
+  }
+  return poses;
+}
+
+/// The second pass, from its start or from a checkpoint. False if it was stopped for want of memory.
+bool fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass) {
+  std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
+  for (const TimedPose& pose : trajectory) T_world_camera[pose.frame_index] = pose.T_world_camera;
+  if (!work.source.rewind()) throw Error(work.source.name() + ": cannot be read a second time");
+  PrescanCounts second_pass;
+  second_pass.frames_read = pass.frames_read;
+  if (pass.frames_read > 0) skip_frames(work.source, pass.frames_read, kFusingStage, work.progress);
+  release_unused_memory();
+  bool has_room = true;
+  Frame frame;
+  while (has_room && pass.frames_read < pass.counts.frames_read &&
+         read(work.source, work.times, frame, second_pass)) {
+    pass.frames_read = second_pass.frames_read;
+    const auto pose = T_world_camera.find(frame.index);
+    if (pose == T_world_camera.end() || is_held_out(frame.index, work.config.hold_out)) continue;
+    const Clock::time_point start = Clock::now();
+    const FuseStatus fused = pass.octree.fuse(frame, pose->second);
+    const double fuse_ms = ms_since(start);
+    work.times.add_ms("fuse", fuse_ms);
+    if (const auto track_ms = work.track_ms.find(frame.index); track_ms != work.track_ms.end())
+      work.times.add_ms("frame", track_ms->second + fuse_ms);
+    if (fused == FuseStatus::kFused)
+      pass.fused.push_back({pass.frames_read - 1, frame.index, frame.depth_camera, pose->second});
+    work.show(kFusingStage, std::string(to_string(fused)));
+    keep(work.checkpoints, kFusingStage, pass, work.times);
+    has_room = !is_full(work.config, kSurfaceMemory * static_cast<double>(pass.octree.memory_bytes()));
+  }
+  keep(work.checkpoints, kFusingStage, pass, work.times, /*between_frames=*/false);
+  return has_room;
+}
+
+/// What the map says of itself, but for what save_map fills in.
+MapInfo describe_map(const Work& work, const FusingPass& pass,
+                     const std::optional<TrajectoryError>& against_recorded) {
+  MapInfo info;
+  info.source = work.source.name();
+  info.frames_read = pass.counts.frames_read;
+  info.frames_fused = static_cast<std::int64_t>(pass.fused.size());
+  info.up_source = to_string(pass.found.up.source);
+  info.settings = {{"resolution_m", std::to_string(work.config.resolution_m)},
+                   {"poses", std::string(to_string(work.config.poses))}};
+  if (work.config.hold_out > 0) info.settings["hold_out"] = std::to_string(work.config.hold_out);
+  if (work.config.poses == PoseOrigin::kRecorded) {
+    info.T_world_recorded = pass.T_world_found;
+  } else if (against_recorded) {
+    info.T_world_recorded = against_recorded->T_reference_estimate.inverse();
+  }
+  return info;
 }
 
 }  // namespace
@@ -174,102 +246,56 @@ std::string_view to_string(PoseOrigin poses) {
 
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress, PrescanStart start) {
+  Work work{source, config, times, progress, start.checkpoints, {}};
   PrescanResult result;
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;
 
   // Where was the camera?
-  std::map<std::int64_t, double> track_ms;
-  FusingPass fusing = track(source, config, times, progress, start, track_ms);
-  Whereabouts& found = fusing.found;
-  counts = fusing.counts;
-  if (counts.frames_read == counts.frames_skipped)
-    throw Error(source.name() + ": there is not one readable frame" +
-                (counts.last_fault.empty() ? "" : "; the last fault: " + counts.last_fault));
-
-  // Where is that in the map's world?
-  std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
-  for (const TrackedFrame& tracked : found.frames) {
-    if (!tracked.trusted) continue;
-    T_world_camera[tracked.frame_index] = fusing.T_world_found * tracked.T_world_camera;
-    map.trajectory.push_back({tracked.frame_index, tracked.stamp_s, T_world_camera[tracked.frame_index]});
-    if (is_held_out(tracked.frame_index, config.hold_out)) ++counts.frames_held_out;
-  }
-  counts.frames_tracked = static_cast<std::int64_t>(T_world_camera.size());
-  counts.frames_lost = counts.frames_read - counts.frames_skipped - counts.frames_tracked;
-  if (T_world_camera.empty())
+  FusingPass pass = track(work, start.map);
+  map.trajectory = trusted_poses(pass);
+  if (map.trajectory.empty())
     throw Error(source.name() + ": no frame has a pose that can be trusted, so there is nothing to map; " +
                 (config.poses == PoseOrigin::kRecorded
                      ? "the recording has no poses: use --poses tracked"
                      : "is there depth between 0.5 and 6 m in the frames?"));
 
   // What was there?
-  if (!source.rewind()) throw Error(source.name() + ": cannot be read a second time");
-  PrescanCounts second_pass;
-  second_pass.frames_read = fusing.frames_read;
-  if (fusing.frames_read > 0) skip_frames(source, fusing.frames_read, kFusingStage, progress);
-  Frame frame;
-  release_unused_memory();
-  while (fusing.frames_read < counts.frames_read && read(source, times, frame, second_pass)) {
-    fusing.frames_read = second_pass.frames_read;
-    const auto pose = T_world_camera.find(frame.index);
-    if (pose == T_world_camera.end()) continue;
-    if (is_held_out(frame.index, config.hold_out)) continue;
-    const Clock::time_point began = Clock::now();
-    const FuseStatus fused = fusing.octree.fuse(frame, pose->second);
-    const double fuse_ms = ms_since(began);
-    times.add_ms("fuse", fuse_ms);
-    if (const auto ms = track_ms.find(frame.index); ms != track_ms.end())
-      times.add_ms("frame", ms->second + fuse_ms);
-    if (fused == FuseStatus::kFused)
-      fusing.fused.push_back({fusing.frames_read - 1, frame.index, frame.depth_camera, pose->second});
-    if (progress) progress("fuse", std::string(to_string(fused)));
-    keep(start.checkpoints, kFusingStage, fusing, times);
-    if (is_full(config, kSurfaceMemory * static_cast<double>(fusing.octree.memory_bytes()))) {
-      counts.stopped_for_memory = true;
-      break;
-    }
-  }
-  keep(start.checkpoints, kFusingStage, fusing, times, /*between_frames=*/false);
-  counts.frames_fused = static_cast<std::int64_t>(fusing.fused.size());
-  if (counts.frames_fused == 0)
+  const bool all_fused = fuse(work, map.trajectory, pass);
+  if (pass.fused.empty())
     throw Error(source.name() + ": no frame could be fused; the depth images hold no usable measurement");
 
   // What of that moved on?
-  if (config.remove_ghosts && !fusing.ghost_voxels) {
-    const auto show = [&](const std::string& note) {
-      if (progress) progress("ghosts", note);
-    };
-    fusing.ghost_voxels = remove_ghosts(source, fusing.fused, config.ghosts, fusing.octree, times, show);
-    keep(start.checkpoints, kFusingStage, fusing, times, /*between_frames=*/false);
+  if (config.remove_ghosts && !pass.ghost_voxels) {
+    const auto show = [&](const std::string& note) { work.show("ghosts", note); };
+    pass.ghost_voxels = remove_ghosts(source, pass.fused, config.ghosts, pass.octree, times, show);
+    keep(work.checkpoints, kFusingStage, pass, times, /*between_frames=*/false);
   }
-  counts.ghost_voxels = fusing.ghost_voxels.value_or(0);
-  map.octree = std::move(fusing.octree);
+  map.octree = std::move(pass.octree);
 
+  // Where is its surface?
   map.mesh =
       times.timed("surface", [&] { return extract_surface(map.octree, config.surface, &result.surface); });
   if (map.mesh.triangles.empty())
-    throw Error(source.name() + ": " + std::to_string(counts.frames_fused) + " frames show no surface at " +
+    throw Error(source.name() + ": " + std::to_string(pass.fused.size()) + " frames show no surface at " +
                 std::to_string(config.resolution_m) + " m; try another --resolution");
-  map.places = std::move(found.places);
-  transform(map.places, fusing.T_world_found);
+  map.places = std::move(pass.found.places);
+  transform(map.places, pass.T_world_found);
 
-  map.info.source = source.name();
-  map.info.frames_read = counts.frames_read;
-  map.info.frames_fused = counts.frames_fused;
-  map.info.up_source = to_string(found.up.source);
-  map.info.settings = {{"resolution_m", std::to_string(config.resolution_m)},
-                       {"poses", std::string(to_string(config.poses))}};
-  if (config.hold_out > 0) map.info.settings["hold_out"] = std::to_string(config.hold_out);
-  if (config.poses == PoseOrigin::kRecorded) {
-    map.info.T_world_recorded = fusing.T_world_found;
-  } else {
-    const TrajectoryError error = absolute_trajectory_error(map.trajectory, found.recorded);
-    if (error.poses > 0) {
-      counts.against_recorded = error;
-      map.info.T_world_recorded = error.T_reference_estimate.inverse();
-    }
+  counts = pass.counts;
+  counts.stopped_for_memory |= !all_fused;
+  counts.frames_tracked = static_cast<std::int64_t>(map.trajectory.size());
+  counts.frames_lost = counts.frames_read - counts.frames_skipped - counts.frames_tracked;
+  counts.frames_held_out = std::count_if(map.trajectory.begin(), map.trajectory.end(), [&](const auto& pose) {
+    return is_held_out(pose.frame_index, config.hold_out);
+  });
+  counts.frames_fused = static_cast<std::int64_t>(pass.fused.size());
+  counts.ghost_voxels = pass.ghost_voxels.value_or(0);
+  if (config.poses == PoseOrigin::kTracked) {
+    const TrajectoryError error = absolute_trajectory_error(map.trajectory, pass.found.recorded);
+    if (error.poses > 0) counts.against_recorded = error;
   }
+  map.info = describe_map(work, pass, counts.against_recorded);
   if (start.map) {
     append_session(*start.map, map);
     start.map->octree = std::move(map.octree);

@@ -18,6 +18,10 @@ struct StageSummary {
   double max_ms = 0.0;
 };
 
+inline double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// Collects wall-clock times by stage name. One call a stage from outside: `times.timed("fuse", [&] {
 /// fuse(...); });`
 class StageTimes {
@@ -36,10 +40,7 @@ class StageTimes {
     StageTimes& times;
     std::string_view stage;
     std::chrono::steady_clock::time_point start;
-    ~Stop() {
-      times.add_ms(
-          stage, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    }
+    ~Stop() { times.add_ms(stage, ms_since(start)); }
   };
   std::map<std::string, std::vector<float>, std::less<>> samples_ms_;
 };
