@@ -4,11 +4,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
-#include "mapping/mesh_pieces.hpp"
+#include "mapping/collapse_queue.hpp"
 #include "mapping/quadric.hpp"
 #include "mapping/triangle_distance.hpp"
 
@@ -21,44 +21,6 @@ constexpr float kLarge = 12.0F;       // a side of so many tolerances makes a tr
 constexpr float kMostTurn = 0.3F;     // cosine of how far a collapse may turn a triangle
 // An open border is held by planes across it that weigh so many times its triangles.
 constexpr double kBorderWeight = 2.0;
-
-struct Candidate {
-  float cost = 0.0F;
-  std::uint32_t kept = 0;
-  std::uint32_t gone = 0;
-  std::uint32_t kept_version = 0;
-  std::uint32_t gone_version = 0;
-};
-
-// Takes candidates out in the order of their costs, rounded to a quarter of an octave; first in, first out
-// among equals, so that flat parts thin out evenly. A heap takes longer than all the rest.
-class CandidateQueue {
- public:
-  void push(const Candidate& candidate) {
-    const std::size_t bucket = std::bit_cast<std::uint32_t>(candidate.cost) >> 21U;  // cost >= 0
-    buckets_[bucket].waiting.push_back(candidate);
-    cheapest_ = std::min(cheapest_, bucket);
-  }
-  bool pop(Candidate& candidate) {
-    for (; cheapest_ < buckets_.size(); ++cheapest_) {
-      Bucket& bucket = buckets_[cheapest_];
-      if (bucket.taken < bucket.waiting.size()) {
-        candidate = bucket.waiting[bucket.taken++];
-        return true;
-      }
-      bucket = Bucket{};
-    }
-    return false;
-  }
-
- private:
-  struct Bucket {
-    std::vector<Candidate> waiting;
-    std::size_t taken = 0;
-  };
-  std::array<Bucket, 1024> buckets_;
-  std::size_t cheapest_ = 0;
-};
 
 class EdgeCollapser {
  public:
@@ -105,7 +67,7 @@ class EdgeCollapser {
       mesh_.colours[v] = {channel(mean.x()), channel(mean.y()), channel(mean.z())};
     }
     std::erase_if(mesh_.triangles, [](const Triangle& t) { return t[0] == kNone; });
-    return compacted(mesh_, mesh_.triangles);
+    return std::move(mesh_);
   }
 
  private:
@@ -226,6 +188,7 @@ class EdgeCollapser {
   }
 
   void push(std::uint32_t kept, std::uint32_t gone) {
+    if (merged_[gone].tolerance_m == 0.0F) std::swap(kept, gone);  // what may not move keeps its name
     Quadric both = merged_[kept].quadric;
     both += merged_[gone].quadric;
     Eigen::Vector3f p;
@@ -261,16 +224,19 @@ class EdgeCollapser {
     if (star_kept_.size() == shared || star_gone_.size() == shared)
       return false;  // nothing would be left of it
     if (shared == 2 && star_kept_.size() == 3 && star_gone_.size() == 3) return false;
-    ++stamp_;
+    const std::uint32_t beside_kept = ++stamp_;
+    const std::uint32_t beside_gone = ++stamp_;
     for (const std::uint32_t t : star_kept_)
-      for (const std::uint32_t v : mesh_.triangles[t]) mark_[v] = stamp_;
-    mark_[kept] = mark_[gone] = 0;
+      for (const std::uint32_t v : mesh_.triangles[t]) mark_[v] = beside_kept;
     std::size_t common = 0;
     for (const std::uint32_t t : star_gone_)
       for (const std::uint32_t v : mesh_.triangles[t]) {
-        if (mark_[v] != stamp_) continue;
-        mark_[v] = 0;
-        ++common;
+        if (v == kept || v == gone || mark_[v] == beside_gone) continue;
+        if (mark_[v] == beside_kept) ++common;
+        // Another mesh may share these two and join them, too.
+        else if (merged_[kept].tolerance_m == 0.0F && merged_[v].tolerance_m == 0.0F)
+          return false;
+        mark_[v] = beside_gone;
       }
     return common == shared;
   }

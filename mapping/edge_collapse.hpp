@@ -8,8 +8,10 @@
 namespace roomradar {
 
 /// The mesh after all collapses that keep every vertex of `full` within its own tolerance (one each, m, >= 0)
-/// of the triangles that took the place of its own. Vertices without tolerance stay where they are, new ones
-/// are as near to `full_surface`, which is that of `full`. Private to the simplification, which says more.
+/// of the triangles that took the place of its own. Vertices without tolerance stay where they are, and no
+/// two of them get a new edge; new vertices are as near to `full_surface`, which is that of `full`. The
+/// result has all vertices of `full`, moved, and fewer triangles. Private to the simplification, which says
+/// more.
 Mesh collapsed(const Mesh& full, const SurfaceNear& full_surface, const std::vector<float>& tolerance_m);
 
 }  // namespace roomradar

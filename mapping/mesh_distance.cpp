@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -13,7 +14,6 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kReachesACube = 4.0F;  // a query looks into one to eight cubes
-constexpr unsigned kHashBits = 18;
 
 // 21 bits an axis; a mesh reaches over fewer cubes.
 std::uint64_t code_of(const Eigen::Array3i& cube) {
@@ -24,8 +24,7 @@ std::uint64_t code_of(const Eigen::Array3i& cube) {
 }
 
 std::uint64_t mixed(std::uint64_t code) { return code * 0x9E3779B97F4A7C15U; }
-std::size_t hash_of(std::uint64_t code) { return mixed(code) >> (64 - kHashBits); }
-// Tells cubes of one hash apart; two that it does not cost time, not truth.
+// A hash is its upper bits. Tells cubes of one hash apart; two that it does not cost time, not truth.
 std::uint32_t tag_of(std::uint64_t code) { return static_cast<std::uint32_t>(mixed(code) >> 14U); }
 
 }  // namespace
@@ -34,7 +33,8 @@ SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
     : mesh_(mesh),
       reach_m_(reach_m),
       edge_m_(kReachesACube * reach_m),
-      first_of_hash_((1U << kHashBits) + 1, 0) {
+      hash_shift_(64 - static_cast<int>(std::bit_width(mesh.triangles.size() | 1U))),
+      first_of_hash_((std::size_t{1} << (64 - hash_shift_)) + 1, 0) {
   if (!mesh.vertices.empty()) {
     low_ = mesh.vertices.front();
     for (const Eigen::Vector3f& vertex : mesh.vertices) low_ = low_.cwiseMin(vertex);
@@ -46,12 +46,12 @@ SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
                     [&](std::uint64_t cube) { visit(cube, t); });
     }
   };
-  for_each_entry([&](std::uint64_t cube, std::uint32_t) { ++first_of_hash_[hash_of(cube) + 1]; });
+  for_each_entry([&](std::uint64_t cube, std::uint32_t) { ++first_of_hash_[hash_of(mixed(cube)) + 1]; });
   for (std::size_t h = 1; h < first_of_hash_.size(); ++h) first_of_hash_[h] += first_of_hash_[h - 1];
   entries_.resize(first_of_hash_.back());
   std::vector<std::uint32_t> next(first_of_hash_.begin(), first_of_hash_.end() - 1);
   for_each_entry([&](std::uint64_t cube, std::uint32_t triangle) {
-    entries_[next[hash_of(cube)]++] = {tag_of(cube), triangle};
+    entries_[next[hash_of(mixed(cube))]++] = {tag_of(cube), triangle};
   });
 }
 
@@ -95,7 +95,7 @@ float SurfaceNear::distance_m(const Eigen::Vector3f& p, float enough_m) const {
     for (int y = low.y(); y <= high.y(); ++y)
       for (int x = low.x(); x <= high.x(); ++x) {
         const std::uint64_t wanted = code_of({x, y, z});
-        const std::size_t hash = hash_of(wanted);
+        const std::size_t hash = hash_of(mixed(wanted));
         const std::uint32_t tag = tag_of(wanted);
         for (std::uint32_t i = first_of_hash_[hash]; i < first_of_hash_[hash + 1]; ++i) {
           if (entries_[i].cube != tag) continue;

@@ -1,5 +1,6 @@
 // mesh_distance.hpp: how far the surfaces of two meshes lie apart, as a measured fact.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -27,9 +28,12 @@ class SurfaceNear {
   void for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                      const Visit& visit) const;
 
+  [[nodiscard]] std::size_t hash_of(std::uint64_t mixed) const { return mixed >> hash_shift_; }
+
   const Mesh& mesh_;
   float reach_m_;
   float edge_m_;
+  int hash_shift_;  ///< about one hash a triangle
   Eigen::Vector3f low_ = Eigen::Vector3f::Zero();
   std::vector<std::uint32_t> first_of_hash_;  ///< in entries_
   std::vector<Entry> entries_;                ///< by the hash of their cubes

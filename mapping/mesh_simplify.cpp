@@ -1,14 +1,19 @@
-// mesh_simplify.cpp: collapse, measure, and do again with less tolerance where it came out too far apart.
+// mesh_simplify.cpp: block by block, collapse, measure, and do again with less tolerance where too far apart.
 #include "mapping/mesh_simplify.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <future>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "mapping/edge_collapse.hpp"
+#include "mapping/mesh_blocks.hpp"
 #include "mapping/mesh_distance.hpp"
+#include "mapping/mesh_pieces.hpp"
 
 namespace roomradar {
 namespace {
@@ -16,6 +21,9 @@ namespace {
 // Vertices are held nearer than the bound, as the surface between them lies farther off here and there; with
 // more, repairs cost more triangles than this saves.
 constexpr float kOfBound = 0.6F;
+// Of a block: smaller ones fit the cache and are done again alone, larger ones have less seam to keep.
+constexpr std::size_t kMostTriangles = 6000;
+constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};  // of a triangle that is gone
 constexpr int kMostRounds = 10;
 constexpr float kTightening = 0.4F;
 constexpr float kLeastOfBound = 0.2F;  // below, a vertex is kept as it is
@@ -52,12 +60,11 @@ void tighten_around(const Mesh& mesh, const std::vector<FarPoint>& far, float ra
   }
 }
 
-}  // namespace
-
-SimplifiedMesh simplified(const Mesh& mesh, float max_deviation_m, float spacing_m) {
-  if (mesh.triangles.empty()) return {mesh, 0.0F};
+// One block, its vertices in place: fewer triangles, and how far they lie from what it was. Vertices on a
+// seam stay. A block that comes out too far apart in all rounds is left as it is.
+SimplifiedMesh simplified_block(const Mesh& mesh, std::vector<float> tolerance_m, float max_deviation_m,
+                                float spacing_m) {
   const SurfaceNear full_surface(mesh, max_deviation_m);
-  std::vector<float> tolerance_m(mesh.vertices.size(), kOfBound * max_deviation_m);
   float radius_m = spacing_m;
   for (int round = 0; round < kMostRounds; ++round, radius_m *= 1.5F) {
     SimplifiedMesh result{collapsed(mesh, full_surface, tolerance_m), 0.0F};
@@ -71,7 +78,71 @@ SimplifiedMesh simplified(const Mesh& mesh, float max_deviation_m, float spacing
     }
     tighten_around(mesh, far, radius_m, kLeastOfBound * max_deviation_m, tolerance_m);
   }
-  return {mesh, 0.0F};  // no room was seen to need so many; the bound comes first
+  return {mesh, 0.0F};
+}
+
+// Takes turns with others at the blocks of one mesh. Each writes to its own triangles and to the vertices
+// that no other block uses.
+class BlockSimplifier {
+ public:
+  BlockSimplifier(Mesh& mesh, float max_deviation_m, float spacing_m)
+      : mesh_(mesh),
+        max_deviation_m_(max_deviation_m),
+        spacing_m_(spacing_m),
+        blocks_(sort_into_blocks(mesh, kMostTriangles)),
+        on_seam_(seam_vertices(mesh, blocks_)) {}
+
+  /// The greatest deviation (m) in the blocks that this call did.
+  float work() {
+    float deviation_m = 0.0F;
+    for (std::size_t b = next_++; b < blocks_.size(); b = next_++)
+      deviation_m = std::max(deviation_m, simplify(blocks_[b]));
+    return deviation_m;
+  }
+  [[nodiscard]] bool has_many() const { return blocks_.size() > 1; }
+
+ private:
+  float simplify(std::span<Triangle> block) {
+    const BlockMesh full = block_mesh(mesh_, block);
+    std::vector<float> tolerance_m;
+    for (const std::uint32_t v : full.name)
+      tolerance_m.push_back(on_seam_[v] ? 0.0F : kOfBound * max_deviation_m_);
+    const auto [simple, deviation_m] = simplified_block(full.mesh, tolerance_m, max_deviation_m_, spacing_m_);
+    for (std::size_t v = 0; v < full.name.size(); ++v) {
+      const std::uint32_t name = full.name[v];
+      if (on_seam_[name]) continue;
+      mesh_.vertices[name] = simple.vertices[v];
+      if (!mesh_.normals.empty()) mesh_.normals[name] = simple.normals[v];
+      if (!mesh_.colours.empty()) mesh_.colours[name] = simple.colours[v];
+    }
+    for (std::size_t t = 0; t < block.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        block[t][k] = t < simple.triangles.size() ? full.name[simple.triangles[t][k]] : kNoCorner;
+    return deviation_m;
+  }
+
+  Mesh& mesh_;
+  float max_deviation_m_;
+  float spacing_m_;
+  std::vector<std::span<Triangle>> blocks_;
+  std::vector<bool> on_seam_;
+  std::atomic<std::size_t> next_ = 0;
+};
+
+}  // namespace
+
+SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m) {
+  BlockSimplifier blocks(mesh, max_deviation_m, spacing_m);
+  float deviation_m = 0.0F;
+  if (blocks.has_many()) {
+    auto second = std::async(std::launch::async, [&] { return blocks.work(); });
+    deviation_m = blocks.work();
+    deviation_m = std::max(deviation_m, second.get());
+  } else {
+    deviation_m = blocks.work();
+  }
+  std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == kNoCorner; });
+  return {compacted(mesh, mesh.triangles), deviation_m};
 }
 
 }  // namespace roomradar

@@ -16,10 +16,12 @@ struct SimplifiedMesh {
 /// parts become few large triangles, bent ones keep small ones. Every vertex of `mesh` stays within
 /// max_deviation_m (> 0) of the triangles that take its place, collapse by collapse. Then both surfaces are
 /// measured against each other; where they lie farther apart than the bound, `mesh` is kept as it is and the
-/// rest done again. The surface's pieces, holes and handles stay, and edges with two triangles keep two.
-/// Colours and normals are means over what was merged. Triangles flatter than 0.01 mm are not made.
-/// Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics, SIGGRAPH 1997; Klein,
-/// Liebich, Strasser, Mesh reduction with error control, IEEE Visualization 1996 (the bound).
-SimplifiedMesh simplified(const Mesh& mesh, float max_deviation_m, float spacing_m);
+/// rest done again. A large mesh is done in blocks of a few thousand triangles, by two threads; vertices on
+/// the seams between blocks stay, so that nothing tears. The surface's pieces, holes and handles stay, and
+/// edges with two triangles keep two. Colours and normals are means over what was merged. Triangles flatter
+/// than 0.01 mm are not made. Source: Garland and Heckbert, Surface Simplification Using Quadric Error
+/// Metrics, SIGGRAPH 1997; Klein, Liebich, Strasser, Mesh reduction with error control, IEEE Visualization
+/// 1996 (the bound).
+SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m);
 
 }  // namespace roomradar

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "mapping/mesh_pieces.hpp"
 #include "mapping/mesh_simplify.hpp"
@@ -39,13 +40,13 @@ Mesh full_surface(const StaticMap& map, const SurfaceConfig& config) {
 
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceFacts* facts) {
   require_valid(config);
-  const Mesh full = without_specks(full_surface(map, config), config.min_component_area_m2);
-  SimplifiedMesh result{full, 0.0F};
+  SimplifiedMesh result{without_specks(full_surface(map, config), config.min_component_area_m2), 0.0F};
+  const std::size_t full_triangles = result.mesh.triangles.size();
   if (config.max_deviation_m > 0.0F) {
     const auto spacing_m = kSpacing_voxels * static_cast<float>(map.resolution_m());
-    result = simplified(full, config.max_deviation_m, spacing_m);
+    result = simplified(std::move(result.mesh), config.max_deviation_m, spacing_m);
   }
-  if (facts) *facts = {full.triangles.size(), result.mesh.triangles.size(), result.deviation_m};
+  if (facts) *facts = {full_triangles, result.mesh.triangles.size(), result.deviation_m};
   return result.mesh;
 }
 
