@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kNewMap = "a new map";
+constexpr const char* kSpool = "spool";
 
 fs::path unfinished_beside(const fs::path& map) {
   return map.parent_path() / (map.filename().string() + ".unfinished");
@@ -25,14 +26,14 @@ fs::path unfinished_beside(const fs::path& map) {
 /// A scan that was cut off, and is not to be resumed: what can be read again may go.
 void give_up_unfinished(const fs::path& folder) {
   if (!fs::exists(folder)) return;
-  if (fs::exists(folder / "spool"))
+  if (fs::exists(folder / kSpool))
     throw Error(folder.string() +
                 ": holds a live scan that was cut off; go on with it by --resume, or delete "
                 "the folder to begin anew");
-  std::fprintf(stderr, "%s: a scan that was cut off is given up; --resume would have gone on with it\n",
-               folder.c_str());
   Checkpoints unfinished(folder, {}, 0.0);
   unfinished.ensure_folder();  // nobody else is at work on it
+  std::fprintf(stderr, "%s: a scan that was cut off is given up; --resume would have gone on with it\n",
+               folder.c_str());
   unfinished.remove();
 }
 
@@ -57,12 +58,14 @@ ScanStart start_scan(const PrescanCommand& command) {
   ScanStart start;
   const fs::path map = tidy_map_name(command.map);
   const fs::path folder = unfinished_beside(map);
+  require_checkpoints_only(folder, kSpool);
+  require_checkpoints_only(done_beside(folder), kSpool);
   if (!command.resume) give_up_unfinished(folder);
   const bool extend = is_to_extend(command.resume, folder, map);
   std::error_code ignored;
   fs::remove_all(done_beside(folder), ignored);
 
-  const fs::path spool = folder / "spool";
+  const fs::path spool = folder / kSpool;
   const bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
   if (!spooled) start.source = open_source(command.source, command.frames);
   const bool live = spooled || !start.source->rewind();
@@ -70,7 +73,11 @@ ScanStart start_scan(const PrescanCommand& command) {
   if (extend) start.map = load_map(map);
   if (extend && !live && holds(start.map->info, *start.source) &&
       (!is_unfinished(folder) || identity_of(folder)["into"] != into)) {
-    Checkpoints(folder, {}, 0.0).remove();
+    if (fs::exists(folder)) {
+      Checkpoints unfinished(folder, {}, 0.0);
+      unfinished.ensure_folder();  // nobody else is at work on it
+      unfinished.remove();
+    }
     start.is_done = true;
     return start;
   }
@@ -86,9 +93,9 @@ ScanStart start_scan(const PrescanCommand& command) {
         {"into", into}};
     if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
     start.checkpoints = std::make_unique<Checkpoints>(folder, identity, command.checkpoint_every_s);
+    start.checkpoints->ensure_folder();  // nobody else may begin this map, from now on
   }
   if (live && start.checkpoints) {
-    start.checkpoints->ensure_folder();
     start.source = SpooledSource::kept(std::move(start.source), spool);
   } else {
     start.source = make_rewindable(std::move(start.source));

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -30,6 +31,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr const char* kWork = "work.json";
+constexpr const char* kWorkWriting = "work.json.writing";
 constexpr const char* kLock = "lock";
 constexpr const char* kWriting = "checkpoint.writing";
 constexpr const char* kManifest = "manifest.json";
@@ -54,7 +56,9 @@ Json read_json(const fs::path& path) {
     fail(path, "is missing, or is no description of a checkpoint");
   std::ifstream file(path, std::ios::binary);
   Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
-  if (json.is_discarded() || !json.is_object()) fail(path, "is damaged");
+  if (json.is_discarded() || !json.is_object())
+    fail(path,
+         "is damaged" + std::string(path.filename() == kWork ? "; delete the folder to begin anew" : ""));
   return json;
 }
 
@@ -119,6 +123,22 @@ std::vector<std::int64_t> numbers_in(const fs::path& folder) {
   return numbers;
 }
 
+/// Whether the open file is the one of that name: whoever has the lock may remove the folder.
+bool is_still_there(int file, const fs::path& path) {
+  struct stat opened {
+  }, named{};
+  return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
+         opened.st_dev == named.st_dev;
+}
+
+/// One that was just made.
+bool holds_nothing_to_go_on_from(const fs::path& folder) {
+  std::error_code fault;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault))
+    if (entry.path().filename() != kWork && entry.path().filename() != kLock) return false;
+  return !fault;
+}
+
 }  // namespace
 
 Checkpoints::Checkpoints(fs::path folder, std::map<std::string, std::string> identity, double every_s)
@@ -131,7 +151,10 @@ Checkpoints::Checkpoints(fs::path folder, std::map<std::string, std::string> ide
 
 Checkpoints::~Checkpoints() {
   reap(/*wait=*/true);
-  if (lock_ >= 0) ::close(lock_);
+  if (lock_ < 0) return;
+  std::error_code ignored;
+  if (holds_nothing_to_go_on_from(folder_)) fs::remove_all(folder_, ignored);
+  ::close(lock_);
 }
 
 void Checkpoints::take_lock() {
@@ -141,7 +164,11 @@ void Checkpoints::take_lock() {
   if (lock_ < 0) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
   // The writer of a process that was killed has the lock for a moment longer.
   for (int attempt = 0; attempt < 30; ++attempt) {
-    if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
+    if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) {
+      if (is_still_there(lock_, path)) return;
+      ::close(std::exchange(lock_, -1));
+      fail(folder_, "another roomradar has just ended its work on this scan; start again");
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   }
   ::close(std::exchange(lock_, -1));
@@ -155,8 +182,8 @@ void Checkpoints::ensure_folder() {
   if (fault) fail(folder_, "the folder cannot be made: " + fault.message());
   take_lock();
   if (fs::exists(folder_ / kWork)) return;
-  write_text(folder_ / "work.json.writing", Json{{"work", identity_}}.dump(2) + "\n");
-  fs::rename(folder_ / "work.json.writing", folder_ / kWork);
+  write_text(folder_ / kWorkWriting, Json{{"work", identity_}}.dump(2) + "\n");
+  fs::rename(folder_ / kWorkWriting, folder_ / kWork);
   sync_to_disk(folder_ / kWork);
 }
 
@@ -269,11 +296,17 @@ void Checkpoints::reap(bool wait) {
     ++failures_;
 }
 
+bool Checkpoints::has_any() {
+  reap(/*wait=*/true);
+  return last_number_ > 0;
+}
+
 void Checkpoints::remove() {
   reap(/*wait=*/true);
   if (lock_ < 0 && !fs::exists(folder_)) return;
   // In one step, so that work that is done is never taken for work that was cut off.
   std::error_code ignored;
+  fs::remove_all(done_beside(folder_), ignored);
   fs::rename(folder_, done_beside(folder_), ignored);
   fs::remove_all(done_beside(folder_), ignored);
   if (lock_ >= 0) ::close(std::exchange(lock_, -1));
@@ -285,13 +318,29 @@ fs::path Checkpoints::numbered(std::int64_t number) const {
 
 fs::path done_beside(const fs::path& folder) { return folder.string() + ".done"; }
 
+void require_checkpoints_only(const fs::path& folder, std::string_view beside) {
+  std::error_code fault;
+  const fs::file_status status = fs::symlink_status(folder, fault);
+  if (!fs::exists(status)) return;
+  if (!fs::is_directory(status))
+    fail(folder, "is no folder, and its name is that of the scan's checkpoints; move it away");
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
+    const std::string name = entry.path().filename().string();
+    if (name != kWork && name != kWorkWriting && name != kLock && name != kWriting && name != beside &&
+        !name.starts_with(kPrefix))
+      fail(folder, "holds \"" + name + "\", which is no part of a scan that was cut off; move it away");
+  }
+  if (fault) fail(folder, "cannot be listed: " + fault.message());
+}
+
 std::map<std::string, std::string> identity_of(const fs::path& folder) {
   const Json json = read_json(folder / kWork);
   const auto work = json.find("work");
-  if (work == json.end() || !work->is_object()) fail(folder / kWork, "is damaged");
+  const char* const kDamaged = "is damaged; delete the folder to begin anew";
+  if (work == json.end() || !work->is_object()) fail(folder / kWork, kDamaged);
   std::map<std::string, std::string> identity;
   for (const auto& [name, value] : work->items()) {
-    if (!value.is_string()) fail(folder / kWork, "is damaged");
+    if (!value.is_string()) fail(folder / kWork, kDamaged);
     identity[name] = value.get<std::string>();
   }
   return identity;

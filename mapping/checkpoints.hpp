@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace roomradar {
@@ -36,7 +37,8 @@ class Checkpoints {
   ///                  from a checkpoint.
   /// @param every_s   seconds between two checkpoints, at least
   Checkpoints(std::filesystem::path folder, std::map<std::string, std::string> identity, double every_s);
-  /// Waits for a checkpoint that is being written. The folder stays, unless remove() was called.
+  /// Waits for a checkpoint that is being written. The folder stays, unless remove() was called or there is
+  /// nothing in it to go on from.
   ~Checkpoints();
   Checkpoints(const Checkpoints&) = delete;
   Checkpoints& operator=(const Checkpoints&) = delete;
@@ -53,6 +55,8 @@ class Checkpoints {
   /// Writes a checkpoint beside the work; takes some milliseconds itself. A failure (disk full) leaves the
   /// one before, and is counted in failures().
   void write(const std::string& stage, const WriteFiles& write_files);
+  /// Whether there is one to go on from, after the one that is being written.
+  [[nodiscard]] bool has_any();
   /// The work is done: the folder goes.
   void remove();
 
@@ -83,6 +87,10 @@ class Checkpoints {
 
 /// What such a folder is called while it is removed; one that a crash left behind is of no use.
 std::filesystem::path done_beside(const std::filesystem::path& folder);
+
+/// Throws Error if something of that name is there that is no such folder, or that holds anything but
+/// checkpoints and `beside`, what else their owner keeps there: somebody else's, which must not be removed.
+void require_checkpoints_only(const std::filesystem::path& folder, std::string_view beside);
 
 /// What the work in such a folder is. Throws Error if its work.json is missing or damaged.
 std::map<std::string, std::string> identity_of(const std::filesystem::path& folder);

@@ -188,6 +188,41 @@ TEST_F(ResumeTest, NothingToResumeIsSaid) {
   EXPECT_FALSE(fs::exists(map()));
 }
 
+TEST_F(ResumeTest, AFolderOfSomebodyElseUnderTheCheckpointsNameIsLeftAlone) {
+  for (const char* name : {"map.unfinished", "map.unfinished.done"}) {
+    const fs::path mine = temporary_.path() / name / "thesis.txt";
+    fs::create_directory(mine.parent_path());
+    std::ofstream(mine) << "years of work";
+    EXPECT_EQ(run(scan(map(), false)), 1);
+    EXPECT_NE(said().find("thesis.txt"), std::string::npos) << said();
+    EXPECT_EQ(text_of(mine), "years of work");
+    fs::remove_all(mine.parent_path());
+  }
+  std::ofstream(unfinished()) << "a file";
+  EXPECT_EQ(run(scan(map(), false)), 1);
+  EXPECT_EQ(text_of(unfinished()), "a file");
+}
+
+TEST_F(ResumeTest, ASecondScanOfTheMapIsRefusedBeforeTheFirstCheckpointToo) {
+  const pid_t first =
+      start({"prescan", "sim:table?frames=100000&width=128", "--map", map(), "--checkpoint-every", "1000"});
+  while (!fs::exists(unfinished() / "work.json")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  for (const bool resume : {false, true}) {
+    EXPECT_EQ(run(scan(map(), resume)), 1);
+    EXPECT_NE(said().find("another roomradar is at work"), std::string::npos) << said();
+  }
+  kill(first, SIGKILL);
+  status_of(first);
+  EXPECT_EQ(newest(), 0);
+  EXPECT_EQ(run({"prescan", "sim:table?frames=5&width=128", "--map", map(), "--resolution", "0.08"}), 0)
+      << said();
+}
+
+TEST_F(ResumeTest, AScanThatCannotBeginLeavesNothing) {
+  EXPECT_EQ(run({"prescan", kSource, "--map", map(), "--max-memory", "1"}), 1);
+  EXPECT_FALSE(fs::exists(unfinished()));
+}
+
 TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
   const auto scan_table = [&](const char* source, bool resume) {
     std::vector<std::string> arguments = {"prescan", source, "--map", map(), "--resolution", "0.03"};

@@ -69,6 +69,32 @@ TEST_F(CheckpointsTest, NothingIsThereBeforeTheFirst) {
   EXPECT_FALSE(fs::exists(folder()));
 }
 
+TEST_F(CheckpointsTest, AFolderWithNothingToGoOnFromGoes) {
+  { Checkpoints(folder(), kScan, 0.0).ensure_folder(); }
+  EXPECT_FALSE(fs::exists(folder()));
+  {
+    Checkpoints checkpoints(folder(), kScan, 0.0);
+    checkpoints.ensure_folder();
+    EXPECT_FALSE(checkpoints.has_any());
+    std::ofstream(folder() / "spool") << "a live scan";
+  }
+  EXPECT_TRUE(fs::exists(folder() / "spool"));
+  fs::remove(folder() / "spool");
+  write(1);
+  EXPECT_TRUE(fs::exists(folder() / "checkpoint-1"));
+}
+
+TEST_F(CheckpointsTest, WhatSomebodyElseKeepsInTheFolderIsNamed) {
+  EXPECT_NO_THROW(require_checkpoints_only(folder(), "spool"));
+  write(2);
+  std::ofstream(folder() / "spool") << "a live scan";
+  EXPECT_NO_THROW(require_checkpoints_only(folder(), "spool"));
+  EXPECT_NE(error_of([&] { require_checkpoints_only(folder(), "x"); }).find("spool"), std::string::npos);
+  std::ofstream(folder() / "thesis.txt") << "years of work";
+  EXPECT_NE(error_of([&] { require_checkpoints_only(folder(), "spool"); }).find("thesis.txt"),
+            std::string::npos);
+}
+
 TEST_F(CheckpointsTest, TheStateIsThatOfTheMomentWhateverTheWorkDoesMeanwhile) {
   int state = 7;
   {
