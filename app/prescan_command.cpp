@@ -61,6 +61,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
 }
 
 nlohmann::json to_json(const HeldOutScore& score) {
+  if (score.frames == 0) return {{"frames", 0}};  // so that no figure looks perfect
   return {{"frames", score.frames}, {"pixels", score.pixels}, {"median_m", score.median_m},
           {"bias_m", score.bias_m}, {"cover", score.cover},   {"outliers", score.outliers}};
 }
@@ -83,7 +84,11 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
   if (counts.against_recorded)
     std::printf("trajectory against the recorded poses: RMSE %.1f mm, at most %.1f mm\n",
                 1e3 * counts.against_recorded->rmse_m, 1e3 * counts.against_recorded->max_m);
-  if (held_out)
+  if (held_out && held_out->frames == 0)
+    std::printf("no frame was held out: --hold-out %lld means frame %lld and every %lldth after it\n",
+                static_cast<long long>(command.hold_out), static_cast<long long>(command.hold_out / 2),
+                static_cast<long long>(command.hold_out));
+  else if (held_out)
     std::printf("%lld frames held out: depth against the mesh %.1f mm median, %.2f %% covered\n",
                 static_cast<long long>(held_out->frames), 1e3 * held_out->median_m, 1e2 * held_out->cover);
 }
@@ -121,6 +126,17 @@ void print_holes(const std::vector<Hole>& holes) {
   for (std::size_t i = 0; i < std::min(inside, kShown); ++i)
     std::printf("not seen: %s\n", describe(holes[i]).c_str());
   if (inside > kShown) std::printf("and %zu smaller ones\n", inside - kShown);
+}
+
+/// Where it fails the scan is not lost: says how to go on.
+void save(const PrescanCommand& command, const SavedMap& map, Checkpoints* checkpoints) {
+  try {
+    save_map(command.map, map);
+  } catch (const Error& error) {
+    if (!checkpoints || !checkpoints->has_any()) throw;
+    throw Error(std::string(error.what()) + " What was scanned is kept in " + checkpoints->folder().string() +
+                ", and the same command with --resume goes on from there");
+  }
 }
 
 /// The map is saved: the checkpoints go, and what was wrong with them is said.
@@ -170,7 +186,8 @@ int run(const PrescanCommand& command) {
   const auto show = [&](const std::string& stage, const std::string& note) {
     if (stage != stage_shown) {
       progress.reset();
-      progress = std::make_unique<Progress>(stage, source->frame_count());
+      // The ghosts' passes read what they need, and some of it twice.
+      progress = std::make_unique<Progress>(stage, stage == "ghosts" ? std::nullopt : source->frame_count());
       stage_shown = stage;
     }
     progress->step(note);
@@ -178,7 +195,7 @@ int run(const PrescanCommand& command) {
   const PrescanResult scanned =
       prescan(*source, config, report.times, show, {start.checkpoints.get(), std::move(start.map)});
   progress.reset();
-  report.times.timed("save", [&] { save_map(command.map, scanned.map); });
+  report.times.timed("save", [&] { save(command, scanned.map, start.checkpoints.get()); });
   if (start.checkpoints) finish(*start.checkpoints);
 
   report.frames_read = scanned.counts.frames_read;
@@ -186,9 +203,11 @@ int run(const PrescanCommand& command) {
   report.results.update(results_of(scanned));
   std::optional<HeldOutScore> held_out;
   if (command.hold_out > 0) {
-    const HeldOutScore score = report.times.timed("held_out", [&] {
-      return score_held_out(*source, scanned.map.mesh, scanned.map.trajectory, command.hold_out);
-    });
+    // Of a map that was added to, the last poses are this scan's.
+    const std::vector<TimedPose> poses(scanned.map.trajectory.end() - scanned.counts.frames_tracked,
+                                       scanned.map.trajectory.end());
+    const HeldOutScore score = report.times.timed(
+        "held_out", [&] { return score_held_out(*source, scanned.map.mesh, poses, command.hold_out); });
     report.results["held_out"] = to_json(score);
     held_out = score;
   }

@@ -36,7 +36,7 @@ std::string progress_line(const ProgressState& state, bool with_bar) {
     char text[48];
     std::snprintf(text, sizeof(text), ", %.1f/s", state.per_s);
     line += text;
-    if (has_total && state.done < *state.total) {
+    if (has_total && state.done < *state.total && !state.is_over) {
       const double left_s = std::ceil(static_cast<double>(*state.total - state.done) / state.per_s);
       const auto whole_s = static_cast<long long>(std::min(left_s, 3.6e6));
       std::snprintf(text, sizeof(text), ", %lld:%02lld left", whole_s / 60, whole_s % 60);
@@ -47,7 +47,7 @@ std::string progress_line(const ProgressState& state, bool with_bar) {
 }
 
 Progress::Progress(std::string what, std::optional<std::int64_t> total)
-    : state_{std::move(what), 0, total, 0.0, {}},
+    : state_{std::move(what), 0, total, 0.0, {}, false},
       is_terminal_(isatty(STDERR_FILENO) != 0),
       started_(Clock::now()),
       shown_(started_),
@@ -75,8 +75,10 @@ void Progress::step(const std::string& note) {
 
 void Progress::show(bool last) {
   // In the end the rate is that of the whole.
-  if (last)
+  if (last) {
+    state_.is_over = true;
     state_.per_s = static_cast<double>(state_.done) / std::max(seconds(Clock::now() - started_), 1e-6);
+  }
   std::fprintf(stderr, "%s%s%s", is_terminal_ ? "\r" : "", progress_line(state_, is_terminal_).c_str(),
                is_terminal_ ? "\033[K" : "");
   if (last || !is_terminal_) std::fputc('\n', stderr);

@@ -14,6 +14,7 @@ struct ProgressState {
   std::optional<std::int64_t> total;  ///< where known
   double per_s = 0.0;                 ///< steps a second, of late; 0: not known yet
   std::string note;                   ///< "tracked; 12.4 m2 seen"
+  bool is_over = false;               ///< no more is to come, whatever the total was
 };
 
 /// "track [######      ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". The bar only if asked for, and

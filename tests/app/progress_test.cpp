@@ -24,6 +24,10 @@ TEST(ProgressLine, StaysWithinItsBarWhereMoreIsDoneThanAnnounced) {
   EXPECT_EQ(progress_line({"fuse", 3, 3, 1.0, {}}, false), "fuse 3/3, 1.0/s");
 }
 
+TEST(ProgressLine, NothingIsLeftOnceItIsOver) {
+  EXPECT_EQ(progress_line({"fuse", 35, 36, 2.0, "fused", true}, false), "fuse 35/36, 2.0/s, fused");
+}
+
 TEST(ProgressLine, LongWaitsAreInMinutes) {
   EXPECT_EQ(progress_line({"fuse", 1, 1201, 2.0, {}}, false), "fuse 1/1201, 2.0/s, 10:00 left");
 }
