@@ -2,7 +2,7 @@
 #include "app/command_line.hpp"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
+#include <cstdio>
 #include <map>
 #include <string>
 
@@ -60,15 +60,17 @@ void add_choice(CLI::App& app, const std::string& name, Value& value,
       ->type_name(type);
 }
 
-CLI::Validator resolution_rule() {
+/// CLI11's own Range would let "nan" pass.
+CLI::Validator within(double low, double high, const std::string& unit) {
   return CLI::Validator(
-      [](const std::string& text) -> std::string {
+      [low, high, unit](const std::string& text) -> std::string {
         double value = 0.0;
-        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value >= 0.001 && value <= 1.0)
-          return {};
-        return "must be within 0.001 and 1 (metres), not " + text;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
+        char rule[80];
+        std::snprintf(rule, sizeof rule, "must be within %.10g and %.10g", low, high);
+        return std::string(rule) + " (" + unit + "), not " + text;
       },
-      "", "resolution");
+      "", "within");
 }
 
 /// All commands' arguments; CLI11 writes into these while it parses.
@@ -92,7 +94,7 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
       ->required()
       ->type_name("DIR");
   sub->add_option("--resolution", command.resolution_m, "edge of the smallest cells, metres (0.01)")
-      ->check(resolution_rule())
+      ->check(within(0.001, 1.0, "metres"))
       ->type_name("M");
   add_choice(*sub, "--poses", command.poses, kPoses,
              "find the camera's poses (tracked), or take the recording's own");
@@ -106,12 +108,12 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
                 "add what SOURCE shows to the map that is in DIR");
   sub->add_option("--checkpoint-every", command.checkpoint_every_s,
                   "seconds between two checkpoints (2.5); 0: none, then nothing can be resumed")
-      ->check(CLI::Range(0.0, 86400.0))
+      ->check(within(0.0, 86400.0, "seconds"))
       ->type_name("S");
   sub->add_option("--max-memory", command.max_memory_mb,
                   "stop before the process takes more than so many megabytes; what was fused so far\n"
                   "is saved as a whole map, and the exit status is 1")
-      ->check(CLI::Range(1.0, 1e7))
+      ->check(within(1.0, 1e7, "megabytes"))
       ->type_name("MB");
   add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });

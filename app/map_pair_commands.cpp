@@ -45,6 +45,9 @@ int run(const MapMergeCommand& command) {
   require_writable(command.report);
   SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);
+  if (a.info.files.at("octree.ot").sha256 == b.info.files.at("octree.ot").sha256)
+    throw Error(command.b + ": is the same map as " + command.a +
+                "; joined with itself it would count everything it saw twice");
   const Registration found = require_registered(a, b, command.a, command.b, report);
   const SavedMap both = report.times.timed("merge", [&] { return merge_maps(std::move(a), b, found.T_a_b); });
   report.times.timed("save", [&] { save_map(command.map, both); });
@@ -61,6 +64,8 @@ int run(const MapDiffCommand& command) {
   report.source = command.a + ", " + command.b;
   report.settings = {{"a", command.a}, {"b", command.b}};
   require_writable(command.report);
+  if (!command.picture.empty() && !command.picture.ends_with(".png"))
+    throw Error(command.picture + ": is no name for a PNG picture; give one that ends in .png");
   require_writable(command.picture);
   const SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);

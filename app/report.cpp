@@ -6,6 +6,7 @@
 
 #include <fstream>
 
+#include "mapping/map_folder.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/version.hpp"
 
@@ -46,7 +47,10 @@ void require_writable(const std::filesystem::path& path) {
   if (path.empty()) return;
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
-    throw Error(path.string() + ": the report cannot be written: its folder is not there or not writable");
+    throw Error(path.string() + ": cannot be written: its folder is not there or not writable");
+  if (std::filesystem::is_directory(path))
+    throw Error(path.string() + ": cannot be written: a folder has that name; give the name of a file");
+  require_outside_maps(path);
 }
 
 void write_report(const Report& report, const std::filesystem::path& path) {

@@ -27,8 +27,8 @@ struct Report {
 /// All of it as one object; peak_rss_mb and wall_s are taken now. A number that is not finite becomes null.
 nlohmann::json to_json(const Report& report);
 
-/// Throws Error if write_report would fail for the path's folder: a check to make before minutes of work. An
-/// empty path is fine.
+/// Throws Error if a file cannot be written there, or should not, because it would lie in a map's folder: a
+/// check to make before minutes of work. An empty path is fine.
 void require_writable(const std::filesystem::path& path);
 
 /// Writes the report, or does nothing for an empty path. Throws Error if the file cannot be written.

@@ -44,6 +44,7 @@ bool is_part(const std::string& name) {
 
 // What save_map may replace: nothing, an empty folder, or one that holds a map and nothing else.
 void require_replaceable(const fs::path& folder) {
+  require_outside_maps(folder);
   std::error_code fault;
   const fs::file_status status = fs::symlink_status(folder, fault);
   if (!fs::exists(status)) return;
@@ -138,6 +139,13 @@ fs::path tidy_map_name(const fs::path& folder) {
   if (path.filename() == "." || path.filename() == ".." || !path.has_filename())
     fail(folder, "is no name for a map's folder; give a new one, such as maps/kitchen");
   return path;
+}
+
+void require_outside_maps(const fs::path& path) {
+  std::error_code ignored;
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (fs::exists(folder / kInfo, ignored))
+    fail(path, "lies in the folder of a map, which holds nothing but the map; choose another place");
 }
 
 void require_can_become_map(const fs::path& folder) { require_replaceable(tidy_map_name(folder)); }
@@ -243,6 +251,7 @@ void export_map(const fs::path& folder, const fs::path& path) {
     fail(path, "the extension \"" + extension +
                    "\" is no format to export to; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
                    "the mesh");
+  require_outside_maps(path);
   const MapInfo info = load_map_info(folder);
   const char* part = extension == ".ot" ? kOctree : extension == ".bt" ? kPlainOctree : kMesh;
   if (const auto fault = fault_of(folder / part, info.files.at(part))) throw Error(*fault);

@@ -56,6 +56,9 @@ struct SavedMap {
 /// The folder's name without `.`, `..` and a slash at its end. Throws Error if that is no name for a map.
 std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
 
+/// Throws Error if the file or folder would lie in a map's folder, which holds nothing but the map's own.
+void require_outside_maps(const std::filesystem::path& path);
+
 /// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it: a check to
 /// make before minutes of work.
 void require_can_become_map(const std::filesystem::path& folder);
@@ -76,7 +79,7 @@ MapInfo load_map_info(const std::filesystem::path& folder);
 std::vector<std::string> verify_map(const std::filesystem::path& folder);
 
 /// Writes one part of the saved map by extension: .ot and .bt the octree; .ply .obj .stl .glb the mesh.
-/// Throws Error if the extension is none of these or the map is broken.
+/// Throws Error if the extension is none of these, the map is broken, or `path` lies in a map's folder.
 void export_map(const std::filesystem::path& folder, const std::filesystem::path& path);
 
 /// The lines of `roomradar map info`.

@@ -129,6 +129,10 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar(prescan + " --frames 9:3"), 2, "A:B");
   expect_fault(roomradar(prescan + " --frames x"), 2, "A:B");
   expect_fault(roomradar(prescan + " --hold-out 1"), 2, "--hold-out");
+  for (const char* number : {"nan", "-5", "inf", "1e9", "x"}) {
+    expect_fault(roomradar(prescan + " --max-memory " + number), 2, "10000000 (megabytes)");
+    expect_fault(roomradar(prescan + " --checkpoint-every " + number), 2, "86400 (seconds)");
+  }
   expect_fault(roomradar(prescan + " --poses guessed"), 2, "recorded|tracked");
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
@@ -157,6 +161,45 @@ TEST_F(CommandLine, WhatCannotBeWrittenOrLoadedIsSaidBeforeTheWork) {
   std::ofstream(script) << "frame 90000 add pot /no/such/pot.obj\n";
   expect_fault(roomradar("run " + source + " --map " + map() + " --script " + script.string()), 1,
                "/no/such/pot.obj");
+}
+
+TEST_F(CommandLine, NothingElseIsPutIntoAMapsFolder) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  const std::string json = map() + "/map.json", rule = "lies in the folder of a map";
+  expect_fault(roomradar("prescan " + source + " --map " + map() + "/below"), 1, rule);
+  expect_fault(
+      roomradar("prescan " + source + " --map " + (folder_ / "unused").string() + " --report " + json), 1,
+      rule);
+  expect_fault(roomradar("map diff " + map() + " " + map() + " --report " + json), 1, rule);
+  expect_fault(roomradar("map diff " + map() + " " + map() + " --picture " + map() + "/coverage.png"), 1,
+               rule);
+  expect_fault(roomradar("map export " + map() + " " + map() + "/mesh.ply"), 1, rule);
+  EXPECT_EQ(roomradar("map verify " + map()).status, 0);
+}
+
+TEST_F(CommandLine, AReportCannotBeAFolderNorAPictureAnythingButPng) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string diff = "map diff " + map() + " " + map();
+  expect_fault(roomradar(diff + " --report " + folder_.string()), 1, "a folder has that name");
+  expect_fault(roomradar(diff + " --picture " + (folder_ / "picture.jpg").string()), 1, ".png");
+}
+
+TEST_F(CommandLine, AMapIsNotJoinedWithItself) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string joined = " --map " + (folder_ / "unused").string();
+  expect_fault(roomradar("map merge " + map() + " " + map() + joined), 1, "the same map");
+  expect_fault(roomradar("map merge " + map() + " " + broken_copy().string() + joined), 1, "the same map");
+  EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, HoldingOutNoFrameIsSaid) {
+  const fs::path path = folder_ / "none_held.json";
+  const Outcome scanned =
+      roomradar("prescan 'sim:table?frames=10&width=160' --resolution 0.05 --hold-out 100 --map " +
+                (folder_ / "none_held").string() + " --report " + path.string());
+  expect_fault(scanned, 0, "no frame was held out");
+  EXPECT_EQ(nlohmann::json::parse(read_text(path))["held_out"], nlohmann::json({{"frames", 0}}));
 }
 
 TEST_F(CommandLine, ARecordingWithoutAnyDepthIsRefusedInWords) {
