@@ -14,7 +14,8 @@ struct BrickSample {
   float distance_m = 0.0F;
   float weight = 0.0F;  ///< as SurfaceSample's; 0: nothing is known here
   Rgb colour;
-  bool has_colour = false;
+  bool has_colour : 1 = false;
+  bool guessed : 1 = false;  ///< from its neighbours: nothing was measured here
 
   [[nodiscard]] bool known() const { return weight > 0.0F; }
 };

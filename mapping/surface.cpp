@@ -8,6 +8,7 @@
 #include "mapping/mesh_pieces.hpp"
 #include "mapping/mesh_simplify.hpp"
 #include "mapping/sample_bricks.hpp"
+#include "mapping/sample_guess.hpp"
 #include "mapping/sample_smoothing.hpp"
 #include "mapping/surface_net.hpp"
 #include "mapping/types/error.hpp"
@@ -33,6 +34,7 @@ void require_valid(const SurfaceConfig& config) {
 Mesh full_surface(const StaticMap& map, const SurfaceConfig& config) {
   SampleBricks bricks(map, config.min_weight);
   if (config.smoothing > 0.0F) smooth(bricks, config.smoothing, kSweeps);
+  guess_neighbours(bricks);
   return surface_net(bricks, map.resolution_m());
 }
 

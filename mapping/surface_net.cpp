@@ -11,6 +11,9 @@ namespace roomradar {
 namespace {
 
 constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
+// Weight of a guessed crossing in a vertex's place: two cells that share their one measured crossing still
+// have their vertices apart, along the surface.
+constexpr float kOfGuess = 0.05F;
 constexpr int kBrickSize = kBrickEdge * kBrickEdge * kBrickEdge;
 
 // Corner i of a cell stands at its lowest voxel + (bit 0, bit 1, bit 2); edge 4 a + k runs along axis a.
@@ -127,26 +130,31 @@ struct SheetVertex {
   Rgb colour{128, 128, 128};
 };
 
+bool is_measured_crossing(const BrickSample& from, const BrickSample& to) {
+  return !from.guessed && !to.guessed && (from.distance_m < 0.0F) != (to.distance_m < 0.0F);
+}
+
 SheetVertex place_vertex(const CellCorners& corners, const Sheets& sheets, int sheet) {
   SheetVertex vertex;
   Eigen::Vector3f colour_sum = Eigen::Vector3f::Zero();
   float colour_weight = 0.0F;
-  int crossings = 0;
+  float crossings = 0.0F;
   for (unsigned e = 0; e < 12; ++e) {
     const auto [a, b] = kCellEdges[e];
     const BrickSample& from = *corners[a];
     const BrickSample& to = *corners[b];
     if ((from.distance_m < 0.0F) == (to.distance_m < 0.0F) || sheets.of_edge[e] != sheet) continue;
+    const float weight = is_measured_crossing(from, to) ? 1.0F : kOfGuess;
     const float t = from.distance_m / (from.distance_m - to.distance_m);
-    vertex.position += corner_position(a) + t * (corner_position(b) - corner_position(a));
-    ++crossings;
+    vertex.position += weight * (corner_position(a) + t * (corner_position(b) - corner_position(a)));
+    crossings += weight;
     for (const auto& [sample, share] : {std::pair{&from, 1.0F - t}, std::pair{&to, t}}) {
       if (!sample->has_colour) continue;
       colour_sum += (share + 1e-3F) * Eigen::Vector3f(sample->colour.r, sample->colour.g, sample->colour.b);
       colour_weight += share + 1e-3F;
     }
   }
-  vertex.position /= static_cast<float>(crossings);
+  vertex.position /= crossings;
   if (colour_weight > 0.0F) {
     const Eigen::Vector3f mean = colour_sum / colour_weight;
     const auto channel = [](float value) { return static_cast<std::uint8_t>(std::lround(value)); };
@@ -270,7 +278,7 @@ class Net {
       for (int axis = 0; axis < 3; ++axis) {
         const Eigen::Vector3i end = voxel + Eigen::Vector3i::Unit(axis);
         const BrickSample* to = window_[in_window(end.x(), end.y(), end.z())];
-        if (!to || (from->distance_m < 0.0F) == (to->distance_m < 0.0F)) continue;
+        if (!to || !is_measured_crossing(*from, *to)) continue;
         // The four cells round the edge, counter-clockwise seen from its far end.
         const int second = (axis + 1) % 3;
         const int third = (axis + 2) % 3;

@@ -7,7 +7,8 @@ namespace roomradar {
 
 /// A vertex for each sheet of surface that passes between eight neighbouring samples, at the mean of the
 /// sheet's zero crossings on the cell's edges; a quad, as two triangles, across each crossed edge whose four
-/// cells have their vertices. A cell with an unknown corner has none, so that what was not seen stays open.
+/// cells have their vertices. A cell with an unknown corner has none, so that what was not seen stays open;
+/// guessed samples only complete cells: no quad crosses an edge with one, and they hardly move a vertex.
 /// Vertices are in the world (mesh.origin + vertex), triangles and normals (the gradient of the trilinear
 /// distance) look to the free side, colours are those of the samples, grey where they have none.
 ///

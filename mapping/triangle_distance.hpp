@@ -5,12 +5,26 @@
 
 namespace roomradar {
 
+/// Squared distance from p to the nearest point of the segment from a along ab, in their units squared.
+inline float squared_distance_to_segment(const Eigen::Vector3f& p, const Eigen::Vector3f& a,
+                                         const Eigen::Vector3f& ab) {
+  const float along = ab.dot(p - a) / std::max(ab.squaredNorm(), 1e-30F);
+  return (p - a - std::clamp(along, 0.0F, 1.0F) * ab).squaredNorm();
+}
+
 /// Squared distance from p to the nearest point of the triangle a, b, c, in its units squared; right also for
 /// triangles without area. Source: Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 inline float squared_distance_to_triangle(const Eigen::Vector3f& p, const Eigen::Vector3f& a,
                                           const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   const Eigen::Vector3f ab = b - a;
   const Eigen::Vector3f ac = c - a;
+  const Eigen::Vector3f normal = ab.cross(ac);
+  // Of triangles as thin as this (height by length), where a point is beside them is lost in rounding.
+  constexpr float kThin = 1e-4F;
+  const float longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()});
+  if (normal.squaredNorm() <= kThin * kThin * longest2 * longest2)
+    return std::min({squared_distance_to_segment(p, a, ab), squared_distance_to_segment(p, b, c - b),
+                     squared_distance_to_segment(p, a, ac)});
   const Eigen::Vector3f ap = p - a;
   const float d1 = ab.dot(ap);
   const float d2 = ac.dot(ap);
@@ -32,9 +46,8 @@ inline float squared_distance_to_triangle(const Eigen::Vector3f& p, const Eigen:
   const float along_c = d5 - d6;
   if (va <= 0.0F && along_b >= 0.0F && along_c >= 0.0F)
     return (bp - along_b / std::max(along_b + along_c, 1e-30F) * (c - b)).squaredNorm();
-  const Eigen::Vector3f normal = ab.cross(ac);
   const float along_normal = normal.dot(ap);
-  return along_normal * along_normal / std::max(normal.squaredNorm(), 1e-30F);
+  return along_normal * along_normal / normal.squaredNorm();
 }
 
 }  // namespace roomradar

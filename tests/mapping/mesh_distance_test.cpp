@@ -49,6 +49,19 @@ TEST(TriangleDistance, AgreesWithADenseLatticeOfPoints) {
   EXPECT_FLOAT_EQ(squared_distance_to_triangle({0, 2, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}), 4.0F);
 }
 
+TEST(TriangleDistance, OfTrianglesWithCornersInOnePlaceIsThatOfTheirSide) {
+  std::mt19937 random(4);
+  for (const float apart : {0.0F, 1e-8F, 1e-6F})
+    for (int n = 0; n < 300; ++n) {
+      const Eigen::Vector3f a = point_in(random, 1.0F), b = a + 0.01F * point_in(random, 1.0F);
+      const Eigen::Vector3f beside_a = a + apart * point_in(random, 1.0F);
+      const Eigen::Vector3f on_side = a + 0.5F * (b - a);
+      EXPECT_LT(squared_distance_to_triangle(on_side, a, beside_a, b), 1e-10F);
+      EXPECT_LT(squared_distance_to_triangle(on_side, beside_a, b, a), 1e-10F);
+      EXPECT_LT(squared_distance_to_triangle(on_side, b, a, beside_a), 1e-10F);
+    }
+}
+
 TEST(SurfaceNear, FindsWhatAskingEveryTriangleFinds) {
   std::mt19937 random(2);
   const Mesh mesh = random_triangles(random);

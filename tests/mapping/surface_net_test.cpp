@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <random>
 
+#include "mapping/sample_guess.hpp"
 #include "mapping/sample_smoothing.hpp"
 #include "tests/support/edge_counts.hpp"
 
@@ -78,6 +80,63 @@ TEST(SurfaceNet, SamplesOfOneSignOrNoneMakeNone) {
   EXPECT_TRUE(surface_net(SampleBricks(StaticMap(kResolution_m), 0.0F), kResolution_m).vertices.empty());
   const StaticMap map = cube_map([](const VoxelIndex&) { return 0.004F; });
   EXPECT_TRUE(surface_net(SampleBricks(map, 0.0F), kResolution_m).triangles.empty());
+}
+
+TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
+  // A tilted plane, measured for 12 columns a side within one brick's reach of others.
+  constexpr int kFirst = -6, kLast = 5;
+  const auto distance_m = [](const VoxelIndex& voxel) {
+    return 0.01F * (static_cast<float>(voxel.z()) + 0.3F * static_cast<float>(voxel.x()) + 0.2F);
+  };
+  StaticMap map(0.01);
+  for (int x = kFirst; x <= kLast; ++x)
+    for (int y = kFirst; y <= kLast; ++y)
+      for (int z = -4; z < 4; ++z)
+        map.add_evidence(
+            SurfaceSample{.voxel = {x, y, z}, .distance_m = distance_m({x, y, z}), .weight = 1.0F});
+  SampleBricks bricks(map, 0.0F);
+  const auto reach = [&] {
+    const Mesh mesh = surface_net(bricks, 0.01);
+    Eigen::AlignedBox3f box;
+    for (const Triangle& t : mesh.triangles)
+      for (const std::uint32_t v : t) {
+        box.extend(mesh.vertices[v]);
+        const Eigen::Vector3d place = mesh.origin + mesh.vertices[v].cast<double>();
+        // Centres of voxels stand half a voxel above their index.
+        EXPECT_NEAR(place.z() - 0.005 + 0.3 * (place.x() - 0.005) + 0.002, 0.0, 1e-4);
+        EXPECT_LT((mesh.normals[v] - Eigen::Vector3f(0.3F, 0.0F, 1.0F).normalized()).norm(), 0.02F);
+      }
+    return Eigen::Vector3f(box.sizes());
+  };
+  const Eigen::Vector3f before = reach();
+  EXPECT_LT(before.y(), 0.105F);
+  guess_neighbours(bricks);
+  const Eigen::Vector3f after = reach();
+  for (const float side_m : {after.x(), after.y()}) {
+    EXPECT_GE(side_m, 0.01F * (kLast - kFirst));
+    EXPECT_LE(side_m, 0.01F * (kLast - kFirst) + 0.003F);
+  }
+}
+
+TEST(SampleGuess, RandomSignsWithGapsStillMakeASurface) {
+  std::mt19937 random(9);
+  std::bernoulli_distribution is_inside(0.4), is_missing(0.2);
+  std::uniform_real_distribution<float> size_m(0.001F, 0.009F);
+  SampleBricks bricks(
+      cube_map([&](const VoxelIndex&) { return is_inside(random) ? -size_m(random) : size_m(random); }),
+      0.0F);
+  for (Brick& brick : bricks.bricks())
+    for (BrickSample& sample : brick.samples)
+      if (is_missing(random)) sample.weight = 0.0F;
+  const std::size_t without_guesses = surface_net(bricks, kResolution_m).triangles.size();
+  guess_neighbours(bricks);
+  const Mesh mesh = surface_net(bricks, kResolution_m);
+  EXPECT_GT(mesh.triangles.size(), 2 * without_guesses);
+  for (const Eigen::Vector3f& vertex : mesh.vertices) ASSERT_TRUE(vertex.allFinite());
+  for (const auto& [edge, use] : test::edge_uses(mesh)) {
+    ASSERT_LE(use.forward, 1);
+    ASSERT_LE(use.backward, 1);
+  }
 }
 
 TEST(SampleSmoothing, WhatIsWellMeasuredStays) {
