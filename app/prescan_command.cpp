@@ -6,6 +6,7 @@
 
 #include "app/commands.hpp"
 #include "app/held_out.hpp"
+#include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
 #include "app/unfinished_scan.hpp"
@@ -139,6 +140,13 @@ void save(const PrescanCommand& command, const SavedMap& map, Checkpoints* check
   }
 }
 
+/// Throws Error that says how to go on.
+void stop(const std::string& map, Checkpoints* checkpoints) {
+  const bool resumable = checkpoints && checkpoints->has_any();
+  throw Error(map + ": stopped by Ctrl-C; no map was saved" +
+              (resumable ? ", and the same command with --resume goes on from the last checkpoint" : ""));
+}
+
 /// The map is saved: the checkpoints go, and what was wrong with them is said.
 void finish(Checkpoints& checkpoints) {
   for (const std::string& fault : checkpoints.faults())
@@ -178,6 +186,7 @@ int run(const PrescanCommand& command) {
     return 0;
   }
   const std::unique_ptr<FrameSource>& source = start.source;
+  const Interrupt interrupt;
   if (start.map) config.resolution_m = start.map->octree.resolution_m();
   announce_memory(*source, config, report);
 
@@ -191,6 +200,8 @@ int run(const PrescanCommand& command) {
       stage_shown = stage;
     }
     progress->step(note);
+    const bool ends_by_itself = start.is_live && stage == "track";
+    if (!ends_by_itself && Interrupt::take()) stop(command.map, start.checkpoints.get());
   };
   const PrescanResult scanned =
       prescan(*source, config, report.times, show, {start.checkpoints.get(), std::move(start.map)});

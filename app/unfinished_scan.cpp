@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "app/interrupt.hpp"
 #include "app/open_source.hpp"
 #include "app/sources/spooled_source.hpp"
 #include "mapping/sha256.hpp"
@@ -69,6 +70,8 @@ ScanStart start_scan(const PrescanCommand& command) {
   const bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
   if (!spooled) start.source = open_source(command.source, command.frames);
   const bool live = spooled || !start.source->rewind();
+  start.is_live = live && !spooled;
+  if (start.is_live) start.source = ended_by_interrupt(std::move(start.source));
   const std::string into = extend ? sha256_of_file(map / "map.json") : kNewMap;
   if (extend) start.map = load_map(map);
   if (extend && !live && holds(start.map->info, *start.source) &&

@@ -13,9 +13,11 @@ namespace roomradar {
 /// What a prescan is given to work with.
 struct ScanStart {
   std::unique_ptr<Checkpoints> checkpoints;  ///< null: none are asked for
-  std::unique_ptr<FrameSource> source;       ///< rewinds; a live one is spooled beside the checkpoints
-  std::optional<SavedMap> map;               ///< to be extended by what the source shows
-  bool is_done = false;                      ///< to be resumed, but the map holds all of this recording
+  /// Rewinds; a live one is spooled beside the checkpoints, and ended by Ctrl-C.
+  std::unique_ptr<FrameSource> source;
+  bool is_live = false;         ///< goes on until Ctrl-C, unless frames were asked for
+  std::optional<SavedMap> map;  ///< to be extended by what the source shows
+  bool is_done = false;         ///< to be resumed, but the map holds all of this recording
 };
 
 /// Opens the source and decides by --resume and by what lies at the map's place and beside it

@@ -241,6 +241,7 @@ void Checkpoints::write(const std::string& stage, const WriteFiles& write_files)
     return;
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  std::signal(SIGINT, SIG_IGN);  // whether to go on after a Ctrl-C is the parent's to say
   if (::getppid() != parent) ::_exit(1);
   static_cast<void>(::nice(5) + 1);
   ::_exit(try_to_write(stage, write_files) ? 0 : 1);

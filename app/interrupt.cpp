@@ -1,0 +1,63 @@
+// interrupt.cpp: one flag that a signal handler may set.
+#include "app/interrupt.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <string_view>
+#include <utility>
+
+namespace roomradar {
+namespace {
+
+volatile std::sig_atomic_t asked = 0;
+
+/// Calls only what a signal handler may call.
+void on_interrupt(int signal) {
+  if (asked != 0) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+    return;
+  }
+  asked = 1;
+  constexpr std::string_view kSaid = "\nroomradar: ends with this frame; Ctrl-C once more ends it at once\n";
+  static_cast<void>(::write(STDERR_FILENO, kSaid.data(), kSaid.size()) + 1);
+}
+
+class EndedByInterrupt final : public FrameSource {
+ public:
+  explicit EndedByInterrupt(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+
+  ReadResult next(Frame& frame) override {
+    at_end_ = at_end_ || Interrupt::take();
+    return at_end_ ? ReadResult{ReadStatus::kEnd, {}} : source_->next(frame);
+  }
+  bool rewind() override { return source_->rewind(); }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
+  [[nodiscard]] std::string name() const override { return source_->name(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  bool at_end_ = false;
+};
+
+}  // namespace
+
+Interrupt::Interrupt() {
+  asked = 0;
+  std::signal(SIGINT, on_interrupt);
+}
+
+Interrupt::~Interrupt() { std::signal(SIGINT, SIG_DFL); }
+
+bool Interrupt::take() {
+  const bool was_asked = asked != 0;
+  asked = 0;
+  return was_asked;
+}
+
+std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source) {
+  return std::make_unique<EndedByInterrupt>(std::move(source));
+}
+
+}  // namespace roomradar

@@ -1,0 +1,25 @@
+// interrupt.hpp: Ctrl-C asks the work to end well; a second one ends it as ever.
+#pragma once
+#include <memory>
+
+#include "mapping/types/frame_source.hpp"
+
+namespace roomradar {
+
+/// While one lives, SIGINT is counted instead of ending the process; a second one that comes before the first
+/// was taken ends it. One at a time.
+class Interrupt {
+ public:
+  Interrupt();
+  ~Interrupt();
+  Interrupt(const Interrupt&) = delete;
+  Interrupt& operator=(const Interrupt&) = delete;
+
+  /// Whether Ctrl-C was pressed since it was last taken.
+  static bool take();
+};
+
+/// A live source that comes to its end when Ctrl-C is pressed while it is read.
+std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source);
+
+}  // namespace roomradar
