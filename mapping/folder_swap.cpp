@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -29,6 +31,21 @@ fs::path beside(const fs::path& target, const char* word) {
   return parent_of(target) / (target.filename().string() + "." + word + "-" + std::to_string(::getpid()));
 }
 
+/// What processes that were killed while they wrote have left beside the target.
+void remove_abandoned(const fs::path& target) {
+  const std::string prefix = target.filename().string() + ".partial-";
+  std::error_code fault;
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent_of(target), fault)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    pid_t owner = 0;
+    const char* const end = name.data() + name.size();
+    const auto parsed = std::from_chars(name.data() + prefix.size(), end, owner);
+    const bool named = parsed.ec == std::errc() && parsed.ptr == end && owner > 0;
+    if (named && ::kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), fault);
+  }
+}
+
 }  // namespace
 
 void sync_to_disk(const fs::path& path) {
@@ -44,6 +61,7 @@ PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_
   std::error_code fault;
   fs::create_directories(parent_of(target), fault);
   if (fault) fail(parent_of(target), "the folder cannot be made", fault.value());
+  remove_abandoned(target);
   fs::remove_all(partial_, fault);  // of an earlier process with this number
   fs::create_directory(partial_, fault);
   if (fault) fail(partial_, "the folder cannot be made", fault.value());

@@ -11,7 +11,8 @@ void sync_to_disk(const std::filesystem::path& path);
 /// A new folder beside `target` (target.partial-PID), removed again unless it is put in place.
 class PartialFolder {
  public:
-  /// Makes it, and the folders above. Throws Error if that cannot be done.
+  /// Makes it, and the folders above; those that processes left beside `target` when they were killed go.
+  /// Throws Error if that cannot be done.
   explicit PartialFolder(const std::filesystem::path& target);
   ~PartialFolder();
   PartialFolder(const PartialFolder&) = delete;

@@ -296,6 +296,20 @@ TEST_F(MapFolder, AFullDiskLeavesTheOldMapAndNothingElse) {
   EXPECT_EQ(entries(), 1U) << "something was left beside the map";
 }
 
+TEST_F(MapFolder, WhatAKilledProcessLeftBesideTheMapGoesAndALivingOnesStays) {
+  const pid_t gone = fork();
+  ASSERT_GE(gone, 0);
+  if (gone == 0) std::_Exit(0);
+  ASSERT_EQ(waitpid(gone, nullptr, 0), gone);
+  const std::string beside = map_.string() + ".partial-";
+  const std::vector<std::string> kept = {beside + std::to_string(getppid()), beside + "1x", beside};
+  for (const std::string& folder : kept) fs::create_directory(folder);
+  fs::create_directory(beside + std::to_string(gone));
+  save_map(map_, room_);
+  EXPECT_FALSE(fs::exists(beside + std::to_string(gone)));
+  for (const std::string& folder : kept) EXPECT_TRUE(fs::exists(folder)) << folder;
+}
+
 TEST_F(MapFolder, EveryExportIsReadable) {
   const fs::path out = folder_.path() / "out";
   fs::create_directory(out);
