@@ -53,15 +53,12 @@ std::int64_t remove_ghosts(FrameSource& source, std::span<const FusedFrame> fuse
     if (progress) progress("looked");
   }
   const GhostVotes::Verdicts verdicts = votes.verdicts();
-  if (verdicts.ghosts.empty()) return 0;
+  if (verdicts.ghosts.empty() && verdicts.absent.empty()) return 0;
 
   // Out with it, and with all samples that it may have spoiled.
   const GhostZone zone = times.timed("ghosts", [&] { return GhostZone(verdicts, map.resolution_m()); });
   times.timed("ghosts", [&] {
-    map.revise_samples([&](const SurfaceSample& sample) {
-      if (zone.is_ghost(sample.voxel)) return SampleFate::kFree;
-      return zone.holds(sample.voxel) ? SampleFate::kForget : SampleFate::kKeep;
-    });
+    map.revise_samples([&](const SurfaceSample& sample) { return zone.fate_of(sample.voxel); });
   });
 
   // What is there without it?
@@ -75,7 +72,7 @@ std::int64_t remove_ghosts(FrameSource& source, std::span<const FusedFrame> fuse
     });
     if (progress) progress("fused again");
   }
-  return static_cast<std::int64_t>(verdicts.ghosts.size());
+  return static_cast<std::int64_t>(verdicts.ghosts.size() + verdicts.absent.size());
 }
 
 }  // namespace roomradar

@@ -19,9 +19,10 @@ struct FusedFrame {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Reads the source again to find the surface that frames see through, makes it free, and fuses anew what
-/// lies round it: without the pixels that saw the ghosts, as they pulled the real surface behind towards
-/// them. Stages timed: read, ghosts (of one frame). `progress` is called after each frame.
+/// Reads the source again to find the surface that frames see through, which becomes free, and what is gone
+/// with nothing measured behind, which becomes unknown; and fuses anew what lies round them: without the
+/// pixels that saw the ghosts, as they pulled the real surface behind towards them. Stages timed: read,
+/// ghosts (of one frame). `progress` is called after each frame.
 ///
 /// @return how many voxels were ghosts
 /// @throws Error if the source cannot be rewound or the config is out of its rules

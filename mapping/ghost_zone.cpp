@@ -76,11 +76,11 @@ std::optional<Rectangle> covered_by(const VoxelIndex& first, double resolution_m
 
 GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
     : resolution_m_(resolution_m) {
-  for (const VoxelIndex& ghost : verdicts.ghosts) {
+  const auto mark = [this](const VoxelIndex& ghost, std::bitset<512> Marks::*bits) {
     const auto found = marks_.find(code_of(brick_of(ghost)));
     if (found != marks_.end() && found->second.ghost_cells.test(cell_of(ghost))) {
-      found->second.ghost.set(offset_of(ghost));
-      continue;
+      (found->second.*bits).set(offset_of(ghost));
+      return;
     }
     for (int i = 0; i < 27; ++i) {
       const VoxelIndex step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
@@ -91,8 +91,10 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
     }
     Marks& own = marks_.at(code_of(brick_of(ghost)));
     own.ghost_cells.set(cell_of(ghost));
-    own.ghost.set(offset_of(ghost));
-  }
+    (own.*bits).set(offset_of(ghost));
+  };
+  for (const VoxelIndex& ghost : verdicts.ghosts) mark(ghost, &Marks::ghost);
+  for (const VoxelIndex& absent : verdicts.absent) mark(absent, &Marks::absent);
   const auto mark_near = [this](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
     for (int z = -kNear; z <= kNear; ++z)
       for (int y = -kNear; y <= kNear; ++y)
@@ -103,6 +105,7 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
         }
   };
   for (const VoxelIndex& ghost : verdicts.ghosts) mark_near(ghost, &Marks::near_ghost);
+  for (const VoxelIndex& absent : verdicts.absent) mark_near(absent, &Marks::near_ghost);
   for (const VoxelIndex& still : verdicts.still) mark_near(still, &Marks::near_still);
 }
 
@@ -111,14 +114,12 @@ const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {
   return found == marks_.end() ? nullptr : &found->second;
 }
 
-bool GhostZone::holds(const VoxelIndex& voxel) const {
+SampleFate GhostZone::fate_of(const VoxelIndex& voxel) const {
   const Marks* marks = marks_of(voxel);
-  return marks && marks->cells.test(cell_of(voxel));
-}
-
-bool GhostZone::is_ghost(const VoxelIndex& voxel) const {
-  const Marks* marks = marks_of(voxel);
-  return marks && marks->ghost.test(offset_of(voxel));
+  if (!marks) return SampleFate::kKeep;
+  if (marks->ghost.test(offset_of(voxel))) return SampleFate::kFree;
+  if (marks->absent.test(offset_of(voxel))) return SampleFate::kUnknown;
+  return marks->cells.test(cell_of(voxel)) ? SampleFate::kForget : SampleFate::kKeep;
 }
 
 bool GhostZone::in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const {

@@ -16,8 +16,9 @@ class GhostZone {
  public:
   GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m);
 
-  [[nodiscard]] bool holds(const VoxelIndex& voxel) const;
-  [[nodiscard]] bool is_ghost(const VoxelIndex& voxel) const;
+  /// Free where it is seen through, unknown where it is absent, and the zone's other samples are measured
+  /// anew.
+  [[nodiscard]] SampleFate fate_of(const VoxelIndex& voxel) const;
   /// Whether any of the zone may be in the camera's image.
   [[nodiscard]] bool in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const;
 
@@ -30,6 +31,7 @@ class GhostZone {
     std::bitset<8> cells;        // of its 2^3 cells, those in the zone
     std::bitset<8> ghost_cells;  // ... and those that hold a ghost
     std::bitset<512> ghost;
+    std::bitset<512> absent;
     std::bitset<512> near_ghost;
     std::bitset<512> near_still;
   };

@@ -17,6 +17,8 @@ namespace roomradar {
 namespace {
 
 constexpr float kNearest_m = 0.1F;  // nothing is projected from nearer to the camera's plane
+constexpr std::size_t kEveryColour =
+    4;  // of so many voxels one looks at its colour: it is a group's that counts
 
 void require(bool holds, const char* field, float value, const char* rule) {
   if (!holds) throw Error(std::string("ghosts.") + field + " = " + std::to_string(value) + ": " + rule);
@@ -122,6 +124,7 @@ GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
     votes.occupied = sample.occupancy == Occupancy::kOccupied ? 1U : 0U;
     bricks_.back().end = votes_.size();
   });
+  absence_.resize(votes_.size());
 }
 
 void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
@@ -129,6 +132,7 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   const Intrinsics& camera = frame.depth_camera;
   if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px) return;
   build_windows(depth_m, windows_);
+  absence_looks_.begin(frame, T_world_camera);
 
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   const Eigen::Matrix3f R_camera_voxels = (T_camera_world.linear() * resolution_m_).cast<float>();
@@ -167,19 +171,27 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
       const int x = static_cast<int>(u);
       const int y = static_cast<int>(v);
       const float measured_m = depth_m.at(x, y);
-      if (!(measured_m > 0.0F)) continue;
+      const auto window_at = [&, this] {
+        const int radius_px =
+            std::min(static_cast<int>(std::ceil(config_.window_radius_m * fx / z)), kMaxWindowRadius_px);
+        return window_depth(windows_, x, y, radius_px);
+      };
+      const bool has_colour = i % kEveryColour == 0;
+      if (!(measured_m > 0.0F)) {
+        absence_looks_.unmeasured(frame, x, y, p_camera, window_at().measured_share, has_colour, absence_[i]);
+        continue;
+      }
       const auto margin_m = [this](float depth) {
         return std::max(
             {config_.margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
       };
       if (std::abs(measured_m - z) <= margin_m(measured_m)) {
         ++votes.seen;
+        if (has_colour) absence_looks_.measured(frame, p_camera, absence_[i]);
         continue;
       }
       if (measured_m < z) continue;
-      const int radius_px =
-          std::min(static_cast<int>(std::ceil(config_.window_radius_m * fx / z)), kMaxWindowRadius_px);
-      const WindowDepth window = window_depth(windows_, x, y, radius_px);
+      const WindowDepth window = window_at();
       if (window.nearest_m - z > margin_m(window.nearest_m) &&
           window.measured_share >= config_.min_measured_share)
         ++votes.through;
@@ -187,9 +199,29 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   }
 }
 
+std::vector<bool> GhostVotes::find_absent() const {
+  std::vector<bool> is_absent(votes_.size(), false);
+  const auto candidates = [this](bool (*may_be)(const AbsenceVotes&, int)) {
+    std::vector<AbsenceCandidate> found;
+    std::uint32_t next = 0;
+    for (const Brick& brick : bricks_)
+      for (; next < brick.end; ++next)
+        if (may_be(absence_[next], votes_[next].seen))
+          found.push_back({brick.first + in_brick(votes_[next].offset), next, absence_[next]});
+    return found;
+  };
+  const double edge_voxels = static_cast<double>(config_.min_extent_m) / resolution_m_;
+  const auto absent = roomradar::find_absent(candidates(may_be_absent), 2.0 * edge_voxels * edge_voxels);
+  if (absent.empty()) return is_absent;
+  for (const std::uint32_t position : spread_absence(absent, candidates(may_go_along)))
+    is_absent[position] = true;
+  return is_absent;
+}
+
 GhostVotes::Verdicts GhostVotes::verdicts() const {
+  const std::vector<bool> is_absent = find_absent();
   std::vector<VoxelIndex> seen_through;
-  std::vector<std::uint8_t> occupied;
+  std::vector<std::size_t> position;
   Verdicts verdicts;
   std::size_t next = 0;
   for (const Brick& brick : bricks_) {
@@ -199,7 +231,9 @@ GhostVotes::Verdicts GhostVotes::verdicts() const {
       const auto share = static_cast<float>(votes.seen + votes.through) * config_.min_through_share;
       if (votes.through >= config_.min_through && static_cast<float>(votes.through) >= share) {
         seen_through.push_back(voxel);
-        occupied.push_back(votes.occupied);
+        position.push_back(next);
+      } else if (is_absent[next]) {
+        verdicts.absent.push_back(voxel);
       } else if (votes.occupied != 0) {
         verdicts.still.push_back(voxel);
       }
@@ -210,7 +244,9 @@ GhostVotes::Verdicts GhostVotes::verdicts() const {
   for (std::size_t i = 0; i < seen_through.size(); ++i) {
     if (static_cast<double>(together[i]) >= 2.0 * edge_voxels * edge_voxels)
       verdicts.ghosts.push_back(seen_through[i]);
-    else if (occupied[i] != 0)
+    else if (is_absent[position[i]])
+      verdicts.absent.push_back(seen_through[i]);
+    else if (votes_[position[i]].occupied != 0)
       verdicts.still.push_back(seen_through[i]);
   }
   return verdicts;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mapping/absence.hpp"
 #include "mapping/depth_windows.hpp"
 #include "mapping/static_map.hpp"
 
@@ -35,7 +36,8 @@ void require_valid(const GhostConfig& config);
 
 /// Counts, for each voxel of the map that holds surface, how many frames see it and how many see through it.
 /// A hand that rested on the table for half of the recording is as well measured as the table; that the table
-/// is seen through it in the other half tells it from what is static. Frames without depth there say nothing.
+/// is seen through it in the other half tells it from what is static. Frames without depth there count as
+/// AbsenceVotes.
 class GhostVotes {
  public:
   /// Takes the map's surface as it is now: samples within a voxel of the surface, and occupied ones. Throws
@@ -47,12 +49,15 @@ class GhostVotes {
 
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< seen through often enough, and enough of them together
+    std::vector<VoxelIndex> absent;  ///< gone, with nothing measured behind
     std::vector<VoxelIndex> still;   ///< other surface that is occupied
   };
   /// Each in the octree's order.
   [[nodiscard]] Verdicts verdicts() const;
 
  private:
+  [[nodiscard]] std::vector<bool> find_absent() const;  // by the votes' order
+
   struct Votes {
     std::uint16_t offset : 9 = 0;  // in its brick
     std::uint16_t occupied : 1 = 0;
@@ -68,6 +73,8 @@ class GhostVotes {
   GhostConfig config_;
   std::vector<Brick> bricks_;
   std::vector<Votes> votes_;
+  std::vector<AbsenceVotes> absence_;  // in the same order
+  AbsenceLooks absence_looks_;
   DepthWindows windows_;
 };
 

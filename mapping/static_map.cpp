@@ -118,6 +118,7 @@ Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free,
         if (fate == SampleFate::kKeep) continue;
         forget_sample(block, i);
         if (fate == SampleFate::kFree) block.log_odds[i] = free;
+        if (fate == SampleFate::kUnknown) block.log_odds[i] = 0;
       }
     });
   InnerBlock& block = tree.inner(node);

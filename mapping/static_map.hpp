@@ -48,8 +48,9 @@ struct MapLeaf {
 /// What becomes of a sample when the map is revised.
 enum class SampleFate {
   kKeep,
-  kForget,  ///< its signed distance and colour go; whether it is occupied stays
-  kFree,    ///< it goes, and the voxel becomes as free as it can be
+  kForget,   ///< its signed distance and colour go; whether it is occupied stays
+  kFree,     ///< it goes, and the voxel becomes as free as it can be
+  kUnknown,  ///< it goes, and what is known of the voxel
 };
 
 struct MapCounts {

@@ -176,7 +176,60 @@ TEST(Ghosts, WhatIsNeverSeenThroughIsLeftAsItIs) {
   }
 }
 
-TEST(Ghosts, FramesWithoutDepthBehindAGhostAreNoEvidence) {
+// A shelf below, and a slab of 40 cm above it with nothing measured behind. Frame i has depth of the slab
+// where is_measured(i, eye), and its colour where is_there(i); behind it is another.
+template <typename IsThere, typename IsMeasured>
+std::vector<Frame> record_slab(const IsThere& is_there, const IsMeasured& is_measured) {
+  constexpr Rgb kSlab{180, 60, 50}, kBehind{90, 90, 100};
+  const Scene slab = test::box({Eigen::Vector3d(-0.2, 1.6, -0.2), Eigen::Vector3d(0.2, 1.8, 0.2)});
+  const Scene shelf = test::box({Eigen::Vector3d(-2.0, 1.2, -0.6), Eigen::Vector3d(2.0, 2.4, -0.5)});
+  std::vector<Frame> frames;
+  for (int i = 0; i < 45; ++i) {
+    const Eigen::Vector3d eye(0.15 * std::sin(0.3 * i), 0.0, 0.05 * std::cos(0.3 * i));
+    const Eigen::Isometry3d T_world_camera = looking_at(eye, {0.0, 2.0, 0.0});
+    Frame frame = exact_frame(is_measured(i, eye) ? test::nearest_of(shelf, slab) : shelf, kCamera,
+                              T_world_camera, kBehind);
+    for (int y = 0; y < kCamera.height_px && is_there(i); ++y)
+      for (int x = 0; x < kCamera.width_px; ++x)
+        if (std::isfinite(slab(eye, T_world_camera.linear() * back_project(kCamera, x, y, 1.0))))
+          frame.colour.at(x, y) = kSlab;
+    frame.index = i;
+    test::add_depth_noise(frame, 1 + static_cast<unsigned>(i));
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+const Eigen::Vector3d kInSlabsFace(0.01, 1.61, 0.01), kInShelf(0.01, 1.81, -0.51);
+
+TEST(Ghosts, WhatWasThereForAThirdOfTheFramesIsUnknownThoughNothingIsMeasuredBehind) {
+  const auto is_there = [](int i, const auto&...) { return i >= 15 && i < 30; };
+  const Scan scanned = scan(FrameList(record_slab(is_there, is_there)));
+  EXPECT_GE(scanned.ghosts, 400);  // its face alone is 20 x 20 voxels
+  std::int64_t left = 0;
+  scanned.map.visit_samples([&](const SurfaceSample& sample) {
+    left += sample.occupancy == Occupancy::kOccupied && sample.voxel.z() * kResolution_m > -0.4;
+  });
+  EXPECT_EQ(left, 0);
+  EXPECT_EQ(scanned.map.occupancy_at(kInSlabsFace), Occupancy::kUnknown);
+  EXPECT_EQ(scanned.map.occupancy_at(kInShelf), Occupancy::kOccupied);
+}
+
+TEST(Ghosts, ADarkPanelThatIsMeasuredFromSomeSidesOnlyStays) {
+  const auto frames =
+      record_slab([](int) { return true; }, [](int, const Eigen::Vector3d& eye) { return eye.x() < -0.09; });
+  const Scan scanned = scan(FrameList(frames));  // measured in less than a third of the frames
+  EXPECT_EQ(scanned.ghosts, 0);
+  EXPECT_EQ(scanned.map.occupancy_at(kInSlabsFace), Occupancy::kOccupied);
+}
+
+TEST(Ghosts, WhatStandsThereForMoreThanHalfOfTheFramesBeforeNothingMeasuredStays) {
+  const auto is_there = [](int i, const auto&...) { return i < 25; };
+  const Scan scanned = scan(FrameList(record_slab(is_there, is_there)));
+  EXPECT_EQ(scanned.ghosts, 0);
+  EXPECT_EQ(scanned.map.occupancy_at(kInSlabsFace), Occupancy::kOccupied);
+}
+
+TEST(Ghosts, FramesWithoutDepthBehindAGhostAreNoEvidenceWithoutColour) {
   const Scene with_box = before_wall({-0.1, 1.6, -0.1}, {0.1, 1.8, 0.1});
   auto frames = record(40, [&](int i) { return i < 20 ? with_box : wall(); });
   // Where the box was, and round it, the later frames have no depth.
