@@ -85,8 +85,8 @@ struct PrescanStart {
 /// Scans a room. The source is read to know where the camera was, again to fuse with the final poses, and in
 /// part twice more where something moved on and has to go from the map. The map's world is the recording's
 /// own (recorded poses) or the first camera's (tracked), turned so that +z is up. Stages timed: read, track,
-/// optimise, fuse, ghosts, surface, coverage, checkpoint (what it holds the work up), and frame (track and fuse
-/// of one frame together; no reading).
+/// optimise, fuse, ghosts, surface, coverage, checkpoint (what it holds the work up), and frame (track and
+/// fuse of one frame together; no reading).
 ///
 /// @throws Error if the source cannot be rewound, has no frame at all, or not one frame's pose is trusted; if
 /// the start's map does not show the room that the source shows, or too little of it to be certain
