@@ -6,6 +6,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "mapping/types/cell_code.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -26,26 +28,19 @@ void add(Count& count, int n = 1) {
   count = static_cast<Count>(std::min<int>(count + n, std::numeric_limits<Count>::max()));
 }
 
-std::uint64_t code_of(const VoxelIndex& voxel) {
-  const auto field = [](int v) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v + (1 << 20)) & 0x1F'FFFFU);
-  };
-  return field(voxel.x()) | field(voxel.y()) << 21U | field(voxel.z()) << 42U;
-}
-
 // Voxels by place, each handed out once.
 class Unreached {
  public:
   explicit Unreached(std::span<const AbsenceCandidate> voxels) : voxels_(voxels) {
     index_of_.reserve(voxels.size());
-    for (std::size_t i = 0; i < voxels.size(); ++i) index_of_.emplace(code_of(voxels[i].voxel), i);
+    for (std::size_t i = 0; i < voxels.size(); ++i) index_of_.emplace(cell_code(voxels[i].voxel), i);
   }
 
   // Takes a voxel and its 26 neighbours, those that are there.
   template <typename Take>
   void take_round(const VoxelIndex& voxel, const Take& take) {
-    for (int i = 0; i < 27; ++i) {
-      const auto found = index_of_.find(code_of(voxel + VoxelIndex(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+    for (int i = 0; i < kCellsRound; ++i) {
+      const auto found = index_of_.find(cell_code(voxel + cell_round(i)));
       if (found == index_of_.end()) continue;
       const AbsenceCandidate& taken = voxels_[found->second];
       index_of_.erase(found);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "mapping/sample_bricks.hpp"
+#include "mapping/types/cell_code.hpp"
 
 namespace roomradar {
 namespace {
@@ -14,17 +15,6 @@ constexpr int kNear = 2;      // voxels: rounding, and noise where samples are a
 constexpr int kCellEdge = 4;  // voxels, half a brick
 constexpr double kNearest_m =
     0.1;  // bricks with a corner nearer to the camera's plane are taken to fill the image
-
-VoxelIndex brick_of(const VoxelIndex& voxel) {
-  return voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
-}
-
-std::uint64_t code_of(const VoxelIndex& first) {
-  const auto field = [](int v) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v + (1 << 20)));
-  };
-  return field(first.x()) | field(first.y()) << 21U | field(first.z()) << 42U;
-}
 
 std::size_t offset_of(const VoxelIndex& voxel) {
   return brick_offset(voxel.unaryExpr([](int v) { return v & (kBrickEdge - 1); }));
@@ -77,7 +67,7 @@ std::optional<Rectangle> covered_by(const VoxelIndex& first, double resolution_m
 GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
     : resolution_m_(resolution_m) {
   const auto mark = [this](const VoxelIndex& ghost, std::bitset<512> Marks::*bits) {
-    const auto found = marks_.find(code_of(brick_of(ghost)));
+    const auto found = marks_.find(cell_code(brick_of(ghost)));
     if (found != marks_.end() && found->second.ghost_cells.test(cell_of(ghost))) {
       (found->second.*bits).set(offset_of(ghost));
       return;
@@ -85,11 +75,11 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
     for (int i = 0; i < 27; ++i) {
       const VoxelIndex step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
       const VoxelIndex first = brick_of(ghost) + kBrickEdge * step;
-      if (marks_.try_emplace(code_of(first)).second) bricks_.push_back(first);
+      if (marks_.try_emplace(cell_code(first)).second) bricks_.push_back(first);
       const VoxelIndex neighbour = ghost + kCellEdge * step;
-      marks_[code_of(brick_of(neighbour))].cells.set(cell_of(neighbour));
+      marks_[cell_code(brick_of(neighbour))].cells.set(cell_of(neighbour));
     }
-    Marks& own = marks_.at(code_of(brick_of(ghost)));
+    Marks& own = marks_.at(cell_code(brick_of(ghost)));
     own.ghost_cells.set(cell_of(ghost));
     (own.*bits).set(offset_of(ghost));
   };
@@ -100,7 +90,7 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
       for (int y = -kNear; y <= kNear; ++y)
         for (int x = -kNear; x <= kNear; ++x) {
           const VoxelIndex near = voxel + VoxelIndex(x, y, z);
-          const auto found = marks_.find(code_of(brick_of(near)));
+          const auto found = marks_.find(cell_code(brick_of(near)));
           if (found != marks_.end()) (found->second.*bits).set(offset_of(near));
         }
   };
@@ -110,7 +100,7 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
 }
 
 const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {
-  const auto found = marks_.find(code_of(brick_of(voxel)));
+  const auto found = marks_.find(cell_code(brick_of(voxel)));
   return found == marks_.end() ? nullptr : &found->second;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mapping/sample_bricks.hpp"
+#include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/error.hpp"
 
@@ -40,12 +41,6 @@ Eigen::Vector3i in_brick(std::uint16_t offset) {
   return {offset & 7, offset >> 3 & 7, offset >> 6};
 }
 
-std::uint64_t code_of(const VoxelIndex& voxel) {
-  const Eigen::Array3i key = voxel.array() + (1 << 20);
-  return static_cast<std::uint64_t>(key.x()) | static_cast<std::uint64_t>(key.y()) << 21U |
-         static_cast<std::uint64_t>(key.z()) << 42U;
-}
-
 // For each voxel, how many hang together with it, itself among them: those in cells of 4^3 voxels that touch.
 std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) {
   const auto cell_of = [](const VoxelIndex& voxel) -> VoxelIndex {
@@ -59,7 +54,7 @@ std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) 
   std::vector<Cell> cells;
   std::unordered_map<std::uint64_t, std::size_t> position;
   for (const VoxelIndex& voxel : voxels) {
-    const auto [found, is_new] = position.try_emplace(code_of(cell_of(voxel)), cells.size());
+    const auto [found, is_new] = position.try_emplace(cell_code(cell_of(voxel)), cells.size());
     if (is_new) cells.push_back({cell_of(voxel)});
     ++cells[found->second].voxels;
   }
@@ -73,9 +68,8 @@ std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) 
     for (std::size_t done = 0; done < group.size(); ++done) {
       const Cell& cell = cells[group[done]];
       count += cell.voxels;
-      for (int i = 0; i < 27; ++i) {
-        const auto found =
-            position.find(code_of(cell.index + VoxelIndex(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+      for (int i = 0; i < kCellsRound; ++i) {
+        const auto found = position.find(cell_code(cell.index + cell_round(i)));
         if (found == position.end() || reached[found->second] != 0) continue;
         reached[found->second] = 1;
         group.push_back(found->second);
@@ -86,7 +80,7 @@ std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) 
   std::vector<std::size_t> together;
   together.reserve(voxels.size());
   for (const VoxelIndex& voxel : voxels)
-    together.push_back(cells[position.at(code_of(cell_of(voxel)))].together);
+    together.push_back(cells[position.at(cell_code(cell_of(voxel)))].together);
   return together;
 }
 
@@ -117,7 +111,7 @@ GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
   const auto voxel_m = static_cast<float>(resolution_m_);
   map.visit_samples([&](const SurfaceSample& sample) {
     if (sample.occupancy != Occupancy::kOccupied && std::abs(sample.distance_m) > voxel_m) return;
-    const VoxelIndex first = sample.voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
+    const VoxelIndex first = brick_of(sample.voxel);
     if (bricks_.empty() || bricks_.back().first != first) bricks_.push_back({first, 0});
     Votes& votes = votes_.emplace_back();
     votes.offset = brick_offset(sample.voxel - first) & 511U;

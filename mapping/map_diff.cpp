@@ -9,16 +9,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "mapping/types/cell_code.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
-
-std::uint64_t key_of(const VoxelIndex& voxel) {
-  constexpr int kOffset = 1 << 20;
-  const auto digit = [](int i) { return static_cast<std::uint64_t>(i + kOffset) & 0x1FFFFFU; };
-  return digit(voxel.x()) << 42U | digit(voxel.y()) << 21U | digit(voxel.z());
-}
 
 /// A surface voxel of one map where the other knows free space.
 struct Suspect {
@@ -77,7 +72,7 @@ class ThingFinder {
                   return lacks_.occupancy_at(p + clearance_m_ * direction) == Occupancy::kFree &&
                          lacks_.occupancy_at(p + 0.5 * clearance_m_ * direction) == Occupancy::kFree;
                 });
-            suspects_.emplace(key_of(voxel), suspect);
+            suspects_.emplace(cell_code(voxel), suspect);
             order_.push_back(voxel);
           }
     });
@@ -90,7 +85,7 @@ class ThingFinder {
       for (int y = -radius; y <= radius; ++y)
         for (int x = -radius; x <= radius; ++x) {
           const VoxelIndex other = voxel + VoxelIndex(x, y, z);
-          if (const auto found = suspects_.find(key_of(other)); found != suspects_.end())
+          if (const auto found = suspects_.find(cell_code(other)); found != suspects_.end())
             visit(other, found->second);
         }
   }
@@ -100,7 +95,7 @@ class ThingFinder {
     const int most = static_cast<int>(std::ceil(clearance_m_ / has_.resolution_m())) + 1;
     std::vector<VoxelIndex> rim;
     for (const VoxelIndex& voxel : order_) {
-      Suspect& suspect = suspects_.at(key_of(voxel));
+      Suspect& suspect = suspects_.at(cell_code(voxel));
       if (!suspect.clear) continue;
       suspect.steps = 0;
       rim.push_back(voxel);
@@ -123,7 +118,7 @@ class ThingFinder {
     std::vector<std::vector<VoxelIndex>> things;
     int number = 0;
     for (const VoxelIndex& first : order_) {
-      Suspect& start = suspects_.at(key_of(first));
+      Suspect& start = suspects_.at(cell_code(first));
       if (start.steps < 0 || start.thing >= 0) continue;
       start.thing = number;
       std::vector<VoxelIndex> thing{first};
@@ -145,7 +140,7 @@ class ThingFinder {
     std::size_t clear = 0;
     Eigen::AlignedBox3d box;
     for (const VoxelIndex& voxel : thing) {
-      if (!suspects_.at(key_of(voxel)).clear) continue;
+      if (!suspects_.at(cell_code(voxel)).clear) continue;
       ++clear;
       box.extend(centre(voxel));
     }

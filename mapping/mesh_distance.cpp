@@ -8,20 +8,13 @@
 #include <limits>
 
 #include "mapping/triangle_distance.hpp"
+#include "mapping/types/cell_code.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kReachesACube = 4.0F;  // a query looks into one to eight cubes
-
-// 21 bits an axis; a mesh reaches over fewer cubes.
-std::uint64_t code_of(const Eigen::Array3i& cube) {
-  const auto field = [](int coordinate) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(coordinate + 16)) & 0x1F'FFFFU;
-  };
-  return field(cube.x()) | field(cube.y()) << 21U | field(cube.z()) << 42U;
-}
 
 std::uint64_t mixed(std::uint64_t code) { return code * 0x9E3779B97F4A7C15U; }
 // A hash is its upper bits. Tells cubes of one hash apart; two that it does not cost time, not truth.
@@ -67,7 +60,7 @@ void SurfaceNear::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f&
   if ((high - low).maxCoeff() <= 1) {
     for (int z = low.z(); z <= high.z(); ++z)
       for (int y = low.y(); y <= high.y(); ++y)
-        for (int x = low.x(); x <= high.x(); ++x) visit(code_of({x, y, z}));
+        for (int x = low.x(); x <= high.x(); ++x) visit(cell_code(x, y, z));
     return;
   }
   const float ab = (b - a).squaredNorm();
@@ -94,7 +87,7 @@ float SurfaceNear::distance_m(const Eigen::Vector3f& p, float enough_m) const {
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int x = low.x(); x <= high.x(); ++x) {
-        const std::uint64_t wanted = code_of({x, y, z});
+        const std::uint64_t wanted = cell_code(x, y, z);
         const std::size_t hash = hash_of(mixed(wanted));
         const std::uint32_t tag = tag_of(wanted);
         for (std::uint32_t i = first_of_hash_[hash]; i < first_of_hash_[hash + 1]; ++i) {

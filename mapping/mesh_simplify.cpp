@@ -14,6 +14,7 @@
 #include "mapping/mesh_blocks.hpp"
 #include "mapping/mesh_distance.hpp"
 #include "mapping/mesh_pieces.hpp"
+#include "mapping/types/cell_code.hpp"
 
 namespace roomradar {
 namespace {
@@ -31,21 +32,14 @@ constexpr float kLeastOfBound = 0.2F;  // below, a vertex is kept as it is
 // Lessens the tolerance of all vertices within radius_m of a far point.
 void tighten_around(const Mesh& mesh, const std::vector<FarPoint>& far, float radius_m, float least_m,
                     std::vector<float>& tolerance_m) {
-  const auto cube_of = [&](const Eigen::Vector3f& p) -> Eigen::Array3i {
+  const auto cube_of = [&](const Eigen::Vector3f& p) -> Eigen::Vector3i {
     return (p / radius_m).array().floor().cast<int>();
   };
-  const auto code = [](const Eigen::Array3i& cube) {
-    const auto field = [](int i) {
-      return static_cast<std::uint64_t>(static_cast<std::uint32_t>(i)) & 0x1F'FFFFU;
-    };
-    return field(cube.x()) | field(cube.y()) << 21U | field(cube.z()) << 42U;
-  };
   std::unordered_multimap<std::uint64_t, std::size_t> in_cube;
-  for (std::size_t i = 0; i < far.size(); ++i) in_cube.emplace(code(cube_of(far[i].position)), i);
+  for (std::size_t i = 0; i < far.size(); ++i) in_cube.emplace(cell_code(cube_of(far[i].position)), i);
   const auto is_near = [&](const Eigen::Vector3f& p) {
-    for (int n = 0; n < 27; ++n) {
-      const auto [begin, end] =
-          in_cube.equal_range(code(cube_of(p) + Eigen::Array3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)));
+    for (int n = 0; n < kCellsRound; ++n) {
+      const auto [begin, end] = in_cube.equal_range(cell_code(cube_of(p) + cell_round(n)));
       if (std::any_of(begin, end, [&](const auto& entry) {
             return (far[entry.second].position - p).squaredNorm() <= radius_m * radius_m;
           }))

@@ -1,6 +1,8 @@
 // sample_bricks.cpp: sorting an octree's samples into bricks.
 #include "mapping/sample_bricks.hpp"
 
+#include "mapping/types/cell_code.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -8,22 +10,14 @@ static_assert(sizeof(BrickSample) == 12);
 constexpr int kBrickShift = 3;
 static_assert(1 << kBrickShift == kBrickEdge);
 
-std::uint64_t place_code(const VoxelIndex& first) {
-  const auto field = [](int coordinate) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>((coordinate >> kBrickShift) + (1 << 20)) &
-                                      0x1F'FFFFU);
-  };
-  return field(first.x()) | field(first.y()) << 21U | field(first.z()) << 42U;
-}
-
 }  // namespace
 
 SampleBricks::SampleBricks(const StaticMap& map, float min_weight) {
   map.visit_samples([&](const SurfaceSample& sample) {
     if (sample.weight < min_weight) return;
-    const VoxelIndex first = sample.voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
+    const VoxelIndex first = brick_of(sample.voxel);
     if (bricks_.empty() || bricks_.back().first != first) {  // the octree's order visits each brick once
-      by_place_.emplace(place_code(first), bricks_.size());
+      by_place_.emplace(cell_code(first), bricks_.size());
       bricks_.emplace_back().first = first;
     }
     bricks_.back().samples[brick_offset(sample.voxel - first)] = {.distance_m = sample.distance_m,
@@ -34,7 +28,7 @@ SampleBricks::SampleBricks(const StaticMap& map, float min_weight) {
 }
 
 std::size_t SampleBricks::find(const VoxelIndex& first) const {
-  const auto found = by_place_.find(place_code(first));
+  const auto found = by_place_.find(cell_code(first));
   return found == by_place_.end() ? kNone : found->second;
 }
 

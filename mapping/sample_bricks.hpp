@@ -20,7 +20,7 @@ struct BrickSample {
   [[nodiscard]] bool known() const { return weight > 0.0F; }
 };
 
-inline constexpr int kBrickEdge = 8;  // voxels
+inline constexpr int kBrickEdge = 8;  // voxels, a power of two
 
 struct Brick {
   VoxelIndex first = VoxelIndex::Zero();  ///< its lowest voxel, a multiple of kBrickEdge
@@ -43,6 +43,11 @@ class SampleBricks {
   std::vector<Brick> bricks_;
   std::unordered_map<std::uint64_t, std::size_t> by_place_;
 };
+
+/// The lowest voxel of the brick that a voxel lies in.
+inline VoxelIndex brick_of(const VoxelIndex& voxel) {
+  return voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
+}
 
 /// Position of a voxel in its brick's arrays; offsets in 0..kBrickEdge-1.
 inline std::size_t brick_offset(const Eigen::Vector3i& offset) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mapping/types/cell_code.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -12,12 +14,10 @@ constexpr int kStep_px = 16;
 constexpr float kFarthest_m = 4.0F;
 
 std::uint64_t code_of(const Eigen::Vector3d& p_world) {
-  const auto field = [](double coordinate_m) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(coordinate_m / kCell_m)) +
-                                      (1 << 20)) &
-           0x1F'FFFFU;
+  const auto cell = [](double coordinate_m) {
+    return static_cast<std::int64_t>(std::floor(coordinate_m / kCell_m));
   };
-  return field(p_world.x()) | field(p_world.y()) << 21U | field(p_world.z()) << 42U;
+  return cell_code(cell(p_world.x()), cell(p_world.y()), cell(p_world.z()));
 }
 
 }  // namespace

@@ -26,6 +26,7 @@
 #include "app/sim/movers.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "mapping/prescan.hpp"
+#include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/error.hpp"
 
@@ -100,13 +101,6 @@ class RenderedFrames final : public FrameSource {
   std::size_t next_ = 0;
 };
 
-std::uint64_t code_of(const VoxelIndex& voxel) {
-  const auto field = [](int v) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(v + (1 << 20)) & 0x1F'FFFFU);
-  };
-  return field(voxel.x()) | field(voxel.y()) << 21U | field(voxel.z()) << 42U;
-}
-
 struct Leaf {
   VoxelIndex voxel;
   Eigen::Vector3d centre_room;
@@ -123,7 +117,7 @@ struct Scan {
     for (int z = -reach; z <= reach; ++z)
       for (int y = -reach; y <= reach; ++y)
         for (int x = -reach; x <= reach; ++x)
-          if (codes.contains(code_of(voxel + VoxelIndex(x, y, z)))) return true;
+          if (codes.contains(cell_code(voxel + VoxelIndex(x, y, z)))) return true;
     return false;
   }
 };
@@ -151,7 +145,7 @@ Scan scan(const SimOptions& options, bool glass, const Settings& settings) {
           T_room_map * ((own.cast<double>().array() + 0.5) * settings.resolution_m).matrix();
       const VoxelIndex voxel = (centre_room / settings.resolution_m).array().floor().cast<int>();
       scan.occupied.push_back({voxel, centre_room});
-      scan.codes.insert(code_of(voxel));
+      scan.codes.insert(cell_code(voxel));
     }
   });
   return scan;

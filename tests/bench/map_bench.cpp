@@ -23,6 +23,7 @@
 #include "app/sim/room.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "mapping/prescan.hpp"
+#include "mapping/types/cell_code.hpp"
 
 namespace roomradar {
 namespace {
@@ -38,12 +39,7 @@ struct Cell {
   std::string source;
 };
 
-std::uint64_t cell_of(const Eigen::Vector3d& p, double edge_m) {
-  std::uint64_t key = 0;
-  for (int axis = 0; axis < 3; ++axis)
-    key = key << 21U | (static_cast<std::uint64_t>(std::floor(p[axis] / edge_m) + 1048576.0) & 0x1fffffU);
-  return key;
-}
+Eigen::Vector3i cell_of(const Eigen::Vector3d& p) { return (p / kCovered_m).array().floor().cast<int>(); }
 
 /// Points of the true surface, one a 2 cm cell, that enough frames measured. Room frame.
 std::vector<Eigen::Vector3d> seen_surface(SimulatedSource& source) {
@@ -66,7 +62,7 @@ std::vector<Eigen::Vector3d> seen_surface(SimulatedSource& source) {
         const Eigen::Vector3d p_camera((x - camera.cx_px) / camera.fx_px * z,
                                        (y - camera.cy_px) / camera.fy_px * z, z);
         const Eigen::Vector3d p_room = truth.T_world_camera * p_camera;
-        Seen& seen = cells.try_emplace(cell_of(p_room, kCovered_m), Seen{p_room}).first->second;
+        Seen& seen = cells.try_emplace(cell_code(cell_of(p_room)), Seen{p_room}).first->second;
         if (seen.last_frame == frame.index) continue;
         seen.last_frame = frame.index;
         ++seen.frames;
@@ -127,14 +123,13 @@ double weighted_quantile(std::vector<std::pair<double, double>> size_and_weight,
 /// Part of `points` that have one of `spread` within kCovered_m.
 double covered_part(const std::vector<Eigen::Vector3d>& points, const SurfacePoints& spread) {
   std::unordered_multimap<std::uint64_t, std::size_t> near;
-  for (std::size_t i = 0; i < spread.points.size(); i += 1)
-    near.emplace(cell_of(spread.points[i], kCovered_m), i);
+  for (std::size_t i = 0; i < spread.points.size(); ++i)
+    near.emplace(cell_code(cell_of(spread.points[i])), i);
   std::size_t covered = 0;
   for (const Eigen::Vector3d& point : points) {
     bool found = false;
-    for (int n = 0; n < 27 && !found; ++n) {
-      const Eigen::Vector3d offset(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
-      const auto [begin, end] = near.equal_range(cell_of(point + offset * kCovered_m, kCovered_m));
+    for (int n = 0; n < kCellsRound && !found; ++n) {
+      const auto [begin, end] = near.equal_range(cell_code(cell_of(point) + cell_round(n)));
       found = std::any_of(begin, end, [&](const auto& entry) {
         return (spread.points[entry.second] - point).squaredNorm() <= kCovered_m * kCovered_m;
       });
