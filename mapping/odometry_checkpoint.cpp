@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mapping/binary_file.hpp"
+#include "mapping/checkpoints.hpp"
 #include "mapping/odometry_snapshot.hpp"
 #include "mapping/types/error.hpp"
 
@@ -227,25 +228,20 @@ std::vector<KeptFrame> take_frames(BinaryReader& in, std::size_t keyframes) {
   return frames;
 }
 
-/// A file of `previous` under this name again, or nothing.
-bool is_linked(const fs::path& into, const fs::path& previous, const fs::path& name) {
-  std::error_code fault;
-  if (previous.empty() || !fs::exists(previous / name, fault)) return false;
-  fs::create_hard_link(previous / name, into / name, fault);
-  return !fault || fs::copy_file(previous / name, into / name, fault);
-}
-
 }  // namespace
 
 void save_odometry(const Odometry& odometry, const fs::path& into, const fs::path& previous) {
   const OdometrySnapshot kept = odometry.snapshot();
+  const auto is_carried_over = [&](const fs::path& name) {
+    return !previous.empty() && carry_over(previous / name, into / name);
+  };
   for (std::size_t i = 0; i < kept.graph.keyframes.size(); ++i) {
     const fs::path name = view_name(i, kept.graph.keyframes[i].revision);
-    if (!is_linked(into, previous, name)) write_view(*kept.graph.keyframes[i].view, into / name);
+    if (!is_carried_over(name)) write_view(*kept.graph.keyframes[i].view, into / name);
   }
   for (std::size_t i = 0; i < kept.places.keyframes.size(); ++i) {
     const fs::path name = place_name(i);
-    if (!is_linked(into, previous, name)) write_places({{kept.places.keyframes[i]}}, into / name);
+    if (!is_carried_over(name)) write_places({{kept.places.keyframes[i]}}, into / name);
   }
   std::string out;
   put_counts(out, kept.counts);
