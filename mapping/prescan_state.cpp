@@ -1,13 +1,13 @@
 // prescan_state.cpp: the fields of a prescan's state, and the files that hold them.
 //
-// state.bin: "RRSTATE1" and then the fields, in the order of the functions below; numbers little-endian,
-// lists with their length (u64) before them. Beside it, in the first pass, odometry/
+// state.bin: as binary_file.hpp says, "RRPRSCAN", with the fields in the order of the functions below;
+// numbers little-endian, lists with their length (u64) before them. Beside it, in the first pass, odometry/
 // (odometry_checkpoint.cpp), and in the second octree.ot and places.bin as in a map.
 #include "mapping/prescan_state.hpp"
 
-#include <fstream>
 #include <string>
 
+#include "mapping/binary_file.hpp"
 #include "mapping/odometry_checkpoint.hpp"
 #include "mapping/types/byte_archive.hpp"
 
@@ -66,7 +66,8 @@ constexpr const char* kState = "state.bin";
 constexpr const char* kOdometry = "odometry";
 constexpr const char* kOctree = "octree.ot";
 constexpr const char* kPlaces = "places.bin";
-constexpr std::string_view kMagic = "RRSTATE1";
+constexpr std::string_view kMagic = "RRPRSCAN";
+constexpr std::uint32_t kVersion = 1;
 
 template <typename Archive>
 void transfer_state(Archive& archive, TrackingPass& pass) {
@@ -90,23 +91,14 @@ void transfer_state(Archive& archive, FusingPass& pass) {
 template <typename Pass>
 void write_fields(Pass& pass, const fs::path& path) {
   ByteWriter archive;
-  archive.raw(kMagic.data(), kMagic.size());
   transfer_state(archive, pass);
-  std::ofstream file(path, std::ios::binary);
-  file.write(archive.bytes().data(), static_cast<std::streamsize>(archive.bytes().size()));
-  file.close();
-  if (!file) throw Error(path.string() + ": cannot be written; is the disk full?");
+  write_binary(path, kMagic, kVersion, archive.bytes());
 }
 
 template <typename Pass>
 void read_fields(const fs::path& path, Pass& pass) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) throw Error(path.string() + ": cannot be read");
+  const std::string bytes = read_binary(path, kMagic, kVersion);
   ByteReader archive(bytes, path.string());
-  std::string magic(kMagic.size(), '\0');
-  archive.raw(magic.data(), magic.size());
-  if (magic != kMagic) archive.fail("is no prescan's state, or of another version");
   transfer_state(archive, pass);
   archive.require_end();
 }
