@@ -32,8 +32,6 @@ Registration require_registered(const SavedMap& a, const SavedMap& b, const std:
   return found;
 }
 
-nlohmann::json list(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 }  // namespace
 
 int run(const MapMergeCommand& command) {
@@ -82,8 +80,8 @@ int run(const MapDiffCommand& command) {
     std::printf("%-8s  %7.2f %7.2f %7.2f  %6.2f %6.2f %6.2f  %7.1f\n", to_string(change.kind).data(), at.x(),
                 at.y(), at.z(), size.x(), size.y(), size.z(), 1e3 * change.volume_m3);
     rows.push_back({{"kind", to_string(change.kind)},
-                    {"position_m", list(at)},
-                    {"size_m", list(size)},
+                    {"position_m", to_json(at)},
+                    {"size_m", to_json(size)},
                     {"area_m2", change.area_m2},
                     {"volume_m3", change.volume_m3}});
   }

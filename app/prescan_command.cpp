@@ -17,9 +17,7 @@
 namespace roomradar {
 namespace {
 
-nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-nlohmann::json to_json(const Hole& hole) {
+nlohmann::json hole_row(const Hole& hole) {
   return {{"kind", to_string(hole.kind)},
           {"position_m", to_json(hole.position_world)},
           {"size_m", hole.size_m},
@@ -51,7 +49,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
        {{"full_triangles", scanned.surface.full_triangles}, {"deviation_m", scanned.surface.deviation_m}}},
   };
   results["holes"] = nlohmann::json::array();
-  for (const Hole& hole : scanned.holes) results["holes"].push_back(to_json(hole));
+  for (const Hole& hole : scanned.holes) results["holes"].push_back(hole_row(hole));
   results["ate_rmse_m"] = nullptr;  // only where the recording has poses of its own and ours were tracked
   if (counts.against_recorded) {
     results["ate_rmse_m"] = counts.against_recorded->rmse_m;

@@ -18,6 +18,8 @@ double peak_rss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts in KiB
 }
 
+nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
 nlohmann::json to_json(const Report& report) {
   nlohmann::json stages = nlohmann::json::object();
   for (const auto& [stage, s] : report.times.summaries()) {

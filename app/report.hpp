@@ -1,5 +1,6 @@
 // report.hpp: the JSON file that --report leaves: settings, times of each stage, memory, results.
 #pragma once
+#include <Eigen/Core>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -23,6 +24,9 @@ struct Report {
   nlohmann::json results = nlohmann::json::object();
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };
+
+/// [x, y, z].
+nlohmann::json to_json(const Eigen::Vector3d& v);
 
 /// All of it as one object; peak_rss_mb and wall_s are taken now. A number that is not finite becomes null.
 nlohmann::json to_json(const Report& report);

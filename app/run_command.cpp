@@ -63,11 +63,10 @@ struct RunTotals {
 nlohmann::json results_of(const RunTotals& totals, const Session& session) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : session.objects()) {
-    const Eigen::Vector3d p = object->body.T_world_object.translation();
     objects.push_back({{"name", object->body.name},
                        {"in_room", object->in_room},
                        {"at_rest", object->body.at_rest},
-                       {"position_m", {p.x(), p.y(), p.z()}}});
+                       {"position_m", to_json(object->body.T_world_object.translation())}});
   }
   nlohmann::json results = {
       {"frames_located", totals.located},
