@@ -83,4 +83,12 @@ TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate
   return error;
 }
 
+double end_gap_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference) {
+  if (estimate.empty() || reference.empty()) return 0.0;
+  const auto end = [](const std::vector<TimedPose>& poses) -> Eigen::Vector3d {
+    return poses.front().T_world_camera.inverse() * poses.back().T_world_camera.translation();
+  };
+  return (end(estimate) - end(reference)).norm();
+}
+
 }  // namespace roomradar

@@ -33,4 +33,8 @@ struct TrajectoryError {
 TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
                                           const std::vector<TimedPose>& reference);
 
+/// How far the estimate's last position is from the reference's, m, once both begin at the same pose; 0 where
+/// one of them is empty. First and last poses of both are of the same frames.
+double end_gap_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference);
+
 }  // namespace roomradar

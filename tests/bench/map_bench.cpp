@@ -139,20 +139,17 @@ double covered_part(const std::vector<Eigen::Vector3d>& points, const SurfacePoi
   return points.empty() ? 0.0 : static_cast<double>(covered) / static_cast<double>(points.size());
 }
 
-/// Of the last pose, in the first one's frame, against the truth.
-double end_gap_m(const std::vector<TimedPose>& trajectory, SimulatedSource& source) {
-  if (trajectory.empty()) return 0.0;
-  const auto true_pose = [&](std::int64_t index) {
-    Frame frame;
-    source.seek(index);
+/// Where the camera truly was in the frames of the trajectory's first and last pose.
+std::vector<TimedPose> true_ends(const std::vector<TimedPose>& trajectory, SimulatedSource& source) {
+  if (trajectory.empty()) return {};
+  std::vector<TimedPose> ends{trajectory.front(), trajectory.back()};
+  Frame frame;
+  for (TimedPose& end : ends) {
+    source.seek(end.frame_index);
     (void)source.next(frame);
-    return source.truth().T_world_camera;
-  };
-  const TimedPose& first = trajectory.front();
-  const TimedPose& last = trajectory.back();
-  const Eigen::Isometry3d found = first.T_world_camera.inverse() * last.T_world_camera;
-  const Eigen::Isometry3d truth = true_pose(first.frame_index).inverse() * true_pose(last.frame_index);
-  return (truth.inverse() * found).translation().norm();
+    end.T_world_camera = source.truth().T_world_camera;
+  }
+  return ends;
 }
 
 nlohmann::json judge(const Cell& cell, double resolution_m) {
@@ -189,7 +186,7 @@ nlohmann::json judge(const Cell& cell, double resolution_m) {
       {"cover", cover},
       {"precision", precision},
       {"f_score", precision + cover > 0 ? 2 * precision * cover / (precision + cover) : 0.0},
-      {"end_gap_m", end_gap_m(scanned.map.trajectory, source)},
+      {"end_gap_m", end_gap_m(scanned.map.trajectory, true_ends(scanned.map.trajectory, source))},
       {"triangles", scanned.map.mesh.triangles.size()},
       {"octree_bytes", octree.memory_bytes},
       {"peak_rss_mb", prescan_peak_mb},

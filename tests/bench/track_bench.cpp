@@ -74,14 +74,6 @@ double kept_mb(const OdometrySnapshot& kept) {
   return static_cast<double>(bytes) / 1e6;
 }
 
-/// How far the estimate's end is from the true one, once both begin at the same pose.
-double end_to_start_gap_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& truth) {
-  if (estimate.empty() || estimate.size() != truth.size()) return 0.0;
-  const Eigen::Isometry3d found = estimate.front().T_world_camera.inverse() * estimate.back().T_world_camera;
-  const Eigen::Isometry3d there = truth.front().T_world_camera.inverse() * truth.back().T_world_camera;
-  return (found.translation() - there.translation()).norm();
-}
-
 double percentile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
@@ -145,7 +137,7 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
           {"ate_rmse_mm", known ? 1e3 * ate.rmse_m : -1.0},
           {"ate_max_mm", known ? 1e3 * ate.max_m : -1.0},
           {"rpe1_median_mm", known ? 1e3 * relative_error_m(estimate, truth, 1) : -1.0},
-          {"end_to_start_gap_mm", known ? 1e3 * end_to_start_gap_m(estimate, truth) : -1.0},
+          {"end_to_start_gap_mm", known ? 1e3 * end_gap_m(estimate, truth) : -1.0},
           {"rpe30_median_mm", known ? 1e3 * relative_error_m(estimate, truth, 30) : -1.0},
           {"furthest_m", furthest_m},
           {"inlier_mean", inliers / static_cast<double>(std::max<std::size_t>(times_ms.size(), 1))},

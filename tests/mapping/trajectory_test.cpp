@@ -94,5 +94,19 @@ TEST(TrajectoryError, MatchesByFrameAndNeedsThree) {
   EXPECT_EQ(absolute_trajectory_error(estimate, reference).poses, 0U);
 }
 
+TEST(TrajectoryError, GapAtTheEndIsSeenFromTheFirstPose) {
+  const std::vector<TimedPose> reference = random_walk(20, 4);
+  const Eigen::Isometry3d T_moved =
+      Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 1, 0).normalized());
+  std::vector<TimedPose> estimate = {reference.front(),
+                                     reference.back()};  // what lies between counts nothing
+  for (TimedPose& pose : estimate) pose.T_world_camera = T_moved * pose.T_world_camera;
+  EXPECT_LT(end_gap_m(estimate, reference), 1e-9);
+  estimate.back().T_world_camera.translate(Eigen::Vector3d(0, 0.03, 0.04));
+  EXPECT_NEAR(end_gap_m(estimate, reference), 0.05, 1e-9);
+  EXPECT_EQ(end_gap_m({}, reference), 0.0);
+  EXPECT_EQ(end_gap_m(estimate, {}), 0.0);
+}
+
 }  // namespace
 }  // namespace roomradar
