@@ -114,8 +114,10 @@ Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
     work.times.add_ms("track", work.track_ms[frame.index]);
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
     if (frame.T_world_camera) pass.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
-    if (tracking) seen.add(frame, tracking.T_world_camera);
-    work.show(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
+    if (work.progress) {  // nobody else asks how much was seen
+      if (tracking) seen.add(frame, tracking.T_world_camera);
+      work.progress(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
+    }
     keep_tracking(work.checkpoints, pass, work.times);
     // The octree and its surface come when the tracker has gone.
     pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
