@@ -55,7 +55,7 @@ struct MappedRoom {
 
 /// Moves the scenario's object frame by frame until the radar stops it; how far it came.
 double travelled_m(const Scenario& scenario, const Eigen::Isometry3d& T_map_world, const GpuMesh& object,
-                   const std::vector<SceneMesh>& scene, CyberRadar& radar, double& query_ms) {
+                   const std::vector<SceneMesh>& scene, GlRadar& radar, double& query_ms) {
   const Eigen::Vector3d direction_map = T_map_world.linear() * scenario.direction_world;
   const double step_m = scenario.speed_m_s * kFrameTime_s;
   double done_m = 0.0;
@@ -98,7 +98,7 @@ int run(const FallthroughCommand& command) {
   require_writable(command.report);
   GlContext context;
   report.renderer = context.renderer();
-  CyberRadar radar(context);
+  GlRadar radar(context);
   std::map<std::string, std::unique_ptr<MappedRoom>> rooms;
   for (const std::string& name : room_names())
     rooms.emplace(name, std::make_unique<MappedRoom>(context, name, report.times));

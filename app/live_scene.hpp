@@ -9,9 +9,9 @@
 #include "dynamic/surface_policy.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/mesh.hpp"
-#include "radar/cyber_radar.hpp"
 #include "radar/depth_pass.hpp"
 #include "radar/gl_context.hpp"
+#include "radar/gl_radar.hpp"
 #include "radar/gpu_mesh.hpp"
 
 namespace roomradar {

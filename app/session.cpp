@@ -23,8 +23,8 @@ Session::Session(const SavedMap& map, const SessionConfig& config)
       room_(context_),
       scene_(context_, room_, config.scene),
       radar_(context_, config.radar),
-      fine_radar_(context_, RadarConfig{.resolution_px = kFineRadar_px,
-                                        .overlap_tolerance_m = config.radar.overlap_tolerance_m}),
+      fine_radar_(context_, GlRadarConfig{.resolution_px = kFineRadar_px,
+                                          .overlap_tolerance_m = config.radar.overlap_tolerance_m}),
       depth_pass_(context_),
       drawer_(context_) {
   require_valid(config.physics);

@@ -16,16 +16,16 @@
 #include "mapping/map_folder.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/stage_times.hpp"
-#include "radar/cyber_radar.hpp"
 #include "radar/depth_pass.hpp"
 #include "radar/gl_context.hpp"
+#include "radar/gl_radar.hpp"
 
 namespace roomradar {
 
 struct SessionConfig {
   PoseOrigin poses = PoseOrigin::kTracked;
   LiveSceneConfig scene;
-  RadarConfig radar;
+  GlRadarConfig radar;
   PhysicsConfig physics;
   ComposeConfig picture;
   bool make_picture = true;  ///< false: no drawing, only what moves the objects
@@ -78,8 +78,8 @@ class Session {
   GpuMesh room_;
   LiveScene scene_;
   Locator locator_;
-  CyberRadar radar_;
-  CyberRadar fine_radar_;
+  GlRadar radar_;
+  GlRadar fine_radar_;
   DepthPass depth_pass_;
   ObjectDrawer drawer_;
 

@@ -1,6 +1,7 @@
-// contact.hpp: what a moving object would touch first, and after how far.
+// contact.hpp: what a moving object would touch first, and after how far, between bounds that hold.
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 
 namespace roomradar {
 
@@ -8,7 +9,7 @@ enum class ContactStatus {
   kInvalidInput,  ///< direction zero or not finite, distance not finite or <= 0, object empty, a pose not
                   ///< finite
   kNoAnswer,      ///< the renderer failed (out of memory, context lost): nothing is known
-  kNoTarget,      ///< nothing in the way within the distance
+  kNoTarget,      ///< nothing found in the way within the distance
   kContact,       ///< touches after travel_m >= 0
   kOverlap,       ///< a surface that opposes the motion is inside the object already; travel_m < 0
 };
@@ -16,15 +17,22 @@ enum class ContactStatus {
 /// Which kind of surface was touched.
 enum class Touched {
   kNothing,
-  kStatic,   ///< the prescanned room
-  kDynamic,  ///< what moved since
-  kObject,   ///< another virtual object
+  kStatic,           ///< the prescanned room
+  kDynamic,          ///< what moved since
+  kObject,           ///< another virtual object
+  kUnknownFrontier,  ///< where seen free space ends and unseen space begins
 };
 
 struct [[nodiscard]] Contact {
   ContactStatus status = ContactStatus::kInvalidInput;  // unset means failed
-  /// Along the direction until touch; negative: depth of the overlap; kContact and kOverlap only.
+  /// Along the direction until touch; negative: depth of the overlap, how far back along the direction the
+  /// object is free again; kContact and kOverlap only.
   double travel_m = 0.0;
+  /// The true way to contact is not shorter than lower_m and not longer than upper_m. Where nothing was found
+  /// lower_m is what is free for certain, at most the distance asked for, and upper_m infinite. In an overlap
+  /// both are travel_m.
+  double lower_m = 0.0;
+  double upper_m = std::numeric_limits<double>::infinity();
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< on the scene's surface
   /// Unit, of the scene's triangle, turned to face the object.
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();

@@ -19,7 +19,7 @@ RendererChoice renderer_choice_from_environment();
 /// depth needs glClipControl). The context is current on the thread that made it, and any code that runs
 /// there may call GL; it has no default framebuffer, so everything draws into framebuffer objects. Clip space
 /// is set once, here, for all: depth 0 to 1, lower left origin; whoever changes that puts it back. Not thread
-/// safe. Everything made with it (GpuMesh, DepthPass, CyberRadar) must be gone before it is.
+/// safe. Everything made with it (GpuMesh, DepthPass, GlRadar) must be gone before it is.
 class GlContext {
  public:
   /// @throws Error saying which devices were tried and why each failed (no EGL, no GPU, a version below 4.5)

@@ -7,8 +7,8 @@
 
 #include "app/physics.hpp"
 #include "app/teapot.hpp"
-#include "radar/cyber_radar.hpp"
 #include "radar/exact_travel.hpp"
+#include "radar/gl_radar.hpp"
 
 namespace roomradar {
 namespace {
@@ -80,7 +80,7 @@ class PhysicsWithRadar : public ::testing::Test {
   }
 
   GlContext context_{RendererChoice::kSoftware};
-  CyberRadar radar_{context_};
+  GlRadar radar_{context_};
   Mesh teapot_mesh_ = utah_teapot(8, 0.15);
   GpuMesh teapot_{context_}, table_{context_}, hand_{context_};
   Mesh table_mesh_, hand_mesh_;

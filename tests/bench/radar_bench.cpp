@@ -18,8 +18,8 @@
 
 #include "mapping/types/error.hpp"
 #include "mapping/types/intrinsics.hpp"
-#include "radar/cyber_radar.hpp"
 #include "radar/exact_travel.hpp"
+#include "radar/gl_radar.hpp"
 
 namespace roomradar {
 namespace {
@@ -171,7 +171,7 @@ Row measure(GlContext& context, const Mesh& scene, const Mesh& sensor, const std
             const std::vector<std::optional<double>>& exact_m, int radar_px) {
   using Clock = std::chrono::steady_clock;
   const auto ms = [](Clock::duration t) { return std::chrono::duration<double, std::milli>(t).count(); };
-  CyberRadar radar(context, {.resolution_px = radar_px});
+  GlRadar radar(context, {.resolution_px = radar_px});
   GpuMesh scene_gpu(context), sensor_gpu(context);
   sensor_gpu.upload(sensor, MeshUsage::kStatic);
   const SceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, Touched::kDynamic};

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "radar/cyber_radar.hpp"
 #include "radar/exact_travel.hpp"
+#include "radar/gl_radar.hpp"
 #include "tests/radar/shapes.hpp"
 
 namespace roomradar {
@@ -52,7 +52,7 @@ struct Errors {
 /// straight down.
 Errors measure(const Mesh& object, const Mesh& scene, int resolution_px, int count, unsigned seed) {
   GlContext context;
-  CyberRadar radar(context, {.resolution_px = resolution_px});
+  GlRadar radar(context, {.resolution_px = resolution_px});
   GpuMesh object_gpu(context), scene_gpu(context);
   object_gpu.upload(object, MeshUsage::kStatic);
   scene_gpu.upload(scene, MeshUsage::kStatic);

@@ -1,5 +1,5 @@
-// cyber_radar_test.cpp: known contacts, the edges of what can be asked, and what must not count as one.
-#include "radar/cyber_radar.hpp"
+// gl_radar_test.cpp: known contacts, the edges of what can be asked, and what must not count as one.
+#include "radar/gl_radar.hpp"
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ Mesh sphere(float radius_m) {
   return mesh;
 }
 
-class CyberRadarTest : public testing::Test {
+class GlRadarTest : public testing::Test {
  protected:
   const GpuMesh* uploaded(const Mesh& mesh, MeshUsage usage = MeshUsage::kStatic) {
     meshes.push_back(std::make_unique<GpuMesh>(context));
@@ -55,12 +55,12 @@ class CyberRadarTest : public testing::Test {
   }
 
   GlContext context;
-  CyberRadar radar{context};
+  GlRadar radar{context};
   std::vector<std::unique_ptr<GpuMesh>> meshes;
   const GpuMesh* cube = uploaded(shapes::box({0.2F, 0.2F, 0.2F}));
 };
 
-TEST_F(CyberRadarTest, BallAboveFloorTravelsItsClearance) {
+TEST_F(GlRadarTest, BallAboveFloorTravelsItsClearance) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({uploaded(sphere(0.3F)), at(0.1, 0.2, 1.0)}, kDown, 2.0, {&floor, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
@@ -75,7 +75,7 @@ TEST_F(CyberRadarTest, BallAboveFloorTravelsItsClearance) {
   EXPECT_NEAR(contact.pixel_m, 0.6 / 128, 1e-6);
 }
 
-TEST_F(CyberRadarTest, FlatLandingIsReportedInTheMiddle) {
+TEST_F(GlRadarTest, FlatLandingIsReportedInTheMiddle) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({cube, at(0.5, -0.5, 0.4)}, kDown, 2.0, {&floor, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
@@ -83,7 +83,7 @@ TEST_F(CyberRadarTest, FlatLandingIsReportedInTheMiddle) {
   EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.5, -0.5, 0.0)).norm(), 0.0, contact.pixel_m);
 }
 
-TEST_F(CyberRadarTest, NothingInTheWayIsNoTarget) {
+TEST_F(GlRadarTest, NothingInTheWayIsNoTarget) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   EXPECT_EQ(radar.query({cube, at(0, 0, 1)}, -kDown, 5.0, {&floor, 1}).status, ContactStatus::kNoTarget);
   EXPECT_EQ(radar.query({cube, at(0, 0, 1)}, kDown, 0.5, {&floor, 1}).status, ContactStatus::kNoTarget);
@@ -95,20 +95,20 @@ TEST_F(CyberRadarTest, NothingInTheWayIsNoTarget) {
   EXPECT_EQ(radar.query({cube, at(0, 0, 1)}, kDown, 5.0, {&null, 1}).status, ContactStatus::kNoTarget);
 }
 
-TEST_F(CyberRadarTest, TouchingIsContactAtZero) {
+TEST_F(GlRadarTest, TouchingIsContactAtZero) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({cube, at(0, 0, 0.1)}, kDown, 0.5, {&floor, 1});
   EXPECT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.travel_m, 0.0, 1e-6);
 }
 
-TEST_F(CyberRadarTest, TouchingObjectMayLeaveAndSlide) {
+TEST_F(GlRadarTest, TouchingObjectMayLeaveAndSlide) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   EXPECT_EQ(radar.query({cube, at(0, 0, 0.1)}, -kDown, 0.5, {&floor, 1}).status, ContactStatus::kNoTarget);
   EXPECT_EQ(radar.query({cube, at(0, 0, 0.1)}, {1, 0, 0}, 0.5, {&floor, 1}).status, ContactStatus::kNoTarget);
 }
 
-TEST_F(CyberRadarTest, OverlapIsReportedWithItsDepth) {
+TEST_F(GlRadarTest, OverlapIsReportedWithItsDepth) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   for (const double depth_m : {0.001, 0.01, 0.02}) {
     const Contact contact = radar.query({cube, at(0, 0, 0.1 - depth_m)}, kDown, 0.5, {&floor, 1});
@@ -118,14 +118,14 @@ TEST_F(CyberRadarTest, OverlapIsReportedWithItsDepth) {
   }
 }
 
-TEST_F(CyberRadarTest,
+TEST_F(GlRadarTest,
        OverlappingPlateLiftsFreely) {  // the surface faces along the motion: it is left, not met
   const GpuMesh* plate = uploaded(shapes::box({0.3F, 0.3F, 0.01F}));
   const SceneMesh table = scene_mesh(shapes::floor(2.0F, 0.0F));
   EXPECT_EQ(radar.query({plate, at(0, 0, 0.003)}, -kDown, 0.5, {&table, 1}).status, ContactStatus::kNoTarget);
 }
 
-TEST_F(CyberRadarTest, SurfaceFarInsideDoesNotHideWhatIsAhead) {
+TEST_F(GlRadarTest, SurfaceFarInsideDoesNotHideWhatIsAhead) {
   // A shelf that cuts through the cube 10 cm behind its front, and the floor ahead.
   const SceneMesh scene[] = {scene_mesh(shapes::floor(2.0F, 0.5F)), scene_mesh(shapes::floor(2.0F, 0.0F))};
   const Contact contact = radar.query({cube, at(0, 0, 0.5)}, kDown, 1.0, scene);
@@ -133,7 +133,7 @@ TEST_F(CyberRadarTest, SurfaceFarInsideDoesNotHideWhatIsAhead) {
   EXPECT_NEAR(contact.travel_m, 0.4, 1e-6);
 }
 
-TEST_F(CyberRadarTest,
+TEST_F(GlRadarTest,
        SurfaceSeenFromBehindStopsTheObject) {  // a hand's mesh faces the camera, not the object
   Mesh ceiling_seen_from_above = shapes::floor(2.0F, 1.0F);
   const SceneMesh scene =
@@ -145,7 +145,7 @@ TEST_F(CyberRadarTest,
   EXPECT_EQ(contact.touched, Touched::kDynamic);
 }
 
-TEST_F(CyberRadarTest, SceneInAHollowIsNotAnOverlap) {
+TEST_F(GlRadarTest, SceneInAHollowIsNotAnOverlap) {
   // A ring standing upright (its hole looks along y) with a thin shelf through the hole, just above the lower
   // arc.
   const Mesh ring = shapes::torus(96, 32, 0.1F, 0.02F, 0.0F);
@@ -153,7 +153,7 @@ TEST_F(CyberRadarTest, SceneInAHollowIsNotAnOverlap) {
   T_world_ring.pretranslate(Eigen::Vector3d(0, 0, 0.5));
   // The lower arc spans z 0.38 to 0.42 at x = 0; the shelf lies at 0.43: 1 cm above it, 5 cm behind the
   // front.
-  CyberRadar deep(context, {.resolution_px = 128, .overlap_tolerance_m = 0.06});
+  GlRadar deep(context, {.resolution_px = 128, .overlap_tolerance_m = 0.06});
   Mesh shelf;
   shapes::add_quad(shelf, {-0.02F, -1, 0.43F}, {0.02F, -1, 0.43F}, {0.02F, 1, 0.43F}, {-0.02F, 1, 0.43F});
   const SceneMesh scene[] = {scene_mesh(shelf), scene_mesh(shapes::floor(2.0F, 0.0F))};
@@ -167,7 +167,7 @@ TEST_F(CyberRadarTest, SceneInAHollowIsNotAnOverlap) {
   EXPECT_NEAR(overlap.travel_m, -0.02, 1e-3);
 }
 
-TEST_F(CyberRadarTest, PixelOutsideTheMaskSaysNothing) {
+TEST_F(GlRadarTest, PixelOutsideTheMaskSaysNothing) {
   // A pillar beside the ball, inside the square around its outline, ends higher than the floor: the ball
   // misses it.
   const Mesh ball = sphere(0.1F);
@@ -179,7 +179,7 @@ TEST_F(CyberRadarTest, PixelOutsideTheMaskSaysNothing) {
   EXPECT_NEAR(contact.travel_m, 0.5, 1e-4);
 }
 
-TEST_F(CyberRadarTest, SurfaceEdgeOnIsNotInTheWayButItsRimIs) {
+TEST_F(GlRadarTest, SurfaceEdgeOnIsNotInTheWayButItsRimIs) {
   // A vertical wall, perpendicular to the object's lower face: the cube comes down on its upper rim.
   Mesh wall;
   shapes::add_quad(wall, {0, -1, -1}, {0, 1, -1}, {0, 1, 0}, {0, -1, 0});
@@ -196,7 +196,7 @@ TEST_F(CyberRadarTest, SurfaceEdgeOnIsNotInTheWayButItsRimIs) {
             ContactStatus::kNoTarget);
 }
 
-TEST_F(CyberRadarTest, DistancesFromATenthOfAMillimetreTo100Metres) {
+TEST_F(GlRadarTest, DistancesFromATenthOfAMillimetreTo100Metres) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact near = radar.query({cube, at(0, 0, 0.10005)}, kDown, 1e-4, {&floor, 1});
   ASSERT_EQ(near.status, ContactStatus::kContact);
@@ -207,7 +207,7 @@ TEST_F(CyberRadarTest, DistancesFromATenthOfAMillimetreTo100Metres) {
   EXPECT_NEAR(far.travel_m, 90.0, 1e-4);  // depth step 6 um
 }
 
-TEST_F(CyberRadarTest, LosesNothingAThousandKilometresFromZero) {
+TEST_F(GlRadarTest, LosesNothingAThousandKilometresFromZero) {
   for (const Eigen::Vector3d& place : {Eigen::Vector3d(1e6, 1e6, 1e6), Eigen::Vector3d(-1e6, 1e6, -1e6)}) {
     Mesh floor = shapes::floor(2.0F, 0.0F);
     floor.origin = place;
@@ -222,7 +222,7 @@ TEST_F(CyberRadarTest, LosesNothingAThousandKilometresFromZero) {
   }
 }
 
-TEST_F(CyberRadarTest, EveryAxisAndAHairOffIt) {
+TEST_F(GlRadarTest, EveryAxisAndAHairOffIt) {
   const Mesh wall = shapes::floor(2.0F, 0.0F);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
@@ -244,7 +244,7 @@ TEST_F(CyberRadarTest, EveryAxisAndAHairOffIt) {
   }
 }
 
-TEST_F(CyberRadarTest, NanTrianglesInAStreamedSceneAreLeftOut) {
+TEST_F(GlRadarTest, NanTrianglesInAStreamedSceneAreLeftOut) {
   Mesh scene_cpu = shapes::floor(2.0F, 0.0F);
   scene_cpu.vertices.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.5F);
   scene_cpu.triangles.push_back({0, 1, 4});
@@ -255,7 +255,7 @@ TEST_F(CyberRadarTest, NanTrianglesInAStreamedSceneAreLeftOut) {
   EXPECT_NEAR(contact.travel_m, 0.7, 1e-6);
 }
 
-TEST_F(CyberRadarTest, OneTriangleLargerThanTheVolume) {
+TEST_F(GlRadarTest, OneTriangleLargerThanTheVolume) {
   Mesh huge;
   huge.vertices = {{-1000, -900, 0}, {1100, -1000, 0}, {0, 1300, 0}};
   huge.triangles = {{0, 1, 2}};
@@ -265,7 +265,7 @@ TEST_F(CyberRadarTest, OneTriangleLargerThanTheVolume) {
   EXPECT_NEAR(contact.travel_m, 0.7, 5e-6);
 }
 
-TEST_F(CyberRadarTest, InvalidInputIsSaid) {
+TEST_F(GlRadarTest, InvalidInputIsSaid) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
@@ -286,7 +286,7 @@ TEST_F(CyberRadarTest, InvalidInputIsSaid) {
   EXPECT_EQ(status(object, {0, 0, -1e-200}, 1.0), ContactStatus::kContact) << "any length but 0";
 }
 
-TEST_F(CyberRadarTest, NearestOfSeveralMeshesIsTouched) {
+TEST_F(GlRadarTest, NearestOfSeveralMeshesIsTouched) {
   const SceneMesh scene[] = {scene_mesh(shapes::floor(2.0F, 0.0F)),
                              scene_mesh(shapes::box({0.1F, 0.1F, 0.1F}), at(0, 0, 0.05), Touched::kObject),
                              scene_mesh(shapes::floor(2.0F, -0.5F), at(0, 0, 0), Touched::kDynamic)};
@@ -296,7 +296,7 @@ TEST_F(CyberRadarTest, NearestOfSeveralMeshesIsTouched) {
   EXPECT_EQ(contact.touched, Touched::kObject);
 }
 
-TEST_F(CyberRadarTest, ImagesObeyTheirDefinition) {
+TEST_F(GlRadarTest, ImagesObeyTheirDefinition) {
   const SceneMesh scene[] = {scene_mesh(shapes::torus(80, 40, 0.15F, 0.05F, 0.01F), at(0, 0, 0.1)),
                              scene_mesh(shapes::floor(0.05F, 0.0F))};
   const Contact contact = radar.query({uploaded(sphere(0.2F)), at(0.03, 0, 0.8)}, kDown, 1.0, scene);
@@ -318,21 +318,21 @@ TEST_F(CyberRadarTest, ImagesObeyTheirDefinition) {
   EXPECT_NEAR(contact.travel_m, least_m, 1e-7);
 }
 
-TEST_F(CyberRadarTest, ResolutionsFrom1To4096) {
+TEST_F(GlRadarTest, ResolutionsFrom1To4096) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   for (const int resolution_px : {1, 2, 3, 17, 512, 4096}) {
-    CyberRadar other(context, {.resolution_px = resolution_px});
+    GlRadar other(context, {.resolution_px = resolution_px});
     const Contact contact = other.query({cube, at(0, 0, 0.8)}, kDown, 2.0, {&floor, 1});
     ASSERT_EQ(contact.status, ContactStatus::kContact) << resolution_px;
     EXPECT_NEAR(contact.travel_m, 0.7, 1e-6) << resolution_px;
     EXPECT_NEAR(contact.pixel_m, 0.2 / resolution_px, 1e-6);
   }
-  EXPECT_THROW(CyberRadar(context, {.resolution_px = 0}), Error);
-  EXPECT_THROW(CyberRadar(context, {.resolution_px = 4097}), Error);
-  EXPECT_THROW(CyberRadar(context, {.overlap_tolerance_m = -0.1}), Error);
+  EXPECT_THROW(GlRadar(context, {.resolution_px = 0}), Error);
+  EXPECT_THROW(GlRadar(context, {.resolution_px = 4097}), Error);
+  EXPECT_THROW(GlRadar(context, {.overlap_tolerance_m = -0.1}), Error);
 }
 
-TEST_F(CyberRadarTest, LongObjectGetsSquarePixels) {
+TEST_F(GlRadarTest, LongObjectGetsSquarePixels) {
   const GpuMesh* rod = uploaded(shapes::box({1.0F, 0.05F, 0.05F}));
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   ASSERT_EQ(radar.query({rod, at(0, 0, 0.5)}, kDown, 1.0, {&floor, 1}).status, ContactStatus::kContact);

@@ -1,4 +1,4 @@
-// cyber_radar.hpp: collision by two orthographic depth passes: how far may an object go before it touches?
+// gl_radar.hpp: collision by two orthographic depth passes: how far may an object go before it touches?
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace roomradar {
 
-struct RadarConfig {
+struct GlRadarConfig {
   int resolution_px = 128;            ///< samples along the longer side of the object's outline, 1 to 4096
   double overlap_tolerance_m = 0.03;  ///< surfaces deeper inside the object are behind it, not in its way
 };
 /// @throws Error naming the field, its value and the rule
-void require_valid(const RadarConfig& config);
+void require_valid(const GlRadarConfig& config);
 
 /// A mesh that can be touched.
 struct SceneMesh {
@@ -52,12 +52,12 @@ struct SceneMesh {
 /// peg inside a handle is not felt by the handle's upper side. Overlap and hollow need triangles that wind
 /// counter-clockwise seen from outside. Source of R, M and L: the Cyber Radar paper's Range, Mask and LookAt
 /// Distance Scopes. Not thread safe.
-class CyberRadar {
+class GlRadar {
  public:
-  explicit CyberRadar(GlContext& context, const RadarConfig& config = {});
-  ~CyberRadar();
-  CyberRadar(const CyberRadar&) = delete;
-  CyberRadar& operator=(const CyberRadar&) = delete;
+  explicit GlRadar(GlContext& context, const GlRadarConfig& config = {});
+  ~GlRadar();
+  GlRadar(const GlRadar&) = delete;
+  GlRadar& operator=(const GlRadar&) = delete;
 
   /// How far `object` can move along a line until it touches the scene.
   ///
@@ -84,7 +84,7 @@ class CyberRadar {
  private:
   enum Layer : std::size_t { kMask, kRange, kEntry, kLayerCount };
 
-  RadarConfig config_;
+  GlRadarConfig config_;
   RadarVolume volume_;
   Image<float> range_m_;
   Image<float> mask_m_;

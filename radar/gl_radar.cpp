@@ -1,5 +1,5 @@
-// cyber_radar.cpp: M, then R through M, one readback, the least L.
-#include "radar/cyber_radar.hpp"
+// gl_radar.cpp: M, then R through M, one readback, the least L.
+#include "radar/gl_radar.hpp"
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
@@ -35,7 +35,7 @@ void main() {
 }
 )";
 
-// The scene through the object's outline, passing over what is behind the object's front (see CyberRadar).
+// The scene through the object's outline, passing over what is behind the object's front (see GlRadar).
 constexpr const char* kRangeShader = R"(#version 450 core
 layout(binding = 0) uniform sampler2D mask01;
 layout(binding = 1) uniform sampler2D entry01;
@@ -53,7 +53,7 @@ void main() {
 
 }  // namespace
 
-void require_valid(const RadarConfig& config) {
+void require_valid(const GlRadarConfig& config) {
   if (config.resolution_px < 1 || config.resolution_px > 4096) {
     throw Error("radar.resolution_px = " + std::to_string(config.resolution_px) + ": must be in 1..4096");
   }
@@ -63,7 +63,7 @@ void require_valid(const RadarConfig& config) {
   }
 }
 
-CyberRadar::CyberRadar(GlContext& context, const RadarConfig& config) : config_(config) {
+GlRadar::GlRadar(GlContext& context, const GlRadarConfig& config) : config_(config) {
   require_valid(config);
   GLint max_size_px = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size_px);
@@ -91,15 +91,15 @@ CyberRadar::CyberRadar(GlContext& context, const RadarConfig& config) : config_(
                        GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
 }
 
-CyberRadar::~CyberRadar() {
+GlRadar::~GlRadar() {
   glDeleteBuffers(1, &readback_buffer_);
   glDeleteFramebuffers(kLayerCount, framebuffers_.data());
   glDeleteTextures(kLayerCount, textures_.data());
   for (const unsigned program : {mask_program_, range_program_, entry_program_}) glDeleteProgram(program);
 }
 
-Contact CyberRadar::query(const MeshInstance& object, const Eigen::Vector3d& direction_world,
-                          double distance_m, std::span<const SceneMesh> scene) {
+Contact GlRadar::query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
+                       std::span<const SceneMesh> scene) {
   volume_ = {};
   for (Image<float>* image : {&range_m_, &mask_m_, &lookat_m_}) image->resize(0, 0);
   const double direction_norm = direction_world.stableNorm();
@@ -144,9 +144,9 @@ Contact CyberRadar::query(const MeshInstance& object, const Eigen::Vector3d& dir
   return contact_at_least_gap(*least_m, scene);
 }
 
-double CyberRadar::touching_m() const { return 1e-5 + 1e-6 * volume_.depth_m; }
+double GlRadar::touching_m() const { return 1e-5 + 1e-6 * volume_.depth_m; }
 
-void CyberRadar::begin_layer(Layer layer, unsigned program) const {
+void GlRadar::begin_layer(Layer layer, unsigned program) const {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_[layer]);
   glViewport(0, 0, volume_.width_px, volume_.height_px);
   glEnable(GL_SCISSOR_TEST);
@@ -162,19 +162,19 @@ void CyberRadar::begin_layer(Layer layer, unsigned program) const {
   glUseProgram(program);
 }
 
-void CyberRadar::draw_mask(const MeshInstance& object) const {
+void GlRadar::draw_mask(const MeshInstance& object) const {
   begin_layer(kMask, mask_program_);
   draw_positions(object, reflected_clip_from_world(volume_));
 }
 
-void CyberRadar::draw_entry(const MeshInstance& object) const {
+void GlRadar::draw_entry(const MeshInstance& object) const {
   begin_layer(kEntry, entry_program_);
   glBindTextureUnit(0, textures_[kMask]);
   glUniform1f(1, static_cast<float>(touching_m() / volume_.depth_m));
   draw_positions(object, reflected_clip_from_world(volume_));
 }
 
-void CyberRadar::draw_range(std::span<const SceneMesh> scene) const {
+void GlRadar::draw_range(std::span<const SceneMesh> scene) const {
   begin_layer(kRange, range_program_);
   glBindTextureUnit(0, textures_[kMask]);
   glBindTextureUnit(1, textures_[kEntry]);
@@ -189,7 +189,7 @@ void CyberRadar::draw_range(std::span<const SceneMesh> scene) const {
 
 /// Reads M and R, fills the images, and returns the least L, infinite where L is defined nowhere; or nothing
 /// if the renderer does not hand them out.
-std::optional<double> CyberRadar::read_and_compare() {
+std::optional<double> GlRadar::read_and_compare() {
   const std::size_t count = mask_m_.pixels.size();
   glBindBuffer(GL_PIXEL_PACK_BUFFER, readback_buffer_);
   for (const Layer layer : {kMask, kRange}) {
@@ -224,7 +224,7 @@ std::optional<double> CyberRadar::read_and_compare() {
   return least;
 }
 
-Contact CyberRadar::contact_at_least_gap(double least_m, std::span<const SceneMesh> scene) const {
+Contact GlRadar::contact_at_least_gap(double least_m, std::span<const SceneMesh> scene) const {
   // The middle of all pixels that are as near as the nearest, then the one of them closest to it.
   const auto equally_near_m = static_cast<float>(least_m + touching_m());
   Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
