@@ -158,6 +158,7 @@ void finish(Checkpoints& checkpoints) {
 }  // namespace
 
 int run(const PrescanCommand& command) {
+  keep_large_blocks_apart();
   Report report;
   report.command = "prescan";
   report.source = command.source;

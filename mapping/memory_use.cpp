@@ -24,6 +24,14 @@ void release_unused_memory() {
 #endif
 }
 
+void keep_large_blocks_apart() {
+#ifdef __GLIBC__
+  // Above what decoding one 640 x 480 image takes, below a keyframe's reference. Unless it is set glibc puts
+  // it up to whatever was freed last.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
+
 std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolution_m) {
   constexpr std::int64_t kLooks = 4, kTries = 5, kMinute = 1800;
   constexpr double kFramesAnew = 80.0, kWholeRoom = 20.0;

@@ -1,6 +1,8 @@
 // sample_bricks.cpp: sorting an octree's samples into bricks.
 #include "mapping/sample_bricks.hpp"
 
+#include <optional>
+
 #include "mapping/types/cell_code.hpp"
 
 namespace roomradar {
@@ -13,10 +15,21 @@ static_assert(1 << kBrickShift == kBrickEdge);
 }  // namespace
 
 SampleBricks::SampleBricks(const StaticMap& map, float min_weight) {
+  // The octree's order visits each brick once. All are counted first: a vector that grows holds them twice.
+  std::optional<VoxelIndex> last;
+  std::size_t count = 0;
   map.visit_samples([&](const SurfaceSample& sample) {
     if (sample.weight < min_weight) return;
     const VoxelIndex first = brick_of(sample.voxel);
-    if (bricks_.empty() || bricks_.back().first != first) {  // the octree's order visits each brick once
+    count += last != first ? 1U : 0U;
+    last = first;
+  });
+  bricks_.reserve(count);
+  by_place_.reserve(count);
+  map.visit_samples([&](const SurfaceSample& sample) {
+    if (sample.weight < min_weight) return;
+    const VoxelIndex first = brick_of(sample.voxel);
+    if (bricks_.empty() || bricks_.back().first != first) {
       by_place_.emplace(cell_code(first), bricks_.size());
       bricks_.emplace_back().first = first;
     }

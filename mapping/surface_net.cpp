@@ -1,6 +1,7 @@
 // surface_net.cpp: dual marching cubes over bricks of samples.
 #include "mapping/surface_net.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -170,6 +171,7 @@ class Net {
     if (bricks.bricks().empty()) return;
     mesh_.origin = bricks.bricks().front().first.cast<double>() * resolution_m;
     for (std::size_t b = 0; b < cells_.size(); ++b) find_signs(b);
+    reserve();
     for (std::size_t b = 0; b < cells_.size(); ++b) place_vertices(b);
     for (std::size_t b = 0; b < cells_.size(); ++b) span_quads(b);
   }
@@ -178,8 +180,10 @@ class Net {
  private:
   // Of the cells whose lowest voxel is in one brick.
   struct BrickCells {
-    std::array<std::uint8_t, kBrickSize> signs{};  // 0: not crossed, or a corner is unknown
-    std::array<std::uint32_t, kBrickSize> first_vertex{};
+    std::array<std::uint8_t, kBrickSize> signs{};    // 0: not crossed, or a corner is unknown
+    std::array<std::uint16_t, kBrickSize> vertex{};  // the cell's first, from first_vertex on
+    std::uint32_t first_vertex = 0;
+    [[nodiscard]] std::uint32_t first_of(std::size_t offset) const { return first_vertex + vertex[offset]; }
   };
   // Samples (or cells) of a brick and one voxel more on one side of each axis.
   static constexpr int kWindow = kBrickEdge + 1;
@@ -227,6 +231,17 @@ class Net {
     });
   }
 
+  // A vertex a crossed cell, two triangles a vertex: few more if any. What grows holds its content twice.
+  void reserve() {
+    std::size_t crossed = 0;
+    for (const BrickCells& brick : cells_)
+      crossed += kBrickSize - static_cast<std::size_t>(std::count(brick.signs.begin(), brick.signs.end(), 0));
+    mesh_.vertices.reserve(crossed);
+    mesh_.normals.reserve(crossed);
+    mesh_.colours.reserve(crossed);
+    mesh_.triangles.reserve(2 * crossed);
+  }
+
   [[nodiscard]] unsigned signs_at(const BrickNeighbourhood& around, const Eigen::Vector3i& cell) const {
     const auto [brick, offset] = around.place(cell);
     return brick == SampleBricks::kNone ? 0U : cells_[brick].signs[offset];
@@ -249,13 +264,15 @@ class Net {
   void place_vertices(std::size_t b) {
     fill_window(b, window_);
     const BrickNeighbourhood around(bricks_, b);
+    cells_[b].first_vertex = static_cast<std::uint32_t>(mesh_.vertices.size());
     for_each_voxel([&](int x, int y, int z) {
       const Eigen::Vector3i voxel(x, y, z);
       const unsigned signs = cells_[b].signs[brick_offset(voxel)];
       CellCorners corners;
       if (signs == 0 || !corners_of(window_, x, y, z, corners)) return;
       const Sheets sheets = sheets_at(around, voxel, signs);
-      cells_[b].first_vertex[brick_offset(voxel)] = static_cast<std::uint32_t>(mesh_.vertices.size());
+      cells_[b].vertex[brick_offset(voxel)] =
+          static_cast<std::uint16_t>(mesh_.vertices.size() - cells_[b].first_vertex);
       for (int sheet = 0; sheet < sheets.count; ++sheet) {
         const SheetVertex vertex = place_vertex(corners, sheets, sheet);
         // A sample speaks for its voxel's centre.
@@ -303,10 +320,10 @@ class Net {
     const unsigned signs = cells_[brick].signs[offset];
     if (signs == 0) return kNoVertex;
     const Sheets& usual = sheet_table()[signs];
-    if (usual.count == 1 && usual.joined_faces == 0) return cells_[brick].first_vertex[offset];
+    if (usual.count == 1 && usual.joined_faces == 0) return cells_[brick].first_of(offset);
     const auto corner = static_cast<unsigned>(from.x() | from.y() << 1 | from.z() << 2);
     const unsigned edge = edge_between(corner, corner | 1U << axis);
-    return cells_[brick].first_vertex[offset] + sheets_at(around, cell, signs).of_edge[edge];
+    return cells_[brick].first_of(offset) + sheets_at(around, cell, signs).of_edge[edge];
   }
 
   // Cut along the shorter diagonal.

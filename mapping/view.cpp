@@ -303,6 +303,7 @@ void make_live(const ViewPyramid& pyramid, LiveView& live, const MaskImage& igno
         ignore.empty() ? 0.0 : static_cast<double>(ignore.width) / level.camera.width_px;
     std::vector<LivePoint>& points = live.levels[i];
     points.clear();
+    points.reserve(level.inverse_depth_per_m.pixels.size() / static_cast<std::size_t>(step * step));
     for (int y = step / 2; y < level.camera.height_px; y += step) {
       for (int x = step / 2; x < level.camera.width_px; x += step) {
         const float q = level.inverse_depth_per_m.at(x, y);
