@@ -86,7 +86,7 @@ ScanStart start_scan(const PrescanCommand& command) {
   }
   if (command.checkpoint_every_s > 0.0) {
     std::map<std::string, std::string> identity{
-        {"source", command.source},
+        {"source", live ? command.source : start.source->name()},
         {"resolution", std::to_string(command.resolution_m)},
         {"poses", std::string(to_string(command.poses))},
         {"frames", command.frames

@@ -24,7 +24,7 @@ struct MapFile {
 
 /// map.json. What is said of the parts (from `format_version` on) is filled in by save_map and load_map.
 struct MapInfo {
-  std::string source;  ///< the recording or device, as the user named it
+  std::string source;  ///< the recordings (folders in full) or devices, "; " between them
   std::int64_t frames_read = 0;
   std::int64_t frames_fused = 0;
   std::string up_source = "none";  ///< accelerometer, plane or none

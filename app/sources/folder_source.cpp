@@ -48,7 +48,9 @@ std::optional<ImageSize> first_size(const std::filesystem::path& folder,
 class FolderSource final : public FrameSource {
  public:
   FolderSource(std::filesystem::path folder, const SourceOptions& options)
-      : folder_(std::move(folder)), index_(index_recording(folder_)) {
+      : folder_(std::move(folder)),
+        index_(index_recording(folder_)),
+        name_(std::filesystem::canonical(folder_).string()) {
     DepthImage depth_m;
     ColourImage colour;
     const auto depth_size =
@@ -92,7 +94,7 @@ class FolderSource final : public FrameSource {
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override {
     return static_cast<std::int64_t>(index_.frames.size());
   }
-  [[nodiscard]] std::string name() const override { return folder_.string(); }
+  [[nodiscard]] std::string name() const override { return name_; }
 
  private:
   void read(std::size_t position, Frame& frame) const {
@@ -119,6 +121,7 @@ class FolderSource final : public FrameSource {
 
   std::filesystem::path folder_;
   RecordingIndex index_;
+  std::string name_;  // the folder in full: however it is spelled, it is the same recording
   CameraRig rig_;
   std::size_t position_ = 0;
   int bad_in_a_row_ = 0;

@@ -273,6 +273,24 @@ TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
   for (const Change& change : changes) EXPECT_LT(change.box_world.sizes().maxCoeff(), 0.5);
 }
 
+TEST_F(ResumeTest, ARecordingIsKnownHoweverItsFolderIsSpelled) {
+  const fs::path recording = temporary_.path() / "walk";
+  ASSERT_EQ(run({"simulate", recording, "--room", "table", "--frames", "20", "--format", "7scenes"}), 0)
+      << said();
+  const auto scan_as = [&](const fs::path& spelled, bool resume) {
+    std::vector<std::string> arguments = {"prescan", spelled, "--map", map(), "--resolution", "0.04"};
+    if (resume) arguments.emplace_back("--resume");
+    return arguments;
+  };
+  ASSERT_EQ(run(scan_as(recording, false)), 0) << said();
+  const std::string json = text_of(map() / "map.json");
+  for (const fs::path& spelled : {recording / "", recording / ".." / "walk", fs::relative(recording)}) {
+    EXPECT_EQ(run(scan_as(spelled, true)), 0) << said();
+    EXPECT_NE(said().find("nothing to resume"), std::string::npos) << spelled << ": " << said();
+    EXPECT_EQ(text_of(map() / "map.json"), json) << spelled;
+  }
+}
+
 TEST_F(ResumeTest, StopsBeforeTheCapAndKeepsWhatItHas) {
   const auto scan_under = [&](const std::string& cap) {
     return std::vector<std::string>{
