@@ -14,85 +14,85 @@
 namespace roomradar {
 namespace {
 
-using Point = Eigen::Vector3d;  // x, y across the direction, z along it
 struct Corners {
-  std::array<Point, 3> p;
-  [[nodiscard]] Eigen::AlignedBox2d outline() const {
-    Eigen::AlignedBox2d box;
-    for (const Point& corner : p) box.extend(corner.head<2>());
-    return box;
-  }
-  [[nodiscard]] double min_z() const { return std::min({p[0].z(), p[1].z(), p[2].z()}); }
-  [[nodiscard]] double max_z() const { return std::max({p[0].z(), p[1].z(), p[2].z()}); }
+  ExactTriangle p;
+  Eigen::AlignedBox2d outline;
+  double min_z = 0.0, max_z = 0.0;  // rounded outwards, as the outline is
 };
 
-double cross2(const Point& a, const Point& b, const Point& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
-/// Height of the triangle where p projects into it, its outline included.
-std::optional<double> height_at(const Corners& t, const Point& p) {
-  const double area = cross2(t.p[0], t.p[1], t.p[2]);
-  if (area == 0.0) return std::nullopt;  // edge-on: its edges speak for it
-  const double w0 = cross2(t.p[1], t.p[2], p) / area;
-  const double w1 = cross2(t.p[2], t.p[0], p) / area;
-  const double w2 = cross2(t.p[0], t.p[1], p) / area;
-  if (w0 < 0.0 || w1 < 0.0 || w2 < 0.0) return std::nullopt;
-  return w0 * t.p[0].z() + w1 * t.p[1].z() + w2 * t.p[2].z();
-}
-
-/// Height of edge b above edge a where their projections cross, ends included.
-std::optional<double> gap_of_edges(const Point& a0, const Point& a1, const Point& b0, const Point& b1) {
-  const double dx = a1.x() - a0.x(), dy = a1.y() - a0.y();
-  const double ex = b1.x() - b0.x(), ey = b1.y() - b0.y();
-  const double crossing = dx * ey - dy * ex;
-  if (crossing == 0.0) return std::nullopt;
-  const double s = ((b0.x() - a0.x()) * ey - (b0.y() - a0.y()) * ex) / crossing;
-  const double t = ((b0.x() - a0.x()) * dy - (b0.y() - a0.y()) * dx) / crossing;
-  if (s < 0.0 || s > 1.0 || t < 0.0 || t > 1.0) return std::nullopt;
-  return b0.z() + t * (b1.z() - b0.z()) - (a0.z() + s * (a1.z() - a0.z()));
+Corners corners_of(const ExactTriangle& p) {
+  Corners corners{p, {}, 0.0, 0.0};
+  const ExactPoint low = p[0].cwiseMin(p[1]).cwiseMin(p[2]);
+  const ExactPoint high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
+  const Exact beyond = 1e-11L * (high - low).maxCoeff();  // more than exact_gap takes for touching
+  const Eigen::Vector3d low_m = (low.array() - beyond).matrix().cast<double>();
+  const Eigen::Vector3d high_m = (high.array() + beyond).matrix().cast<double>();
+  corners.outline = Eigen::AlignedBox2d(low_m.head<2>(), high_m.head<2>());
+  corners.min_z = low_m.z();
+  corners.max_z = high_m.z();
+  return corners;
 }
 
 /// Least travel >= -slack_m at which the two touch, or infinity.
 double travel_of_pair(const Corners& object, const Corners& scene, double slack_m) {
-  double least_m = std::numeric_limits<double>::infinity();
-  double lowest_m = least_m;
-  double highest_m = -least_m;
-  const auto put = [&](double gap_m) {
-    lowest_m = std::min(lowest_m, gap_m);
-    highest_m = std::max(highest_m, gap_m);
-    if (gap_m >= -slack_m) least_m = std::min(least_m, gap_m);
-  };
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (const auto z = height_at(scene, object.p[i])) put(*z - object.p[i].z());
-    if (const auto z = height_at(object, scene.p[i])) put(scene.p[i].z() - *z);
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto gap_m = gap_of_edges(object.p[i], object.p[(i + 1) % 3], scene.p[j], scene.p[(j + 1) % 3]);
-      if (gap_m) put(*gap_m);
-    }
-  }
-  // They cross already where the gap changes sign over their common outline.
-  if (lowest_m < -slack_m && highest_m > -slack_m) return -slack_m;
-  return least_m;
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  if (!object.outline.intersects(scene.outline)) return kNever;
+  const auto span = exact_gap(object.p, scene.p);
+  if (!span || span->to_m < -slack_m) return kNever;
+  return std::max(span->from_m, -slack_m);
 }
 
+/// z along the direction, origin at the object's.
+struct Frame {
+  Eigen::Matrix<Exact, 3, 3> R_frame_world;
+  ExactPoint origin_world;
+};
+
+Frame frame_of(const Eigen::Isometry3d& T_world_object, const Mesh& object,
+               const Eigen::Vector3d& direction_world) {
+  if (!direction_world.allFinite() || !(direction_world.stableNorm() > 0.0)) {
+    throw Error("exact_travel: direction must be finite and not zero");
+  }
+  const ExactPoint u = direction_world.cast<Exact>().stableNormalized();
+  const ExactPoint x = u.unitOrthogonal();
+  Frame frame;
+  frame.R_frame_world << x.transpose(), u.cross(x).transpose(), u.transpose();
+  frame.origin_world = (T_world_object * object.origin).cast<Exact>();
+  return frame;
+}
+
+/// Those whose outline meets the area.
 std::vector<Corners> triangles_in_frame(const Mesh& mesh, const Eigen::Isometry3d& T_world_mesh,
-                                        const Eigen::Matrix3d& R_frame_world,
-                                        const Eigen::Vector3d& origin_world) {
-  const Eigen::Matrix3d R_frame_mesh = R_frame_world * T_world_mesh.linear();
-  const Eigen::Vector3d shift = R_frame_world * (T_world_mesh * mesh.origin - origin_world);
+                                        const Frame& frame, const Eigen::AlignedBox2d& area) {
+  const Eigen::Matrix<Exact, 3, 3> R_world_mesh = T_world_mesh.linear().cast<Exact>();
+  const Eigen::Matrix<Exact, 3, 3> R_frame_mesh = frame.R_frame_world * R_world_mesh;
+  const ExactPoint t_world_mesh = T_world_mesh.translation().cast<Exact>();
+  const ExactPoint shift =
+      frame.R_frame_world * (R_world_mesh * mesh.origin.cast<Exact>() + (t_world_mesh - frame.origin_world));
+  std::vector<ExactPoint> vertices;
+  vertices.reserve(mesh.vertices.size());
+  for (const Eigen::Vector3f& p : mesh.vertices) vertices.push_back(R_frame_mesh * p.cast<Exact>() + shift);
   std::vector<Corners> result;
-  result.reserve(mesh.triangles.size());
   for (const Triangle& triangle : mesh.triangles) {
-    Corners corners;
-    bool is_usable = true;
-    for (std::size_t i = 0; i < 3 && is_usable; ++i) {
-      is_usable = triangle[i] < mesh.vertices.size() && mesh.vertices[triangle[i]].allFinite();
-      if (is_usable) corners.p[i] = R_frame_mesh * mesh.vertices[triangle[i]].cast<double>() + shift;
-    }
-    if (is_usable) result.push_back(corners);
+    const bool is_usable = std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t i) {
+      return i < mesh.vertices.size() && mesh.vertices[i].allFinite();
+    });
+    if (!is_usable) continue;
+    const Corners corners = corners_of({vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]});
+    if (corners.outline.intersects(area)) result.push_back(corners);
   }
   return result;
+}
+
+Eigen::AlignedBox2d everywhere() {
+  const Eigen::Vector2d far_m = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  return {-far_m, far_m};
+}
+
+Eigen::AlignedBox2d outline_of(std::span<const Corners> object) {
+  Eigen::AlignedBox2d area;
+  for (const Corners& o : object) area.extend(o.outline);
+  return area;
 }
 
 /// Scene triangles by the cells of a square grid over the object's outline.
@@ -102,8 +102,7 @@ class Grid {
     side_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(scene.size()) / 2.0)), 1, 512);
     cells_.resize(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_));
     for (std::size_t i = 0; i < scene.size(); ++i) {
-      if (!scene[i].outline().intersects(area)) continue;
-      visit(scene[i].outline(), [&](std::vector<std::size_t>& cell) { cell.push_back(i); });
+      visit(scene[i].outline, [&](std::vector<std::size_t>& cell) { cell.push_back(i); });
     }
   }
   template <typename Work>
@@ -129,28 +128,35 @@ class Grid {
   std::vector<std::vector<std::size_t>> cells_;
 };
 
+/// Ascending; spans that touch, but for rounding, made one.
+std::vector<TravelSpan> joined(std::vector<TravelSpan> spans) {
+  constexpr double kRounding_m = 1e-12;
+  std::sort(spans.begin(), spans.end(),
+            [](const TravelSpan& a, const TravelSpan& b) { return a.from_m < b.from_m; });
+  std::vector<TravelSpan> result;
+  for (const TravelSpan& span : spans) {
+    if (!result.empty() && span.from_m <= result.back().to_m + kRounding_m) {
+      result.back().to_m = std::max(result.back().to_m, span.to_m);
+    } else {
+      result.push_back(span);
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 std::optional<double> exact_travel(const Mesh& object, const Eigen::Isometry3d& T_world_object,
                                    const Eigen::Vector3d& direction_world, double distance_m,
                                    const Mesh& scene, const Eigen::Isometry3d& T_world_scene,
                                    ExactMethod method, double slack_m) {
-  const double norm = direction_world.stableNorm();
-  if (!direction_world.allFinite() || !(norm > 0.0)) {
-    throw Error("exact_travel: direction must be finite and not zero");
-  }
   if (!(distance_m >= 0.0) || !std::isfinite(distance_m)) {
     throw Error("exact_travel: distance_m = " + std::to_string(distance_m) + ": must be finite and >= 0");
   }
-  const Eigen::Vector3d u = direction_world / norm;
-  const Eigen::Vector3d x = u.unitOrthogonal();
-  Eigen::Matrix3d R_frame_world;
-  R_frame_world << x.transpose(), u.cross(x).transpose(), u.transpose();
-  const Eigen::Vector3d origin_world = T_world_object * object.origin;
-  std::vector<Corners> object_triangles =
-      triangles_in_frame(object, T_world_object, R_frame_world, origin_world);
-  const std::vector<Corners> scene_triangles =
-      triangles_in_frame(scene, T_world_scene, R_frame_world, origin_world);
+  const Frame frame = frame_of(T_world_object, object, direction_world);
+  std::vector<Corners> object_triangles = triangles_in_frame(object, T_world_object, frame, everywhere());
+  const Eigen::AlignedBox2d area = outline_of(object_triangles);
+  const std::vector<Corners> scene_triangles = triangles_in_frame(scene, T_world_scene, frame, area);
 
   double least_m = std::numeric_limits<double>::infinity();
   if (method == ExactMethod::kBruteForce) {
@@ -158,18 +164,16 @@ std::optional<double> exact_travel(const Mesh& object, const Eigen::Isometry3d& 
       for (const Corners& s : scene_triangles) least_m = std::min(least_m, travel_of_pair(o, s, slack_m));
     }
   } else {
-    Eigen::AlignedBox2d area;
-    for (const Corners& o : object_triangles) area.extend(o.outline());
     Grid grid(area, scene_triangles);
     // Foremost triangles first: the bound found early rules out most of the rest.
     std::sort(object_triangles.begin(), object_triangles.end(),
-              [](const Corners& a, const Corners& b) { return a.max_z() > b.max_z(); });
+              [](const Corners& a, const Corners& b) { return a.max_z > b.max_z; });
     for (const Corners& o : object_triangles) {
-      grid.visit(o.outline(), [&](const std::vector<std::size_t>& cell) {
+      grid.visit(o.outline, [&](const std::vector<std::size_t>& cell) {
         for (const std::size_t i : cell) {
           const Corners& s = scene_triangles[i];
-          const bool is_behind = s.max_z() - o.min_z() < -slack_m;
-          if (is_behind || s.min_z() - o.max_z() >= least_m) continue;
+          const bool is_behind = s.max_z - o.min_z < -slack_m;
+          if (is_behind || s.min_z - o.max_z >= least_m) continue;
           least_m = std::min(least_m, travel_of_pair(o, s, slack_m));
         }
       });
@@ -177,6 +181,34 @@ std::optional<double> exact_travel(const Mesh& object, const Eigen::Isometry3d& 
   }
   if (!(least_m <= distance_m)) return std::nullopt;
   return least_m;
+}
+
+std::vector<TravelSpan> exact_crossings(const Mesh& object, const Eigen::Isometry3d& T_world_object,
+                                        const Eigen::Vector3d& direction_world, const Mesh& scene,
+                                        const Eigen::Isometry3d& T_world_scene) {
+  const Frame frame = frame_of(T_world_object, object, direction_world);
+  const std::vector<Corners> object_triangles =
+      triangles_in_frame(object, T_world_object, frame, everywhere());
+  const Eigen::AlignedBox2d area = outline_of(object_triangles);
+  const std::vector<Corners> scene_triangles = triangles_in_frame(scene, T_world_scene, frame, area);
+  Grid grid(area, scene_triangles);
+  std::vector<TravelSpan> spans;
+  for (const Corners& o : object_triangles) {
+    grid.visit(o.outline, [&](const std::vector<std::size_t>& cell) {
+      for (const std::size_t i : cell) {
+        if (!o.outline.intersects(scene_triangles[i].outline)) continue;
+        if (const auto span = exact_gap(o.p, scene_triangles[i].p)) spans.push_back(*span);
+      }
+    });
+  }
+  return joined(std::move(spans));
+}
+
+std::optional<TravelSpan> exact_overlap(std::span<const TravelSpan> crossings) {
+  for (const TravelSpan& span : crossings) {
+    if (span.from_m < 0.0 && span.to_m > 0.0) return span;
+  }
+  return std::nullopt;
 }
 
 }  // namespace roomradar

@@ -1,9 +1,12 @@
-// exact_travel.hpp: the radar's judge: how far one mesh may move until it touches another, exactly.
+// exact_travel.hpp: the radar's judge: at which travels along a direction does one mesh touch another?
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "mapping/types/mesh.hpp"
+#include "radar/exact_gap.hpp"
 
 namespace roomradar {
 
@@ -24,5 +27,15 @@ std::optional<double> exact_travel(const Mesh& object, const Eigen::Isometry3d& 
                                    const Eigen::Vector3d& direction_world, double distance_m,
                                    const Mesh& scene, const Eigen::Isometry3d& T_world_scene,
                                    ExactMethod method = ExactMethod::kGrid, double slack_m = 0.0);
+
+/// All travels, back and ahead without end, at which the two surfaces have a point in common: the spans of
+/// all pairs of triangles, ascending, those that meet made one. Empty where the object passes by.
+/// @throws Error if direction is zero or not finite
+std::vector<TravelSpan> exact_crossings(const Mesh& object, const Eigen::Isometry3d& T_world_object,
+                                        const Eigen::Vector3d& direction_world, const Mesh& scene,
+                                        const Eigen::Isometry3d& T_world_scene);
+
+/// The crossing that holds travel 0 inside, if any: -from_m is how far back the surfaces part.
+std::optional<TravelSpan> exact_overlap(std::span<const TravelSpan> crossings);
 
 }  // namespace roomradar

@@ -14,29 +14,6 @@
 namespace roomradar {
 namespace {
 
-/// Ground with bumps of both scales of a cluttered table, 2 m across, facing +z.
-Mesh bumpy_ground(int cells) {
-  Mesh mesh;
-  const auto height_m = [](double x, double y) {
-    return 0.05 * std::sin(7.0 * x) * std::cos(6.0 * y) +
-           0.015 * std::sin(41.0 * x + 3.0) * std::sin(37.0 * y);
-  };
-  for (int j = 0; j <= cells; ++j) {
-    for (int i = 0; i <= cells; ++i) {
-      const double x = 2.0 * i / cells - 1.0, y = 2.0 * j / cells - 1.0;
-      mesh.vertices.push_back(Eigen::Vector3d(x, y, height_m(x, y)).cast<float>());
-    }
-  }
-  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (cells + 1) + i); };
-  for (int j = 0; j < cells; ++j) {
-    for (int i = 0; i < cells; ++i) {
-      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  }
-  return mesh;
-}
-
 struct Errors {
   std::vector<double> late_m;  // radar minus exact, where both touch
   int missed = 0;              // exact touches, radar says no target
@@ -96,17 +73,19 @@ void expect_late_but_close(const std::string& name, const Errors& errors, double
 }
 
 TEST(RadarAccuracy, ConvexBoxOnBumpyGround) {
-  const Errors errors = measure(shapes::box({0.25F, 0.15F, 0.1F}), bumpy_ground(60), 128, 400, 1);
+  const Errors errors = measure(shapes::box({0.25F, 0.15F, 0.1F}), shapes::bumpy_ground(60), 128, 400, 1);
   expect_late_but_close("box", errors, 1.0, 5.0);
 }
 
 TEST(RadarAccuracy, SmoothTorusOnBumpyGround) {
-  const Errors errors = measure(shapes::torus(48, 24, 0.1F, 0.04F, 0.0F), bumpy_ground(60), 128, 400, 2);
+  const Errors errors =
+      measure(shapes::torus(48, 24, 0.1F, 0.04F, 0.0F), shapes::bumpy_ground(60), 128, 400, 2);
   expect_late_but_close("torus", errors, 1.0, 5.0);
 }
 
 TEST(RadarAccuracy, ConcaveBumpyTorusOnBumpyGround) {
-  const Errors errors = measure(shapes::torus(48, 24, 0.1F, 0.04F, 0.015F), bumpy_ground(60), 128, 400, 3);
+  const Errors errors =
+      measure(shapes::torus(48, 24, 0.1F, 0.04F, 0.015F), shapes::bumpy_ground(60), 128, 400, 3);
   expect_late_but_close("bumpy torus", errors, 1.0, 5.0);
 }
 
@@ -118,7 +97,7 @@ TEST(RadarAccuracy, ConcaveOnConcave) {
 
 TEST(RadarAccuracy, FinerPixelsAreLessLate) {
   const Mesh object = shapes::torus(48, 24, 0.1F, 0.04F, 0.015F);
-  const Mesh ground = bumpy_ground(60);
+  const Mesh ground = shapes::bumpy_ground(60);
   double last_median_m = 1.0;
   for (const int resolution_px : {32, 64, 128, 256}) {
     const Errors errors = measure(object, ground, resolution_px, 300, 5);

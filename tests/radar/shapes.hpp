@@ -5,6 +5,9 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "mapping/types/mesh.hpp"
 
@@ -63,6 +66,98 @@ inline Mesh torus(int around, int across, float ring_m, float tube_m, float bump
   };
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < across; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
+/// The parts as one mesh (about the first's origin, which must be all others'), each moved.
+inline Mesh together(std::span<const std::pair<Mesh, Eigen::Vector3f>> parts) {
+  Mesh mesh;
+  for (const auto& [part, at_m] : parts) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (const Eigen::Vector3f& p : part.vertices) mesh.vertices.push_back(p + at_m);
+    for (const Triangle& t : part.triangles) {
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  return mesh;
+}
+
+/// Turns the outline of points (radius, height) about the z axis; closed where it begins and ends at radius 0
+/// or where it comes back to its first point. Outward for an outline that runs upwards on the outside.
+inline Mesh turned(const std::vector<Eigen::Vector2f>& outline, int around) {
+  Mesh mesh;
+  constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
+  const auto steps = static_cast<std::uint32_t>(around);
+  const auto rows = static_cast<std::uint32_t>(outline.size());
+  for (const Eigen::Vector2f& p : outline) {
+    for (int i = 0; i < around; ++i) {
+      const float a = kTurn * static_cast<float>(i) / static_cast<float>(around);
+      mesh.vertices.emplace_back(p.x() * std::cos(a), p.x() * std::sin(a), p.y());
+    }
+  }
+  for (std::uint32_t row = 0; row + 1 < rows; ++row) {
+    for (std::uint32_t i = 0; i < steps; ++i) {
+      const std::uint32_t a = row * steps + i, b = row * steps + (i + 1) % steps;
+      const std::uint32_t c = a + steps, d = b + steps;
+      if (outline[row].x() > 0.0F) mesh.triangles.push_back({a, b, d});
+      if (outline[row + 1].x() > 0.0F) mesh.triangles.push_back({a, d, c});
+    }
+  }
+  return mesh;
+}
+
+inline Mesh ball(float radius_m, int rows, int around) {
+  std::vector<Eigen::Vector2f> outline = {{0.0F, -radius_m}};
+  for (int i = 1; i < rows; ++i) {
+    const float a = std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(rows);
+    outline.emplace_back(radius_m * std::sin(a), -radius_m * std::cos(a));
+  }
+  outline.emplace_back(0.0F, radius_m);
+  return turned(outline, around);
+}
+
+/// Closed, open to +z: walls and bottom of the given thickness; its foot is at z = 0.
+inline Mesh cup(float radius_m, float height_m, float thickness_m, int around) {
+  const float inner_m = radius_m - thickness_m;
+  return turned({{0.0F, 0.0F},
+                 {radius_m, 0.0F},
+                 {radius_m, height_m},
+                 {inner_m, height_m},
+                 {inner_m, thickness_m},
+                 {0.0F, thickness_m}},
+                around);
+}
+
+/// Seat, back and four legs, each a closed box that runs into its neighbours; the legs stand on z = 0.
+inline Mesh chair() {
+  std::vector<std::pair<Mesh, Eigen::Vector3f>> parts = {{box({0.40F, 0.40F, 0.04F}), {0.0F, 0.0F, 0.43F}},
+                                                         {box({0.40F, 0.04F, 0.42F}), {0.0F, 0.18F, 0.65F}}};
+  for (const float x : {-0.17F, 0.17F}) {
+    for (const float y : {-0.17F, 0.17F}) parts.push_back({box({0.04F, 0.04F, 0.42F}), {x, y, 0.21F}});
+  }
+  return together(parts);
+}
+
+/// Ground with bumps of both scales of a cluttered table, 2 m across, facing +z; heights within 0.065 m of 0.
+inline Mesh bumpy_ground(int cells) {
+  Mesh mesh;
+  const auto height_m = [](double x, double y) {
+    return 0.05 * std::sin(7.0 * x) * std::cos(6.0 * y) +
+           0.015 * std::sin(41.0 * x + 3.0) * std::sin(37.0 * y);
+  };
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      const double x = 2.0 * i / cells - 1.0, y = 2.0 * j / cells - 1.0;
+      mesh.vertices.push_back(Eigen::Vector3d(x, y, height_m(x, y)).cast<float>());
+    }
+  }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (cells + 1) + i); };
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < cells; ++i) {
       mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
       mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
     }
