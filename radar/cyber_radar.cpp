@@ -1,0 +1,229 @@
+// cyber_radar.cpp: M, then R from the nearest bound on, then L where it can be least.
+#include "radar/cyber_radar.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "mapping/types/error.hpp"
+#include "radar/solid_inside.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Rows: two axes across the direction, then the direction; right-handed. A function of the direction alone,
+/// so that the same direction has the same pixels.
+/// Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
+Eigen::Matrix3d frame_along(const Eigen::Vector3d& u) {
+  const double sign = std::copysign(1.0, u.z());
+  const double a = -1.0 / (sign + u.z());
+  const double b = u.x() * u.y() * a;
+  Eigen::Matrix3d R;
+  R << 1.0 + sign * u.x() * u.x() * a, sign * b, -sign * u.x(),  //
+      b, sign + u.y() * u.y() * a, -u.y(),                       //
+      u.x(), u.y(), u.z();
+  return R;
+}
+
+bool is_valid(const RadarQuery& q) {
+  return q.direction_world.allFinite() && q.direction_world.stableNorm() > 0.0 && q.distance_m > 0.0 &&
+         std::isfinite(q.distance_m) && q.margin_m >= 0.0 && std::isfinite(q.margin_m) &&
+         q.object.tree != nullptr && !q.object.tree->empty() && q.object.T_world_mesh.matrix().allFinite();
+}
+
+bool is_farther(const SceneItem& a, const SceneItem& b) { return a.low_m > b.low_m; }
+
+/// What one scene triangle has to say about the object.
+struct Settled {
+  double least_m = kInfinity;
+  bool overlaps = false;
+};
+
+/// Lower bound of the gap over the common outline of two triangles, one of them thickened by margin_m: where
+/// one's plane is extended, the other's corners are the farthest it can get; infinite where they cannot share
+/// a place or the scene is behind.
+double thick_gap(const FrameTriangle& object, const FrameTriangle& scene, double margin_m) {
+  std::array<double, 3> object_low, object_high, scene_low, scene_high;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto k = static_cast<Eigen::Index>(axis);
+    const auto [ol, oh] = std::minmax({object.corners[0][k], object.corners[1][k], object.corners[2][k]});
+    const auto [sl, sh] = std::minmax({scene.corners[0][k], scene.corners[1][k], scene.corners[2][k]});
+    object_low[axis] = ol - margin_m;
+    object_high[axis] = oh + margin_m;
+    scene_low[axis] = sl;
+    scene_high[axis] = sh;
+  }
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (object_low[axis] > scene_high[axis] || scene_low[axis] > object_high[axis]) return kInfinity;
+  }
+  double low_m = scene_low[2] - object_high[2], high_m = scene_high[2] - object_low[2];
+  const auto limit_by = [&](const FrameTriangle& plane, const FrameTriangle& other, double sign) {
+    const double facing = plane.normal.z();
+    if (std::abs(facing) < 1e-6) return;
+    double least = kInfinity, most = -kInfinity;
+    for (const Eigen::Vector3d& corner : other.corners) {
+      // The plane's height above the corner.
+      const double above_m = sign * plane.normal.dot(plane.corners[0] - corner) / facing;
+      least = std::min(least, above_m);
+      most = std::max(most, above_m);
+    }
+    const double reach_m = margin_m / std::abs(facing);  // a ball about the corner, down to the plane
+    low_m = std::max(low_m, least - reach_m);
+    high_m = std::min(high_m, most + reach_m);
+  };
+  limit_by(scene, object, 1.0);
+  limit_by(object, scene, -1.0);
+  return high_m < 0.0 ? kInfinity : low_m;
+}
+
+}  // namespace
+
+void require_valid(const RadarConfig& config) {
+  if (config.resolution_px < 1 || config.resolution_px > 4096) {
+    throw Error("radar.resolution_px = " + std::to_string(config.resolution_px) + ": must be in 1..4096");
+  }
+}
+
+double touching_m(const TriangleTree& object) {
+  return 1e-6 + 2.0 * std::numeric_limits<float>::epsilon() * object.half_size().cast<double>().norm();
+}
+
+CyberRadar::CyberRadar(const RadarConfig& config) : config_(config) { require_valid(config); }
+
+Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
+  if (!is_valid(query)) return {};
+  const TriangleTree& tree = *query.object.tree;
+  const Eigen::Isometry3d& T_world_mesh = query.object.T_world_mesh;
+
+  // The frame: origin at the object's middle, z along the direction. Fixed to the object, so that M stays as
+  // it is while the direction does in the object's own frame, rounding of a turn aside.
+  const Eigen::Vector3d u_mesh =
+      (T_world_mesh.linear().transpose() * query.direction_world.stableNormalized()).normalized();
+  if (!((u_mesh - u_mesh_).squaredNorm() < 1e-26)) u_mesh_ = u_mesh;
+  TurnedTree object;
+  object.tree = &tree;
+  object.R_frame_mesh = frame_along(u_mesh_);
+  object.margin_m = query.margin_m;
+  object.touching_m = touching_m(tree);
+  const Eigen::Matrix3d R_frame_world = object.R_frame_mesh * T_world_mesh.linear().transpose();
+  const Eigen::Vector3d origin_world = T_world_mesh * (tree.origin() + tree.centre());
+  if (!origin_world.allFinite()) return {};
+  if (!scene_.place(scene, R_frame_world, origin_world)) return {};
+
+  front_.build(object, config_.resolution_px);
+  const bool is_thick = query.margin_m > 0.0;
+  const double equally_m = object.touching_m;
+  Eigen::AlignedBox3d volume = front_.bounds();
+  const SceneBound bound{&front_, static_cast<float>(volume.min().z() - object.touching_m)};
+  volume.max().z() += query.distance_m + equally_m;
+  volume.min().z() -= object.touching_m;
+
+  patch_.clear();
+  double best_m = kInfinity;
+  const auto limit_m = [&] {
+    return std::min(best_m, query.distance_m) + (patch_.is_full() || is_thick ? 0.0 : equally_m);
+  };
+  const auto settle = [&](const SceneItem& item) {
+    const FrameTriangle s = scene_.triangle(item);
+    Settled settled;
+    bool has_ahead = false;
+    has_ahead |= search_column(object, s, limit_m, -object.touching_m, pending_, [&](std::uint32_t i) {
+      const FrameTriangle o = turned_triangle(object, i);
+      if (is_thick) {
+        best_m = std::min(best_m, thick_gap(o, s, query.margin_m));
+        return;
+      }
+      TriangleGap gap;
+      if (!find_gap(o, s, gap)) return;
+      has_ahead = has_ahead || gap.low_m < -object.touching_m;
+      if (gap.low_m >= limit_m()) return;
+      switch (meeting_of(o, s, gap, object.touching_m)) {
+        case Meeting::kNone:
+          return;
+        case Meeting::kCrossing:
+          settled.overlaps = true;
+          return;
+        case Meeting::kContact:
+          break;
+      }
+      // The rear of a closed object only meets what is inside it.
+      if (tree.is_closed() && o.normal.z() < -kEdgeOn) return;
+      const double travel_m = std::max(gap.low_m, 0.0);
+      best_m = std::min(best_m, travel_m);
+      patch_.add(gap, travel_m, equally_m, s, scene_.kind(item), best_m);
+    });
+    if (has_ahead && !settled.overlaps && s.normal.z() <= kEdgeOn) {
+      settled.overlaps = is_inside(object, s, pending_, gaps_m_);
+    }
+    return settled;
+  };
+
+  heap_.clear();
+  scene_.begin(volume, bound, static_cast<float>(limit_m()), heap_);
+  std::make_heap(heap_.begin(), heap_.end(), is_farther);
+  bool overlaps = false;
+  int settled_count = 0;
+  while (!heap_.empty()) {
+    const SceneItem item = heap_.front();
+    if (!(item.low_m < limit_m())) break;
+    const bool is_enough = config_.mode == RadarMode::kSampled && settled_count >= kSampledSettles &&
+                           best_m <= query.distance_m && item.low_m >= 0.0F;
+    if (is_enough || (is_thick && best_m <= 0.0)) break;
+    std::pop_heap(heap_.begin(), heap_.end(), is_farther);
+    heap_.pop_back();
+    if (item.kind == SceneItem::Kind::kTriangle) {
+      ++settled_count;
+      overlaps = settle(item).overlaps;
+      if (overlaps) break;
+      continue;
+    }
+    found_.clear();
+    scene_.expand(item, bound, static_cast<float>(limit_m()), found_);
+    for (const SceneItem& part : found_) {
+      heap_.push_back(part);
+      std::push_heap(heap_.begin(), heap_.end(), is_farther);
+    }
+  }
+
+  Contact contact;
+  contact.status = ContactStatus::kNoTarget;
+  contact.pixel_m = front_.pixel_m();
+  contact.lower_m = query.distance_m;
+  const auto to_world = [&](const Eigen::Vector3d& p) {
+    return Eigen::Vector3d(origin_world + R_frame_world.transpose() * p);
+  };
+  const auto touch = [&](const Eigen::Vector3d& point, const Eigen::Vector3d& normal, Touched kind) {
+    contact.point_world = to_world(point);
+    const Eigen::Vector3d facing = normal.isZero(0.0) ? -Eigen::Vector3d::UnitZ()
+                                   : normal.z() > 0.0 ? Eigen::Vector3d(-normal)
+                                                      : normal;
+    contact.normal_world = R_frame_world.transpose() * facing;
+    contact.touched = kind;
+  };
+  if (is_thick) {
+    if (!overlaps && best_m > query.distance_m) return contact;
+    contact.status = ContactStatus::kContact;
+    contact.lower_m = overlaps ? 0.0 : std::max(best_m, 0.0);
+    contact.travel_m = contact.lower_m;
+    return contact;
+  }
+  if (overlaps) {
+    const Overlap overlap = overlap_depth(object, front_, scene_, overlap_);
+    contact.status = ContactStatus::kOverlap;
+    contact.travel_m = contact.lower_m = contact.upper_m = -overlap.depth_m;
+    touch(overlap.point, overlap.normal, overlap.kind);
+    return contact;
+  }
+  if (!(best_m <= query.distance_m)) return contact;
+  contact.status = ContactStatus::kContact;
+  contact.travel_m = contact.upper_m = best_m;
+  const double unsettled_m = heap_.empty() ? kInfinity : heap_.front().low_m;
+  contact.lower_m = std::clamp(unsettled_m, 0.0, best_m);
+  const PatchPoint middle = patch_.middle(best_m, equally_m);
+  touch(middle.point, middle.normal, middle.kind);
+  return contact;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,102 @@
+// cyber_radar.hpp: how far may an object go before it touches? Exactly, or between bounds that hold.
+#pragma once
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "mapping/types/image.hpp"
+#include "radar/contact.hpp"
+#include "radar/contact_patch.hpp"
+#include "radar/front_map.hpp"
+#include "radar/overlap_depth.hpp"
+#include "radar/radar_scene.hpp"
+#include "radar/scene_in_frame.hpp"
+
+namespace roomradar {
+
+enum class RadarMode {
+  kSampled,  ///< settles few triangles exactly: fast, the bounds are as wide as a pixel is deep
+  kExact     ///< settles until lower_m = upper_m = travel_m
+};
+
+struct RadarConfig {
+  RadarMode mode = RadarMode::kExact;
+  /// Pixels along the longer side of the object's outline, 1 to 4096. The exact answer does not depend on it.
+  int resolution_px = 64;
+};
+/// @throws Error naming the field, its value and the rule
+void require_valid(const RadarConfig& config);
+
+struct RadarQuery {
+  TreeInstance object;                                        ///< must not be in the scene
+  Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();  ///< any length but 0
+  double distance_m = 0.0;                                    ///< how far ahead to look, > 0
+  /// The object is thickened by this all round: lower_m then holds for any motion that strays no farther from
+  /// the straight one (turning, noise). > 0: only lower_m is of use; upper_m is infinite, overlap and
+  /// touching are lower_m = 0, and what the object leaves counts as well.
+  double margin_m = 0.0;
+};
+
+/// Cyber Radar on the processor: M, the object's leading surface, against R, the scene ahead; the least gap
+/// L between them is the way to go.
+///
+///  1. M: for each pixel the greatest height that the object may have anywhere in it (FrontMap). Kept while
+///     the object's tree and the direction in its frame stay.
+///  2. R: the scene's boxes, large to small, nearest first (SceneInFrame). A box's least height less the
+///     greatest M under it is a lower bound of every contact in it.
+///  3. L: what has the least bound is settled: the scene's triangle against the object's triangles in its
+///     column, all layers of them, in double (search_column, find_gap, meeting_of). The least travel settled
+///     is an upper bound; the least bound unsettled is a lower one; when they meet, both are the truth.
+///
+/// Needles and sheets thinner than a pixel are in M and in R with their whole boxes, so neither bound misses
+/// them. Scene in a hollow of a concave object is behind the front layer, whose gap is negative and says
+/// nothing; the layer behind it is met if there is one.
+///
+/// Exact means: the error is that of double arithmetic on the float vertices, some 1e-12 m in a room and 1e-9
+/// m at a million metres from the world's origin.
+///
+/// Touching: surfaces nearer than touching_m() touch. Touching what opposes the motion is a contact after 0;
+/// touching what faces along the motion (what the object leaves) or slides along it is none. An overlap is a
+/// pair of surfaces that cross by more than that, or scene inside a closed object
+/// (TriangleTree::is_closed()), unless the scene's triangle faces along the motion. travel_m = lower_m =
+/// upper_m is then minus the way back along the direction until the object is free: the near end of the union
+/// of all pairs' spans of crossing, the inside of a closed object included, that holds 0.
+///
+/// Contact point: of all places that are equally near (a face that lands flat) the one nearest to their
+/// middle.
+///
+/// No GL. Not thread safe: one radar a thread; trees and images may be shared.
+class CyberRadar {
+ public:
+  explicit CyberRadar(const RadarConfig& config = {});
+
+  /// Never throws, allocates nothing after the first queries of a size.
+  ///
+  /// kInvalidInput: direction zero or not finite, distance not finite or <= 0, margin negative or not finite,
+  /// object without triangles, a pose of object or scene not finite, a camera that cannot be one, a mask of
+  /// another size than its depth image.
+  /// Sampled mode settles until a contact is found and kSampledSettles triangles are settled, and all that
+  /// may overlap; exact until nothing unsettled can be nearer.
+  Contact query(const RadarQuery& query, const RadarScene& scene);
+
+  [[nodiscard]] const RadarConfig& config() const { return config_; }
+
+  static constexpr int kSampledSettles = 16;
+
+ private:
+  RadarConfig config_;
+  FrontMap front_;
+  SceneInFrame scene_;
+  ContactPatch patch_;
+  OverlapScratch overlap_;
+  std::vector<SceneItem> heap_;
+  std::vector<SceneItem> found_;
+  std::vector<PendingNode> pending_;
+  std::vector<double> gaps_m_;
+  Eigen::Vector3d u_mesh_ = Eigen::Vector3d::Zero();
+};
+
+/// Surfaces of this object that are nearer to the scene than this touch it, m: 1 um and what float vertices
+/// of its size cannot tell apart.
+double touching_m(const TriangleTree& object);
+
+}  // namespace roomradar

@@ -1,0 +1,57 @@
+// front_map.hpp: M, the object's leading surface in pixels, from above: what may stand out there at most.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "radar/column_search.hpp"
+
+namespace roomradar {
+
+/// Greatest height (along the motion) of an object over the area of each pixel, never less than the truth,
+/// and the greatest over ever larger squares of pixels.
+///
+/// It holds because every triangle is entered into all pixels that its box or its plane touches, rounding
+/// counted in, or is under a box that is; a node no larger than a pixel is entered as its box, so that the
+/// work grows with the pixels and not with the triangles (whatever detail there is below a pixel counts with
+/// its height); and what is passed over is not higher than what every one of its pixels holds already.
+class FrontMap {
+ public:
+  /// Does nothing if the tree, the turn, the margin and the size are those of the last time.
+  /// @return whether there was something to do
+  bool build(const TurnedTree& object, int resolution_px);
+
+  /// Greatest height under a rectangle, -infinity where no pixel is.
+  [[nodiscard]] float max_under(float x0_m, float x1_m, float y0_m, float y1_m) const;
+
+  /// Of the whole object in the frame, the margin included, m.
+  [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
+  [[nodiscard]] double pixel_m() const { return pixel_m_; }
+  [[nodiscard]] int width_px() const { return levels_.empty() ? 0 : levels_[0].width; }
+  [[nodiscard]] int height_px() const { return levels_.empty() ? 0 : levels_[0].height; }
+
+ private:
+  struct Level {
+    int width = 0, height = 0;
+    std::size_t first = 0;  // in heights_
+  };
+  std::uint64_t revision_ = 0;
+  Eigen::Matrix3d R_frame_mesh_ = Eigen::Matrix3d::Zero();
+  double margin_m_ = 0.0;
+  int resolution_px_ = 0;
+
+  Eigen::AlignedBox3d bounds_;
+  double pixel_m_ = 0.0;
+  float x0_ = 0.0F, y0_ = 0.0F, per_m_ = 0.0F;
+  std::vector<Level> levels_;
+  std::vector<float> heights_;
+  std::vector<PendingNode> pending_;
+
+  void enter_box(int x0, int x1, int y0, int y1, float height);
+  void enter_triangle(const TurnedTree& object, std::uint32_t triangle);
+  [[nodiscard]] bool is_under(int x0, int x1, int y0, int y1, float height) const;
+};
+
+/// Bounds of the tree's triangles in the turned frame, rounding counted in: one search a side.
+Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, std::vector<PendingNode>& pending);
+
+}  // namespace roomradar

@@ -1,0 +1,36 @@
+// overlap_depth.hpp: how far back along the motion is an object free of what it overlaps?
+#pragma once
+#include <vector>
+
+#include "radar/contact.hpp"
+#include "radar/scene_in_frame.hpp"
+
+namespace roomradar {
+
+/// Scratch that is kept from query to query.
+struct OverlapScratch {
+  struct Span {
+    double low_m, high_m;
+    Eigen::Vector3d point;
+  };
+  std::vector<Span> spans;
+  std::vector<double> gaps_m;
+  std::vector<PendingNode> pending;
+  std::vector<SceneItem> items;
+};
+
+struct Overlap {
+  double depth_m = 0.0;                              ///< > 0; 0: they do not overlap
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the frame, where they part last
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the scene's triangle, by the winding
+  Touched kind = Touched::kNothing;
+};
+
+/// Each pair of triangles crosses over a span of travels, from its least gap to its greatest; a scene
+/// triangle is inside a closed object between the spans where it is behind an odd number of layers. The depth
+/// is how far the union of these spans that holds 0 reaches back. Scene triangles that face along the motion
+/// do not count.
+Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFrame& scene,
+                      OverlapScratch& scratch);
+
+}  // namespace roomradar

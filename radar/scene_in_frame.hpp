@@ -1,0 +1,72 @@
+// scene_in_frame.hpp: all that can be touched, placed in the frame of one motion, looked into step by step.
+#pragma once
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "radar/depth_blocks.hpp"
+#include "radar/front_map.hpp"
+#include "radar/radar_scene.hpp"
+
+namespace roomradar {
+
+/// Some of the scene that is not looked into yet, and what it cannot be nearer than.
+struct SceneItem {
+  enum class Kind : std::uint32_t {
+    kNode,     ///< of a tree
+    kLeaf,     ///< `count` triangles of a tree
+    kBlock,    ///< of a depth image
+    kTriangle  ///< one, of a tree or a depth image
+  };
+  float low_m;  ///< no way to contact is shorter
+  Kind kind;
+  std::uint32_t source;  ///< trees first, then depth images
+  std::uint32_t first, count;
+};
+
+/// How near a box of the scene can be: its least height less the greatest of the object under it. Nothing
+/// under the box is nearer, since FrontMap holds for the whole area of each pixel.
+struct SceneBound {
+  const FrontMap* front = nullptr;
+  float behind_m = 0.0F;  ///< scene wholly under this height does not matter
+  [[nodiscard]] float low_m(const FrameBox& box) const {
+    if (box.z1 < behind_m) return std::numeric_limits<float>::infinity();
+    return box.z0 - front->max_under(box.x0, box.x1, box.y0, box.y1);
+  }
+};
+
+class SceneInFrame {
+ public:
+  /// @return false if a pose is not finite or a camera cannot be one; then nothing is placed
+  bool place(const RadarScene& scene, const Eigen::Matrix3d& R_frame_world,
+             const Eigen::Vector3d& origin_world);
+  /// Appends what can be nearer than limit_m in the volume, whole trees and blocks. Before expand().
+  void begin(const Eigen::AlignedBox3d& volume, const SceneBound& bound, float limit_m,
+             std::vector<SceneItem>& items);
+  /// Appends those parts of an item (not a triangle) that can be nearer than limit_m.
+  void expand(const SceneItem& item, const SceneBound& bound, float limit_m, std::vector<SceneItem>& items);
+
+  [[nodiscard]] FrameTriangle triangle(const SceneItem& item) const;
+  [[nodiscard]] Touched kind(const SceneItem& item) const;
+
+ private:
+  struct TreeView {
+    const SceneTree* scene;
+    Eigen::Matrix3d R_frame_mesh;
+    Eigen::Vector3d t_frame_centre;  // of a point relative to the tree's centre
+    float slack_m;
+  };
+  RadarScene scene_;
+  Eigen::Matrix3d R_frame_world_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();
+  std::vector<TreeView> trees_;
+  std::vector<const SceneDepth*> depths_;
+  std::vector<DepthView> views_;  // of depths_
+  std::vector<DepthBlock> blocks_;
+  std::vector<DepthTriangle> triangles_;
+  std::vector<float> scratch_;
+
+  [[nodiscard]] FrameTriangle tree_triangle(const TreeView& view, std::uint32_t triangle) const;
+};
+
+}  // namespace roomradar

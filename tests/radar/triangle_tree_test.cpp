@@ -1,0 +1,135 @@
+// triangle_tree_test.cpp: boxes hold what is under them, all triangles are there, closed is told from open.
+#include "radar/triangle_tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include "tests/radar/shapes.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Every corner of every triangle in the box of its leaf, and of all nodes above; each triangle once.
+void expect_sound(const TriangleTree& tree) {
+  std::vector<int> seen(tree.triangle_count(), 0);
+  struct Pending {
+    std::uint32_t node;
+    std::vector<Eigen::AlignedBox3d> boxes;
+  };
+  std::vector<Pending> pending;
+  if (!tree.empty()) pending.push_back({0, {}});
+  while (!pending.empty()) {
+    const Pending next = pending.back();
+    pending.pop_back();
+    const TreeNode& node = tree.nodes()[next.node];
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      const Eigen::Vector3d centre =
+          tree.centre() + Eigen::Vector3d(node.centre_x[i], node.centre_y[i], node.centre_z[i]);
+      const Eigen::Vector3d half(node.half_x[i], node.half_y[i], node.half_z[i]);
+      std::vector<Eigen::AlignedBox3d> boxes = next.boxes;
+      boxes.emplace_back(centre - half, centre + half);
+      if (node.count[i] == 0) {
+        pending.push_back({node.first[i], boxes});
+        continue;
+      }
+      for (std::uint32_t t = node.first[i]; t < node.first[i] + node.count[i]; ++t) {
+        ++seen[t];
+        for (const std::uint32_t v : tree.triangles()[t]) {
+          for (const Eigen::AlignedBox3d& box : boxes) {
+            ASSERT_TRUE(box.contains(tree.vertices()[v].cast<double>()));
+          }
+        }
+      }
+    }
+  }
+  EXPECT_TRUE(std::all_of(seen.begin(), seen.end(), [](int n) { return n == 1; }));
+}
+
+TEST(TriangleTree, BoxesHoldTheirTrianglesInBothOrders) {
+  for (const int around : {3, 7, 40, 100}) {
+    Mesh mesh = shapes::torus(around, 9, 0.2F, 0.06F, 0.02F);
+    for (Eigen::Vector3f& v : mesh.vertices) v += Eigen::Vector3f(100.0F, -3.0F, 7.0F);
+    TriangleTree tree;
+    tree.build_by_place(mesh);
+    EXPECT_EQ(tree.triangle_count(), mesh.triangles.size());
+    expect_sound(tree);
+    tree.build_in_order(mesh);
+    EXPECT_EQ(tree.triangle_count(), mesh.triangles.size());
+    EXPECT_TRUE(std::equal(tree.triangles().begin(), tree.triangles().end(), mesh.triangles.begin()));
+    expect_sound(tree);
+  }
+}
+
+TEST(TriangleTree, UnusableTrianglesAreLeftOutAndDegenerateOnesStay) {
+  Mesh mesh = shapes::box({1.0F, 1.0F, 1.0F});
+  mesh.vertices.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F);
+  const auto nan = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+  mesh.triangles.push_back({0, 1, nan});
+  mesh.triangles.push_back({0, 1, nan + 1});
+  mesh.triangles.push_back({0, 0, 1});
+  mesh.triangles.push_back({2, 2, 2});
+  mesh.triangles.push_back({0, 1, 2});
+  for (const bool by_place : {true, false}) {
+    TriangleTree tree;
+    by_place ? tree.build_by_place(mesh) : tree.build_in_order(mesh);
+    EXPECT_EQ(tree.triangle_count(), 15U);
+    EXPECT_EQ(tree.dropped_triangles(), 2U);
+    expect_sound(tree);
+  }
+}
+
+TEST(TriangleTree, ThousandsOfTrianglesAtOnePlaceAreStillATree) {
+  Mesh mesh;
+  mesh.vertices.assign(3, Eigen::Vector3f(1.0F, 2.0F, 3.0F));
+  mesh.triangles.assign(5000, {0, 1, 2});
+  TriangleTree tree;
+  tree.build_by_place(mesh);
+  expect_sound(tree);
+}
+
+TEST(TriangleTree, NothingIsEmpty) {
+  TriangleTree tree;
+  EXPECT_TRUE(tree.empty());
+  EXPECT_EQ(tree.revision(), 0U);
+  tree.build_by_place(Mesh{});
+  EXPECT_TRUE(tree.empty());
+  EXPECT_TRUE(tree.nodes().empty());
+  EXPECT_FALSE(tree.is_closed());
+}
+
+TEST(TriangleTree, ClosedMeansEveryEdgeIsSharedAndTheVolumePositive) {
+  TriangleTree tree;
+  Mesh box = shapes::box({1.0F, 1.0F, 1.0F});  // vertices of faces are not shared: told by place
+  tree.build_by_place(box);
+  EXPECT_TRUE(tree.is_closed());
+  tree.build_by_place(shapes::torus(20, 10, 0.2F, 0.06F, 0.02F));
+  EXPECT_TRUE(tree.is_closed());
+  tree.build_by_place(shapes::floor(1.0F, 0.0F));
+  EXPECT_FALSE(tree.is_closed());
+  Mesh inside_out = box;
+  for (Triangle& t : inside_out.triangles) std::swap(t[0], t[1]);
+  tree.build_by_place(inside_out);
+  EXPECT_FALSE(tree.is_closed());
+  box.triangles.pop_back();
+  tree.build_by_place(box);
+  EXPECT_FALSE(tree.is_closed());
+}
+
+TEST(TriangleTree, EveryBuildHasARevisionOfItsOwn) {
+  std::set<std::uint64_t> revisions;
+  TriangleTree a, b;
+  const Mesh mesh = shapes::floor(1.0F, 0.0F);
+  for (TriangleTree* tree : {&a, &b, &a}) {
+    tree->build_in_order(mesh);
+    revisions.insert(tree->revision());
+  }
+  EXPECT_EQ(revisions.size(), 3U);
+  EXPECT_EQ(revisions.count(0), 0U);
+}
+
+}  // namespace
+}  // namespace roomradar
