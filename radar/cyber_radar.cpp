@@ -7,6 +7,7 @@
 
 #include "mapping/types/error.hpp"
 #include "radar/solid_inside.hpp"
+#include "radar/thick_travel.hpp"
 
 namespace roomradar {
 namespace {
@@ -40,43 +41,6 @@ struct Settled {
   double least_m = kInfinity;
   bool overlaps = false;
 };
-
-/// Lower bound of the gap over the common outline of two triangles, one of them thickened by margin_m: where
-/// one's plane is extended, the other's corners are the farthest it can get; infinite where they cannot share
-/// a place or the scene is behind.
-double thick_gap(const FrameTriangle& object, const FrameTriangle& scene, double margin_m) {
-  std::array<double, 3> object_low, object_high, scene_low, scene_high;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto k = static_cast<Eigen::Index>(axis);
-    const auto [ol, oh] = std::minmax({object.corners[0][k], object.corners[1][k], object.corners[2][k]});
-    const auto [sl, sh] = std::minmax({scene.corners[0][k], scene.corners[1][k], scene.corners[2][k]});
-    object_low[axis] = ol - margin_m;
-    object_high[axis] = oh + margin_m;
-    scene_low[axis] = sl;
-    scene_high[axis] = sh;
-  }
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    if (object_low[axis] > scene_high[axis] || scene_low[axis] > object_high[axis]) return kInfinity;
-  }
-  double low_m = scene_low[2] - object_high[2], high_m = scene_high[2] - object_low[2];
-  const auto limit_by = [&](const FrameTriangle& plane, const FrameTriangle& other, double sign) {
-    const double facing = plane.normal.z();
-    if (std::abs(facing) < 1e-6) return;
-    double least = kInfinity, most = -kInfinity;
-    for (const Eigen::Vector3d& corner : other.corners) {
-      // The plane's height above the corner.
-      const double above_m = sign * plane.normal.dot(plane.corners[0] - corner) / facing;
-      least = std::min(least, above_m);
-      most = std::max(most, above_m);
-    }
-    const double reach_m = margin_m / std::abs(facing);  // a ball about the corner, down to the plane
-    low_m = std::max(low_m, least - reach_m);
-    high_m = std::min(high_m, most + reach_m);
-  };
-  limit_by(scene, object, 1.0);
-  limit_by(object, scene, -1.0);
-  return high_m < 0.0 ? kInfinity : low_m;
-}
 
 }  // namespace
 
@@ -132,7 +96,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
     has_ahead |= search_column(object, s, limit_m, -object.touching_m, pending_, [&](std::uint32_t i) {
       const FrameTriangle o = turned_triangle(object, i);
       if (is_thick) {
-        best_m = std::min(best_m, thick_gap(o, s, query.margin_m));
+        best_m = std::min(best_m, thick_travel(o, s, query.margin_m, limit_m()));
         return;
       }
       TriangleGap gap;
@@ -205,7 +169,8 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   if (is_thick) {
     if (!overlaps && best_m > query.distance_m) return contact;
     contact.status = ContactStatus::kContact;
-    contact.lower_m = overlaps ? 0.0 : std::max(best_m, 0.0);
+    const double unsettled_m = heap_.empty() ? kInfinity : heap_.front().low_m;  // sampled mode
+    contact.lower_m = overlaps ? 0.0 : std::max(std::min(best_m, unsettled_m), 0.0);
     contact.travel_m = contact.lower_m;
     return contact;
   }

@@ -387,11 +387,12 @@ TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
     stopped += truth_m < distance_m ? 1 : 0;
   }
   EXPECT_GT(stopped, HasFailure() ? 0 : poses(60));
-  // Of use: as a rule not much more timid than the margin is wide.
+  // Of use: in the exact mode the truth but for grazes, in the sampled mode a pixel or so under it.
   std::sort(timid_margins.begin(), timid_margins.end());
   std::printf("timid by median %.2f, p90 %.2f, worst %.2f margins\n", timid_margins[timid_margins.size() / 2],
               timid_margins[timid_margins.size() * 9 / 10], timid_margins.back());
-  EXPECT_LT(timid_margins[timid_margins.size() / 2], 2.0);
+  EXPECT_LT(timid_margins[timid_margins.size() / 2], 0.1);
+  EXPECT_LT(timid_margins[timid_margins.size() * 9 / 10], 1.0);
 }
 
 TEST(RadarBounds, WhatIsThinnerThanAPixelIsMissedInNeitherBound) {
