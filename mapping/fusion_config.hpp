@@ -5,10 +5,10 @@ namespace roomradar {
 
 struct FusionConfig {
   float max_range_m = 5.0F;  ///< surfaces beyond are too noisy (sigma 4 cm); rays clear up to here
-  /// Signed distance is kept this far from a surface (4 blur it where poses disagree, 2 leave holes), or as
-  /// far as truncation_sigmas says.
-  float truncation_voxels = 3.0F;
-  float truncation_sigmas = 3.0F;  ///< standard deviations of the measured depth; the greater of both holds
+  /// Signed distance is kept this far from a surface (more blurs it where poses disagree, less leaves holes),
+  /// or as far as truncation_sigmas says.
+  float truncation_voxels = 2.0F;
+  float truncation_sigmas = 2.5F;  ///< standard deviations of the measured depth; the greater of both holds
   float max_weight = 64.0F;        ///< cap of a sample's weight, so that what changed can be forgotten
   /// A frame that clearly sees through a sample counts as so many that measured it: what is static is never
   /// seen through, what moved on was measured often.

@@ -41,6 +41,7 @@ class LeafUpdate {
         T_colour_depth_(frame.T_colour_depth.cast<float>().matrix()),
         truncation_m_(config.truncation_voxels * static_cast<float>(tree.resolution_m())),
         colour_distance_m_(kColourVoxels * static_cast<float>(tree.resolution_m())),
+        behind_(-kBehind_voxels * static_cast<float>(tree.resolution_m()) / tree.units().distance_m),
         hit_(in_steps(config.hit_log_odds)),
         miss_(in_steps(config.miss_log_odds)),
         min_(in_steps(config.min_log_odds)),
@@ -77,25 +78,33 @@ class LeafUpdate {
   /// what the node of the eight has become.
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
-    const unsigned sampled = observed.sampled;
+    unsigned sampled = observed.sampled;
     if ((hit | missed | sampled) == 0) return node;
     if ((hit | sampled) == 0 && node == settled_free()) return node;
     LeafBlock made;
     if (!node.is_block()) made = opened_leaves(node);
     LeafBlock& block = node.is_block() ? tree_.leaves(node) : made;
     if ((hit | missed) != 0) add_log_odds(block, hit, missed);
-    if (sampled != 0) add_samples(block, observed, refresh_colour);
+    if (const unsigned gone = missed & seen_through(block, observed); gone != 0)
+      sampled &= ~cancel_samples(block, weight_of(observed.sigma_m), gone);
+    if (sampled != 0) add_samples(block, observed, sampled, refresh_colour);
     return tree_.settle(node, block);
   }
 
   /// All eight are seen through, from so far that the frame weighs `weight`; clear: and so is what is round
   /// them: then a sample's distance is at least the truncation. Once this is settled the sample goes, so that
   /// the voxel can merge with the free space around it. A voxel seen through by its own pixel alone keeps its
-  /// sample: beside an edge, and on surfaces seen obliquely, that is noise more often than change.
+  /// sample: beside an edge, and on surfaces seen obliquely, that is noise more often than change. Only what
+  /// lies behind a surface cannot be seen through unless that has gone: there the frames that saw it and
+  /// those that see through it cancel each other. Else what moved on from before a wall, too near to it to be
+  /// clear, would leave its back behind.
   Slot mark_free(Slot node, float weight, bool clear) {
     LeafBlock& block = tree_.leaves(node);
     add_log_odds(block, 0, 0xFFU);
-    if (clear) fade_samples(block, weight);
+    if (clear)
+      fade_samples(block, weight);
+    else if (const unsigned gone = behind_surface(block); gone != 0)
+      cancel_samples(block, weight, gone);
     return tree_.settle(node, block);
   }
 
@@ -106,6 +115,12 @@ class LeafUpdate {
   // then it counts as this part: rounded to whole levels, less would change nothing.
   static constexpr float kSettledPart = 1.0F / 8.0F;
 
+  // A sample is behind a surface from here on: nearer, noise and poses see past it too often.
+  static constexpr float kBehind_voxels = 0.5F;
+  // A frame that sees through such a sample takes back so many that measured it: those are the heavier ones,
+  // being nearer, and what was there for half of the frames is to go.
+  static constexpr float kCancelled = 1.25F;
+
   static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
   [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }
 
@@ -115,12 +130,39 @@ class LeafUpdate {
     return beyond_m * beyond_m * 0.0019F + 0.0012F;
   }
 
+  static Float8 weight_of(const Float8& sigma_m) {
+    const Float8 ratio = Float8(depth_sigma_m(1.0F)) / sigma_m;
+    return min(ratio * ratio, 1.0F);
+  }
+
   void add_log_odds(LeafBlock& block, unsigned hit, unsigned missed) const {
     const Float8 before = Float8::load(block.log_odds);
     const Float8 after =
         select(Float8::Mask::of_bits(hit), min(before + hit_, max_), max(before + miss_, min_));
     const Float8 known = select(after == Float8(0.0F), 1.0F, after);
     select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
+  }
+
+  [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
+    return (Float8::load(block.distance) < Float8(behind_)).bits();
+  }
+  // Of those, the ones that this frame measures something farther than the truncation behind.
+  [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
+    const Float8 further =
+        observed.distance_m * (1.0F / tree_.units().distance_m) - Float8::load(block.distance);
+    return behind_surface(block) & (Float8(truncation_m_ / tree_.units().distance_m) < further).bits();
+  }
+
+  // Takes the weight of a frame that sees through the samples in `gone` from them. Gives those that are left.
+  unsigned cancel_samples(LeafBlock& block, const Float8& weight, unsigned gone) const {
+    const Float8 own_weight = Float8::load(block.weight);
+    const Float8 cancelled = max(weight * (kCancelled / tree_.units().weight), 1.0F);
+    select(Float8::Mask::of_bits(gone), max(own_weight - cancelled, 0.0F), own_weight)
+        .store_rounded(block.weight);
+    const auto kept = Float8(0.0F) < Float8::load(block.weight);
+    select(kept, Float8::load(block.distance), 0.0F).store_rounded(block.distance);
+    block.coloured &= static_cast<std::uint8_t>(kept.bits());
+    return gone & kept.bits();
   }
 
   void fade_samples(LeafBlock& block, float weight) const {
@@ -139,20 +181,19 @@ class LeafUpdate {
     block.coloured &= static_cast<std::uint8_t>(kept.bits());
   }
 
-  void add_samples(LeafBlock& block, const Observed<Float8>& observed, bool refresh_colour) {
+  void add_samples(LeafBlock& block, const Observed<Float8>& observed, unsigned which, bool refresh_colour) {
     const BlockUnits& units = tree_.units();
     const Float8 own_weight = Float8::load(block.weight);
-    const Float8 ratio = Float8(depth_sigma_m(1.0F)) / observed.sigma_m;
-    const Float8 weight = max(floor(min(ratio * ratio, 1.0F) * (1.0F / units.weight) + 0.5F), 1.0F);
+    const Float8 weight = max(floor(weight_of(observed.sigma_m) * (1.0F / units.weight) + 0.5F), 1.0F);
     const Float8 sum = own_weight + weight;
     const Float8 part = weight / sum;
     const Float8 distance = Float8::load(block.distance);
     const Float8 mean = distance + (observed.distance_m * (1.0F / units.distance_m) - distance) * part;
-    const auto sampled = Float8::Mask::of_bits(observed.sampled);
+    const auto sampled = Float8::Mask::of_bits(which);
     select(sampled, mean, distance).store_rounded(block.distance);
     select(sampled, sum, own_weight).store_rounded(block.weight);
     if (!has_colour_) return;
-    unsigned take = observed.sampled & (absolute(observed.distance_m) < colour_distance_m_).bits();
+    unsigned take = which & (absolute(observed.distance_m) < colour_distance_m_).bits();
     if (!refresh_colour) take &= ~block.coloured | (Float8(kSettledPart) <= part).bits();
     if (take != 0) add_colours(block, observed.p_camera, max(part, kSettledPart), take);
   }
@@ -197,6 +238,7 @@ class LeafUpdate {
   Pinhole camera_, colour_camera_;
   Eigen::Matrix4f T_colour_depth_;
   float truncation_m_, colour_distance_m_;
+  float behind_;                  // a distance, in the tree's steps
   float hit_, miss_, min_, max_;  // log-odds, in the tree's steps
   bool has_colour_ = false;
 };

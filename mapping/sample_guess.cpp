@@ -34,17 +34,23 @@ void guess_neighbours(SampleBricks& bricks) {
           for (int x = 0; x < kBrickEdge; ++x) {
             const Eigen::Vector3i voxel(x, y, z);
             if (all[b].samples[brick_offset(voxel)].known()) continue;
-            float sum = 0.0F;
-            int count = 0;
+            float on_lines = 0.0F, beside = 0.0F;  // sums
+            int lines = 0, count = 0;
             for (int side = 0; side < 6; ++side) {
               const Eigen::Vector3i step = (side % 2 == 0 ? 1 : -1) * Eigen::Vector3i::Unit(side / 2);
               const BrickSample* next = known_at(all, around.place(voxel + step));
               if (!next) continue;
               const BrickSample* beyond = known_at(all, around.place(voxel + 2 * step));
-              sum += beyond ? 2.0F * next->distance_m - beyond->distance_m : next->distance_m;
+              beside += next->distance_m;
               ++count;
+              if (!beyond) continue;
+              on_lines += 2.0F * next->distance_m - beyond->distance_m;
+              ++lines;
             }
-            if (count > 0) guesses.push_back({b, brick_offset(voxel), sum / static_cast<float>(count)});
+            if (count > 0)
+              guesses.push_back(
+                  {b, brick_offset(voxel),
+                   lines > 0 ? on_lines / static_cast<float>(lines) : beside / static_cast<float>(count)});
           }
     }
     for (const Guess& guess : guesses) {

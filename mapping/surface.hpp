@@ -17,7 +17,7 @@ struct SurfaceConfig {
   float min_component_area_m2 = 4e-3F;  ///< connected pieces with less area are specks (about 6 x 6 cm)
   /// No point of the surface lies farther from the one with all triangles, nor the other way; 0 keeps every
   /// triangle.
-  float max_deviation_m = 3e-3F;
+  float max_deviation_m = 2e-3F;
 };
 
 /// What became of the triangles.
