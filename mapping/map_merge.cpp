@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -68,6 +69,24 @@ bool same_grid(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& 
   return T.matrix().isIdentity(1e-12) && std::abs(a.resolution_m() - b.resolution_m()) < 1e-12;
 }
 
+// The distance at a point in a sample's own voxel, along straight lines through the samples on its sides: so
+// that the thin layer of samples does not lose its outermost ones. Nothing where an axis has none.
+std::optional<double> distance_beside(const StaticMap& map, const SurfaceSample& sample,
+                                      const Eigen::Vector3d& p_world) {
+  const double voxel_m = map.resolution_m();
+  const Eigen::Vector3d centre = (sample.voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * voxel_m;
+  double distance_m = static_cast<double>(sample.distance_m);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d step = voxel_m * Eigen::Vector3d::Unit(axis);
+    const auto before = map.sample_at(centre - step), after = map.sample_at(centre + step);
+    if (!before && !after) return std::nullopt;
+    const float rise_m = (after ? *after : sample).distance_m - (before ? *before : sample).distance_m;
+    const double run_m = before && after ? 2.0 * voxel_m : voxel_m;
+    distance_m += static_cast<double>(rise_m) / run_m * (p_world - centre)[axis];
+  }
+  return distance_m;
+}
+
 }  // namespace
 
 void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, StaticMap& into) {
@@ -92,11 +111,14 @@ void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, Static
     cover(box_of(sample.voxel, 1), [&](const VoxelIndex& voxel, int) {
       const Eigen::Vector3d p_into =
           (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * into.resolution_m();
-      const auto at = distance_at(from, T_from_into * p_into);
-      if (!at) return;  // at the rim of what is known
+      const Eigen::Vector3d p_from = T_from_into * p_into;
+      const auto between = distance_at(from, p_from);
+      const auto distance_m =
+          between ? std::optional(between->distance_m) : distance_beside(from, sample, p_from);
+      if (!distance_m) return;  // at the rim of what is known
       SurfaceSample resampled = sample;
       resampled.voxel = voxel;
-      resampled.distance_m = static_cast<float>(at->distance_m);
+      resampled.distance_m = static_cast<float>(*distance_m);
       into.add_evidence(resampled);
     });
   });
