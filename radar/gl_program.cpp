@@ -12,9 +12,22 @@
 namespace roomradar {
 namespace {
 
-GLuint make_shader(const char* name, GLenum stage, const char* source) {
-  const GLuint shader = glCreateShader(stage);
-  glShaderSource(shader, 1, &source, nullptr);
+const char* name_of(GLenum stage) {
+  switch (stage) {
+    case GL_VERTEX_SHADER:
+      return "vertex";
+    case GL_GEOMETRY_SHADER:
+      return "geometry";
+    case GL_FRAGMENT_SHADER:
+      return "fragment";
+    default:
+      return "compute";
+  }
+}
+
+GLuint make_shader(const char* name, const ShaderSource& source) {
+  const GLuint shader = glCreateShader(source.stage);
+  glShaderSource(shader, static_cast<GLsizei>(source.pieces.size()), source.pieces.begin(), nullptr);
   glCompileShader(shader);
   GLint compiled = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
@@ -22,26 +35,23 @@ GLuint make_shader(const char* name, GLenum stage, const char* source) {
   std::array<char, 2048> log{};
   glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
   glDeleteShader(shader);
-  throw Error(std::string("the graphics driver does not compile the ") +
-              (stage == GL_VERTEX_SHADER ? "vertex" : "fragment") + " shader \"" + name +
-              "\": " + log.data());
+  throw Error(std::string("the graphics driver does not compile the ") + name_of(source.stage) +
+              " shader \"" + name + "\": " + log.data());
 }
 
 }  // namespace
 
-unsigned make_program(const char* name, const char* vertex_shader, const char* fragment_shader) {
-  const GLuint vertex = make_shader(name, GL_VERTEX_SHADER, vertex_shader);
-  GLuint fragment = 0;
-  try {
-    fragment = make_shader(name, GL_FRAGMENT_SHADER, fragment_shader);
-  } catch (...) {
-    glDeleteShader(vertex);
-    throw;
-  }
+unsigned make_program(const char* name, std::initializer_list<ShaderSource> shaders) {
   const GLuint program = glCreateProgram();
-  for (const GLuint shader : {vertex, fragment}) {
-    glAttachShader(program, shader);
-    glDeleteShader(shader);  // goes with the program
+  try {
+    for (const ShaderSource& source : shaders) {
+      const GLuint shader = make_shader(name, source);
+      glAttachShader(program, shader);
+      glDeleteShader(shader);  // goes with the program
+    }
+  } catch (...) {
+    glDeleteProgram(program);
+    throw;
   }
   glLinkProgram(program);
   GLint linked = GL_FALSE;
@@ -51,6 +61,10 @@ unsigned make_program(const char* name, const char* vertex_shader, const char* f
   glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
   glDeleteProgram(program);
   throw Error(std::string("the graphics driver does not link the program \"") + name + "\": " + log.data());
+}
+
+unsigned make_program(const char* name, const char* vertex_shader, const char* fragment_shader) {
+  return make_program(name, {{GL_VERTEX_SHADER, {vertex_shader}}, {GL_FRAGMENT_SHADER, {fragment_shader}}});
 }
 
 }  // namespace roomradar

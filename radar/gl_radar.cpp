@@ -1,4 +1,4 @@
-// gl_radar.cpp: M, then R through M, one readback, the least L.
+// gl_radar.cpp: M where it is not kept, R through M, the least L of each query, one copy back.
 #include "radar/gl_radar.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -7,49 +7,63 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
 
 #include "mapping/types/error.hpp"
-#include "radar/draw_positions.hpp"
+#include "mapping/types/morton.hpp"
 #include "radar/gl_program.hpp"
-#include "radar/nearest_triangle.hpp"
+#include "radar/tile_shaders.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr double kMaxDistance_m = 1e4;  // beyond it a step of 32 bit depth is 0.6 mm
+constexpr double kMaxDistance_m = 1e4;
+constexpr std::size_t kMasksKept = 16;  // at least, where the atlas may be that large
+constexpr float kNothing = 3e38F;       // as in tile_shaders.hpp
+const Eigen::Vector2d kSample_px(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // as in tile_shaders.hpp
 
-constexpr const char* kMaskShader = R"(#version 450 core
-void main() {}
-)";
-
-// The object's surface behind its front that is entered along the motion: the rear of the front slab of its
-// solid. Front-facing means opposing the motion. M runs from the far plane, so behind the front means larger.
-constexpr const char* kEntryShader = R"(#version 450 core
-layout(binding = 0) uniform sampler2D mask01;
-layout(location = 1) uniform float touching01;
-void main() {
-  float m = texelFetch(mask01, ivec2(gl_FragCoord.xy), 0).r;
-  if (!gl_FrontFacing || gl_FragCoord.z <= m + touching01) discard;
+/// L this near to 0 is touching.
+double touching_m(const RadarOutline& outline, double distance_m) {
+  return 1e-5 + 1e-6 * (outline.length_m + distance_m);
 }
-)";
 
-// The scene through the object's outline, passing over what is behind the object's front (see GlRadar).
-constexpr const char* kRangeShader = R"(#version 450 core
-layout(binding = 0) uniform sampler2D mask01;
-layout(binding = 1) uniform sampler2D entry01;
-layout(location = 1) uniform float touching01;
-layout(location = 2) uniform float tolerance01;
-void main() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  float m = texelFetch(mask01, pixel, 0).r;
-  if (m == 1.0) discard;
-  float slab01 = texelFetch(entry01, pixel, 0).r - m;
-  float behind01 = gl_FrontFacing ? max(touching01, min(tolerance01, slab01)) : touching01;
-  if (gl_FragCoord.z + m - 1.0 < -behind01) discard;
+bool is_usable(const GlQuery& query) {
+  const double norm = query.direction_world.stableNorm();
+  return query.direction_world.allFinite() && norm > 0.0 && query.distance_m > 0.0 &&
+         query.distance_m <= kMaxDistance_m && query.object.mesh != nullptr &&
+         query.object.mesh->triangle_count() > 0 && query.object.T_world_mesh.matrix().allFinite();
 }
-)";
+
+Eigen::AlignedBox3d bounds_world(const MeshInstance& instance) {
+  const Eigen::AlignedBox3d bounds = instance.mesh->bounds();
+  const Eigen::Vector3d centre = instance.T_world_mesh * bounds.center();
+  const Eigen::Vector3d half = instance.T_world_mesh.linear().cwiseAbs() * (0.5 * bounds.sizes());
+  return {centre - half, centre + half};
+}
+
+/// How far the renderer's floats may put a vertex of the object beside where it is; as kTileVertexShader has
+/// it.
+double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline) {
+  const Eigen::AlignedBox3d bounds = mesh.bounds();
+  const Eigen::Vector3d farthest =
+      (bounds.min() - mesh.origin()).cwiseAbs().cwiseMax((bounds.max() - mesh.origin()).cwiseAbs());
+  const Eigen::Matrix<double, 3, 4> to_outline = outline_from_object(outline).cwiseAbs();
+  return 4.3e-7 * (to_outline.leftCols<3>() * farthest + to_outline.col(3)).head<2>().maxCoeff();
+}
+
+/// What the shaders are told of the query, its draws' keys aside.
+TileQuery tile_query(const RadarOutline& outline, double distance_m, double tolerance_m,
+                     std::array<int, 2> object_corner_px, std::array<int, 2> scene_corner_px) {
+  TileQuery tile;
+  tile.corners_px = {object_corner_px[0], object_corner_px[1], scene_corner_px[0], scene_corner_px[1]};
+  tile.width_px = outline.width_px;
+  tile.height_px = outline.height_px;
+  tile.touching_m = static_cast<float>(touching_m(outline, distance_m));
+  tile.far_m = static_cast<float>(distance_m) + 2.0F * tile.touching_m;
+  tile.tolerance_m = static_cast<float>(std::min(tolerance_m, outline.length_m));
+  tile.length_m = static_cast<float>(outline.length_m);
+  return tile;
+}
 
 }  // namespace
 
@@ -61,222 +75,334 @@ void require_valid(const GlRadarConfig& config) {
     throw Error("radar.overlap_tolerance_m = " + std::to_string(config.overlap_tolerance_m) +
                 ": must be >= 0");
   }
+  if (config.atlas_px < 1 || config.atlas_px > 16384) {
+    throw Error("radar.atlas_px = " + std::to_string(config.atlas_px) + ": must be in 1..16384");
+  }
 }
 
-GlRadar::GlRadar(GlContext& context, const GlRadarConfig& config) : config_(config) {
-  require_valid(config);
+GlRadar::GlRadar(GlContext& context, const GlRadarConfig& config)
+    : config_((require_valid(config), config)),
+      object_tiles_(context),
+      scene_tiles_(context),
+      object_draws_(context),
+      scene_draws_(context),
+      least_(context, config.minimum == GlMinimum::kOnRenderer ||
+                          (config.minimum == GlMinimum::kAuto && !context.is_software())) {
   GLint max_size_px = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &max_size_px);
   if (config.resolution_px > max_size_px) {
     throw Error("radar.resolution_px = " + std::to_string(config.resolution_px) + ": " + context.renderer() +
                 " draws at most " + std::to_string(max_size_px));
   }
-  mask_program_ = make_program("radar mask", kPositionShader, kMaskShader);
-  range_program_ = make_program("radar range", kPositionShader, kRangeShader);
-  entry_program_ = make_program("radar entry", kPositionShader, kEntryShader);
-  glCreateTextures(GL_TEXTURE_2D, kLayerCount, textures_.data());
-  glCreateFramebuffers(kLayerCount, framebuffers_.data());
-  for (std::size_t layer = 0; layer < kLayerCount; ++layer) {
-    glTextureStorage2D(textures_[layer], 1, GL_DEPTH_COMPONENT32F, config.resolution_px,
-                       config.resolution_px);
-    glTextureParameteri(textures_[layer], GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-    glTextureParameteri(textures_[layer], GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glNamedFramebufferTexture(framebuffers_[layer], GL_DEPTH_ATTACHMENT, textures_[layer], 0);
-    glNamedFramebufferDrawBuffer(framebuffers_[layer], GL_NONE);
-    glNamedFramebufferReadBuffer(framebuffers_[layer], GL_NONE);
+  config_.atlas_px = std::min(std::max(config.atlas_px, config.resolution_px), max_size_px);
+  GLint geometry_blocks = 0;
+  glGetIntegerv(GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, &geometry_blocks);
+  if (geometry_blocks < 1) {
+    throw Error("radar: " + context.renderer() +
+                " has no storage blocks in geometry shaders; use the software renderer "
+                "(ROOMRADAR_RENDERER=software)");
   }
-  const auto pixels = static_cast<GLsizeiptr>(config.resolution_px) * config.resolution_px;
-  glCreateBuffers(1, &readback_buffer_);
-  glNamedBufferStorage(readback_buffer_, 2 * pixels * static_cast<GLsizeiptr>(sizeof(float)), nullptr,
-                       GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
+  clear_program_ = make_program("radar clear", {{GL_VERTEX_SHADER, {kTilePreamble, kClearVertexShader}},
+                                                {GL_FRAGMENT_SHADER, {kTilePreamble, kClearFragmentShader}}});
+  const auto make_tile_program = [](const char* name, const char* gap, const char* shader) {
+    return make_program(
+        name, {{GL_VERTEX_SHADER, {kTilePreamble, kTileVertexShader}},
+               {GL_GEOMETRY_SHADER, {kTilePreamble, kTileGeometryInputs, kTileGeometryShader}},
+               {GL_FRAGMENT_SHADER, {kTilePreamble, kTileFragmentInputs, kSpanSource, gap, shader}}});
+  };
+  object_program_ = make_tile_program("radar object", "", kObjectTileShader);
+  scene_program_ = make_tile_program("radar scene", kGapSource, kSceneTileShader);
+  if (!fit_atlases(1)) {
+    throw Error("radar: " + context.renderer() + " does not draw into float textures of " +
+                std::to_string(config.resolution_px) + " x " + std::to_string(config.resolution_px) +
+                " pixels; use fewer or the software renderer (ROOMRADAR_RENDERER=software)");
+  }
 }
 
 GlRadar::~GlRadar() {
-  glDeleteBuffers(1, &readback_buffer_);
-  glDeleteFramebuffers(kLayerCount, framebuffers_.data());
-  glDeleteTextures(kLayerCount, textures_.data());
-  for (const unsigned program : {mask_program_, range_program_, entry_program_}) glDeleteProgram(program);
+  for (const unsigned program : {clear_program_, object_program_, scene_program_}) glDeleteProgram(program);
 }
 
 Contact GlRadar::query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
                        std::span<const SceneMesh> scene) {
-  volume_ = {};
-  for (Image<float>* image : {&range_m_, &mask_m_, &lookat_m_}) image->resize(0, 0);
-  const double direction_norm = direction_world.stableNorm();
+  const GlQuery query{object, direction_world, distance_m, GlQuery::kNotInScene};
+  Contact contact;
+  query_all({&query, 1}, scene, {&contact, 1});
+  return contact;
+}
+
+void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
+                        std::span<Contact> contacts) {
+  std::fill(contacts.begin(), contacts.end(), Contact{});
+  shown_ = {};
   const auto has_bad_pose = [](const SceneMesh& s) {
     return s.instance.mesh != nullptr && !s.instance.T_world_mesh.matrix().allFinite();
   };
-  if (!direction_world.allFinite() || !(direction_norm > 0.0) || !(distance_m > 0.0) ||
-      !(distance_m <= kMaxDistance_m) || object.mesh == nullptr || object.mesh->triangle_count() == 0 ||
-      !object.T_world_mesh.matrix().allFinite() || std::any_of(scene.begin(), scene.end(), has_bad_pose)) {
-    return {};
+  if (std::any_of(scene.begin(), scene.end(), has_bad_pose)) return;
+  box_scene(scene);
+  drawn_.clear();
+  reaches_.clear();
+  batch_.clear();
+  batch_object_draws_.clear();
+  batch_scene_draws_.clear();
+  const bool is_fit = fit_atlases(queries.size());
+  masks_.begin_round();
+  least_.begin(queries.size());
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    if (!is_usable(queries[i])) continue;
+    if (is_fit && add(i, queries[i], scene, contacts[i])) continue;
+    draw_batch();
+    if (!is_fit || !add(i, queries[i], scene, contacts[i])) contacts[i].status = ContactStatus::kNoAnswer;
   }
-
-  volume_ = fit_volume(object, direction_world / direction_norm, distance_m, config_.resolution_px);
-  const auto far_m = static_cast<float>(volume_.depth_m);
-  range_m_.resize(volume_.width_px, volume_.height_px, far_m);
-  mask_m_.resize(volume_.width_px, volume_.height_px, far_m);
-  lookat_m_.resize(volume_.width_px, volume_.height_px, std::numeric_limits<float>::quiet_NaN());
-  Contact nothing;
-  nothing.status = ContactStatus::kNoTarget;
-  nothing.pixel_m = volume_.pixel_m;
-  const Eigen::Matrix4d clip = clip_from_world(volume_);
-  const auto reaches_volume = [&](const SceneMesh& s) {
-    return s.instance.mesh != nullptr && s.instance.mesh->reaches(clip_from_local(s.instance, clip));
-  };
-  if (std::none_of(scene.begin(), scene.end(), reaches_volume)) return nothing;
-
-  draw_mask(object);
-  begin_layer(kEntry, entry_program_);  // cleared: as if the object were solid to its rear
-  draw_range(scene);
-  std::optional<double> least_m = read_and_compare();
-  // An overlap, or only something in a hollow of the object? Look again, closer.
-  if (least_m && *least_m < -touching_m()) {
-    draw_entry(object);
-    draw_range(scene);
-    least_m = read_and_compare();
+  if (drawn_.empty()) return;
+  draw_batch();
+  const std::span<const TileResult> results = least_.read(drawn_.size());
+  if (results.empty()) masks_.forget();
+  for (std::size_t i = 0; i < drawn_.size(); ++i) {
+    const std::size_t q = drawn_[i].query;
+    if (results.empty()) {
+      contacts[q].status = ContactStatus::kNoAnswer;
+    } else {
+      contacts[q] = contact_of(queries[q], drawn_[i], results[i], scene);
+    }
   }
-  if (!least_m) {
-    nothing.status = ContactStatus::kNoAnswer;
-    return nothing;
-  }
-  if (!(*least_m <= distance_m + touching_m())) return nothing;
-  return contact_at_least_gap(*least_m, scene);
-}
-
-double GlRadar::touching_m() const { return 1e-5 + 1e-6 * volume_.depth_m; }
-
-void GlRadar::begin_layer(Layer layer, unsigned program) const {
-  glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_[layer]);
-  glViewport(0, 0, volume_.width_px, volume_.height_px);
-  glEnable(GL_SCISSOR_TEST);
-  glScissor(0, 0, volume_.width_px, volume_.height_px);
-  glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
-  glFrontFace(GL_CW);
-  glEnable(GL_DEPTH_TEST);
-  glDepthMask(GL_TRUE);
-  glDepthFunc(GL_LESS);
-  const GLfloat far01 = 1.0F;
-  glClearBufferfv(GL_DEPTH, 0, &far01);
-  glUseProgram(program);
-}
-
-void GlRadar::draw_mask(const MeshInstance& object) const {
-  begin_layer(kMask, mask_program_);
-  draw_positions(object, reflected_clip_from_world(volume_));
-}
-
-void GlRadar::draw_entry(const MeshInstance& object) const {
-  begin_layer(kEntry, entry_program_);
-  glBindTextureUnit(0, textures_[kMask]);
-  glUniform1f(1, static_cast<float>(touching_m() / volume_.depth_m));
-  draw_positions(object, reflected_clip_from_world(volume_));
-}
-
-void GlRadar::draw_range(std::span<const SceneMesh> scene) const {
-  begin_layer(kRange, range_program_);
-  glBindTextureUnit(0, textures_[kMask]);
-  glBindTextureUnit(1, textures_[kEntry]);
-  const double tolerance_m = std::min(config_.overlap_tolerance_m, volume_.length_m);
-  glUniform1f(1, static_cast<float>(touching_m() / volume_.depth_m));
-  glUniform1f(2, static_cast<float>(tolerance_m / volume_.depth_m));
-  const Eigen::Matrix4d clip = clip_from_world(volume_);
-  for (const SceneMesh& s : scene) {
-    if (s.instance.mesh != nullptr) draw_positions(s.instance, clip);
-  }
-}
-
-/// Reads M and R, fills the images, and returns the least L, infinite where L is defined nowhere; or nothing
-/// if the renderer does not hand them out.
-std::optional<double> GlRadar::read_and_compare() {
-  const std::size_t count = mask_m_.pixels.size();
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, readback_buffer_);
-  for (const Layer layer : {kMask, kRange}) {
-    glBindFramebuffer(GL_FRAMEBUFFER, framebuffers_[layer]);
-    glReadPixels(0, 0, volume_.width_px, volume_.height_px, GL_DEPTH_COMPONENT, GL_FLOAT,
-                 reinterpret_cast<void*>(layer * count * sizeof(float)));
-  }
-  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glDisable(GL_SCISSOR_TEST);
-  const auto size_bytes = static_cast<GLsizeiptr>(2 * count * sizeof(float));
-  const auto* mask01 =
-      static_cast<const float*>(glMapNamedBufferRange(readback_buffer_, 0, size_bytes, GL_MAP_READ_BIT));
-  if (mask01 == nullptr) return std::nullopt;
-  const float* range01 = mask01 + count;
-  const auto depth_m = static_cast<float>(volume_.depth_m);
-  constexpr float kUndefined = std::numeric_limits<float>::quiet_NaN();
-  float least = std::numeric_limits<float>::infinity();
-  for (std::size_t i = 0; i < count; ++i) {
-    const float r = range01[i];
-    const float m = mask01[i];
-    const bool defined = m < 1.0F && r < 1.0F;
-    // m - 1 loses nothing for m in 0.5..1, and r + (m - 1) is the difference of two near numbers: exact at
-    // contact.
-    const float gap_m = (r + (m - 1.0F)) * depth_m;
-    range_m_.pixels[i] = r * depth_m;
-    mask_m_.pixels[i] = m * depth_m;
-    lookat_m_.pixels[i] = defined ? gap_m : kUndefined;
-    least = defined && gap_m < least ? gap_m : least;
-  }
-  glUnmapNamedBuffer(readback_buffer_);
-  return least;
 }
 
-Contact GlRadar::contact_at_least_gap(double least_m, std::span<const SceneMesh> scene) const {
-  // The middle of all pixels that are as near as the nearest, then the one of them closest to it.
-  const auto equally_near_m = static_cast<float>(least_m + touching_m());
-  Eigen::Vector2d middle_px = Eigen::Vector2d::Zero();
-  double count = 0.0;
-  for (int y = 0; y < lookat_m_.height; ++y) {
-    for (int x = 0; x < lookat_m_.width; ++x) {
-      if (!(lookat_m_.at(x, y) <= equally_near_m)) continue;
-      middle_px += Eigen::Vector2d(x, y);
-      count += 1.0;
+/// Says whether there is room for at least one query. Textures that grow lose what is kept in them.
+bool GlRadar::fit_atlases(std::size_t queries) {
+  const auto side = static_cast<std::size_t>(std::max(config_.atlas_px / config_.resolution_px, 1));
+  const auto fit = [&](TileAtlas& atlas, std::size_t tiles) {
+    tiles = std::min(tiles, side * side);
+    if (atlas.tile_count() >= tiles) return false;
+    const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(tiles))));
+    const auto rows = (tiles + columns - 1) / columns;
+    // A renderer that has not the memory may have it for one.
+    if (!atlas.resize(static_cast<int>(columns), static_cast<int>(rows), config_.resolution_px) &&
+        !atlas.resize(1, 1, config_.resolution_px)) {
+      return true;
     }
-  }
-  middle_px /= count;
-  int best_x = 0, best_y = 0;
-  double best_px2 = std::numeric_limits<double>::infinity();
-  for (int y = 0; y < lookat_m_.height; ++y) {
-    for (int x = 0; x < lookat_m_.width; ++x) {
-      const double off_px2 = (Eigen::Vector2d(x, y) - middle_px).squaredNorm();
-      if (!(lookat_m_.at(x, y) <= equally_near_m) || off_px2 >= best_px2) continue;
-      best_px2 = off_px2;
-      best_x = x;
-      best_y = y;
-    }
-  }
+    return true;
+  };
+  if (fit(object_tiles_, std::max(queries, kMasksKept))) masks_.reset(object_tiles_.tile_count());
+  fit(scene_tiles_, queries);
+  return object_tiles_.tile_count() > 0 && scene_tiles_.tile_count() > 0;
+}
 
+/// Puts the scene's boxes into a tree, in Morton order of their middles.
+void GlRadar::box_scene(std::span<const SceneMesh> scene) {
+  box_order_.clear();
+  boxes_.clear();
+  boxed_.clear();
+  Eigen::AlignedBox3d middles;
+  const auto is_there = [&](std::size_t i) {
+    return scene[i].instance.mesh != nullptr && scene[i].instance.mesh->triangle_count() > 0;
+  };
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    if (is_there(i)) middles.extend(bounds_world(scene[i].instance).center());
+  }
+  const double longest_m = middles.isEmpty() ? 0.0 : middles.sizes().maxCoeff();
+  const double scale = longest_m > 0.0 ? 1023.0 / longest_m : 0.0;
+  for (std::size_t i = 0; i < scene.size(); ++i) {
+    if (!is_there(i)) continue;
+    const Eigen::Vector3d cell = (bounds_world(scene[i].instance).center() - middles.min()) * scale;
+    box_order_.emplace_back(
+        morton_code(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
+                    static_cast<std::uint32_t>(cell.z())),
+        i);
+  }
+  std::sort(box_order_.begin(), box_order_.end());
+  for (const auto& [code, i] : box_order_) {
+    boxed_.push_back(i);
+    boxes_.push_back(bounds_world(scene[i].instance));
+  }
+  tree_.build(boxes_);
+}
+
+/// Adds what a query draws to the batch; false where the batch has no tile left for it.
+bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene,
+                  Contact& contact) {
+  if (batch_.size() == scene_tiles_.tile_count()) return false;
+  const Eigen::Vector3d u_mesh =
+      (query.object.T_world_mesh.linear().transpose() * query.direction_world.stableNormalized())
+          .normalized();
+  const MaskKey key = mask_key(*query.object.mesh, u_mesh);
+  std::size_t tile = masks_.find(key);
+  if (tile == MaskCache::kNone) {
+    tile = masks_.claim(key);
+    if (tile == MaskCache::kNone) return false;
+    masks_.mask(tile).outline = fit_outline(*query.object.mesh, u_mesh, config_.resolution_px);
+  }
+  MaskCache::Mask& mask = masks_.mask(tile);
+  const RadarOutline& outline = mask.outline;
+  const RadarVolume volume = volume_of(outline, query.object, query.distance_m);
+  TileQuery tile_query_ = tile_query(outline, query.distance_m, config_.overlap_tolerance_m,
+                                     object_tiles_.corner_px(tile), scene_tiles_.corner_px(batch_.size()));
+  tile_query_.query = static_cast<std::int32_t>(drawn_.size());
+  tile_query_.margin_px = static_cast<float>(2.0 * vertex_error_px(*query.object.mesh, outline));
+  shown_ = {volume, tile_query_, true, false};
+
+  // What the renderer counts as outside by float is less than what is left out here.
+  const double pad_m = touching_m(outline, query.distance_m);
+  const Eigen::Vector3d low(-pad_m / outline.pixel_m, -pad_m / outline.pixel_m, -outline.length_m - pad_m);
+  const Eigen::Vector3d high(outline.width_px - low.x(), outline.height_px - low.y(),
+                             query.distance_m + 2.0 * pad_m);
+  Eigen::AlignedBox3d around = volume.bounds_world();
+  around.min().array() -= 2.0 * pad_m;
+  around.max().array() += 2.0 * pad_m;
+  const std::size_t first_reach = reaches_.size();
+  std::uint32_t next_key = 0;
+  tree_.visit(
+      [&](const Eigen::AlignedBox3d& box) { return box.intersects(around); },
+      [&](std::size_t leaf) {
+        const std::size_t scene_index = boxed_[leaf];
+        if (scene_index == query.own_index) return;
+        const MeshInstance& instance = scene[scene_index].instance;
+        const Eigen::Matrix<double, 3, 4> to_outline = outline_from_local(outline, query.object, instance);
+        const Eigen::Matrix3d reach = to_outline.leftCols<3>().cwiseAbs();
+        instance.mesh->visit_runs(
+            [&](const Eigen::AlignedBox3d& box) {
+              const Eigen::Vector3d centre = to_outline.leftCols<3>() * box.center() + to_outline.col(3);
+              const Eigen::Vector3d half = reach * (0.5 * box.sizes());
+              return ((centre + half).array() >= low.array()).all() &&
+                     ((centre - half).array() <= high.array()).all();
+            },
+            [&](std::uint32_t first_triangle, std::uint32_t triangle_count) {
+              reaches_.push_back({scene_index, first_triangle, next_key});
+              TileDraw& draw = batch_scene_draws_.emplace_back();
+              draw = {instance.mesh, first_triangle, triangle_count, to_outline.cast<float>(), tile_query_};
+              draw.query.first_key = next_key;
+              next_key += triangle_count;
+            });
+      });
+  if (reaches_.size() == first_reach) {
+    contact.status = ContactStatus::kNoTarget;
+    contact.lower_m = query.distance_m;
+    contact.pixel_m = outline.pixel_m;
+    return true;
+  }
+  if (!mask.is_drawn) {
+    mask.is_drawn = true;
+    batch_object_draws_.push_back({query.object.mesh, 0,
+                                   static_cast<std::uint32_t>(query.object.mesh->triangle_count()),
+                                   outline_from_object(outline).cast<float>(), tile_query_});
+  }
+  shown_.is_drawn = true;
+  batch_.push_back(tile_query_);
+  drawn_.push_back({index, outline, first_reach, reaches_.size() - first_reach});
+  return true;
+}
+
+/// Both passes for the queries of the batch, and what is least in them.
+void GlRadar::draw_batch() {
+  if (!batch_.empty()) {
+    const auto use = [](unsigned program, const TileAtlas& atlas) {
+      glUseProgram(program);
+      glUniform2f(0, 2.0F / static_cast<float>(atlas.width_px()),
+                  2.0F / static_cast<float>(atlas.height_px()));
+    };
+    if (!batch_object_draws_.empty()) {
+      object_draws_.upload(batch_object_draws_);
+      object_tiles_.bind(false);
+      use(clear_program_, object_tiles_);
+      object_draws_.draw_rectangles();
+      object_tiles_.bind(true);
+      use(object_program_, object_tiles_);
+      glUniform1i(1, 0);
+      object_draws_.draw();
+    }
+    scene_draws_.upload(batch_scene_draws_);
+    scene_tiles_.bind(true);
+    scene_tiles_.clear(batch_.size(), kNothing);
+    use(scene_program_, scene_tiles_);
+    glUniform1i(1, 1);
+    glBindTextureUnit(0, object_tiles_.texture());
+    scene_draws_.draw();
+    least_.reduce(batch_, scene_tiles_);
+    least_.find_keys(scene_draws_, object_tiles_);
+  }
+  batch_.clear();
+  batch_object_draws_.clear();
+  batch_scene_draws_.clear();
+  masks_.begin_round();
+}
+
+Contact GlRadar::contact_of(const GlQuery& query, const Drawn& drawn, const TileResult& result,
+                            std::span<const SceneMesh> scene) const {
+  const RadarOutline& outline = drawn.outline;
+  const double touching = touching_m(outline, query.distance_m);
   Contact contact;
-  contact.status = least_m < -touching_m() ? ContactStatus::kOverlap : ContactStatus::kContact;
-  contact.travel_m = contact.status == ContactStatus::kContact ? std::max(least_m, 0.0) : least_m;
-  contact.pixel_m = volume_.pixel_m;
-  contact.point_world = volume_.origin_world + (best_x + 0.5) * volume_.pixel_m * volume_.x_world +
-                        (best_y + 0.5) * volume_.pixel_m * volume_.y_world +
-                        range_m_.at(best_x, best_y) * volume_.u_world;
+  contact.pixel_m = outline.pixel_m;
+  constexpr double kSubtraction = 1.0 - 2e-7;  // z of scene and object, each rounded to float
+  contact.lower_m = std::min(kSubtraction * result.lower_m, query.distance_m);
+  if (!(result.travel_m <= query.distance_m + touching)) {
+    contact.status = ContactStatus::kNoTarget;
+    return contact;
+  }
+  if (result.travel_m < -touching) {
+    contact.status = ContactStatus::kOverlap;
+    contact.travel_m = contact.lower_m = contact.upper_m = result.travel_m;
+  } else {
+    contact.status = ContactStatus::kContact;
+    contact.travel_m = std::max(static_cast<double>(result.travel_m), 0.0);
+    contact.lower_m = std::min(contact.lower_m, contact.travel_m);
+    contact.upper_m = std::max(static_cast<double>(result.upper_m) / kSubtraction, contact.travel_m);
+  }
 
-  // The renderer snaps vertices to 1/256 pixel, so the point may lie that far beside its triangle; look wider
-  // if need be.
-  contact.normal_world = -volume_.u_world;
-  std::optional<NearestTriangle> nearest;
-  for (double within_m = 0.05 * volume_.pixel_m + touching_m(); !nearest && within_m < volume_.depth_m;
-       within_m *= 16.0) {
-    for (const SceneMesh& s : scene) {
-      if (s.instance.mesh == nullptr) continue;
-      const auto found = nearest_triangle(s.instance, contact.point_world, volume_.u_world,
-                                          nearest ? nearest->distance_m : within_m);
-      if (!found || (nearest && found->distance_m >= nearest->distance_m)) continue;
-      nearest = found;
-      contact.touched = s.kind;
-    }
+  // The triangle that is met, at the pixel's centre line, in double.
+  const RadarVolume volume = volume_of(outline, query.object, query.distance_m);
+  contact.normal_world = -volume.u_world;
+  Eigen::Vector3d at(result.x_px + kSample_px.x(), result.y_px + kSample_px.y(), result.travel_m);
+  const auto reaches = std::span(reaches_).subspan(drawn.first_reach, drawn.reach_count);
+  const auto past =
+      std::upper_bound(reaches.begin(), reaches.end(), result.key,
+                       [](std::uint32_t key, const Reach& reach) { return key < reach.first_key; });
+  if (result.key != std::numeric_limits<std::uint32_t>::max() && past != reaches.begin()) {
+    const Reach& reach = *(past - 1);
+    const SceneMesh& met = scene[reach.scene_index];
+    const GpuMesh& mesh = *met.instance.mesh;
+    const Triangle& triangle = mesh.triangles()[reach.first_triangle + (result.key - reach.first_key)];
+    std::array<Eigen::Vector3d, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = mesh.vertices()[triangle[i]].cast<double>();
+    const Eigen::Vector3d normal_local = (p[1] - p[0]).cross(p[2] - p[0]);
+    const Eigen::Matrix<double, 3, 4> to_outline = outline_from_local(outline, query.object, met.instance);
+    for (Eigen::Vector3d& corner : p) corner = to_outline.leftCols<3>() * corner + to_outline.col(3);
+    const Eigen::Vector3d normal_outline = (p[1] - p[0]).cross(p[2] - p[0]);
+    at.z() = p[0].z() - normal_outline.head<2>().dot(at.head<2>() - p[0].head<2>()) / normal_outline.z();
+    contact.normal_world = (met.instance.T_world_mesh.linear() * normal_local).stableNormalized();
+    if (contact.normal_world.dot(volume.u_world) > 0.0) contact.normal_world = -contact.normal_world;
+    contact.touched = met.kind;
   }
-  if (nearest) {
-    const bool faces_object = nearest->normal_world.dot(volume_.u_world) <= 0.0;
-    contact.normal_world = faces_object ? nearest->normal_world : Eigen::Vector3d(-nearest->normal_world);
-  }
+  contact.point_world = volume.origin_world + at.x() * outline.pixel_m * volume.x_world +
+                        at.y() * outline.pixel_m * volume.y_world +
+                        (at.z() + outline.length_m) * volume.u_world;
   return contact;
+}
+
+RadarPictures GlRadar::pictures() const {
+  RadarPictures result;
+  if (!shown_.is_valid) return result;
+  result.volume = shown_.volume;
+  const TileQuery& tile = shown_.tile;
+  const auto depth_m = static_cast<float>(shown_.volume.depth_m);
+  result.range_m.resize(tile.width_px, tile.height_px, depth_m);
+  result.mask_m.resize(tile.width_px, tile.height_px, depth_m);
+  result.lookat_m.resize(tile.width_px, tile.height_px, std::numeric_limits<float>::quiet_NaN());
+  if (!shown_.is_drawn) return result;
+  const std::size_t count = result.mask_m.pixels.size();
+  std::vector<float> object(4 * count, kNothing), gap(4 * count, kNothing);
+  object_tiles_.read(tile.corners_px[0], tile.corners_px[1], tile.width_px, tile.height_px, object.data());
+  scene_tiles_.read(tile.corners_px[2], tile.corners_px[3], tile.width_px, tile.height_px, gap.data());
+  const auto distance_m = static_cast<float>(shown_.volume.depth_m - shown_.volume.length_m);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float front_m = -object[4 * i + 1];
+    const float gap_m = gap[4 * i + 2];
+    if (-front_m < kNothingMet) result.mask_m.pixels[i] = distance_m - front_m;
+    if (gap_m >= kNothingMet) continue;
+    result.lookat_m.pixels[i] = gap_m;
+    result.range_m.pixels[i] = gap_m + front_m + tile.length_m;
+  }
+  return result;
 }
 
 }  // namespace roomradar

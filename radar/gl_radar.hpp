@@ -1,21 +1,36 @@
 // gl_radar.hpp: collision by two orthographic depth passes: how far may an object go before it touches?
 #pragma once
 #include <Eigen/Geometry>
-#include <array>
-#include <optional>
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "mapping/types/image.hpp"
+#include "radar/box_tree.hpp"
 #include "radar/contact.hpp"
 #include "radar/gl_context.hpp"
 #include "radar/gpu_mesh.hpp"
+#include "radar/least_gap.hpp"
+#include "radar/mask_cache.hpp"
 #include "radar/radar_volume.hpp"
+#include "radar/tile_atlas.hpp"
+#include "radar/tile_draws.hpp"
 
 namespace roomradar {
+
+/// Where the least gap of a query is found.
+enum class GlMinimum {
+  kAuto,        ///< on a GPU there, with the software renderer here
+  kOnRenderer,  ///< by a compute shader; a few bytes a query come back
+  kReadBack,    ///< all pixels come back
+};
 
 struct GlRadarConfig {
   int resolution_px = 128;            ///< samples along the longer side of the object's outline, 1 to 4096
   double overlap_tolerance_m = 0.03;  ///< surfaces deeper inside the object are behind it, not in its way
+  int atlas_px = 2048;                ///< side of the textures that many queries share, 1 to 16384
+  GlMinimum minimum = GlMinimum::kAuto;
 };
 /// @throws Error naming the field, its value and the rule
 void require_valid(const GlRadarConfig& config);
@@ -24,6 +39,24 @@ void require_valid(const GlRadarConfig& config);
 struct SceneMesh {
   MeshInstance instance;
   Touched kind = Touched::kStatic;
+};
+
+/// One question to the radar.
+struct GlQuery {
+  static constexpr std::size_t kNotInScene = static_cast<std::size_t>(-1);
+  MeshInstance object;
+  Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();  ///< any length but 0
+  double distance_m = 0.0;                                    ///< how far ahead to look, > 0, at most 10 km
+  /// Which of the scene is the object itself, and is left out.
+  std::size_t own_index = kNotInScene;
+};
+
+/// R, M and L of one query, row by row, volume.width_px x height_px.
+struct RadarPictures {
+  RadarVolume volume;
+  Image<float> range_m;   ///< R, volume.depth_m where there is nothing or L is undefined
+  Image<float> mask_m;    ///< M, volume.depth_m where there is nothing
+  Image<float> lookat_m;  ///< L, NaN where undefined
 };
 
 /// Cyber Radar: an object that moves along a line touches first where the scene is nearest ahead of its
@@ -37,23 +70,27 @@ struct SceneMesh {
 ///
 /// M is the object seen from the far plane, R the scene seen from the rear plane through the object's
 /// outline, L the gap between them in each pixel; the least L is the way to go. L is defined only where the
-/// object covers the pixel (M < d) and something is there (R < d). R is the first surface not behind the
-/// object's front: per pixel, a surface is passed over when it lies behind the front
+/// object covers the pixel and something is there. R is the first surface not behind the object's front: per
+/// pixel, a surface is passed over when it lies behind the front
 ///   - and faces along the motion (what the object leaves, such as the table that a plate is lifted from), or
 ///   - by more than overlap_tolerance_m or the object's own length, whichever is less, or
-///   - behind the front slab of the object's solid (in a hollow, such as the hole of a handle).
-/// The last is looked at only when an overlap would be reported; it costs one more pass over object and
-/// scene.
+///   - not for certain inside the front slab of the object's solid (in a hollow, such as the hole of a
+///   handle).
 ///
-/// Limits: sampling answers late: by about half a pixel's diagonal times the sum of both slopes (measured at
-/// 128 px on bumpy shapes: a quarter of a pixel in the median, two at worst), and early only by the
-/// renderer's snap of vertices to 1/256 pixel across a slope. A spike or sheet thinner than a pixel may be
-/// missed; a sheet seen edge-on has no pixel. A surface in a hollow meets the object's front layer only, so a
-/// peg inside a handle is not felt by the handle's upper side. Overlap and hollow need triangles that wind
-/// counter-clockwise seen from outside. Source of R, M and L: the Cyber Radar paper's Range, Mask and LookAt
-/// Distance Scopes. Not thread safe.
+/// travel_m is sampled: a spike or sheet thinner than a pixel may be missed, a surface in a hollow meets the
+/// object's front layer only, and the answer is late by about half a pixel's diagonal times the sum of both
+/// slopes. lower_m and upper_m hold all the same. They come from the same two passes: each pixel also keeps
+/// what may be anywhere in its square, and what is on its centre line for certain. lower_m is 0 where
+/// something of the scene is in the same pixel as the object and neither wholly ahead nor wholly behind: a
+/// wall that is passed closer than a pixel, a peg in a hollow.
+///
+/// Overlap and hollow need triangles that wind counter-clockwise seen from outside, and a closed object.
+/// Masks are kept: an object that is asked about again along the same direction in its own frame is not drawn
+/// again. Source of R, M and L: the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread
+/// safe.
 class GlRadar {
  public:
+  /// @throws Error if config is out of its rules or the renderer lacks what is needed
   explicit GlRadar(GlContext& context, const GlRadarConfig& config = {});
   ~GlRadar();
   GlRadar(const GlRadar&) = delete;
@@ -63,7 +100,7 @@ class GlRadar {
   ///
   /// @param object           the sensor object; must not be in `scene`
   /// @param direction_world  any length but 0
-  /// @param distance_m       how far ahead to look, > 0, at most 10 km; the depth step is 6e-8 of d
+  /// @param distance_m       how far ahead to look, > 0, at most 10 km
   /// @param scene            what can be touched; instances with a null or empty mesh are left out
   /// @return see Contact. L within 10 um + 1e-6 d of zero counts as touching: kContact with travel 0. Where
   ///         several pixels are equally near (a face that lands flat) the point is the one nearest to their
@@ -72,37 +109,60 @@ class GlRadar {
   Contact query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
                 std::span<const SceneMesh> scene);
 
-  /// The last query's volume and images, row by row, of volume().width_px x height_px.
-  /// R, M: metres, volume().depth_m where there is nothing. L: metres, NaN where undefined. R is seen through
-  /// the object's outline and past what lies behind its front. Where nothing of the scene reaches the volume,
-  /// nothing is drawn and both hold depth_m. After kInvalidInput all are empty.
-  [[nodiscard]] const RadarVolume& volume() const { return volume_; }
-  [[nodiscard]] const Image<float>& range_m() const { return range_m_; }
-  [[nodiscard]] const Image<float>& mask_m() const { return mask_m_; }
-  [[nodiscard]] const Image<float>& lookat_m() const { return lookat_m_; }
+  /// The same for many objects and directions at once, drawn into shared textures and read back together.
+  /// @param scene     what can be touched, the objects among it: each is scene for the others
+  /// @param contacts  gets one for each query; must have their size
+  void query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
+                 std::span<Contact> contacts);
+
+  /// Of the last call's last query that was not kInvalidInput; everything empty if there is none. Where
+  /// nothing of the scene reaches the volume, nothing is drawn and both hold depth_m.
+  [[nodiscard]] RadarPictures pictures() const;
 
  private:
-  enum Layer : std::size_t { kMask, kRange, kEntry, kLayerCount };
+  /// A query that was drawn.
+  struct Drawn {
+    std::size_t query = 0;
+    RadarOutline outline;
+    std::size_t first_reach = 0, reach_count = 0;
+  };
+  /// A run of triangles of the scene that reaches a query's volume.
+  struct Reach {
+    std::size_t scene_index = 0;
+    std::uint32_t first_triangle = 0;
+    std::uint32_t first_key = 0;
+  };
+  /// Where the last picture is.
+  struct Shown {
+    RadarVolume volume;
+    TileQuery tile;
+    bool is_valid = false, is_drawn = false;
+  };
 
   GlRadarConfig config_;
-  RadarVolume volume_;
-  Image<float> range_m_;
-  Image<float> mask_m_;
-  Image<float> lookat_m_;
-  unsigned mask_program_ = 0;
-  unsigned range_program_ = 0;
-  unsigned entry_program_ = 0;
-  std::array<unsigned, kLayerCount> textures_{};
-  std::array<unsigned, kLayerCount> framebuffers_{};  // one a texture
-  unsigned readback_buffer_ = 0;
+  TileAtlas object_tiles_, scene_tiles_;
+  MaskCache masks_;
+  TileDraws object_draws_, scene_draws_;
+  LeastGap least_;
+  unsigned clear_program_ = 0, object_program_ = 0, scene_program_ = 0;
 
-  [[nodiscard]] double touching_m() const;
-  void begin_layer(Layer layer, unsigned program) const;
-  void draw_mask(const MeshInstance& object) const;
-  void draw_entry(const MeshInstance& object) const;
-  void draw_range(std::span<const SceneMesh> scene) const;
-  std::optional<double> read_and_compare();
-  [[nodiscard]] Contact contact_at_least_gap(double least_m, std::span<const SceneMesh> scene) const;
+  // Of one call; kept for their memory.
+  std::vector<std::size_t> boxed_;  // scene indices in the tree's order
+  std::vector<std::pair<std::uint64_t, std::size_t>> box_order_;
+  std::vector<Eigen::AlignedBox3d> boxes_;
+  BoxTree tree_;
+  std::vector<Drawn> drawn_;
+  std::vector<Reach> reaches_;
+  std::vector<TileDraw> batch_object_draws_, batch_scene_draws_;
+  std::vector<TileQuery> batch_;
+  Shown shown_;
+
+  bool fit_atlases(std::size_t queries);
+  void box_scene(std::span<const SceneMesh> scene);
+  bool add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene, Contact& contact);
+  void draw_batch();
+  [[nodiscard]] Contact contact_of(const GlQuery& query, const Drawn& drawn, const TileResult& result,
+                                   std::span<const SceneMesh> scene) const;
 };
 
 }  // namespace roomradar

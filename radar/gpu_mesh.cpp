@@ -5,6 +5,7 @@
 #include <GL/glcorearb.h>
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <string>
 #include <utility>
@@ -23,9 +24,9 @@ enum Buffer : GLuint { kPositions, kNormals, kColours, kIndices };
 
 /// Whether the box is wholly outside one of the clip planes. Conservative: a box near a corner may count as
 /// inside.
-bool is_outside(const Eigen::AlignedBox3f& box, const Eigen::Matrix4d& clip_from_local) {
-  const Eigen::Vector3d centre = box.center().cast<double>();
-  const Eigen::Vector3d half = 0.5 * box.sizes().cast<double>();
+bool is_outside(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& clip_from_local) {
+  const Eigen::Vector3d centre = box.center();
+  const Eigen::Vector3d half = 0.5 * box.sizes();
   const Eigen::RowVector4d w = clip_from_local.row(3);
   const Eigen::RowVector4d x = clip_from_local.row(0);
   const Eigen::RowVector4d y = clip_from_local.row(1);
@@ -86,6 +87,11 @@ void GpuMesh::upload(const Mesh& mesh, MeshUsage usage) {
   } else {
     chunk_in_order(mesh, kStreamedChunkTriangles, chunked_);
   }
+  chunk_boxes_.clear();
+  for (const MeshChunk& chunk : chunked_.chunks) chunk_boxes_.push_back(chunk.bounds_local.cast<double>());
+  chunk_tree_.build(chunk_boxes_);
+  static std::atomic<std::uint64_t> uploads{0};
+  revision_ = ++uploads;
   origin_ = mesh.origin;
   vertices_.assign(mesh.vertices.begin(), mesh.vertices.end());
   has_normals_ = !mesh.normals.empty();
@@ -125,31 +131,13 @@ std::size_t GpuMesh::draw(const Eigen::Matrix4d& clip_from_local) const {
   if (!has_normals_) glVertexAttrib3f(kNormals, 0.0F, 0.0F, 1.0F);
   if (!has_colours_) glVertexAttrib3f(kColours, 0.8F, 0.8F, 0.8F);
   std::size_t drawn = 0;
-  std::uint32_t run_first = 0;
-  std::uint32_t run_count = 0;  // neighbouring chunks in sight go in one call
-  const auto draw_run = [&] {
-    if (run_count == 0) return;
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * run_count), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(run_first * sizeof(Triangle)));
-    drawn += run_count;
-    run_count = 0;
-  };
-  for (const MeshChunk& chunk : chunked_.chunks) {
-    if (is_outside(chunk.bounds_local, clip_from_local)) {
-      draw_run();
-      continue;
-    }
-    if (run_count == 0) run_first = chunk.first_triangle;
-    run_count += chunk.triangle_count;
-  }
-  draw_run();
+  visit_runs([&](const Eigen::AlignedBox3d& box) { return !is_outside(box, clip_from_local); },
+             [&](std::uint32_t first, std::uint32_t count) {
+               glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
+                              reinterpret_cast<const void*>(first * sizeof(Triangle)));
+               drawn += count;
+             });
   return drawn;
-}
-
-bool GpuMesh::reaches(const Eigen::Matrix4d& clip_from_local) const {
-  return std::any_of(chunked_.chunks.begin(), chunked_.chunks.end(), [&](const MeshChunk& chunk) {
-    return !is_outside(chunk.bounds_local, clip_from_local);
-  });
 }
 
 Eigen::AlignedBox3d GpuMesh::bounds() const {

@@ -3,10 +3,12 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "mapping/types/mesh.hpp"
+#include "radar/box_tree.hpp"
 #include "radar/gl_context.hpp"
 #include "radar/mesh_chunks.hpp"
 
@@ -44,8 +46,29 @@ class GpuMesh {
   /// @return number of triangles handed to the renderer
   std::size_t draw(const Eigen::Matrix4d& clip_from_local) const;
 
-  /// Whether draw() would draw anything.
-  [[nodiscard]] bool reaches(const Eigen::Matrix4d& clip_from_local) const;
+  /// Calls work(first_triangle, triangle_count) for each run of triangles() whose boxes `reaches(box)` says
+  /// yes to; boxes are AlignedBox3d, local. Whatever holds for a box must hold for every box around it.
+  template <typename Reaches, typename Work>
+  void visit_runs(const Reaches& reaches, const Work& work) const {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;  // neighbouring chunks are one run
+    chunk_tree_.visit(reaches, [&](std::size_t i) {
+      const MeshChunk& chunk = chunked_.chunks[i];
+      if (count > 0 && chunk.first_triangle != first + count) {
+        work(first, count);
+        count = 0;
+      }
+      if (count == 0) first = chunk.first_triangle;
+      count += chunk.triangle_count;
+    });
+    if (count > 0) work(first, count);
+  }
+
+  /// Different after every upload to any mesh of the process.
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }
+  /// GL buffers: positions as 3 float, indices as 3 uint32 a triangle.
+  [[nodiscard]] unsigned position_buffer() const { return buffers_[0]; }
+  [[nodiscard]] unsigned index_buffer() const { return buffers_[3]; }
 
   [[nodiscard]] std::size_t triangle_count() const { return chunked_.triangles.size(); }
   [[nodiscard]] std::size_t dropped_triangles() const { return chunked_.dropped_triangles; }
@@ -70,6 +93,9 @@ class GpuMesh {
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3f> vertices_;
   ChunkedTriangles chunked_;
+  BoxTree chunk_tree_;
+  std::vector<Eigen::AlignedBox3d> chunk_boxes_;  // to build the tree from
+  std::uint64_t revision_ = 0;
   bool has_normals_ = false;
   bool has_colours_ = false;
 

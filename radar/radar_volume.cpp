@@ -1,4 +1,4 @@
-// radar_volume.cpp: fit the volume around an object and a direction.
+// radar_volume.cpp: fit pixels around an object as seen along a direction.
 #include "radar/radar_volume.hpp"
 
 #include <algorithm>
@@ -37,53 +37,71 @@ Eigen::AlignedBox3d turned_bounds(const GpuMesh& mesh, const Eigen::Matrix3d& R_
 
 }  // namespace
 
-RadarVolume fit_volume(const MeshInstance& object, const Eigen::Vector3d& u_world, double distance_m,
-                       int resolution_px) {
-  RadarVolume volume;
-  volume.u_world = u_world;
-  complete_frame(u_world, volume.x_world, volume.y_world);
-  Eigen::Matrix3d R_frame_world;
-  R_frame_world << volume.x_world.transpose(), volume.y_world.transpose(), u_world.transpose();
-
-  // Relative to the mesh's own origin, so that nothing is lost far from the world's.
-  const Eigen::AlignedBox3d bounds =
-      turned_bounds(*object.mesh, R_frame_world * object.T_world_mesh.linear());
+RadarOutline fit_outline(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh, int resolution_px) {
+  RadarOutline outline;
+  Eigen::Vector3d x, y;
+  complete_frame(u_mesh, x, y);
+  outline.R_outline_mesh << x.transpose(), y.transpose(), u_mesh.transpose();
+  const Eigen::AlignedBox3d bounds = turned_bounds(mesh, outline.R_outline_mesh);
   const Eigen::Vector3d size_m = bounds.sizes();
-  volume.length_m = size_m.z();
-  const double pad_m = 1e-5 + 1e-6 * (size_m.z() + distance_m);
-  volume.depth_m = size_m.z() + distance_m + 2.0 * pad_m;
+  outline.length_m = size_m.z();
 
   constexpr double kLeastSide_m = 1e-6;  // an object seen edge-on still gets pixels
-  volume.pixel_m = std::max({size_m.x(), size_m.y(), kLeastSide_m}) / resolution_px;
+  outline.pixel_m = std::max({size_m.x(), size_m.y(), kLeastSide_m}) / resolution_px;
   const auto pixels = [&](double side_m) {
-    return std::clamp(static_cast<int>(std::ceil(side_m / volume.pixel_m - 1e-9)), 1, resolution_px);
+    return std::clamp(static_cast<int>(std::ceil(side_m / outline.pixel_m - 1e-9)), 1, resolution_px);
   };
-  volume.width_px = pixels(size_m.x());
-  volume.height_px = pixels(size_m.y());
+  outline.width_px = pixels(size_m.x());
+  outline.height_px = pixels(size_m.y());
+  outline.corner_m = {bounds.center().x() - 0.5 * outline.width_px * outline.pixel_m,
+                      bounds.center().y() - 0.5 * outline.height_px * outline.pixel_m, bounds.max().z()};
+  return outline;
+}
 
-  const Eigen::Vector3d corner(bounds.center().x() - 0.5 * volume.width_px * volume.pixel_m,
-                               bounds.center().y() - 0.5 * volume.height_px * volume.pixel_m,
-                               bounds.min().z() - pad_m);
-  volume.origin_world = object.T_world_mesh * object.mesh->origin() + R_frame_world.transpose() * corner;
+Eigen::Matrix<double, 3, 4> outline_from_object(const RadarOutline& outline) {
+  Eigen::Matrix<double, 3, 4> result;
+  result << outline.R_outline_mesh, -outline.corner_m;
+  result.topRows<2>() /= outline.pixel_m;
+  return result;
+}
+
+Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, const MeshInstance& object,
+                                               const MeshInstance& instance) {
+  const Eigen::Matrix3d R_outline_world = outline.R_outline_mesh * object.T_world_mesh.linear().transpose();
+  const Eigen::Vector3d between_origins_world =
+      instance.T_world_mesh * instance.mesh->origin() - object.T_world_mesh * object.mesh->origin();
+  Eigen::Matrix<double, 3, 4> result;
+  result << R_outline_world * instance.T_world_mesh.linear(),
+      R_outline_world * between_origins_world - outline.corner_m;
+  result.topRows<2>() /= outline.pixel_m;
+  return result;
+}
+
+Eigen::AlignedBox3d RadarVolume::bounds_world() const {
+  Eigen::AlignedBox3d bounds(origin_world);
+  const Eigen::Vector3d sides[3] = {width_px * pixel_m * x_world, height_px * pixel_m * y_world,
+                                    depth_m * u_world};
+  for (const Eigen::Vector3d& side : sides) {
+    bounds.min() += side.cwiseMin(0.0);
+    bounds.max() += side.cwiseMax(0.0);
+  }
+  return bounds;
+}
+
+RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m) {
+  const Eigen::Matrix3d R_world_outline = object.T_world_mesh.linear() * outline.R_outline_mesh.transpose();
+  RadarVolume volume;
+  volume.x_world = R_world_outline.col(0);
+  volume.y_world = R_world_outline.col(1);
+  volume.u_world = R_world_outline.col(2);
+  volume.pixel_m = outline.pixel_m;
+  volume.length_m = outline.length_m;
+  volume.depth_m = outline.length_m + distance_m;
+  volume.width_px = outline.width_px;
+  volume.height_px = outline.height_px;
+  volume.origin_world = object.T_world_mesh * object.mesh->origin() + R_world_outline * outline.corner_m -
+                        outline.length_m * volume.u_world;
   return volume;
-}
-
-Eigen::Matrix4d clip_from_world(const RadarVolume& volume) {
-  Eigen::Matrix4d clip = Eigen::Matrix4d::Identity();
-  const Eigen::Vector3d& origin = volume.origin_world;
-  const Eigen::Vector3d x = volume.x_world * (2.0 / (volume.width_px * volume.pixel_m));
-  const Eigen::Vector3d y = volume.y_world * (2.0 / (volume.height_px * volume.pixel_m));
-  const Eigen::Vector3d z = volume.u_world / volume.depth_m;
-  clip.row(0) << x.transpose(), -x.dot(origin) - 1.0;
-  clip.row(1) << y.transpose(), -y.dot(origin) - 1.0;
-  clip.row(2) << z.transpose(), -z.dot(origin);
-  return clip;
-}
-
-Eigen::Matrix4d reflected_clip_from_world(const RadarVolume& volume) {
-  Eigen::Matrix4d clip = clip_from_world(volume);
-  clip.row(2) = clip.row(3) - clip.row(2);
-  return clip;
 }
 
 }  // namespace roomradar

@@ -6,6 +6,33 @@
 
 namespace roomradar {
 
+/// An object as seen along a direction, in its own mesh's frame: what stays while it keeps its orientation to
+/// the direction. Outline coordinates: x and y in pixels across the direction from the outline's corner, z in
+/// metres along it from the object's foremost point, so that the object lies in -length_m..0 and what is
+/// near contact has small numbers.
+struct RadarOutline {
+  /// Rows: x, y and u, unit, right-handed.
+  Eigen::Matrix3d R_outline_mesh = Eigen::Matrix3d::Identity();
+  /// Where x, y and z are 0: m, along the rows, relative to the mesh's origin.
+  Eigen::Vector3d corner_m = Eigen::Vector3d::Zero();
+  double pixel_m = 0.0;
+  double length_m = 0.0;  ///< of the object along u
+  int width_px = 0;
+  int height_px = 0;
+};
+
+/// Square pixels, resolution_px along the longer side of the outline and at least 1 along the other. The mesh
+/// must have a triangle, u_mesh must have length 1.
+RadarOutline fit_outline(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh, int resolution_px);
+
+/// Affine, 3 x 4: outline coordinates from the local points (relative to its mesh's origin) of the object
+/// itself.
+Eigen::Matrix<double, 3, 4> outline_from_object(const RadarOutline& outline);
+/// The same for any instance in the world, where the object's is at T_world_object. Nothing is lost far from
+/// the world's origin.
+Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, const MeshInstance& object,
+                                               const MeshInstance& instance);
+
 /// Where the images of one query stand: pixel (i, j) is centred at
 /// origin_world + (i + 0.5) * pixel_m * x_world + (j + 0.5) * pixel_m * y_world, and depth runs along
 /// u_world.
@@ -17,25 +44,13 @@ struct RadarVolume {
   Eigen::Vector3d u_world = Eigen::Vector3d::UnitZ();  ///< unit, the direction of motion; x cross y = u
   double pixel_m = 0.0;
   double length_m = 0.0;  ///< of the object along u
-  double depth_m = 0.0;   ///< d: the object's length plus the distance asked for, plus a pad at both ends
+  double depth_m = 0.0;   ///< d: the object's length plus the distance asked for
   int width_px = 0;
   int height_px = 0;
+
+  /// Corners of the box, in the world.
+  [[nodiscard]] Eigen::AlignedBox3d bounds_world() const;
 };
-
-/// The volume from the object's rear over its length plus distance_m, as wide and high as the object is
-/// across the direction, with square pixels, resolution_px along the longer side and at least 1 along the
-/// other. The object must have a triangle, u_world must have length 1. The pad (10 um + 1e-6 d) keeps extreme
-/// vertices inside.
-RadarVolume fit_volume(const MeshInstance& object, const Eigen::Vector3d& u_world, double distance_m,
-                       int resolution_px);
-
-/// Clip space of the volume as seen from the rear plane: x and y fill -1..1, depth_buffer01 is 0 at the rear
-/// plane, 1 at the far plane. Seen with x to the right and y up, triangles that oppose the motion are
-/// clockwise: glFrontFace(GL_CW).
-Eigen::Matrix4d clip_from_world(const RadarVolume& volume);
-
-/// The same as seen from the far plane, reflected, not turned: z becomes 1 - z and a point keeps its pixel,
-/// so nothing needs swapping left to right.
-Eigen::Matrix4d reflected_clip_from_world(const RadarVolume& volume);
+RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m);
 
 }  // namespace roomradar

@@ -282,7 +282,7 @@ TEST_F(GlRadarTest, InvalidInputIsSaid) {
   EXPECT_EQ(status({nullptr, at(0, 0, 1)}, kDown, 1.0), ContactStatus::kInvalidInput);
   EXPECT_EQ(status({uploaded({}), at(0, 0, 1)}, kDown, 1.0), ContactStatus::kInvalidInput);
   EXPECT_EQ(status({cube, at(0, kNan, 1)}, kDown, 1.0), ContactStatus::kInvalidInput);
-  EXPECT_TRUE(radar.range_m().empty());
+  EXPECT_TRUE(radar.pictures().range_m.empty());
   EXPECT_EQ(status(object, {0, 0, -1e-200}, 1.0), ContactStatus::kContact) << "any length but 0";
 }
 
@@ -301,11 +301,13 @@ TEST_F(GlRadarTest, ImagesObeyTheirDefinition) {
                              scene_mesh(shapes::floor(0.05F, 0.0F))};
   const Contact contact = radar.query({uploaded(sphere(0.2F)), at(0.03, 0, 0.8)}, kDown, 1.0, scene);
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  const auto d = static_cast<float>(radar.volume().depth_m);
+  const RadarPictures pictures = radar.pictures();
+  const auto d = static_cast<float>(pictures.volume.depth_m);
   float least_m = d;
   int undefined = 0;
-  for (std::size_t i = 0; i < radar.lookat_m().pixels.size(); ++i) {
-    const float r = radar.range_m().pixels[i], m = radar.mask_m().pixels[i], l = radar.lookat_m().pixels[i];
+  for (std::size_t i = 0; i < pictures.lookat_m.pixels.size(); ++i) {
+    const float r = pictures.range_m.pixels[i], m = pictures.mask_m.pixels[i],
+                l = pictures.lookat_m.pixels[i];
     EXPECT_EQ(std::isnan(l), !(m < d && r < d));
     if (std::isnan(l)) {
       ++undefined;
@@ -336,8 +338,9 @@ TEST_F(GlRadarTest, LongObjectGetsSquarePixels) {
   const GpuMesh* rod = uploaded(shapes::box({1.0F, 0.05F, 0.05F}));
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   ASSERT_EQ(radar.query({rod, at(0, 0, 0.5)}, kDown, 1.0, {&floor, 1}).status, ContactStatus::kContact);
-  EXPECT_EQ(std::max(radar.volume().width_px, radar.volume().height_px), 128);
-  EXPECT_EQ(std::min(radar.volume().width_px, radar.volume().height_px), 7);  // 0.05 / (1 / 128), rounded up
+  EXPECT_EQ(std::max(radar.pictures().volume.width_px, radar.pictures().volume.height_px), 128);
+  EXPECT_EQ(std::min(radar.pictures().volume.width_px, radar.pictures().volume.height_px),
+            7);  // 0.05 / (1 / 128), rounded up
 }
 
 }  // namespace

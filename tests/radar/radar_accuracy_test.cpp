@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,10 @@ namespace roomradar {
 namespace {
 
 struct Errors {
-  std::vector<double> late_m;  // radar minus exact, where both touch
-  int missed = 0;              // exact touches, radar says no target
-  int invented = 0;            // radar touches, exact does not
+  std::vector<double> late_m;   // radar minus exact, where both touch
+  std::vector<double> width_m;  // between the bounds, where the radar touches
+  int missed = 0;               // exact touches, radar says no target
+  int invented = 0;             // radar touches, exact does not
   double pixel_m = 0.0;
 
   [[nodiscard]] double quantile_m(double q) const {
@@ -47,6 +49,12 @@ Errors measure(const Mesh& object, const Mesh& scene, int resolution_px, int cou
     const auto expected_m =
         exact_travel(object, T_world_object, direction, reach_m, scene, Eigen::Isometry3d::Identity());
     EXPECT_NE(got.status, ContactStatus::kInvalidInput);
+    // The bounds hold, sampled or not, found or not.
+    const double truth_m = expected_m.value_or(std::numeric_limits<double>::infinity());
+    EXPECT_LE(got.lower_m, truth_m) << "pose " << i;
+    EXPECT_GE(got.upper_m, truth_m) << "pose " << i;
+    EXPECT_LE(got.lower_m, reach_m);
+    if (got) errors.width_m.push_back(got.upper_m - got.lower_m);
     EXPECT_NE(got.status, ContactStatus::kOverlap) << "pose " << i << " is free";
     errors.pixel_m = std::max(errors.pixel_m, got.pixel_m);
     if (got && expected_m) errors.late_m.push_back(got.travel_m - *expected_m);
@@ -54,16 +62,18 @@ Errors measure(const Mesh& object, const Mesh& scene, int resolution_px, int cou
     if (got && !expected_m) ++errors.invented;
   }
   std::sort(errors.late_m.begin(), errors.late_m.end());
+  std::sort(errors.width_m.begin(), errors.width_m.end());
   return errors;
 }
 
 void expect_late_but_close(const std::string& name, const Errors& errors, double median_px, double worst_px) {
   std::printf(
       "%s: %zu contacts, pixel %.2f mm; late by median %.3f, p95 %.3f, worst %.3f mm, earliest %.4f mm; "
-      "missed %d, invented %d\n",
+      "missed %d, invented %d; bounds apart by median %.3f, p95 %.3f mm\n",
       name.c_str(), errors.late_m.size(), 1e3 * errors.pixel_m, 1e3 * errors.quantile_m(0.5),
       1e3 * errors.quantile_m(0.95), 1e3 * errors.late_m.back(), 1e3 * errors.late_m.front(), errors.missed,
-      errors.invented);
+      errors.invented, 1e3 * errors.width_m[errors.width_m.size() / 2],
+      1e3 * errors.width_m[errors.width_m.size() * 95 / 100]);
   EXPECT_GT(errors.late_m.size(), 150U);
   // Early only by the snap of vertices to 1/256 pixel on a slope.
   EXPECT_GT(errors.late_m.front(), -errors.pixel_m / 32.0);
@@ -86,7 +96,8 @@ TEST(RadarAccuracy, SmoothTorusOnBumpyGround) {
 TEST(RadarAccuracy, ConcaveBumpyTorusOnBumpyGround) {
   const Errors errors =
       measure(shapes::torus(48, 24, 0.1F, 0.04F, 0.015F), shapes::bumpy_ground(60), 128, 400, 3);
-  expect_late_but_close("bumpy torus", errors, 1.0, 5.0);
+  // A bump that grazes another side by side is late by as much as one is high.
+  expect_late_but_close("bumpy torus", errors, 1.0, 10.0);
 }
 
 TEST(RadarAccuracy, ConcaveOnConcave) {
@@ -101,7 +112,7 @@ TEST(RadarAccuracy, FinerPixelsAreLessLate) {
   double last_median_m = 1.0;
   for (const int resolution_px : {32, 64, 128, 256}) {
     const Errors errors = measure(object, ground, resolution_px, 300, 5);
-    expect_late_but_close(std::to_string(resolution_px) + " px", errors, 1.0, 5.0);
+    expect_late_but_close(std::to_string(resolution_px) + " px", errors, 1.0, 10.0);
     EXPECT_LT(errors.quantile_m(0.5), 0.7 * last_median_m);
     last_median_m = errors.quantile_m(0.5);
   }
