@@ -20,13 +20,19 @@ struct TurnedTree {
   double touching_m = 0.0;  ///< closer surfaces touch: see meeting_of()
 };
 
-inline FrameTriangle turned_triangle(const TurnedTree& object, std::uint32_t triangle) {
+/// Without its normal.
+inline FrameTriangle turned_corners(const TurnedTree& object, std::uint32_t triangle) {
   FrameTriangle result;
   const Triangle& t = object.tree->triangles()[triangle];
   for (std::size_t i = 0; i < 3; ++i) {
     result.corners[i] =
         object.R_frame_mesh * (object.tree->vertices()[t[i]].cast<double>() - object.tree->centre());
   }
+  result.normal.setZero();
+  return result;
+}
+inline FrameTriangle turned_triangle(const TurnedTree& object, std::uint32_t triangle) {
+  FrameTriangle result = turned_corners(object, triangle);
   set_normal(result);
   return result;
 }

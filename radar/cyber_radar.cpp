@@ -42,6 +42,13 @@ struct Settled {
   bool overlaps = false;
 };
 
+double lowest_of(const FrameTriangle& t) {
+  return std::min(std::min(t.corners[0].z(), t.corners[1].z()), t.corners[2].z());
+}
+double highest_of(const FrameTriangle& t) {
+  return std::max(std::max(t.corners[0].z(), t.corners[1].z()), t.corners[2].z());
+}
+
 }  // namespace
 
 void require_valid(const RadarConfig& config) {
@@ -94,15 +101,17 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
     Settled settled;
     bool has_ahead = false;
     has_ahead |= search_column(object, s, limit_m, -object.touching_m, pending_, [&](std::uint32_t i) {
-      const FrameTriangle o = turned_triangle(object, i);
       if (is_thick) {
-        best_m = std::min(best_m, thick_travel(o, s, query.margin_m, limit_m()));
+        best_m = std::min(best_m, thick_travel(turned_triangle(object, i), s, query.margin_m, limit_m()));
         return;
       }
+      FrameTriangle o = turned_corners(object, i);
+      if (lowest_of(s) - highest_of(o) >= limit_m()) return;
       TriangleGap gap;
       if (!find_gap(o, s, gap)) return;
       has_ahead = has_ahead || gap.low_m < -object.touching_m;
       if (gap.low_m >= limit_m()) return;
+      set_normal(o);
       switch (meeting_of(o, s, gap, object.touching_m)) {
         case Meeting::kNone:
           return;

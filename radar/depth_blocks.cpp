@@ -23,10 +23,66 @@ const float* depth_row(const DepthView& view, int j, int first, int count, float
     const std::uint8_t* mask = s.mask->row(j * s.stride_px);
     for (int i = 0; i < count; ++i) {
       const int u = (first + i) * s.stride_px;
-      scratch[i] = mask[u] != 0 ? row[u] : 0.0F;
+      const float depth = row[u];
+      scratch[i] = mask[u] != 0 ? depth : 0.0F;
     }
   }
   return scratch;
+}
+
+/// Bounds of the points seen in each column of a few rows, in the frame.
+struct ColumnBounds {
+  float *low_x, *low_y, *low_z, *high_x, *high_y, *high_z, *farthest;
+
+  ColumnBounds(float* data, std::size_t n)
+      : low_x(data),
+        low_y(data + n),
+        low_z(data + 2 * n),
+        high_x(data + 3 * n),
+        high_y(data + 4 * n),
+        high_z(data + 5 * n),
+        farthest(data + 6 * n) {}
+  void clear(std::size_t n) const {
+    std::fill(low_x, low_x + 3 * n, kInfinity);
+    std::fill(high_x, high_x + 3 * n, -kInfinity);
+    std::fill(farthest, farthest + n, 0.0F);
+  }
+};
+
+/// One axis of a row: least and greatest of depth * (slope * i + offset) + shift; `beyond` is 0 where
+/// something is measured, else infinite. Without branches, so that compilers make it eight at a time.
+void widen_axis(const float* __restrict known, const float* __restrict beyond, int count, float slope,
+                float offset, float shift, float* __restrict low, float* __restrict high) {
+  for (int i = 0; i < count; ++i) {
+    const float at = known[i] * (slope * static_cast<float>(i) + offset) + shift;
+    const float at_low = at + beyond[i], at_high = at - beyond[i];
+    low[i] = at_low < low[i] ? at_low : low[i];
+    high[i] = at_high > high[i] ? at_high : high[i];
+  }
+}
+
+void sort_out(const float* __restrict depths, int count, float* __restrict known, float* __restrict beyond,
+              float* __restrict farthest) {
+  for (int i = 0; i < count; ++i) {
+    const float some = depths[i] > 0.0F ? depths[i] : 0.0F;
+    const float depth = some < kInfinity ? some : 0.0F;
+    known[i] = depth;
+    beyond[i] = depth > 0.0F ? 0.0F : kInfinity;
+    farthest[i] = depth > farthest[i] ? depth : farthest[i];
+  }
+}
+
+void widen_by_row(const DepthView& view, int j, const float* depths, int count, const ColumnBounds& bounds,
+                  float* known, float* beyond) {
+  const auto stride = static_cast<float>(view.scene->stride_px);
+  const Eigen::Vector3f slope = view.rays.col(0) * stride;
+  const Eigen::Vector3f offset = view.rays.col(0) * (static_cast<float>(view.i0) * stride) +
+                                 view.rays.col(1) * (static_cast<float>(j) * stride) + view.rays.col(2);
+  const Eigen::Vector3f& t = view.shift;
+  sort_out(depths, count, known, beyond, bounds.farthest);
+  widen_axis(known, beyond, count, slope.x(), offset.x(), t.x(), bounds.low_x, bounds.high_x);
+  widen_axis(known, beyond, count, slope.y(), offset.y(), t.y(), bounds.low_y, bounds.high_y);
+  widen_axis(known, beyond, count, slope.z(), offset.z(), t.z(), bounds.low_z, bounds.high_z);
 }
 
 /// Rectangle around a box's projection. False if all of it is behind the camera.
@@ -99,60 +155,26 @@ bool place_depth(const SceneDepth& scene, const Eigen::Matrix3d& R_frame_world,
 void append_blocks(const DepthView& view, std::vector<float>& scratch, std::vector<DepthBlock>& blocks) {
   const int count = view.i1 - view.i0 + 1;
   const auto padded = static_cast<std::size_t>((count + 7) / 8 * 8);
-  scratch.resize(8 * padded);
-  float* __restrict const low_x = scratch.data();
-  float* __restrict const low_y = low_x + padded;
-  float* __restrict const low_z = low_y + padded;
-  float* __restrict const high_x = low_z + padded;
-  float* __restrict const high_y = high_x + padded;
-  float* __restrict const high_z = high_y + padded;
-  float* __restrict const farthest = high_z + padded;
-  float* const row_scratch = farthest + padded;
-  const auto stride = static_cast<float>(view.scene->stride_px);
-  const Eigen::Vector3f ru = view.rays.col(0) * stride;
-  const Eigen::Vector3f shift = view.shift;
-
+  scratch.resize(10 * padded);
+  ColumnBounds bounds(scratch.data(), padded);
+  float* const row_scratch = scratch.data() + 7 * padded;
   for (int j = view.j0; j < view.j1; j += kCells) {
-    std::fill(low_x, high_x, kInfinity);
-    std::fill(high_x, farthest, -kInfinity);
-    std::fill(farthest, row_scratch, 0.0F);
+    bounds.clear(padded);
     for (int jj = j; jj <= std::min(j + kCells, view.j1); ++jj) {
-      const float* d = depth_row(view, jj, view.i0, count, row_scratch);
-      const Eigen::Vector3f r0 = view.rays.col(1) * (static_cast<float>(jj) * stride) + view.rays.col(2);
-      const float ux = ru.x(), uy = ru.y(), uz = ru.z(), rx = r0.x(), ry = r0.y(), rz = r0.z();
-      const float tx = shift.x(), ty = shift.y(), tz = shift.z();
-      const int i0 = view.i0;
-      for (int i = 0; i < count; ++i) {
-        const float depth = d[i];
-        const float u = static_cast<float>(i0 + i);
-        const bool is_measured = depth > 0.0F && depth < kInfinity;
-        const float x = depth * (ux * u + rx) + tx;
-        const float y = depth * (uy * u + ry) + ty;
-        const float z = depth * (uz * u + rz) + tz;
-        const float known = is_measured ? depth : 0.0F;
-        farthest[i] = known > farthest[i] ? known : farthest[i];
-        const float lx = is_measured ? x : kInfinity, hx = is_measured ? x : -kInfinity;
-        const float ly = is_measured ? y : kInfinity, hy = is_measured ? y : -kInfinity;
-        const float lz = is_measured ? z : kInfinity, hz = is_measured ? z : -kInfinity;
-        low_x[i] = lx < low_x[i] ? lx : low_x[i];
-        high_x[i] = hx > high_x[i] ? hx : high_x[i];
-        low_y[i] = ly < low_y[i] ? ly : low_y[i];
-        high_y[i] = hy > high_y[i] ? hy : high_y[i];
-        low_z[i] = lz < low_z[i] ? lz : low_z[i];
-        high_z[i] = hz > high_z[i] ? hz : high_z[i];
-      }
+      const float* depths = depth_row(view, jj, view.i0, count, row_scratch);
+      widen_by_row(view, jj, depths, count, bounds, row_scratch + padded, row_scratch + 2 * padded);
     }
     for (int i = 0; i + 1 < count; i += kCells) {
       FrameBox box{kInfinity, -kInfinity, kInfinity, -kInfinity, kInfinity, -kInfinity};
       float depth_m = 0.0F;
       for (int k = i; k <= std::min(i + kCells, count - 1); ++k) {
-        box.x0 = std::min(box.x0, low_x[k]);
-        box.x1 = std::max(box.x1, high_x[k]);
-        box.y0 = std::min(box.y0, low_y[k]);
-        box.y1 = std::max(box.y1, high_y[k]);
-        box.z0 = std::min(box.z0, low_z[k]);
-        box.z1 = std::max(box.z1, high_z[k]);
-        depth_m = std::max(depth_m, farthest[k]);
+        box.x0 = std::min(box.x0, bounds.low_x[k]);
+        box.x1 = std::max(box.x1, bounds.high_x[k]);
+        box.y0 = std::min(box.y0, bounds.low_y[k]);
+        box.y1 = std::max(box.y1, bounds.high_y[k]);
+        box.z0 = std::min(box.z0, bounds.low_z[k]);
+        box.z1 = std::max(box.z1, bounds.high_z[k]);
+        depth_m = std::max(depth_m, bounds.farthest[k]);
       }
       if (!(box.z0 < kInfinity)) continue;
       const float s = view.slack_m + view.slack_per_m * depth_m;

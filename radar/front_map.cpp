@@ -9,17 +9,28 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kRounding = 16.0F * std::numeric_limits<float>::epsilon();
 
-/// Greatest value of g . p over the tree's vertices in use.
-double support(const TriangleTree& tree, const Eigen::Vector3d& g, std::vector<PendingNode>& pending) {
+/// The pixel that holds a place, the nearest one where none does.
+int to_pixel(float at_px, float last) {
+  const float above = at_px > 0.0F ? at_px : 0.0F;
+  return static_cast<int>(above < last ? above : last);
+}
+
+/// Greatest value of g . p over the tree's vertices in use, or up to tolerance_m more: many are nearly as
+/// far.
+double support(const TriangleTree& tree, const Eigen::Vector3d& g, double tolerance_m,
+               std::vector<PendingNode>& pending) {
   const Eigen::Vector3f direction = g.cast<float>();
   const float slack_m = kRounding * tree.half_size().sum();
-  double best = -std::numeric_limits<double>::infinity();
+  double best = -std::numeric_limits<double>::infinity(), passed = best;
   pending.clear();
   pending.push_back({-kInfinity, 0, 0});  // low_m: minus the greatest value that can be below
   while (!pending.empty()) {
     const PendingNode next = pending.back();
     pending.pop_back();
-    if (!(-next.low_m > best)) continue;
+    if (!(-next.low_m > best + tolerance_m)) {
+      passed = std::max(passed, -static_cast<double>(next.low_m));
+      continue;
+    }
     if (next.count > 0) {
       for (std::uint32_t t = next.first; t < next.first + next.count; ++t) {
         for (const std::uint32_t v : tree.triangles()[t]) {
@@ -41,18 +52,19 @@ double support(const TriangleTree& tree, const Eigen::Vector3d& g, std::vector<P
       }
     }
   }
-  return best;
+  return std::max(best, std::min(passed, best + tolerance_m));
 }
 
 }  // namespace
 
 Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, std::vector<PendingNode>& pending) {
   const double slack_m = 1e-15 * object.tree->half_size().cast<double>().sum() + object.margin_m;
+  const double tolerance_m = 2e-3 * object.tree->half_size().cast<double>().sum();
   Eigen::Vector3d low, high;
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d g = object.R_frame_mesh.row(axis);
-    high[axis] = support(*object.tree, g, pending) + slack_m;
-    low[axis] = -support(*object.tree, -g, pending) - slack_m;
+    high[axis] = support(*object.tree, g, tolerance_m, pending) + slack_m;
+    low[axis] = -support(*object.tree, -g, tolerance_m, pending) - slack_m;
   }
   return {low, high};
 }
@@ -92,49 +104,43 @@ bool FrontMap::build(const TurnedTree& object, int resolution_px) {
   const Eigen::Vector3f x_axis = R.row(0), y_axis = R.row(1), z_axis = R.row(2);
   const float slack_m =
       kRounding * tree.half_size().sum() + static_cast<float>(object.margin_m) * (1.0F + kRounding);
+  const auto last_x = static_cast<float>(width - 1), last_y = static_cast<float>(height - 1);
   pending_.clear();
   pending_.push_back({-kInfinity, 0, 0});
   while (!pending_.empty()) {
-    const PendingNode next = pending_.back();
+    const TreeNode& node = tree.nodes()[pending_.back().first];
     pending_.pop_back();
-    const TreeNode& node = tree.nodes()[next.first];
     LinearOverBoxes x, y, z;
     linear_over_boxes(node, x_axis, x);
     linear_over_boxes(node, y_axis, y);
     linear_over_boxes(node, z_axis, z);
-    // The highest first: what it covers hides the rest.
-    std::array<std::uint32_t, TreeNode::kWidth> order;
-    std::array<float, TreeNode::kWidth> top;
-    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+    alignas(32) std::array<float, TreeNode::kWidth> top;
+    alignas(32) std::array<int, TreeNode::kWidth> px0, px1, py0, py1;
+    for (std::size_t i = 0; i < TreeNode::kWidth; ++i) {
       top[i] = z.value[i] + z.reach[i] + slack_m;
-      std::uint32_t j = i;
-      for (; j > 0 && top[order[j - 1]] < top[i]; --j) order[j] = order[j - 1];
-      order[j] = i;
+      px0[i] = to_pixel((x.value[i] - x.reach[i] - slack_m - x0_) * per_m_, last_x);
+      px1[i] = to_pixel((x.value[i] + x.reach[i] + slack_m - x0_) * per_m_, last_x);
+      py0[i] = to_pixel((y.value[i] - y.reach[i] - slack_m - y0_) * per_m_, last_y);
+      py1[i] = to_pixel((y.value[i] + y.reach[i] + slack_m - y0_) * per_m_, last_y);
     }
     const std::size_t first_new = pending_.size();
-    for (std::uint32_t k = 0; k < node.child_count; ++k) {
-      const std::uint32_t i = order[k];
-      const float half_x = x.reach[i] + slack_m, half_y = y.reach[i] + slack_m;
-      const int px0 =
-          std::clamp(static_cast<int>((x.value[i] - half_x - x0_) * per_m_ - kRounding), 0, width - 1);
-      const int px1 =
-          std::clamp(static_cast<int>((x.value[i] + half_x - x0_) * per_m_ + kRounding), 0, width - 1);
-      const int py0 =
-          std::clamp(static_cast<int>((y.value[i] - half_y - y0_) * per_m_ - kRounding), 0, height - 1);
-      const int py1 =
-          std::clamp(static_cast<int>((y.value[i] + half_y - y0_) * per_m_ + kRounding), 0, height - 1);
-      if (is_under(px0, px1, py0, py1, top[i])) continue;
-      const bool is_small = px1 - px0 <= 1 && py1 - py0 <= 1;
-      if (is_small) {
-        enter_box(px0, px1, py0, py1, top[i]);
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      if (px1[i] - px0[i] <= 1 && py1[i] - py0[i] <= 1) {
+        enter_box(px0[i], px1[i], py0[i], py1[i], top[i]);
+      } else if (is_under(px0[i], px1[i], py0[i], py1[i], top[i])) {
+        continue;
       } else if (node.count[i] > 0) {
         for (std::uint32_t t = node.first[i]; t < node.first[i] + node.count[i]; ++t)
           enter_triangle(object, t);
       } else {
-        pending_.push_back({0.0F, node.first[i], 0});
+        pending_.push_back({top[i], node.first[i], 0});
+        // The highest last, so that it is the next: what it covers hides the rest.
+        for (std::size_t j = pending_.size() - 1; j > first_new && pending_[j].low_m < pending_[j - 1].low_m;
+             --j) {
+          std::swap(pending_[j], pending_[j - 1]);
+        }
       }
     }
-    std::reverse(pending_.begin() + static_cast<std::ptrdiff_t>(first_new), pending_.end());
   }
 
   for (std::size_t level = 1; level < levels_.size(); ++level) {
@@ -173,58 +179,59 @@ void FrontMap::enter_box(int x0, int x1, int y0, int y1, float height) {
 }
 
 void FrontMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) {
-  const FrameTriangle t = turned_triangle(object, triangle);
-  const auto& c = t.corners;
-  const float size_m = object.tree->half_size().sum();
-  const auto margin_m = static_cast<float>(object.margin_m) * (1.0F + kRounding);
-  const float slack_m = kRounding * size_m + margin_m;
-  const auto low = [&](int axis) {
-    return static_cast<float>(std::min({c[0][axis], c[1][axis], c[2][axis]})) - slack_m;
-  };
-  const auto high = [&](int axis) {
-    return static_cast<float>(std::max({c[0][axis], c[1][axis], c[2][axis]})) + slack_m;
-  };
-  const int width = levels_[0].width, height = levels_[0].height;
-  const int px0 = std::clamp(static_cast<int>((low(0) - x0_) * per_m_ - kRounding), 0, width - 1);
-  const int px1 = std::clamp(static_cast<int>((high(0) - x0_) * per_m_ + kRounding), 0, width - 1);
-  const int py0 = std::clamp(static_cast<int>((low(1) - y0_) * per_m_ - kRounding), 0, height - 1);
-  const int py1 = std::clamp(static_cast<int>((high(1) - y0_) * per_m_ + kRounding), 0, height - 1);
-  const float top = high(2);
+  const TriangleTree& tree = *object.tree;
+  const Eigen::Matrix3f R = object.R_frame_mesh.cast<float>();
+  const Eigen::Vector3f centre = tree.centre().cast<float>();
+  std::array<Eigen::Vector3f, 3> c;
+  for (std::size_t i = 0; i < 3; ++i) c[i] = R * (tree.vertices()[tree.triangles()[triangle][i]] - centre);
+  const float size_m = tree.half_size().sum();
+  const float rounding_m = kRounding * size_m + tree.rounding_m();
+  const float slack_m = rounding_m + static_cast<float>(object.margin_m) * (1.0F + kRounding);
+  const Eigen::Vector3f low = c[0].cwiseMin(c[1]).cwiseMin(c[2]).array() - slack_m;
+  const Eigen::Vector3f high = c[0].cwiseMax(c[1]).cwiseMax(c[2]).array() + slack_m;
+  const float top = high.z();
+  const auto last_x = static_cast<float>(levels_[0].width - 1);
+  const auto last_y = static_cast<float>(levels_[0].height - 1);
+  const int px0 = to_pixel((low.x() - x0_) * per_m_, last_x),
+            px1 = to_pixel((high.x() - x0_) * per_m_, last_x);
+  const int py0 = to_pixel((low.y() - y0_) * per_m_, last_y),
+            py1 = to_pixel((high.y() - y0_) * per_m_, last_y);
+  if (px1 - px0 <= 1 && py1 - py0 <= 1) return enter_box(px0, px1, py0, py1, top);
 
-  // A strip a side: outward distance from the edge, at most `reach` within a pixel that is touched; for a
-  // triangle edge-on both sides of its edges count, which the same strips say with both signs.
-  const double area =
-      (c[1].x() - c[0].x()) * (c[2].y() - c[0].y()) - (c[1].y() - c[0].y()) * (c[2].x() - c[0].x());
-  const auto half_px = static_cast<float>(0.5 * pixel_m_ * (1.0 + 1e-6)) + slack_m;
+  // Lines along the edges: a x + b y + c <= 0 at the centre of a pixel that the triangle may touch. The line
+  // goes through the corner farthest out, whichever that is, so that a sliver's rounding cannot shut itself
+  // out.
+  const Eigen::Vector3f e1 = c[1] - c[0], e2 = c[2] - c[0];
+  const float area = e1.x() * e2.y() - e1.y() * e2.x();
+  const float half_px = static_cast<float>(0.5 * pixel_m_ * (1.0 + 1e-6)) + slack_m;
   struct Line {
-    float a = 0.0F, b = 0.0F, c = 0.0F;  // a x + b y + c <= 0 for pixels that may be touched
+    float a, b, c;
   };
   std::array<Line, 3> lines;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Eigen::Vector2d edge = (c[(i + 1) % 3] - c[i]).head<2>();
-    const double length = edge.norm();
-    if (!(length > 1e-9 * size_m)) continue;
-    const Eigen::Vector2d outward = Eigen::Vector2d(edge.y(), -edge.x()) / (area >= 0.0 ? length : -length);
-    // The greatest of all three corners, so that a sliver's rounding cannot shut itself out.
-    double most = -std::numeric_limits<double>::infinity();
-    for (const Eigen::Vector3d& corner : c) most = std::max(most, outward.dot(corner.head<2>()));
-    lines[i] = {static_cast<float>(outward.x()), static_cast<float>(outward.y()),
-                static_cast<float>(-most - (std::abs(outward.x()) + std::abs(outward.y())) * half_px) -
-                    kRounding * size_m};
+    const Eigen::Vector3f edge = c[(i + 1) % 3] - c[i];
+    const float a = area >= 0.0F ? edge.y() : -edge.y(), b = area >= 0.0F ? -edge.x() : edge.x();
+    float most = a * c[0].x() + b * c[0].y();
+    for (const Eigen::Vector3f& corner : c) most = std::max(most, a * corner.x() + b * corner.y());
+    lines[i] = {a, b, -most - (std::abs(a) + std::abs(b)) * (half_px + kRounding * size_m)};
   }
+  // The plane, where it is not too steep for float to tell.
   float gx = 0.0F, gy = 0.0F, plane = top;
-  if (std::abs(t.normal.z()) > 1e-3) {
-    const double dx = -t.normal.x() / t.normal.z(), dy = -t.normal.y() / t.normal.z();
-    gx = static_cast<float>(dx);
-    gy = static_cast<float>(dy);
+  const float size2 = e1.squaredNorm() + e2.squaredNorm();
+  if (std::abs(area) > 1e-3F * size2) {
+    gx = (e1.z() * e2.y() - e2.z() * e1.y()) / area;
+    gy = (e2.z() * e1.x() - e1.z() * e2.x()) / area;
+    // Corners off by rounding_m tilt the plane by that over the triangle's least height, area over its
+    // longest edge; it stays within three times that and more where it is used, over the triangle.
     const float slope = std::abs(gx) + std::abs(gy);
-    plane = static_cast<float>(t.normal.dot(c[0]) / t.normal.z()) + slope * half_px + slack_m +
-            kRounding * (1.0F + slope) * size_m;
+    const float tilt = 4.0F * rounding_m * std::sqrt(size2) / std::abs(area) * (1.0F + slope);
+    plane = c[0].z() - gx * c[0].x() - gy * c[0].y() + slope * half_px + slack_m +
+            kRounding * (1.0F + slope) * size_m + tilt * (std::sqrt(size2) + 2.0F * half_px);
   }
   const auto pixel = static_cast<float>(pixel_m_);
   for (int py = py0; py <= py1; ++py) {
     const float y = y0_ + (static_cast<float>(py) + 0.5F) * pixel;
-    float* row = &heights_[static_cast<std::size_t>(py) * width];
+    float* row = &heights_[static_cast<std::size_t>(py) * static_cast<std::size_t>(levels_[0].width)];
     for (int px = px0; px <= px1; ++px) {
       const float x = x0_ + (static_cast<float>(px) + 0.5F) * pixel;
       const float outside = std::max(std::max(lines[0].a * x + lines[0].b * y + lines[0].c,

@@ -10,7 +10,9 @@
 namespace roomradar {
 namespace {
 
-constexpr std::uint32_t kLeafTriangles = 4;
+constexpr std::uint32_t kLeafTriangles =
+    2;  // by place: fewer pairs are settled than with 4, fewer boxes than with 1
+constexpr std::uint32_t kRunTriangles = 4;  // in order: built in a quarter of the boxes
 
 struct Bounds {
   Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
@@ -181,7 +183,7 @@ void build_runs(const std::vector<Triangle>& triangles, const std::vector<Eigen:
   // Nodes of each level, the leaves' level first; the root's level has one.
   std::array<std::uint32_t, 16> level_sizes{};
   std::size_t level_count = 0;
-  for (std::uint32_t n = (triangle_count + kLeafTriangles - 1) / kLeafTriangles; level_count == 0 || n > 1;) {
+  for (std::uint32_t n = (triangle_count + kRunTriangles - 1) / kRunTriangles; level_count == 0 || n > 1;) {
     n = (n + kWidth - 1) / kWidth;
     level_sizes[level_count++] = n;
   }
@@ -205,15 +207,15 @@ void build_runs(const std::vector<Triangle>& triangles, const std::vector<Eigen:
   };
   for (std::size_t level = 0; level < level_count; ++level) {
     const std::uint32_t below =
-        level == 0 ? (triangle_count + kLeafTriangles - 1) / kLeafTriangles : level_sizes[level - 1];
+        level == 0 ? (triangle_count + kRunTriangles - 1) / kRunTriangles : level_sizes[level - 1];
     for (std::uint32_t n = 0; n < level_sizes[level]; ++n) {
       TreeNode& node = nodes[level_first[level] + n];
       const std::uint32_t first_child = n * kWidth;
       const std::uint32_t child_count = std::min(kWidth, below - first_child);
       for (std::uint32_t i = 0; i < child_count; ++i) {
         if (level == 0) {
-          const std::uint32_t first = (first_child + i) * kLeafTriangles;
-          const std::uint32_t count = std::min(kLeafTriangles, triangle_count - first);
+          const std::uint32_t first = (first_child + i) * kRunTriangles;
+          const std::uint32_t count = std::min(kRunTriangles, triangle_count - first);
           Bounds b;
           for (std::uint32_t t = first; t < first + count; ++t) b.extend(bounds_of(triangles[t], vertices));
           writer.put(node, i, b, first, count);
