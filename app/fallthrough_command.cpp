@@ -12,6 +12,7 @@
 #include "app/report.hpp"
 #include "app/sim/scenarios.hpp"
 #include "app/sim/simulated_source.hpp"
+#include "radar/cyber_radar.hpp"
 
 namespace roomradar {
 namespace {
@@ -35,7 +36,7 @@ struct PolicyTotals {
 struct MappedRoom {
   ScenarioRoom simulated;
   PrescanResult scanned;
-  GpuMesh mesh;
+  Shape mesh;
 
   MappedRoom(GlContext& context, const std::string& name, StageTimes& times)
       : simulated(make_scenario_room(name)), mesh(context) {
@@ -49,13 +50,13 @@ struct MappedRoom {
     Progress progress("prescan of room " + name, 2 * walk.frames);  // read twice
     scanned = prescan(source, config, times,
                       [&](const std::string& stage, const std::string& /*note*/) { progress.step(stage); });
-    mesh.upload(scanned.map.mesh, MeshUsage::kStatic);
+    mesh.set(scanned.map.mesh, MeshUsage::kStatic);
   }
 };
 
 /// Moves the scenario's object frame by frame until the radar stops it; how far it came.
-double travelled_m(const Scenario& scenario, const Eigen::Isometry3d& T_map_world, const GpuMesh& object,
-                   const std::vector<SceneMesh>& scene, GlRadar& radar, double& query_ms) {
+double travelled_m(const Scenario& scenario, const Eigen::Isometry3d& T_map_world, const TriangleTree& object,
+                   const std::vector<SceneTree>& scene, CyberRadar& radar, double& query_ms) {
   const Eigen::Vector3d direction_map = T_map_world.linear() * scenario.direction_world;
   const double step_m = scenario.speed_m_s * kFrameTime_s;
   double done_m = 0.0;
@@ -66,7 +67,7 @@ double travelled_m(const Scenario& scenario, const Eigen::Isometry3d& T_map_worl
     Eigen::Isometry3d T_map_object = T_map_world * scenario.T_world_object;
     T_map_object.pretranslate(done_m * direction_map);
     const auto start = std::chrono::steady_clock::now();
-    const Contact contact = radar.query({&object, T_map_object}, direction_map, next_m, scene);
+    const Contact contact = radar.query({{&object, T_map_object}, direction_map, next_m}, {scene, {}});
     query_ms += ms_since(start);
     ++queries;
     if (contact) {
@@ -98,7 +99,7 @@ int run(const FallthroughCommand& command) {
   require_writable(command.report);
   GlContext context;
   report.renderer = context.renderer();
-  GlRadar radar(context);
+  CyberRadar radar;
   std::map<std::string, std::unique_ptr<MappedRoom>> rooms;
   for (const std::string& name : room_names())
     rooms.emplace(name, std::make_unique<MappedRoom>(context, name, report.times));
@@ -115,8 +116,8 @@ int run(const FallthroughCommand& command) {
       render_scenario(scenario, room.simulated.room, /*noise_scale=*/1.0, frame);
       const Eigen::Isometry3d& T_map_world = room.scanned.map.info.T_world_recorded;
       const Eigen::Isometry3d T_map_camera = T_map_world * scenario.T_world_camera;
-      GpuMesh object(context);
-      object.upload(scenario.object_mesh, MeshUsage::kStatic);
+      TriangleTree object;
+      object.build_by_place(scenario.object_mesh);
 
       for (std::size_t i = 0; i < kPolicies.size(); ++i) {
         LiveScene scene(context, room.mesh, {.surfaces = kPolicies[i]});
@@ -128,7 +129,7 @@ int run(const FallthroughCommand& command) {
         scene.mesh_moved(frame, T_map_camera);
         const double scene_ms = ms_since(start);
         double query_ms = 0.0;
-        const double came_m = travelled_m(scenario, T_map_world, object, scene.meshes(), radar, query_ms);
+        const double came_m = travelled_m(scenario, T_map_world, object, scene.surfaces(), radar, query_ms);
         const Verdict verdict = judge(scenario, came_m);
         totals[i].frame_ms.push_back(scene_ms + query_ms);
         if (came_m < scenario.limit_m) totals[i].contact_errors_m.push_back(std::abs(verdict.error_m));

@@ -13,8 +13,8 @@ bool is_same_view(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T
 
 }  // namespace
 
-LiveScene::LiveScene(GlContext& context, const GpuMesh& room, const LiveSceneConfig& config)
-    : config_(config), room_(room), moved_mesh_(context), depth_pass_(context) {
+LiveScene::LiveScene(GlContext& context, const Shape& room, const LiveSceneConfig& config)
+    : config_(config), room_(room), moved_(context), depth_pass_(context) {
   require_valid(config.foreground);
   require_valid(config.mesh);
 }
@@ -22,7 +22,7 @@ LiveScene::LiveScene(GlContext& context, const GpuMesh& room, const LiveSceneCon
 std::size_t LiveScene::render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) {
   if (expected_camera_ == camera && is_same_view(T_world_expected_, T_world_camera))
     return expected_triangles_;
-  const MeshInstance room{&room_, Eigen::Isometry3d::Identity()};
+  const MeshInstance room{&room_.drawn, Eigen::Isometry3d::Identity()};
   expected_triangles_ = depth_pass_.render({&room, 1}, camera, T_world_camera, expected_depth_m_);
   expected_camera_ = camera;
   T_world_expected_ = T_world_camera;
@@ -42,15 +42,22 @@ void LiveScene::mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_
     mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh,
                mesh_scratch_, moved_mesh_world_);
   }
-  moved_mesh_.upload(moved_mesh_world_, MeshUsage::kStreamed);
+  moved_.set(moved_mesh_world_, MeshUsage::kStreamed);
 }
 
-std::vector<SceneMesh> LiveScene::meshes() const {
-  std::vector<SceneMesh> meshes;
+std::vector<SceneTree> LiveScene::surfaces() const {
+  std::vector<SceneTree> surfaces;
   if (config_.surfaces == SurfacePolicy::kMap)
-    meshes.push_back({{&room_, Eigen::Isometry3d::Identity()}, Touched::kStatic});
-  meshes.push_back({{&moved_mesh_, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
-  return meshes;
+    surfaces.push_back({{&room_.touched, Eigen::Isometry3d::Identity()}, Touched::kStatic});
+  surfaces.push_back({{&moved_.touched, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
+  return surfaces;
+}
+
+std::vector<MeshInstance> LiveScene::drawn_surfaces() const {
+  std::vector<MeshInstance> drawn;
+  if (config_.surfaces == SurfacePolicy::kMap) drawn.push_back({&room_.drawn, Eigen::Isometry3d::Identity()});
+  drawn.push_back({&moved_.drawn, Eigen::Isometry3d::Identity()});
+  return drawn;
 }
 
 }  // namespace roomradar

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "app/shape.hpp"
 #include "dynamic/depth_mesh.hpp"
 #include "dynamic/foreground.hpp"
 #include "dynamic/surface_policy.hpp"
@@ -11,8 +12,8 @@
 #include "mapping/types/mesh.hpp"
 #include "radar/depth_pass.hpp"
 #include "radar/gl_context.hpp"
-#include "radar/gl_radar.hpp"
 #include "radar/gpu_mesh.hpp"
+#include "radar/radar_scene.hpp"
 
 namespace roomradar {
 
@@ -27,7 +28,7 @@ class LiveScene {
  public:
   /// `room` is the static mesh in the world; it and the context must outlive this. Throws Error if the config
   /// is out of its rules.
-  LiveScene(GlContext& context, const GpuMesh& room, const LiveSceneConfig& config);
+  LiveScene(GlContext& context, const Shape& room, const LiveSceneConfig& config);
 
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
@@ -38,17 +39,19 @@ class LiveScene {
   void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   /// What can be touched: kMap: the room and what moved; kHoles, kSkirt: the frame's own mesh.
-  [[nodiscard]] std::vector<SceneMesh> meshes() const;
+  [[nodiscard]] std::vector<SceneTree> surfaces() const;
+  /// The same, to be drawn.
+  [[nodiscard]] std::vector<MeshInstance> drawn_surfaces() const;
 
   [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
   [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
   [[nodiscard]] const Mesh& moved_mesh_world() const { return moved_mesh_world_; }
-  [[nodiscard]] std::size_t moved_triangles() const { return moved_mesh_.triangle_count(); }
+  [[nodiscard]] std::size_t moved_triangles() const { return moved_.touched.triangle_count(); }
 
  private:
   LiveSceneConfig config_;
-  const GpuMesh& room_;
-  GpuMesh moved_mesh_;
+  const Shape& room_;
+  Shape moved_;
   DepthPass depth_pass_;
 
   DepthImage expected_depth_m_;  ///< for expected_camera_ at T_world_expected_

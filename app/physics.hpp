@@ -48,7 +48,7 @@ struct PhysicsConfig {
 void require_valid(const PhysicsConfig& config);
 
 /// What stands in the way of the object at T_world_object if it moves along a unit direction by up to
-/// distance_m. GlRadar::query bound to the object's mesh and to the frame's scene, or an analytic room in
+/// distance_m. CyberRadar::query bound to the object's mesh and to the frame's scene, or an analytic room in
 /// tests.
 using TravelQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
                                           const Eigen::Vector3d& direction_world, double distance_m)>;

@@ -13,7 +13,6 @@ namespace roomradar {
 namespace {
 
 constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from an object than this do not push it
-constexpr int kFineRadar_px = 512;
 
 }  // namespace
 
@@ -22,14 +21,12 @@ Session::Session(const SavedMap& map, const SessionConfig& config)
       config_(config),
       room_(context_),
       scene_(context_, room_, config.scene),
-      radar_(context_, config.radar),
-      fine_radar_(context_, GlRadarConfig{.resolution_px = kFineRadar_px,
-                                          .overlap_tolerance_m = config.radar.overlap_tolerance_m}),
+      radar_(config.radar),
       depth_pass_(context_),
       drawer_(context_) {
   require_valid(config.physics);
   require_valid(config.picture);
-  room_.upload(map.mesh, MeshUsage::kStatic);
+  room_.set(map.mesh, MeshUsage::kStatic);
 }
 
 FrameResult Session::step(const Frame& frame, StageTimes& times) {
@@ -84,11 +81,11 @@ Tracking Session::locate_camera(const Frame& frame) {
   return locate(locator_, frame, map_.places, scene_.moved_mask(), expected_depth);
 }
 
-std::vector<SceneMesh> Session::scene_without(const VirtualObject* object) const {
-  std::vector<SceneMesh> scene = scene_.meshes();
+std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const {
+  std::vector<SceneTree> scene = scene_.surfaces();
   for (const auto& other : objects_) {
     if (other.get() != object && other->in_room)
-      scene.push_back({{&other->shape, other->body.T_world_object}, Touched::kObject});
+      scene.push_back({{&other->shape.touched, other->body.T_world_object}, Touched::kObject});
   }
   return scene;
 }
@@ -98,12 +95,12 @@ int Session::move_objects(double dt_s, StageTimes& times) {
   double radar_ms = 0.0;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
-    const std::vector<SceneMesh> scene = scene_without(object.get());
+    const std::vector<SceneTree> scene = scene_without(object.get());
     const TravelQuery query = [&](const Eigen::Isometry3d& T_world_object,
                                   const Eigen::Vector3d& direction_world, double distance_m) {
       const auto start = std::chrono::steady_clock::now();
       const Contact contact =
-          radar_.query({&object->shape, T_world_object}, direction_world, distance_m, scene);
+          radar_.query({{&object->shape.touched, T_world_object}, direction_world, distance_m}, {scene, {}});
       radar_ms += ms_since(start);
       return contact;
     };
@@ -121,12 +118,13 @@ double Session::penetration_m() {
   double deepest_m = 0.0;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
-    std::vector<SceneMesh> still = scene_without(object.get());
+    std::vector<SceneTree> still = scene_without(object.get());
     // A hand that reaches into an object is the hand's doing.
     if (config_.scene.surfaces == SurfacePolicy::kMap)
-      std::erase_if(still, [](const SceneMesh& mesh) { return mesh.kind == Touched::kDynamic; });
-    const Contact below = fine_radar_.query({&object->shape, object->body.T_world_object},
-                                            config_.physics.gravity_world_mps2, 0.01, still);
+      std::erase_if(still, [](const SceneTree& surface) { return surface.kind == Touched::kDynamic; });
+    const Contact below = exact_radar_.query(
+        {{&object->shape.touched, object->body.T_world_object}, config_.physics.gravity_world_mps2, 0.01},
+        {still, {}});
     if (below.status == ContactStatus::kOverlap) deepest_m = std::max(deepest_m, -below.travel_m);
   }
   return deepest_m;
@@ -151,7 +149,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   std::vector<ShadowCaster> casters;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
-    drawn.push_back({.instance = {&object->shape, object->body.T_world_object}});
+    drawn.push_back({.instance = {&object->shape.drawn, object->body.T_world_object}});
     casters.push_back({&object->shadow, object->body.T_world_object});
   }
   drawer_.draw(drawn, camera, T_world_view, {}, layer_);
@@ -159,9 +157,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   real_depth_m_.resize(camera.width_px, camera.height_px);
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_);
   if (rect.width > 0 && rect.height > 0) {
-    std::vector<MeshInstance> real;
-    for (const SceneMesh& mesh : scene_.meshes()) real.push_back(mesh.instance);
-    depth_pass_.render(real, camera, T_world_view, rect, real_depth_m_);
+    depth_pass_.render(scene_.drawn_surfaces(), camera, T_world_view, rect, real_depth_m_);
   }
   compose(background_, camera, T_world_view, real_depth_m_, casters, layer_, config_.picture, picture_);
 }

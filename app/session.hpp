@@ -16,20 +16,20 @@
 #include "mapping/map_folder.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/stage_times.hpp"
+#include "radar/cyber_radar.hpp"
 #include "radar/depth_pass.hpp"
 #include "radar/gl_context.hpp"
-#include "radar/gl_radar.hpp"
 
 namespace roomradar {
 
 struct SessionConfig {
   PoseOrigin poses = PoseOrigin::kTracked;
   LiveSceneConfig scene;
-  GlRadarConfig radar;
+  RadarConfig radar;
   PhysicsConfig physics;
   ComposeConfig picture;
   bool make_picture = true;  ///< false: no drawing, only what moves the objects
-  /// A finer radar looks after each frame how deep objects stand, along gravity, in the room and in one
+  /// The exact radar looks after each frame how deep objects stand, along gravity, in the room and in one
   /// another.
   bool measure_penetration = false;
 };
@@ -75,11 +75,11 @@ class Session {
   const SavedMap& map_;
   SessionConfig config_;
   GlContext context_;
-  GpuMesh room_;
+  Shape room_;
   LiveScene scene_;
   Locator locator_;
-  GlRadar radar_;
-  GlRadar fine_radar_;
+  CyberRadar radar_;
+  CyberRadar exact_radar_;  ///< measures penetration
   DepthPass depth_pass_;
   ObjectDrawer drawer_;
 
@@ -100,7 +100,7 @@ class Session {
 
   FrameResult pass_through(const Frame& frame, StageTimes& times);
   Tracking locate_camera(const Frame& frame);
-  [[nodiscard]] std::vector<SceneMesh> scene_without(const VirtualObject* object) const;
+  [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   int move_objects(double dt_s, StageTimes& times);
   double penetration_m();

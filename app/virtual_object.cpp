@@ -20,15 +20,14 @@ constexpr double kTeapotHeight_m = 0.15;
 VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& mesh)
     : shape(context), shadow(make_contact_shadow(mesh, Eigen::Matrix3d::Identity())) {
   body.name = std::move(name);
-  shape.upload(mesh, MeshUsage::kStatic);
-  if (shape.triangle_count() == 0)
-    throw Error(body.name + ": has no triangles; a virtual object is a surface");
-  const Eigen::AlignedBox3d box = shape.bounds();
+  shape.set(mesh, MeshUsage::kStatic);
+  if (shape.touched.empty()) throw Error(body.name + ": has no triangles; a virtual object is a surface");
+  const Eigen::AlignedBox3d box = shape.drawn.bounds();
   middle = box.center();
   lowest_m = box.min().z();
-  for (const Triangle& triangle : shape.triangles()) {
+  for (const Triangle& triangle : shape.drawn.triangles()) {
     for (const std::uint32_t vertex : triangle) {
-      const Eigen::Vector3d p = shape.origin() + shape.vertices()[vertex].cast<double>();
+      const Eigen::Vector3d p = shape.drawn.origin() + shape.drawn.vertices()[vertex].cast<double>();
       footprint_radius_m = std::max(footprint_radius_m, p.head<2>().norm());
     }
   }

@@ -6,8 +6,8 @@
 
 #include "app/contact_shadow.hpp"
 #include "app/physics.hpp"
+#include "app/shape.hpp"
 #include "mapping/types/mesh.hpp"
-#include "radar/gpu_mesh.hpp"
 
 namespace roomradar {
 
@@ -17,7 +17,7 @@ struct VirtualObject {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of its bounding box, in its own frame
   double lowest_m = 0.0;                             ///< z of its lowest point, in its own frame
   double footprint_radius_m = 0.0;                   ///< how far it reaches sideways from its origin
-  GpuMesh shape;                                     ///< what the radar and the picture see
+  Shape shape;
   ContactShadow shadow;
 
   /// Throws Error if the mesh cannot be a virtual object (no triangles, vertices that are not finite).

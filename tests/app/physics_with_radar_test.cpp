@@ -7,8 +7,8 @@
 
 #include "app/physics.hpp"
 #include "app/teapot.hpp"
+#include "radar/cyber_radar.hpp"
 #include "radar/exact_travel.hpp"
-#include "radar/gl_radar.hpp"
 
 namespace roomradar {
 namespace {
@@ -50,25 +50,25 @@ Mesh palm(double x_m) {
 class PhysicsWithRadar : public ::testing::Test {
  protected:
   PhysicsWithRadar() {
-    teapot_.upload(teapot_mesh_, MeshUsage::kStatic);
+    teapot_.build_by_place(teapot_mesh_);
     body_.T_world_object.translation() = Vec3(0, 0, kTableTop_m + 0.3);
   }
   void set_table(const Mesh& mesh) {
     table_mesh_ = mesh;
-    table_.upload(mesh, MeshUsage::kStatic);
+    table_.build_by_place(mesh);
   }
   StepReport step() {
-    const std::vector<SceneMesh> scene = {{{&table_, Eigen::Isometry3d::Identity()}, Touched::kStatic},
+    const std::vector<SceneTree> scene = {{{&table_, Eigen::Isometry3d::Identity()}, Touched::kStatic},
                                           {{&hand_, Eigen::Isometry3d::Identity()}, Touched::kDynamic}};
     const TravelQuery query = [&](const Eigen::Isometry3d& T, const Vec3& direction, double distance_m) {
-      return radar_.query({&teapot_, T}, direction, distance_m, scene);
+      return radar_.query({{&teapot_, T}, direction, distance_m}, {scene, {}});
     };
     const PushDirections push = push_directions(hand_mesh_, body_.T_world_object * Vec3(0, 0, 0.07), 0.25);
     return advance(body_, kFrame_s, query, {}, push.span());
   }
   void set_hand(const Mesh& mesh) {
     hand_mesh_ = mesh;
-    hand_.upload(mesh, MeshUsage::kStreamed);
+    hand_.build_in_order(mesh);
   }
   /// Gap between the teapot and the table along gravity; negative: it stands in it by that much.
   [[nodiscard]] double exact_gap_m() const {
@@ -79,10 +79,9 @@ class PhysicsWithRadar : public ::testing::Test {
     return travel_m ? *travel_m - 0.05 : 1.0;
   }
 
-  GlContext context_{RendererChoice::kSoftware};
-  GlRadar radar_{context_};
+  CyberRadar radar_;
   Mesh teapot_mesh_ = utah_teapot(8, 0.15);
-  GpuMesh teapot_{context_}, table_{context_}, hand_{context_};
+  TriangleTree teapot_, table_, hand_;
   Mesh table_mesh_, hand_mesh_;
   Body body_;
 };

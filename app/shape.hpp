@@ -1,0 +1,20 @@
+// shape.hpp: a mesh twice: on the renderer, to be drawn, and at hand, to be touched.
+#pragma once
+#include "mapping/types/mesh.hpp"
+#include "radar/gl_context.hpp"
+#include "radar/gpu_mesh.hpp"
+#include "radar/triangle_tree.hpp"
+
+namespace roomradar {
+
+struct Shape {
+  GpuMesh drawn;         ///< what picture and depth pass see
+  TriangleTree touched;  ///< what the radar sees: the same triangles
+
+  explicit Shape(GlContext& context) : drawn(context) {}
+
+  /// Replaces both. Throws Error as GpuMesh::upload does.
+  void set(const Mesh& mesh, MeshUsage usage);
+};
+
+}  // namespace roomradar
