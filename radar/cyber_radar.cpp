@@ -91,8 +91,9 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   volume.max().z() += query.distance_m + equally_m;
   volume.min().z() -= object.touching_m;
 
-  patch_.clear();
   double best_m = kInfinity;
+  bool leaves_something = false;                   // which faces along the motion and crosses the object now
+  bool met_within = false, passes_within = false;  // what faces along the motion, behind the object's front
   const auto limit_m = [&] {
     return std::min(best_m, query.distance_m) + (patch_.is_full() || is_thick ? 0.0 : equally_m);
   };
@@ -118,11 +119,20 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
         case Meeting::kCrossing:
           settled.overlaps = true;
           return;
+        case Meeting::kLeaving:
+          leaves_something = true;
+          return;
         case Meeting::kContact:
           break;
       }
       // The rear of a closed object only meets what is inside it.
       if (tree.is_closed() && o.normal.z() < -kEdgeOn) return;
+      const TriangleGap::Place& place = gap.places[gap.lowest];
+      const auto x = static_cast<float>(place.x), y = static_cast<float>(place.y);
+      if (s.normal.z() > kEdgeOn && place.scene_z < front_.max_under(x, x, y, y)) {
+        if (passes_within) return;
+        met_within = true;
+      }
       const double travel_m = std::max(gap.low_m, 0.0);
       best_m = std::min(best_m, travel_m);
       patch_.add(gap, travel_m, equally_m, s, scene_.kind(item), best_m);
@@ -133,31 +143,39 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
     return settled;
   };
 
-  heap_.clear();
-  scene_.begin(volume, bound, static_cast<float>(limit_m()), heap_);
-  std::make_heap(heap_.begin(), heap_.end(), is_farther);
   bool overlaps = false;
-  int settled_count = 0;
-  while (!heap_.empty()) {
-    const SceneItem item = heap_.front();
-    if (!(item.low_m < limit_m())) break;
-    const bool is_enough = config_.mode == RadarMode::kSampled && settled_count >= kSampledSettles &&
-                           best_m <= query.distance_m && item.low_m >= 0.0F;
-    if (is_enough || (is_thick && best_m <= 0.0)) break;
-    std::pop_heap(heap_.begin(), heap_.end(), is_farther);
-    heap_.pop_back();
-    if (item.kind == SceneItem::Kind::kTriangle) {
-      ++settled_count;
-      overlaps = settle(item).overlaps;
-      if (overlaps) break;
-      continue;
+  const auto look = [&] {
+    patch_.clear();
+    heap_.clear();
+    scene_.begin(volume, bound, static_cast<float>(limit_m()), heap_);
+    std::make_heap(heap_.begin(), heap_.end(), is_farther);
+    int settled_count = 0;
+    while (!heap_.empty() && !overlaps) {
+      const SceneItem item = heap_.front();
+      if (!(item.low_m < limit_m())) break;
+      const bool is_enough = config_.mode == RadarMode::kSampled && settled_count >= kSampledSettles &&
+                             best_m <= query.distance_m && item.low_m >= 0.0F;
+      if (is_enough || (is_thick && best_m <= 0.0)) break;
+      std::pop_heap(heap_.begin(), heap_.end(), is_farther);
+      heap_.pop_back();
+      if (item.kind == SceneItem::Kind::kTriangle) {
+        ++settled_count;
+        overlaps = settle(item).overlaps;
+        continue;
+      }
+      found_.clear();
+      scene_.expand(item, bound, static_cast<float>(limit_m()), found_);
+      for (const SceneItem& part : found_) {
+        heap_.push_back(part);
+        std::push_heap(heap_.begin(), heap_.end(), is_farther);
+      }
     }
-    found_.clear();
-    scene_.expand(item, bound, static_cast<float>(limit_m()), found_);
-    for (const SceneItem& part : found_) {
-      heap_.push_back(part);
-      std::push_heap(heap_.begin(), heap_.end(), is_farther);
-    }
+  };
+  look();
+  if (leaves_something && met_within && !overlaps) {
+    passes_within = true;
+    best_m = kInfinity;
+    look();
   }
 
   Contact contact;

@@ -61,6 +61,10 @@ struct RadarQuery {
 /// upper_m is then minus the way back along the direction until the object is free: the near end of the union
 /// of all pairs' spans of crossing, the inside of a closed object included, that holds 0.
 ///
+/// While the object crosses what it leaves, it stands in a solid that only its way out is known of: then what
+/// faces along the motion and lies behind the object's front is left as a whole, also where a part of the
+/// object is still behind it (the bar of a handle behind a hand that is in the handle).
+///
 /// Contact point: of all places that are equally near (a face that lands flat) the one nearest to their
 /// middle.
 ///

@@ -139,7 +139,9 @@ Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, cons
   }
   if (!meets_now) return Meeting::kContact;
   const bool is_left = facing > kEdgeOn;
-  if (is_left) return Meeting::kNone;
+  if (is_left) {
+    return gap.low_m < -touching_m && gap.high_m > touching_m ? Meeting::kLeaving : Meeting::kNone;
+  }
   if (has_scene_plane && !is_edge_on) {
     if (before[0] >= -touching_m) return Meeting::kContact;
     if (before[1] <= touching_m) return Meeting::kNone;

@@ -37,9 +37,10 @@ struct TriangleGap {
 bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleGap& gap);
 
 enum class Meeting {
-  kNone,     ///< they do not meet ahead
-  kContact,  ///< they touch after max(low_m, 0)
-  kCrossing  ///< each is on both sides of the other already
+  kNone,      ///< they do not meet ahead
+  kContact,   ///< they touch after max(low_m, 0)
+  kCrossing,  ///< each is on both sides of the other already
+  kLeaving    ///< they cross, and the scene's triangle faces along the motion
 };
 
 /// What a gap means for an object that moves along +z.
@@ -48,8 +49,8 @@ enum class Meeting {
 /// than touching_m (measured along the normal of either triangle: then it is touching, and what lies ahead of
 /// a plane between them is a contact, what lies behind it or slides along it is not), or they cross.
 /// A scene triangle seen edge-on that the object only grazes sideways by less than touching_m is slid along,
-/// however far ahead. A scene triangle that faces along the motion is what the object leaves: touching it or
-/// crossing it now is no meeting; ahead it is met like any other.
+/// however far ahead. A scene triangle that faces along the motion is what the object leaves: touching it now
+/// is no meeting, crossing it is kLeaving; ahead it is met like any other.
 Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, const TriangleGap& gap,
                    double touching_m);
 
