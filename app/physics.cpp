@@ -28,7 +28,7 @@ bool make_usable(Contact& contact, const Vec3& direction) {
   if (contact.status == ContactStatus::kInvalidInput || contact.status == ContactStatus::kNoAnswer)
     return false;
   if (!contact) return true;
-  if (!std::isfinite(contact.travel_m)) return false;
+  if (!std::isfinite(contact.travel_m) || !std::isfinite(contact.lower_m)) return false;
   const double length = contact.normal_world.norm();
   const bool faces_object =
       std::isfinite(length) && length > 0.5 && contact.normal_world.dot(direction) < -1e-3 * length;
@@ -67,10 +67,6 @@ class Stepper {
 
   Contact ask(const Vec3& direction, double distance_m);
   static Way overlap_in(const Contact& contact, const Vec3& direction);
-  double margin_m(const Contact& contact) const {
-    return std::min(config_.contact_margin_m + config_.margin_per_pixel * std::max(contact.pixel_m, 0.0),
-                    config_.max_margin_m);
-  }
   void note(Touched touched);
   void hold();
   void collide(const Contact& contact, Vec3& remaining);
@@ -122,10 +118,10 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
     if (other.depth_m > 0.0 && (way.depth_m <= 0.0 || other.depth_m < way.depth_m)) way = other;
   };
   const auto look = [&](const Vec3& direction) {
-    if (!failed()) consider(overlap_in(ask(direction, config_.max_margin_m), direction));
+    if (!failed()) consider(overlap_in(ask(direction, config_.contact_margin_m), direction));
   };
   if (!down_.isZero()) {
-    below_ = ask(down_, config_.wake_gap_m + 2.0 * config_.max_margin_m);
+    below_ = ask(down_, config_.wake_gap_m + 2.0 * config_.contact_margin_m);
     consider(overlap_in(below_, down_));
   }
   for (const Vec3& direction : push_directions_world)
@@ -147,10 +143,11 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   wake();
   const double push_m = std::min(way.depth_m, config_.push_out_mps * dt_s);
   // What stands behind stops the push: the body is squeezed, and the next call asks again.
-  const Contact behind = ask(-way.direction, push_m + config_.max_margin_m);
+  const Contact behind = ask(-way.direction, push_m + config_.contact_margin_m);
   if (failed()) return;
   double free_m = push_m;
-  if (behind.status == ContactStatus::kContact) free_m = std::max(behind.travel_m - margin_m(behind), 0.0);
+  if (behind.status == ContactStatus::kContact)
+    free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
   if (behind.status == ContactStatus::kOverlap && behind.touched == Touched::kStatic) free_m = 0.0;
   body_.T_world_object.translation() -= std::min(push_m, free_m) * way.direction;
   const double inward_mps = body_.velocity_world_mps.dot(way.direction);
@@ -159,7 +156,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
 
 bool Stepper::is_held_up() const {
   if (down_.isZero()) return true;
-  return below_ && below_.travel_m <= config_.wake_gap_m + margin_m(below_);
+  return below_ && below_.lower_m <= config_.wake_gap_m + config_.contact_margin_m;
 }
 
 /// Takes out what goes into the surface, of the velocity by restitution and friction, of the motion that
@@ -224,11 +221,11 @@ void Stepper::move(double dt_s) {
     const double distance_m = remaining.norm();
     if (distance_m < kShortest_m) break;
     const Vec3 direction = remaining / distance_m;
-    const Contact contact = ask(direction, distance_m + config_.max_margin_m / kGrazing);
+    const Contact contact = ask(direction, distance_m + config_.contact_margin_m / kGrazing);
     if (failed()) return;
     // The gap is kept across the surface; seen along a grazing motion it is longer.
     const double steepness = std::max(-contact.normal_world.dot(direction), kGrazing);
-    const double free_m = contact ? contact.travel_m - margin_m(contact) / steepness : distance_m;
+    const double free_m = contact ? contact.lower_m - config_.contact_margin_m / steepness : distance_m;
     if (free_m >= distance_m) {
       position += remaining;
       break;
@@ -262,8 +259,6 @@ void require_valid(const PhysicsConfig& config) {
   require_not_negative("bounce_mps", config.bounce_mps);
   require_not_negative("friction", config.friction);
   require_not_negative("contact_margin_m", config.contact_margin_m);
-  require_not_negative("margin_per_pixel", config.margin_per_pixel);
-  require_positive("max_margin_m", config.max_margin_m);
   require_positive("max_step_s", config.max_step_s);
   require_positive("max_advance_s", config.max_advance_s);
   require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,

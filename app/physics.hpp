@@ -28,10 +28,9 @@ struct PhysicsConfig {
   double restitution = 0.0;
   double bounce_mps = 0.3;  ///< slower impacts do not bounce
   double friction = 0.5;    ///< Coulomb's coefficient, >= 0
-  /// Gap kept to a surface; the radar samples, and sampling finds contact late.
+  /// Gap kept to a surface, on top of what the radar's lower bound keeps where it is not exact: a body that
+  /// touches could not tell resting from overlap.
   double contact_margin_m = 0.001;
-  double margin_per_pixel = 0.5;   ///< and this part of the radar's pixel size on top, where it tells one
-  double max_margin_m = 0.004;     ///< the gap never grows past this
   double max_step_s = 1.0 / 30.0;  ///< a longer step is cut into such pieces
   /// Time past this in one call is dropped (a stalled camera must not launch things).
   double max_advance_s = 0.5;

@@ -91,7 +91,7 @@ TEST_F(PhysicsWithRadar, TheTeapotRestsOnTheTableWithinAFewMillimetres) {
   for (int i = 0; i < 45; ++i) EXPECT_EQ(step().status, StepStatus::kMoved);
   EXPECT_TRUE(body_.at_rest);
   EXPECT_GE(exact_gap_m(), 0.0);
-  EXPECT_LE(exact_gap_m(), 0.004);  // the largest margin
+  EXPECT_LE(exact_gap_m(), 0.002);  // a margin of 1 mm
   const Vec3 before = body_.T_world_object.translation();
   for (int i = 0; i < 100; ++i) EXPECT_EQ(step().queries, 1);
   EXPECT_EQ(body_.T_world_object.translation(), before);
