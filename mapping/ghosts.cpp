@@ -18,6 +18,10 @@ namespace roomradar {
 namespace {
 
 constexpr float kNearest_m = 0.1F;  // nothing is projected from nearer to the camera's plane
+// Surface that is nearer gives no depth, and hides what is behind.
+constexpr float kTooNear_m = 0.8F;
+constexpr int kHiddenCell_px = 8;  // a voxel of a centimetre at that distance
+
 constexpr std::size_t kEveryColour =
     4;  // of so many voxels one looks at its colour: it is a group's that counts
 
@@ -143,54 +147,78 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   const auto width = static_cast<float>(depth_m.width);
   const auto height = static_cast<float>(depth_m.height);
 
-  std::size_t begin = 0;
-  for (const Brick& brick : bricks_) {
-    const std::size_t first = std::exchange(begin, brick.end);
-    const Eigen::Vector3d low_world = brick.first.cast<double>() * resolution_m_;
-    const Eigen::Vector3d middle_world =
-        low_world + Eigen::Vector3d::Constant(0.5 * kBrickEdge * resolution_m_);
-    if (!may_be_seen(camera, T_camera_world * middle_world, brick_radius_m)) continue;
-    const Eigen::Vector3f first_camera =
-        (T_camera_world * (low_world + Eigen::Vector3d::Constant(0.5 * resolution_m_))).cast<float>();
-    for (std::size_t i = first; i < brick.end; ++i) {
-      Votes& votes = votes_[i];
-      const std::size_t offset = votes.offset;
-      const Eigen::Vector3f p_camera =
-          first_camera + steps[0][offset & 7U] + steps[1][offset >> 3U & 7U] + steps[2][offset >> 6U];
-      const float z = p_camera.z();
-      if (!(z > kNearest_m)) continue;
-      const float u = fx * p_camera.x() / z + cx + 0.5F;
-      const float v = fy * p_camera.y() / z + cy + 0.5F;
-      if (!(u >= 0.0F && v >= 0.0F && u < width && v < height)) continue;
-      const int x = static_cast<int>(u);
-      const int y = static_cast<int>(v);
-      const float measured_m = depth_m.at(x, y);
-      const auto window_at = [&, this] {
-        const int radius_px =
-            std::min(static_cast<int>(std::ceil(config_.window_radius_m * fx / z)), kMaxWindowRadius_px);
-        return window_depth(windows_, x, y, radius_px);
-      };
-      const bool has_colour = i % kEveryColour == 0;
-      if (!(measured_m > 0.0F)) {
-        absence_looks_.unmeasured(frame, x, y, p_camera, window_at().measured_share, has_colour, absence_[i]);
+  // Calls visit(position, centre in the camera frame, pixel) for the voxels in the image, nearer than that.
+  const auto for_each_nearer = [&](float farthest_m, const auto& visit) {
+    std::size_t begin = 0;
+    for (const Brick& brick : bricks_) {
+      const std::size_t first = std::exchange(begin, brick.end);
+      const Eigen::Vector3d low_world = brick.first.cast<double>() * resolution_m_;
+      const Eigen::Vector3d middle_camera =
+          T_camera_world * (low_world + Eigen::Vector3d::Constant(0.5 * kBrickEdge * resolution_m_));
+      if (middle_camera.z() > static_cast<double>(farthest_m) + brick_radius_m ||
+          !may_be_seen(camera, middle_camera, brick_radius_m))
         continue;
+      const Eigen::Vector3f first_camera =
+          (T_camera_world * (low_world + Eigen::Vector3d::Constant(0.5 * resolution_m_))).cast<float>();
+      for (std::size_t i = first; i < brick.end; ++i) {
+        const std::size_t offset = votes_[i].offset;
+        const Eigen::Vector3f p_camera =
+            first_camera + steps[0][offset & 7U] + steps[1][offset >> 3U & 7U] + steps[2][offset >> 6U];
+        const float z = p_camera.z();
+        if (!(z > kNearest_m && z < farthest_m)) continue;
+        const float u = fx * p_camera.x() / z + cx + 0.5F;
+        const float v = fy * p_camera.y() / z + cy + 0.5F;
+        if (u >= 0.0F && v >= 0.0F && u < width && v < height)
+          visit(i, p_camera, static_cast<int>(u), static_cast<int>(v));
       }
-      const auto margin_m = [this](float depth) {
-        return std::max(
-            {config_.margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
-      };
-      if (std::abs(measured_m - z) <= margin_m(measured_m)) {
-        ++votes.seen;
-        if (has_colour) absence_looks_.measured(frame, p_camera, absence_[i]);
-        continue;
-      }
-      if (measured_m < z) continue;
-      const WindowDepth window = window_at();
-      if (window.nearest_m - z > margin_m(window.nearest_m) &&
-          window.measured_share >= config_.min_measured_share)
-        ++votes.through;
     }
-  }
+  };
+  const int cells_across = depth_m.width / kHiddenCell_px + 1,
+            cells_down = depth_m.height / kHiddenCell_px + 1;
+  const auto cell_at = [&](int column, int row) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(cells_across) +
+           static_cast<std::size_t>(column);
+  };
+  std::vector<bool> is_hidden(cell_at(0, cells_down), false);
+  for_each_nearer(kTooNear_m, [&](std::size_t i, const Eigen::Vector3f&, int x, int y) {
+    if (votes_[i].occupied == 0) return;
+    const int column = x / kHiddenCell_px, row = y / kHiddenCell_px;
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, cells_down - 1); ++r)
+      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, cells_across - 1); ++c)
+        is_hidden[cell_at(c, r)] = true;
+  });
+
+  for_each_nearer(std::numeric_limits<float>::infinity(), [&](std::size_t i, const Eigen::Vector3f& p_camera,
+                                                              int x, int y) {
+    Votes& votes = votes_[i];
+    const float z = p_camera.z();
+    const float measured_m = depth_m.at(x, y);
+    const auto window_at = [&, this] {
+      const int radius_px =
+          std::min(static_cast<int>(std::ceil(config_.window_radius_m * fx / z)), kMaxWindowRadius_px);
+      return window_depth(windows_, x, y, radius_px);
+    };
+    const bool has_colour = i % kEveryColour == 0;
+    if (!(measured_m > 0.0F)) {
+      if (!is_hidden[cell_at(x / kHiddenCell_px, y / kHiddenCell_px)])
+        absence_looks_.unmeasured(frame, x, y, p_camera, window_at().measured_share, has_colour, absence_[i]);
+      return;
+    }
+    const auto margin_m = [this](float depth) {
+      return std::max(
+          {config_.margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
+    };
+    if (std::abs(measured_m - z) <= margin_m(measured_m)) {
+      ++votes.seen;
+      if (has_colour) absence_looks_.measured(frame, p_camera, absence_[i]);
+      return;
+    }
+    if (measured_m < z) return;
+    const WindowDepth window = window_at();
+    if (window.nearest_m - z > margin_m(window.nearest_m) &&
+        window.measured_share >= config_.min_measured_share)
+      ++votes.through;
+  });
 }
 
 std::vector<bool> GhostVotes::find_absent() const {

@@ -221,6 +221,31 @@ TEST(Ghosts, ADarkPanelThatIsMeasuredFromSomeSidesOnlyStays) {
   EXPECT_EQ(scanned.map.occupancy_at(kInSlabsFace), Occupancy::kOccupied);
 }
 
+TEST(Ghosts, WhatIsHiddenBySomethingTooNearToBeMeasuredStays) {
+  // A slab, and before its left half a post, which has depth from afar only. Later the camera sways close
+  // behind the post, so that the slab's left half is now measured, now hidden by a colour without depth.
+  const Scene slab = test::box({Eigen::Vector3d(-0.4, 1.6, -0.2), Eigen::Vector3d(0.6, 1.8, 0.2)});
+  const Scene post = test::box({Eigen::Vector3d(-0.5, 0.35, -1.0), Eigen::Vector3d(0.0, 0.4, 1.0)});
+  std::vector<Frame> frames;
+  for (int i = 0; i < 60; ++i) {
+    const bool is_close = i >= 15;
+    const Eigen::Vector3d eye(is_close ? 0.08 * std::sin(0.3 * i) - 0.03 : 0.0, is_close ? 0.0 : -0.8, 0.0);
+    const Eigen::Isometry3d T_world_camera = looking_at(eye, {eye.x(), 2.0, 0.0});
+    Frame frame = exact_frame(test::nearest_of(slab, post), kCamera, T_world_camera, Rgb{180, 60, 50});
+    for (std::size_t n = 0; n < frame.depth_m.pixels.size(); ++n)
+      if (frame.depth_m.pixels[n] > 0.0F && frame.depth_m.pixels[n] < 0.6F) {
+        frame.depth_m.pixels[n] = 0.0F;
+        frame.colour.pixels[n] = Rgb{20, 160, 40};
+      }
+    frame.index = i;
+    test::add_depth_noise(frame, 1 + static_cast<unsigned>(i));
+    frames.push_back(std::move(frame));
+  }
+  const Scan scanned = scan(FrameList(frames));
+  EXPECT_EQ(scanned.ghosts, 0);
+  EXPECT_EQ(scanned.map.occupancy_at({-0.11, 1.61, 0.01}), Occupancy::kOccupied);
+}
+
 TEST(Ghosts, WhatStandsThereForMoreThanHalfOfTheFramesBeforeNothingMeasuredStays) {
   const auto is_there = [](int i, const auto&...) { return i < 25; };
   const Scan scanned = scan(FrameList(record_slab(is_there, is_there)));
