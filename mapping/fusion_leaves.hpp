@@ -117,9 +117,9 @@ class LeafUpdate {
 
   // A sample is behind a surface from here on: nearer, noise and poses see past it too often.
   static constexpr float kBehind_voxels = 0.5F;
-  // A frame that sees through such a sample takes back so many that measured it: those are the heavier ones,
-  // being nearer, and what was there for half of the frames is to go.
-  static constexpr float kCancelled = 1.25F;
+  // A frame that sees through such a sample takes back so many that measured it: the first ones only make the
+  // voxel free, and what was there for half of the frames is to go.
+  static constexpr float kCancelled = 2.0F;
 
   static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
   [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }
@@ -143,8 +143,9 @@ class LeafUpdate {
     select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
   }
 
+  // What is occupied keeps its sample: without one it would be out of sight for the votes on ghosts.
   [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
-    return (Float8::load(block.distance) < Float8(behind_)).bits();
+    return ((Float8::load(block.distance) < Float8(behind_)) & (Float8::load(block.log_odds) <= 0.0F)).bits();
   }
   // Of those, the ones that this frame measures something farther than the truncation behind.
   [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
