@@ -343,6 +343,37 @@ TEST(RadarBounds, OverlapIsToldWithItsDepth) {
   EXPECT_GT(other, HasFailure() ? 0 : poses(50));
 }
 
+TEST(RadarBounds, WhatIsSunkALittleMayLeave) {
+  const Mesh ground = shapes::bumpy_ground(16);
+  JudgedScene scene;
+  scene.add(ground);
+  CyberRadar exact({.mode = RadarMode::kExact});
+  CyberRadar sampled({.mode = RadarMode::kSampled, .resolution_px = 64});
+  std::deque<Named> things = objects();
+  std::mt19937 random(22);
+  int leaving = 0;
+  for (int i = 0; i < poses(400); ++i) {
+    Named& thing = things[static_cast<std::size_t>(i) % things.size()];
+    if (thing.name == "sheet") continue;  // its front may be wholly under a bump
+    thing.mesh.T_world_mesh = random_pose(random, {0, 0, 0}, {0.4, 0.4, 0});
+    // The whole ground faces a motion up to 25 degrees off the vertical.
+    const Eigen::Vector3d up = Eigen::Vector3d(0, 0, 1) + 0.3 * shapes::random_point(random);
+    // Up until it stands free, then back in by some millimetres.
+    const auto crossings = exact_crossings(thing.mesh.mesh, thing.mesh.T_world_mesh, up, ground, at(0, 0, 0));
+    if (crossings.empty()) continue;
+    const double sunk_m = std::pow(10.0, -4.0 + 0.01 * (i % 200));
+    thing.mesh.T_world_mesh.pretranslate((crossings.back().to_m - sunk_m) * up.normalized());
+    ++leaving;
+    for (CyberRadar* radar : {&exact, &sampled}) {
+      const Contact got = scene.query(*radar, thing.mesh, up, 0.5);
+      EXPECT_EQ(got.status, ContactStatus::kNoTarget)
+          << thing.name << " pose " << i << " sunk " << sunk_m << ": "
+          << describe(thing.mesh, up, 0.5, got, std::nullopt);
+    }
+  }
+  EXPECT_GT(leaving, poses(300));
+}
+
 TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
   JudgedScene scene;
   scene.add(shapes::bumpy_ground(16));
