@@ -104,20 +104,24 @@ EGLContext make_context(const Candidate& candidate, std::string& fault) {
       config_count == 0) {
     config = nullptr;  // EGL_KHR_no_config_context
   }
-  const auto create = [&](EGLint major, EGLint minor) {
+  const auto create = [&](EGLint major, EGLint minor, bool tells_loss) {
     const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
                              major,
                              EGL_CONTEXT_MINOR_VERSION,
                              minor,
                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                             tells_loss ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+                             EGL_LOSE_CONTEXT_ON_RESET,
                              EGL_NONE};
     return eglCreateContext(candidate.display, config, EGL_NO_CONTEXT, wanted);
   };
-  EGLContext context = create(4, 5);
+  // So that glGetGraphicsResetStatus says when the GPU was reset, where that is offered.
+  EGLContext context = create(4, 5, true);
+  if (context == EGL_NO_CONTEXT) context = create(4, 5, false);
   if (context == EGL_NO_CONTEXT) {
     fault = "gives no OpenGL 4.5 core context";
-    context = create(3, 1);  // to say what it has
+    context = create(3, 1, false);  // to say what it has
     if (context == EGL_NO_CONTEXT) return EGL_NO_CONTEXT;
     if (eglMakeCurrent(candidate.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) {
       fault += ", only " + gl_string(GL_VERSION) + " on " + gl_string(GL_RENDERER);

@@ -10,7 +10,6 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
-#include "mapping/types/morton.hpp"
 #include "radar/gl_program.hpp"
 #include "radar/tile_shaders.hpp"
 
@@ -32,13 +31,6 @@ bool is_usable(const GlQuery& query) {
   return query.direction_world.allFinite() && norm > 0.0 && query.distance_m > 0.0 &&
          query.distance_m <= kMaxDistance_m && query.object.mesh != nullptr &&
          query.object.mesh->triangle_count() > 0 && query.object.T_world_mesh.matrix().allFinite();
-}
-
-Eigen::AlignedBox3d bounds_world(const MeshInstance& instance) {
-  const Eigen::AlignedBox3d bounds = instance.mesh->bounds();
-  const Eigen::Vector3d centre = instance.T_world_mesh * bounds.center();
-  const Eigen::Vector3d half = instance.T_world_mesh.linear().cwiseAbs() * (0.5 * bounds.sizes());
-  return {centre - half, centre + half};
 }
 
 /// How far the renderer's floats may put a vertex of the object beside where it is; as kTileVertexShader has
@@ -139,7 +131,7 @@ void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneM
     return s.instance.mesh != nullptr && !s.instance.T_world_mesh.matrix().allFinite();
   };
   if (std::any_of(scene.begin(), scene.end(), has_bad_pose)) return;
-  box_scene(scene);
+  boxes_.build(scene);
   drawn_.clear();
   reaches_.clear();
   batch_.clear();
@@ -157,16 +149,22 @@ void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneM
   if (drawn_.empty()) return;
   draw_batch();
   const std::span<const TileResult> results = least_.read(drawn_.size());
-  if (results.empty()) masks_.forget();
+  if (results.empty()) {
+    masks_.forget();
+    object_draws_.forget();
+    scene_draws_.forget();
+    least_.forget();
+  }
   for (std::size_t i = 0; i < drawn_.size(); ++i) {
     const std::size_t q = drawn_[i].query;
     if (results.empty()) {
       contacts[q].status = ContactStatus::kNoAnswer;
     } else {
       contacts[q] = contact_of(queries[q], drawn_[i], results[i], scene);
+      if (config_.settle) settle(queries[q], drawn_[i], scene, contacts[q]);
     }
   }
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  TileAtlas::unbind();
 }
 
 /// Says whether there is room for at least one query. Textures that grow lose what is kept in them.
@@ -189,36 +187,6 @@ bool GlRadar::fit_atlases(std::size_t queries) {
   return object_tiles_.tile_count() > 0 && scene_tiles_.tile_count() > 0;
 }
 
-/// Puts the scene's boxes into a tree, in Morton order of their middles.
-void GlRadar::box_scene(std::span<const SceneMesh> scene) {
-  box_order_.clear();
-  boxes_.clear();
-  boxed_.clear();
-  Eigen::AlignedBox3d middles;
-  const auto is_there = [&](std::size_t i) {
-    return scene[i].instance.mesh != nullptr && scene[i].instance.mesh->triangle_count() > 0;
-  };
-  for (std::size_t i = 0; i < scene.size(); ++i) {
-    if (is_there(i)) middles.extend(bounds_world(scene[i].instance).center());
-  }
-  const double longest_m = middles.isEmpty() ? 0.0 : middles.sizes().maxCoeff();
-  const double scale = longest_m > 0.0 ? 1023.0 / longest_m : 0.0;
-  for (std::size_t i = 0; i < scene.size(); ++i) {
-    if (!is_there(i)) continue;
-    const Eigen::Vector3d cell = (bounds_world(scene[i].instance).center() - middles.min()) * scale;
-    box_order_.emplace_back(
-        morton_code(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
-                    static_cast<std::uint32_t>(cell.z())),
-        i);
-  }
-  std::sort(box_order_.begin(), box_order_.end());
-  for (const auto& [code, i] : box_order_) {
-    boxed_.push_back(i);
-    boxes_.push_back(bounds_world(scene[i].instance));
-  }
-  tree_.build(boxes_);
-}
-
 /// Adds what a query draws to the batch; false where the batch has no tile left for it.
 bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene,
                   Contact& contact) {
@@ -227,20 +195,20 @@ bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const Scene
       (query.object.T_world_mesh.linear().transpose() * query.direction_world.stableNormalized())
           .normalized();
   const MaskKey key = mask_key(*query.object.mesh, u_mesh);
-  std::size_t tile = masks_.find(key);
-  if (tile == MaskCache::kNone) {
-    tile = masks_.claim(key);
-    if (tile == MaskCache::kNone) return false;
-    masks_.mask(tile).outline = fit_outline(*query.object.mesh, u_mesh, config_.resolution_px);
+  std::size_t mask_tile = masks_.find(key);
+  if (mask_tile == MaskCache::kNone) {
+    mask_tile = masks_.claim(key);
+    if (mask_tile == MaskCache::kNone) return false;
+    masks_.mask(mask_tile).outline = fit_outline(*query.object.mesh, u_mesh, config_.resolution_px);
   }
-  MaskCache::Mask& mask = masks_.mask(tile);
+  MaskCache::Mask& mask = masks_.mask(mask_tile);
   const RadarOutline& outline = mask.outline;
   const RadarVolume volume = volume_of(outline, query.object, query.distance_m);
-  TileQuery tile_query_ = tile_query(outline, query.distance_m, config_.overlap_tolerance_m,
-                                     object_tiles_.corner_px(tile), scene_tiles_.corner_px(batch_.size()));
-  tile_query_.query = static_cast<std::int32_t>(drawn_.size());
-  tile_query_.margin_px = static_cast<float>(2.0 * vertex_error_px(*query.object.mesh, outline));
-  shown_ = {volume, tile_query_, true, false};
+  TileQuery tile = tile_query(outline, query.distance_m, config_.overlap_tolerance_m,
+                              object_tiles_.corner_px(mask_tile), scene_tiles_.corner_px(batch_.size()));
+  tile.query = static_cast<std::int32_t>(drawn_.size());
+  tile.margin_px = static_cast<float>(2.0 * vertex_error_px(*query.object.mesh, outline));
+  shown_ = {volume, tile, true, false};
 
   // What the renderer counts as outside by float is less than what is left out here.
   const double pad_m = touching_m(outline, query.distance_m);
@@ -252,29 +220,26 @@ bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const Scene
   around.max().array() += 2.0 * pad_m;
   const std::size_t first_reach = reaches_.size();
   std::uint32_t next_key = 0;
-  tree_.visit(
-      [&](const Eigen::AlignedBox3d& box) { return box.intersects(around); },
-      [&](std::size_t leaf) {
-        const std::size_t scene_index = boxed_[leaf];
-        if (scene_index == query.own_index) return;
-        const MeshInstance& instance = scene[scene_index].instance;
-        const Eigen::Matrix<double, 3, 4> to_outline = outline_from_local(outline, query.object, instance);
-        const Eigen::Matrix3d reach = to_outline.leftCols<3>().cwiseAbs();
-        instance.mesh->visit_runs(
-            [&](const Eigen::AlignedBox3d& box) {
-              const Eigen::Vector3d centre = to_outline.leftCols<3>() * box.center() + to_outline.col(3);
-              const Eigen::Vector3d half = reach * (0.5 * box.sizes());
-              return ((centre + half).array() >= low.array()).all() &&
-                     ((centre - half).array() <= high.array()).all();
-            },
-            [&](std::uint32_t first_triangle, std::uint32_t triangle_count) {
-              reaches_.push_back({scene_index, first_triangle, next_key});
-              TileDraw& draw = batch_scene_draws_.emplace_back();
-              draw = {instance.mesh, first_triangle, triangle_count, to_outline.cast<float>(), tile_query_};
-              draw.query.first_key = next_key;
-              next_key += triangle_count;
-            });
-      });
+  boxes_.visit(around, [&](std::size_t scene_index) {
+    if (scene_index == query.own_index) return;
+    const MeshInstance& instance = scene[scene_index].instance;
+    const Eigen::Matrix<double, 3, 4> to_outline = outline_from_local(outline, query.object, instance);
+    const Eigen::Matrix3d reach = to_outline.leftCols<3>().cwiseAbs();
+    instance.mesh->visit_runs(
+        [&](const Eigen::AlignedBox3d& box) {
+          const Eigen::Vector3d centre = to_outline.leftCols<3>() * box.center() + to_outline.col(3);
+          const Eigen::Vector3d half = reach * (0.5 * box.sizes());
+          return ((centre + half).array() >= low.array()).all() &&
+                 ((centre - half).array() <= high.array()).all();
+        },
+        [&](std::uint32_t first_triangle, std::uint32_t triangle_count) {
+          reaches_.push_back({scene_index, first_triangle, next_key});
+          TileDraw& draw = batch_scene_draws_.emplace_back();
+          draw = {instance.mesh, first_triangle, triangle_count, to_outline.cast<float>(), tile};
+          draw.query.first_key = next_key;
+          next_key += triangle_count;
+        });
+  });
   if (reaches_.size() == first_reach) {
     contact.status = ContactStatus::kNoTarget;
     contact.lower_m = query.distance_m;
@@ -285,10 +250,10 @@ bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const Scene
     mask.is_drawn = true;
     batch_object_draws_.push_back({query.object.mesh, 0,
                                    static_cast<std::uint32_t>(query.object.mesh->triangle_count()),
-                                   outline_from_object(outline).cast<float>(), tile_query_});
+                                   outline_from_object(outline).cast<float>(), tile});
   }
   shown_.is_drawn = true;
-  batch_.push_back(tile_query_);
+  batch_.push_back(tile);
   drawn_.push_back({index, outline, first_reach, reaches_.size() - first_reach});
   return true;
 }
@@ -377,6 +342,31 @@ Contact GlRadar::contact_of(const GlQuery& query, const Drawn& drawn, const Tile
                         at.y() * outline.pixel_m * volume.y_world +
                         (at.z() + outline.length_m) * volume.u_world;
   return contact;
+}
+
+/// Scene in the same pixel as the object, neither ahead nor behind: only exact tests can tell.
+void GlRadar::settle(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
+                     Contact& contact) {
+  const bool is_doubtful = contact.status == ContactStatus::kNoTarget ||
+                           (contact.status == ContactStatus::kContact && contact.travel_m > 0.0);
+  if (!is_doubtful || contact.lower_m > 0.0 || query.object.mesh->tree() == nullptr) return;
+  settle_trees_.clear();
+  std::size_t last_index = GlQuery::kNotInScene;
+  for (const Reach& reach : std::span(reaches_).subspan(drawn.first_reach, drawn.reach_count)) {
+    if (reach.scene_index == last_index) continue;  // another run of the same mesh
+    last_index = reach.scene_index;
+    const SceneMesh& s = scene[last_index];
+    if (s.instance.mesh->tree() == nullptr) return;
+    settle_trees_.push_back({{s.instance.mesh->tree(), s.instance.T_world_mesh}, s.kind});
+  }
+  const Contact exact = settler_.query({.object = {query.object.mesh->tree(), query.object.T_world_mesh},
+                                        .direction_world = query.direction_world,
+                                        .distance_m = query.distance_m},
+                                       {settle_trees_, {}});
+  if (exact.status == ContactStatus::kInvalidInput || exact.status == ContactStatus::kNoAnswer) return;
+  const double pixel_m = contact.pixel_m;
+  contact = exact;
+  contact.pixel_m = pixel_m;
 }
 
 RadarPictures GlRadar::pictures() const {

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "mapping/types/image.hpp"
-#include "radar/box_tree.hpp"
 #include "radar/contact.hpp"
+#include "radar/cyber_radar.hpp"
 #include "radar/gl_context.hpp"
 #include "radar/gpu_mesh.hpp"
 #include "radar/least_gap.hpp"
 #include "radar/mask_cache.hpp"
 #include "radar/radar_volume.hpp"
+#include "radar/scene_boxes.hpp"
 #include "radar/tile_atlas.hpp"
 #include "radar/tile_draws.hpp"
 
@@ -31,15 +32,12 @@ struct GlRadarConfig {
   double overlap_tolerance_m = 0.03;  ///< surfaces deeper inside the object are behind it, not in its way
   int atlas_px = 2048;                ///< side of the textures that many queries share, 1 to 16384
   GlMinimum minimum = GlMinimum::kAuto;
+  /// Asks the processor's radar for the exact answer where the two passes cannot tell (see GlRadar) and all
+  /// meshes that reach the query's volume share a tree (GpuMesh::tree()).
+  bool settle = true;
 };
 /// @throws Error naming the field, its value and the rule
 void require_valid(const GlRadarConfig& config);
-
-/// A mesh that can be touched.
-struct SceneMesh {
-  MeshInstance instance;
-  Touched kind = Touched::kStatic;
-};
 
 /// One question to the radar.
 struct GlQuery {
@@ -82,7 +80,8 @@ struct RadarPictures {
 /// slopes. lower_m and upper_m hold all the same. They come from the same two passes: each pixel also keeps
 /// what may be anywhere in its square, and what is on its centre line for certain. lower_m is 0 where
 /// something of the scene is in the same pixel as the object and neither wholly ahead nor wholly behind: a
-/// wall that is passed closer than a pixel, a peg in a hollow.
+/// wall that is passed closer than a pixel, a peg in a hollow. Such a query is settled on the processor if it
+/// can be (GlRadarConfig::settle): its answer is then exact, with lower_m = upper_m.
 ///
 /// Overlap and hollow need triangles that wind counter-clockwise seen from outside, and a closed object.
 /// Masks are kept: an object that is asked about again along the same direction in its own frame is not drawn
@@ -147,22 +146,21 @@ class GlRadar {
   unsigned clear_program_ = 0, object_program_ = 0, scene_program_ = 0;
 
   // Of one call; kept for their memory.
-  std::vector<std::size_t> boxed_;  // scene indices in the tree's order
-  std::vector<std::pair<std::uint64_t, std::size_t>> box_order_;
-  std::vector<Eigen::AlignedBox3d> boxes_;
-  BoxTree tree_;
+  SceneBoxes boxes_;
   std::vector<Drawn> drawn_;
   std::vector<Reach> reaches_;
   std::vector<TileDraw> batch_object_draws_, batch_scene_draws_;
   std::vector<TileQuery> batch_;
   Shown shown_;
+  CyberRadar settler_;
+  std::vector<SceneTree> settle_trees_;
 
   bool fit_atlases(std::size_t queries);
-  void box_scene(std::span<const SceneMesh> scene);
   bool add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene, Contact& contact);
   void draw_batch();
   [[nodiscard]] Contact contact_of(const GlQuery& query, const Drawn& drawn, const TileResult& result,
                                    std::span<const SceneMesh> scene) const;
+  void settle(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene, Contact& contact);
 };
 
 }  // namespace roomradar

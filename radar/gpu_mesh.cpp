@@ -39,6 +39,29 @@ bool is_outside(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& clip_from
   return false;
 }
 
+void refuse(const std::string& fault) { throw Error("mesh refused: " + fault); }
+
+void require_uploadable(const Mesh& mesh) {
+  if (!mesh.origin.allFinite()) refuse("its origin is not finite");
+  if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
+    refuse(std::to_string(mesh.normals.size()) + " normals for " + std::to_string(mesh.vertices.size()) +
+           " vertices; give one each or none");
+  }
+  if (!mesh.colours.empty() && mesh.colours.size() != mesh.vertices.size()) {
+    refuse(std::to_string(mesh.colours.size()) + " colours for " + std::to_string(mesh.vertices.size()) +
+           " vertices; give one each or none");
+  }
+  if (mesh.triangles.size() > std::numeric_limits<std::int32_t>::max() / 3) {
+    refuse(std::to_string(mesh.triangles.size()) + " triangles; 715827882 is the most");
+  }
+}
+
+void require_nothing_dropped(const Mesh& mesh, std::size_t dropped_triangles) {
+  if (dropped_triangles == 0) return;
+  refuse(std::to_string(dropped_triangles) + " of " + std::to_string(mesh.triangles.size()) +
+         " triangles have a vertex that is not finite or not there; repair it or leave them out");
+}
+
 }  // namespace
 
 GpuMesh::GpuMesh(GlContext& /*context*/) {
@@ -63,42 +86,49 @@ GpuMesh::~GpuMesh() {
 }
 
 void GpuMesh::upload(const Mesh& mesh, MeshUsage usage) {
-  const auto refuse = [](const std::string& fault) { throw Error("mesh refused: " + fault); };
-  if (!mesh.origin.allFinite()) refuse("its origin is not finite");
-  if (!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) {
-    refuse(std::to_string(mesh.normals.size()) + " normals for " + std::to_string(mesh.vertices.size()) +
-           " vertices; give one each or none");
-  }
-  if (!mesh.colours.empty() && mesh.colours.size() != mesh.vertices.size()) {
-    refuse(std::to_string(mesh.colours.size()) + " colours for " + std::to_string(mesh.vertices.size()) +
-           " vertices; give one each or none");
-  }
-  if (mesh.triangles.size() > std::numeric_limits<std::int32_t>::max() / 3) {
-    refuse(std::to_string(mesh.triangles.size()) + " triangles; 715827882 is the most");
-  }
+  require_uploadable(mesh);
   if (usage == MeshUsage::kStatic) {
     ChunkedTriangles chunked;
     chunk_by_place(mesh, kStaticChunkTriangles, chunked);
-    if (chunked.dropped_triangles > 0) {
-      refuse(std::to_string(chunked.dropped_triangles) + " of " + std::to_string(mesh.triangles.size()) +
-             " triangles have a vertex that is not finite or not there; repair it or leave them out");
-    }
+    require_nothing_dropped(mesh, chunked.dropped_triangles);
     chunked_ = std::move(chunked);
   } else {
     chunk_in_order(mesh, kStreamedChunkTriangles, chunked_);
   }
+  tree_ = nullptr;
+  vertices_.assign(mesh.vertices.begin(), mesh.vertices.end());
+  send(mesh, usage);
+}
+
+void GpuMesh::upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree) {
+  require_uploadable(mesh);
+  if (usage == MeshUsage::kStatic) require_nothing_dropped(mesh, tree.dropped_triangles());
+  if (tree.vertices().size() != mesh.vertices.size() ||
+      tree.triangle_count() + tree.dropped_triangles() != mesh.triangles.size()) {
+    refuse("its tree was built from another mesh");
+  }
+  tree_ = &tree;
+  vertices_ = {};
+  chunked_.triangles = {};
+  chunked_.dropped_triangles = tree.dropped_triangles();
+  cut_into_chunks(tree.vertices(), tree.triangles(),
+                  usage == MeshUsage::kStatic ? kStaticChunkTriangles : kStreamedChunkTriangles, chunked_);
+  send(mesh, usage);
+}
+
+/// What is at hand to the renderer.
+void GpuMesh::send(const Mesh& mesh, MeshUsage usage) {
   chunk_boxes_.clear();
   for (const MeshChunk& chunk : chunked_.chunks) chunk_boxes_.push_back(chunk.bounds_local.cast<double>());
   chunk_tree_.build(chunk_boxes_);
   static std::atomic<std::uint64_t> uploads{0};
   revision_ = ++uploads;
   origin_ = mesh.origin;
-  vertices_.assign(mesh.vertices.begin(), mesh.vertices.end());
   has_normals_ = !mesh.normals.empty();
   has_colours_ = !mesh.colours.empty();
 
-  fill_buffer(kPositions, vertices_.data(), vertices_.size() * sizeof(Eigen::Vector3f), usage);
-  fill_buffer(kIndices, chunked_.triangles.data(), chunked_.triangles.size() * sizeof(Triangle), usage);
+  fill_buffer(kPositions, vertices().data(), vertices().size_bytes(), usage);
+  fill_buffer(kIndices, triangles().data(), triangles().size_bytes(), usage);
   if (has_normals_) {
     fill_buffer(kNormals, mesh.normals.data(), mesh.normals.size() * sizeof(Eigen::Vector3f), usage);
     glEnableVertexArrayAttrib(vertex_array_, kNormals);
@@ -126,7 +156,7 @@ void GpuMesh::fill_buffer(std::size_t which, const void* data, std::size_t size_
 }
 
 std::size_t GpuMesh::draw(const Eigen::Matrix4d& clip_from_local) const {
-  if (chunked_.triangles.empty()) return 0;
+  if (triangles().empty()) return 0;
   glBindVertexArray(vertex_array_);
   if (!has_normals_) glVertexAttrib3f(kNormals, 0.0F, 0.0F, 1.0F);
   if (!has_colours_) glVertexAttrib3f(kColours, 0.8F, 0.8F, 0.8F);

@@ -11,6 +11,7 @@
 #include "radar/box_tree.hpp"
 #include "radar/gl_context.hpp"
 #include "radar/mesh_chunks.hpp"
+#include "radar/triangle_tree.hpp"
 
 namespace roomradar {
 
@@ -37,6 +38,13 @@ class GpuMesh {
   /// @throws Error if refused (kStatic), or if normals or colours are there but not one a vertex, or the
   ///         origin is not finite, or there are more than 2^31 / 3 triangles
   void upload(const Mesh& mesh, MeshUsage usage);
+
+  /// The same with triangles and the copy at hand shared with a tree instead of held twice.
+  /// @param tree  built from this mesh (in order for kStreamed); stays and is not built anew until the next
+  ///              upload
+  void upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree);
+  /// What the last upload shares, or null.
+  [[nodiscard]] const TriangleTree* tree() const { return tree_; }
 
   /// Draws with the program in use those chunks that may be inside the clip volume (-w..w, -w..w, 0..w), both
   /// sides of a triangle or one as the GL state says. Attributes: 0 position (vec3, local), 1 normal (vec3,
@@ -70,7 +78,7 @@ class GpuMesh {
   [[nodiscard]] unsigned position_buffer() const { return buffers_[0]; }
   [[nodiscard]] unsigned index_buffer() const { return buffers_[3]; }
 
-  [[nodiscard]] std::size_t triangle_count() const { return chunked_.triangles.size(); }
+  [[nodiscard]] std::size_t triangle_count() const { return triangles().size(); }
   [[nodiscard]] std::size_t dropped_triangles() const { return chunked_.dropped_triangles; }
   [[nodiscard]] bool has_normals() const { return has_normals_; }
   [[nodiscard]] bool has_colours() const { return has_colours_; }
@@ -83,14 +91,19 @@ class GpuMesh {
   /// The copy at hand, all local. Triangles are in the order drawn, which is not the uploaded one for
   /// kStatic.
   [[nodiscard]] std::span<const MeshChunk> chunks() const { return chunked_.chunks; }
-  [[nodiscard]] std::span<const Triangle> triangles() const { return chunked_.triangles; }
-  [[nodiscard]] std::span<const Eigen::Vector3f> vertices() const { return vertices_; }
+  [[nodiscard]] std::span<const Triangle> triangles() const {
+    return tree_ != nullptr ? tree_->triangles() : chunked_.triangles;
+  }
+  [[nodiscard]] std::span<const Eigen::Vector3f> vertices() const {
+    return tree_ != nullptr ? tree_->vertices() : vertices_;
+  }
 
  private:
   unsigned vertex_array_ = 0;
   std::array<unsigned, 4> buffers_{};  // positions, normals, colours, indices
   std::array<std::size_t, 4> capacity_bytes_{};
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
+  const TriangleTree* tree_ = nullptr;  // shared; else the copy is in the next two
   std::vector<Eigen::Vector3f> vertices_;
   ChunkedTriangles chunked_;
   BoxTree chunk_tree_;
@@ -99,6 +112,7 @@ class GpuMesh {
   bool has_normals_ = false;
   bool has_colours_ = false;
 
+  void send(const Mesh& mesh, MeshUsage usage);
   void fill_buffer(std::size_t which, const void* data, std::size_t size_bytes, MeshUsage usage);
 };
 

@@ -40,6 +40,8 @@ class LeastGap {
   void find_keys(const TileDraws& draws, const TileAtlas& object_tiles) const;
   /// The first `count` results since begin(); empty where the renderer did not hand them out.
   std::span<const TileResult> read(std::size_t count);
+  /// Trusts nothing that was handed to the renderer before.
+  void forget() { queries_capacity_ = results_capacity_ = 0; }
 
  private:
   bool on_renderer_;

@@ -29,22 +29,6 @@ void keep_usable(const Mesh& mesh, ChunkedTriangles& out) {
   out.dropped_triangles = mesh.triangles.size() - kept;
 }
 
-void cut_into_chunks(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out) {
-  out.chunks.clear();
-  out.bounds_local.setEmpty();
-  for (std::size_t first = 0; first < out.triangles.size(); first += max_triangles) {
-    MeshChunk chunk;
-    chunk.first_triangle = static_cast<std::uint32_t>(first);
-    chunk.triangle_count =
-        static_cast<std::uint32_t>(std::min<std::size_t>(max_triangles, out.triangles.size() - first));
-    for (std::size_t i = first; i < first + chunk.triangle_count; ++i) {
-      for (const std::uint32_t vertex : out.triangles[i]) chunk.bounds_local.extend(mesh.vertices[vertex]);
-    }
-    out.bounds_local.extend(chunk.bounds_local);
-    out.chunks.push_back(chunk);
-  }
-}
-
 }  // namespace
 
 void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out) {
@@ -69,12 +53,29 @@ void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriang
   std::stable_sort(keyed.begin(), keyed.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   for (std::size_t i = 0; i < keyed.size(); ++i) out.triangles[i] = keyed[i].second;
-  cut_into_chunks(mesh, max_triangles, out);
+  cut_into_chunks(mesh.vertices, out.triangles, max_triangles, out);
 }
 
 void chunk_in_order(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out) {
   keep_usable(mesh, out);
-  cut_into_chunks(mesh, max_triangles, out);
+  cut_into_chunks(mesh.vertices, out.triangles, max_triangles, out);
+}
+
+void cut_into_chunks(std::span<const Eigen::Vector3f> vertices, std::span<const Triangle> triangles,
+                     std::uint32_t max_triangles, ChunkedTriangles& out) {
+  out.chunks.clear();
+  out.bounds_local.setEmpty();
+  for (std::size_t first = 0; first < triangles.size(); first += max_triangles) {
+    MeshChunk chunk;
+    chunk.first_triangle = static_cast<std::uint32_t>(first);
+    chunk.triangle_count =
+        static_cast<std::uint32_t>(std::min<std::size_t>(max_triangles, triangles.size() - first));
+    for (std::size_t i = first; i < first + chunk.triangle_count; ++i) {
+      for (const std::uint32_t vertex : triangles[i]) chunk.bounds_local.extend(vertices[vertex]);
+    }
+    out.bounds_local.extend(chunk.bounds_local);
+    out.chunks.push_back(chunk);
+  }
 }
 
 }  // namespace roomradar

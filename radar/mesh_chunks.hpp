@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "mapping/types/mesh.hpp"
@@ -30,5 +31,9 @@ void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriang
 /// Cuts the triangles into runs of `max_triangles` in the order they have. For meshes that live one frame:
 /// the rows of a depth image already lie near each other. O(n), no allocation once `out` has held as many.
 void chunk_in_order(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out);
+
+/// Makes out.chunks and out.bounds_local for triangles that are held elsewhere, all of them usable.
+void cut_into_chunks(std::span<const Eigen::Vector3f> vertices, std::span<const Triangle> triangles,
+                     std::uint32_t max_triangles, ChunkedTriangles& out);
 
 }  // namespace roomradar

@@ -47,6 +47,12 @@ void TileAtlas::bind(bool least) const {
   glBlendEquation(least ? GL_MIN : GL_FUNC_ADD);
 }
 
+void TileAtlas::unbind() {
+  glDisable(GL_BLEND);
+  glBlendEquation(GL_FUNC_ADD);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
 void TileAtlas::clear(std::size_t tiles, float value) const {
   if (tiles == 0 || columns_ == 0) return;
   const auto columns = static_cast<std::size_t>(columns_);

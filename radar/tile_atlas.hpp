@@ -29,6 +29,8 @@ class TileAtlas {
 
   /// Makes the atlas what is drawn into, by the least of old and new where `least`, else by the new.
   void bind(bool least) const;
+  /// Leaves blending and the framebuffer as they are by default.
+  static void unbind();
   /// Every pixel of the first `tiles` tiles, and perhaps of more, to `value`. The atlas must be bound.
   void clear(std::size_t tiles, float value) const;
   /// A rectangle of pixels, four floats each, row by row into `out`; nothing where the context is lost.

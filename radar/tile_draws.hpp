@@ -44,6 +44,8 @@ class TileDraws {
   void upload(std::span<TileDraw> draws);
   /// With the program in use; attributes as in tile_shaders.hpp.
   void draw() const;
+  /// Trusts nothing that was handed to the renderer before.
+  void forget() { capacity_bytes_ = {}; }
   /// A rectangle of 4 vertices (a strip) for each draw.
   void draw_rectangles() const;
 

@@ -84,5 +84,33 @@ TEST_F(GpuMeshTest, StreamedUploadsReplaceEachOther) {
   EXPECT_TRUE(gpu.bounds().isEmpty());
 }
 
+TEST_F(GpuMeshTest, SharesATreeInsteadOfHoldingACopy) {
+  const Mesh torus = shapes::torus(24, 12, 0.1F, 0.03F, 0.0F);
+  TriangleTree tree;
+  tree.build_by_place(torus);
+  GpuMesh mesh(context);
+  mesh.upload(torus, MeshUsage::kStatic, tree);
+  EXPECT_EQ(mesh.tree(), &tree);
+  EXPECT_EQ(mesh.vertices().data(), tree.vertices().data());
+  EXPECT_EQ(mesh.triangles().data(), tree.triangles().data());
+  EXPECT_EQ(mesh.triangle_count(), torus.triangles.size());
+  GpuMesh alone(context);
+  alone.upload(torus, MeshUsage::kStatic);
+  EXPECT_EQ(alone.tree(), nullptr);
+  EXPECT_TRUE(mesh.bounds().isApprox(alone.bounds()));
+  EXPECT_NE(mesh.revision(), alone.revision());
+  // All of it is in some run.
+  std::size_t visited = 0;
+  mesh.visit_runs([](const Eigen::AlignedBox3d&) { return true; },
+                  [&](std::uint32_t first, std::uint32_t count) {
+                    visited += first < torus.triangles.size() ? count : 0;
+                  });
+  EXPECT_EQ(visited, torus.triangles.size());
+  Mesh larger = torus;
+  larger.triangles.push_back({0, 1, 2});
+  EXPECT_THROW(mesh.upload(larger, MeshUsage::kStatic, tree), Error);
+  EXPECT_EQ(mesh.tree(), &tree) << "keeps what was there";
+}
+
 }  // namespace
 }  // namespace roomradar
