@@ -21,6 +21,8 @@ const std::map<std::string, PoseOrigin> kPoses = {{"tracked", PoseOrigin::kTrack
                                                   {"recorded", PoseOrigin::kRecorded}};
 const std::map<std::string, SurfacePolicy> kSurfaces = {
     {"holes", SurfacePolicy::kHoles}, {"skirt", SurfacePolicy::kSkirt}, {"map", SurfacePolicy::kMap}};
+const std::map<std::string, RadarMode> kRadarModes = {{"exact", RadarMode::kExact},
+                                                      {"sampled", RadarMode::kSampled}};
 const std::map<std::string, RecordingFormat> kFormats = {{"tum", RecordingFormat::kTum},
                                                          {"7scenes", RecordingFormat::kSevenScenes},
                                                          {"fakenect", RecordingFormat::kFakenect}};
@@ -134,6 +136,13 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   add_choice(*sub, "--surfaces", command.surfaces, kSurfaces,
              "what can be touched: this frame's pixels, the same with skirts across depth edges,\n"
              "or the map and what moved (map)");
+  add_choice(*sub, "--radar", command.radar.mode, kRadarModes,
+             "how contacts are found: to the last digit, or between bounds a pixel apart (exact)");
+  sub->add_option("--radar-px", command.radar.resolution_px,
+                  "pixels along the longer side of the object's outline (64); the exact radar's answers do\n"
+                  "not depend on it")
+      ->check(CLI::Range(1, 4096))
+      ->type_name("N");
   sub->add_option("--video", command.video, "write the composed pictures as .mp4, .avi or .mkv")
       ->type_name("FILE");
   sub->add_option("--pictures", command.pictures,

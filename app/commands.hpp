@@ -8,6 +8,7 @@
 #include "app/sources/recording_writer.hpp"
 #include "dynamic/surface_policy.hpp"
 #include "mapping/prescan.hpp"
+#include "radar/cyber_radar.hpp"
 
 namespace roomradar {
 
@@ -32,6 +33,7 @@ struct RunCommand {
   std::string object = "teapot";  ///< built in, or a mesh file
   std::string script;             ///< events file; empty: the object is dropped over a level surface in view
   SurfacePolicy surfaces = SurfacePolicy::kMap;
+  RadarConfig radar;
   std::string video;
   std::string pictures;  ///< folder for composed frames as PNG
   std::int64_t pictures_every = 10;

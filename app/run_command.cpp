@@ -118,7 +118,9 @@ int run(const RunCommand& command) {
                      {"poses", to_string(command.poses)},
                      {"object", command.object},
                      {"script", command.script},
-                     {"surfaces", to_string(command.surfaces)}};
+                     {"surfaces", to_string(command.surfaces)},
+                     {"radar", to_string(command.radar.mode)},
+                     {"radar_px", command.radar.resolution_px}};
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   require_writable(command.report);
@@ -128,6 +130,7 @@ int run(const RunCommand& command) {
   SessionConfig config;
   config.poses = command.poses;
   config.scene.surfaces = command.surfaces;
+  config.radar = command.radar;
   config.make_picture = !command.video.empty() || !command.pictures.empty();
   config.measure_penetration = !command.report.empty();
   Session session(map, config);

@@ -1,6 +1,7 @@
 // cyber_radar.hpp: how far may an object go before it touches? Exactly, or between bounds that hold.
 #pragma once
 #include <Eigen/Geometry>
+#include <string_view>
 #include <vector>
 
 #include "mapping/types/image.hpp"
@@ -17,6 +18,9 @@ enum class RadarMode {
   kSampled,  ///< settles few triangles exactly: fast, the bounds are as wide as a pixel is deep
   kExact     ///< settles until lower_m = upper_m = travel_m
 };
+constexpr std::string_view to_string(RadarMode mode) {
+  return mode == RadarMode::kExact ? "exact" : "sampled";
+}
 
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;

@@ -112,8 +112,22 @@ TEST_F(CommandLine, RunFindsItselfAndDropsTheTeapotOnTheTable) {
   EXPECT_EQ(report["frames_located"], 60);
   ASSERT_EQ(report["objects"].size(), 1U);
   EXPECT_TRUE(report["objects"][0]["at_rest"]) << report.dump(2);
-  EXPECT_LE(report["deepest_penetration_m"], 0.03);  // one cell of this coarse map
+  EXPECT_EQ(report["settings"]["radar"], "exact");
+  EXPECT_LE(report["deepest_penetration_m"], 1e-6);
   EXPECT_TRUE(fs::exists(folder_ / "pictures" / "000000.png"));
+}
+
+TEST_F(CommandLine, TheSampledRadarHoldsTheTeapotTooBySafeBounds) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path report_path = folder_ / "sampled.json";
+  const Outcome ran =
+      roomradar("run 'sim:table?frames=60&width=160&path=view&seed=2' --map " + map() +
+                " --poses recorded --radar sampled --radar-px 32 --report " + report_path.string());
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
+  EXPECT_EQ(report["settings"]["radar"], "sampled");
+  EXPECT_TRUE(report["objects"][0]["at_rest"]) << report.dump(2);
+  EXPECT_LE(report["deepest_penetration_m"], 1e-6);  // moved by bounds that hold
 }
 
 TEST_F(CommandLine, WrongUsageIsStatusTwo) {
@@ -134,6 +148,9 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
     expect_fault(roomradar(prescan + " --checkpoint-every " + number), 2, "86400 (seconds)");
   }
   expect_fault(roomradar(prescan + " --poses guessed"), 2, "recorded|tracked");
+  const std::string run = "run sim:table --map " + map();
+  expect_fault(roomradar(run + " --radar roughly"), 2, "exact|sampled");
+  expect_fault(roomradar(run + " --radar-px 0"), 2, "4096");
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
 
