@@ -47,9 +47,16 @@ bool SceneInFrame::place(const RadarScene& scene, const Eigen::Matrix3d& R_frame
   return true;
 }
 
+/// Whether the ball around an instance reaches into the volume: of many objects most do not.
+bool SceneInFrame::reaches(const TreeView& view, const Eigen::AlignedBox3d& volume) {
+  const double reach_m = view.scene->instance.tree->half_size().cast<double>().norm() + view.slack_m;
+  return volume.squaredExteriorDistance(view.t_frame_centre) <= reach_m * reach_m;
+}
+
 void SceneInFrame::begin(const Eigen::AlignedBox3d& volume, const SceneBound& bound, float limit_m,
                          std::vector<SceneItem>& items) {
   for (std::uint32_t i = 0; i < trees_.size(); ++i) {
+    if (!reaches(trees_[i], volume)) continue;
     const SceneItem root{-std::numeric_limits<float>::infinity(), SceneItem::Kind::kNode, i, 0, 0};
     expand(root, bound, limit_m, items);
   }

@@ -66,6 +66,7 @@ class SceneInFrame {
   std::vector<DepthTriangle> triangles_;
   std::vector<float> scratch_;
 
+  static bool reaches(const TreeView& view, const Eigen::AlignedBox3d& volume);
   [[nodiscard]] FrameTriangle tree_triangle(const TreeView& view, std::uint32_t triangle) const;
 };
 
