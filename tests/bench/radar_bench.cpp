@@ -266,6 +266,10 @@ int run(int argc, char** argv) {
       rows.push_back(measure_objects(coarse, options.objects, 64, mode));
       print(rows.back(), 0.0, 0.0);
     }
+    if (context) {
+      rows.push_back(measure_objects_gl(*context, coarse, options.objects, 64));
+      print(rows.back(), 0.0, 0.0);
+    }
   }
   if (!options.json_path.empty()) write_json(options.json_path, rows);
   return 0;

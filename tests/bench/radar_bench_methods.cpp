@@ -63,7 +63,7 @@ Method gl_radar_on_mesh(GlContext& context, const FrameScene& frame, const Mesh&
   auto state = std::make_shared<State>(context, radar_px);
   state->sensor.upload(sensor, MeshUsage::kStatic);
   const Mesh* const mesh = &frame.mesh;
-  return {"sampled, GL", radar_px, false, [=](const Pose& pose) {
+  return {"GL", radar_px, true, [=](const Pose& pose) {
             state->scene.upload(*mesh, MeshUsage::kStreamed);
             const SceneMesh scene{{&state->scene, Eigen::Isometry3d::Identity()}, Touched::kDynamic};
             return state->radar.query({&state->sensor, pose.T_world_sensor}, pose.direction_world, distance_m,

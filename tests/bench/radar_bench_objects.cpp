@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <memory>
 #include <random>
+#include <tuple>
 #include <utility>
 
 #include "radar/exact_travel.hpp"
+#include "radar/gl_radar.hpp"
+#include "radar/gpu_mesh.hpp"
 
 namespace roomradar::bench {
 namespace {
@@ -38,13 +42,67 @@ Crowd crowd(int count, std::size_t shapes) {
   return result;
 }
 
+using Meshes = std::array<Mesh, 3>;
+Meshes shapes() { return {box_mesh({0.15F, 0.15F, 0.15F}), bumpy_torus(68, 46), cup_mesh()}; }
+
+/// The truth about object i, which is free; nothing if it meets nothing.
+std::optional<double> exact_of(const FrameScene& frame, const Meshes& meshes, const Crowd& objects,
+                               std::size_t i) {
+  const auto travel_to = [&](const Mesh& mesh, const Eigen::Isometry3d& T_world_mesh) {
+    return exact_travel(meshes[objects.shape[i]], objects.T_world_object[i], objects.velocity_m_s[i],
+                        kAhead_m, mesh, T_world_mesh)
+        .value_or(2.0 * kAhead_m);
+  };
+  double least_m = travel_to(frame.mesh, Eigen::Isometry3d::Identity());
+  for (std::size_t k = 0; k < objects.shape.size(); ++k) {
+    const double apart_m =
+        (objects.T_world_object[k].translation() - objects.T_world_object[i].translation()).norm();
+    if (k == i || apart_m > 0.26 + kAhead_m) continue;  // two tori reach 0.25 m
+    least_m = std::min(least_m, travel_to(meshes[objects.shape[k]], objects.T_world_object[k]));
+  }
+  return least_m <= kAhead_m ? std::optional(least_m) : std::nullopt;
+}
+
+/// answer(objects, contacts) is timed on every frame.
+template <typename Answer>
+Row measure_frames(const FrameScene& frame, const Meshes& meshes, int count, const Answer& answer) {
+  Crowd objects = crowd(count, meshes.size());
+  std::vector<Contact> contacts(static_cast<std::size_t>(count));
+  std::vector<double> wall_ms, cpu_ms, error_m;
+  Row row{.table = "objects", .method = {}};
+  row.scene_triangles = frame.mesh.triangles.size();
+  for (int f = 0; f < kFrames; ++f) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      objects.T_world_object[i].pretranslate(objects.velocity_m_s[i] / 30.0);
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const double start_cpu_ms = thread_cpu_ms();
+    answer(objects, contacts);
+    cpu_ms.push_back(thread_cpu_ms() - start_cpu_ms);
+    wall_ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    for (int j = 0; j < kJudgedPerFrame; ++j) {
+      const std::size_t i = static_cast<std::size_t>(f * kJudgedPerFrame + j) * 17 % contacts.size();
+      if (contacts[i].status == ContactStatus::kOverlap) continue;  // the crowd's own doing
+      if (const auto error = judge(contacts[i], exact_of(frame, meshes, objects, i), row)) {
+        error_m.push_back(*error);
+      }
+    }
+  }
+  for (const std::size_t shape : objects.shape) row.sensor_triangles += meshes[shape].triangles.size();
+  row.median_ms = quantile(wall_ms, 0.5);
+  row.p95_ms = quantile(wall_ms, 0.95);
+  row.cpu_median_ms = quantile(cpu_ms, 0.5);
+  add_errors(error_m, row);
+  return row;
+}
+
 }  // namespace
 
 Row measure_objects(const FrameScene& frame, int count, int radar_px, RadarMode mode) {
-  const std::array<Mesh, 3> meshes = {box_mesh({0.15F, 0.15F, 0.15F}), bumpy_torus(68, 46), cup_mesh()};
-  std::array<TriangleTree, meshes.size()> trees;
+  const Meshes meshes = shapes();
+  std::array<TriangleTree, std::tuple_size_v<Meshes>> trees;
   for (std::size_t i = 0; i < meshes.size(); ++i) trees[i].build_by_place(meshes[i]);
-  Crowd objects = crowd(count, meshes.size());
   SceneDepth depth;
   depth.depth_m = &frame.depth_m;
   depth.camera = frame.camera;
@@ -52,17 +110,7 @@ Row measure_objects(const FrameScene& frame, int count, int radar_px, RadarMode 
   depth.max_jump_m = 1e6F;
   CyberRadar radar({.mode = mode, .resolution_px = radar_px});
   std::vector<SceneTree> scene;
-  std::vector<Contact> contacts(static_cast<std::size_t>(count));
-  std::vector<double> wall_ms, cpu_ms, error_m;
-  Row row{.table = "objects", .method = mode == RadarMode::kExact ? "exact" : "sampled"};
-  row.scene_triangles = frame.mesh.triangles.size();
-  row.radar_px = radar_px;
-  for (int f = 0; f < kFrames; ++f) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      objects.T_world_object[i].pretranslate(objects.velocity_m_s[i] / 30.0);
-    }
-    const auto start = std::chrono::steady_clock::now();
-    const double start_cpu_ms = thread_cpu_ms();
+  Row row = measure_frames(frame, meshes, count, [&](const Crowd& objects, std::vector<Contact>& contacts) {
     scene.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       scene.push_back({{&trees[objects.shape[i]], objects.T_world_object[i]}, Touched::kObject});
@@ -76,34 +124,37 @@ Row measure_objects(const FrameScene& frame, int count, int radar_px, RadarMode 
           radar.query(query, {.trees = std::span(scene).first(scene.size() - 1), .depths = {&depth, 1}});
       std::swap(scene[i], scene.back());
     }
-    cpu_ms.push_back(thread_cpu_ms() - start_cpu_ms);
-    wall_ms.push_back(
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    for (int j = 0; j < kJudgedPerFrame; ++j) {
-      const std::size_t i = static_cast<std::size_t>(f * kJudgedPerFrame + j) * 17 % contacts.size();
-      if (contacts[i].status == ContactStatus::kOverlap)
-        continue;  // the crowd's own doing: the judge knows free ones
-      const auto travel_to = [&](const Mesh& mesh, const Eigen::Isometry3d& T_world_mesh) {
-        return exact_travel(meshes[objects.shape[i]], objects.T_world_object[i], objects.velocity_m_s[i],
-                            kAhead_m, mesh, T_world_mesh)
-            .value_or(2.0 * kAhead_m);
-      };
-      double least_m = travel_to(frame.mesh, Eigen::Isometry3d::Identity());
-      for (std::size_t k = 0; k < contacts.size(); ++k) {
-        const double apart_m =
-            (objects.T_world_object[k].translation() - objects.T_world_object[i].translation()).norm();
-        if (k == i || apart_m > 0.26 + kAhead_m) continue;  // two tori reach 0.25 m
-        least_m = std::min(least_m, travel_to(meshes[objects.shape[k]], objects.T_world_object[k]));
-      }
-      const std::optional<double> exact_m = least_m <= kAhead_m ? std::optional(least_m) : std::nullopt;
-      if (const auto error = judge(contacts[i], exact_m, row)) error_m.push_back(*error);
-    }
+  });
+  row.method = mode == RadarMode::kExact ? "exact" : "sampled";
+  row.radar_px = radar_px;
+  return row;
+}
+
+Row measure_objects_gl(GlContext& context, const FrameScene& frame, int count, int radar_px) {
+  const Meshes meshes = shapes();
+  std::vector<std::unique_ptr<GpuMesh>> gpu_meshes;
+  for (const Mesh& mesh : meshes) {
+    gpu_meshes.push_back(std::make_unique<GpuMesh>(context));
+    gpu_meshes.back()->upload(mesh, MeshUsage::kStatic);
   }
-  for (const std::size_t shape : objects.shape) row.sensor_triangles += meshes[shape].triangles.size();
-  row.median_ms = quantile(wall_ms, 0.5);
-  row.p95_ms = quantile(wall_ms, 0.95);
-  row.cpu_median_ms = quantile(cpu_ms, 0.5);
-  add_errors(error_m, row);
+  GpuMesh depth(context);
+  GlRadar radar(context, {.resolution_px = radar_px});
+  std::vector<SceneMesh> scene;
+  std::vector<GlQuery> queries;
+  Row row = measure_frames(frame, meshes, count, [&](const Crowd& objects, std::vector<Contact>& contacts) {
+    depth.upload(frame.mesh, MeshUsage::kStreamed);
+    scene.clear();
+    queries.clear();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const MeshInstance object{gpu_meshes[objects.shape[i]].get(), objects.T_world_object[i]};
+      scene.push_back({object, Touched::kObject});
+      queries.push_back({object, objects.velocity_m_s[i], kAhead_m, i});
+    }
+    scene.push_back({{&depth, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
+    radar.query_all(queries, scene, contacts);
+  });
+  row.method = "GL, one call";
+  row.radar_px = radar_px;
   return row;
 }
 
