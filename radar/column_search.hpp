@@ -61,7 +61,8 @@ struct PendingNode {
 ///
 /// The gap between the scene triangle's plane and a point is linear in the point, so that its least and
 /// greatest values over a box are exact; where the plane is steep the heights of both take over. Both hold
-/// with all rounding in float counted in.
+/// with all rounding in float counted in. For a scene triangle seen edge-on, boxes that do not reach through
+/// its plane by touching_m are passed over: what is in them slides along it (see meeting_of()), if at all.
 ///
 /// @param limit_m   called with nothing; what cannot have a gap under it is passed over
 /// @param floor_m   what cannot have a gap of at least this is passed over
@@ -91,7 +92,8 @@ bool search_column(const TurnedTree& object, const FrameTriangle& scene, const L
   // Height of the scene's plane above a point: offset + g . p.
   Eigen::Vector3f g = Eigen::Vector3f::Zero();
   float offset_m = 0.0F, plane_slack_m = std::numeric_limits<float>::infinity();
-  if (std::abs(scene.normal.z()) > 1e-3) {
+  const bool is_edge_on = std::abs(scene.normal.z()) <= kEdgeOn && !scene.normal.isZero(0.0);
+  if (std::abs(scene.normal.z()) > kEdgeOn) {
     const Eigen::Vector3d in_frame(-scene.normal.x() / scene.normal.z(), -scene.normal.y() / scene.normal.z(),
                                    -1.0);
     const double offset = scene.normal.dot(scene.corners[0]) / scene.normal.z();
@@ -99,6 +101,13 @@ bool search_column(const TurnedTree& object, const FrameTriangle& scene, const L
     offset_m = static_cast<float>(offset);
     const float slope = g.cwiseAbs().sum();
     plane_slack_m = kRounding * (slope * (size_m + near_m) + std::abs(offset_m)) + slope * margin_m;
+  }
+  // Seen edge-on: distance from the scene's plane instead; what does not reach through it is slid along.
+  float beside_m = 0.0F;
+  if (is_edge_on) {
+    g = (object.R_frame_mesh.transpose() * scene.normal).cast<float>();
+    offset_m = static_cast<float>(-scene.normal.dot(scene.corners[0]));
+    beside_m = static_cast<float>(object.touching_m) - 2.0F * far_slack_m - kRounding * std::abs(offset_m);
   }
   const Eigen::Vector3f x_axis = R.row(0), y_axis = R.row(1), z_axis = R.row(2);
 
@@ -122,14 +131,18 @@ bool search_column(const TurnedTree& object, const FrameTriangle& scene, const L
     linear_over_boxes(node, g, gap);
     alignas(32) std::array<float, TreeNode::kWidth> low_m, high_m;
     for (std::size_t i = 0; i < TreeNode::kWidth; ++i) {
+      const float across =
+          std::max(gap.value[i] + offset_m - gap.reach[i], -gap.value[i] - offset_m - gap.reach[i]);
+      const float beside = is_edge_on ? across + beside_m : -1.0F;
       const float outside = std::max(std::max(x.value[i] - x.reach[i] - x1, x0 - x.value[i] - x.reach[i]),
                                      std::max(y.value[i] - y.reach[i] - y1, y0 - y.value[i] - y.reach[i]));
+      const float apart = std::max(outside, beside);
       const float plane_low = offset_m + gap.value[i] - gap.reach[i] - plane_slack_m;
       const float plane_high = offset_m + gap.value[i] + gap.reach[i] + plane_slack_m;
       const float box_low = z0 - z.value[i] - z.reach[i];
       const float box_high = z1 - z.value[i] + z.reach[i];
       const float low_i = std::max(plane_low, box_low);
-      low_m[i] = outside > 0.0F ? std::numeric_limits<float>::infinity() : low_i;
+      low_m[i] = apart > 0.0F ? std::numeric_limits<float>::infinity() : low_i;
       high_m[i] = std::min(plane_high, box_high);
     }
     const auto limit = static_cast<float>(limit_m()) * (1.0F + kRounding) + std::numeric_limits<float>::min();

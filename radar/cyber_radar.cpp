@@ -42,11 +42,30 @@ struct Settled {
   bool overlaps = false;
 };
 
-double lowest_of(const FrameTriangle& t) {
-  return std::min(std::min(t.corners[0].z(), t.corners[1].z()), t.corners[2].z());
-}
-double highest_of(const FrameTriangle& t) {
-  return std::max(std::max(t.corners[0].z(), t.corners[1].z()), t.corners[2].z());
+/// What the gap of two triangles cannot be less than, cheaply: by their heights, and by the object's corners
+/// under the scene's plane, extended. Infinite where the object slides along the scene.
+double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, double touching_m) {
+  const auto& o = object.corners;
+  const auto& s = scene.corners;
+  const double by_height_m =
+      std::min(std::min(s[0].z(), s[1].z()), s[2].z()) - std::max(std::max(o[0].z(), o[1].z()), o[2].z());
+  if (std::abs(scene.normal.z()) <= kEdgeOn && !scene.normal.isZero(0.0)) {
+    double low_m = kInfinity, high_m = -kInfinity;
+    for (const Eigen::Vector3d& corner : o) {
+      const double across_m = scene.normal.dot(corner - s[0]);
+      low_m = std::min(low_m, across_m);
+      high_m = std::max(high_m, across_m);
+    }
+    return low_m >= -touching_m || high_m <= touching_m ? kInfinity : by_height_m;  // slides along it
+  }
+  if (std::abs(scene.normal.z()) < 1e-3) return by_height_m;
+  const double per_m = 1.0 / scene.normal.z();
+  const double at_m = scene.normal.dot(s[0]);
+  double by_plane_m = kInfinity;
+  for (const Eigen::Vector3d& corner : o) {
+    by_plane_m = std::min(by_plane_m, (at_m - scene.normal.dot(corner)) * per_m);
+  }
+  return std::max(by_height_m, by_plane_m - 1e-12);
 }
 
 }  // namespace
@@ -62,6 +81,24 @@ double touching_m(const TriangleTree& object) {
 }
 
 CyberRadar::CyberRadar(const RadarConfig& config) : config_(config) { require_valid(config); }
+
+/// The exact answer does not depend on how fine M is. Coarse for a direction that may never come again, finer
+/// where it is seen to stay: finer than kKept_px nothing is gained.
+void CyberRadar::build_front(const TurnedTree& object) {
+  if (config_.mode == RadarMode::kSampled) {
+    front_.build(object, config_.resolution_px);
+    return;
+  }
+  constexpr int kFresh_px = 24, kKept_px = 64, kSeenToStay = 3;
+  constexpr std::size_t kFewTriangles = 500;  // their M costs little at any size
+  if (front_.holds(object)) {
+    ++front_uses_;
+    if (front_uses_ == kSeenToStay) front_.build(object, kKept_px);
+  } else {
+    front_uses_ = 1;
+    front_.build(object, object.tree->triangle_count() < kFewTriangles ? kKept_px : kFresh_px);
+  }
+}
 
 Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   if (!is_valid(query)) return {};
@@ -83,7 +120,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   if (!origin_world.allFinite()) return {};
   if (!scene_.place(scene, R_frame_world, origin_world)) return {};
 
-  front_.build(object, config_.resolution_px);
+  build_front(object);
   const bool is_thick = query.margin_m > 0.0;
   const double equally_m = object.touching_m;
   Eigen::AlignedBox3d volume = front_.bounds();
@@ -101,13 +138,14 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
     const FrameTriangle s = scene_.triangle(item);
     Settled settled;
     bool has_ahead = false;
-    has_ahead |= search_column(object, s, limit_m, -object.touching_m, pending_, [&](std::uint32_t i) {
+    const auto limit_here_m = [&] { return settled.overlaps ? -kInfinity : limit_m(); };
+    has_ahead |= search_column(object, s, limit_here_m, -object.touching_m, pending_, [&](std::uint32_t i) {
       if (is_thick) {
         best_m = std::min(best_m, thick_travel(turned_triangle(object, i), s, query.margin_m, limit_m()));
         return;
       }
       FrameTriangle o = turned_corners(object, i);
-      if (lowest_of(s) - highest_of(o) >= limit_m()) return;
+      if (least_gap_bound(o, s, object.touching_m) >= limit_m()) return;
       TriangleGap gap;
       if (!find_gap(o, s, gap)) return;
       has_ahead = has_ahead || gap.low_m < -object.touching_m;
@@ -180,7 +218,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
 
   Contact contact;
   contact.status = ContactStatus::kNoTarget;
-  contact.pixel_m = front_.pixel_m();
+  contact.pixel_m = front_.side_m() / config_.resolution_px;
   contact.lower_m = query.distance_m;
   const auto to_world = [&](const Eigen::Vector3d& p) {
     return Eigen::Vector3d(origin_world + R_frame_world.transpose() * p);

@@ -88,11 +88,12 @@ class CyberRadar {
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }
 
-  static constexpr int kSampledSettles = 16;
+  static constexpr int kSampledSettles = 48;
 
  private:
   RadarConfig config_;
   FrontMap front_;
+  int front_uses_ = 0;  // of front_ as it is turned now
   SceneInFrame scene_;
   ContactPatch patch_;
   OverlapScratch overlap_;
@@ -101,6 +102,8 @@ class CyberRadar {
   std::vector<PendingNode> pending_;
   std::vector<double> gaps_m_;
   Eigen::Vector3d u_mesh_ = Eigen::Vector3d::Zero();
+
+  void build_front(const TurnedTree& object);
 };
 
 /// Surfaces of this object that are nearer to the scene than this touch it, m: 1 um and what float vertices

@@ -59,7 +59,7 @@ double support(const TriangleTree& tree, const Eigen::Vector3d& g, double tolera
 
 Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, std::vector<PendingNode>& pending) {
   const double slack_m = 1e-15 * object.tree->half_size().cast<double>().sum() + object.margin_m;
-  const double tolerance_m = 2e-3 * object.tree->half_size().cast<double>().sum();
+  const double tolerance_m = 5e-3 * object.tree->half_size().cast<double>().sum();
   Eigen::Vector3d low, high;
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d g = object.R_frame_mesh.row(axis);
@@ -69,11 +69,13 @@ Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, std::vector<PendingN
   return {low, high};
 }
 
+bool FrontMap::holds(const TurnedTree& object) const {
+  return revision_ == object.tree->revision() && R_frame_mesh_ == object.R_frame_mesh &&
+         margin_m_ == object.margin_m;
+}
+
 bool FrontMap::build(const TurnedTree& object, int resolution_px) {
-  if (revision_ == object.tree->revision() && R_frame_mesh_ == object.R_frame_mesh &&
-      margin_m_ == object.margin_m && resolution_px_ == resolution_px) {
-    return false;
-  }
+  if (holds(object) && resolution_px_ == resolution_px) return false;
   revision_ = object.tree->revision();
   R_frame_mesh_ = object.R_frame_mesh;
   margin_m_ = object.margin_m;

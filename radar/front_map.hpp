@@ -20,12 +20,17 @@ class FrontMap {
   /// @return whether there was something to do
   bool build(const TurnedTree& object, int resolution_px);
 
+  /// Whether this is the map of this tree, turned so, with this margin, at whatever size.
+  [[nodiscard]] bool holds(const TurnedTree& object) const;
+
   /// Greatest height under a rectangle, -infinity where no pixel is.
   [[nodiscard]] float max_under(float x0_m, float x1_m, float y0_m, float y1_m) const;
 
   /// Of the whole object in the frame, the margin included, m.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
   [[nodiscard]] double pixel_m() const { return pixel_m_; }
+  /// Longer side across the motion, m.
+  [[nodiscard]] double side_m() const { return pixel_m_ * resolution_px_; }
   [[nodiscard]] int width_px() const { return levels_.empty() ? 0 : levels_[0].width; }
   [[nodiscard]] int height_px() const { return levels_.empty() ? 0 : levels_[0].height; }
 

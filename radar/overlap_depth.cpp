@@ -92,12 +92,21 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
     const auto limit = [&] { return static_cast<float>(std::min(free_m, before_m) + touching_m); };
     scratch.items.clear();
     scene.begin(volume, bound, limit(), scratch.items);
+    // What may reach back farthest first: it rules out most of the rest.
+    const auto is_farther = [](const SceneItem& a, const SceneItem& b) { return a.low_m > b.low_m; };
+    std::make_heap(scratch.items.begin(), scratch.items.end(), is_farther);
     while (!scratch.items.empty()) {
+      std::pop_heap(scratch.items.begin(), scratch.items.end(), is_farther);
       const SceneItem item = scratch.items.back();
       scratch.items.pop_back();
-      if (!(item.low_m < limit())) continue;
+      if (!(item.low_m < limit())) break;
       if (item.kind != SceneItem::Kind::kTriangle) {
+        const std::size_t before = scratch.items.size();
         scene.expand(item, bound, limit(), scratch.items);
+        for (std::size_t i = before; i < scratch.items.size(); ++i) {
+          std::push_heap(scratch.items.begin(), scratch.items.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                         is_farther);
+        }
         continue;
       }
       const FrameTriangle triangle = scene.triangle(item);
