@@ -24,7 +24,9 @@ constexpr std::string_view to_string(RadarMode mode) {
 
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
-  /// Pixels along the longer side of the object's outline, 1 to 4096. The exact answer does not depend on it.
+  /// Pixels along the longer side of the object's outline, 1 to 4096: how wide the bounds of sampled mode
+  /// are, and Contact::pixel_m. Exact mode takes as many pixels as is fastest; its answer does not depend on
+  /// them.
   int resolution_px = 64;
 };
 /// @throws Error naming the field, its value and the rule
