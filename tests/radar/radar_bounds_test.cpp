@@ -427,6 +427,38 @@ TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
   EXPECT_LT(timid_margins[timid_margins.size() * 9 / 10], 1.0);
 }
 
+TEST(RadarBounds, ARadarThatAnsweredBeforeAnswersLikeANewOne) {
+  JudgedScene ground, things_about;
+  ground.add(shapes::bumpy_ground(20));
+  things_about.add(shapes::chair(), at(0.2, 0.1, -0.6));
+  things_about.add(shapes::cup(0.2F, 0.3F, 0.02F, 16), at(-0.3, 0, 0), Touched::kObject);
+  std::deque<Named> things = objects();
+  std::mt19937 random(51);
+  for (const RadarMode mode : {RadarMode::kExact, RadarMode::kSampled}) {
+    CyberRadar old({.mode = mode});
+    for (int i = 0; i < poses(300) && !HasFailure(); ++i) {
+      Named& thing = things[random() % things.size()];
+      // Often only moved, or only asked about another direction, so that what was kept is used again.
+      if (random() % 3 == 0) thing.mesh.T_world_mesh = random_pose(random, {0, 0, 0.5}, {0.4, 0.4, 0.3});
+      thing.mesh.T_world_mesh.pretranslate(0.05 * shapes::random_point(random));
+      const Eigen::Vector3d direction =
+          random() % 2 == 0 ? Eigen::Vector3d(0, 0, -1) : shapes::random_point(random);
+      const double margin_m = random() % 4 == 0 ? 0.01 : 0.0;
+      const JudgedScene& scene = random() % 2 == 0 ? ground : things_about;
+      CyberRadar fresh({.mode = mode});
+      const Contact a = scene.query(old, thing.mesh, direction, 0.7, margin_m);
+      const Contact b = scene.query(fresh, thing.mesh, direction, 0.7, margin_m);
+      const std::string text = thing.name + " query " + std::to_string(i) + ": " +
+                               describe(thing.mesh, direction, 0.7, a, b.travel_m);
+      EXPECT_EQ(a.status, b.status) << text;
+      EXPECT_NEAR(a.travel_m, b.travel_m, 1e-9) << text;
+      EXPECT_NEAR(a.lower_m, b.lower_m, 1e-6) << text;  // float boxes: where sampling stops may differ a hair
+      EXPECT_TRUE(a.upper_m == b.upper_m || std::abs(a.upper_m - b.upper_m) < 1e-9) << text;
+      EXPECT_EQ(a.touched, b.touched) << text;
+    }
+  }
+}
+
 TEST(RadarBounds, WhatIsThinnerThanAPixelIsMissedInNeitherBound) {
   const Mesh needle = shapes::box({0.0001F, 0.0001F, 0.5F}), sheet = shapes::box({0.5F, 0.00005F, 0.5F});
   Mesh edge_on;  // no thickness at all, in the plane y = 0
