@@ -8,12 +8,12 @@
 namespace roomradar {
 
 struct Shape {
-  GpuMesh drawn;         ///< what picture and depth pass see
-  TriangleTree touched;  ///< what the radar sees: the same triangles
+  TriangleTree touched;  ///< what the radar sees
+  GpuMesh drawn;         ///< what picture and depth pass see; shares the tree's vertices and triangles
 
   explicit Shape(GlContext& context) : drawn(context) {}
 
-  /// Replaces both. Throws Error as GpuMesh::upload does.
+  /// Replaces both. Throws Error as GpuMesh::upload does; then neither is to be used.
   void set(const Mesh& mesh, MeshUsage usage);
 };
 
