@@ -26,7 +26,7 @@ enum class Touched {
 struct [[nodiscard]] Contact {
   ContactStatus status = ContactStatus::kInvalidInput;  // unset means failed
   /// Along the direction until touch; negative: depth of the overlap, how far back along the direction the
-  /// object is free again; kContact and kOverlap only.
+  /// object is free again of what opposes the motion; kContact and kOverlap only.
   double travel_m = 0.0;
   /// The true way to contact is not shorter than lower_m and not longer than upper_m. Where nothing was found
   /// lower_m is what is free for certain, at most the distance asked for, and upper_m infinite. In an overlap

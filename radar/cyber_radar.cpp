@@ -82,21 +82,19 @@ double touching_m(const TriangleTree& object) {
 
 CyberRadar::CyberRadar(const RadarConfig& config) : config_(config) { require_valid(config); }
 
-/// The exact answer does not depend on how fine M is. Coarse for a direction that may never come again, finer
-/// where it is seen to stay: finer than kKept_px nothing is gained.
+/// Coarse for a direction that may never come again, finer where it is seen to stay. The exact answer does
+/// not depend on how fine M is, and past kExact_px it is not found any sooner.
 void CyberRadar::build_front(const TurnedTree& object) {
-  if (config_.mode == RadarMode::kSampled) {
-    front_.build(object, config_.resolution_px);
-    return;
-  }
-  constexpr int kFresh_px = 24, kKept_px = 64, kSeenToStay = 3;
+  constexpr int kExact_px = 64, kSeenToStay = 3;
   constexpr std::size_t kFewTriangles = 500;  // their M costs little at any size
+  const int kept_px = config_.mode == RadarMode::kExact ? kExact_px : config_.resolution_px;
+  const int fresh_px = std::min(24, kept_px);
   if (front_.holds(object)) {
     ++front_uses_;
-    if (front_uses_ == kSeenToStay) front_.build(object, kKept_px);
+    if (front_uses_ == kSeenToStay) front_.build(object, kept_px);
   } else {
     front_uses_ = 1;
-    front_.build(object, object.tree->triangle_count() < kFewTriangles ? kKept_px : kFresh_px);
+    front_.build(object, object.tree->triangle_count() < kFewTriangles ? kept_px : fresh_px);
   }
 }
 
@@ -129,8 +127,10 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   volume.min().z() -= object.touching_m;
 
   double best_m = kInfinity;
-  bool leaves_something = false;                   // which faces along the motion and crosses the object now
-  bool met_within = false, passes_within = false;  // what faces along the motion, behind the object's front
+  bool leaves_something = false;  // which faces along the motion and crosses the object now
+  bool met_a_back = false;        // of something that faces along the motion
+  bool collects_backs = false;    // instead of meeting them
+  backs_.clear();
   const auto limit_m = [&] {
     return std::min(best_m, query.distance_m) + (patch_.is_full() || is_thick ? 0.0 : equally_m);
   };
@@ -150,6 +150,10 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
       if (!find_gap(o, s, gap)) return;
       has_ahead = has_ahead || gap.low_m < -object.touching_m;
       if (gap.low_m >= limit_m()) return;
+      if (collects_backs && s.normal.z() > kEdgeOn) {
+        backs_.push_back({gap.low_m, gap.high_m, i, item});
+        return;
+      }
       set_normal(o);
       switch (meeting_of(o, s, gap, object.touching_m)) {
         case Meeting::kNone:
@@ -165,12 +169,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
       }
       // The rear of a closed object only meets what is inside it.
       if (tree.is_closed() && o.normal.z() < -kEdgeOn) return;
-      const TriangleGap::Place& place = gap.places[gap.lowest];
-      const auto x = static_cast<float>(place.x), y = static_cast<float>(place.y);
-      if (s.normal.z() > kEdgeOn && place.scene_z < front_.max_under(x, x, y, y)) {
-        if (passes_within) return;
-        met_within = true;
-      }
+      met_a_back = met_a_back || s.normal.z() > kEdgeOn;
       const double travel_m = std::max(gap.low_m, 0.0);
       best_m = std::min(best_m, travel_m);
       patch_.add(gap, travel_m, equally_m, s, scene_.kind(item), best_m);
@@ -191,8 +190,9 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
     while (!heap_.empty() && !overlaps) {
       const SceneItem item = heap_.front();
       if (!(item.low_m < limit_m())) break;
-      const bool is_enough = config_.mode == RadarMode::kSampled && settled_count >= kSampledSettles &&
-                             best_m <= query.distance_m && item.low_m >= 0.0F;
+      const bool is_enough = config_.mode == RadarMode::kSampled && !collects_backs &&
+                             settled_count >= kSampledSettles && best_m <= query.distance_m &&
+                             item.low_m >= 0.0F;
       if (is_enough || (is_thick && best_m <= 0.0)) break;
       std::pop_heap(heap_.begin(), heap_.end(), is_farther);
       heap_.pop_back();
@@ -210,10 +210,28 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
     }
   };
   look();
-  if (leaves_something && met_within && !overlaps) {
-    passes_within = true;
+  // What is left, until it is left as a whole, is met by nothing; what faces so and comes after that is.
+  if (leaves_something && met_a_back && !overlaps) {
+    collects_backs = true;
     best_m = kInfinity;
     look();
+    std::sort(backs_.begin(), backs_.end(), [](const Back& a, const Back& b) { return a.low_m < b.low_m; });
+    double left_m = object.touching_m;
+    for (const Back& back : backs_) {
+      if (back.low_m <= left_m) {
+        left_m = std::max(left_m, back.high_m + object.touching_m);
+        continue;
+      }
+      const FrameTriangle o = turned_triangle(object, back.object_triangle);
+      if (back.low_m >= best_m || (tree.is_closed() && o.normal.z() < -kEdgeOn)) continue;
+      const FrameTriangle s = scene_.triangle(back.item);
+      TriangleGap gap;
+      if (!find_gap(o, s, gap)) continue;
+      best_m = back.low_m;
+      patch_.clear();
+      patch_.add(gap, best_m, equally_m, s, scene_.kind(back.item), best_m);
+      break;
+    }
   }
 
   Contact contact;

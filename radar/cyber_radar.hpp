@@ -25,8 +25,9 @@ constexpr std::string_view to_string(RadarMode mode) {
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
   /// Pixels along the longer side of the object's outline, 1 to 4096: how wide the bounds of sampled mode
-  /// are, and Contact::pixel_m. Exact mode takes as many pixels as is fastest; its answer does not depend on
-  /// them.
+  /// are once a direction has come three times in the object's own frame (before, M of an object of many
+  /// triangles has 24 at most), and Contact::pixel_m. Exact mode takes as many pixels as is fastest; its
+  /// answer does not depend on them.
   int resolution_px = 64;
 };
 /// @throws Error naming the field, its value and the rule
@@ -67,9 +68,10 @@ struct RadarQuery {
 /// upper_m is then minus the way back along the direction until the object is free: the near end of the union
 /// of all pairs' spans of crossing, the inside of a closed object included, that holds 0.
 ///
-/// While the object crosses what it leaves, it stands in a solid that only its way out is known of: then what
-/// faces along the motion and lies behind the object's front is left as a whole, also where a part of the
-/// object is still behind it (the bar of a handle behind a hand that is in the handle).
+/// Leaving: what faces along the motion and crosses the object now is left, and all that faces so and is
+/// crossed without a break from now on is left with it, also where a part of the object is still behind it
+/// (the bar of a handle behind a hand that is in the handle): no contact until the last of it has been
+/// passed.
 ///
 /// Contact point: of all places that are equally near (a face that lands flat) the one nearest to their
 /// middle.
@@ -93,6 +95,13 @@ class CyberRadar {
   static constexpr int kSampledSettles = 48;
 
  private:
+  /// A scene triangle that faces along the motion, and from which travel to which an object triangle crosses
+  /// it.
+  struct Back {
+    double low_m, high_m;
+    std::uint32_t object_triangle;
+    SceneItem item;
+  };
   RadarConfig config_;
   FrontMap front_;
   int front_uses_ = 0;  // of front_ as it is turned now
@@ -102,6 +111,7 @@ class CyberRadar {
   std::vector<SceneItem> heap_;
   std::vector<SceneItem> found_;
   std::vector<PendingNode> pending_;
+  std::vector<Back> backs_;
   std::vector<double> gaps_m_;
   Eigen::Vector3d u_mesh_ = Eigen::Vector3d::Zero();
 
