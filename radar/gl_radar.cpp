@@ -5,6 +5,7 @@
 #include <GL/glcorearb.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -125,6 +126,7 @@ Contact GlRadar::query(const MeshInstance& object, const Eigen::Vector3d& direct
 
 void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
                         std::span<Contact> contacts) {
+  assert(contacts.size() == queries.size());
   std::fill(contacts.begin(), contacts.end(), Contact{});
   shown_ = {};
   const auto has_bad_pose = [](const SceneMesh& s) {
@@ -176,10 +178,9 @@ bool GlRadar::fit_atlases(std::size_t queries) {
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(tiles))));
     const auto rows = (tiles + columns - 1) / columns;
     // A renderer that has not the memory may have it for one.
-    if (!atlas.resize(static_cast<int>(columns), static_cast<int>(rows), config_.resolution_px) &&
-        !atlas.resize(1, 1, config_.resolution_px)) {
-      return true;
-    }
+    const bool has_memory =
+        atlas.resize(static_cast<int>(columns), static_cast<int>(rows), config_.resolution_px);
+    if (!has_memory) (void)atlas.resize(1, 1, config_.resolution_px);
     return true;
   };
   if (fit(object_tiles_, std::max(queries, kMasksKept))) masks_.reset(object_tiles_.tile_count());

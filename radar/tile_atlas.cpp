@@ -4,6 +4,9 @@
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
+#include <algorithm>
+#include <limits>
+
 namespace roomradar {
 
 TileAtlas::TileAtlas(GlContext& /*context*/) { glCreateFramebuffers(1, &framebuffer_); }
@@ -65,8 +68,14 @@ void TileAtlas::clear(std::size_t tiles, float value) const {
 }
 
 void TileAtlas::read(int x_px, int y_px, int width_px, int height_px, float* out) const {
-  glGetTextureSubImage(texture_, 0, x_px, y_px, 0, width_px, height_px, 1, GL_RGBA, GL_FLOAT,
-                       static_cast<GLsizei>(4 * sizeof(float)) * width_px * height_px, out);
+  // By rows, as many as GL can count the bytes of.
+  const GLsizei row_bytes = static_cast<GLsizei>(4 * sizeof(float)) * width_px;
+  const int rows_at_once = std::max(std::numeric_limits<GLsizei>::max() / std::max(row_bytes, 1), 1);
+  for (int row = 0; row < height_px; row += rows_at_once) {
+    const int rows = std::min(rows_at_once, height_px - row);
+    glGetTextureSubImage(texture_, 0, x_px, y_px + row, 0, width_px, rows, 1, GL_RGBA, GL_FLOAT,
+                         row_bytes * rows, out + static_cast<std::size_t>(row) * 4U * width_px);
+  }
 }
 
 }  // namespace roomradar

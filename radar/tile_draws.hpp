@@ -17,7 +17,7 @@ struct TileQuery {
   std::array<std::int32_t, 4>
       corners_px{};  ///< of its tiles: x, y in the objects' atlas, x, y in the scene's
   std::int32_t width_px = 0, height_px = 0;
-  std::int32_t query = 0;       ///< its number in the batch
+  std::int32_t query = 0;       ///< its number in the call
   std::uint32_t first_key = 0;  ///< of the draw: its triangles are first_key, first_key + 1, ...
   float far_m = 0.0F, touching_m = 0.0F, tolerance_m = 0.0F, length_m = 0.0F;
   float margin_px = 0.0F;  ///< twice the error of the object's vertices across the direction

@@ -300,7 +300,7 @@ void main() {
   barrier();
   if (thread != 0) return;
   ivec2 at = is_met ? ivec2(int(least_at) % width, int(least_at) / width) : ivec2(-1);
-  results[gl_WorkGroupID.x] = Result(stamp, value(lower), value(upper), value(travel), at.x, at.y, 0xffffffffu, 0u);
+  results[query.item.z] = Result(stamp, value(lower), value(upper), value(travel), at.x, at.y, 0xffffffffu, 0u);
 }
 )";
 
