@@ -38,7 +38,6 @@ bool is_farther(const SceneItem& a, const SceneItem& b) { return a.low_m > b.low
 
 /// What one scene triangle has to say about the object.
 struct Settled {
-  double least_m = kInfinity;
   bool overlaps = false;
 };
 
@@ -137,7 +136,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   const auto settle = [&](const SceneItem& item) {
     const FrameTriangle s = scene_.triangle(item);
     Settled settled;
-    bool has_ahead = false;
+    bool has_ahead = is_thick && item.low_m < 0.0F;  // a thick object's triangles are not told apart
     const auto limit_here_m = [&] { return settled.overlaps ? -kInfinity : limit_m(); };
     has_ahead |= search_column(object, s, limit_here_m, -object.touching_m, pending_, [&](std::uint32_t i) {
       if (is_thick) {
@@ -175,7 +174,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
       patch_.add(gap, travel_m, equally_m, s, scene_.kind(item), best_m);
     });
     if (has_ahead && !settled.overlaps && s.normal.z() <= kEdgeOn) {
-      settled.overlaps = is_inside(object, s, pending_, gaps_m_);
+      settled.overlaps = is_inside(object, s, pending_, layers_);
     }
     return settled;
   };

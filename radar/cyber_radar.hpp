@@ -68,6 +68,10 @@ struct RadarQuery {
 /// upper_m is then minus the way back along the direction until the object is free: the near end of the union
 /// of all pairs' spans of crossing, the inside of a closed object included, that holds 0.
 ///
+/// Sliding: a scene triangle exactly edge-on (|n . u| <= 1e-9) that has an object triangle wholly on one side
+/// is slid along by that triangle. So an open sheet that runs exactly along edges of the object's mesh is not
+/// met by the triangles on either side.
+///
 /// Leaving: what faces along the motion and crosses the object now is left, and all that faces so and is
 /// crossed without a break from now on is left with it, also where a part of the object is still behind it
 /// (the bar of a handle behind a hand that is in the handle): no contact until the last of it has been
@@ -85,7 +89,7 @@ class CyberRadar {
   ///
   /// kInvalidInput: direction zero or not finite, distance not finite or <= 0, margin negative or not finite,
   /// object without triangles, a pose of object or scene not finite, a camera that cannot be one, a mask of
-  /// another size than its depth image.
+  /// another size than its depth image, a jump that is negative or no number.
   /// Sampled mode settles until a contact is found and kSampledSettles triangles are settled, and all that
   /// may overlap; exact until nothing unsettled can be nearer.
   Contact query(const RadarQuery& query, const RadarScene& scene);
@@ -112,7 +116,7 @@ class CyberRadar {
   std::vector<SceneItem> found_;
   std::vector<PendingNode> pending_;
   std::vector<Back> backs_;
-  std::vector<double> gaps_m_;
+  std::vector<Layer> layers_;
   Eigen::Vector3d u_mesh_ = Eigen::Vector3d::Zero();
 
   void build_front(const TurnedTree& object);

@@ -1,8 +1,6 @@
 // overlap_depth.cpp: step back from span to span until none holds.
 #include "radar/overlap_depth.hpp"
 
-#include "radar/solid_inside.hpp"
-
 namespace roomradar {
 namespace {
 
@@ -33,21 +31,19 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
   if (object.tree->is_closed()) {
     for (int which = 0; which < 5 && !knows_inside; ++which) {
       knows_inside =
-          layers_at(object, inner_point(scene, which), at_m + touching_m, scratch.pending, scratch.gaps_m);
+          layers_at(object, inner_point(scene, which), at_m + touching_m, scratch.pending, scratch.layers);
     }
   }
   const auto is_inside_at = [&](double travel_m) {
-    return knows_inside && std::count_if(scratch.gaps_m.begin(), scratch.gaps_m.end(),
-                                         [&](double gap_m) { return gap_m < travel_m; }) %
-                                   2 ==
-                               1;
+    return knows_inside && is_within(scratch.layers, travel_m);
   };
   if (!crosses_now) {
     if (at_m == 0.0) {
-      std::vector<double>& gaps_m = scratch.gaps_m;
-      if (!is_inside(object, scene, scratch.pending, gaps_m)) return at_m;
-      knows_inside =
-          layers_at(object, inner_point(scene, 0), touching_m, scratch.pending, gaps_m) || knows_inside;
+      std::vector<Layer>& layers = scratch.layers;
+      if (!is_inside(object, scene, scratch.pending, layers)) return at_m;
+      knows_inside = false;
+      for (int which = 0; which < 5 && !knows_inside; ++which)
+        knows_inside = layers_at(object, inner_point(scene, which), touching_m, scratch.pending, layers);
     } else if (!is_inside_at(at_m)) {
       return at_m;
     }

@@ -4,6 +4,7 @@
 
 #include "radar/contact.hpp"
 #include "radar/scene_in_frame.hpp"
+#include "radar/solid_inside.hpp"
 
 namespace roomradar {
 
@@ -14,7 +15,7 @@ struct OverlapScratch {
     Eigen::Vector3d point;
   };
   std::vector<Span> spans;
-  std::vector<double> gaps_m;
+  std::vector<Layer> layers;
   std::vector<PendingNode> pending;
   std::vector<SceneItem> items;
 };
@@ -27,9 +28,9 @@ struct Overlap {
 };
 
 /// Each pair of triangles crosses over a span of travels, from its least gap to its greatest; a scene
-/// triangle is inside a closed object between the spans where it is behind an odd number of layers. The depth
-/// is how far the union of these spans that holds 0 reaches back. Scene triangles that face along the motion
-/// do not count.
+/// triangle is inside a closed object between the spans where more ways out of it than in are ahead. The
+/// depth is how far the union of these spans that holds 0 reaches back. Scene triangles that face along the
+/// motion do not count.
 Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFrame& scene,
                       OverlapScratch& scratch);
 

@@ -18,14 +18,14 @@ bool is_usable(const SceneDepth& s) {
                           c.fy_px > 0.0 && std::isfinite(c.cx_px) && std::isfinite(c.cy_px);
   const bool has_mask =
       s.mask == nullptr || (s.mask->width == s.depth_m->width && s.mask->height == s.depth_m->height);
-  return has_camera && has_mask && s.stride_px >= 1 && s.T_world_camera.matrix().allFinite();
+  const bool has_rule = s.max_jump_m >= 0.0F && s.max_jump_slope >= 0.0F;  // NaN is no rule either
+  return has_camera && has_mask && has_rule && s.stride_px >= 1 && s.T_world_camera.matrix().allFinite();
 }
 
 }  // namespace
 
 bool SceneInFrame::place(const RadarScene& scene, const Eigen::Matrix3d& R_frame_world,
                          const Eigen::Vector3d& origin_world) {
-  scene_ = scene;
   R_frame_world_ = R_frame_world;
   origin_world_ = origin_world;
   trees_.clear();

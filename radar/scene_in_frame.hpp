@@ -56,7 +56,6 @@ class SceneInFrame {
     Eigen::Vector3d t_frame_centre;  // of a point relative to the tree's centre
     float slack_m;
   };
-  RadarScene scene_;
   Eigen::Matrix3d R_frame_world_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();
   std::vector<TreeView> trees_;

@@ -47,8 +47,8 @@ Eigen::Vector3d inner_point(const FrameTriangle& triangle, int which) {
 }
 
 bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m,
-               std::vector<PendingNode>& pending, std::vector<double>& gaps_m) {
-  gaps_m.clear();
+               std::vector<PendingNode>& pending, std::vector<Layer>& layers) {
+  layers.clear();
   bool is_sure = true;
   search_column(
       object, at_point(point), [&] { return limit_m; }, -std::numeric_limits<double>::infinity(), pending,
@@ -67,7 +67,7 @@ bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double li
         const bool is_right = w[0] < -rounding && w[1] < -rounding && w[2] < -rounding;
         if (is_left || is_right) {
           const double z = (w[0] * c[0].z() + w[1] * c[1].z() + w[2] * c[2].z()) / (w[0] + w[1] + w[2]);
-          gaps_m.push_back(point.z() - z);
+          layers.push_back({point.z() - z, is_left ? 1 : -1});
         } else {
           const bool is_outside = (w[0] > rounding || w[1] > rounding || w[2] > rounding) &&
                                   (w[0] < -rounding || w[1] < -rounding || w[2] < -rounding);
@@ -77,14 +77,19 @@ bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double li
   return is_sure;
 }
 
+bool is_within(const std::vector<Layer>& layers, double travel_m) {
+  int ways_out = 0;
+  for (const Layer& layer : layers) ways_out += layer.gap_m < travel_m ? layer.way_out : 0;
+  return ways_out > 0;
+}
+
 bool is_inside(const TurnedTree& object, const FrameTriangle& scene, std::vector<PendingNode>& pending,
-               std::vector<double>& gaps_m) {
+               std::vector<Layer>& layers) {
   if (!object.tree->is_closed()) return false;
   for (int which = 0; which < 5; ++which) {
     const Eigen::Vector3d point = inner_point(scene, which);
-    if (!layers_at(object, point, 0.0, pending, gaps_m)) continue;
-    const auto ahead = std::count_if(gaps_m.begin(), gaps_m.end(), [](double gap_m) { return gap_m < 0.0; });
-    if (ahead % 2 == 0) return false;
+    if (!layers_at(object, point, 0.0, pending, layers)) continue;
+    if (!is_within(layers, 0.0)) return false;
     if (!is_near_surface(object, point, pending)) return true;
   }
   return false;

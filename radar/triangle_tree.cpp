@@ -113,7 +113,7 @@ class PlaceBuilder {
     const std::uint32_t half = range.first + range.size() / 2;
     constexpr int kBins = 16;
     const float scale = static_cast<float>(kBins) / size;
-    if (!(size > 0.0F) || !std::isfinite(scale)) return half;  // all at one place
+    if (!(size > 0.0F) || !std::isfinite(size) || !std::isfinite(scale)) return half;  // all at one place
     const auto bin_of = [&](std::uint32_t triangle) {
       return std::min(kBins - 1, static_cast<int>((middle_of(triangle)[axis] - middles.low[axis]) * scale));
     };
@@ -244,10 +244,22 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
   for (std::size_t i = 1; i < by_place.size(); ++i) {
     number[by_place[i]] = number[by_place[i - 1]] + (before(by_place[i - 1], by_place[i]) ? 1U : 0U);
   }
+  // Parts that share no vertex are judged one by one: one that is inside out must not hide behind a larger
+  // one.
+  std::vector<std::uint32_t> part(vertices.size());
+  std::iota(part.begin(), part.end(), 0U);
+  const auto part_of = [&](std::uint32_t v) {
+    while (part[v] != v) v = part[v] = part[part[v]];
+    return v;
+  };
+  for (const Triangle& t : triangles) {
+    part[part_of(number[t[0]])] = part_of(number[t[1]]);
+    part[part_of(number[t[1]])] = part_of(number[t[2]]);
+  }
   // An edge counts +1 in one sense and -1 in the other.
   std::vector<std::pair<std::uint64_t, int>> edges;
   edges.reserve(triangles.size() * 3);
-  double volume_m3 = 0.0;
+  std::vector<double> volume_m3(vertices.size(), 0.0);
   const Eigen::Vector3d about = vertices[triangles[0][0]].cast<double>();
   for (const Triangle& t : triangles) {
     std::array<Eigen::Vector3d, 3> p;
@@ -256,7 +268,7 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
       const std::uint64_t a = number[t[i]], b = number[t[(i + 1) % 3]];
       if (a != b) edges.emplace_back(std::min(a, b) << 32U | std::max(a, b), a < b ? 1 : -1);
     }
-    volume_m3 += p[0].dot(p[1].cross(p[2]));
+    volume_m3[part_of(number[t[0]])] += p[0].dot(p[1].cross(p[2]));
   }
   std::sort(edges.begin(), edges.end());
   int balance = 0;
@@ -265,7 +277,8 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
     if (i + 1 < edges.size() && edges[i + 1].first == edges[i].first) continue;
     if (balance != 0) return false;
   }
-  return volume_m3 > 0.0;
+  return std::all_of(triangles.begin(), triangles.end(),
+                     [&](const Triangle& t) { return volume_m3[part_of(number[t[0]])] > 0.0; });
 }
 
 std::uint64_t next_revision() {

@@ -48,7 +48,8 @@ class TriangleTree {
   /// Changes with every build of any tree, never 0 once built: keys caches.
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
   /// Every edge has as many triangles on one side as on the other (vertices at the same place are one) and
-  /// the volume inside is positive: counter-clockwise seen from outside, so that a point can be inside.
+  /// the volume inside each part that hangs together is positive: counter-clockwise seen from outside, so
+  /// that a point can be inside.
   [[nodiscard]] bool is_closed() const { return is_closed_; }
 
   /// The root is the first node; empty without triangles.

@@ -297,6 +297,16 @@ TEST(CyberRadar, AskingWronglyIsSaidSo) {
   bad_camera.depth_m = &depth_m;
   EXPECT_EQ(radar.query({{&object, pose}, kDown, 1.0}, {{}, {&bad_camera, 1}}).status,
             ContactStatus::kInvalidInput);
+  for (const float jump_m : {-0.01F, std::numeric_limits<float>::quiet_NaN()}) {
+    SceneDepth bad_jump;
+    bad_jump.depth_m = &depth_m;
+    bad_jump.camera = {4, 4, 4.0, 4.0, 1.5, 1.5};
+    EXPECT_NE(radar.query({{&object, pose}, kDown, 1.0}, {{}, {&bad_jump, 1}}).status,
+              ContactStatus::kInvalidInput);
+    bad_jump.max_jump_m = jump_m;
+    EXPECT_EQ(radar.query({{&object, pose}, kDown, 1.0}, {{}, {&bad_jump, 1}}).status,
+              ContactStatus::kInvalidInput);
+  }
   EXPECT_THROW(CyberRadar({RadarMode::kExact, 0}), Error);
   EXPECT_THROW(CyberRadar({RadarMode::kExact, 4097}), Error);
 }
@@ -310,6 +320,22 @@ TEST(CyberRadar, AMarginLowersTheLowerBoundByWhatItThickens) {
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.lower_m, 0.79, kExact_m);
   EXPECT_EQ(contact.upper_m, std::numeric_limits<double>::infinity());
+}
+
+TEST(CyberRadar, ASpeckInsideIsAnOverlapThickenedOrInSeveralSolidsAtOnce) {
+  CyberRadar radar;
+  const TriangleTree speck = tree_of(shapes::box({0.001F, 0.001F, 0.001F}));
+  const SceneTree s{{&speck, Eigen::Isometry3d::Identity()}, Touched::kObject};
+  const std::pair<Mesh, Eigen::Vector3f> two[] = {{shapes::box({0.4F, 0.4F, 0.4F}), {0.01F, 0.02F, 0.0F}},
+                                                  {shapes::box({0.3F, 0.3F, 0.3F}), {0.02F, 0.01F, 0.05F}}};
+  for (const TriangleTree& object :
+       {tree_of(shapes::box({0.4F, 0.4F, 0.4F})), tree_of(shapes::together(two))}) {
+    ASSERT_TRUE(object.is_closed());
+    EXPECT_EQ(radar.query({{&object, at({0.03, 0.05, 0.02})}, kDown, 1.0}, {{&s, 1}, {}}).status,
+              ContactStatus::kOverlap);
+    EXPECT_EQ(radar.query({{&object, at({0.03, 0.05, 0.02})}, kDown, 1.0, 0.001}, {{&s, 1}, {}}).lower_m,
+              0.0);
+  }
 }
 
 }  // namespace

@@ -119,6 +119,32 @@ TEST(TriangleTree, ClosedMeansEveryEdgeIsSharedAndTheVolumePositive) {
   EXPECT_FALSE(tree.is_closed());
 }
 
+TEST(TriangleTree, APartThatIsInsideOutIsNotHiddenByALargerOne) {
+  Mesh inside_out = shapes::box({0.1F, 0.1F, 0.1F});
+  for (Triangle& t : inside_out.triangles) std::swap(t[1], t[2]);
+  const std::pair<Mesh, Eigen::Vector3f> sound[] = {{shapes::box({1.0F, 1.0F, 1.0F}), {0.0F, 0.0F, 0.0F}},
+                                                    {shapes::box({0.1F, 0.1F, 0.1F}), {2.0F, 0.0F, 0.0F}}};
+  const std::pair<Mesh, Eigen::Vector3f> unsound[] = {sound[0], {inside_out, {2.0F, 0.0F, 0.0F}}};
+  TriangleTree tree;
+  tree.build_by_place(shapes::together(sound));
+  EXPECT_TRUE(tree.is_closed());
+  tree.build_by_place(shapes::together(unsound));
+  EXPECT_FALSE(tree.is_closed());
+}
+
+TEST(TriangleTree, VerticesAsFarApartAsFloatGoesAreATree) {
+  Mesh mesh;
+  for (int i = 0; i < 30; ++i) {
+    const float far = (i % 2 == 0 ? 1.0F : -1.0F) * std::numeric_limits<float>::max();
+    mesh.vertices.insert(mesh.vertices.end(), {{far, 0.0F, 0.0F}, {far, 1.0F, 0.0F}, {far, 0.0F, 1.0F}});
+    const auto first = static_cast<std::uint32_t>(3 * i);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  TriangleTree tree;
+  tree.build_by_place(mesh);
+  EXPECT_EQ(tree.triangle_count(), 30U);
+}
+
 TEST(TriangleTree, EveryBuildHasARevisionOfItsOwn) {
   std::set<std::uint64_t> revisions;
   TriangleTree a, b;
