@@ -61,7 +61,7 @@ enum class StepStatus {
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
   int contacts = 0;  ///< surfaces met
-  int queries = 0;   ///< radar passes asked for
+  int queries = 0;   ///< of the radar
   /// Deepest overlap seen before it was resolved, by the shortest way out, >= 0.
   double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only
@@ -75,8 +75,8 @@ struct [[nodiscard]] StepReport {
 /// motion is first swept by the radar, so nothing is tunnelled through however large the step is.
 ///
 /// @param dt_s   seconds since the last call, >= 0; 0 changes nothing
-/// @param query  the radar: asked once about what is below, once for each push direction, and for each piece
-///               of motion 1 to max_slides times
+/// @param query  the radar: asked once about what is below, once for each push direction, for each piece of
+///               motion 1 to max_slides times, and in a deep overlap four times sideways and once behind
 /// @param push_directions_world  unit directions from the body to moving surfaces (push_directions): an
 ///               overlap there moves the body away by the shortest of these ways; may be empty
 /// A body at rest is asked about along gravity only (and along push_directions), and does not move by noise.

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "radar/frame_along.hpp"
 #include "radar/solid_inside.hpp"
 #include "radar/thick_travel.hpp"
 
@@ -13,20 +14,6 @@ namespace roomradar {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Rows: two axes across the direction, then the direction; right-handed. A function of the direction alone,
-/// so that the same direction has the same pixels.
-/// Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
-Eigen::Matrix3d frame_along(const Eigen::Vector3d& u) {
-  const double sign = std::copysign(1.0, u.z());
-  const double a = -1.0 / (sign + u.z());
-  const double b = u.x() * u.y() * a;
-  Eigen::Matrix3d R;
-  R << 1.0 + sign * u.x() * u.x() * a, sign * b, -sign * u.x(),  //
-      b, sign + u.y() * u.y() * a, -u.y(),                       //
-      u.x(), u.y(), u.z();
-  return R;
-}
 
 bool is_valid(const RadarQuery& q) {
   return q.direction_world.allFinite() && q.direction_world.stableNorm() > 0.0 && q.distance_m > 0.0 &&

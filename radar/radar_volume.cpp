@@ -4,18 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "radar/frame_along.hpp"
+
 namespace roomradar {
 namespace {
-
-/// Two unit vectors that make a right-handed frame with u.
-/// Source: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
-void complete_frame(const Eigen::Vector3d& u, Eigen::Vector3d& x, Eigen::Vector3d& y) {
-  const double sign = std::copysign(1.0, u.z());
-  const double a = -1.0 / (sign + u.z());
-  const double b = u.x() * u.y() * a;
-  x = {1.0 + sign * u.x() * u.x() * a, sign * b, -sign * u.x()};
-  y = {b, sign + u.y() * u.y() * a, -u.y()};
-}
 
 /// Bounds of the triangles' vertices in a turned frame. Chunks whose box lies within what is known are passed
 /// over.
@@ -39,9 +31,7 @@ Eigen::AlignedBox3d turned_bounds(const GpuMesh& mesh, const Eigen::Matrix3d& R_
 
 RadarOutline fit_outline(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh, int resolution_px) {
   RadarOutline outline;
-  Eigen::Vector3d x, y;
-  complete_frame(u_mesh, x, y);
-  outline.R_outline_mesh << x.transpose(), y.transpose(), u_mesh.transpose();
+  outline.R_outline_mesh = frame_along(u_mesh);
   const Eigen::AlignedBox3d bounds = turned_bounds(mesh, outline.R_outline_mesh);
   const Eigen::Vector3d size_m = bounds.sizes();
   outline.length_m = size_m.z();
