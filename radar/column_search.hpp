@@ -56,6 +56,15 @@ struct PendingNode {
   std::uint32_t first, count;
 };
 
+/// Sorts the nodes from `first` on, so that the nearest is the next. A handful: the children of one node.
+inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t first) {
+  for (std::size_t i = first + 1; i < pending.size(); ++i) {
+    for (std::size_t j = i; j > first && pending[j].low_m > pending[j - 1].low_m; --j) {
+      std::swap(pending[j], pending[j - 1]);
+    }
+  }
+}
+
 /// Goes through the object's triangles that may share a place across the motion with `scene`, those that can
 /// have the least gap first.
 ///
@@ -155,12 +164,7 @@ bool search_column(const TurnedTree& object, const FrameTriangle& scene, const L
       }
       pending.push_back({low_m[i], node.first[i], node.count[i]});
     }
-    // The nearest last, so that it is the next.
-    for (std::size_t i = first_new + 1; i < pending.size(); ++i) {
-      for (std::size_t j = i; j > first_new && pending[j].low_m > pending[j - 1].low_m; --j) {
-        std::swap(pending[j], pending[j - 1]);
-      }
-    }
+    put_nearest_last(pending, first_new);
   }
   return has_passed;
 }

@@ -23,11 +23,6 @@ bool is_valid(const RadarQuery& q) {
 
 bool is_farther(const SceneItem& a, const SceneItem& b) { return a.low_m > b.low_m; }
 
-/// What one scene triangle has to say about the object.
-struct Settled {
-  bool overlaps = false;
-};
-
 /// What the gap of two triangles cannot be less than, cheaply: by their heights, and by the object's corners
 /// under the scene's plane, extended. Infinite where the object slides along the scene.
 double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, double touching_m) {
@@ -120,11 +115,12 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   const auto limit_m = [&] {
     return std::min(best_m, query.distance_m) + (patch_.is_full() || is_thick ? 0.0 : equally_m);
   };
+  // Says whether the object overlaps this scene triangle.
   const auto settle = [&](const SceneItem& item) {
     const FrameTriangle s = scene_.triangle(item);
-    Settled settled;
+    bool overlaps_here = false;
     bool has_ahead = is_thick && item.low_m < 0.0F;  // a thick object's triangles are not told apart
-    const auto limit_here_m = [&] { return settled.overlaps ? -kInfinity : limit_m(); };
+    const auto limit_here_m = [&] { return overlaps_here ? -kInfinity : limit_m(); };
     has_ahead |= search_column(object, s, limit_here_m, -object.touching_m, pending_, [&](std::uint32_t i) {
       if (is_thick) {
         best_m = std::min(best_m, thick_travel(turned_triangle(object, i), s, query.margin_m, limit_m()));
@@ -145,7 +141,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
         case Meeting::kNone:
           return;
         case Meeting::kCrossing:
-          settled.overlaps = true;
+          overlaps_here = true;
           return;
         case Meeting::kLeaving:
           leaves_something = true;
@@ -160,10 +156,10 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
       best_m = std::min(best_m, travel_m);
       patch_.add(gap, travel_m, equally_m, s, scene_.kind(item), best_m);
     });
-    if (has_ahead && !settled.overlaps && s.normal.z() <= kEdgeOn) {
-      settled.overlaps = is_inside(object, s, pending_, layers_);
+    if (has_ahead && !overlaps_here && s.normal.z() <= kEdgeOn) {
+      overlaps_here = is_inside(object, s, pending_, layers_);
     }
-    return settled;
+    return overlaps_here;
   };
 
   bool overlaps = false;
@@ -184,7 +180,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
       heap_.pop_back();
       if (item.kind == SceneItem::Kind::kTriangle) {
         ++settled_count;
-        overlaps = settle(item).overlaps;
+        overlaps = settle(item);
         continue;
       }
       found_.clear();

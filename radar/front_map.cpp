@@ -3,6 +3,8 @@
 
 #include <bit>
 
+#include "radar/pixel_grid.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -46,11 +48,7 @@ double support(const TriangleTree& tree, const Eigen::Vector3d& g, double tolera
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
       pending.push_back({-(f.value[i] + f.reach[i] + slack_m), node.first[i], node.count[i]});
     }
-    for (std::size_t i = first_new + 1; i < pending.size(); ++i) {
-      for (std::size_t j = i; j > first_new && pending[j].low_m > pending[j - 1].low_m; --j) {
-        std::swap(pending[j], pending[j - 1]);
-      }
-    }
+    put_nearest_last(pending, first_new);
   }
   return std::max(best, std::min(passed, best + tolerance_m));
 }
@@ -74,8 +72,8 @@ bool FrontMap::holds(const TurnedTree& object) const {
          margin_m_ == object.margin_m;
 }
 
-bool FrontMap::build(const TurnedTree& object, int resolution_px) {
-  if (holds(object) && resolution_px_ == resolution_px) return false;
+void FrontMap::build(const TurnedTree& object, int resolution_px) {
+  if (holds(object) && resolution_px_ == resolution_px) return;
   revision_ = object.tree->revision();
   R_frame_mesh_ = object.R_frame_mesh;
   margin_m_ = object.margin_m;
@@ -83,12 +81,9 @@ bool FrontMap::build(const TurnedTree& object, int resolution_px) {
 
   bounds_ = turned_bounds(object, pending_);
   const Eigen::Vector3d size_m = bounds_.sizes();
-  constexpr double kLeastSide_m = 1e-6;  // an object seen edge-on still gets pixels
-  pixel_m_ = std::max({size_m.x(), size_m.y(), kLeastSide_m}) / resolution_px;
-  const auto pixels = [&](double side_m) {
-    return std::clamp(static_cast<int>(std::ceil(side_m / pixel_m_ - 1e-9)), 1, resolution_px);
-  };
-  const int width = pixels(size_m.x()), height = pixels(size_m.y());
+  const PixelGrid grid = fit_pixels(size_m.x(), size_m.y(), resolution_px);
+  pixel_m_ = grid.pixel_m;
+  const int width = grid.width_px, height = grid.height_px;
   x0_ = static_cast<float>(bounds_.center().x() - 0.5 * width * pixel_m_);
   y0_ = static_cast<float>(bounds_.center().y() - 0.5 * height * pixel_m_);
   per_m_ = static_cast<float>(1.0 / pixel_m_);
@@ -135,14 +130,10 @@ bool FrontMap::build(const TurnedTree& object, int resolution_px) {
         for (std::uint32_t t = node.first[i]; t < node.first[i] + node.count[i]; ++t)
           enter_triangle(object, t);
       } else {
-        pending_.push_back({top[i], node.first[i], 0});
-        // The highest last, so that it is the next: what it covers hides the rest.
-        for (std::size_t j = pending_.size() - 1; j > first_new && pending_[j].low_m < pending_[j - 1].low_m;
-             --j) {
-          std::swap(pending_[j], pending_[j - 1]);
-        }
+        pending_.push_back({-top[i], node.first[i], 0});
       }
     }
+    put_nearest_last(pending_, first_new);  // the highest: what it covers hides the rest
   }
 
   for (std::size_t level = 1; level < levels_.size(); ++level) {
@@ -158,7 +149,6 @@ bool FrontMap::build(const TurnedTree& object, int resolution_px) {
       }
     }
   }
-  return true;
 }
 
 /// Large rectangles are not looked through.

@@ -17,8 +17,7 @@ namespace roomradar {
 class FrontMap {
  public:
   /// Does nothing if the tree, the turn, the margin and the size are those of the last time.
-  /// @return whether there was something to do
-  bool build(const TurnedTree& object, int resolution_px);
+  void build(const TurnedTree& object, int resolution_px);
 
   /// Whether this is the map of this tree, turned so, with this margin, at whatever size.
   [[nodiscard]] bool holds(const TurnedTree& object) const;
@@ -28,11 +27,8 @@ class FrontMap {
 
   /// Of the whole object in the frame, the margin included, m.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
-  [[nodiscard]] double pixel_m() const { return pixel_m_; }
   /// Longer side across the motion, m.
   [[nodiscard]] double side_m() const { return pixel_m_ * resolution_px_; }
-  [[nodiscard]] int width_px() const { return levels_.empty() ? 0 : levels_[0].width; }
-  [[nodiscard]] int height_px() const { return levels_.empty() ? 0 : levels_[0].height; }
 
  private:
   struct Level {

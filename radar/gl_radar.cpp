@@ -19,7 +19,6 @@ namespace {
 
 constexpr double kMaxDistance_m = 1e4;
 constexpr std::size_t kMasksKept = 16;  // at least, where the atlas may be that large
-constexpr float kNothing = 3e38F;       // as in tile_shaders.hpp
 const Eigen::Vector2d kSample_px(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // as in tile_shaders.hpp
 
 /// L this near to 0 is touching.

@@ -115,7 +115,8 @@ std::span<const TileResult> LeastGap::read(std::size_t count) {
 
 /// As kLeastShader.
 TileResult LeastGap::least_of(const TileQuery& query, const float* pixels, std::size_t row_pixels) const {
-  TileResult result{stamp_, 3e38F, 3e38F, 3e38F, -1, -1, std::numeric_limits<std::uint32_t>::max(), 0};
+  TileResult result{stamp_, kNothing, kNothing, kNothing, -1, -1, std::numeric_limits<std::uint32_t>::max(),
+                    0};
   const auto at = [&](int x, int y) {
     return pixels + 4 * (static_cast<std::size_t>(query.corners_px[3] + y) * row_pixels +
                          static_cast<std::size_t>(query.corners_px[2] + x));

@@ -20,6 +20,8 @@ struct TileResult {
   std::uint32_t unused = 0;
 };
 inline constexpr float kNothingMet = 1e38F;
+/// What tiles are cleared to; as in tile_shaders.hpp.
+inline constexpr float kNothing = 3e38F;
 
 /// Owns the program and the buffers; they grow to the largest call. Not thread safe.
 class LeastGap {

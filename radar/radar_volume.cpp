@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "radar/frame_along.hpp"
+#include "radar/pixel_grid.hpp"
 
 namespace roomradar {
 namespace {
@@ -36,13 +37,10 @@ RadarOutline fit_outline(const GpuMesh& mesh, const Eigen::Vector3d& u_mesh, int
   const Eigen::Vector3d size_m = bounds.sizes();
   outline.length_m = size_m.z();
 
-  constexpr double kLeastSide_m = 1e-6;  // an object seen edge-on still gets pixels
-  outline.pixel_m = std::max({size_m.x(), size_m.y(), kLeastSide_m}) / resolution_px;
-  const auto pixels = [&](double side_m) {
-    return std::clamp(static_cast<int>(std::ceil(side_m / outline.pixel_m - 1e-9)), 1, resolution_px);
-  };
-  outline.width_px = pixels(size_m.x());
-  outline.height_px = pixels(size_m.y());
+  const PixelGrid grid = fit_pixels(size_m.x(), size_m.y(), resolution_px);
+  outline.pixel_m = grid.pixel_m;
+  outline.width_px = grid.width_px;
+  outline.height_px = grid.height_px;
   outline.corner_m = {bounds.center().x() - 0.5 * outline.width_px * outline.pixel_m,
                       bounds.center().y() - 0.5 * outline.height_px * outline.pixel_m, bounds.max().z()};
   return outline;

@@ -25,6 +25,8 @@ namespace roomradar {
 inline constexpr const char* kTilePreamble = R"(#version 450 core
 const float kNothing = 3e38, kAnything = 1e38;  // what is cleared to; all that is written is less
 const vec2 kSample = vec2(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // of a pixel; its very middle is on too many edges
+// What goes from the vertices to the triangles.
+#define TILE_VERTEX Vertex { vec3 p; vec3 error; ivec4 corners; ivec4 item; vec4 limits_m; float margin; }
 )";
 
 inline constexpr const char* kTileVertexShader = R"(layout(location = 0) in vec3 p_local;
@@ -35,14 +37,7 @@ layout(location = 4) in ivec4 corners;  // of the tiles in their atlases: x, y o
 layout(location = 5) in ivec4 item;     // width_px, height_px, query, first key
 layout(location = 6) in vec4 limits_m;  // far, touching, deepest overlap, object's length
 layout(location = 7) in vec4 margin_px;  // x: how far beside the sample line the object's front may be
-out Vertex {
-  vec3 p;
-  vec3 error;
-  ivec4 corners;
-  ivec4 item;
-  vec4 limits_m;
-  float margin;
-} to;
+out TILE_VERTEX to;
 void main() {
   const float kRounding = 4.2e-7;  // 7 steps of 2^-24: rows, three products, three sums
   to.p = vec3(dot(outline_x.xyz, p_local) + outline_x.w, dot(outline_y.xyz, p_local) + outline_y.w,
@@ -140,14 +135,7 @@ Span span_of(vec3 a, vec3 b, vec3 c, vec3 error, float margin, vec2 p) {
 )";
 
 inline constexpr const char* kTileGeometryInputs = R"(layout(triangles) in;
-in Vertex {
-  vec3 p;
-  vec3 error;
-  ivec4 corners;
-  ivec4 item;
-  vec4 limits_m;
-  float margin;
-} from[];
+in TILE_VERTEX from[];
 )";
 
 inline constexpr const char* kTileGeometryShader = R"(

@@ -12,6 +12,7 @@
 
 #include "mapping/types/error.hpp"
 #include "radar/exact_travel.hpp"
+#include "tests/radar/judged_scene.hpp"
 #include "tests/radar/shapes.hpp"
 
 namespace roomradar {
@@ -76,38 +77,6 @@ DepthImage bumpy_depth(int width, int height, unsigned seed) {
     }
   }
   return depth_m;
-}
-
-/// What SceneDepth says its surface is, as a mesh.
-Mesh mesh_of(const SceneDepth& s) {
-  Mesh mesh;
-  const DepthImage& depth_m = *s.depth_m;
-  const int columns = (depth_m.width - 1) / s.stride_px + 1, rows = (depth_m.height - 1) / s.stride_px + 1;
-  const auto depth_at = [&](int i, int j) {
-    const int u = i * s.stride_px, v = j * s.stride_px;
-    const float d = depth_m.at(u, v);
-    return s.mask != nullptr && s.mask->at(u, v) == 0 ? 0.0F : (d > 0.0F && std::isfinite(d) ? d : 0.0F);
-  };
-  for (int j = 0; j < rows; ++j) {
-    for (int i = 0; i < columns; ++i) {
-      mesh.vertices.push_back(
-          back_project(s.camera, i * s.stride_px, j * s.stride_px, depth_at(i, j)).cast<float>());
-    }
-  }
-  const auto add = [&](int a, int b, int c) {
-    const auto [low, high] = std::minmax({mesh.vertices[a].z(), mesh.vertices[b].z(), mesh.vertices[c].z()});
-    if (low <= 0.0F || high - low > s.max_jump_m + s.max_jump_slope * low) return;
-    mesh.triangles.push_back(
-        {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
-  };
-  for (int j = 0; j + 1 < rows; ++j) {
-    for (int i = 0; i + 1 < columns; ++i) {
-      const int a = j * columns + i;
-      add(a, a + columns, a + columns + 1);
-      add(a, a + columns + 1, a + 1);
-    }
-  }
-  return mesh;
 }
 
 TEST(CyberRadar, ABoxAboveAFloorTravelsItsClearance) {
