@@ -1,0 +1,148 @@
+// unknown_surface.cpp: which unknown cells count, which of them can be come to, and their faces.
+#include "mapping/unknown_surface.hpp"
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mapping/barred_steps.hpp"
+#include "mapping/cell_faces.hpp"
+#include "mapping/types/error.hpp"
+#include "mapping/voxel_bits.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3i;
+
+constexpr double kMostCells = 2.5e8;  // 31 MB of bits
+constexpr int kGridsAtOnce = 11;      // of bits; most of them while free space is followed
+
+void require_in_1_to_16(const char* field, int value) {
+  if (value < 1 || value > 16)
+    throw Error(std::string("unknown_surface.") + field + " = " + std::to_string(value) +
+                ": must be in 1..16");
+}
+
+int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+
+// What the map knows, in cells of one voxel, or of more where the map is very large.
+struct Known {
+  CellGrid grid;
+  VoxelBits free;     // some voxel of the cell is
+  VoxelBits unknown;  // all voxels of the cell are
+};
+
+// The box of what is known and a margin round it; its lowest cell's coordinates are multiples of `lattice`.
+CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world, int margin, int lattice,
+                    int& cell_voxels) {
+  const auto voxel = [&](const Eigen::Vector3d& p) -> Vector3i {
+    return (p / map.resolution_m()).array().round().cast<int>();
+  };
+  const Vector3i low = voxel(known_world.min()), high = voxel(known_world.max());
+  CellGrid grid;
+  for (cell_voxels = 1;; ++cell_voxels) {
+    grid.cell_m = cell_voxels * map.resolution_m();
+    grid.first_cell = low.unaryExpr(
+        [&](int v) { return lattice * floor_div(floor_div(v, cell_voxels) - margin, lattice); });
+    grid.size =
+        high.unaryExpr([&](int v) { return floor_div(v - 1, cell_voxels) + 1 + margin; }) - grid.first_cell;
+    if (grid.size.cast<double>().prod() <= kMostCells) return grid;
+  }
+}
+
+Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
+                  const UnknownSurfaceConfig& config) {
+  // So wide a margin of unknown cells that what lies past it need not be looked at.
+  const int margin = std::max(config.least_voxels, config.cube_voxels) + config.cube_voxels;
+  Known known;
+  int edge = 1;
+  known.grid = grid_round(map, known_world, margin, config.cube_voxels, edge);
+  known.free = VoxelBits(known.grid.size, false, false);
+  known.unknown = VoxelBits(known.grid.size, true, true);
+  map.visit_leaves([&](const MapLeaf& leaf) {
+    const Vector3i from = leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v, edge); });
+    const Vector3i to =
+        leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v + leaf.edge_voxels - 1, edge) + 1; });
+    known.unknown.set_box(from - known.grid.first_cell, to - known.grid.first_cell, false);
+    if (leaf.log_odds < 0.0F)
+      known.free.set_box(from - known.grid.first_cell, to - known.grid.first_cell, true);
+  });
+  return known;
+}
+
+// Adds the cells of `where` that are one step from `reached` that is not barred. False if there are none.
+bool spread(VoxelBits& reached, const VoxelBits& where, const std::array<VoxelBits, 3>& barred) {
+  VoxelBits next = reached;
+  for (int axis = 0; axis < 3; ++axis) {
+    const VoxelBits& bars = barred[static_cast<std::size_t>(axis)];
+    VoxelBits leaving = reached;
+    next |= leaving.subtract(bars).shifted(axis, -1);
+    next |= reached.shifted(axis, 1).subtract(bars);
+  }
+  next &= where;
+  next |= reached;
+  if (next == reached) return false;
+  reached = std::move(next);
+  return true;
+}
+
+// Where an object can be that comes from free space: through free voxels as far as they go, then on for
+// rim_voxels through whatever does not count as unknown.
+VoxelBits reachable(const VoxelBits& free, const VoxelBits& unknown, const std::array<VoxelBits, 3>& barred,
+                    const UnknownSurfaceConfig& config) {
+  constexpr int kLongestSlit = 256;  // voxels that a slit too thin to come from is followed
+  VoxelBits reached = opened(free, config.least_voxels);
+  for (int step = 0; step < kLongestSlit && spread(reached, free, barred);) ++step;
+  VoxelBits passable(free.size(), true, false);
+  passable.subtract(unknown);
+  for (int step = 0; step < config.rim_voxels; ++step) spread(reached, passable, barred);
+  return reached;
+}
+
+// The faces of unknown cells towards reached ones that no surface parts from them.
+std::vector<CellFaces> faces_between(const VoxelBits& unknown, const VoxelBits& reached,
+                                     const std::array<VoxelBits, 3>& barred) {
+  std::vector<CellFaces> faces;
+  for (int axis = 0; axis < 3; ++axis) {
+    const VoxelBits& bars = barred[static_cast<std::size_t>(axis)];
+    faces.push_back({reached.shifted(axis, 1).subtract(bars) &= unknown, axis, 1});
+    faces.push_back({reached.shifted(axis, -1).subtract(bars.shifted(axis, -1)) &= unknown, axis, -1});
+  }
+  return faces;
+}
+
+}  // namespace
+
+void require_valid(const UnknownSurfaceConfig& config) {
+  require_in_1_to_16("least_voxels", config.least_voxels);
+  require_in_1_to_16("cube_voxels", config.cube_voxels);
+  require_in_1_to_16("rim_voxels", config.rim_voxels);
+}
+
+UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
+                               const UnknownSurfaceConfig& config) {
+  require_valid(config);
+  UnknownSurface result;
+  const MapCounts counts = map.counts();
+  if (counts.free_leaves == 0) return result;
+  Known known = known_cells(map, counts.known_world, config);
+  result.grid = known.grid;
+  result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
+  const std::array<VoxelBits, 3> barred = barred_steps(surface_world, known.grid);
+  const VoxelBits reached = reachable(known.free, result.unknown, barred, config);
+  result.mesh_world = mesh_of(faces_between(result.unknown, reached, barred), known.grid);
+  result.memory_bytes = kGridsAtOnce * known.free.memory_bytes();
+  return result;
+}
+
+bool is_unknown(const UnknownSurface& surface, const Eigen::Vector3d& p_world) {
+  if (!(surface.grid.cell_m > 0.0)) return false;
+  const Eigen::Array3d cell =
+      (p_world / surface.grid.cell_m).array().floor() - surface.grid.first_cell.cast<double>().array();
+  if (!(cell >= 0.0).all() || !(cell < surface.grid.size.cast<double>().array()).all()) return true;
+  return surface.unknown.at(cell.cast<int>());
+}
+
+}  // namespace roomradar
