@@ -21,6 +21,7 @@ const std::map<std::string, PoseOrigin> kPoses = {{"tracked", PoseOrigin::kTrack
                                                   {"recorded", PoseOrigin::kRecorded}};
 const std::map<std::string, SurfacePolicy> kSurfaces = {
     {"holes", SurfacePolicy::kHoles}, {"skirt", SurfacePolicy::kSkirt}, {"map", SurfacePolicy::kMap}};
+const std::map<std::string, bool> kUnknownIsSolid = {{"free", false}, {"solid", true}};
 const std::map<std::string, RadarMode> kRadarModes = {{"exact", RadarMode::kExact},
                                                       {"sampled", RadarMode::kSampled}};
 const std::map<std::string, RecordingFormat> kFormats = {{"tum", RecordingFormat::kTum},
@@ -136,6 +137,9 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   add_choice(*sub, "--surfaces", command.surfaces, kSurfaces,
              "what can be touched: this frame's pixels, the same with skirts across depth edges,\n"
              "or the map and what moved (map)");
+  add_choice(*sub, "--unknown", command.unknown_is_solid, kUnknownIsSolid,
+             "space that the prescan has not seen lets objects through (free) or stops them (solid;\n"
+             "with --surfaces map)");
   add_choice(*sub, "--radar", command.radar.mode, kRadarModes,
              "how contacts are found: to the last digit, or between bounds a pixel apart (exact)");
   sub->add_option("--radar-px", command.radar.resolution_px,
@@ -152,7 +156,12 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
   add_report_option(*sub, command.report);
-  sub->callback([&] { work = [&command] { return run(command); }; });
+  sub->callback([&] {
+    if (command.unknown_is_solid && command.surfaces != SurfacePolicy::kMap)
+      throw CLI::ValidationError(
+          "--unknown solid: only the map knows what was seen; it needs --surfaces map");
+    work = [&command] { return run(command); };
+  });
 }
 
 void add_map(CLI::App& app, Arguments& arguments, std::function<int()>& work) {
@@ -172,6 +181,8 @@ void add_map(CLI::App& app, Arguments& arguments, std::function<int()>& work) {
       ->add_option("FILE", arguments.map_export.path,
                    "by extension: .ot .bt (octree), .ply .obj .stl .glb (mesh)")
       ->required();
+  to_file->add_flag("--unknown", arguments.map_export.unknown,
+                    "the surface round space that the scan has not seen, in the place of the room's mesh");
   to_file->callback([&] { work = [&arguments] { return run(arguments.map_export); }; });
   CLI::App* merge = sub->add_subcommand(
       "merge",

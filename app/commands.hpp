@@ -33,6 +33,7 @@ struct RunCommand {
   std::string object = "teapot";  ///< built in, or a mesh file
   std::string script;             ///< events file; empty: the object is dropped over a level surface in view
   SurfacePolicy surfaces = SurfacePolicy::kMap;
+  bool unknown_is_solid = false;  ///< kMap only: objects do not enter what the scan has not seen
   RadarConfig radar;
   std::string video;
   std::string pictures;  ///< folder for composed frames as PNG
@@ -49,6 +50,7 @@ struct MapVerifyCommand {
 struct MapExportCommand {
   std::string map;
   std::string path;
+  bool unknown = false;  ///< the surface round what the scan has not seen, in the place of the mesh
 };
 
 struct MapMergeCommand {

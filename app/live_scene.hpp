@@ -26,9 +26,11 @@ struct LiveSceneConfig {
 /// Made anew from each frame: render_expected, find_moved, mesh_moved, in this order. Not thread safe.
 class LiveScene {
  public:
-  /// `room` is the static mesh in the world; it and the context must outlive this. Throws Error if the config
-  /// is out of its rules.
-  LiveScene(GlContext& context, const Shape& room, const LiveSceneConfig& config);
+  /// `room` is the static mesh in the world, `unknown` the surface round space that nobody has seen, which
+  /// can be touched but not seen; null: such space is free. They and the context must outlive this. Throws
+  /// Error if the config is out of its rules.
+  LiveScene(GlContext& context, const Shape& room, const LiveSceneConfig& config,
+            const Shape* unknown = nullptr);
 
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
@@ -38,9 +40,10 @@ class LiveScene {
   /// kMap: meshes the pixels that moved; kHoles, kSkirt: all pixels.
   void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// What can be touched: kMap: the room and what moved; kHoles, kSkirt: the frame's own mesh.
+  /// What can be touched: kMap: the room, what moved and the border of the unknown; kHoles, kSkirt: the
+  /// frame's own mesh.
   [[nodiscard]] std::vector<SceneTree> surfaces() const;
-  /// The same, to be drawn.
+  /// What is drawn of that.
   [[nodiscard]] std::vector<MeshInstance> drawn_surfaces() const;
 
   [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
@@ -51,6 +54,7 @@ class LiveScene {
  private:
   LiveSceneConfig config_;
   const Shape& room_;
+  const Shape* unknown_;
   Shape moved_;
   DepthPass depth_pass_;
 

@@ -3,6 +3,8 @@
 
 #include "app/commands.hpp"
 #include "mapping/map_folder.hpp"
+#include "mapping/mesh_file.hpp"
+#include "mapping/unknown_surface.hpp"
 
 namespace roomradar {
 
@@ -20,7 +22,13 @@ int run(const MapVerifyCommand& command) {
 }
 
 int run(const MapExportCommand& command) {
-  export_map(command.map, command.path);
+  if (command.unknown) {
+    require_outside_maps(command.path);
+    const SavedMap map = load_map(command.map);
+    write_mesh(unknown_surface(map.octree, map.mesh).mesh_world, command.path);
+  } else {
+    export_map(command.map, command.path);
+  }
   std::printf("%s written\n", command.path.c_str());
   return 0;
 }

@@ -192,6 +192,7 @@ void Stepper::collide(const Contact& contact, Vec3& remaining) {
   }
   if (met_count_ < 2) met_normals_[static_cast<std::size_t>(met_count_++)] = normal;
   ++report_.contacts;
+  if (contact.touched == Touched::kUnknownFrontier) ++report_.unknown_contacts;
   note(contact.touched);
 }
 
@@ -216,6 +217,7 @@ void Stepper::move(double dt_s) {
   auto position = body_.T_world_object.translation();
   Vec3 remaining = body_.velocity_world_mps * dt_s;
   bool is_supported = false;
+  body_.rests_on = Touched::kNothing;
   met_count_ = 0;
   for (int slide = 0; slide < config_.max_slides; ++slide) {
     const double distance_m = remaining.norm();
@@ -233,7 +235,10 @@ void Stepper::move(double dt_s) {
     const Vec3 moved = std::max(free_m, 0.0) * direction;
     position += moved;
     remaining -= moved;
-    is_supported |= contact.normal_world.dot(down_) < -kSupportCosine;
+    if (contact.normal_world.dot(down_) < -kSupportCosine) {
+      is_supported = true;
+      body_.rests_on = contact.touched;
+    }
     collide(contact, remaining);
   }
   if (is_supported) linger(dt_s);

@@ -20,6 +20,7 @@ struct Body {
   bool at_rest = false;
   double lingered_s = 0.0;  ///< for how long it has been on a support within rest_drift_m of lingers_at_world
   Eigen::Vector3d lingers_at_world = Eigen::Vector3d::Zero();
+  Touched rests_on = Touched::kNothing;  ///< what held it up when it was last moved
 };
 
 struct PhysicsConfig {
@@ -60,8 +61,9 @@ enum class StepStatus {
 
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
-  int contacts = 0;  ///< surfaces met
-  int queries = 0;   ///< of the radar
+  int contacts = 0;          ///< surfaces met
+  int unknown_contacts = 0;  ///< of them, with the border of unknown space
+  int queries = 0;           ///< of the radar
   /// Deepest overlap seen before it was resolved, by the shortest way out, >= 0.
   double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only

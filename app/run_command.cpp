@@ -1,4 +1,5 @@
 // run_command.cpp: roomradar run: augmented reality in a saved room.
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -35,7 +36,7 @@ Script drop_over_view(const std::string& object) {
 
 /// Sums over the frames of a run, as the report wants them.
 struct RunTotals {
-  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0;
+  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, unknown_contacts = 0;
   double moved_fraction = 0.0, dynamic_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;
   double deepest_penetration_m = 0.0;
@@ -46,6 +47,7 @@ struct RunTotals {
     ++located;
     if (frame.tracking == TrackStatus::kDegenerate) ++degenerate;
     contacts += frame.contacts;
+    unknown_contacts += frame.unknown_contacts;
     const double fraction = frame.foreground.valid > 0 ? static_cast<double>(frame.foreground.moved) /
                                                              static_cast<double>(frame.foreground.valid)
                                                        : 0.0;
@@ -66,6 +68,8 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
     objects.push_back({{"name", object->body.name},
                        {"in_room", object->in_room},
                        {"at_rest", object->body.at_rest},
+                       {"rests_on", to_string(object->body.rests_on)},
+                       {"began_in_unknown", object->began_in_unknown},
                        {"position_m", to_json(object->body.T_world_object.translation())}});
   }
   nlohmann::json results = {
@@ -76,11 +80,21 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"dynamic_triangles_mean", totals.per_frame(totals.dynamic_triangles)},
       {"static_triangles_drawn_mean", totals.per_frame(totals.static_triangles)},
       {"contacts", totals.contacts},
+      {"unknown_contacts", totals.unknown_contacts},
+      {"unknown_triangles", session.unknown().mesh_world.triangles.size()},
+      {"unknown_mb", static_cast<double>(session.unknown().memory_bytes) / 1e6},
       {"deepest_penetration_m", totals.deepest_penetration_m},
       {"objects", objects},
   };
   if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;
   return results;
+}
+
+/// Where it was put: it is free to go where nobody has seen what is there, until it has come out.
+const char* note_on(const VirtualObject& object) {
+  if (!object.began_in_unknown) return "";
+  return object.in_unknown ? "; was put into unknown space, and is in it still"
+                           : "; was put into unknown space, and came out of it";
 }
 
 void print_summary(const RunTotals& totals, const Session& session) {
@@ -93,8 +107,11 @@ void print_summary(const RunTotals& totals, const Session& session) {
     if (!object->in_room)
       std::printf("%s: not in the room\n", object->body.name.c_str());
     else
-      std::printf("%s: %s at %.3f %.3f %.3f m\n", object->body.name.c_str(),
-                  object->body.at_rest ? "at rest" : "moving", p.x(), p.y(), p.z());
+      std::printf(
+          "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),
+          object->body.at_rest ? "at rest" : "moving", p.x(), p.y(), p.z(),
+          object->body.rests_on == Touched::kUnknownFrontier ? ", on the border of unknown space" : "",
+          note_on(*object));
   }
 }
 
@@ -108,6 +125,14 @@ void write_pictures(const Session& session, const FrameResult& result, const std
     write_png(session.scene().moved_mask(), folder / (std::string(number) + ".moved.png"));
 }
 
+void make_unknown_solid(Session& session, StageTimes& times) {
+  const auto start = std::chrono::steady_clock::now();
+  session.make_unknown_solid(times);
+  std::fprintf(stderr, "unknown space: %zu triangles round it, made in %.1f s with %.0f MB\n",
+               session.unknown().mesh_world.triangles.size(), ms_since(start) / 1e3,
+               static_cast<double>(session.unknown().memory_bytes) / 1e6);
+}
+
 }  // namespace
 
 int run(const RunCommand& command) {
@@ -119,6 +144,7 @@ int run(const RunCommand& command) {
                      {"object", command.object},
                      {"script", command.script},
                      {"surfaces", to_string(command.surfaces)},
+                     {"unknown", command.unknown_is_solid ? "solid" : "free"},
                      {"radar", to_string(command.radar.mode)},
                      {"radar_px", command.radar.resolution_px}};
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
@@ -136,6 +162,7 @@ int run(const RunCommand& command) {
   Session session(map, config);
   report.renderer = session.renderer();
   std::fprintf(stderr, "rendering with %s\n", session.renderer().c_str());
+  if (command.unknown_is_solid) make_unknown_solid(session, report.times);
 
   // Objects are loaded now, so that a wrong mesh is said before the first frame and not when its turn comes.
   for (const ScriptEvent& event : script.events)

@@ -20,13 +20,23 @@ Session::Session(const SavedMap& map, const SessionConfig& config)
     : map_(map),
       config_(config),
       room_(context_),
-      scene_(context_, room_, config.scene),
+      unknown_shape_(context_),
+      scene_(context_, room_, config.scene, &unknown_shape_),
       radar_(config.radar),
       depth_pass_(context_),
       drawer_(context_) {
   require_valid(config.physics);
   require_valid(config.picture);
   room_.set(map.mesh, MeshUsage::kStatic);
+}
+
+void Session::make_unknown_solid(StageTimes& times) {
+  if (config_.scene.surfaces != SurfacePolicy::kMap)
+    throw Error("unknown space is solid only with the map's surfaces: the others do not know what was seen");
+  times.timed("unknown", [&] {
+    unknown_ = unknown_surface(map_.octree, map_.mesh);
+    unknown_shape_.set(unknown_.mesh_world, MeshUsage::kStatic);
+  });
 }
 
 FrameResult Session::step(const Frame& frame, StageTimes& times) {
@@ -57,7 +67,7 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   result.foreground = times.timed("foreground", [&] { return scene_.find_moved(frame); });  // what moved?
   times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera); });
   release_waiting(frame, T_world_camera);
-  result.contacts = times.timed("physics", [&] { return move_objects(dt_s, times); });  // R, M, L
+  times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
   if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera); });
 
   result.status = FrameStatus::kDone;
@@ -83,6 +93,8 @@ Tracking Session::locate_camera(const Frame& frame) {
 
 std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const {
   std::vector<SceneTree> scene = scene_.surfaces();
+  if (object != nullptr && object->in_unknown)
+    std::erase_if(scene, [](const SceneTree& surface) { return surface.kind == Touched::kUnknownFrontier; });
   for (const auto& other : objects_) {
     if (other.get() != object && other->in_room)
       scene.push_back({{&other->shape.touched, other->body.T_world_object}, Touched::kObject});
@@ -90,11 +102,25 @@ std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const
   return scene;
 }
 
-int Session::move_objects(double dt_s, StageTimes& times) {
-  int contacts = 0;
+bool Session::is_in_unknown(const VirtualObject& object) const {
+  const Eigen::Isometry3d& T_world_object = object.body.T_world_object;
+  const GpuMesh& mesh = object.shape.drawn;
+  const auto corner = [&](std::uint32_t vertex) -> Eigen::Vector3d {
+    return T_world_object * (mesh.origin() + mesh.vertices()[vertex].cast<double>());
+  };
+  const auto triangles = mesh.triangles();
+  return std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& triangle) {
+    const Eigen::Vector3d a = corner(triangle[0]), b = corner(triangle[1]), c = corner(triangle[2]);
+    return is_unknown(unknown_, a) || is_unknown(unknown_, b) || is_unknown(unknown_, c) ||
+           is_unknown(unknown_, (a + b + c) / 3.0);
+  });
+}
+
+void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) {
   double radar_ms = 0.0;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
+    object->in_unknown = object->in_unknown && is_in_unknown(*object);
     const std::vector<SceneTree> scene = scene_without(object.get());
     const TravelQuery query = [&](const Eigen::Isometry3d& T_world_object,
                                   const Eigen::Vector3d& direction_world, double distance_m) {
@@ -108,10 +134,11 @@ int Session::move_objects(double dt_s, StageTimes& times) {
     if (config_.scene.surfaces == SurfacePolicy::kMap)
       push = push_directions(scene_.moved_mesh_world(), object->body.T_world_object * object->middle,
                              kNearbyReach_m);
-    contacts += advance(object->body, dt_s, query, config_.physics, push.span()).contacts;
+    const StepReport moved = advance(object->body, dt_s, query, config_.physics, push.span());
+    result.contacts += moved.contacts;
+    result.unknown_contacts += moved.unknown_contacts;
   }
   times.add_ms("radar", radar_ms);
-  return contacts;
 }
 
 double Session::penetration_m() {
@@ -119,9 +146,11 @@ double Session::penetration_m() {
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
     std::vector<SceneTree> still = scene_without(object.get());
-    // A hand that reaches into an object is the hand's doing.
+    // A hand that reaches into an object is the hand's doing; in the unknown there may be nothing.
     if (config_.scene.surfaces == SurfacePolicy::kMap)
-      std::erase_if(still, [](const SceneTree& surface) { return surface.kind == Touched::kDynamic; });
+      std::erase_if(still, [](const SceneTree& surface) {
+        return surface.kind != Touched::kStatic && surface.kind != Touched::kObject;
+      });
     const Contact below = exact_radar_.query(
         {{&object->shape.touched, object->body.T_world_object}, config_.physics.gravity_world_mps2, 0.01},
         {still, {}});
@@ -175,6 +204,7 @@ void Session::apply(const ScriptEvent& event) {
     object.body.velocity_world_mps = event.velocity_world_mps;
     object.body.at_rest = false;
     object.in_room = true;
+    object.in_unknown = object.began_in_unknown = is_in_unknown(object);
   };
   // Whatever is said of an object now takes the place of a drop that it waits for.
   std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });

@@ -16,6 +16,7 @@
 #include "mapping/map_folder.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/stage_times.hpp"
+#include "mapping/unknown_surface.hpp"
 #include "radar/cyber_radar.hpp"
 #include "radar/depth_pass.hpp"
 #include "radar/gl_context.hpp"
@@ -47,6 +48,7 @@ struct FrameResult {
   std::size_t dynamic_triangles = 0;
   std::size_t static_triangles_drawn = 0;  ///< for the expected depth
   int contacts = 0;
+  int unknown_contacts = 0;            ///< of them, with the border of space that nobody has seen
   double deepest_penetration_m = 0.0;  ///< >= 0, where it is measured
 };
 
@@ -56,6 +58,11 @@ class Session {
  public:
   /// `map` must outlive the session. Throws Error if there is no GL, or a config is out of its rules.
   Session(const SavedMap& map, const SessionConfig& config);
+
+  /// From now on objects do not enter space that the map's scan has not seen. One that is put into such space
+  /// is stopped by it only once it has come out. Stage timed: unknown. Throws Error unless the surfaces are
+  /// the map's.
+  void make_unknown_solid(StageTimes& times);
 
   /// One frame, from sensor to picture. Stages timed: locate expected foreground mesh radar physics compose
   /// frame.
@@ -70,12 +77,16 @@ class Session {
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_; }
   [[nodiscard]] const ColourImage& picture() const { return picture_; }
   [[nodiscard]] const LiveScene& scene() const { return scene_; }
+  /// Without triangles unless it was made solid.
+  [[nodiscard]] const UnknownSurface& unknown() const { return unknown_; }
 
  private:
   const SavedMap& map_;
   SessionConfig config_;
   GlContext context_;
   Shape room_;
+  UnknownSurface unknown_;
+  Shape unknown_shape_;
   LiveScene scene_;
   Locator locator_;
   CyberRadar radar_;
@@ -102,7 +113,8 @@ class Session {
   Tracking locate_camera(const Frame& frame);
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
-  int move_objects(double dt_s, StageTimes& times);
+  void move_objects(double dt_s, StageTimes& times, FrameResult& result);
+  [[nodiscard]] bool is_in_unknown(const VirtualObject& object) const;
   double penetration_m();
   /// Sets background_ and says which camera saw it: the frame's colour; where this one frame has none, the
   /// last colour there was; in a recording without any, the depth, shaded, as the depth camera sees it.

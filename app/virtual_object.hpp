@@ -14,6 +14,8 @@ namespace roomradar {
 struct VirtualObject {
   Body body;  ///< its name and pose
   bool in_room = false;
+  bool began_in_unknown = false;                     ///< was put where nobody has seen what is there
+  bool in_unknown = false;                           ///< and has not come out of there since
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of its bounding box, in its own frame
   double lowest_m = 0.0;                             ///< z of its lowest point, in its own frame
   double footprint_radius_m = 0.0;                   ///< how far it reaches sideways from its origin

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <limits>
+#include <string_view>
 
 namespace roomradar {
 
@@ -22,6 +23,23 @@ enum class Touched {
   kObject,           ///< another virtual object
   kUnknownFrontier,  ///< where seen free space ends and unseen space begins
 };
+
+/// As reports call it.
+constexpr std::string_view to_string(Touched touched) {
+  switch (touched) {
+    case Touched::kNothing:
+      break;
+    case Touched::kStatic:
+      return "static";
+    case Touched::kDynamic:
+      return "dynamic";
+    case Touched::kObject:
+      return "object";
+    case Touched::kUnknownFrontier:
+      return "unknown frontier";
+  }
+  return "nothing";
+}
 
 struct [[nodiscard]] Contact {
   ContactStatus status = ContactStatus::kInvalidInput;  // unset means failed
