@@ -1,0 +1,85 @@
+// bisected_grid.hpp: right triangles over a lattice, halved until they follow the surface, without cracks.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace roomradar {
+
+/// Squares of 8 x 8 cells, each two right triangles that are halved at the middle of their longest side, down
+/// to half a cell. A middle that one triangle needs is needed by the other one on that side too, and needs
+/// the middles by which these two came about: so all sides fit.
+/// Source: Evans, Kirkpatrick, Townsend, Right-triangulated irregular networks, Algorithmica 2001.
+struct BisectedGrid {
+  int columns = 0, rows = 0;  ///< of points: multiples of 8, plus one
+  std::span<const std::uint8_t>
+      cells;  ///< (columns - 1) * (rows - 1): 1 where the grid's triangles are wanted
+
+  [[nodiscard]] std::size_t point(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
+  }
+  [[nodiscard]] bool is_wanted(int column, int row) const {
+    return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns - 1) +
+                 static_cast<std::size_t>(column)] == 1;
+  }
+};
+
+/// Marks the points at which triangles are halved.
+///
+/// @param values      one a point, where a wanted cell is
+/// @param tolerances  how far a triangle may be from the value at each point in it
+/// @param needed      one a point; those that are 1 already stay so: all corners of cells that are not wanted
+///                    but beside one that is must be; others are 0
+void find_needed(const BisectedGrid& grid, std::span<const float> values, std::span<const float> tolerances,
+                 std::span<std::uint8_t> needed);
+
+struct GridPoint {
+  int x, y;
+};
+
+namespace bisected_grid {
+
+/// The triangle with the right angle at c, counter-clockwise where y runs down: a, b, c.
+template <typename Take>
+void descend(const BisectedGrid& grid, std::span<const std::uint8_t> needed, GridPoint a, GridPoint b,
+             GridPoint c, const Take& take) {
+  const int x = a.x + b.x, y = a.y + b.y;
+  if (((x | y) & 1) == 0) {
+    const GridPoint middle{x / 2, y / 2};
+    if (needed[grid.point(middle.x, middle.y)] != 0) {
+      descend(grid, needed, c, a, middle, take);
+      descend(grid, needed, b, c, middle, take);
+      return;
+    }
+  }
+  // A triangle that is not halved lies on wanted cells only, or on none: ask the one at its right angle.
+  if (grid.is_wanted(c.x - (x < 2 * c.x ? 1 : 0), c.y - (y < 2 * c.y ? 1 : 0))) take(a, b, c);
+}
+
+}  // namespace bisected_grid
+
+/// Calls take(a, b, c) for each triangle on wanted cells in the square whose top left point is given.
+template <typename Take>
+void walk_square(const BisectedGrid& grid, std::span<const std::uint8_t> needed, int column, int row,
+                 const Take& take) {
+  using bisected_grid::descend;
+  const GridPoint top_left{column, row}, bottom_left{column, row + 8};
+  const GridPoint bottom_right{column + 8, row + 8}, top_right{column + 8, row};
+  const GridPoint middle{column + 4, row + 4};
+  if (needed[grid.point(middle.x, middle.y)] != 0) {
+    descend(grid, needed, top_left, bottom_left, middle, take);
+    descend(grid, needed, bottom_left, bottom_right, middle, take);
+    descend(grid, needed, bottom_right, top_right, middle, take);
+    descend(grid, needed, top_right, top_left, middle, take);
+  } else if (((column / 8 + row / 8) & 1) == 0) {
+    descend(grid, needed, bottom_right, top_left, bottom_left, take);
+    descend(grid, needed, top_left, bottom_right, top_right, take);
+  } else {
+    descend(grid, needed, bottom_left, top_right, top_left, take);
+    descend(grid, needed, top_right, bottom_left, bottom_right, take);
+  }
+}
+
+}  // namespace roomradar

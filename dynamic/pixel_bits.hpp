@@ -1,0 +1,57 @@
+// pixel_bits.hpp: one bit a pixel, so that logic is done on 64 pixels at a time.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace roomradar {
+
+/// height rows of width bits; around them is a margin of zeros that may be read: one row above, kBelow rows
+/// below, 64 bits to each side.
+struct PixelBits {
+  static constexpr int kBelow = 8;
+  int width = 0, height = 0, words = 0;  ///< words of 64 bits that a row takes, without its margin
+  std::vector<std::uint64_t> bits;
+
+  /// Gives it this size, all zero; keeps the allocation when it is large enough.
+  void resize(int width_px, int height_px) {
+    width = width_px;
+    height = height_px;
+    words = (width_px + 63) / 64;
+    bits.assign(static_cast<std::size_t>(words + 2) * static_cast<std::size_t>(height_px + 1 + kBelow), 0);
+  }
+  /// y in -1 .. height + kBelow - 1; words -1 .. words of it may be read.
+  [[nodiscard]] const std::uint64_t* row(int y) const { return bits.data() + offset(y); }
+  [[nodiscard]] std::uint64_t* row(int y) { return bits.data() + offset(y); }
+  /// x in -64 .. 64 * words + 63.
+  [[nodiscard]] bool at(int x, int y) const { return (row(y)[x >> 6] >> (x & 63) & 1U) != 0; }
+  /// Bits x to x + 4 of row y, the lowest first.
+  [[nodiscard]] std::uint32_t five(int x, int y) const {
+    const std::uint64_t* word = row(y) + (x >> 6);
+    const int shift = x & 63;
+    std::uint64_t five = word[0] >> shift;
+    if (shift > 59) five |= word[1] << (64 - shift);
+    return static_cast<std::uint32_t>(five & 31U);
+  }
+  /// The 5 x 5 pixels with (x, y) at the top left: bit 5 * row + column.
+  [[nodiscard]] std::uint32_t square(int x, int y) const {
+    std::uint32_t square = 0;
+    for (int k = 0; k < 5; ++k) square |= five(x, y + k) << (5 * k);
+    return square;
+  }
+
+ private:
+  [[nodiscard]] std::size_t offset(int y) const {
+    return static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(words + 2) + 1;
+  }
+};
+
+/// Smooths an outline: a pixel is set where most of the 3 x 3 pixels around it are, those beyond the image
+/// being not set. `smooth` gets the size of `bits`.
+void take_majority(const PixelBits& bits, PixelBits& smooth);
+
+/// Of `bits` those that have no neighbour in `near`, and are not in it: what a majority of 3 x 3 has lost as
+/// a whole, such as lines that are one pixel wide.
+void take_far_from(const PixelBits& bits, const PixelBits& near, PixelBits& far);
+
+}  // namespace roomradar
