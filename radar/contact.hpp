@@ -30,11 +30,11 @@ constexpr std::string_view to_string(Touched touched) {
     case Touched::kNothing:
       break;
     case Touched::kStatic:
-      return "static";
+      return "seen static";
     case Touched::kDynamic:
-      return "dynamic";
+      return "seen dynamic";
     case Touched::kObject:
-      return "object";
+      return "virtual object";
     case Touched::kUnknownFrontier:
       return "unknown frontier";
   }
