@@ -14,7 +14,7 @@ bool is_same_view(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T
 }  // namespace
 
 LiveScene::LiveScene(GlContext& context, const Shape& room, const LiveSceneConfig& config,
-                     const Shape* unknown)
+                     const TriangleTree* unknown)
     : config_(config), room_(room), unknown_(unknown), moved_(context), depth_pass_(context) {
   require_valid(config.foreground);
   require_valid(config.mesh);
@@ -52,7 +52,7 @@ std::vector<SceneTree> LiveScene::surfaces() const {
     surfaces.push_back({{&room_.touched, Eigen::Isometry3d::Identity()}, Touched::kStatic});
   surfaces.push_back({{&moved_.touched, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
   if (config_.surfaces == SurfacePolicy::kMap && unknown_ != nullptr)
-    surfaces.push_back({{&unknown_->touched, Eigen::Isometry3d::Identity()}, Touched::kUnknownFrontier});
+    surfaces.push_back({{unknown_, Eigen::Isometry3d::Identity()}, Touched::kUnknownFrontier});
   return surfaces;
 }
 

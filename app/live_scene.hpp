@@ -30,7 +30,7 @@ class LiveScene {
   /// can be touched but not seen; null: such space is free. They and the context must outlive this. Throws
   /// Error if the config is out of its rules.
   LiveScene(GlContext& context, const Shape& room, const LiveSceneConfig& config,
-            const Shape* unknown = nullptr);
+            const TriangleTree* unknown = nullptr);
 
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
@@ -54,7 +54,7 @@ class LiveScene {
  private:
   LiveSceneConfig config_;
   const Shape& room_;
-  const Shape* unknown_;
+  const TriangleTree* unknown_;
   Shape moved_;
   DepthPass depth_pass_;
 

@@ -20,8 +20,7 @@ Session::Session(const SavedMap& map, const SessionConfig& config)
     : map_(map),
       config_(config),
       room_(context_),
-      unknown_shape_(context_),
-      scene_(context_, room_, config.scene, &unknown_shape_),
+      scene_(context_, room_, config.scene, &unknown_tree_),
       radar_(config.radar),
       depth_pass_(context_),
       drawer_(context_) {
@@ -35,7 +34,7 @@ void Session::make_unknown_solid(StageTimes& times) {
     throw Error("unknown space is solid only with the map's surfaces: the others do not know what was seen");
   times.timed("unknown", [&] {
     unknown_ = unknown_surface(map_.octree, map_.mesh);
-    unknown_shape_.set(unknown_.mesh_world, MeshUsage::kStatic);
+    unknown_tree_.build_by_place(unknown_.mesh_world);
   });
 }
 

@@ -86,7 +86,7 @@ class Session {
   GlContext context_;
   Shape room_;
   UnknownSurface unknown_;
-  Shape unknown_shape_;
+  TriangleTree unknown_tree_;
   LiveScene scene_;
   Locator locator_;
   CyberRadar radar_;

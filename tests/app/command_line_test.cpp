@@ -96,6 +96,27 @@ TEST_F(CommandLine, MapInfoAndEveryExportWork) {
     EXPECT_GT(fs::file_size(path), 1000U) << extension;
   }
   expect_fault(roomradar("map export " + map() + " " + (folder_ / "export.xyz").string()), 1, ".ply");
+  const fs::path unknown = folder_ / "unknown.ply";
+  EXPECT_EQ(roomradar("map export " + map() + " " + unknown.string() + " --unknown").status, 0);
+  EXPECT_GT(fs::file_size(unknown), 10000U);
+  expect_fault(roomradar("map export " + map() + " " + map() + "/unknown.ply --unknown"), 1, "map");
+}
+
+TEST_F(CommandLine, SolidUnknownSpaceIsInTheReportAndNeedsTheMap) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path report_path = folder_ / "solid.json";
+  const std::string run = "run 'sim:table?frames=20&width=160&path=view&seed=2' --poses recorded --map " +
+                          map() + " --unknown solid";
+  const Outcome ran = roomradar(run + " --report " + report_path.string());
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  EXPECT_NE(ran.out.find("unknown space: "), std::string::npos) << ran.out;
+  const auto report = nlohmann::json::parse(read_text(report_path));
+  EXPECT_EQ(report["settings"]["unknown"], "solid");
+  EXPECT_EQ(report["stages"]["unknown"]["count"], 1);
+  EXPECT_GT(report["unknown_triangles"], 100);
+  EXPECT_EQ(report["objects"][0]["began_in_unknown"], false);
+  EXPECT_EQ(report["objects"][0]["rests_on"], "seen static");
+  expect_fault(roomradar(run + " --surfaces skirt"), 2, "needs --surfaces map");
 }
 
 TEST_F(CommandLine, RunFindsItselfAndDropsTheTeapotOnTheTable) {

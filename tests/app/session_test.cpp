@@ -98,6 +98,94 @@ TEST(Session, RemovedObjectDoesNotComeInByADropThatWaited) {
   EXPECT_FALSE(session.objects().front()->in_room);
 }
 
+/// Free space above z = 0, 3.8 m wide, with a floor where x < 0; nobody has seen what is below elsewhere.
+SavedMap half_floor_map() {
+  SavedMap map;
+  map.mesh.vertices = {{-2, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-2, 2, 0}};
+  map.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  map.octree = StaticMap(0.02);
+  constexpr int kEdge = 16;
+  for (int z = 0; z < 6; ++z)
+    for (int y = -6; y < 6; ++y)
+      for (int x = -6; x < 6; ++x)
+        map.octree.add_evidence(MapLeaf{kEdge * Eigen::Vector3i(x, y, z), kEdge, -1.0F});
+  return map;
+}
+
+struct Thrown {
+  const VirtualObject& pot;
+  int unknown_contacts = 0;
+};
+
+/// A pot that is thrown from a place, and what has become of it a second and a half later; no depth is seen.
+Thrown thrown(Session& session, const Eigen::Vector3d& from_world, double up_mps) {
+  StageTimes times;
+  session.apply(event(Action::kAdd));
+  ScriptEvent put = event(Action::kThrow);
+  put.position_world = from_world;
+  put.velocity_world_mps = Eigen::Vector3d(0.0, 0.0, up_mps);
+  session.apply(put);
+  Thrown result{*session.objects().front()};
+  for (std::int64_t i = 0; i < 45; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    result.unknown_contacts += session.step(frame, times).unknown_contacts;
+  }
+  return result;
+}
+
+TEST(Session, SolidUnknownSpaceHoldsAnObjectUpAndSaysSo) {
+  const SavedMap map = half_floor_map();
+  for (const bool is_solid : {false, true}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    if (is_solid) session.make_unknown_solid(times);
+    const auto [pot, unknown_contacts] = thrown(session, {1.0, 0.0, 0.6}, 0.0);
+    const double bottom_m = pot.body.T_world_object.translation().z() + pot.lowest_m;
+    EXPECT_FALSE(pot.began_in_unknown);
+    EXPECT_EQ(unknown_contacts > 0, is_solid);
+    if (is_solid) {
+      EXPECT_TRUE(pot.body.at_rest);
+      EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+      EXPECT_NEAR(bottom_m, 0.0, 0.005);
+    } else {
+      EXPECT_LT(bottom_m, -1.0);
+    }
+  }
+}
+
+TEST(Session, OverASeenFloorSolidUnknownSpaceChangesNothing) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.make_unknown_solid(times);
+  const auto [pot, unknown_contacts] = thrown(session, {-1.0, 0.0, 0.6}, 0.0);
+  EXPECT_TRUE(pot.body.at_rest);
+  EXPECT_EQ(pot.body.rests_on, Touched::kStatic);
+  EXPECT_EQ(unknown_contacts, 0);
+}
+
+TEST(Session, WhatIsPutIntoUnknownSpaceCanLeaveItAndCannotComeBack) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.make_unknown_solid(times);
+  const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.5}, 4.2).pot;
+  EXPECT_TRUE(pot.began_in_unknown);
+  EXPECT_FALSE(pot.in_unknown);
+  EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+  EXPECT_NEAR(pot.body.T_world_object.translation().z() + pot.lowest_m, 0.0, 0.005);
+}
+
+TEST(Session, UnknownSpaceIsNotSolidWithoutTheMapsSurfaces) {
+  const SavedMap map = half_floor_map();
+  SessionConfig config = by_recorded_poses();
+  config.scene.surfaces = SurfacePolicy::kSkirt;
+  Session session(map, config);
+  StageTimes times;
+  EXPECT_THROW(session.make_unknown_solid(times), Error);
+}
+
 TEST(VirtualObject, FootprintReachesToACorner) {
   GlContext context;
   Mesh plate;
