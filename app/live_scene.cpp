@@ -31,8 +31,8 @@ std::size_t LiveScene::render_expected(const Intrinsics& camera, const Eigen::Is
 }
 
 ForegroundCounts LiveScene::find_moved(const Frame& frame) {
-  return mark_foreground(frame.depth_m, expected_depth_m_, frame.depth_camera, config_.foreground,
-                         foreground_scratch_, labels_, moved_mask_);
+  return mark_foreground(frame.depth_m, expected_depth_m_, frame.depth_camera, T_world_expected_,
+                         config_.foreground, foreground_, labels_, moved_mask_);
 }
 
 void LiveScene::mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {

@@ -35,7 +35,7 @@ class LiveScene {
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
   std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
-  /// Labels the frame's pixels against the expected depth.
+  /// Labels the frame's pixels against the expected depth, and by what the frame before showed.
   ForegroundCounts find_moved(const Frame& frame);
   /// kMap: meshes the pixels that moved; kHoles, kSkirt: all pixels.
   void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
@@ -63,7 +63,7 @@ class LiveScene {
   Eigen::Isometry3d T_world_expected_ = Eigen::Isometry3d::Identity();
   std::size_t expected_triangles_ = 0;
 
-  ForegroundScratch foreground_scratch_;
+  ForegroundState foreground_;
   LabelImage labels_;
   MaskImage moved_mask_;
   DepthMeshScratch mesh_scratch_;

@@ -1,412 +1,283 @@
-// foreground.cpp: which pixels of a depth frame differ from the static model, and how.
+// foreground.cpp: evidence of each pixel, and regions that are believed.
 #include "dynamic/foreground.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
-#include <limits>
-#include <string>
-
-#include "mapping/types/depth_noise.hpp"
-#include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr float kNothing_m = std::numeric_limits<float>::max();  // "nearest" where the model has nothing
-constexpr int kBlock_px = 4;   // extremes around a pixel are taken over whole blocks of this size
-constexpr int kMaxWindow = 6;  // blocks to each side
-// Slopes are taken over several pixels: a mesh from cells is a staircase at one.
-constexpr int kSlopeStep_px = 4;
-
 // Evidence of one pixel, as bits.
-constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kWeakRevealed = 4, kStrongRevealed = 8, kTaken = 16,
-                       kDoubtful = 32;
+constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kDoubtMoved = 4, kWeakRevealed = 8,
+                       kStrongRevealed = 16, kDoubtRevealed = 32, kMovedBefore = 64, kRevealedBefore = 128;
 
-int blocks_along(int size_px) { return (size_px + kBlock_px - 1) / kBlock_px; }
+struct Union {
+  std::uint8_t operator()(std::uint8_t a, std::uint8_t b) const { return static_cast<std::uint8_t>(a | b); }
+};
 
-// Smallest (or largest) value of the blocks within `reach` blocks of each block, along rows and then along
-// columns.
-template <typename Better>
-void spread(const std::vector<float>& blocks, int columns, int rows, int reach, const Better& better,
-            ForegroundScratch& scratch) {
-  std::vector<float>& along_rows = scratch.along_rows_m;
-  std::vector<float>& spread_blocks = scratch.spread_m;
-  const auto at = [columns](int x, int y) { return static_cast<std::size_t>(y) * columns + x; };
-  along_rows = blocks;
-  for (int y = 0; y < rows; ++y) {
-    for (int x = 0; x < columns; ++x) {
-      float best = blocks[at(x, y)];
-      for (int u = std::max(x - reach, 0); u <= std::min(x + reach, columns - 1); ++u) {
-        best = better(best, blocks[at(u, y)]);
-      }
-      along_rows[at(x, y)] = best;
-    }
-  }
-  spread_blocks = along_rows;
-  for (int y = 0; y < rows; ++y) {
-    float* best = spread_blocks.data() + at(0, y);
-    for (int v = std::max(y - reach, 0); v <= std::min(y + reach, rows - 1); ++v) {
-      const float* other = along_rows.data() + at(0, v);
-      for (int x = 0; x < columns; ++x) best[x] = better(best[x], other[x]);
-    }
-  }
-}
-
-// How many blocks to each side an edge may be off: the turn of the pose shifts all edges alike, its shift and
-// the map's distortion the near ones more.
-void choose_windows(int columns, int rows, const Intrinsics& camera, const ForegroundConfig& config,
-                    ForegroundScratch& scratch) {
-  const auto nearer = [](float a, float b) { return b < a ? b : a; };
-  spread(scratch.block_nearest_m, columns, rows, kMaxWindow, nearer, scratch);
-  const float focal_px = static_cast<float>(std::max(camera.fx_px, camera.fy_px));
-  scratch.window.resize(scratch.block_nearest_m.size());
-  for (std::size_t i = 0; i < scratch.window.size(); ++i) {
-    const float edge_px = focal_px * (config.edge_error_rad + config.edge_error_m / scratch.spread_m[i]);
-    scratch.window[i] = std::clamp(static_cast<int>(std::ceil(edge_px / kBlock_px)), 0, kMaxWindow);
-  }
-}
-
-// Nearest and farthest expected depth around each block: within the silhouette's window, and within the
-// hole's reach.
-void extremes_around(const DepthImage& expected_m, const Intrinsics& camera, const ForegroundConfig& config,
-                     ForegroundScratch& scratch) {
-  const auto nearer = [](float a, float b) { return b < a ? b : a; };
-  const auto farther = [](float a, float b) { return b > a ? b : a; };
-  const int columns = blocks_along(expected_m.width);
-  const int rows = blocks_along(expected_m.height);
-  const auto width = static_cast<std::size_t>(columns) * kBlock_px;
-  scratch.block_nearest_m.assign(static_cast<std::size_t>(columns) * rows, kNothing_m);
-  scratch.block_farthest_m.assign(static_cast<std::size_t>(columns) * rows, 0.0F);
-  for (int row = 0; row < rows; ++row) {
-    scratch.nearest_m.assign(width, kNothing_m);
-    scratch.farthest_m.assign(width, 0.0F);
-    for (int y = row * kBlock_px; y < std::min((row + 1) * kBlock_px, expected_m.height); ++y) {
-      const float* expected = expected_m.row(y);
-      float* nearest = scratch.nearest_m.data();
-      float* farthest = scratch.farthest_m.data();
-      for (int x = 0; x < expected_m.width; ++x) {
-        const float z = expected[x];
-        nearest[x] = nearer(nearest[x], z > 0.0F ? z : kNothing_m);
-        farthest[x] = farther(farthest[x], z);
-      }
-    }
-    for (int column = 0; column < columns; ++column) {
-      const std::size_t block = static_cast<std::size_t>(row) * columns + column;
-      for (int x = column * kBlock_px; x < (column + 1) * kBlock_px; ++x) {
-        scratch.block_nearest_m[block] = nearer(scratch.block_nearest_m[block], scratch.nearest_m[x]);
-        scratch.block_farthest_m[block] = farther(scratch.block_farthest_m[block], scratch.farthest_m[x]);
-      }
-    }
-  }
-  choose_windows(columns, rows, camera, config, scratch);
-  spread(scratch.block_nearest_m, columns, rows, blocks_along(config.hole_reach_px), nearer, scratch);
-  scratch.window_reach_m = scratch.spread_m;
-  scratch.grown_nearest_m = scratch.window_nearest_m = scratch.block_nearest_m;
-  scratch.grown_farthest_m = scratch.window_farthest_m = scratch.block_farthest_m;
-  for (int reach = 1; reach <= kMaxWindow; ++reach) {
-    spread(scratch.grown_nearest_m, columns, rows, 1, nearer, scratch);
-    scratch.grown_nearest_m.swap(scratch.spread_m);
-    spread(scratch.grown_farthest_m, columns, rows, 1, farther, scratch);
-    scratch.grown_farthest_m.swap(scratch.spread_m);
-    for (std::size_t i = 0; i < scratch.window.size(); ++i) {
-      if (scratch.window[i] != reach) continue;
-      scratch.window_nearest_m[i] = scratch.grown_nearest_m[i];
-      scratch.window_farthest_m[i] = scratch.grown_farthest_m[i];
-    }
-  }
-}
-
-// Angle of which `cosine` in 0..1 is the cosine, within 7e-5 rad, without a library call.
-// Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.45.
-inline float arc_cosine(float cosine) {
-  return std::sqrt(1.0F - cosine) *
-         (1.5707288F + cosine * (-0.2121144F + cosine * (0.0742610F - 0.0187293F * cosine)));
-}
-
-// The flatter of two slopes, so that a depth jump on one side of a pixel does not count as a slope.
-inline float flatter(float a, float b) { return std::abs(a) < std::abs(b) ? a : b; }
-
-// Sensor's and model's error together, for a surface at depth_m.
-inline float total_sigma_m(float depth_m, float incidence_rad, const ForegroundConfig& config) {
-  const float sensor = depth_sigma_m(depth_m, incidence_rad);
-  const float model = config.model_sigma_m + config.model_sigma_per_m * depth_m;
-  return std::sqrt(sensor * sensor + model * model);
-}
-
-// sigma_m of each pixel of row y, from the expected depth and its slope.
-void sigmas_of_row(const DepthImage& expected_m, int y, const Intrinsics& camera,
-                   const ForegroundConfig& config, ForegroundScratch& scratch) {
-  const int width = expected_m.width;
-  const float* middle = expected_m.row(y);
-  const float* above = expected_m.row(std::max(y - kSlopeStep_px, 0));
-  const float* below = expected_m.row(std::min(y + kSlopeStep_px, expected_m.height - 1));
-  float* padded = scratch.padded_m.data();
-  std::copy_n(middle, width, padded + kSlopeStep_px);
-  std::fill_n(padded, kSlopeStep_px, middle[0]);
-  std::fill_n(padded + kSlopeStep_px + width, kSlopeStep_px, middle[width - 1]);
-
-  const float* left = padded;
-  const float* right = padded + 2 * kSlopeStep_px;
-  float* sigma = scratch.sigma_m.data();
-  const float per_step = 1.0F / static_cast<float>(kSlopeStep_px);
-  const auto fx = static_cast<float>(camera.fx_px);
-  const auto fy = static_cast<float>(camera.fy_px);
-  const auto cx = static_cast<float>(camera.cx_px);
-  const float v = static_cast<float>(y) - static_cast<float>(camera.cy_px);
-  const float v_ray2 = v * v / (fy * fy) + 1.0F;
-  // A copy, so that the compiler sees that the loop does not write it.
-  const ForegroundConfig settings = config;
+// The bounds of a row of blocks, one value a pixel.
+void stretch_bounds(const ForegroundConfig& config, int row, int width, ForegroundState& state) {
+  const ExpectedBounds& bounds = state.bounds;
+  const std::size_t begin = bounds.grid.at(0, row);
+  stretch(bounds.sigma_m.data() + begin, width, state.strong_m.data());
+  stretch(bounds.nearest_in_reach_m.data() + begin, width, state.nearest_m.data());
+  stretch(bounds.farthest_in_reach_m.data() + begin, width, state.farthest_m.data());
+  stretch(bounds.nearest_around_hole_m.data() + begin, width, state.around_hole_m.data());
   for (int x = 0; x < width; ++x) {
-    // With depth z(u, v) the surface normal is (fx z_u, fy z_v, -(z + u z_u + v z_v)), u and v from the
-    // principal point; its product with the viewing ray (u / fx, v / fy, 1) is -z.
-    const float z = middle[x];
-    const float u = static_cast<float>(x) - cx;
-    const float slope_u = flatter(z - left[x], right[x] - z) * per_step;
-    const float slope_v = flatter(z - above[x], below[x] - z) * per_step;
-    const float normal_x = fx * slope_u;
-    const float normal_y = fy * slope_v;
-    const float normal_z = z + u * slope_u + v * slope_v;
-    const float normal2 = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z;
-    const float cosine = z / std::sqrt(normal2 * (u * u / (fx * fx) + v_ray2) + 1e-12F);
-    sigma[x] = total_sigma_m(z, arc_cosine(cosine < 1.0F ? cosine : 1.0F), settings);
+    const float sigma = state.strong_m[x];
+    const bool was = state.before[begin + x / kBlock_px] != 0;
+    const float factor = was ? config.hysteresis : 1.0F;
+    state.weak_m[x] = factor * config.weak_sigmas * sigma;
+    state.strong_m[x] = factor * config.strong_sigmas * sigma;
   }
 }
 
 // What one row of pixels says, before its neighbours are asked.
-void weigh_row(const DepthImage& depth_m, const DepthImage& expected_m, int y, const ForegroundConfig& config,
-               ForegroundScratch& scratch) {
-  const int width = depth_m.width;
-  const float* live = depth_m.row(y);
-  const float* expected = expected_m.row(y);
-  const float* nearest = scratch.nearest_m.data();
-  const float* farthest = scratch.farthest_m.data();
-  const float* sigma = scratch.sigma_m.data();
-  std::uint8_t* evidence = scratch.evidence.data() + depth_m.index(0, y);
-  const float weak = config.weak_sigmas;
-  const float strong = config.strong_sigmas;
+void weigh_row(const float* live, const float* expected, int width, const ForegroundConfig& config,
+               const ForegroundState& state, std::uint8_t* evidence, PixelLabel* labels) {
+  const float* weak = state.weak_m.data();
+  const float* strong = state.strong_m.data();
+  const float* nearest = state.nearest_m.data();
+  const float* farthest = state.farthest_m.data();
   for (int x = 0; x < width; ++x) {
     const float z = live[x];
-    const int moved = (z < expected[x] - weak * sigma[x] ? kWeakMoved : 0) |
-                      (z < nearest[x] - strong * sigma[x] ? kStrongMoved : 0) |
-                      (z < expected[x] - strong * sigma[x] ? kDoubtful : 0);
-    const int revealed = (z > expected[x] + weak * sigma[x] ? kWeakRevealed : 0) |
-                         (z > farthest[x] + strong * sigma[x] ? kStrongRevealed : 0);
-    const int known = z > 0.0F ? (expected[x] > 0.0F ? 0xFF : 0) : 0;
-    evidence[x] = static_cast<std::uint8_t>((moved | revealed) & known);
+    const float nearer = expected[x] - z;
+    const int strongly_nearer = nearer > strong[x];
+    const int strongly_farther = -nearer > strong[x];
+    const int moved = (nearer > weak[x] ? kWeakMoved : 0) |
+                      (strongly_nearer ? (z < nearest[x] - strong[x] ? kStrongMoved : kDoubtMoved) : 0);
+    const int revealed =
+        (-nearer > weak[x] ? kWeakRevealed : 0) |
+        (strongly_farther ? (z > farthest[x] + strong[x] ? kStrongRevealed : kDoubtRevealed) : 0);
+    const bool known = (z > 0.0F) & (expected[x] > 0.0F);
+    evidence[x] = static_cast<std::uint8_t>((moved | revealed) & (known ? 0xFF : 0));
+    labels[x] = known ? PixelLabel::kStatic : PixelLabel::kNotKnown;
   }
   // Holes of the model: they prove nothing, but what moved may cover them.
-  const float* reach = scratch.reach_m.data();
+  const float* around = state.around_hole_m.data();
   for (int x = 0; x < width; ++x) {
-    if (expected[x] > 0.0F || !(live[x] > 0.0F) || reach[x] == kNothing_m) continue;
-    if (live[x] < reach[x] - strong * total_sigma_m(reach[x], 0.0F, config)) evidence[x] = kWeakMoved;
+    if (expected[x] > 0.0F || !(live[x] > 0.0F) || around[x] == kNoDepth_m) continue;
+    if (live[x] < around[x] - config.strong_sigmas *
+                                  facing_sigma_m(around[x], config.model_sigma_m, state.fit.misfit_per_m))
+      evidence[x] = kWeakMoved;
   }
 }
 
-// Whether an expected surface within the window around block (column, row) lies at depth_m, give or take. A
-// block that holds an edge stands for its two sides, not for what is between them.
-bool is_expected_near(float depth_m, int column, int row, int columns, int rows,
-                      const ForegroundConfig& config, const ForegroundScratch& scratch) {
-  const int reach = scratch.window[static_cast<std::size_t>(row) * columns + column];
-  const float tolerance_m = config.strong_sigmas * total_sigma_m(depth_m, 0.0F, config);
-  for (int v = std::max(row - reach, 0); v <= std::min(row + reach, rows - 1); ++v) {
-    for (int u = std::max(column - reach, 0); u <= std::min(column + reach, columns - 1); ++u) {
-      const std::size_t block = static_cast<std::size_t>(v) * columns + u;
-      const float nearest = scratch.block_nearest_m[block];
-      const float farthest = scratch.block_farthest_m[block];
-      if (depth_m < nearest - tolerance_m || depth_m > farthest + tolerance_m) continue;
-      if (farthest - nearest <= 2.0F * tolerance_m) return true;
-      if (depth_m <= nearest + tolerance_m || depth_m >= farthest - tolerance_m) return true;
+// A pixel behind a near edge's reach, as of a ball behind a box, is no less moved if no expected surface
+// within reach lies at its depth, give or take. A block that holds an edge stands for its two sides, not for
+// what is between them.
+void settle_doubts(const DepthImage& depth_m, int column, int row, const ForegroundConfig& config,
+                   ForegroundState& state) {
+  const ExpectedBounds& bounds = state.bounds;
+  constexpr int kLanes = kBlock_px * kBlock_px;
+  std::array<std::size_t, kLanes> pixel;
+  std::array<float, kLanes> depth, tolerance;
+  std::array<int, kLanes> is_expected;
+  int count = 0;
+  for (int y = row * kBlock_px; y < std::min((row + 1) * kBlock_px, depth_m.height); ++y) {
+    for (int x = column * kBlock_px; x < std::min((column + 1) * kBlock_px, depth_m.width); ++x) {
+      const std::size_t i = depth_m.index(x, y);
+      if ((state.evidence[i] & kDoubtMoved) == 0) continue;
+      pixel[count] = i;
+      depth[count] = depth_m.pixels[i];
+      tolerance[count] =
+          config.strong_sigmas * facing_sigma_m(depth[count], config.model_sigma_m, state.fit.misfit_per_m);
+      ++count;
     }
   }
-  return false;
+  for (int i = count; i < kLanes; ++i) {  // the rest repeat the first, so that the loop below has one length
+    depth[i] = depth[0];
+    tolerance[i] = tolerance[0];
+  }
+  is_expected.fill(0);
+  const int reach = bounds.reach[bounds.grid.at(column, row)];
+  for (int v = std::max(row - reach, 0); v <= std::min(row + reach, bounds.grid.rows - 1); ++v) {
+    for (int u = std::max(column - reach, 0); u <= std::min(column + reach, bounds.grid.columns - 1); ++u) {
+      const float nearest = bounds.nearest_m[bounds.grid.at(u, v)];
+      const float farthest = bounds.farthest_m[bounds.grid.at(u, v)];
+      for (int i = 0; i < kLanes; ++i) {
+        const float from_nearest = depth[i] - nearest, from_farthest = depth[i] - farthest;
+        is_expected[i] |=
+            (std::abs(from_nearest) <= tolerance[i]) | (std::abs(from_farthest) <= tolerance[i]);
+      }
+    }
+  }
+  for (int i = 0; i < count; ++i)
+    if (!is_expected[i]) state.evidence[pixel[i]] |= kStrongMoved;
 }
 
-// A pixel behind a near edge's reach, as of a ball behind a box, is no less moved if its depth is neither the
-// near surface's nor the far one's.
-void settle_doubts(const DepthImage& depth_m, int y, const ForegroundConfig& config,
-                   ForegroundScratch& scratch) {
-  std::uint8_t* evidence = scratch.evidence.data() + depth_m.index(0, y);
-  const int columns = blocks_along(depth_m.width);
-  const int rows = blocks_along(depth_m.height);
-  for (int x = 0; x < depth_m.width; ++x) {
-    if ((evidence[x] & (kDoubtful | kStrongMoved)) != kDoubtful) continue;
-    if (!is_expected_near(depth_m.at(x, y), x / kBlock_px, y / kBlock_px, columns, rows, config, scratch)) {
-      evidence[x] |= kStrongMoved;
+void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& settings,
+                  ForegroundState& state, LabelImage& labels) {
+  const ForegroundConfig config = settings;
+  const int width = depth_m.width;
+  const BlockGrid grid = state.bounds.grid;
+  state.block_evidence.assign(grid.size(), 0);
+  for (int row = 0; row < grid.rows; ++row) {
+    stretch_bounds(config, row, width, state);
+    const int end = std::min((row + 1) * kBlock_px, depth_m.height);
+    for (int y = row * kBlock_px; y < end; ++y) {
+      weigh_row(depth_m.row(y), expected_m.row(y), width, config, state,
+                state.evidence.data() + depth_m.index(0, y), labels.row(y));
+    }
+    std::uint8_t* blocks = state.block_evidence.data() + grid.at(0, row);
+    const std::uint8_t* before = state.before.data() + grid.at(0, row);
+    for (int column = 0; column < grid.columns; ++column) {
+      std::uint8_t all = 0;
+      const int x_end = std::min((column + 1) * kBlock_px, width);
+      for (int y = row * kBlock_px; y < end; ++y) {
+        for (int x = column * kBlock_px; x < x_end; ++x) all |= state.evidence[depth_m.index(x, y)];
+      }
+      if ((all & kDoubtMoved) != 0) {
+        settle_doubts(depth_m, column, row, config, state);
+        all = 0;
+        for (int y = row * kBlock_px; y < end; ++y) {
+          for (int x = column * kBlock_px; x < x_end; ++x) all |= state.evidence[depth_m.index(x, y)];
+        }
+      }
+      if (before[column] != 0 && all != 0) {
+        const int was =
+            ((before[column] & (kBlockMoved | kBlockMaybeMoved)) != 0 ? kMovedBefore : 0) |
+            ((before[column] & (kBlockRevealed | kBlockMaybeRevealed)) != 0 ? kRevealedBefore : 0);
+        for (int y = row * kBlock_px; y < end; ++y) {
+          for (int x = column * kBlock_px; x < x_end; ++x)
+            state.evidence[depth_m.index(x, y)] |= static_cast<std::uint8_t>(was);
+        }
+      }
+      blocks[column] = all;
     }
   }
 }
 
-// Repeats each block's value for the pixels of a row.
-void stretch(const std::vector<float>& blocks, int columns, int row, std::vector<float>& pixels) {
-  const float* block = blocks.data() + static_cast<std::size_t>(row) * columns;
-  for (std::size_t x = 0; x < pixels.size(); ++x) pixels[x] = block[x / kBlock_px];
-}
-
-void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const Intrinsics& camera,
-                  const ForegroundConfig& config, ForegroundScratch& scratch) {
-  const int columns = blocks_along(depth_m.width);
+// Drops weak evidence that is far from strong.
+void drop_far_weak(const DepthImage& depth_m, int reach_px, ForegroundState& state) {
+  const BlockGrid grid = state.bounds.grid;
+  std::vector<std::uint8_t>& near = state.near_strong;
+  near = state.block_evidence;
+  int reach = 0;
+  for (const int wanted = blocks_along(reach_px); reach < wanted;) {
+    const int step = std::min(2 * reach + 1, wanted - reach);
+    spread(grid, near, step, Union{}, state.along_rows, near);
+    reach += step;
+  }
+  for (std::uint8_t& bits : near) {
+    bits = static_cast<std::uint8_t>(0xFF & ~((bits & kStrongMoved) != 0 ? 0 : kWeakMoved) &
+                                     ~((bits & kStrongRevealed) != 0 ? 0 : kWeakRevealed));
+  }
   for (int y = 0; y < depth_m.height; ++y) {
-    if (y % kBlock_px == 0) {
-      stretch(scratch.window_nearest_m, columns, y / kBlock_px, scratch.nearest_m);
-      stretch(scratch.window_farthest_m, columns, y / kBlock_px, scratch.farthest_m);
-      stretch(scratch.window_reach_m, columns, y / kBlock_px, scratch.reach_m);
-    }
-    sigmas_of_row(expected_m, y, camera, config, scratch);
-    weigh_row(depth_m, expected_m, y, config, scratch);
-    settle_doubts(depth_m, y, config, scratch);
+    if (y % kBlock_px == 0)
+      stretch(near.data() + grid.at(0, y / kBlock_px), depth_m.width, state.keep.data());
+    std::uint8_t* evidence = state.evidence.data() + depth_m.index(0, y);
+    for (int x = 0; x < depth_m.width; ++x) evidence[x] &= state.keep[x];
   }
-}
-
-// Depth steps between neighbouring pixels of one surface: noise, and a plane seen at 80 degrees from its
-// normal.
-inline bool same_surface(float a_m, float b_m, float slope) {
-  const float z = std::min(a_m, b_m);
-  return std::abs(a_m - b_m) <= 4.0F * depth_sigma_m(z) + slope * z;
 }
 
 // One of the two ways to differ from the model.
 struct Difference {
-  std::uint8_t weak, strong;  // bits of evidence
+  RegionBits bits;
+  std::uint8_t block, block_maybe;
   float min_strong_fraction;
   PixelLabel label;
 };
 
-struct Region {
-  std::size_t pixels = 0;  // the first of scratch.region
-  std::size_t strong_pixels = 0;
-  float area_m2 = 0.0F;  // as if it faced the camera
-};
+enum class Belief { kNone, kMaybe, kSure };
 
-// Collects the region around a strong pixel into scratch.region: neighbours that are strong, or weak and on
-// the same surface.
-Region grow_region(const DepthImage& depth_m, std::uint32_t seed, const Difference& difference,
-                   int weak_reach_px, const Intrinsics& camera, ForegroundScratch& scratch) {
-  const std::uint8_t weak = difference.weak;
-  const std::uint8_t strong = difference.strong;
-  const auto width = static_cast<std::uint32_t>(depth_m.width);
-  const auto height = static_cast<std::uint32_t>(depth_m.height);
-  const float slope = 5.67F / static_cast<float>(std::min(camera.fx_px, camera.fy_px));
-  std::uint32_t* region = scratch.region.data();
-  std::size_t size = 0;
-  std::size_t strong_pixels = 0;
-  float area = 0.0F;
-  const auto take = [&](std::uint32_t pixel, int steps) {
-    scratch.steps[pixel] = static_cast<std::uint8_t>(steps);
-    strong_pixels += (scratch.evidence[pixel] & strong) != 0;
-    scratch.evidence[pixel] |= kTaken;
-    region[size++] = pixel;
-    area += depth_m.pixels[pixel] * depth_m.pixels[pixel];
+Belief belief_in(const DepthRegion& region, const Difference& difference, const Intrinsics& camera,
+                 const ForegroundConfig& config) {
+  constexpr float kAtFirstSight = 3.0F;  // times the least size
+  constexpr float kSeenBefore = 0.75F;
+  const auto pixels = static_cast<float>(region.pixels);
+  const auto strong = static_cast<float>(region.strong);
+  const auto judged = static_cast<float>(region.pixels - region.doubtful);
+  const bool was = 2 * region.before >= region.pixels;
+  const float part = was ? 0.5F : 1.0F;
+  if (region.strong == 0 || strong < part * difference.min_strong_fraction * pixels ||
+      strong < part * config.min_strong_fraction * judged)
+    return Belief::kNone;
+  const float area_m2 = region.depth2_m2 / static_cast<float>(camera.fx_px * camera.fy_px);
+  const auto has = [&](float times) {
+    return pixels >= times * static_cast<float>(config.min_region_px) &&
+           area_m2 >= times * config.min_region_m2;
   };
-  take(seed, 0);
-  for (std::size_t next = 0; next < size; ++next) {
-    const std::uint32_t pixel = region[next];
-    const float z = depth_m.pixels[pixel];
-    const int steps = scratch.steps[pixel] + 1;
-    const auto visit = [&](std::uint32_t other) {
-      const std::uint8_t evidence = scratch.evidence[other];
-      if ((evidence & kTaken) != 0 || (evidence & (weak | strong)) == 0) return;
-      if ((evidence & strong) != 0) {
-        take(other, 0);
-      } else if (steps <= weak_reach_px && same_surface(z, depth_m.pixels[other], slope)) {
-        take(other, steps);
-      }
-    };
-    const std::uint32_t x = pixel % width;
-    if (x > 0) visit(pixel - 1);
-    if (x + 1 < width) visit(pixel + 1);
-    if (pixel >= width) visit(pixel - width);
-    if (pixel + width < width * height) visit(pixel + width);
-  }
-  return {size, strong_pixels, area / static_cast<float>(camera.fx_px * camera.fy_px)};
+  if (has(was ? kSeenBefore : kAtFirstSight)) return Belief::kSure;
+  return has(1.0F) ? Belief::kMaybe : Belief::kNone;
 }
 
-// Labels the regions of one kind that are large enough; returns how many pixels they have.
+// Labels the regions of one kind that are believed; returns how many pixels they have.
 std::size_t label_regions(const DepthImage& depth_m, const Difference& difference, const Intrinsics& camera,
-                          const ForegroundConfig& config, ForegroundScratch& scratch, LabelImage& labels) {
+                          const ForegroundConfig& config, ForegroundState& state, LabelImage& labels) {
+  find_regions(depth_m, state.evidence, difference.bits, camera, state.regions);
+  const auto width = static_cast<std::uint32_t>(depth_m.width);
   std::size_t labelled = 0;
-  for (std::uint32_t seed = 0; seed < scratch.evidence.size(); ++seed) {
-    if ((scratch.evidence[seed] & difference.strong) == 0 || (scratch.evidence[seed] & kTaken) != 0) continue;
-    const Region region = grow_region(depth_m, seed, difference, config.weak_reach_px, camera, scratch);
-    const float strong_fraction =
-        static_cast<float>(region.strong_pixels) / static_cast<float>(region.pixels);
-    if (region.pixels < static_cast<std::size_t>(config.min_region_px) ||
-        region.area_m2 < config.min_region_m2 || strong_fraction < difference.min_strong_fraction) {
-      continue;
+  for (const PixelRun& run : state.regions.runs) {
+    const Belief belief = belief_in(state.regions.regions[run.region], difference, camera, config);
+    if (belief == Belief::kSure) {
+      std::fill(labels.pixels.begin() + run.first, labels.pixels.begin() + run.last + 1, difference.label);
+      labelled += run.last - run.first + 1;
+    } else {
+      for (std::uint32_t i = run.first; i <= run.last; ++i)
+        if ((state.evidence[i] & difference.bits.strong) != 0) labels.pixels[i] = PixelLabel::kNotKnown;
+      if (belief == Belief::kNone) continue;
     }
-    for (std::size_t i = 0; i < region.pixels; ++i) labels.pixels[scratch.region[i]] = difference.label;
-    labelled += region.pixels;
+    const std::uint8_t bit = belief == Belief::kSure ? difference.block : difference.block_maybe;
+    const std::uint32_t row = run.first / width;
+    std::uint8_t* blocks =
+        state.memory.blocks.data() + state.bounds.grid.at(0, static_cast<int>(row) / kBlock_px);
+    for (std::uint32_t column = (run.first - row * width) / kBlock_px;
+         column <= (run.last - row * width) / kBlock_px; ++column)
+      blocks[column] |= bit;
   }
   return labelled;
 }
 
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds)
-    throw Error("foreground." + std::string(field) + " = " + std::to_string(value) + ": must be " + rule);
-}
-
 }  // namespace
 
-void require_valid(const ForegroundConfig& config) {
-  require(config.model_sigma_m >= 0.0F && config.model_sigma_m < 1.0F, "model_sigma_m", config.model_sigma_m,
-          "in 0..1");
-  require(config.model_sigma_per_m >= 0.0F && config.model_sigma_per_m < 1.0F, "model_sigma_per_m",
-          config.model_sigma_per_m, "in 0..1");
-  require(config.weak_sigmas > 0.0F && config.weak_sigmas < 1e3F, "weak_sigmas", config.weak_sigmas,
-          "in 0..1000");
-  require(config.strong_sigmas >= config.weak_sigmas && config.strong_sigmas < 1e3F, "strong_sigmas",
-          config.strong_sigmas, "at least weak_sigmas, and under 1000");
-  require(config.edge_error_m >= 0.0F && config.edge_error_m < 1.0F, "edge_error_m", config.edge_error_m,
-          "in 0..1");
-  require(config.edge_error_rad >= 0.0F && config.edge_error_rad < 0.1F, "edge_error_rad",
-          config.edge_error_rad, "in 0..0.1");
-  require(config.min_strong_fraction >= 0.0F && config.min_strong_fraction <= 1.0F, "min_strong_fraction",
-          config.min_strong_fraction, "in 0..1");
-  require(config.min_strong_fraction_revealed >= 0.0F && config.min_strong_fraction_revealed <= 1.0F,
-          "min_strong_fraction_revealed", config.min_strong_fraction_revealed, "in 0..1");
-  require(config.weak_reach_px >= 0 && config.weak_reach_px <= 255, "weak_reach_px", config.weak_reach_px,
-          "in 0..255");
-  require(config.hole_reach_px >= 0 && config.hole_reach_px <= 256, "hole_reach_px", config.hole_reach_px,
-          "in 0..256");
-  require(config.min_region_px >= 0, "min_region_px", config.min_region_px, ">= 0");
-  require(config.min_region_m2 >= 0.0F && std::isfinite(config.min_region_m2), "min_region_m2",
-          config.min_region_m2, ">= 0");
-}
-
 ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
-                                 const Intrinsics& camera, const ForegroundConfig& config,
-                                 ForegroundScratch& scratch, LabelImage& labels, MaskImage& moved_mask) {
+                                 const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                                 const ForegroundConfig& config, ForegroundState& state, LabelImage& labels,
+                                 MaskImage& moved_mask) {
   assert(depth_m.width == expected_depth_m.width && depth_m.height == expected_depth_m.height);
   assert(depth_m.width == camera.width_px && depth_m.height == camera.height_px);
   const std::size_t pixels = depth_m.pixels.size();
   const auto width = static_cast<std::size_t>(depth_m.width);
   labels.resize(depth_m.width, depth_m.height, PixelLabel::kNotKnown);
   moved_mask.resize(depth_m.width, depth_m.height, 0);
-  scratch.evidence.resize(pixels);
-  scratch.steps.resize(pixels);
-  scratch.region.resize(pixels);
   if (pixels == 0) return {};
-  scratch.padded_m.resize(width + 2 * kSlopeStep_px);
-  scratch.sigma_m.resize(width);
-  scratch.reach_m.resize(width);
-  extremes_around(expected_depth_m, camera, config, scratch);
-  weigh_pixels(depth_m, expected_depth_m, camera, config, scratch);
+  state.evidence.resize(pixels);
+  for (auto* row :
+       {&state.weak_m, &state.strong_m, &state.nearest_m, &state.farthest_m, &state.around_hole_m})
+    row->resize(width);
+  state.keep.resize(width);
 
-  ForegroundCounts counts;
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const bool live = depth_m.pixels[i] > 0.0F;
-    const bool known = live && expected_depth_m.pixels[i] > 0.0F;
-    labels.pixels[i] = known ? PixelLabel::kStatic : PixelLabel::kNotKnown;
-    counts.valid += live;
-  }
-  const Difference moved{kWeakMoved, kStrongMoved, config.min_strong_fraction, PixelLabel::kMoved};
-  const Difference revealed{kWeakRevealed, kStrongRevealed, config.min_strong_fraction_revealed,
+  follow_misfit(depth_m, expected_depth_m, state.fit);
+  find_bounds(expected_depth_m, camera, config, state.fit.misfit_per_m, state.bounds);
+  recall(state.memory, depth_m, camera, T_world_camera, state.before);
+  weigh_pixels(depth_m, expected_depth_m, config, state, labels);
+  drop_far_weak(depth_m, config.weak_reach_px, state);
+
+  state.memory.grid = state.bounds.grid;
+  state.memory.blocks.assign(state.bounds.grid.size(), 0);
+  const Difference moved{{kWeakMoved, kStrongMoved, kDoubtMoved, kMovedBefore},
+                         kBlockMoved,
+                         kBlockMaybeMoved,
+                         config.min_strong_fraction,
+                         PixelLabel::kMoved};
+  const Difference revealed{{kWeakRevealed, kStrongRevealed, kDoubtRevealed, kRevealedBefore},
+                            kBlockRevealed,
+                            kBlockMaybeRevealed,
+                            config.min_strong_fraction_revealed,
                             PixelLabel::kRevealed};
-  counts.moved = label_regions(depth_m, moved, camera, config, scratch, labels);
-  counts.revealed = label_regions(depth_m, revealed, camera, config, scratch, labels);
+  ForegroundCounts counts;
+  counts.moved = label_regions(depth_m, moved, camera, config, state, labels);
+  counts.revealed = label_regions(depth_m, revealed, camera, config, state, labels);
+  remember(camera, T_world_camera, state.memory);
+
   for (std::size_t i = 0; i < pixels; ++i) {
+    const int live = depth_m.pixels[i] > 0.0F;
     moved_mask.pixels[i] = labels.pixels[i] == PixelLabel::kMoved ? 255 : 0;
-    counts.not_known += depth_m.pixels[i] > 0.0F && labels.pixels[i] == PixelLabel::kNotKnown;
+    counts.valid += live;
+    counts.not_known += live & (labels.pixels[i] == PixelLabel::kNotKnown);
   }
   return counts;
 }

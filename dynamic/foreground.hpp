@@ -1,66 +1,49 @@
 // foreground.hpp: which pixels of a depth frame differ from the static model, and how.
 #pragma once
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "dynamic/depth_regions.hpp"
+#include "dynamic/expected_bounds.hpp"
+#include "dynamic/foreground_config.hpp"
+#include "dynamic/model_fit.hpp"
+#include "dynamic/moved_memory.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {
 
 enum class PixelLabel : std::uint8_t {
-  kNotKnown,  ///< no live depth, or no static model to compare it with
+  kNotKnown,  ///< no live depth, no static model to compare it with, or a difference too small or new to tell
   kStatic,    ///< agrees with the static model as far as noise and pose error let one tell
   kMoved,     ///< nearer than the static model: something came in between
   kRevealed,  ///< farther than the static model: something was taken away
 };
 using LabelImage = Image<PixelLabel>;
 
-/// All "sigmas" are of the total: sensor noise at this depth and incidence angle, and the model's own error,
-/// added as variances. Strong pixels start a region, weak pixels only join one.
-struct ForegroundConfig {
-  float model_sigma_m = 0.004F;  ///< error of the expected depth itself; a map with 1 cm cells has about this
-  float model_sigma_per_m = 0.002F;  ///< and what grows with depth: pose error, the sensor's own distortion
-  float strong_sigmas = 4.0F;
-  float weak_sigmas = 2.0F;
-  /// How far aside an edge of the model may stand, by an error of the pose and the map's distortion.
-  float edge_error_m = 0.02F;
-  float edge_error_rad = 0.005F;  ///< the same by a turn of the pose, 0.3 degrees
-  int hole_reach_px = 16;  ///< how far from the model's edge a pixel without expected depth is still judged
-  /// How far over weak pixels a region grows from strong ones: to its rim, and not over all of a misplaced
-  /// table or chair that it touches, whose weakness would then count against it.
-  int weak_reach_px = 40;
-  int min_region_px = 60;         ///< smaller regions are noise
-  float min_region_m2 = 0.0003F;  ///< the same by size in the world: 3 cm2
-  /// Of a region's pixels, those that are strong. Regions by a distorted map or a wrong pose are weak nearly
-  /// everywhere (0 to 0.25 in a real kitchen mapped by poses 3 cm off); what moved is strong but for its rim.
-  float min_strong_fraction = 0.4F;
-  /// The same of a revealed region. What was taken away stands in the model, so the reach of its own edges
-  /// eats into it: of a thing 12 cm wide, a tenth is left.
-  float min_strong_fraction_revealed = 0.1F;
-};
-/// Throws Error naming the field, its value and the rule.
-void require_valid(const ForegroundConfig& config);
+/// What mark_foreground remembers of the frame before, and buffers that it reuses. A new one knows nothing.
+struct ForegroundState {
+  MovedMemory memory;
+  ModelFit fit;
 
-/// Buffers that mark_foreground reuses from frame to frame; their content means nothing between calls.
-struct ForegroundScratch {
-  std::vector<float> nearest_m, farthest_m, reach_m, sigma_m;  // one value a pixel of a row
-  std::vector<float> padded_m;                                 // one row of expected depth with margins
-  std::vector<float> block_nearest_m, block_farthest_m;        // one value a block of pixels
-  std::vector<float> window_nearest_m, window_farthest_m, window_reach_m, grown_nearest_m, grown_farthest_m,
-      along_rows_m, spread_m;
-  std::vector<int> window;             // blocks to each side that an edge may be off
-  std::vector<std::uint8_t> evidence;  // bits, see foreground.cpp
-  std::vector<std::uint8_t> steps;     // from a pixel of a region to a strong one
-  std::vector<std::uint32_t> region;   // pixels of the region being grown
+  ExpectedBounds bounds;
+  std::vector<std::uint8_t> before;       // bits a block, see moved_memory.hpp
+  std::vector<std::uint8_t> near_strong;  // evidence bits to keep, a block
+  std::vector<std::uint8_t> block_evidence, along_rows;
+  std::vector<float> weak_m, strong_m;  // one value a pixel of a row
+  std::vector<float> nearest_m, farthest_m, around_hole_m;
+  std::vector<std::uint8_t> keep;
+  std::vector<std::uint8_t> evidence;  // bits a pixel, see foreground.cpp
+  DepthRegions regions;
 };
 
 struct ForegroundCounts {
   std::size_t valid = 0;  ///< pixels with live depth
   std::size_t moved = 0;
   std::size_t revealed = 0;
-  std::size_t not_known = 0;  ///< pixels with live depth but nothing to compare it with
+  std::size_t not_known = 0;  ///< pixels with live depth that are kNotKnown
 };
 
 /// Compares a depth frame with what the static model would show at the same pose.
@@ -68,7 +51,8 @@ struct ForegroundCounts {
 /// @param depth_m           live depth, height x width, metres along the axis, 0 = no measurement
 /// @param expected_depth_m  the static model as the same camera sees it, same size, 0 = it has nothing there
 /// @param camera            of both images
-/// @param scratch           reused; nothing is allocated from the second frame of a size on
+/// @param T_world_camera    its pose; what was marked in the frame before is looked up by it
+/// @param state             of this camera; nothing is allocated from the second frame of a size on
 /// @param labels            resized and set
 /// @param moved_mask        255 where the label is kMoved, else 0; resized and set
 /// The three sizes must agree (asserted).
@@ -79,9 +63,11 @@ struct ForegroundCounts {
 /// region grows over pixels that are nearer than the model just there, across the live surface. Where the
 /// model has a hole no region starts; one may grow into it over what is nearer than all expected depth within
 /// hole_reach_px. Everything else in a hole, and all of an unmapped view, is kNotKnown: a hole proves
-/// nothing.
+/// nothing. A region is believed by its size and the part of it that is strong; less of both is asked where
+/// one was in the frame before, and a small new one waits for a second frame.
 ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
-                                 const Intrinsics& camera, const ForegroundConfig& config,
-                                 ForegroundScratch& scratch, LabelImage& labels, MaskImage& moved_mask);
+                                 const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                                 const ForegroundConfig& config, ForegroundState& state, LabelImage& labels,
+                                 MaskImage& moved_mask);
 
 }  // namespace roomradar

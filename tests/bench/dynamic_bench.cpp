@@ -64,15 +64,15 @@ void measure_times(Rows& rows) {
   cast_room(source.room(), frame.depth_camera, source.truth().T_world_camera, caster, expected_m);
   put_in_front(frame);
 
-  ForegroundScratch foreground_scratch;
+  ForegroundState foreground;
   LabelImage labels;
   MaskImage moved_mask;
   ForegroundCounts counts;
   Times segmentation;
   for (int i = 0; i < kWarmUp + kRepeats; ++i) {
     const double start_ms = thread_ms();
-    counts = mark_foreground(frame.depth_m, expected_m, frame.depth_camera, {}, foreground_scratch, labels,
-                             moved_mask);
+    counts = mark_foreground(frame.depth_m, expected_m, frame.depth_camera, source.truth().T_world_camera, {},
+                             foreground, labels, moved_mask);
     if (i >= kWarmUp) segmentation.samples_ms.push_back(thread_ms() - start_ms);
   }
   const double fraction =
@@ -162,7 +162,7 @@ void measure_still_kitchen(Rows& rows) {
   DepthPass depth_pass(context);
   GpuMesh room(context);
   DepthImage expected_m;
-  ForegroundScratch scratch;
+  ForegroundState foreground;
   LabelImage labels;
   MaskImage moved_mask;
   ForegroundCounts all;
@@ -176,7 +176,8 @@ void measure_still_kitchen(Rows& rows) {
     const MeshInstance instance{&room, Eigen::Isometry3d::Identity()};
     depth_pass.render({&instance, 1}, frame.depth_camera, *frame.T_world_camera, expected_m);
     const ForegroundCounts counts =
-        mark_foreground(frame.depth_m, expected_m, frame.depth_camera, {}, scratch, labels, moved_mask);
+        mark_foreground(frame.depth_m, expected_m, frame.depth_camera, *frame.T_world_camera, {}, foreground,
+                        labels, moved_mask);
     all.valid += counts.valid;
     all.moved += counts.moved;
     all.revealed += counts.revealed;

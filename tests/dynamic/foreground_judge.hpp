@@ -73,7 +73,7 @@ inline MaskScore judge_foreground(const SimOptions& options, std::int64_t step, 
   ViewCaster caster;
   Frame frame;
   DepthImage expected_m;
-  ForegroundScratch scratch;
+  ForegroundState state;
   LabelImage labels;
   MaskImage moved_mask;
   MaskScore score;
@@ -83,7 +83,8 @@ inline MaskScore judge_foreground(const SimOptions& options, std::int64_t step, 
     const Eigen::Isometry3d T_world_camera =
         source.truth().T_world_camera * pose_error(shift_m, turn_deg, static_cast<int>(i));
     cast_room(source.room(), frame.depth_camera, T_world_camera, caster, expected_m);
-    mark_foreground(frame.depth_m, expected_m, frame.depth_camera, config, scratch, labels, moved_mask);
+    mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, config, state, labels,
+                    moved_mask);
     add_frame(frame.depth_m, moved_mask, source.truth().moved, score);
   }
   return score;
