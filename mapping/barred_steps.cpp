@@ -64,7 +64,7 @@ void bar_along(int axis, const std::array<Vector3d, 3>& corners, VoxelBits& barr
 }  // namespace
 
 std::array<VoxelBits, 3> barred_steps(const Mesh& surface_world, const CellGrid& grid) {
-  const VoxelBits none(grid.size, false, false);
+  const VoxelBits none(grid.size, false);
   std::array<VoxelBits, 3> barred{none, none, none};
   const Vector3d origin_cells =
       surface_world.origin / grid.cell_m - grid.first_cell.cast<double>() - Vector3d::Constant(0.5);

@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::Vector3i;
 
-constexpr double kMostCells = 2.5e8;  // 31 MB of bits
-constexpr int kGridsAtOnce = 11;      // of bits; most of them while free space is followed
+constexpr double kMostCells = 2e8;  // 25 MB of bits
+constexpr int kGridsAtOnce = 15;    // of bits; most of them when the faces are sought
 
 void require_in_1_to_16(const char* field, int value) {
   if (value < 1 || value > 16)
@@ -34,7 +34,7 @@ struct Known {
   VoxelBits unknown;  // all voxels of the cell are
 };
 
-// The box of what is known and a margin round it; its lowest cell's coordinates are multiples of `lattice`.
+// The box of what is known and a margin round it, from one multiple of `lattice` cells to another.
 CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world, int margin, int lattice,
                     int& cell_voxels) {
   const auto voxel = [&](const Eigen::Vector3d& p) -> Vector3i {
@@ -44,23 +44,25 @@ CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world
   CellGrid grid;
   for (cell_voxels = 1;; ++cell_voxels) {
     grid.cell_m = cell_voxels * map.resolution_m();
-    grid.first_cell = low.unaryExpr(
-        [&](int v) { return lattice * floor_div(floor_div(v, cell_voxels) - margin, lattice); });
+    const auto block_of = [&](int v, int away) {
+      return floor_div(floor_div(v, cell_voxels) + away, lattice);
+    };
+    grid.first_cell = low.unaryExpr([&](int v) { return lattice * block_of(v, -margin); });
     grid.size =
-        high.unaryExpr([&](int v) { return floor_div(v - 1, cell_voxels) + 1 + margin; }) - grid.first_cell;
+        high.unaryExpr([&](int v) { return lattice * (block_of(v - 1, margin) + 1); }) - grid.first_cell;
     if (grid.size.cast<double>().prod() <= kMostCells) return grid;
   }
 }
 
 Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
                   const UnknownSurfaceConfig& config) {
-  // So wide a margin of unknown cells that what lies past it need not be looked at.
-  const int margin = std::max(config.least_voxels, config.cube_voxels) + config.cube_voxels;
+  // So wide that all unknown cells of the margin count by what is in the box.
+  const int margin = std::max(config.least_voxels, config.cube_voxels);
   Known known;
   int edge = 1;
   known.grid = grid_round(map, known_world, margin, config.cube_voxels, edge);
-  known.free = VoxelBits(known.grid.size, false, false);
-  known.unknown = VoxelBits(known.grid.size, true, true);
+  known.free = VoxelBits(known.grid.size, false);
+  known.unknown = VoxelBits(known.grid.size, true);
   map.visit_leaves([&](const MapLeaf& leaf) {
     const Vector3i from = leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v, edge); });
     const Vector3i to =
@@ -72,32 +74,15 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
   return known;
 }
 
-// Adds the cells of `where` that are one step from `reached` that is not barred. False if there are none.
-bool spread(VoxelBits& reached, const VoxelBits& where, const std::array<VoxelBits, 3>& barred) {
-  VoxelBits next = reached;
-  for (int axis = 0; axis < 3; ++axis) {
-    const VoxelBits& bars = barred[static_cast<std::size_t>(axis)];
-    VoxelBits leaving = reached;
-    next |= leaving.subtract(bars).shifted(axis, -1);
-    next |= reached.shifted(axis, 1).subtract(bars);
-  }
-  next &= where;
-  next |= reached;
-  if (next == reached) return false;
-  reached = std::move(next);
-  return true;
-}
-
 // Where an object can be that comes from free space: through free voxels as far as they go, then on for
 // rim_voxels through whatever does not count as unknown.
 VoxelBits reachable(const VoxelBits& free, const VoxelBits& unknown, const std::array<VoxelBits, 3>& barred,
                     const UnknownSurfaceConfig& config) {
-  constexpr int kLongestSlit = 256;  // voxels that a slit too thin to come from is followed
   VoxelBits reached = opened(free, config.least_voxels);
-  for (int step = 0; step < kLongestSlit && spread(reached, free, barred);) ++step;
-  VoxelBits passable(free.size(), true, false);
+  reached.flood(free, barred);
+  VoxelBits passable(free.size(), true);
   passable.subtract(unknown);
-  for (int step = 0; step < config.rim_voxels; ++step) spread(reached, passable, barred);
+  for (int step = 0; step < config.rim_voxels; ++step) reached.spread(passable, barred);
   return reached;
 }
 

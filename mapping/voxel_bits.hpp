@@ -1,6 +1,7 @@
 // voxel_bits.hpp: a box of voxels with one bit each, 64 of a row in a word, and what is done to all at once.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -8,13 +9,13 @@
 
 namespace roomradar {
 
-/// Rows run along x. Voxels outside the box are all `outside`, for every function here; so are the bits past
-/// a row's end in its last word.
+/// Rows run along x. All voxels outside the box are clear, for every function here; so are the bits past a
+/// row's end in its last word.
 class VoxelBits {
  public:
   VoxelBits() = default;
   /// All in the box are `value`. No coordinate of size may be negative.
-  VoxelBits(const Eigen::Vector3i& size, bool value, bool outside);
+  VoxelBits(const Eigen::Vector3i& size, bool value);
 
   [[nodiscard]] const Eigen::Vector3i& size() const { return size_; }
   [[nodiscard]] std::size_t memory_bytes() const { return words_.size() * sizeof(std::uint64_t); }
@@ -24,7 +25,7 @@ class VoxelBits {
   /// From `low` to before `high`, as far as that lies in the box.
   void set_box(const Eigen::Vector3i& low, const Eigen::Vector3i& high, bool value);
 
-  /// Both must be of one size; what is outside stays what it is.
+  /// Both must be of one size.
   VoxelBits& operator&=(const VoxelBits& other);
   VoxelBits& operator|=(const VoxelBits& other);
   VoxelBits& subtract(const VoxelBits& other);
@@ -32,6 +33,12 @@ class VoxelBits {
 
   /// Each voxel as its neighbour `step` (-1 or 1) along the axis is.
   [[nodiscard]] VoxelBits shifted(int axis, int step) const;
+
+  /// Adds the voxels of `where` that are one step along an axis from set ones. A step between a voxel that is
+  /// set in `barred` of that axis and the next one is not made. All are of one size.
+  void spread(const VoxelBits& where, const std::array<VoxelBits, 3>& barred);
+  /// The same for as many steps as add anything.
+  void flood(const VoxelBits& where, const std::array<VoxelBits, 3>& barred);
 
   /// Calls visit(p) for each set voxel of the box, z slowest, x fastest.
   template <typename Visit>
@@ -53,10 +60,12 @@ class VoxelBits {
   [[nodiscard]] const std::uint64_t* row(int y, int z) const {
     return words_.data() + row_index(y, z) * words_a_row_;
   }
-  void set_row_ends();
+  void clear_row_ends();
+  /// Spreads from voxels of `source`, which may be this, into one row. Says whether that added any.
+  bool spread_to_row(const VoxelBits& source, const VoxelBits& where, const std::array<VoxelBits, 3>& barred,
+                     int y, int z);
 
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
-  bool outside_ = false;
   std::size_t words_a_row_ = 0;
   std::vector<std::uint64_t> words_;
 };

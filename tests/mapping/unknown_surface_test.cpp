@@ -11,9 +11,11 @@
 #include <random>
 #include <vector>
 
+#include "app/sources/folder_source.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/recordings.hpp"
 
 namespace roomradar {
 namespace {
@@ -197,12 +199,13 @@ TEST(UnknownSurface, AgreesWithItsDefinitionOnRandomLeaves) {
   for (int round = 0; round < 6; ++round) {
     constexpr int kSize = 32;
     StaticMap map(kVoxel_m);
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 240; ++i) {
       const int edge = 1 << (random() % 4);
       const auto place = [&] {
         return static_cast<int>(random() % (kSize / static_cast<unsigned>(edge))) * edge;
       };
-      const Vector3i low(place(), place(), place());
+      const Vector3i low =
+          Vector3i(place(), place(), place()) + Vector3i(kSize * static_cast<int>(random() % 4), 0, 0);
       map.add_evidence(MapLeaf{low, edge, random() % 4 == 0 ? kOccupied : kFree});
     }
     const UnknownSurfaceConfig config{
@@ -235,7 +238,8 @@ TEST(UnknownSurface, AgreesWithItsDefinitionOnRandomLeaves) {
     const UnknownSurface surface = unknown_surface(map, kNoSurface, config);
     for (int i = 0; i < 4000; ++i) {
       const auto place = [&] { return static_cast<int>(random() % (kSize + 8)) - 4; };
-      const Vector3i p(place(), place(), place());
+      const Vector3i p =
+          Vector3i(place(), place(), place()) + Vector3i(kSize * static_cast<int>(random() % 4), 0, 0);
       ASSERT_EQ(is_unknown(surface, (p.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m), counts(p))
           << p.transpose() << " in round " << round;
     }
@@ -330,6 +334,36 @@ TEST(UnknownSurface, NoStraightWayLeadsFromFreeToUnknownSpacePastBothSurfaces) {
   }
   EXPECT_GT(ways, 150);
   EXPECT_GT(by_unknown, 50);
+}
+
+TEST(UnknownSurface, OfTheKitchenStandsInNoSpaceThatACameraSawThrough) {
+  ROOMRADAR_RECORDING_OR_SKIP(folder, "kitchen");
+  const auto source = open_folder(folder);
+  StaticMap map(kVoxel_m);
+  Frame frame;
+  std::vector<std::pair<Vector3d, Vector3d>> rays;  // from the camera to 8 cm before what was measured
+  for (std::int64_t i = 0; i < 400; i += 10) {
+    ASSERT_TRUE(source->seek(i));
+    ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
+    const Eigen::Isometry3d& T = *frame.T_world_camera;
+    ASSERT_EQ(map.fuse(frame, T), FuseStatus::kFused);
+    for (int y = 20; y < frame.depth_m.height; y += 80)
+      for (int x = 20; x < frame.depth_m.width; x += 80) {
+        const double depth_m = static_cast<double>(frame.depth_m.at(x, y));
+        if (depth_m > 0.5 && depth_m < 4.0)
+          rays.emplace_back(T.translation(), T * back_project(frame.depth_camera, x, y, depth_m - 0.08));
+      }
+  }
+  const UnknownSurface surface = unknown_surface(map, extract_surface(map));
+  ASSERT_GT(surface.mesh_world.triangles.size(), 1000U);
+  EXPECT_LT(surface.mesh_world.triangles.size(), 60000U);
+  ASSERT_GT(rays.size(), 1000U);
+  std::size_t asked = 0, unknown = 0;
+  for (const auto& [from, to] : rays)
+    for (double part = 0.1; part <= 1.0; part += 0.05, ++asked)
+      unknown += is_unknown(surface, from + part * (to - from)) ? 1 : 0;
+  EXPECT_EQ(unknown, 0U) << "of " << asked;
+  EXPECT_TRUE(is_unknown(surface, rays.front().second + 3.0 * (rays.front().second - rays.front().first)));
 }
 
 TEST(UnknownSurface, ConfigsOutOfTheirRulesAreRefused) {
