@@ -147,6 +147,16 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
                   "not depend on it")
       ->check(CLI::Range(1, 4096))
       ->type_name("N");
+  sub->add_option("--adopt", command.adopt_after_s,
+                  "what came and stayed, or was gone, for so many seconds while it was seen becomes part of\n"
+                  "the room (of this run's own; the saved map stays as it is)")
+      ->check(within(0.5, 86400.0, "seconds"))
+      ->type_name("SECONDS");
+  sub->add_option(
+         "--save-map", command.save_map,
+         "folder to save the room with what was adopted in, as a map; an older map there is replaced,\n"
+         "so give --map's own folder to change that")
+      ->type_name("DIR");
   sub->add_option("--video", command.video, "write the composed pictures as .mp4, .avi or .mkv")
       ->type_name("FILE");
   sub->add_option("--pictures", command.pictures,

@@ -35,6 +35,8 @@ struct RunCommand {
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = false;  ///< kMap only: objects do not enter what the scan has not seen
   RadarConfig radar;
+  std::optional<double> adopt_after_s;  ///< none: only what the script asks for, if it does
+  std::string save_map;                 ///< folder for the map as it is at the end; empty: it is not saved
   std::string video;
   std::string pictures;  ///< folder for composed frames as PNG
   std::int64_t pictures_every = 10;

@@ -35,6 +35,8 @@ class LiveScene {
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
   std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
+  /// The room's shape is another by now.
+  void room_changed() { expected_camera_ = {}; }
   /// Labels the frame's pixels against the expected depth, and by what the frame before showed.
   ForegroundCounts find_moved(const Frame& frame);
   /// kMap: meshes the pixels that moved; kHoles, kSkirt: all pixels.
@@ -47,6 +49,7 @@ class LiveScene {
   [[nodiscard]] std::vector<MeshInstance> drawn_surfaces() const;
 
   [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
+  [[nodiscard]] const LabelImage& labels() const { return labels_; }
   [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
   [[nodiscard]] const Mesh& moved_mesh_world() const { return moved_mesh_world_; }
   [[nodiscard]] std::size_t moved_triangles() const { return moved_.touched.triangle_count(); }

@@ -1,4 +1,5 @@
 // run_command.cpp: roomradar run: augmented reality in a saved room.
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +14,7 @@
 #include "app/session.hpp"
 #include "app/video_writer.hpp"
 #include "mapping/map_folder.hpp"
+#include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -40,6 +42,7 @@ struct RunTotals {
   double moved_fraction = 0.0, dynamic_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;
   double deepest_penetration_m = 0.0;
+  double first_stamp_s = 0.0;
   std::string last_fault;
 
   void add(const FrameResult& frame) {
@@ -72,6 +75,13 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                        {"began_in_unknown", object->began_in_unknown},
                        {"position_m", to_json(object->body.T_world_object.translation())}});
   }
+  nlohmann::json adopted = nlohmann::json::array();
+  for (const AdoptedChange& change : session.adopted())
+    adopted.push_back({{"change", to_string(change.kind)},
+                       {"time_s", change.stamp_s - totals.first_stamp_s},
+                       {"frame", change.frame},
+                       {"position_m", to_json(change.box_world.center())},
+                       {"size_m", to_json(change.box_world.sizes())}});
   nlohmann::json results = {
       {"frames_located", totals.located},
       {"frames_degenerate", totals.degenerate},
@@ -85,6 +95,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"unknown_mb", static_cast<double>(session.unknown().memory_bytes) / 1e6},
       {"deepest_penetration_m", totals.deepest_penetration_m},
       {"objects", objects},
+      {"adopted", adopted},
   };
   if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;
   return results;
@@ -102,6 +113,12 @@ void print_summary(const RunTotals& totals, const Session& session) {
       "located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
       static_cast<long long>(totals.located), static_cast<long long>(totals.read),
       100.0 * totals.per_frame(totals.moved_fraction), totals.per_frame(totals.dynamic_triangles));
+  for (const AdoptedChange& change : session.adopted()) {
+    const Eigen::Vector3d p = change.box_world.center(), size = change.box_world.sizes();
+    std::printf("adopted at %.1f s: what %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
+                change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
+                p.x(), p.y(), p.z(), size.x(), size.y(), size.z());
+  }
   for (const auto& object : session.objects()) {
     const Eigen::Vector3d p = object->body.T_world_object.translation();
     if (!object->in_room)
@@ -133,6 +150,14 @@ void make_unknown_solid(Session& session, StageTimes& times) {
                static_cast<double>(session.unknown().memory_bytes) / 1e6);
 }
 
+/// The octree as the session has left it, with its surface made anew as a whole.
+void save_changed(SavedMap& map, std::size_t changes, const std::string& folder) {
+  if (changes > 0) map.mesh = extract_surface(map.octree);
+  map.info.settings["adopted"] = std::to_string(changes);
+  save_map(folder, map);
+  std::printf("%s: saved with %zu changes\n", folder.c_str(), changes);
+}
+
 }  // namespace
 
 int run(const RunCommand& command) {
@@ -146,12 +171,22 @@ int run(const RunCommand& command) {
                      {"surfaces", to_string(command.surfaces)},
                      {"unknown", command.unknown_is_solid ? "solid" : "free"},
                      {"radar", to_string(command.radar.mode)},
-                     {"radar_px", command.radar.resolution_px}};
+                     {"radar_px", command.radar.resolution_px},
+                     {"save_map", command.save_map}};
+  if (command.adopt_after_s) report.settings["adopt_s"] = *command.adopt_after_s;
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   require_writable(command.report);
   const Script script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
-  const SavedMap map = load_map(command.map);
+  const bool asks = std::any_of(script.events.begin(), script.events.end(),
+                                [](const ScriptEvent& event) { return event.action == Action::kAdopt; });
+  if (!command.save_map.empty()) {
+    if (!command.adopt_after_s && !asks)
+      throw Error("--save-map " + command.save_map +
+                  ": nothing would change in the map; add --adopt SECONDS, or an adopt event to the script");
+    require_can_become_map(command.save_map);
+  }
+  SavedMap map = load_map(command.map);
   const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
   SessionConfig config;
   config.poses = command.poses;
@@ -159,7 +194,12 @@ int run(const RunCommand& command) {
   config.radar = command.radar;
   config.make_picture = !command.video.empty() || !command.pictures.empty();
   config.measure_penetration = !command.report.empty();
-  Session session(map, config);
+  if (command.adopt_after_s || asks) {
+    config.adopt.emplace();
+    config.adopt->after_s = command.adopt_after_s;
+    config.adopt->wait = source->frame_count().has_value();  // a device does not wait
+  }
+  Session session(map, config, &map.octree);
   report.renderer = session.renderer();
   std::fprintf(stderr, "rendering with %s\n", session.renderer().c_str());
   if (command.unknown_is_solid) make_unknown_solid(session, report.times);
@@ -180,7 +220,6 @@ int run(const RunCommand& command) {
   Frame frame;
   std::size_t next_event = 0;
   bool quit = false;
-  double first_stamp_s = 0.0;
   {
     Progress progress("running", source->frame_count());
     for (std::int64_t run_frame = 0; !quit; ++run_frame) {
@@ -192,9 +231,9 @@ int run(const RunCommand& command) {
         totals.last_fault = read.fault;
         continue;
       }
-      if (totals.read - totals.skipped == 1) first_stamp_s = frame.stamp_s;
+      if (totals.read - totals.skipped == 1) totals.first_stamp_s = frame.stamp_s;
       for (; next_event < script.events.size() &&
-             is_due(script.events[next_event], run_frame, frame.stamp_s - first_stamp_s);
+             is_due(script.events[next_event], run_frame, frame.stamp_s - totals.first_stamp_s);
            ++next_event) {
         const ScriptEvent& event = script.events[next_event];
         quit = quit || event.action == Action::kQuit;
@@ -210,10 +249,12 @@ int run(const RunCommand& command) {
     }
   }
   if (video) video->close();
+  session.finish_adopting();
   if (totals.read == totals.skipped)
     throw Error(command.source + ": there is not one readable frame" +
                 (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
 
+  if (!command.save_map.empty()) save_changed(map, session.adopted().size(), command.save_map);
   report.frames_read = totals.read;
   report.frames_skipped = totals.skipped;
   report.results = results_of(totals, session);

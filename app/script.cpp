@@ -97,7 +97,11 @@ void read_when(LineReader& line, ScriptEvent& event) {
 }
 
 void read_action(LineReader& line, ScriptEvent& event) {
-  const std::string_view action = line.word("an action: add, place, drop, throw, remove or quit");
+  const std::string_view action = line.word("an action: add, place, drop, throw, remove, adopt or quit");
+  if (action == "adopt") {
+    event.action = Action::kAdopt;
+    return;
+  }
   if (action == "quit") {
     event.action = Action::kQuit;
     return;
@@ -105,7 +109,8 @@ void read_action(LineReader& line, ScriptEvent& event) {
   const bool known =
       action == "add" || action == "place" || action == "drop" || action == "throw" || action == "remove";
   if (!known)
-    line.fail("unknown action " + in_quotes(action) + "; there are add, place, drop, throw, remove and quit");
+    line.fail("unknown action " + in_quotes(action) +
+              "; there are add, place, drop, throw, remove, adopt and quit");
   event.name = line.word("the object's name");
   if (action == "add") {
     event.action = Action::kAdd;
@@ -155,7 +160,7 @@ Script parse_script(std::string_view text, std::string_view where) {
       const auto [first, is_new] = added_in_line.emplace(event.name, number);
       if (!is_new)
         line.fail(in_quotes(event.name) + " was added in line " + std::to_string(first->second) + " already");
-    } else if (event.action != Action::kQuit && !added_in_line.contains(event.name)) {
+    } else if (!event.name.empty() && !added_in_line.contains(event.name)) {
       line.fail("no object " + in_quotes(event.name) + " was added in a line above; write 'frame 0 add " +
                 event.name + " teapot' first");
     }

@@ -16,6 +16,7 @@ enum class Action {
   kDrop,    ///< let it fall from above a point, or from above a level surface in view
   kThrow,   ///< put it at a position with a velocity
   kRemove,  ///< take it out of the room
+  kAdopt,   ///< what stands still now in view, or has gone, becomes part of the room
   kQuit,    ///< end the run before this frame
 };
 
@@ -25,7 +26,7 @@ struct ScriptEvent {
   std::optional<std::int64_t> frame;  ///< before this frame of the run, from 0; either this ...
   std::optional<double> time_s;       ///< ... or before the first frame at or after this time of the run
   Action action = Action::kQuit;
-  std::string name;              ///< of the object; empty for kQuit
+  std::string name;              ///< of the object; empty for kAdopt and kQuit
   std::string mesh;              ///< kAdd: `teapot`, or a mesh file, relative to the script's folder
   std::optional<double> size_m;  ///< kAdd: scaled so that its longest side is this; as it is if absent
   /// kPlace, kDrop, kThrow; kDrop without one: over a surface in view.
@@ -48,6 +49,7 @@ struct Script {
 ///     time 4     place pot 0.4 -0.1 0.9
 ///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
 ///     time 6     remove pot
+///     time 7     adopt                           what stands still now in view becomes part of the room
 ///     frame 300  quit
 ///
 /// Throws Error "FILE:LINE: ..." with what was found and what is wanted for: an unknown word, a missing or

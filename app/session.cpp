@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "app/placement.hpp"
@@ -16,7 +17,7 @@ constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from an obje
 
 }  // namespace
 
-Session::Session(const SavedMap& map, const SessionConfig& config)
+Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
     : map_(map),
       config_(config),
       room_(context_),
@@ -27,6 +28,12 @@ Session::Session(const SavedMap& map, const SessionConfig& config)
   require_valid(config.physics);
   require_valid(config.picture);
   room_.set(map.mesh, MeshUsage::kStatic);
+  if (!config.adopt) return;
+  if (octree == nullptr) throw Error("adopt: the session was given no octree to change");
+  if (config.scene.surfaces != SurfacePolicy::kMap)
+    throw Error(std::string("adopt: with --surfaces ") + std::string(to_string(config.scene.surfaces)) +
+                " nothing is asked of the map, so there is nothing to adopt into; use --surfaces map");
+  living_map_ = std::make_unique<LivingMap>(*octree, map.mesh, *config.adopt);
 }
 
 void Session::make_unknown_solid(StageTimes& times) {
@@ -35,6 +42,8 @@ void Session::make_unknown_solid(StageTimes& times) {
   times.timed("unknown", [&] {
     unknown_ = unknown_surface(map_.octree, map_.mesh);
     unknown_tree_.build_by_place(unknown_.mesh_world);
+    unknown_is_solid_ = true;
+    if (living_map_) living_map_->keep_up_unknown();
   });
 }
 
@@ -51,6 +60,7 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   last_stamp_s_ = frame.stamp_s;
   has_last_stamp_ = true;
 
+  if (living_map_ && living_map_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
   result.tracking = tracking.status;
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
@@ -64,6 +74,10 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   result.static_triangles_drawn =
       times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
   result.foreground = times.timed("foreground", [&] { return scene_.find_moved(frame); });  // what moved?
+  if (living_map_)
+    times.timed("changes", [&] {  // what came to stay, what is gone?
+      living_map_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
+    });
   times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera); });
   release_waiting(frame, T_world_camera);
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
@@ -88,6 +102,24 @@ Tracking Session::locate_camera(const Frame& frame) {
     return scene_.expected_depth_m();
   };
   return locate(locator_, frame, map_.places, scene_.moved_mask(), expected_depth);
+}
+
+void Session::renew_room() {
+  ChangedRoom& room = living_map_->room();
+  room_.set(room.mesh, std::move(room.tree));
+  if (unknown_is_solid_) {
+    unknown_ = std::move(room.unknown);
+    unknown_tree_ = std::move(room.unknown_tree);
+  }
+  scene_.room_changed();
+}
+
+std::vector<AdoptedChange> Session::adopted() const {
+  return living_map_ ? living_map_->adopted() : std::vector<AdoptedChange>{};
+}
+
+void Session::finish_adopting() {
+  if (living_map_) living_map_->finish();
 }
 
 std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const {
@@ -227,6 +259,10 @@ void Session::apply(const ScriptEvent& event) {
     }
     case Action::kRemove:
       object_named(event.name).in_room = false;
+      break;
+    case Action::kAdopt:
+      if (!living_map_) throw Error("script: adopt: this session does not watch for changes");
+      living_map_->ask();
       break;
     case Action::kQuit:
       break;

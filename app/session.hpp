@@ -9,6 +9,7 @@
 #include "app/compose.hpp"
 #include "app/draw.hpp"
 #include "app/live_scene.hpp"
+#include "app/living_map.hpp"
 #include "app/locator.hpp"
 #include "app/physics.hpp"
 #include "app/script.hpp"
@@ -29,7 +30,8 @@ struct SessionConfig {
   RadarConfig radar;
   PhysicsConfig physics;
   ComposeConfig picture;
-  bool make_picture = true;  ///< false: no drawing, only what moves the objects
+  std::optional<AdoptConfig> adopt;  ///< none: the room stays as it was saved
+  bool make_picture = true;          ///< false: no drawing, only what moves the objects
   /// The exact radar looks after each frame how deep objects stand, along gravity, in the room and in one
   /// another.
   bool measure_penetration = false;
@@ -52,20 +54,21 @@ struct FrameResult {
   double deepest_penetration_m = 0.0;  ///< >= 0, where it is measured
 };
 
-/// Everything a run keeps from frame to frame. The room is read only. Not thread safe; GL on the thread that
-/// made it.
+/// Everything a run keeps from frame to frame. The saved map is only read. Not thread safe; GL on the thread
+/// that made it.
 class Session {
  public:
   /// `map` must outlive the session. Throws Error if there is no GL, or a config is out of its rules.
-  Session(const SavedMap& map, const SessionConfig& config);
+  /// @param octree  the map's; needed with config.adopt, and then changed with the room
+  Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree = nullptr);
 
   /// From now on objects do not enter space that the map's scan has not seen. One that is put into such space
   /// is stopped by it only once it has come out. Stage timed: unknown. Throws Error unless the surfaces are
   /// the map's.
   void make_unknown_solid(StageTimes& times);
 
-  /// One frame, from sensor to picture. Stages timed: locate expected foreground mesh radar physics compose
-  /// frame.
+  /// One frame, from sensor to picture. Stages timed: locate expected foreground changes mesh radar physics
+  /// compose frame.
   FrameResult step(const Frame& frame, StageTimes& times);
 
   /// Adds, places, drops, throws or removes an object, before the frame it is due in. A drop over "a surface
@@ -79,6 +82,10 @@ class Session {
   [[nodiscard]] const LiveScene& scene() const { return scene_; }
   /// Without triangles unless it was made solid.
   [[nodiscard]] const UnknownSurface& unknown() const { return unknown_; }
+  /// What came and stayed, or was taken away, and is part of the room by now.
+  [[nodiscard]] std::vector<AdoptedChange> adopted() const;
+  /// Waits for what is being worked into the octree, so that it may be read.
+  void finish_adopting();
 
  private:
   const SavedMap& map_;
@@ -87,7 +94,9 @@ class Session {
   Shape room_;
   UnknownSurface unknown_;
   TriangleTree unknown_tree_;
+  bool unknown_is_solid_ = false;
   LiveScene scene_;
+  std::unique_ptr<LivingMap> living_map_;  ///< null: the room stays as it is
   Locator locator_;
   CyberRadar radar_;
   CyberRadar exact_radar_;  ///< measures penetration
@@ -109,6 +118,7 @@ class Session {
   ColourImage background_;
   ColourImage picture_;
 
+  void renew_room();
   FrameResult pass_through(const Frame& frame, StageTimes& times);
   Tracking locate_camera(const Frame& frame);
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;

@@ -1,6 +1,8 @@
 // shape.cpp: one mesh to the renderer and under a tree.
 #include "app/shape.hpp"
 
+#include <utility>
+
 namespace roomradar {
 
 void Shape::set(const Mesh& mesh, MeshUsage usage) {
@@ -10,6 +12,11 @@ void Shape::set(const Mesh& mesh, MeshUsage usage) {
     touched.build_in_order(mesh);
   }
   drawn.upload(mesh, usage, touched);
+}
+
+void Shape::set(const Mesh& mesh, TriangleTree tree) {
+  touched = std::move(tree);
+  drawn.upload(mesh, MeshUsage::kStatic, touched);
 }
 
 }  // namespace roomradar

@@ -15,6 +15,8 @@ struct Shape {
 
   /// Replaces both. Throws Error as GpuMesh::upload does; then neither is to be used.
   void set(const Mesh& mesh, MeshUsage usage);
+  /// The same with a tree that was built by place from this mesh, elsewhere.
+  void set(const Mesh& mesh, TriangleTree tree);
 };
 
 }  // namespace roomradar

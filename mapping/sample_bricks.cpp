@@ -14,11 +14,17 @@ static_assert(1 << kBrickShift == kBrickEdge);
 
 }  // namespace
 
-SampleBricks::SampleBricks(const StaticMap& map, float min_weight) {
+SampleBricks::SampleBricks(const StaticMap& map, float min_weight)
+    : SampleBricks([&map](const auto& visit) { map.visit_samples(visit); }, min_weight) {}
+
+SampleBricks::SampleBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world)
+    : SampleBricks([&](const auto& visit) { map.visit_samples(box_world, visit); }, min_weight) {}
+
+SampleBricks::SampleBricks(const VisitSamples& visit_samples, float min_weight) {
   // The octree's order visits each brick once. All are counted first: a vector that grows holds them twice.
   std::optional<VoxelIndex> last;
   std::size_t count = 0;
-  map.visit_samples([&](const SurfaceSample& sample) {
+  visit_samples([&](const SurfaceSample& sample) {
     if (sample.weight < min_weight) return;
     const VoxelIndex first = brick_of(sample.voxel);
     count += last != first ? 1U : 0U;
@@ -26,7 +32,7 @@ SampleBricks::SampleBricks(const StaticMap& map, float min_weight) {
   });
   bricks_.reserve(count);
   by_place_.reserve(count);
-  map.visit_samples([&](const SurfaceSample& sample) {
+  visit_samples([&](const SurfaceSample& sample) {
     if (sample.weight < min_weight) return;
     const VoxelIndex first = brick_of(sample.voxel);
     if (bricks_.empty() || bricks_.back().first != first) {

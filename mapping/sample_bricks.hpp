@@ -1,8 +1,10 @@
 // sample_bricks.hpp: a static map's signed distances in small dense cubes, to find neighbours fast.
 #pragma once
+#include <Eigen/Geometry>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <unordered_map>
 #include <vector>
 
@@ -31,6 +33,8 @@ struct Brick {
 class SampleBricks {
  public:
   SampleBricks(const StaticMap& map, float min_weight);
+  /// Of the samples in a box alone.
+  SampleBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world);
 
   [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
   /// Samples may be changed; where the bricks are may not.
@@ -40,6 +44,9 @@ class SampleBricks {
   [[nodiscard]] std::size_t find(const VoxelIndex& first) const;
 
  private:
+  using VisitSamples = std::function<void(const std::function<void(const SurfaceSample&)>&)>;
+  SampleBricks(const VisitSamples& visit_samples, float min_weight);
+
   std::vector<Brick> bricks_;
   std::unordered_map<std::uint64_t, std::size_t> by_place_;
 };

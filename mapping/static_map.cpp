@@ -106,14 +106,34 @@ void add_sample(BlockOctree& tree, LeafBlock& block, unsigned i, const SurfaceSa
   block.weight[i] = static_cast<std::uint16_t>(std::min(sum, 65535.0F));
 }
 
-// Decides on every sample below a node. Gives what the node has become.
-Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free,
+// The keys of the voxels whose centres lie in a box.
+struct KeyRange {
+  Key first = Key::Zero();
+  Key last = Key::Constant(65535);
+
+  [[nodiscard]] bool holds(const Key& key) const { return (key >= first).all() && (key <= last).all(); }
+  [[nodiscard]] bool meets(const NodePlace& place) const {
+    return (place.key <= last).all() && (place.key + (place.edge_voxels() - 1) >= first).all();
+  }
+};
+KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m) {
+  if (box_world.isEmpty()) return {.first = Key::Constant(1), .last = Key::Zero()};
+  const auto to_key = [](const Eigen::Array3d& voxel) -> Key {
+    return voxel.max(-1.0).min(65536.0).cast<int>();
+  };
+  const Eigen::Array3d low = box_world.min().array() / resolution_m + kKeyOrigin - 0.5;
+  const Eigen::Array3d high = box_world.max().array() / resolution_m + kKeyOrigin - 0.5;
+  return {.first = to_key(low.ceil()), .last = to_key(high.floor())};
+}
+
+// Decides on every sample below a node that is in the range. Gives what the node has become.
+Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, const KeyRange& range,
             const std::function<SampleFate(const SurfaceSample&)>& decide) {
-  if (!node.is_block()) return node;
+  if (!node.is_block() || !range.meets(place)) return node;
   if (place.depth == kLeafDepth - 1)
     return change_leaves(tree, node, [&](LeafBlock& block) {
       for (unsigned i = 0; i < 8; ++i) {
-        if (block.weight[i] == 0) continue;
+        if (block.weight[i] == 0 || !range.holds(place.child(i).key)) continue;
         const SampleFate fate = decide(sample_of(tree, block, i, place.child(i).key));
         if (fate == SampleFate::kKeep) continue;
         forget_sample(block, i);
@@ -123,8 +143,23 @@ Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free,
     });
   InnerBlock& block = tree.inner(node);
   for (unsigned i = 0; i < 8; ++i)
-    block.slots[i] = revise(tree, block.slots[i], place.child(i), free, decide);
+    block.slots[i] = revise(tree, block.slots[i], place.child(i), free, range, decide);
   return tree.settle(node, block);
+}
+
+// Visits the samples below a node that are in the range.
+void visit_in(const BlockOctree& tree, Slot node, const NodePlace& place, const KeyRange& range,
+              const std::function<void(const SurfaceSample&)>& visit) {
+  if (!node.is_block() || !range.meets(place)) return;
+  if (place.depth == kLeafDepth - 1) {
+    const LeafBlock& block = tree.leaves(node);
+    for (unsigned i = 0; i < 8; ++i)
+      if (block.weight[i] != 0 && range.holds(place.child(i).key))
+        visit(sample_of(tree, block, i, place.child(i).key));
+    return;
+  }
+  const InnerBlock& block = tree.inner(node);
+  for (unsigned i = 0; i < 8; ++i) visit_in(tree, block.slots[i], place.child(i), range, visit);
 }
 
 void require_cube(const VoxelIndex& lowest, int edge_voxels) {
@@ -216,6 +251,12 @@ void StaticMap::visit_samples(const std::function<void(const SurfaceSample&)>& v
       });
 }
 
+void StaticMap::visit_samples(const Eigen::AlignedBox3d& box_world,
+                              const std::function<void(const SurfaceSample&)>& visit) const {
+  const BlockOctree& tree = octree_->tree;
+  visit_in(tree, tree.root, {}, keys_in(box_world, resolution_m()), visit);
+}
+
 void StaticMap::visit_leaves(const std::function<void(const MapLeaf&)>& visit) const {
   const BlockOctree& tree = octree_->tree;
   for_each_leaf(tree, [&](const NodePlace& place, LogOdds log_odds) {
@@ -251,9 +292,17 @@ void StaticMap::add_evidence(const SurfaceSample& sample) {
 }
 
 void StaticMap::revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide) {
+  const double reach = reach_m();
+  const Eigen::AlignedBox3d all(Eigen::Vector3d::Constant(-reach), Eigen::Vector3d::Constant(reach));
+  revise_samples(all, decide);
+}
+
+void StaticMap::revise_samples(const Eigen::AlignedBox3d& box_world,
+                               const std::function<SampleFate(const SurfaceSample&)>& decide) {
   BlockOctree& tree = octree_->tree;
   const long free = std::lround(octree_->config.min_log_odds / tree.units().log_odds);
-  tree.root = revise(tree, tree.root, {}, static_cast<LogOdds>(free), decide);
+  tree.root =
+      revise(tree, tree.root, {}, static_cast<LogOdds>(free), keys_in(box_world, resolution_m()), decide);
 }
 
 double StaticMap::resolution_m() const { return octree_->tree.resolution_m(); }

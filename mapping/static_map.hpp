@@ -84,6 +84,10 @@ class StaticMap {
   /// Calls `visit` for each voxel that holds a signed distance, in Morton order (deterministic).
   void visit_samples(const std::function<void(const SurfaceSample&)>& visit) const;
 
+  /// The same for the voxels whose centre lies in a box.
+  void visit_samples(const Eigen::AlignedBox3d& box_world,
+                     const std::function<void(const SurfaceSample&)>& visit) const;
+
   /// Calls `visit` for each free or occupied leaf, as large as it is stored, in Morton order (deterministic).
   void visit_leaves(const std::function<void(const MapLeaf&)>& visit) const;
 
@@ -96,6 +100,9 @@ class StaticMap {
 
   /// Asks for the fate of each voxel that holds a signed distance, in the same order.
   void revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide);
+  /// The same for the voxels whose centre lies in a box.
+  void revise_samples(const Eigen::AlignedBox3d& box_world,
+                      const std::function<SampleFate(const SurfaceSample&)>& decide);
 
   [[nodiscard]] double resolution_m() const;
   /// Half the edge of the cube around the world's origin that voxels can exist in, m.

@@ -1,5 +1,6 @@
 // surface.hpp: the static map's surface as triangles, placed by signed distance.
 #pragma once
+#include <Eigen/Geometry>
 #include <cstddef>
 
 #include "mapping/static_map.hpp"
@@ -34,5 +35,11 @@ struct SurfaceFacts {
 /// samples'. An empty map gives an empty mesh. Throws Error if the config is out of its rules (values finite
 /// and >= 0). Source: in surface_net.hpp, sample_smoothing.hpp and mesh_simplify.hpp.
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceFacts* facts = nullptr);
+
+/// The part of it in a box, and up to two voxels round it: triangles with a corner in the box grown by one
+/// voxel. Samples farther from the box than 12 voxels are not looked at; they would move this part by less
+/// than 0.1 mm. Pieces are judged as specks by what of them lies within those 12 voxels.
+Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
+                     const SurfaceConfig& config = {});
 
 }  // namespace roomradar

@@ -28,14 +28,21 @@ Room make_room(std::string_view name, bool crate) {
     throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known);
   }
   if (crate) {
-    const Eigen::Vector3d foot = 0.5 * (room.ball_from_world + room.ball_to_world);
-    add(room, standing_at(foot.x(), foot.y(), foot.z(), 0.3),
-        box({0, 0, 0.5 * kCrateSize_m.z()}, kCrateSize_m),
-        {Pattern::kPoster, {206, 120, 60}, {60, 44, 36}, 71, 0.6F});
+    room.solids.push_back(crate_in(room));
+    room.materials.push_back(crate_material());
   }
   room.tree = SolidTree(room.solids);
   return room;
 }
+
+Solid crate_in(const Room& room) {
+  const Eigen::Vector3d foot = 0.5 * (room.ball_from_world + room.ball_to_world);
+  Solid crate = box({0, 0, 0.5 * kCrateSize_m.z()}, kCrateSize_m);
+  crate.T_world_solid = standing_at(foot.x(), foot.y(), foot.z(), 0.3) * crate.T_world_solid;
+  return crate;
+}
+
+Material crate_material() { return {Pattern::kPoster, {206, 120, 60}, {60, 44, 36}, 71, 0.6F}; }
 
 double signed_distance_m(const Room& room, const Eigen::Vector3d& p_world) {
   return room.tree.signed_distance_m(room.solids, p_world);

@@ -49,6 +49,9 @@ Room make_room(std::string_view name, bool crate = false);
 
 /// How large that crate is.
 inline const Eigen::Vector3d kCrateSize_m{0.24, 0.18, 0.22};
+/// Where it stands, and what it looks like.
+Solid crate_in(const Room& room);
+Material crate_material();
 
 /// Distance (m) from a point to the nearest surface; negative inside a solid. Exact outside, and inside as
 /// long as no touching neighbour is deeper: there the depth within one solid, which is a lower bound of the

@@ -13,6 +13,7 @@ namespace {
 
 constexpr MoverKind kAllMovers[] = {MoverKind::kHand, MoverKind::kBall, MoverKind::kPerson};
 constexpr Pace kAllPaces[] = {Pace::kSteady, Pace::kSlow, Pace::kWaits, Pace::kLeaves};
+constexpr CrateKind kAllCrates[] = {CrateKind::kNone, CrateKind::kStays, CrateKind::kComes, CrateKind::kGoes};
 constexpr CameraPathKind kAllPaths[] = {CameraPathKind::kScan, CameraPathKind::kView};
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
@@ -70,8 +71,10 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
       options.movers.push_back(*found);
     }
   } else if (key == "crate") {
-    if (value != "0" && value != "1") refuse(key, value, "0 or 1");
-    options.crate = value == "1";
+    const auto* const found = std::find_if(std::begin(kAllCrates), std::end(kAllCrates),
+                                           [&](CrateKind kind) { return to_string(kind) == value; });
+    if (found == std::end(kAllCrates)) refuse(key, value, "0, 1, comes or goes");
+    options.crate = *found;
   } else if (key == "pace") {
     const auto* const found = std::find_if(std::begin(kAllPaces), std::end(kAllPaces),
                                            [&](Pace pace) { return to_string(pace) == value; });
@@ -123,6 +126,20 @@ std::string_view to_string(Pace pace) {
   return "?";
 }
 
+std::string_view to_string(CrateKind kind) {
+  switch (kind) {
+    case CrateKind::kNone:
+      return "0";
+    case CrateKind::kStays:
+      return "1";
+    case CrateKind::kComes:
+      return "comes";
+    case CrateKind::kGoes:
+      return "goes";
+  }
+  return "?";
+}
+
 SimOptions parse_sim_spec(std::string_view spec) {
   constexpr std::string_view kScheme = "sim:";
   if (!spec.starts_with(kScheme))
@@ -159,7 +176,7 @@ std::string sim_spec(const SimOptions& options) {
   std::string moving;
   for (const MoverKind kind : options.movers) append_with_comma(moving, to_string(kind), ",");
   if (!moving.empty()) say("moving", moving);
-  if (options.crate) say("crate", "1");
+  if (options.crate != usual.crate) say("crate", std::string(to_string(options.crate)));
   if (options.pace != usual.pace) say("pace", std::string(to_string(options.pace)));
   if (options.noise_scale != usual.noise_scale) say("noise", without_trailing_zeros(options.noise_scale));
   if (options.depth_camera.width_px != usual.depth_camera.width_px)

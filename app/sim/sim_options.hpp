@@ -25,9 +25,17 @@ enum class Pace {
   kWaits,   ///< stand still for 2 s, go on for 2 s, and so on
   kLeaves,  ///< stand still from the first frame on, and leave the room when half of the frames are over
 };
+/// One more thing in the room: a crate where else a ball could roll.
+enum class CrateKind {
+  kNone,
+  kStays,  ///< part of the room
+  kComes,  ///< not there, and there from one frame to the next when half of the frames are over
+  kGoes,   ///< there, and gone from one frame to the next when half of the frames are over
+};
 std::string_view to_string(CameraPathKind kind);
 std::string_view to_string(MoverKind kind);
 std::string_view to_string(Pace pace);
+std::string_view to_string(CrateKind kind);  ///< as a spec has it: 0, 1, comes, goes
 
 /// The Kinect's depth camera at its full size.
 inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 240.0};
@@ -40,16 +48,16 @@ struct SimOptions {
   CameraPathKind path = CameraPathKind::kScan;
   std::vector<MoverKind> movers;  ///< each at most once
   Pace pace = Pace::kSteady;      ///< of all movers
-  bool crate = false;             ///< one more thing in the room: a crate where a ball could roll
-  double noise_scale = 1.0;       ///< times the Kinect's noise; 0: clean depth, without shadow or dropouts
+  CrateKind crate = CrateKind::kNone;
+  double noise_scale = 1.0;  ///< times the Kinect's noise; 0: clean depth, without shadow or dropouts
   Intrinsics depth_camera = kKinectDepthCamera;
   bool registered_colour = true;  ///< false: a colour camera of its own, 2.5 cm beside the depth camera
 };
 
 /// Reads `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
 ///   seed, frames, rate, path (scan, view), moving (hand, ball, person; several with commas), pace (steady,
-///   slow, waits, leaves), noise (0 = off, 1 = Kinect), crate (0, 1: one more thing in the room), width (of
-///   the image, 4:3, 64 to 1920 pixels), colour (registered, separate).
+///   slow, waits, leaves), noise (0 = off, 1 = Kinect), crate (0, 1: one more thing in the room; comes, goes:
+///   at half time), width (of the image, 4:3, 64 to 1920 pixels), colour (registered, separate).
 /// Throws Error naming the key or value that is not known, or out of range, and listing what is.
 SimOptions parse_sim_spec(std::string_view spec);
 

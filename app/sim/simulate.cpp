@@ -37,6 +37,7 @@ std::string description(const SimOptions& options) {
   json["path"] = to_string(options.path);
   json["movers"] = nlohmann::json::array();
   for (const MoverKind kind : options.movers) json["movers"].push_back(to_string(kind));
+  json["crate"] = to_string(options.crate);
   json["noise_scale"] = options.noise_scale;
   const Intrinsics& camera = options.depth_camera;
   json["depth_camera"] = {{"width_px", camera.width_px}, {"height_px", camera.height_px},
@@ -53,10 +54,11 @@ void simulate(const std::filesystem::path& folder, const SimOptions& options, Re
   SimulatedSource source(options);
   RecordingWriter writer(folder, format);
   const std::filesystem::path truth = folder / "truth";
-  const bool moves = !options.movers.empty();
+  const bool moves =
+      !options.movers.empty() || options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
   std::error_code fault;
   std::filesystem::create_directories(truth / "depth", fault);
-  for (const char* const masks : {"moved", "mover"})
+  for (const char* const masks : {"moved", "mover", "revealed"})
     if (moves && !fault) std::filesystem::create_directories(truth / masks, fault);
   if (fault) throw Error(truth.string() + ": cannot be made: " + fault.message());
   write_text(truth / "sim.json", description(options));
@@ -72,6 +74,7 @@ void simulate(const std::filesystem::path& folder, const SimOptions& options, Re
     if (moves) {
       write_mask_file(source.truth().moved, truth / "moved" / name);
       write_mask_file(source.truth().mover, truth / "mover" / name);
+      write_mask_file(source.truth().revealed, truth / "revealed" / name);
     }
     trajectory.push_back({frame.index, frame.stamp_s, source.truth().T_world_camera});
     if (progress) progress(frame.index + 1, options.frames);

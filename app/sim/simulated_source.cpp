@@ -21,6 +21,8 @@ using Eigen::Vector3d;
 /// The Kinect's colour camera stands 2.5 cm along the depth camera's +x and sees a little wider.
 constexpr double kColourOffset_m = 0.025;
 constexpr double kColourFocal = 525.0 / 585.0;
+/// A crate that is not there stands so far below the floor, where nothing sees it.
+constexpr double kAway_m = 100.0;
 
 Rgb dimmed(Rgb colour, float factor) {
   const auto dim = [factor](std::uint8_t of) {
@@ -33,7 +35,9 @@ Rgb dimmed(Rgb colour, float factor) {
 
 struct SimulatedSource::State {
   explicit State(const SimOptions& chosen)
-      : options(chosen), room(make_room(chosen.room, chosen.crate)), room_look(room, finest_texel_m(chosen)) {
+      : options(chosen),
+        room(make_room(chosen.room, chosen.crate == CrateKind::kStays)),
+        room_look(room, finest_texel_m(chosen)) {
     const double duration_s = static_cast<double>(options.frames) / options.rate_hz;
     path = plan_camera_path(room, options.path, options.seed, duration_s);
     const Vector3d viewer_world =
@@ -45,6 +49,12 @@ struct SimulatedSource::State {
       append_solids(movers.back(), 0.0, solids);
       materials.insert(materials.end(), movers.back().materials.begin(), movers.back().materials.end());
       mover_of_solid.resize(solids.size(), static_cast<std::uint8_t>(i + 1));
+    }
+    if (crate_changes()) {
+      crate = crate_in(room);
+      solids.push_back(crate);
+      materials.push_back(crate_material());
+      mover_of_solid.push_back(static_cast<std::uint8_t>(options.movers.size() + 1));
     }
     mover_look.emplace(room, solids, materials, finest_texel_m(options));
     for (const Material& material : room.materials) infrared.push_back(material.infrared);
@@ -64,7 +74,16 @@ struct SimulatedSource::State {
   void place_solids(double t_s) {
     solids.assign(room.solids.begin(), room.solids.end());
     for (const Mover& mover : movers) append_solids(mover, t_s, solids);
+    if (crate_changes()) {
+      const bool second_half = t_s * options.rate_hz >= 0.5 * static_cast<double>(options.frames);
+      crate_is_there = second_half == (options.crate == CrateKind::kComes);
+      solids.push_back(crate);
+      if (!crate_is_there) solids.back().T_world_solid.pretranslate(Vector3d(0, 0, -kAway_m));
+    }
     shadow.prepare(std::span<const Solid>(solids).subspan(room.solids.size()));
+  }
+  [[nodiscard]] bool crate_changes() const {
+    return options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
   }
   void fill_truth();
   void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
@@ -78,13 +97,15 @@ struct SimulatedSource::State {
   std::vector<Mover> movers;
   std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover of the solids behind the room's
   std::vector<float> infrared;
+  Solid crate;  ///< one that comes or goes, where it stands while it is there
+  bool crate_is_there = false;
   Intrinsics colour_camera;
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
   std::int64_t next_index = 0;
 
   std::vector<Solid> solids;  ///< the room's, then the movers', at the time of the current frame
   MoverShadow shadow;
-  ViewCaster depth_view, colour_view;
+  ViewCaster depth_view, colour_view, crate_view;
   ExactView depth_exact, colour_exact;
   KinectScratch scratch;
   SimTruth truth;
@@ -95,12 +116,23 @@ void SimulatedSource::State::fill_truth() {
   truth.depth_m.resize(width_px, height_px);
   truth.moved.resize(width_px, height_px);
   truth.mover.resize(width_px, height_px);
+  truth.revealed.resize(width_px, height_px);
+  const bool crate_went = options.crate == CrateKind::kGoes && !crate_is_there;
+  if (crate_went) crate_view.prepare({&crate, 1}, options.depth_camera, truth.T_world_camera);
   for (std::size_t i = 0; i < truth.depth_m.pixels.size(); ++i) {
     const float depth_m = depth_exact.depth_m.pixels[i];
     if (depth_m >= static_cast<float>(kKinectNearest_m) && depth_m <= static_cast<float>(kKinectFarthest_m))
       truth.depth_m.pixels[i] = depth_m;
+    if (crate_went) {
+      const auto x = static_cast<int>(i) % width_px, y = static_cast<int>(i) / width_px;
+      const double crate_m = crate_view.depth_of(0, x, y);
+      if (crate_m > 0.0 && (depth_m == 0.0F || crate_m < depth_m)) truth.revealed.pixels[i] = 255;
+    }
     const auto moving = depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room.solids.size());
     if (moving < 0) continue;
+    // A crate that goes is the room's until then.
+    if (options.crate == CrateKind::kGoes && mover_of_solid[static_cast<std::size_t>(moving)] > movers.size())
+      continue;
     truth.moved.pixels[i] = 255;
     truth.mover.pixels[i] = mover_of_solid[static_cast<std::size_t>(moving)];
   }
@@ -124,7 +156,7 @@ void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView
       const Eigen::Isometry3d& T_world_solid = solids[index].T_world_solid;
       if (index < room.solids.size()) {
         pixel = room_look.shade(index, p_solid, normal_solid, footprint_m, T_world_solid);
-        if (!movers.empty())
+        if (solids.size() > room.solids.size())
           pixel = dimmed(pixel,
                          shadow.factor(room, T_world_solid * p_solid, T_world_solid.linear() * normal_solid));
       } else {

@@ -16,12 +16,15 @@ struct SimTruth {
   /// Exact depth of the pixel's centre ray, within the sensor's range; 0 = outside of it.
   DepthImage depth_m;
   MaskImage moved;  ///< 255 where the nearest surface is a moving thing
-  MaskImage mover;  ///< 0 = the room, else 1 + the position of the mover in SimOptions::movers
+  /// 0 = the room, else 1 + the position of the mover in SimOptions::movers; past them the crate that came.
+  MaskImage mover;
+  MaskImage revealed;  ///< 255 where a crate that went would be the nearest surface
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
 /// Frames of a simulated Kinect. Frame i depends on the options and i alone: rewinding or reading on gives
-/// the same pixels. Room coordinates are the world: +z up, metres, floor at z = 0.
+/// the same pixels. Room coordinates are the world: +z up, metres, floor at z = 0. A crate that comes or
+/// goes is not among room()'s solids.
 class SimulatedSource final : public FrameSource {
  public:
   /// Throws Error if the options are not valid.

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -149,6 +150,52 @@ TEST_F(CommandLine, TheSampledRadarHoldsTheTeapotTooBySafeBounds) {
   EXPECT_EQ(report["settings"]["radar"], "sampled");
   EXPECT_TRUE(report["objects"][0]["at_rest"]) << report.dump(2);
   EXPECT_LE(report["deepest_penetration_m"], 1e-6);  // moved by bounds that hold
+}
+
+TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const auto bytes_of = [](const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder))
+      files[entry.path().filename().string()] = read_text(entry.path());
+    return files;
+  };
+  const auto before = bytes_of(map());
+  const std::string changed = (folder_ / "changed").string();
+  const fs::path report_path = folder_ / "adopt.json";
+  const Outcome ran =
+      roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " + map() +
+                " --poses recorded --adopt 0.8 --save-map " + changed + " --report " + report_path.string());
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  EXPECT_EQ(bytes_of(map()), before);
+  EXPECT_EQ(roomradar("map verify " + changed).status, 0);
+  const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
+  ASSERT_EQ(report["adopted"].size(), 1U) << report["adopted"].dump(2);
+  EXPECT_EQ(report["adopted"][0]["change"], "came");
+  EXPECT_GT(report["adopted"][0]["time_s"], 3.7);
+  EXPECT_TRUE(report["stages"].contains("changes"));
+  const Outcome diff = roomradar("map diff " + map() + " " + changed);
+  EXPECT_EQ(diff.status, 0) << diff.out;
+  EXPECT_NE(diff.out.find("appeared"), std::string::npos) << diff.out;
+  EXPECT_EQ(diff.out.find("vanished"), std::string::npos) << diff.out;
+
+  // It may be the room's own map, if it is named.
+  const fs::path own = broken_copy();
+  const Outcome again = roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " +
+                                  own.string() + " --poses recorded --adopt 0.8 --save-map " + own.string());
+  EXPECT_EQ(again.status, 0) << again.out;
+  EXPECT_EQ(read_text(own / "octree.ot"), read_text(fs::path(changed) / "octree.ot")) << "the same each time";
+  EXPECT_EQ(read_text(own / "mesh.ply"), read_text(fs::path(changed) / "mesh.ply"));
+}
+
+TEST_F(CommandLine, SavingAMapThatCannotChangeIsRefused) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string run = "run 'sim:table?frames=100000&width=160' --map " + map();
+  expect_fault(roomradar(run + " --save-map " + (folder_ / "unused").string()), 1, "--adopt");
+  expect_fault(roomradar(run + " --adopt 1 --save-map " + folder_.string()), 1, folder_.string());
+  expect_fault(roomradar(run + " --adopt 1 --surfaces holes"), 1, "--surfaces map");
+  expect_fault(roomradar(run + " --adopt 0"), 2, "86400");
+  expect_fault(roomradar(run + " --adopt nan"), 2, "86400");
 }
 
 TEST_F(CommandLine, WrongUsageIsStatusTwo) {

@@ -30,12 +30,13 @@ time 2.5   drop pot at 0.4 -0.1 0.75
 time 4     place pot 0.4 -0.1 0.9
 time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 5e-1
 frame 200  remove pot
+time 8     adopt
 frame 300  quit
 )";
 
 TEST(Script, ReadsEachAction) {
   const Script script = parse_script(kWhole, "events.txt");
-  ASSERT_EQ(script.events.size(), 7U);
+  ASSERT_EQ(script.events.size(), 8U);
   const auto& add = script.events[0];
   EXPECT_EQ(add.action, Action::kAdd);
   EXPECT_EQ(add.line, 2);
@@ -54,8 +55,10 @@ TEST(Script, ReadsEachAction) {
   EXPECT_EQ(script.events[4].action, Action::kThrow);
   EXPECT_EQ(script.events[4].velocity_world_mps, Eigen::Vector3d(1, 0, 0.5));
   EXPECT_EQ(script.events[5].action, Action::kRemove);
-  EXPECT_EQ(script.events[6].action, Action::kQuit);
-  EXPECT_EQ(script.events[6].line, 9);
+  EXPECT_EQ(script.events[6].action, Action::kAdopt);
+  EXPECT_TRUE(script.events[6].name.empty());
+  EXPECT_EQ(script.events[7].action, Action::kQuit);
+  EXPECT_EQ(script.events[7].line, 10);
 }
 
 TEST(Script, NothingIsAScriptToo) {
@@ -89,6 +92,7 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 drop pot view hight 1", "'hight' is too much"},
       {"frame 1 throw pot 0 0 1 speed 1 0 0", "'velocity' is wanted"},
       {"frame 1 throw pot 0 0 1 velocity 1000 0 0", "'1000' is out of range"},
+      {"frame 1 adopt cup", "too much"},
       {"frame 1 remove cup", "no object 'cup'"},
       {"frame 1 add pot teapot", "added in line 1 already"},
       {"frame 1 add cup teapot size 0", "'0' is out of range"},

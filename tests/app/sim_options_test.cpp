@@ -26,7 +26,8 @@ TEST(SimSpec, SetsWhatItNamesAndLeavesTheRest) {
 TEST(SimSpec, ComesBackFromItsOptions) {
   for (const char* const spec :
        {"sim:table", "sim:wall?seed=12", "sim:shelf?seed=3&frames=90&path=view&moving=hand,person&noise=0.5",
-        "sim:table?rate=15&width=160&colour=separate", "sim:table?moving=person&pace=leaves"})
+        "sim:table?rate=15&width=160&colour=separate", "sim:table?moving=person&pace=leaves",
+        "sim:table?crate=1", "sim:table?crate=comes", "sim:table?crate=goes"})
     EXPECT_EQ(sim_spec(parse_sim_spec(spec)), spec);
 }
 
@@ -55,6 +56,7 @@ TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
       {"sim:table?noise=-1", "noise"},
       {"sim:table?noise=inf", "noise"},
       {"sim:table?path=fly", "scan or view"},
+      {"sim:table?crate=2", "comes or goes"},
       {"sim:table?moving=cat", "hand, ball, person"},
       {"sim:table?moving=hand,hand", "once"},
       {"sim:table?moving=", "hand, ball, person"},

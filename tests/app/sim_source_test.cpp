@@ -100,6 +100,29 @@ TEST(SimSource, TruthAgreesWithSlowRaysThroughEverySolid) {
   EXPECT_GT(moved, 300);
 }
 
+TEST(SimSource, ACrateThatComesOrGoesDoesSoAtHalfTimeAndTheMasksSayWhere) {
+  const std::string view = "sim:table?frames=9&width=160&path=view&noise=0&crate=";
+  SimulatedSource none(parse_sim_spec(view + "0")), there(parse_sim_spec(view + "1")),
+      comes(parse_sim_spec(view + "comes")), goes(parse_sim_spec(view + "goes"));
+  for (const std::int64_t index : {0, 4, 5, 8}) {
+    const bool second_half = index >= 5;
+    const DepthImage without = frame_of(none, index).depth_m, with = frame_of(there, index).depth_m;
+    EXPECT_EQ(frame_of(comes, index).depth_m.pixels, (second_half ? with : without).pixels) << index;
+    EXPECT_EQ(frame_of(goes, index).depth_m.pixels, (second_half ? without : with).pixels) << index;
+    int crate_pixels = 0;
+    for (std::size_t i = 0; i < with.pixels.size(); ++i) {
+      const bool crate = with.pixels[i] != without.pixels[i];
+      crate_pixels += crate ? 1 : 0;
+      ASSERT_EQ(comes.truth().moved.pixels[i], crate && second_half ? 255 : 0) << index;
+      ASSERT_EQ(comes.truth().mover.pixels[i], crate && second_half ? 1 : 0) << index;
+      ASSERT_EQ(comes.truth().revealed.pixels[i], 0);
+      ASSERT_EQ(goes.truth().moved.pixels[i], 0);
+      ASSERT_EQ(goes.truth().revealed.pixels[i], crate && second_half ? 255 : 0) << index;
+    }
+    EXPECT_GT(crate_pixels, 300);
+  }
+}
+
 TEST(SimSource, HandPassesBeforeTheFocusAndWithdraws) {
   SimulatedSource source(parse_sim_spec("sim:table?frames=180&width=64&path=view&moving=hand&noise=0"));
   int hidden = 0, open = 0;
