@@ -13,6 +13,9 @@ namespace {
 constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kDoubtMoved = 4, kWeakRevealed = 8,
                        kStrongRevealed = 16, kDoubtRevealed = 32, kMovedBefore = 64, kRevealedBefore = 128;
 
+// In a hole of the model, beside kWeakMoved; there nothing is revealed.
+constexpr std::uint8_t kInHole = kDoubtRevealed;
+
 struct Union {
   std::uint8_t operator()(std::uint8_t a, std::uint8_t b) const { return static_cast<std::uint8_t>(a | b); }
 };
@@ -61,7 +64,7 @@ void weigh_row(const float* live, const float* expected, int width, const Foregr
     if (expected[x] > 0.0F || !(live[x] > 0.0F) || around[x] == kNoDepth_m) continue;
     if (live[x] < around[x] - config.strong_sigmas *
                                   facing_sigma_m(around[x], config.model_sigma_m, state.fit.misfit_per_m))
-      evidence[x] = kWeakMoved;
+      evidence[x] = kWeakMoved | kInHole;
   }
 }
 
@@ -177,7 +180,7 @@ void drop_far_weak(const DepthImage& depth_m, int reach_px, ForegroundState& sta
 struct Difference {
   RegionBits bits;
   std::uint8_t block, block_maybe;
-  float min_strong_fraction;
+  float min_strong_of_all;
   PixelLabel label;
 };
 
@@ -192,7 +195,7 @@ Belief belief_in(const DepthRegion& region, const Difference& difference, const 
   const auto judged = static_cast<float>(region.pixels - region.doubtful);
   const bool was = 2 * region.before >= region.pixels;
   const float part = was ? 0.5F : 1.0F;
-  if (region.strong == 0 || strong < part * difference.min_strong_fraction * pixels ||
+  if (region.strong == 0 || strong < part * difference.min_strong_of_all * pixels ||
       strong < part * config.min_strong_fraction * judged)
     return Belief::kNone;
   const float area_m2 = region.depth2_m2 / static_cast<float>(camera.fx_px * camera.fy_px);
@@ -258,15 +261,15 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
 
   state.memory.grid = state.bounds.grid;
   state.memory.blocks.assign(state.bounds.grid.size(), 0);
-  const Difference moved{{kWeakMoved, kStrongMoved, kDoubtMoved, kMovedBefore},
+  const Difference moved{{kWeakMoved, kStrongMoved, kInHole, kMovedBefore},
                          kBlockMoved,
                          kBlockMaybeMoved,
-                         config.min_strong_fraction,
+                         config.min_strong_of_all,
                          PixelLabel::kMoved};
   const Difference revealed{{kWeakRevealed, kStrongRevealed, kDoubtRevealed, kRevealedBefore},
                             kBlockRevealed,
                             kBlockMaybeRevealed,
-                            config.min_strong_fraction_revealed,
+                            config.min_strong_of_all_revealed,
                             PixelLabel::kRevealed};
   ForegroundCounts counts;
   counts.moved = label_regions(depth_m, moved, camera, config, state, labels);

@@ -33,8 +33,9 @@ void require_valid(const ForegroundConfig& config) {
           config.edge_error_rad, "in 0..0.1");
   require(from_0_to_1(config.min_strong_fraction), "min_strong_fraction", config.min_strong_fraction,
           "in 0..1");
-  require(from_0_to_1(config.min_strong_fraction_revealed), "min_strong_fraction_revealed",
-          config.min_strong_fraction_revealed, "in 0..1");
+  require(from_0_to_1(config.min_strong_of_all), "min_strong_of_all", config.min_strong_of_all, "in 0..1");
+  require(from_0_to_1(config.min_strong_of_all_revealed), "min_strong_of_all_revealed",
+          config.min_strong_of_all_revealed, "in 0..1");
   require(config.weak_reach_px >= 0 && config.weak_reach_px <= 256, "weak_reach_px", config.weak_reach_px,
           "in 0..256");
   require(config.hole_reach_px >= 0 && config.hole_reach_px <= 256, "hole_reach_px", config.hole_reach_px,

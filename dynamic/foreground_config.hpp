@@ -26,10 +26,14 @@ struct ForegroundConfig {
   float min_region_m2 = 0.0003F;  ///< the same by size in the world: 3 cm2
   /// Of a region's pixels, those that are strong. Regions by a distorted map or a wrong pose are weak nearly
   /// everywhere (0 to 0.25 in a real kitchen mapped by poses 3 cm off); what moved is strong but for its rim.
+  /// Pixels that cannot be strong do not count: those in the model's holes, and of a revealed region those
+  /// within the reach of an edge.
   float min_strong_fraction = 0.6F;
-  /// The same of a revealed region. What was taken away stands in the model, so the reach of its own edges
-  /// eats into it: of a thing 12 cm wide, a tenth is left.
-  float min_strong_fraction_revealed = 0.1F;
+  /// The same of all its pixels.
+  float min_strong_of_all = 0.3F;
+  /// The same of all pixels of a revealed region. What was taken away stands in the model, so the reach of
+  /// its own edges eats into it: of a thing 12 cm wide, a tenth is left.
+  float min_strong_of_all_revealed = 0.1F;
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const ForegroundConfig& config);
