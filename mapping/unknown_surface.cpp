@@ -104,6 +104,9 @@ void require_valid(const UnknownSurfaceConfig& config) {
   require_in_1_to_16("least_voxels", config.least_voxels);
   require_in_1_to_16("cube_voxels", config.cube_voxels);
   require_in_1_to_16("rim_voxels", config.rim_voxels);
+  if (config.rim_voxels < 3 * (config.cube_voxels - 1))
+    throw Error("unknown_surface.rim_voxels = " + std::to_string(config.rim_voxels) +
+                ": must be at least 3 * (cube_voxels - 1), or some cubes of unknown voxels are out of reach");
 }
 
 UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,

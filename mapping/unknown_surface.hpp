@@ -15,10 +15,11 @@ struct UnknownSurfaceConfig {
   /// edges, single voxels) is taken as what is round it. 1 to 16.
   int least_voxels = 3;
   /// The surface is made of the faces of cubes of so many voxels a side, all of them unknown: it stands less
-  /// than a cube behind the border of what counts. 1 to 16.
+  /// than a cube behind the border of what counts. 1 to 6.
   int cube_voxels = 2;
   /// The surface goes on for so many voxels behind the rim of what was seen, and through occupied voxels that
-  /// the static surface leaves open. 1 to 16.
+  /// the static surface leaves open. 1 to 16, and at least 3 * (cube_voxels - 1): so many steps the nearest
+  /// cube may be away from the border.
   int rim_voxels = 4;
 };
 
@@ -35,11 +36,11 @@ struct UnknownSurface {
 /// The border of the unknown space that counts, as far as it can be come to from free space without crossing
 /// `surface_world`, the map's own surface. What lies past all that the map knows is unknown too.
 ///
-/// It stands in unknown space, never in free: an object gets into the unknown by less than 2 * cube_voxels
-/// voxels along each axis where the unknown is thicker than that. A straight way from free space that counts
-/// into unknown cubes crosses it or the static surface, which it overlaps at the rim; only where the static
-/// surface itself has a hole smaller than a voxel may something as thin come through. Rectangles are as large
-/// as the cubes allow. Empty for a map without free space. Throws Error if the config is out of its rules.
+/// It stands in unknown space, never in free: along each axis less than cube_voxels voxels behind the border
+/// of what counts. A straight way from free space that counts into unknown cubes crosses it or the static
+/// surface, which it overlaps at the rim; only where the static surface itself has a hole smaller than a
+/// voxel may something as thin come through. Rectangles are as large as the cubes allow. Empty for a map
+/// without free space. Some 0.4 s for 50 million voxels. Throws Error if the config is out of its rules.
 UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
                                const UnknownSurfaceConfig& config = {});
 

@@ -148,6 +148,15 @@ TEST(UnknownSurface, SpecksAndSheetsInFreeSpaceDoNotCount) {
   EXPECT_NEAR(area_with_hole({4, 4, 6}, {8, 8, 4}), 2 * (8 * 8 + 8 * 4 + 8 * 4) * face_m2, 1e-6);
 }
 
+TEST(UnknownSurface, AThinSlitInTheUnknownIsLinedToItsEnd) {
+  StaticMap map(kVoxel_m);
+  fill(map, {0, 0, 0}, {16, 16, 16}, kFree);
+  fill(map, {16, 6, 6}, {36, 8, 8}, kFree);  // two voxels wide: too thin to come from
+  const double face_m2 = kVoxel_m * kVoxel_m;
+  EXPECT_NEAR(area_of(unknown_surface(map, kNoSurface).mesh_world), (6 * 16 * 16 + 4 * 2 * 20) * face_m2,
+              1e-6);
+}
+
 // A sheet across the plane z = height_m, from low to high along x and y.
 Mesh sheet(double low_m, double high_m, double height_m) {
   const auto at = [&](double x, double y) { return Vector3d(x, y, height_m).cast<float>().eval(); };
@@ -209,7 +218,7 @@ TEST(UnknownSurface, AgreesWithItsDefinitionOnRandomLeaves) {
       map.add_evidence(MapLeaf{low, edge, random() % 4 == 0 ? kOccupied : kFree});
     }
     const UnknownSurfaceConfig config{
-        .least_voxels = 2 + round % 2, .cube_voxels = 1 + round % 3, .rim_voxels = 1};
+        .least_voxels = 2 + round % 2, .cube_voxels = 1 + round % 3, .rim_voxels = 6};
     const auto state = [&](const Vector3i& p) {
       return map.occupancy_at((p.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m);
     };
@@ -371,6 +380,7 @@ TEST(UnknownSurface, ConfigsOutOfTheirRulesAreRefused) {
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.least_voxels = 0}), Error);
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.cube_voxels = 17}), Error);
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.rim_voxels = -1}), Error);
+  EXPECT_THROW(require_valid(UnknownSurfaceConfig{.cube_voxels = 3}), Error);  // some out of the rim's reach
   EXPECT_NO_THROW(require_valid(UnknownSurfaceConfig{}));
 }
 
