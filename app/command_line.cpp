@@ -19,8 +19,10 @@ constexpr char kSourceHelp[] =
 
 const std::map<std::string, PoseOrigin> kPoses = {{"tracked", PoseOrigin::kTracked},
                                                   {"recorded", PoseOrigin::kRecorded}};
-const std::map<std::string, SurfacePolicy> kSurfaces = {
-    {"holes", SurfacePolicy::kHoles}, {"skirt", SurfacePolicy::kSkirt}, {"map", SurfacePolicy::kMap}};
+const std::map<std::string, SurfacePolicy> kSurfaces = {{"holes", SurfacePolicy::kHoles},
+                                                        {"skirt", SurfacePolicy::kSkirt},
+                                                        {"border", SurfacePolicy::kBorder},
+                                                        {"map", SurfacePolicy::kMap}};
 const std::map<std::string, bool> kUnknownIsSolid = {{"free", false}, {"solid", true}};
 const std::map<std::string, RadarMode> kRadarModes = {{"exact", RadarMode::kExact},
                                                       {"sampled", RadarMode::kSampled}};
@@ -136,7 +138,7 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
       ->type_name("FILE");
   add_choice(*sub, "--surfaces", command.surfaces, kSurfaces,
              "what can be touched: this frame's pixels, the same with skirts across depth edges,\n"
-             "or the map and what moved (map)");
+             "with the image's border pushed out as well, or the map and what moved (map)");
   add_choice(*sub, "--unknown", command.unknown_is_solid, kUnknownIsSolid,
              "space that the prescan has not seen lets objects through (free) or stops them (solid;\n"
              "with --surfaces map)");

@@ -19,9 +19,23 @@ constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
 struct Projection {
   float inv_fx, inv_fy, cx, cy;
   Eigen::Matrix3f R_world_camera;
+  int last_x = 0, last_y = 0;  // of the grid
+  float border_push_m = 0.0F;  // of the vertices in its first and last row and column
+
   Eigen::Vector3f operator()(int x, int y, float depth_m) const {
-    return R_world_camera * Eigen::Vector3f((static_cast<float>(x) - cx) * inv_fx * depth_m,
-                                            (static_cast<float>(y) - cy) * inv_fy * depth_m, depth_m);
+    Eigen::Vector3f p_camera((static_cast<float>(x) - cx) * inv_fx * depth_m,
+                             (static_cast<float>(y) - cy) * inv_fy * depth_m, depth_m);
+    if (border_push_m > 0.0F) push_out(x, y, p_camera);
+    return R_world_camera * p_camera;
+  }
+  void push_out(int x, int y, Eigen::Vector3f& p_camera) const {
+    constexpr float kNearest_m = 0.1F;  // still before the camera
+    const int side_x = static_cast<int>(x == last_x) - static_cast<int>(x == 0);
+    const int side_y = static_cast<int>(y == last_y) - static_cast<int>(y == 0);
+    if (side_x == 0 && side_y == 0) return;
+    p_camera.x() += static_cast<float>(side_x) * border_push_m;
+    p_camera.y() += static_cast<float>(side_y) * border_push_m;
+    p_camera.z() = std::max(p_camera.z() - border_push_m, std::min(p_camera.z(), kNearest_m));
   }
 };
 
@@ -72,6 +86,13 @@ class GridMesher {
       triangle(b, c, a);
       triangle(d, a, c);
     }
+  }
+
+  // Pushes the outermost vertices of a grid of this size outwards and nearer.
+  void push_border(int width, int height, int stride, float push_m) {
+    project_.last_x = (width - 1) / stride * stride;
+    project_.last_y = (height - 1) / stride * stride;
+    project_.border_push_m = push_m;
   }
 
   void finish() {
@@ -170,6 +191,18 @@ void fill_gaps(const float* depth_m, int width, int gap_px, float* filled_m) {
   }
 }
 
+// Takes a row's first and last depth for what is not measured beside them.
+void fill_ends(int width, float* depth_m) {
+  const auto measured = [](float of_m) { return of_m > 0.0F; };
+  float* const end = depth_m + width;
+  float* const first = std::find_if(depth_m, end, measured);
+  if (first == end) return;
+  std::fill(depth_m, first, *first);
+  float* last = end - 1;
+  while (!measured(*last)) --last;
+  std::fill(last + 1, end, *last);
+}
+
 void require(bool holds, const char* field, double value, const char* rule) {
   if (!holds)
     throw Error("depth_mesh." + std::string(field) + " = " + std::to_string(value) + ": must be " + rule);
@@ -184,6 +217,8 @@ void require_valid(const DepthMeshConfig& config) {
   require(config.jump_incidence_deg >= 0.0F && config.jump_incidence_deg < 90.0F, "jump_incidence_deg",
           config.jump_incidence_deg, "at least 0 and under 90");
   require(config.skirt_gap_px >= 0, "skirt_gap_px", config.skirt_gap_px, ">= 0");
+  require(config.border_push_m >= 0.0F && config.border_push_m < 100.0F, "border_push_m",
+          config.border_push_m, "in 0..100");
 }
 
 void mesh_masked(const DepthImage& depth_m, const MaskImage& moved_mask, const Intrinsics& camera,
@@ -202,15 +237,18 @@ void mesh_masked(const DepthImage& depth_m, const MaskImage& moved_mask, const I
 
 void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh) {
-  const bool skirts = policy == SurfacePolicy::kSkirt;
+  const bool border = policy == SurfacePolicy::kBorder;
+  const bool skirts = border || policy == SurfacePolicy::kSkirt;
   start(depth_m, T_world_camera, config, scratch, mesh);
   GridMesher mesher(camera, T_world_camera, config, skirts, mesh);
+  if (border) mesher.push_border(depth_m.width, depth_m.height, config.stride_px, config.border_push_m);
   const float* depths = depth_m.pixels.data();
   if (skirts) {
     scratch.filled_m.resize(depth_m.pixels.size());
     for (int y = 0; y < depth_m.height; ++y) {
-      fill_gaps(depth_m.row(y), depth_m.width, config.skirt_gap_px,
-                scratch.filled_m.data() + depth_m.index(0, y));
+      float* const filled_m = scratch.filled_m.data() + depth_m.index(0, y);
+      fill_gaps(depth_m.row(y), depth_m.width, config.skirt_gap_px, filled_m);
+      if (border) fill_ends(depth_m.width, filled_m);
     }
     depths = scratch.filled_m.data();
   }

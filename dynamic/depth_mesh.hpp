@@ -16,6 +16,8 @@ struct DepthMeshConfig {
   float jump_sigmas = 4.0F;          ///< two pixels whose depths differ by noise alone are one surface
   float jump_incidence_deg = 80.0F;  ///< and so are two on a plane seen at up to this angle from its normal
   int skirt_gap_px = 64;  ///< a skirt closes unmeasured gaps (projector shadow) of up to this width
+  /// kBorder: how far the vertices on the image's border are pushed outwards, and how much nearer.
+  float border_push_m = 0.5F;
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const DepthMeshConfig& config);
@@ -40,7 +42,10 @@ void mesh_masked(const DepthImage& depth_m, const MaskImage& moved_mask, const I
 
 /// Meshes the whole frame, as a system without a map would. kSkirt also joins the two sides of each depth
 /// jump, and of each unmeasured gap within a row, by polygons; kHoles, and kMap alike, leave them open.
-/// Otherwise as mesh_masked.
+/// kBorder does as kSkirt, takes each row's first and last depth for what is not measured beside them, and
+/// pushes the vertices on the image's border by border_push_m outwards in the image plane and as much nearer,
+/// so that nothing that leaves the view falls. Otherwise as mesh_masked.
+/// Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
 void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);
 

@@ -92,7 +92,7 @@ TEST(DepthMesh, EmptyMaskGivesAnEmptyMesh) {
 }
 
 TEST(DepthMesh, UnmeasuredDepthGivesAnEmptyMesh) {
-  for (const SurfacePolicy policy : {SurfacePolicy::kHoles, SurfacePolicy::kSkirt}) {
+  for (const SurfacePolicy policy : {SurfacePolicy::kHoles, SurfacePolicy::kSkirt, SurfacePolicy::kBorder}) {
     EXPECT_TRUE(whole(flat(0.0F), policy).triangles.empty());
   }
   EXPECT_TRUE(masked(flat(0.0F), everything()).vertices.empty());
@@ -192,6 +192,38 @@ TEST(DepthMesh, SkirtOverAGapIsStraightInTheWorld) {
     EXPECT_NEAR(p.x(), a.x() + t * (b.x() - a.x()), 1e-5F);
   }
   EXPECT_EQ(between, 29 * 480);
+}
+
+TEST(DepthMesh, BorderIsASkirtWhoseOutermostVerticesArePushedOutAndNearer) {
+  DepthMeshConfig config;
+  config.stride_px = 2;
+  config.border_push_m = 0.5F;
+  const Mesh skirt = whole(flat(2.0F), SurfacePolicy::kSkirt, config);
+  const Mesh border = whole(flat(2.0F), SurfacePolicy::kBorder, config);
+  ASSERT_EQ(border.vertices.size(), skirt.vertices.size());
+  EXPECT_EQ(border.triangles, skirt.triangles);
+  const float left = -320.0F / 585.0F * 2.0F, right = 318.0F / 585.0F * 2.0F;
+  const float top = -240.0F / 585.0F * 2.0F, bottom = 238.0F / 585.0F * 2.0F;
+  int pushed = 0;
+  for (std::size_t i = 0; i < skirt.vertices.size(); ++i) {
+    const Eigen::Vector3f& p = skirt.vertices[i];
+    const float x = p.x() < left + 1e-4F ? -0.5F : p.x() > right - 1e-4F ? 0.5F : 0.0F;
+    const float y = p.y() < top + 1e-4F ? -0.5F : p.y() > bottom - 1e-4F ? 0.5F : 0.0F;
+    const bool outermost = x != 0.0F || y != 0.0F;
+    pushed += outermost;
+    EXPECT_TRUE(border.vertices[i].isApprox(p + Eigen::Vector3f(x, y, outermost ? -0.5F : 0.0F), 1e-5F));
+  }
+  EXPECT_EQ(pushed, 2 * 320 + 2 * 238);
+}
+
+TEST(DepthMesh, BorderReachesTheImagesEdgeWhereNothingIsMeasuredAndStaysBeforeTheCamera) {
+  DepthImage depth_m = flat(0.4F);
+  fill_rectangle(depth_m, 0, 0, 100, 480, 0.0F);
+  fill_rectangle(depth_m, 500, 0, 640, 480, 0.0F);
+  const Mesh mesh = whole(depth_m, SurfacePolicy::kBorder);
+  EXPECT_EQ(mesh.triangles.size(), 2U * 319U * 239U);
+  EXPECT_EQ(depth_extent(mesh).first, 0.1F);
+  EXPECT_TRUE(whole(flat(0.0F), SurfacePolicy::kBorder).triangles.empty());
 }
 
 TEST(DepthMesh, OpenPoliciesAreAlike) {
