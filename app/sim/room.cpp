@@ -14,7 +14,13 @@ const std::vector<std::string>& room_names() {
   return names;
 }
 
-Room make_room(std::string_view name, bool crate) {
+std::string known_rooms() {
+  std::string known;
+  for (const std::string& one : room_names()) known += one + ", ";
+  return known.append(kRandomRoom);
+}
+
+Room make_room(std::string_view name, bool crate, std::uint64_t seed) {
   Room room;
   if (name == "table") {
     room = make_table_room();
@@ -22,10 +28,10 @@ Room make_room(std::string_view name, bool crate) {
     room = make_shelf_room();
   } else if (name == "wall") {
     room = make_wall_room();
+  } else if (name == kRandomRoom) {
+    room = make_random_room(seed);
   } else {
-    std::string known;
-    for (const std::string& one : room_names()) known.append(known.empty() ? "" : ", ").append(one);
-    throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known);
+    throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known_rooms());
   }
   if (crate) {
     room.solids.push_back(crate_in(room));

@@ -1,6 +1,7 @@
 // room.hpp: a furnished room made in code: solids, what they look like, and where things may happen in it.
 #pragma once
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,11 +42,16 @@ struct Room {
   Eigen::Vector3d person_to_world = Eigen::Vector3d::Zero();
 };
 
-/// The names that make_room knows.
+/// The furnished rooms that make_room knows.
 const std::vector<std::string>& room_names();
+/// And one that it furnishes by seed.
+inline constexpr std::string_view kRandomRoom = "random";
+/// "table, shelf, wall, random".
+std::string known_rooms();
 /// @param crate  one more thing than usual: a crate where else a ball could roll
+/// @param seed   of the furniture of kRandomRoom; other rooms are always the same
 /// Throws Error listing the known names if `name` is none of them.
-Room make_room(std::string_view name, bool crate = false);
+Room make_room(std::string_view name, bool crate = false, std::uint64_t seed = 1);
 
 /// How large that crate is.
 inline const Eigen::Vector3d kCrateSize_m{0.24, 0.18, 0.22};

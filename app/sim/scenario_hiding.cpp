@@ -55,14 +55,31 @@ std::vector<Vector3d> core_points(const Solid& part, double spacing_m) {
   return points;
 }
 
-/// Directions over the half of a ball round u.
-std::vector<Vector3d> half_ball(const Vector3d& u, int count) {
+/// Whether three of the prescan's views have the point in their image, nothing between, from 0.6 to 3.5 m and
+/// not grazing to the normal, where there is one.
+bool is_seen_by_views(const ScenarioRoom& from, const Vector3d& p_world, const Vector3d& normal_world) {
+  constexpr int kViews = 3;
+  const double least_cosine = normal_world.isZero(0.0) ? -1.0 : 0.3;
+  int views = 0;
+  for (const Isometry3d& T_world_camera : from.T_world_prescan) {
+    const Vector3d to_camera = T_world_camera.translation() - p_world;
+    const double range_m = to_camera.norm();
+    if (range_m < 0.6 || range_m > 3.5 || normal_world.dot(to_camera) < least_cosine * range_m) continue;
+    if (!is_in_image(from.prescan.depth_camera, T_world_camera.inverse() * p_world, 0.03)) continue;
+    if (from.room.tree.is_blocked(from.room.solids, p_world, T_world_camera.translation())) continue;
+    if (++views == kViews) return true;
+  }
+  return false;
+}
+
+/// Some `count` directions to the side of u; twice as many, all round, if u is zero.
+std::vector<Vector3d> ball_directions(const Vector3d& u, int count) {
   std::vector<Vector3d> directions;
   for (int i = 0; i < 2 * count; ++i) {
     const double z = 1.0 - (2.0 * i + 1.0) / (2 * count), angle = 2.399963229728653 * i;
     const double r = std::sqrt(1.0 - z * z);
     const Vector3d direction(r * std::cos(angle), r * std::sin(angle), z);
-    if (direction.dot(u) > 0.0) directions.push_back(direction);
+    if (u.isZero(0.0) || direction.dot(u) > 0.0) directions.push_back(direction);
   }
   return directions;
 }
@@ -77,7 +94,7 @@ std::vector<Vector3d> front_points(const Scenario& scenario) {
     const std::vector<Vector3d> core =
         core_points(part, std::min(kWidest_m, std::max(part.half_m.maxCoeff() / 3.0, 0.002)));
     std::vector<Vector3d> grown{Vector3d::Zero()};
-    if (part.round_m > 0.0) grown = half_ball(scenario.direction_world, is_ball ? 200 : 9);
+    if (part.round_m > 0.0) grown = ball_directions(scenario.direction_world, is_ball ? 200 : 9);
     for (const Vector3d& p_solid : core)
       for (const Vector3d& outward : grown)
         points.push_back(part.T_world_solid * p_solid + part.round_m * outward);
@@ -265,18 +282,28 @@ std::optional<Patch> draw_patch(const ScenarioRoom& from, CounterRandom& random)
 }
 
 bool was_seen(const ScenarioRoom& from, const Patch& patch) {
-  constexpr int kViews = 3;
-  int views = 0;
-  const Vector3d before_world = patch.point_world + 0.002 * patch.normal_world;
-  for (const Isometry3d& T_world_camera : from.T_world_prescan) {
-    const Vector3d to_camera = T_world_camera.translation() - patch.point_world;
-    const double range_m = to_camera.norm();
-    if (range_m < 0.6 || range_m > 3.5 || patch.normal_world.dot(to_camera) < 0.3 * range_m) continue;
-    if (!is_in_image(from.prescan.depth_camera, T_world_camera.inverse() * patch.point_world, 0.03)) continue;
-    if (from.room.tree.is_blocked(from.room.solids, before_world, T_world_camera.translation())) continue;
-    if (++views == kViews) return true;
+  return is_seen_by_views(from, patch.point_world + 0.002 * patch.normal_world, patch.normal_world);
+}
+
+bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario) {
+  constexpr double kStep_m = 0.06, kSpacing_m = 0.15;
+  std::vector<Vector3d> points;  // of the object at its start, in the world
+  for (Solid part : scenario.object.parts) {
+    part.T_world_solid = scenario.T_world_object * part.T_world_solid;
+    points.push_back(part.T_world_solid.translation());
+    for (const Vector3d& p_solid : core_points(part, kSpacing_m))
+      points.push_back(part.T_world_solid * p_solid);
+    if (part.round_m > 0.0)
+      for (const Vector3d& outward : ball_directions(Vector3d::Zero(), 20))
+        points.push_back(part.T_world_solid.translation() + part.round_m * outward);
   }
-  return false;
+  const double end_m = scenario.true_travel_m - 0.002;  // before the surface, not in it
+  for (double travel_m = 0.0; travel_m < end_m + kStep_m; travel_m += kStep_m)
+    for (const Vector3d& p_world : points)
+      if (!is_seen_by_views(from, p_world + std::min(travel_m, end_m) * scenario.direction_world,
+                            Vector3d::Zero()))
+        return false;
+  return true;
 }
 
 std::vector<Patch> stopping_patches(const Room& room, const Scenario& scenario, double limit_m) {

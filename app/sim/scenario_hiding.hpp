@@ -24,6 +24,10 @@ std::optional<Patch> draw_patch(const ScenarioRoom& from, CounterRandom& random)
 /// Whether three of the prescan's views have it, from 0.6 to 3.5 m, not grazing and with nothing between.
 bool was_seen(const ScenarioRoom& from, const Patch& patch);
 
+/// Whether three of the prescan's views saw through each of some hundred points of the space that the object
+/// takes from its start to the true contact: there is nothing that nobody has seen in its way.
+bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario);
+
 /// Room points that the object's front runs into within the limit, one for each of some hundred points of it.
 std::vector<Patch> stopping_patches(const Room& room, const Scenario& scenario, double limit_m);
 

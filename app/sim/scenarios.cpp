@@ -100,6 +100,7 @@ std::optional<Scenario> draw_scenario(const ScenarioRoom& from, std::int64_t num
   patches.push_back(contact);
   if (!std::all_of(patches.begin(), patches.end(), [&](const Patch& one) { return was_seen(from, one); }))
     return std::nullopt;
+  if (!way_was_seen(from, scenario)) return std::nullopt;
   if (!hide(from, patches, random, scenario)) return std::nullopt;
   return scenario;
 }
@@ -136,8 +137,8 @@ ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed) {
   ScenarioRoom from;
   from.prescan.room = name;
   from.prescan.seed = seed;
-  from.prescan.frames = 720;  // once round
-  from.room = make_room(name);
+  from.prescan.frames = kScenarioPrescanFrames;
+  from.room = make_room(name, /*crate=*/false, seed);
   const double duration_s = static_cast<double>(from.prescan.frames) / from.prescan.rate_hz;
   const CameraPath path = plan_camera_path(from.room, from.prescan.path, from.prescan.seed, duration_s);
   for (std::int64_t frame = 0; frame < from.prescan.frames; frame += 10)

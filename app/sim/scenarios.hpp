@@ -22,6 +22,9 @@ enum class Occluder {
 };
 std::string_view to_string(Occluder occluder);
 
+/// Of a walk once round a room.
+inline constexpr std::int64_t kScenarioPrescanFrames = 720;
+
 /// A room with the path of its prescan, which all its scenarios share: one map a room serves them all.
 struct ScenarioRoom {
   Room room;
@@ -72,6 +75,7 @@ std::vector<Solid> occluder_at(const Scenario& scenario, int frame);
 ///  - every point of the room that could stop the object up to 5 cm behind the true contact is hidden from
 ///    the camera in the contact frame, though the contact lies within its image;
 ///  - each of those points was seen by at least three of T_world_prescan, from 0.6 to 3.5 m and not grazing;
+///  - so was the space on the object's way: it never enters what nobody has seen;
 ///  - the object starts at least 2 cm from the room, and its way keeps 4 cm from the occluder;
 ///  - moved 5 mm aside, to any of four sides, it would still be stopped no more than 15 mm later or sooner:
 ///    what hangs on less than the map's cells is no question to put to a map.

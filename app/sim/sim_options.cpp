@@ -88,8 +88,10 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
     options.depth_camera.width_px = width_px;
     options.depth_camera.height_px = width_px * 3 / 4;
   } else if (key == "colour") {
-    if (value != "registered" && value != "separate") refuse(key, value, "registered or separate");
-    options.registered_colour = value == "registered";
+    if (value != "registered" && value != "separate" && value != "none")
+      refuse(key, value, "registered, separate or none");
+    options.registered_colour = value != "separate";
+    options.with_colour = value != "none";
   } else {
     throw Error("sim: no option is called '" + std::string(key) +
                 "'; known are: seed, frames, rate, path, moving, pace, noise, crate, width, colour");
@@ -182,16 +184,14 @@ std::string sim_spec(const SimOptions& options) {
   if (options.depth_camera.width_px != usual.depth_camera.width_px)
     say("width", std::to_string(options.depth_camera.width_px));
   if (!options.registered_colour) say("colour", "separate");
+  if (!options.with_colour) say("colour", "none");
   return spec;
 }
 
 void require_valid(const SimOptions& options) {
   const std::vector<std::string>& known = room_names();
-  if (std::find(known.begin(), known.end(), options.room) == known.end()) {
-    std::string names;
-    for (const std::string& one : known) append_with_comma(names, one, ", ");
-    throw Error("no simulated room is called '" + options.room + "'; known are: " + names);
-  }
+  if (options.room != kRandomRoom && std::find(known.begin(), known.end(), options.room) == known.end())
+    throw Error("no simulated room is called '" + options.room + "'; known are: " + known_rooms());
   if (options.frames < 1 || options.frames > 100'000'000)
     refuse("frames", std::to_string(options.frames), "a whole number, 1 to 100000000");
   if (!(options.rate_hz >= 0.1 && options.rate_hz <= 1000.0))

@@ -41,8 +41,8 @@ std::string_view to_string(CrateKind kind);  ///< as a spec has it: 0, 1, comes,
 inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 240.0};
 
 struct SimOptions {
-  std::string room = "table";  ///< one of room_names()
-  std::uint64_t seed = 1;      ///< of the camera's path, the movers' phase and the noise
+  std::string room = "table";  ///< one of room_names(), or kRandomRoom
+  std::uint64_t seed = 1;      ///< of the camera's path, the movers' phase, the noise, and a random room
   std::int64_t frames = 300;   ///< 1 or more
   double rate_hz = 30.0;       ///< frames a second, > 0
   CameraPathKind path = CameraPathKind::kScan;
@@ -52,12 +52,14 @@ struct SimOptions {
   double noise_scale = 1.0;  ///< times the Kinect's noise; 0: clean depth, without shadow or dropouts
   Intrinsics depth_camera = kKinectDepthCamera;
   bool registered_colour = true;  ///< false: a colour camera of its own, 2.5 cm beside the depth camera
+  bool with_colour = true;        ///< false: depth alone, several times as fast
 };
 
 /// Reads `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
 ///   seed, frames, rate, path (scan, view), moving (hand, ball, person; several with commas), pace (steady,
 ///   slow, waits, leaves), noise (0 = off, 1 = Kinect), crate (0, 1: one more thing in the room; comes, goes:
-///   at half time), width (of the image, 4:3, 64 to 1920 pixels), colour (registered, separate).
+///   at half time), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
+///   separate, none).
 /// Throws Error naming the key or value that is not known, or out of range, and listing what is.
 SimOptions parse_sim_spec(std::string_view spec);
 

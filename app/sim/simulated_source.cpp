@@ -36,7 +36,7 @@ Rgb dimmed(Rgb colour, float factor) {
 struct SimulatedSource::State {
   explicit State(const SimOptions& chosen)
       : options(chosen),
-        room(make_room(chosen.room, chosen.crate == CrateKind::kStays)),
+        room(make_room(chosen.room, chosen.crate == CrateKind::kStays, chosen.seed)),
         room_look(room, finest_texel_m(chosen)) {
     const double duration_s = static_cast<double>(options.frames) / options.rate_hz;
     path = plan_camera_path(room, options.path, options.seed, duration_s);
@@ -200,7 +200,9 @@ ReadResult SimulatedSource::next(Frame& frame) {
   }
 
   const std::uint64_t colour_key = hash_of(s.options.seed, static_cast<std::uint64_t>(index), 0x636f6c);
-  if (s.options.registered_colour) {
+  if (!s.options.with_colour) {
+    frame.colour = {};
+  } else if (s.options.registered_colour) {
     s.fill_colour(s.depth_view, s.depth_exact, colour_key, frame.colour);
   } else {
     s.colour_view.prepare(s.solids, s.colour_camera, T_world_camera * s.T_colour_depth.inverse());
@@ -211,7 +213,7 @@ ReadResult SimulatedSource::next(Frame& frame) {
   frame.index = index;
   frame.stamp_s = t_s;
   frame.depth_camera = s.options.depth_camera;
-  frame.colour_camera = s.colour_camera;
+  frame.colour_camera = s.options.with_colour ? s.colour_camera : Intrinsics{};
   frame.T_colour_depth = s.T_colour_depth;
   frame.T_world_camera = T_world_camera;
   frame.down_camera = T_world_camera.linear().transpose() * -Vector3d::UnitZ();

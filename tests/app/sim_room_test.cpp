@@ -1,6 +1,7 @@
 // Rooms: what touches does not overlap, the mesh lies on the surface, there is space to move.
 #include <gtest/gtest.h>
 
+#include "app/sim/camera_path.hpp"
 #include "app/sim/counter_random.hpp"
 #include "app/sim/room.hpp"
 #include "app/sim/room_mesh.hpp"
@@ -69,6 +70,35 @@ TEST_P(SimRoom, WaysOfBallAndPersonAreFree) {
 }
 
 INSTANTIATE_TEST_SUITE_P(EachRoom, SimRoom, testing::ValuesIn(room_names()));
+
+TEST(SimRandomRoom, SolidsDoNotOverlapAndThereIsRoomToWalkAndScan) {
+  std::size_t least = 1'000'000, most = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const Room room = make_room(kRandomRoom, /*crate=*/false, seed);
+    least = std::min(least, room.solids.size());
+    most = std::max(most, room.solids.size());
+    double deepest_m = 0.0;
+    const Mesh mesh = room_mesh(room);
+    for (const Eigen::Vector3f& vertex : mesh.vertices)
+      deepest_m = std::min(deepest_m, signed_distance_m(room, mesh.origin + vertex.cast<double>()));
+    EXPECT_GT(deepest_m, -1e-6);
+    EXPECT_NEAR(signed_distance_m(room, room.focus_world), 0.0, 1e-9);
+    EXPECT_GT(signed_distance_m(room, room.focus_world + Vector3d(0, 0, 0.13)), 0.12);
+    for (double part = 0.0; part <= 1.0; part += 0.02) {
+      const Vector3d person = room.person_from_world + part * (room.person_to_world - room.person_from_world);
+      EXPECT_NEAR(signed_distance_m(room, person + Vector3d(0, 0, 0.11)), 0.11, 1e-9);
+      for (double height_m = 0.45; height_m < 1.7; height_m += 0.1)
+        EXPECT_GT(signed_distance_m(room, person + Vector3d(0, 0, height_m)), 0.4);
+    }
+    const CameraPath path = plan_camera_path(room, CameraPathKind::kScan, seed, 24.0);
+    for (double t_s = 0.0; t_s < 24.0; t_s += 0.2)
+      EXPECT_GT(signed_distance_m(room, T_world_camera_at(path, t_s).translation()), 0.45);
+  }
+  EXPECT_GT(least, 40U);
+  EXPECT_GT(most, least + 20U);
+  EXPECT_EQ(make_room(kRandomRoom, false, 3).solids.size(), make_room(kRandomRoom, false, 3).solids.size());
+}
 
 TEST(SimRoomNames, AnUnknownNameIsRefusedWithTheKnownOnes) {
   try {

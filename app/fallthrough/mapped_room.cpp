@@ -1,0 +1,87 @@
+// mapped_room.cpp: fuses a walk round each room, several rooms at a time.
+#include "app/fallthrough/mapped_room.hpp"
+
+#include <deque>
+#include <functional>
+#include <future>
+#include <mutex>
+
+#include "app/progress.hpp"
+#include "app/sim/simulated_source.hpp"
+#include "mapping/static_map.hpp"
+#include "mapping/surface.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+SimOptions walk_of(const ScenarioRoom& room, const RoomScan& scan) {
+  SimOptions walk = room.prescan;
+  walk.frames = (walk.frames + scan.every - 1) / scan.every;
+  walk.rate_hz /= scan.every;
+  walk.with_colour = false;
+  walk.depth_camera = scaled(kKinectDepthCamera, scan.width_px / 640.0);
+  walk.depth_camera.width_px = scan.width_px;
+  walk.depth_camera.height_px = scan.width_px * 3 / 4;
+  return walk;
+}
+
+}  // namespace
+
+std::vector<RoomChoice> choose_rooms(int random_rooms) {
+  std::vector<RoomChoice> rooms;
+  for (const std::string& name : room_names()) rooms.push_back({name, 1});
+  for (int i = 1; i <= random_rooms; ++i)
+    rooms.push_back({std::string(kRandomRoom), static_cast<std::uint64_t>(i)});
+  return rooms;
+}
+
+ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std::function<void()>& progress) {
+  ScannedRoom room;
+  room.title = choice.name == kRandomRoom ? choice.name + " " + std::to_string(choice.seed) : choice.name;
+  room.simulated = make_scenario_room(choice.name, choice.seed);
+  SimulatedSource source(walk_of(room.simulated, scan));
+  StaticMap map(scan.resolution_m);
+  Frame frame;
+  while (source.next(frame)) {
+    map.fuse(frame, *frame.T_world_camera);
+    progress();
+  }
+  room.mesh_world = extract_surface(map);
+  if (room.mesh_world.triangles.empty())
+    throw Error("room " + room.title + ": the walk round it shows no surface; take a finer resolution");
+  return room;
+}
+
+MappedRoom::MappedRoom(GlContext& context, ScannedRoom room) : scanned(std::move(room)), shape(context) {
+  shape.set(scanned.mesh_world, MeshUsage::kStatic);
+  for (const FallthroughPolicy& policy : kFallthroughPolicies)
+    scenes.push_back(std::make_unique<LiveScene>(context, shape, LiveSceneConfig{.surfaces = policy.surfaces}));
+}
+
+std::vector<std::unique_ptr<MappedRoom>> map_rooms(GlContext& context, const std::vector<RoomChoice>& rooms,
+                                                   const RoomScan& scan, int threads) {
+  const std::int64_t frames_each = (kScenarioPrescanFrames + scan.every - 1) / scan.every;
+  Progress progress("prescan of " + std::to_string(rooms.size()) + " rooms",
+                    static_cast<std::int64_t>(rooms.size()) * frames_each);
+  std::mutex mutex;
+  const auto step = [&] {
+    const std::lock_guard lock(mutex);
+    progress.step();
+  };
+  std::deque<std::future<ScannedRoom>> under_way;
+  std::vector<std::unique_ptr<MappedRoom>> mapped;
+  for (std::size_t next = 0; mapped.size() < rooms.size();) {
+    while (next < rooms.size() && under_way.size() < static_cast<std::size_t>(threads)) {
+      under_way.push_back(
+          std::async(std::launch::async, [&, next] { return scan_room(rooms[next], scan, step); }));
+      ++next;
+    }
+    ScannedRoom scanned = under_way.front().get();
+    under_way.pop_front();
+    mapped.push_back(std::make_unique<MappedRoom>(context, std::move(scanned)));
+  }
+  return mapped;
+}
+
+}  // namespace roomradar

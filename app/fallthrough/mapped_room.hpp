@@ -1,0 +1,51 @@
+// mapped_room.hpp: simulated rooms with the maps that a prescan made of them.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/fallthrough/policies.hpp"
+#include "app/live_scene.hpp"
+#include "app/shape.hpp"
+#include "app/sim/scenarios.hpp"
+
+namespace roomradar {
+
+/// Which room: `table`, `shelf`, `wall` with seed 1, or `random` with a seed of its own.
+struct RoomChoice {
+  std::string name;
+  std::uint64_t seed = 1;
+};
+/// The furnished rooms, and so many random ones.
+std::vector<RoomChoice> choose_rooms(int random_rooms);
+
+struct RoomScan {
+  double resolution_m = 0.01;
+  int every = 2;        ///< of the 720 frames round the room only every so many-th is fused
+  int width_px = 640;   ///< of the depth images, 4:3
+};
+
+/// A room and the map made of it.
+struct ScannedRoom {
+  std::string title;  ///< "table", "random 3"
+  ScenarioRoom simulated;
+  Mesh mesh_world;
+};
+/// Walks round the room with its noisy depth camera at known poses, fuses, and extracts the surface.
+/// @param progress  called after each frame, maybe from several threads at once
+ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std::function<void()>& progress);
+
+/// The same on the renderer, with a scene for each policy.
+struct MappedRoom {
+  ScannedRoom scanned;
+  Shape shape;
+  std::vector<std::unique_ptr<LiveScene>> scenes;  ///< one a policy
+
+  MappedRoom(GlContext& context, ScannedRoom room);
+};
+
+/// Scans the rooms, `threads` at a time, and shows progress on stderr.
+std::vector<std::unique_ptr<MappedRoom>> map_rooms(GlContext& context, const std::vector<RoomChoice>& rooms,
+                                                   const RoomScan& scan, int threads);
+
+}  // namespace roomradar
