@@ -251,6 +251,14 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("N");
   sub->add_option("--seed", command.seed, "of the scenarios (1)")->type_name("N");
+  sub->add_option("--random-rooms", command.random_rooms,
+                  "rooms with drawn furniture beside table, shelf and wall (3)")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("N");
+  sub->add_option("--threads", command.threads, "to scan rooms and make scenarios with (all processors)")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  sub->add_option("--csv", command.csv, "write one line a scenario and policy")->type_name("FILE");
   add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });
 }

@@ -88,6 +88,11 @@ struct RecordCommand {
 struct FallthroughCommand {
   int scenarios = 200;
   std::uint64_t seed = 1;
+  int random_rooms = 3;
+  int threads = 0;                       ///< 0: as many as there are processors
+  std::optional<std::int64_t> scenario;  ///< only this one, as a video
+  std::string video;
+  std::string csv;
   std::string report;
 };
 

@@ -2,7 +2,6 @@
 #include "app/fallthrough/mapped_room.hpp"
 
 #include <deque>
-#include <functional>
 #include <future>
 #include <mutex>
 
@@ -11,6 +10,7 @@
 #include "mapping/static_map.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/unknown_surface.hpp"
 
 namespace roomradar {
 namespace {
@@ -43,20 +43,23 @@ ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std:
   SimulatedSource source(walk_of(room.simulated, scan));
   StaticMap map(scan.resolution_m);
   Frame frame;
-  while (source.next(frame)) {
+  while (source.next(frame).status == ReadStatus::kFrame) {
     map.fuse(frame, *frame.T_world_camera);
     progress();
   }
   room.mesh_world = extract_surface(map);
   if (room.mesh_world.triangles.empty())
     throw Error("room " + room.title + ": the walk round it shows no surface; take a finer resolution");
+  room.unknown_world = unknown_surface(map, room.mesh_world).mesh_world;
   return room;
 }
 
 MappedRoom::MappedRoom(GlContext& context, ScannedRoom room) : scanned(std::move(room)), shape(context) {
   shape.set(scanned.mesh_world, MeshUsage::kStatic);
+  unknown.build_by_place(scanned.unknown_world);
   for (const FallthroughPolicy& policy : kFallthroughPolicies)
-    scenes.push_back(std::make_unique<LiveScene>(context, shape, LiveSceneConfig{.surfaces = policy.surfaces}));
+    scenes.push_back(
+        std::make_unique<LiveScene>(context, shape, LiveSceneConfig{.surfaces = policy.surfaces}));
 }
 
 std::vector<std::unique_ptr<MappedRoom>> map_rooms(GlContext& context, const std::vector<RoomChoice>& rooms,

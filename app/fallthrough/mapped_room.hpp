@@ -1,5 +1,6 @@
 // mapped_room.hpp: simulated rooms with the maps that a prescan made of them.
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,8 +22,8 @@ std::vector<RoomChoice> choose_rooms(int random_rooms);
 
 struct RoomScan {
   double resolution_m = 0.01;
-  int every = 2;        ///< of the 720 frames round the room only every so many-th is fused
-  int width_px = 640;   ///< of the depth images, 4:3
+  int every = 2;       ///< of the 720 frames round the room only every so many-th is fused
+  int width_px = 640;  ///< of the depth images, 4:3
 };
 
 /// A room and the map made of it.
@@ -30,6 +31,7 @@ struct ScannedRoom {
   std::string title;  ///< "table", "random 3"
   ScenarioRoom simulated;
   Mesh mesh_world;
+  Mesh unknown_world;  ///< the border of what nobody has seen
 };
 /// Walks round the room with its noisy depth camera at known poses, fuses, and extracts the surface.
 /// @param progress  called after each frame, maybe from several threads at once
@@ -39,6 +41,7 @@ ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std:
 struct MappedRoom {
   ScannedRoom scanned;
   Shape shape;
+  TriangleTree unknown;
   std::vector<std::unique_ptr<LiveScene>> scenes;  ///< one a policy
 
   MappedRoom(GlContext& context, ScannedRoom room);

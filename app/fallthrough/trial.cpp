@@ -1,0 +1,82 @@
+// trial.cpp: steps of a frame each, until the radar says stop.
+#include "app/fallthrough/trial.hpp"
+
+#include <algorithm>
+
+#include "mapping/types/stage_times.hpp"
+
+namespace roomradar {
+
+const Frame& ScenarioFrames::at(int number) {
+  if (scenario_.occluder_velocity_world.isZero()) number = 0;
+  const auto [entry, is_new] = frames_.try_emplace(number);
+  if (is_new) render_scenario(scenario_, room_, number, /*noise_scale=*/1.0, entry->second);
+  return entry->second;
+}
+
+PreparedScenario::PreparedScenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number)
+    : scenario(make_scenario(room, seed, number)), frames(scenario, room.room) {
+  object.build_by_place(scenario.object_mesh);
+  frames.at(0);
+}
+
+Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
+                const WatchTrial& watch) {
+  using Clock = std::chrono::steady_clock;
+  const Scenario& scenario = prepared.scenario;
+  LiveScene& scene = *room.scenes[policy];
+  const bool is_still = scenario.occluder_velocity_world.isZero();
+  Trial trial;
+  std::vector<SceneTree> surfaces;
+  double query_ms = 0.0;
+  int frame_number = 0;
+  for (bool stopped = false; !stopped && trial.travelled_m < scenario.limit_m; ++frame_number) {
+    if (frame_number == 0 || !is_still) {
+      const Frame& frame = prepared.frames.at(frame_number);
+      const auto start = Clock::now();
+      if (kFallthroughPolicies[policy].surfaces == SurfacePolicy::kMap) {
+        scene.render_expected(frame.depth_camera, scenario.T_world_believed);
+        scene.find_moved(frame);
+      }
+      scene.mesh_moved(frame, scenario.T_world_believed);
+      surfaces = scene.surfaces();
+      if (kFallthroughPolicies[policy].unknown_solid)
+        surfaces.push_back({{&room.unknown, Eigen::Isometry3d::Identity()}, Touched::kUnknownFrontier});
+      if (frame_number == 0) trial.frame_ms = ms_since(start);
+    }
+    const double from_m = trial.travelled_m;
+    const double next_m = std::min(step_m(scenario), scenario.limit_m - from_m);
+    const Eigen::Isometry3d T_world_object =
+        Eigen::Translation3d(from_m * scenario.direction_world) * scenario.T_world_object;
+    const auto start = Clock::now();
+    const Contact contact =
+        radar.query({{&prepared.object, T_world_object}, scenario.direction_world, next_m}, {surfaces, {}});
+    query_ms += ms_since(start);
+    stopped = static_cast<bool>(contact);
+    trial.travelled_m += stopped ? std::max(0.0, contact.travel_m) : next_m;
+    if (stopped) trial.rested_on = contact.touched;
+    const bool is_last = stopped || trial.travelled_m >= scenario.limit_m;
+    if (watch) watch({frame_number, surfaces, from_m, trial.travelled_m, is_last});
+  }
+  trial.frame_ms += query_ms / frame_number;
+  trial.verdict = judge(scenario, trial.travelled_m);
+  return trial;
+}
+
+std::string_view to_string(Touched touched) {
+  switch (touched) {
+    case Touched::kStatic:
+      return "seen static";
+    case Touched::kDynamic:
+      return "seen dynamic";
+    case Touched::kObject:
+      return "object";
+    case Touched::kUnknownFrontier:
+      return "unknown frontier";
+    case Touched::kNothing:
+      break;
+  }
+  return "nothing";
+}
+
+}  // namespace roomradar

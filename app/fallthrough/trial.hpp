@@ -1,0 +1,65 @@
+// trial.hpp: one object on its way through one scenario under one policy.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "app/fallthrough/mapped_room.hpp"
+#include "app/fallthrough/policies.hpp"
+#include "app/sim/scenarios.hpp"
+#include "radar/cyber_radar.hpp"
+
+namespace roomradar {
+
+/// The frames of a scenario, each rendered when it is first asked for; where nothing moves all are the first.
+class ScenarioFrames {
+ public:
+  ScenarioFrames(const Scenario& scenario, const Room& room) : scenario_(scenario), room_(room) {}
+  const Frame& at(int number);
+
+ private:
+  const Scenario& scenario_;
+  const Room& room_;
+  std::map<int, Frame> frames_;
+};
+
+/// A scenario made ready: its frames so far, and its object for the radar.
+struct PreparedScenario {
+  Scenario scenario;
+  TriangleTree object;
+  ScenarioFrames frames;
+
+  PreparedScenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number);
+  PreparedScenario(const PreparedScenario&) = delete;
+  PreparedScenario& operator=(const PreparedScenario&) = delete;
+};
+
+struct Trial {
+  double travelled_m = 0.0;
+  Verdict verdict;
+  Touched rested_on = Touched::kNothing;
+  double frame_ms = 0.0;  ///< surfaces of the first frame, and one question to the radar (mean of all)
+};
+
+/// What happens in one frame of a trial.
+struct TrialStep {
+  int frame = 0;
+  std::span<const SceneTree> surfaces;  ///< that can be touched
+  double from_m = 0.0, to_m = 0.0;      ///< how far the object has come when the frame begins and ends
+  bool is_last = false;
+};
+using WatchTrial = std::function<void(const TrialStep& step)>;
+
+/// Frame by frame: the policy's surfaces from what the camera shows, and the object as far as the radar lets
+/// it, until something stops it or it has passed the scenario's limit. The camera's pose is what tracking
+/// believes.
+Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
+                const WatchTrial& watch = {});
+
+/// "seen static", "seen dynamic", "inferred back", "unknown frontier", "nothing".
+std::string_view to_string(Touched touched);
+
+}  // namespace roomradar
