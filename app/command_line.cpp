@@ -258,7 +258,19 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
   sub->add_option("--threads", command.threads, "to scan rooms and make scenarios with (all processors)")
       ->check(CLI::Range(1, 256))
       ->type_name("N");
+  sub->add_option("--maps", command.maps,
+                  "keep the rooms' maps in this folder, and take them from there if they are in it")
+      ->type_name("DIR");
   sub->add_option("--csv", command.csv, "write one line a scenario and policy")->type_name("FILE");
+  sub->add_option("--html", command.html, "write one page with tables, plots and pictures of failures")
+      ->type_name("FILE");
+  CLI::Option* one = sub->add_option("--scenario", command.scenario, "replay only this one, as a video")
+                         ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000}))
+                         ->type_name("N");
+  CLI::Option* video =
+      sub->add_option("--video", command.video, "of --scenario: .mp4, .avi or .mkv")->type_name("FILE");
+  one->needs(video);
+  video->needs(one);
   add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });
 }

@@ -92,7 +92,9 @@ struct FallthroughCommand {
   int threads = 0;                       ///< 0: as many as there are processors
   std::optional<std::int64_t> scenario;  ///< only this one, as a video
   std::string video;
+  std::string maps;  ///< folder that keeps the rooms' maps from run to run
   std::string csv;
+  std::string html;
   std::string report;
 };
 

@@ -8,8 +8,11 @@
 
 #include "app/commands.hpp"
 #include "app/fallthrough/mapped_room.hpp"
+#include "app/fallthrough/page.hpp"
+#include "app/fallthrough/replay.hpp"
 #include "app/fallthrough/totals.hpp"
 #include "app/fallthrough/trial.hpp"
+#include "app/fallthrough/trial_pictures.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
 
@@ -46,18 +49,67 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughComm
   return rows;
 }
 
+/// Each policy's failures, as far as `most` go, those of the last policies first.
+std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vector<ScenarioRow>& rows,
+                                             std::uint64_t seed) {
+  constexpr std::size_t kMostOfMaps = 24, kMostOfOthers = 4;
+  std::vector<FailurePicture> pictures;
+  CyberRadar radar;
+  for (std::size_t i = kPolicyCount; i-- > 0;) {
+    const bool is_map = kFallthroughPolicies[i].surfaces == SurfacePolicy::kMap;
+    std::size_t left = is_map ? kMostOfMaps : kMostOfOthers;
+    for (const ScenarioRow& row : rows) {
+      const Verdict& verdict = row.trials[i].verdict;
+      if (verdict.outcome == Outcome::kStoppedRight) continue;
+      if (left-- == 0) break;
+      MappedRoom& room = *rooms[row.room];
+      PreparedScenario prepared(room.scanned.simulated, seed, row.number);
+      char number[80];
+      std::snprintf(number, sizeof number, "%+.1f cm; scenario %lld, ", 100.0 * verdict.error_m,
+                    static_cast<long long>(row.number));
+      pictures.push_back({std::string(kFallthroughPolicies[i].name) + ": " +
+                              std::string(to_string(verdict.outcome)) + ", " + number + row.room_title +
+                              ", " + std::string(to_string(row.shape)) + " behind " +
+                              std::string(to_string(row.occluder)) +
+                              ", rested on: " + std::string(to_string(row.trials[i].rested_on)),
+                          picture_of_trial(prepared, room, i, radar)});
+    }
+  }
+  return pictures;
+}
+
+/// One scenario alone: only its room is scanned.
+int replay(const FallthroughCommand& command, const RoomScan& scan) {
+  const std::vector<RoomChoice> choices = choose_rooms(command.random_rooms);
+  const std::vector<RoomChoice> one{choices[static_cast<std::size_t>(*command.scenario) % choices.size()]};
+  GlContext context;
+  const Rooms rooms = map_rooms(context, one, scan, 1);
+  PreparedScenario prepared(rooms.front()->scanned.simulated, command.seed, *command.scenario);
+  CyberRadar radar;
+  write_replay(prepared, *rooms.front(), radar, command.video);
+  for (std::size_t i = 0; i < kPolicyCount; ++i) {
+    const Trial trial = run_trial(prepared, *rooms.front(), i, radar);
+    std::printf("%-11s %-10s %+7.1f mm, rested on: %s\n", std::string(kFallthroughPolicies[i].name).c_str(),
+                std::string(to_string(trial.verdict.outcome)).c_str(), 1e3 * trial.verdict.error_m,
+                std::string(to_string(trial.rested_on)).c_str());
+  }
+  return 0;
+}
+
 }  // namespace
 
 int run(const FallthroughCommand& command) {
+  RoomScan scan;
+  scan.maps = command.maps;
+  for (const std::string& path : {command.report, command.csv, command.html}) require_writable(path);
+  if (command.scenario) return replay(command, scan);
   Report report;
   report.command = "fallthrough";
   report.source = "simulated rooms";
-  const RoomScan scan;
   report.settings = {{"scenarios", command.scenarios},
                      {"seed", command.seed},
                      {"random_rooms", command.random_rooms},
                      {"resolution_m", scan.resolution_m}};
-  for (const std::string& path : {command.report, command.csv}) require_writable(path);
   const int threads = command.threads > 0
                           ? command.threads
                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
@@ -70,13 +122,16 @@ int run(const FallthroughCommand& command) {
       report.times.timed("scenarios", [&] { return run_scenarios(rooms, command, threads); });
 
   const auto totals = totals_of(rows);
-  std::printf("%d scenarios, seed %llu, %zu rooms, %s\n%s", command.scenarios,
-              static_cast<unsigned long long>(command.seed), rooms.size(), context.renderer().c_str(),
-              table_of(totals, command.scenarios).c_str());
+  const std::string about = std::to_string(command.scenarios) + " scenarios, seed " +
+                            std::to_string(command.seed) + ", " + std::to_string(rooms.size()) + " rooms, " +
+                            context.renderer();
+  std::printf("%s\n%s", about.c_str(), table_of(totals, command.scenarios).c_str());
   report.results["scenarios"] = command.scenarios;
   report.results["policies"] = to_json(totals);
   report.results["failures"] = failures_of(rows);
   write_csv(rows, command.csv);
+  if (!command.html.empty())
+    write_page(rows, about, picture_failures(rooms, rows, command.seed), command.html);
   write_report(report, command.report);
   return 0;
 }

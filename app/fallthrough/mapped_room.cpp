@@ -2,11 +2,13 @@
 #include "app/fallthrough/mapped_room.hpp"
 
 #include <deque>
+#include <filesystem>
 #include <future>
 #include <mutex>
 
 #include "app/progress.hpp"
 #include "app/sim/simulated_source.hpp"
+#include "mapping/map_folder.hpp"
 #include "mapping/static_map.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
@@ -26,6 +28,28 @@ SimOptions walk_of(const ScenarioRoom& room, const RoomScan& scan) {
   return walk;
 }
 
+/// Whether the folder holds the map that this walk gave an earlier run.
+bool is_scan_of(const std::filesystem::path& folder, const SimOptions& walk, const RoomScan& scan) {
+  if (!std::filesystem::exists(folder)) return false;
+  const MapInfo info = load_map_info(folder);
+  return info.source == sim_spec(walk) && info.frames_fused == walk.frames &&
+         info.resolution_m == scan.resolution_m;
+}
+
+void fuse_walk(const SimOptions& walk, const RoomScan& scan, const std::function<void()>& progress,
+               SavedMap& map) {
+  SimulatedSource source(walk);
+  map.octree = StaticMap(scan.resolution_m);
+  map.info.source = sim_spec(walk);
+  Frame frame;
+  while (source.next(frame).status == ReadStatus::kFrame) {
+    ++map.info.frames_read;
+    if (map.octree.fuse(frame, *frame.T_world_camera) == FuseStatus::kFused) ++map.info.frames_fused;
+    progress();
+  }
+  map.mesh = extract_surface(map.octree);
+}
+
 }  // namespace
 
 std::vector<RoomChoice> choose_rooms(int random_rooms) {
@@ -40,17 +64,23 @@ ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std:
   ScannedRoom room;
   room.title = choice.name == kRandomRoom ? choice.name + " " + std::to_string(choice.seed) : choice.name;
   room.simulated = make_scenario_room(choice.name, choice.seed);
-  SimulatedSource source(walk_of(room.simulated, scan));
-  StaticMap map(scan.resolution_m);
-  Frame frame;
-  while (source.next(frame).status == ReadStatus::kFrame) {
-    map.fuse(frame, *frame.T_world_camera);
-    progress();
+  const SimOptions walk = walk_of(room.simulated, scan);
+  const std::filesystem::path folder =
+      scan.maps.empty()
+          ? std::filesystem::path()
+          : std::filesystem::path(scan.maps) / (choice.name + "-" + std::to_string(choice.seed));
+  SavedMap map;
+  if (!folder.empty() && is_scan_of(folder, walk, scan)) {
+    map = load_map(folder);
+    for (std::int64_t i = 0; i < walk.frames; ++i) progress();
+  } else {
+    fuse_walk(walk, scan, progress, map);
+    if (map.mesh.triangles.empty())
+      throw Error("room " + room.title + ": the walk round it shows no surface; take a finer resolution");
+    if (!folder.empty()) save_map(folder, map);
   }
-  room.mesh_world = extract_surface(map);
-  if (room.mesh_world.triangles.empty())
-    throw Error("room " + room.title + ": the walk round it shows no surface; take a finer resolution");
-  room.unknown_world = unknown_surface(map, room.mesh_world).mesh_world;
+  room.unknown_world = unknown_surface(map.octree, map.mesh).mesh_world;
+  room.mesh_world = std::move(map.mesh);
   return room;
 }
 
@@ -58,8 +88,8 @@ MappedRoom::MappedRoom(GlContext& context, ScannedRoom room) : scanned(std::move
   shape.set(scanned.mesh_world, MeshUsage::kStatic);
   unknown.build_by_place(scanned.unknown_world);
   for (const FallthroughPolicy& policy : kFallthroughPolicies)
-    scenes.push_back(
-        std::make_unique<LiveScene>(context, shape, LiveSceneConfig{.surfaces = policy.surfaces}));
+    scenes.push_back(std::make_unique<LiveScene>(context, shape, LiveSceneConfig{.surfaces = policy.surfaces},
+                                                 policy.unknown_solid ? &unknown : nullptr));
 }
 
 std::vector<std::unique_ptr<MappedRoom>> map_rooms(GlContext& context, const std::vector<RoomChoice>& rooms,

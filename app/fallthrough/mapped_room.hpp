@@ -22,8 +22,9 @@ std::vector<RoomChoice> choose_rooms(int random_rooms);
 
 struct RoomScan {
   double resolution_m = 0.01;
-  int every = 2;       ///< of the 720 frames round the room only every so many-th is fused
+  int every = 3;       ///< of the 720 frames round the room only every so many-th is fused
   int width_px = 640;  ///< of the depth images, 4:3
+  std::string maps;    ///< folder to keep the maps in and to take them from; empty: none
 };
 
 /// A room and the map made of it.
@@ -33,8 +34,10 @@ struct ScannedRoom {
   Mesh mesh_world;
   Mesh unknown_world;  ///< the border of what nobody has seen
 };
-/// Walks round the room with its noisy depth camera at known poses, fuses, and extracts the surface.
+/// Walks round the room with its noisy depth camera at known poses, fuses, and extracts the surface; or takes
+/// the map of an earlier run that did the same.
 /// @param progress  called after each frame, maybe from several threads at once
+/// Throws Error if the room has no surface, or if there is a map that is broken.
 ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std::function<void()>& progress);
 
 /// The same on the renderer, with a scene for each policy.

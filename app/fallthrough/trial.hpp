@@ -4,7 +4,6 @@
 #include <functional>
 #include <map>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "app/fallthrough/mapped_room.hpp"
@@ -58,8 +57,5 @@ using WatchTrial = std::function<void(const TrialStep& step)>;
 /// believes.
 Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
                 const WatchTrial& watch = {});
-
-/// "seen static", "seen dynamic", "inferred back", "unknown frontier", "nothing".
-std::string_view to_string(Touched touched);
 
 }  // namespace roomradar
