@@ -74,6 +74,38 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
   return known;
 }
 
+// Takes out of `unknown` the pieces of less than pocket_voxels that hang in free space.
+void leave_out_pockets(const Known& known, const std::array<VoxelBits, 3>& barred,
+                       const UnknownSurfaceConfig& config, VoxelBits& unknown) {
+  const VoxelBits everywhere(known.grid.size, true);
+  VoxelBits held = everywhere;  // by something occupied, or by the margin
+  held.subtract(known.unknown).subtract(known.free);
+  for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, barred);
+  held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
+  held &= unknown;
+  held.flood(unknown, barred);
+  VoxelBits hanging = unknown;
+  hanging.subtract(held);
+
+  std::vector<Vector3i> piece;
+  VoxelBits seen(known.grid.size, false);
+  hanging.for_each_set([&](const Vector3i& first) {
+    if (seen.at(first)) return;
+    piece.assign(1, first);
+    seen.set(first, true);
+    for (std::size_t done = 0; done < piece.size(); ++done)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const int step : {-1, 1}) {
+          const Vector3i next = piece[done] + step * Vector3i::Unit(axis);
+          if (!hanging.at(next) || seen.at(next)) continue;
+          seen.set(next, true);
+          piece.push_back(next);
+        }
+    if (piece.size() >= static_cast<std::size_t>(config.pocket_voxels)) return;
+    for (const Vector3i& cell : piece) unknown.set(cell, false);
+  });
+}
+
 // Where an object can be that comes from free space: through free voxels as far as they go, then on for
 // rim_voxels through whatever does not count as unknown.
 VoxelBits reachable(const VoxelBits& free, const VoxelBits& unknown, const std::array<VoxelBits, 3>& barred,
@@ -104,6 +136,9 @@ void require_valid(const UnknownSurfaceConfig& config) {
   require_in_1_to_16("least_voxels", config.least_voxels);
   require_in_1_to_16("cube_voxels", config.cube_voxels);
   require_in_1_to_16("rim_voxels", config.rim_voxels);
+  if (config.pocket_voxels < 0 || config.pocket_voxels > 1'000'000'000)
+    throw Error("unknown_surface.pocket_voxels = " + std::to_string(config.pocket_voxels) +
+                ": must be in 0..10^9");
   if (config.rim_voxels < 3 * (config.cube_voxels - 1))
     throw Error("unknown_surface.rim_voxels = " + std::to_string(config.rim_voxels) +
                 ": must be at least 3 * (cube_voxels - 1), or some cubes of unknown voxels are out of reach");
@@ -119,6 +154,7 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
   result.grid = known.grid;
   result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
   const std::array<VoxelBits, 3> barred = barred_steps(surface_world, known.grid);
+  leave_out_pockets(known, barred, config, result.unknown);
   const VoxelBits reached = reachable(known.free, result.unknown, barred, config);
   result.mesh_world = mesh_of(faces_between(result.unknown, reached, barred), known.grid);
   result.memory_bytes = kGridsAtOnce * known.free.memory_bytes();

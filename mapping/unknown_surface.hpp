@@ -21,6 +21,10 @@ struct UnknownSurfaceConfig {
   /// the static surface leaves open. 1 to 16, and at least 3 * (cube_voxels - 1): so many steps the nearest
   /// cube may be away from the border.
   int rim_voxels = 4;
+  /// A piece of unknown space with fewer voxels, and nothing occupied within cube_voxels steps of
+  /// it, does not count: rays passed on all sides and met nothing, so only depth was missing there, as before
+  /// something dark. 0 to 10^9.
+  int pocket_voxels = 1000;
 };
 
 /// Throws Error naming field, value and rule.

@@ -137,7 +137,8 @@ TEST(UnknownSurface, SpecksAndSheetsInFreeSpaceDoNotCount) {
   const double shell_m2 = 6 * 16 * 16 * kVoxel_m * kVoxel_m;
   const auto area_with_hole = [&](const Vector3i& hole_low, const Vector3i& hole_size) {
     const StaticMap map = free_with_hole(low, high, hole_low, hole_low + hole_size);
-    return area_of(unknown_surface(map, kNoSurface).mesh_world) - shell_m2;
+    const UnknownSurfaceConfig config{.pocket_voxels = 0};
+    return area_of(unknown_surface(map, kNoSurface, config).mesh_world) - shell_m2;
   };
   EXPECT_NEAR(area_with_hole({6, 6, 6}, {1, 1, 1}), 0.0, 1e-6);  // one voxel
   EXPECT_NEAR(area_with_hole({6, 6, 6}, {2, 2, 2}), 0.0, 1e-6);
@@ -146,6 +147,23 @@ TEST(UnknownSurface, SpecksAndSheetsInFreeSpaceDoNotCount) {
   const double face_m2 = kVoxel_m * kVoxel_m;
   EXPECT_NEAR(area_with_hole({6, 6, 6}, {4, 4, 4}), 6 * 4 * 4 * face_m2, 1e-6);
   EXPECT_NEAR(area_with_hole({4, 4, 6}, {8, 8, 4}), 2 * (8 * 8 + 8 * 4 + 8 * 4) * face_m2, 1e-6);
+}
+
+TEST(UnknownSurface, APocketThatHangsInFreeSpaceCountsFromSoManyVoxelsOn) {
+  const Vector3i low = Vector3i::Zero(), high = Vector3i::Constant(24), at = Vector3i::Constant(6);
+  const double face_m2 = kVoxel_m * kVoxel_m, shell_m2 = 6 * 24 * 24 * face_m2;
+  const auto hole_area_m2 = [&](const StaticMap& map) {
+    return area_of(unknown_surface(map, kNoSurface).mesh_world) - shell_m2;
+  };
+  EXPECT_NEAR(hole_area_m2(free_with_hole(low, high, at, at + Vector3i::Constant(8))), 0.0, 1e-6);  // 512
+  StaticMap large = free_with_hole(low, high, at, at + Vector3i::Constant(10));                     // 1000
+  EXPECT_NEAR(hole_area_m2(large), 6 * 10 * 10 * face_m2, 1e-6);
+  // What is occupied within two steps holds a small one, and nothing that is farther does.
+  StaticMap held = free_with_hole(low, high, at, at + Vector3i::Constant(4));
+  held.add_evidence(MapLeaf{{13, 8, 8}, 1, 3.0F});
+  EXPECT_NEAR(hole_area_m2(held), 0.0, 1e-6);
+  held.add_evidence(MapLeaf{{11, 8, 8}, 1, 3.0F});
+  EXPECT_NEAR(hole_area_m2(held), 6 * 4 * 4 * face_m2, 1e-6);
 }
 
 TEST(UnknownSurface, AThinSlitInTheUnknownIsLinedToItsEnd) {
@@ -218,7 +236,7 @@ TEST(UnknownSurface, AgreesWithItsDefinitionOnRandomLeaves) {
       map.add_evidence(MapLeaf{low, edge, random() % 4 == 0 ? kOccupied : kFree});
     }
     const UnknownSurfaceConfig config{
-        .least_voxels = 2 + round % 2, .cube_voxels = 1 + round % 3, .rim_voxels = 6};
+        .least_voxels = 2 + round % 2, .cube_voxels = 1 + round % 3, .rim_voxels = 6, .pocket_voxels = 0};
     const auto state = [&](const Vector3i& p) {
       return map.occupancy_at((p.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m);
     };
@@ -380,6 +398,7 @@ TEST(UnknownSurface, ConfigsOutOfTheirRulesAreRefused) {
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.least_voxels = 0}), Error);
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.cube_voxels = 17}), Error);
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.rim_voxels = -1}), Error);
+  EXPECT_THROW(require_valid(UnknownSurfaceConfig{.pocket_voxels = -1}), Error);
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.cube_voxels = 3}), Error);  // some out of the rim's reach
   EXPECT_NO_THROW(require_valid(UnknownSurfaceConfig{}));
 }
