@@ -11,6 +11,7 @@
 
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/error.hpp"
+#include "tests/support/allocation_count.hpp"
 #include "tests/support/exact_depth.hpp"
 
 namespace roomradar {
@@ -228,6 +229,29 @@ TEST(ChangeTracker, PointsAreBounded) {
   for (int i = 0; i < 3; ++i)
     tracker.update(depth_m, expected_m, labels_of(depth_m, expected_m), kCamera, pose_at(0.0), 0.1 * i);
   EXPECT_EQ(tracker.point_count(), 50U);
+}
+
+TEST(ChangeTracker, NothingIsAllocatedFromTheSecondFrameOn) {
+  const DepthImage expected_m = test::exact_frame(room(), kCamera, pose_at(0.0)).depth_m;
+  std::vector<DepthImage> depth_m;
+  std::vector<LabelImage> labels;
+  for (int i = 0; i < 20; ++i) {
+    const Scene passing = test::sphere({0.05 * i - 0.5, 0.0, 0.2}, 0.1);
+    const Scene scene = test::nearest_of(test::nearest_of(room(), crate_at({0.3, 0.3, 0.0})), passing);
+    depth_m.push_back(test::exact_frame(scene, kCamera, pose_at(0.0)).depth_m);
+    labels.push_back(labels_of(depth_m.back(), expected_m));
+  }
+  ChangeTracker tracker;
+  tracker.update(depth_m[0], expected_m, labels[0], kCamera, pose_at(0.0), 0.0);
+  const std::size_t before = test::allocations;
+  bool found = false;
+  for (std::size_t i = 1; i < 20; ++i) {
+    tracker.update(depth_m[i], expected_m, labels[i], kCamera, pose_at(0.0), 0.1 * static_cast<double>(i));
+    found |= !tracker.settled(10.0).empty();
+  }
+  EXPECT_EQ(test::allocations - before, 0U);
+  EXPECT_FALSE(found);
+  EXPECT_GT(tracker.point_count(), 100U);
 }
 
 TEST(ChangeTracker, ConfigIsChecked) {
