@@ -21,6 +21,7 @@ constexpr double kLongestStep_s = 0.5;
 // be the background's, a thing that stays is missed in one frame out of four.
 constexpr int kContradiction = 2, kConfirmation = 1, kMostDoubt = 7;
 constexpr float kFarApart_m = 4.0F;  // pixels of the sampling grid are spacing_m apart at this depth
+constexpr int kAllRound = 7;         // of the eight cells round one in a flat surface
 constexpr float kNothing_m = std::numeric_limits<float>::quiet_NaN();
 
 void require(bool holds, const char* field, double value, const char* rule) {
@@ -67,6 +68,16 @@ float beyond(const DepthImage& depth_m, int x, int y, float z) {
   return best;
 }
 
+// Whether the foreground says so of (x, y) or of a pixel beside it.
+bool is_labelled(const LabelImage& labels, int x, int y, PixelLabel label) {
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, labels.height - 1); ++v) {
+    const PixelLabel* row = labels.row(v);
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, labels.width - 1); ++u)
+      if (row[u] == label) return true;
+  }
+  return false;
+}
+
 float tolerance_m(const ChangeTrackerConfig& config, float z) {
   const float sensor = depth_sigma_m(z);
   const float pose = config.pose_sigma_m + config.pose_sigma_per_m * z;
@@ -99,6 +110,7 @@ void require_valid(const ChangeTrackerConfig& config) {
           "at least spacing_m, and at most 1");
   require(config.min_cells >= 1, "min_cells", config.min_cells, ">= 1");
   require(part(config.min_steady_fraction), "min_steady_fraction", config.min_steady_fraction, "in 0..1");
+  require(part(config.min_core_fraction), "min_core_fraction", config.min_core_fraction, "in 0..1");
   require(part(config.min_seen_fraction), "min_seen_fraction", config.min_seen_fraction, "in 0..1");
   require(config.forget_after_s > 0.0F, "forget_after_s", config.forget_after_s, "> 0");
   require(config.max_points >= 1 && config.max_points <= 10'000'000, "max_points",
@@ -172,8 +184,13 @@ bool ChangeTracker::review(const View& view, float dt_s, Point& point) {
   const bool in_sight = std::abs(live) <= tolerance;
 
   // What came is to be seen and not yet in the model; what went, not seen and still in the model.
+  // The foreground knows more of edges and noise: what it takes for static is.
   bool holds = came ? in_sight && !in_model : !in_sight && in_model;
   if (!came && model < -tolerance) return may_stay_unseen;  // the model has something before it here
+  if (holds && !is_labelled(view.labels, x, y, came ? PixelLabel::kMoved : PixelLabel::kRevealed)) {
+    if (view.labels.at(x, y) == PixelLabel::kNotKnown) return may_stay_unseen;
+    holds = false;
+  }
   point.unseen_s = 0.0F;
   if (!holds) {
     point.doubt = static_cast<std::uint8_t>(point.doubt + kContradiction);
@@ -269,6 +286,8 @@ void ChangeTracker::sort_into_cells(LastingKind kind, float seconds) {
     for (int n = 0; n < kCellsRound / 2; ++n) {  // the other half finds this one
       const std::uint32_t beside = table_[find_cell(cells_[cell].code + cell_code(cell_round(n)) - zero)];
       if (beside == kNone) continue;
+      ++cells_[cell].neighbours;
+      ++cells_[beside].neighbours;
       const std::uint32_t a = thing_of(cell), b = thing_of(beside);
       cells_[std::max(a, b)].joined_to = std::min(a, b);
     }
@@ -281,6 +300,7 @@ void ChangeTracker::judge_things(LastingKind kind, std::vector<LastingChange>& c
     Thing& thing = things_[thing_of(cell)];
     ++thing.cells;
     thing.steady_cells += cells_[cell].steady ? 1 : 0;
+    thing.core_cells += cells_[cell].neighbours >= kAllRound ? 1 : 0;
   }
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if (cell_of_[i] == kNone) continue;
@@ -288,8 +308,10 @@ void ChangeTracker::judge_things(LastingKind kind, std::vector<LastingChange>& c
     ++thing.points;
     thing.seen_points += points_[i].as_it_was ? 1 : 0;
   }
+  const float min_core = kind == LastingKind::kWent ? config_.min_core_fraction : 0.0F;
   for (Thing& thing : things_) {
     if (thing.cells < config_.min_cells ||
+        static_cast<float>(thing.core_cells) < min_core * static_cast<float>(thing.cells) ||
         static_cast<float>(thing.steady_cells) <
             config_.min_steady_fraction * static_cast<float>(thing.cells) ||
         static_cast<float>(thing.seen_points) < config_.min_seen_fraction * static_cast<float>(thing.points))

@@ -41,6 +41,9 @@ struct ChangeTrackerConfig {
   /// A thing settles as a whole: so many of its cells must have a point that stayed. One that holds still at
   /// its middle while its rim moves, as a hand that sways, does not.
   float min_steady_fraction = 0.75F;
+  /// Of what went, so many of its cells must lie in its middle, with cells all round. An edge of the map that
+  /// stands a little off, by an error of poses, is seen through as well, in a strip one or two cells wide.
+  float min_core_fraction = 0.15F;
   float min_seen_fraction = 0.5F;  ///< of its points, seen at their places in this frame
   float forget_after_s = 60.0F;    ///< not seen for so long, a point goes
   std::size_t max_points = 20000;  ///< of all things together; no point is added to so many
@@ -91,9 +94,10 @@ class ChangeTracker {
     std::uint64_t code = 0;
     std::uint32_t joined_to = 0;  ///< another cell of the same thing, or itself: a forest
     bool steady = false;          ///< one of its points has stayed for long enough
+    std::uint8_t neighbours = 0;  ///< cells that touch it
   };
   struct Thing {
-    int cells = 0, steady_cells = 0;
+    int cells = 0, steady_cells = 0, core_cells = 0;
     std::size_t points = 0, seen_points = 0;
     std::size_t change = 0;  ///< 1 + its place among the changes found; 0: none
   };

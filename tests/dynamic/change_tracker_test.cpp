@@ -106,6 +106,16 @@ TEST(ChangeTracker, WhatWasTakenAwayIsFound) {
   EXPECT_LT((changes[0].box_world().center() - Vector3d(0, 0, 0.11)).norm(), 0.05);
 }
 
+TEST(ChangeTracker, AStripAlongAnEdgeHasNotGoneAndASmallBoxHas) {
+  const auto gone = [](const Vector3d& low, const Vector3d& high) {
+    Watched watched(test::nearest_of(room(), test::box(Eigen::AlignedBox3d(low, high))));
+    watched.run(0.0, 2.0, room());
+    return watched.tracker.settled(1.0).size();
+  };
+  EXPECT_EQ(gone({-0.04, -0.04, 0.0}, {0.04, 0.04, 0.1}), 1U);
+  EXPECT_EQ(gone({-0.4, 0.0, 0.3}, {0.4, 0.01, 0.34}), 0U);
+}
+
 TEST(ChangeTracker, WhatSwaysIsNeverFound) {
   for (const double amplitude_m : {0.03, 0.1}) {
     Watched watched(room());
