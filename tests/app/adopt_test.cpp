@@ -57,6 +57,7 @@ class AdoptingSession {
     }
     return result;
   }
+  void make_unknown_solid() { session.make_unknown_solid(times_); }
   void drop_pot(const Vector3d& above) {
     ScriptEvent event;
     event.name = "pot";
@@ -133,6 +134,19 @@ TEST(Adopt, WhatACrateHeldFallsWhenItIsTakenAway) {
   EXPECT_EQ(run.session.adopted().front().kind, LastingKind::kWent);
   EXPECT_NEAR(run.pot_m(), 0.75, 0.01);
   EXPECT_EQ(map.octree.occupancy_at(kCrateTop - Vector3d(0, 0, 0.1)), Occupancy::kFree);
+}
+
+TEST(Adopt, SolidUnknownSpaceInsideACrateGoesWithIt) {
+  SavedMap map = map_of("1");
+  AdoptingSession run(map, view("frames=90&crate=goes"), adopting(1.5));
+  run.make_unknown_solid();
+  const Vector3d inside = kCrateTop - Vector3d(0, 0, 0.11);
+  EXPECT_TRUE(is_unknown(run.session.unknown(), inside));
+  run.drop_pot(kCrateTop);
+  run.run(90);
+  ASSERT_EQ(run.session.adopted().size(), 1U);
+  EXPECT_FALSE(is_unknown(run.session.unknown(), inside));
+  EXPECT_NEAR(run.pot_m(), 0.75, 0.01);
 }
 
 TEST(Adopt, WhatIsAskedForIsAdoptedAtOnce) {
