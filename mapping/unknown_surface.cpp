@@ -1,6 +1,7 @@
 // unknown_surface.cpp: which unknown cells count, which of them can be come to, and their faces.
 #include "mapping/unknown_surface.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>

@@ -64,7 +64,8 @@ TEST(VoxelBits, ABoxIsSetAsFarAsItLiesInside) {
 
 TEST(VoxelBits, OpeningKeepsWhatLiesInAWholeCube) {
   std::mt19937 random(2);
-  for (const auto& [edge, lattice] : {std::pair(2, 1), std::pair(2, 2), std::pair(3, 1), std::pair(3, 3)}) {
+  for (const auto& cube : {std::pair(2, 1), std::pair(2, 2), std::pair(3, 1), std::pair(3, 3)}) {
+    const int edge = cube.first, lattice = cube.second;
     const VoxelBits bits = random_bits(random, 7), result = opened(bits, edge, lattice);
     int wrong = 0;
     std::size_t kept = 0;
