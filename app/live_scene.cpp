@@ -17,6 +17,7 @@ LiveScene::LiveScene(GlContext& context, const Shape& room, const LiveSceneConfi
                      const TriangleTree* unknown)
     : config_(config), room_(room), unknown_(unknown), moved_(context), depth_pass_(context) {
   require_valid(config.foreground);
+  require_valid(config.moved);
   require_valid(config.mesh);
 }
 
@@ -35,15 +36,17 @@ ForegroundCounts LiveScene::find_moved(const Frame& frame) {
                          config_.foreground, foreground_, labels_, moved_mask_);
 }
 
-void LiveScene::mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+void LiveScene::mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                           std::span<const FineRegion> fine) {
   if (config_.surfaces == SurfacePolicy::kMap) {
-    mesh_masked(frame.depth_m, moved_mask_, frame.depth_camera, T_world_camera, config_.mesh, mesh_scratch_,
-                moved_mesh_world_);
+    roomradar::mesh_moved(frame.depth_m, moved_mask_, expected_depth_m_, frame.depth_camera, T_world_camera,
+                          fine, config_.moved, moved_scratch_, moved_world_);
+    inferred_.build_in_order(moved_world_.inferred_world);
   } else {
     mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh,
-               mesh_scratch_, moved_mesh_world_);
+               mesh_scratch_, moved_world_.seen_world);
   }
-  moved_.set(moved_mesh_world_, MeshUsage::kStreamed);
+  moved_.set(moved_world_.seen_world, MeshUsage::kStreamed);
 }
 
 std::vector<SceneTree> LiveScene::surfaces() const {
@@ -51,6 +54,8 @@ std::vector<SceneTree> LiveScene::surfaces() const {
   if (config_.surfaces == SurfacePolicy::kMap)
     surfaces.push_back({{&room_.touched, Eigen::Isometry3d::Identity()}, Touched::kStatic});
   surfaces.push_back({{&moved_.touched, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
+  if (!inferred_.empty())
+    surfaces.push_back({{&inferred_, Eigen::Isometry3d::Identity()}, Touched::kInferredBack});
   if (config_.surfaces == SurfacePolicy::kMap && unknown_ != nullptr)
     surfaces.push_back({{unknown_, Eigen::Isometry3d::Identity()}, Touched::kUnknownFrontier});
   return surfaces;

@@ -2,11 +2,13 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "app/shape.hpp"
 #include "dynamic/depth_mesh.hpp"
 #include "dynamic/foreground.hpp"
+#include "dynamic/moved_surface.hpp"
 #include "dynamic/surface_policy.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/mesh.hpp"
@@ -14,13 +16,15 @@
 #include "radar/gl_context.hpp"
 #include "radar/gpu_mesh.hpp"
 #include "radar/radar_scene.hpp"
+#include "radar/triangle_tree.hpp"
 
 namespace roomradar {
 
 struct LiveSceneConfig {
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   ForegroundConfig foreground = {};
-  DepthMeshConfig mesh = {};
+  MovedSurfaceConfig moved = {};  ///< of kMap
+  DepthMeshConfig mesh = {};      ///< of the others
 };
 
 /// Made anew from each frame: render_expected, find_moved, mesh_moved, in this order. Not thread safe.
@@ -39,11 +43,13 @@ class LiveScene {
   void room_changed() { expected_camera_ = {}; }
   /// Labels the frame's pixels against the expected depth, and by what the frame before showed.
   ForegroundCounts find_moved(const Frame& frame);
-  /// kMap: meshes the pixels that moved; kHoles, kSkirt: all pixels.
-  void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  /// kMap: meshes the pixels that moved, as fine as they are in the given regions, and infers their back;
+  /// kHoles, kSkirt: all pixels.
+  void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                  std::span<const FineRegion> fine = {});
 
-  /// What can be touched: kMap: the room, what moved and the border of the unknown; kHoles, kSkirt: the
-  /// frame's own mesh.
+  /// What can be touched: kMap: the room, what moved and its back, and the border of the unknown; kHoles,
+  /// kSkirt: the frame's own mesh.
   [[nodiscard]] std::vector<SceneTree> surfaces() const;
   /// What is drawn of that.
   [[nodiscard]] std::vector<MeshInstance> drawn_surfaces() const;
@@ -51,8 +57,10 @@ class LiveScene {
   [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
   [[nodiscard]] const LabelImage& labels() const { return labels_; }
   [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
-  [[nodiscard]] const Mesh& moved_mesh_world() const { return moved_mesh_world_; }
+  [[nodiscard]] const MovedSurface& moved_world() const { return moved_world_; }
   [[nodiscard]] std::size_t moved_triangles() const { return moved_.touched.triangle_count(); }
+  [[nodiscard]] const TriangleTree& inferred() const { return inferred_; }
+  [[nodiscard]] std::size_t inferred_triangles() const { return inferred_.triangle_count(); }
 
  private:
   LiveSceneConfig config_;
@@ -70,7 +78,9 @@ class LiveScene {
   LabelImage labels_;
   MaskImage moved_mask_;
   DepthMeshScratch mesh_scratch_;
-  Mesh moved_mesh_world_;
+  MovedSurfaceScratch moved_scratch_;
+  MovedSurface moved_world_;
+  TriangleTree inferred_;  ///< of the back; touched only
 };
 
 }  // namespace roomradar

@@ -192,7 +192,7 @@ void Stepper::collide(const Contact& contact, Vec3& remaining) {
   }
   if (met_count_ < 2) met_normals_[static_cast<std::size_t>(met_count_++)] = normal;
   ++report_.contacts;
-  if (contact.touched == Touched::kUnknownFrontier) ++report_.unknown_contacts;
+  ++report_.contacts_by_kind[static_cast<std::size_t>(contact.touched)];
   note(contact.touched);
 }
 
@@ -300,22 +300,41 @@ StepReport advance(Body& body, double dt_s, const TravelQuery& query, const Phys
   return report;
 }
 
-PushDirections push_directions(const Mesh& moving_world, const Eigen::Vector3d& centre_world, double reach_m,
+bool is_swallowed(const Body& body, double dt_s, const TravelQuery& back, const PhysicsConfig& config,
+                  std::span<const Eigen::Vector3d> push_directions_world) {
+  const double most_m = config.push_out_mps * dt_s + config.wake_overlap_m;
+  bool is_deep = false;
+  const auto is_shallow = [&](const Vec3& direction) {
+    const Contact contact = back(body.T_world_object, direction, config.contact_margin_m);
+    if (contact.status != ContactStatus::kOverlap) return false;
+    is_deep = true;
+    return -contact.travel_m <= most_m;
+  };
+  const double g = config.gravity_world_mps2.norm();
+  if (g > 0.0 && is_shallow(config.gravity_world_mps2 / g)) return false;
+  if (std::any_of(push_directions_world.begin(), push_directions_world.end(), is_shallow)) return false;
+  return is_deep;
+}
+
+PushDirections push_directions(std::initializer_list<const Mesh*> moving_world,
+                               const Eigen::Vector3d& centre_world, double reach_m,
                                const Eigen::Vector3d& up_world) {
-  const Vec3 centre = centre_world - moving_world.origin;
   Vec3 nearest = Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   double nearest_m2 = reach_m * reach_m;
   std::size_t count = 0;
-  for (const Eigen::Vector3f& vertex : moving_world.vertices) {
-    const Vec3 offset = vertex.cast<double>() - centre;
-    const double distance_m2 = offset.squaredNorm();
-    if (!(distance_m2 <= reach_m * reach_m)) continue;  // NaN is not near either
-    sum += offset;
-    ++count;
-    if (distance_m2 <= nearest_m2) {
-      nearest_m2 = distance_m2;
-      nearest = offset;
+  for (const Mesh* mesh : moving_world) {
+    const Vec3 centre = centre_world - mesh->origin;
+    for (const Eigen::Vector3f& vertex : mesh->vertices) {
+      const Vec3 offset = vertex.cast<double>() - centre;
+      const double distance_m2 = offset.squaredNorm();
+      if (!(distance_m2 <= reach_m * reach_m)) continue;  // NaN is not near either
+      sum += offset;
+      ++count;
+      if (distance_m2 <= nearest_m2) {
+        nearest_m2 = distance_m2;
+        nearest = offset;
+      }
     }
   }
   PushDirections result;

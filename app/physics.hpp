@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <span>
 #include <string>
 
@@ -61,9 +62,9 @@ enum class StepStatus {
 
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
-  int contacts = 0;          ///< surfaces met
-  int unknown_contacts = 0;  ///< of them, with the border of unknown space
-  int queries = 0;           ///< of the radar
+  int contacts = 0;                                   ///< surfaces met
+  std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by what was touched
+  int queries = 0;                                    ///< of the radar
   /// Deepest overlap seen before it was resolved, by the shortest way out, >= 0.
   double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only
@@ -86,8 +87,14 @@ struct [[nodiscard]] StepReport {
 StepReport advance(Body& body, double dt_s, const TravelQuery& query, const PhysicsConfig& config,
                    std::span<const Eigen::Vector3d> push_directions_world = {});
 
+/// Whether what `back` asks about, the inferred backs of what moved, has come about the body rather than
+/// against it: deeper than anything comes that still pushes, whichever way out is taken. Such a back is no
+/// reason to throw a body about: leave it out of the scene until this is over.
+bool is_swallowed(const Body& body, double dt_s, const TravelQuery& back, const PhysicsConfig& config,
+                  std::span<const Eigen::Vector3d> push_directions_world);
+
 /// Horizontal unit directions from a body to the moving surfaces about it: to the nearest vertex and to the
-/// mean of all vertices within reach_m of centre_world. None, one or two.
+/// mean of all vertices of these meshes within reach_m of centre_world. None, one or two.
 struct PushDirections {
   int count = 0;
   std::array<Eigen::Vector3d, 2> direction_world{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
@@ -95,7 +102,8 @@ struct PushDirections {
     return {direction_world.data(), static_cast<std::size_t>(count)};
   }
 };
-PushDirections push_directions(const Mesh& moving_world, const Eigen::Vector3d& centre_world, double reach_m,
+PushDirections push_directions(std::initializer_list<const Mesh*> moving_world,
+                               const Eigen::Vector3d& centre_world, double reach_m,
                                const Eigen::Vector3d& up_world = Eigen::Vector3d::UnitZ());
 
 }  // namespace roomradar

@@ -1,5 +1,6 @@
 // run_command.cpp: roomradar run: augmented reality in a saved room.
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -38,8 +39,9 @@ Script drop_over_view(const std::string& object) {
 
 /// Sums over the frames of a run, as the report wants them.
 struct RunTotals {
-  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, unknown_contacts = 0;
-  double moved_fraction = 0.0, dynamic_triangles = 0.0, static_triangles = 0.0;
+  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0;
+  std::array<std::int64_t, kTouchedKinds> contacts_by_kind{};
+  double moved_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;
   double deepest_penetration_m = 0.0;
   double first_stamp_s = 0.0;
@@ -50,13 +52,15 @@ struct RunTotals {
     ++located;
     if (frame.tracking == TrackStatus::kDegenerate) ++degenerate;
     contacts += frame.contacts;
-    unknown_contacts += frame.unknown_contacts;
+    for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
+      contacts_by_kind[kind] += frame.contacts_by_kind[kind];
     const double fraction = frame.foreground.valid > 0 ? static_cast<double>(frame.foreground.moved) /
                                                              static_cast<double>(frame.foreground.valid)
                                                        : 0.0;
     moved_fraction += fraction;
     max_moved_fraction = std::max(max_moved_fraction, fraction);
     dynamic_triangles += static_cast<double>(frame.dynamic_triangles);
+    inferred_triangles += static_cast<double>(frame.inferred_triangles);
     static_triangles += static_cast<double>(frame.static_triangles_drawn);
     deepest_penetration_m = std::max(deepest_penetration_m, frame.deepest_penetration_m);
   }
@@ -82,15 +86,19 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                        {"frame", change.frame},
                        {"position_m", to_json(change.box_world.center())},
                        {"size_m", to_json(change.box_world.sizes())}});
+  nlohmann::json contacts_by_kind = nlohmann::json::object();
+  for (std::size_t kind = 1; kind < kTouchedKinds; ++kind)
+    contacts_by_kind[std::string(to_string(static_cast<Touched>(kind)))] = totals.contacts_by_kind[kind];
   nlohmann::json results = {
       {"frames_located", totals.located},
       {"frames_degenerate", totals.degenerate},
       {"moved_fraction_mean", totals.per_frame(totals.moved_fraction)},
       {"moved_fraction_max", totals.max_moved_fraction},
       {"dynamic_triangles_mean", totals.per_frame(totals.dynamic_triangles)},
+      {"inferred_triangles_mean", totals.per_frame(totals.inferred_triangles)},
       {"static_triangles_drawn_mean", totals.per_frame(totals.static_triangles)},
       {"contacts", totals.contacts},
-      {"unknown_contacts", totals.unknown_contacts},
+      {"contacts_by_kind", contacts_by_kind},
       {"unknown_triangles", session.unknown().mesh_world.triangles.size()},
       {"unknown_mb", static_cast<double>(session.unknown().memory_bytes) / 1e6},
       {"deepest_penetration_m", totals.deepest_penetration_m},

@@ -78,7 +78,8 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
     times.timed("changes", [&] {  // what came to stay, what is gone?
       living_map_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
     });
-  times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera); });
+  find_fine_regions();
+  times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera, fine_regions_); });
   release_waiting(frame, T_world_camera);
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
   if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera); });
@@ -86,6 +87,7 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   result.status = FrameStatus::kDone;
   result.T_world_camera = T_world_camera;
   result.dynamic_triangles = scene_.moved_triangles();
+  result.inferred_triangles = scene_.inferred_triangles();
   return result;
 }
 
@@ -147,27 +149,45 @@ bool Session::is_in_unknown(const VirtualObject& object) const {
   });
 }
 
+void Session::find_fine_regions() {
+  constexpr double kAbout_m = 0.02;  // an object's way in a frame, at 0.6 m/s
+  fine_regions_.clear();
+  for (const auto& object : objects_) {
+    if (object->in_room)
+      fine_regions_.push_back({object->body.T_world_object * object->middle,
+                               0.5 * object->shape.drawn.bounds().sizes().norm() + kAbout_m});
+  }
+}
+
 void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) {
   double radar_ms = 0.0;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
     object->in_unknown = object->in_unknown && is_in_unknown(*object);
-    const std::vector<SceneTree> scene = scene_without(object.get());
-    const TravelQuery query = [&](const Eigen::Isometry3d& T_world_object,
-                                  const Eigen::Vector3d& direction_world, double distance_m) {
-      const auto start = std::chrono::steady_clock::now();
-      const Contact contact =
-          radar_.query({{&object->shape.touched, T_world_object}, direction_world, distance_m}, {scene, {}});
-      radar_ms += ms_since(start);
-      return contact;
-    };
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
     if (config_.scene.surfaces == SurfacePolicy::kMap)
-      push = push_directions(scene_.moved_mesh_world(), object->body.T_world_object * object->middle,
-                             kNearbyReach_m);
-    const StepReport moved = advance(object->body, dt_s, query, config_.physics, push.span());
+      push = push_directions({&scene_.moved_world().seen_world, &scene_.moved_world().inferred_world},
+                             object->body.T_world_object * object->middle, kNearbyReach_m);
+    std::vector<SceneTree> scene = scene_without(object.get());
+    const auto ask = [&](std::span<const SceneTree> surfaces) {
+      return [this, surfaces, &object, &radar_ms](const Eigen::Isometry3d& T_world_object,
+                                                  const Eigen::Vector3d& direction_world, double distance_m) {
+        const auto start = std::chrono::steady_clock::now();
+        const Contact contact = radar_.query(
+            {{&object->shape.touched, T_world_object}, direction_world, distance_m}, {surfaces, {}});
+        radar_ms += ms_since(start);
+        return contact;
+      };
+    };
+    const auto is_back = [](const SceneTree& surface) { return surface.kind == Touched::kInferredBack; };
+    const auto back = std::find_if(scene.begin(), scene.end(), is_back);
+    if (back != scene.end() &&
+        is_swallowed(object->body, dt_s, ask({&*back, 1}), config_.physics, push.span()))
+      scene.erase(back);
+    const StepReport moved = advance(object->body, dt_s, ask(scene), config_.physics, push.span());
     result.contacts += moved.contacts;
-    result.unknown_contacts += moved.unknown_contacts;
+    for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
+      result.contacts_by_kind[kind] += moved.contacts_by_kind[kind];
   }
   times.add_ms("radar", radar_ms);
 }

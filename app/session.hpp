@@ -1,6 +1,7 @@
 // session.hpp: augmented reality in a saved room: one frame in, one composed picture out.
 #pragma once
 #include <Eigen/Geometry>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,9 +50,10 @@ struct FrameResult {
   ForegroundCounts foreground;
   std::size_t dynamic_triangles = 0;
   std::size_t static_triangles_drawn = 0;  ///< for the expected depth
+  std::size_t inferred_triangles = 0;      ///< of the backs of what moved
   int contacts = 0;
-  int unknown_contacts = 0;            ///< of them, with the border of space that nobody has seen
-  double deepest_penetration_m = 0.0;  ///< >= 0, where it is measured
+  std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by what was touched
+  double deepest_penetration_m = 0.0;                 ///< >= 0, where it is measured
 };
 
 /// Everything a run keeps from frame to frame. The saved map is only read. Not thread safe; GL on the thread
@@ -104,6 +106,7 @@ class Session {
   ObjectDrawer drawer_;
 
   std::vector<std::unique_ptr<VirtualObject>> objects_;
+  std::vector<FineRegion> fine_regions_;
   std::vector<ScriptEvent> waiting_;  ///< drops that have found no surface yet
   double last_stamp_s_ = 0.0;
   bool has_last_stamp_ = false;
@@ -122,6 +125,8 @@ class Session {
   FrameResult pass_through(const Frame& frame, StageTimes& times);
   Tracking locate_camera(const Frame& frame);
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
+  /// Balls about the objects, in which what moved is meshed as finely as it was seen.
+  void find_fine_regions();
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   void move_objects(double dt_s, StageTimes& times, FrameResult& result);
   [[nodiscard]] bool is_in_unknown(const VirtualObject& object) const;

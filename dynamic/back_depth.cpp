@@ -71,7 +71,7 @@ class BackMaker {
       const CellBits window = pixels_.smooth.square(kCell_px * column - 2, kCell_px * row - 2);
       back_.rim_px[i] =
           std::clamp(5.0F * (static_cast<float>(std::popcount(window)) / 25.0F - 0.5F), 0.5F, 2.5F);
-      back_.rim_inverse_depth[i] = lattice_.inverse_depth[i];
+      back_.rim_at[i] = i;
     });
     const auto pass = [&](std::size_t first_step) {
       return [this, first_step](std::size_t i, int, int) {
@@ -81,12 +81,29 @@ class BackMaker {
           const float through = back_.rim_px[other] + kSteps[k].length_px;
           if (through >= back_.rim_px[i]) continue;
           back_.rim_px[i] = through;
-          back_.rim_inverse_depth[i] = back_.rim_inverse_depth[other];
+          back_.rim_at[i] = back_.rim_at[other];
         }
       };
     };
     visit(pass(4));       // from above and the left
     visit_back(pass(0));  // from below and the right
+  }
+
+  /// Half the width of the thing where a point is: uphill from there to the ridge of the distances.
+  void measure_widths() {
+    back_.width_px = back_.rim_px;
+    const auto pass = [&](std::size_t first_step) {
+      return [this, first_step](std::size_t i, int, int) {
+        for (std::size_t k = first_step; k < first_step + 4; ++k) {
+          if ((back_.joined[i] >> k & 1U) == 0) continue;
+          const std::size_t other = at(i, k);
+          if (back_.rim_px[other] > back_.rim_px[i] + 0.5F * kSteps[k].length_px)
+            back_.width_px[i] = std::max(back_.width_px[i], back_.width_px[other]);
+        }
+      };
+    };
+    visit(pass(4));
+    visit_back(pass(0));
   }
 
   /// Sums up over each part that hangs together.
@@ -102,10 +119,13 @@ class BackMaker {
         back_.stack.pop_back();
         if (back_.rim_px[i] < kFar_px) {
           const double depth_m = 1.0 / lattice_.inverse_depth[i];
-          const double bulge_m = 1.0 / back_.rim_inverse_depth[i] - depth_m;
-          const double distance_m = back_.rim_px[i] * depth_m / focal_px_;
-          part.bulge_by_distance += bulge_m * distance_m;
-          part.distance2 += distance_m * distance_m;
+          const std::size_t rim = back_.rim_at[i];
+          const double bulge_m = 1.0 / lattice_.inverse_depth[rim] - depth_m;
+          const double round_m = (round_px(back_.rim_px[i], back_.width_px[i]) -
+                                  round_px(back_.rim_px[rim], back_.width_px[i])) *
+                                 depth_m / focal_px_;
+          part.bulge_by_round += bulge_m * round_m;
+          part.round2 += round_m * round_m;
         }
         for (unsigned left = back_.joined[i]; left != 0; left &= left - 1) {
           const std::size_t other = at(i, static_cast<std::size_t>(std::countr_zero(left)));
@@ -121,12 +141,14 @@ class BackMaker {
   void set_depths() {
     visit([&](std::size_t i, int column, int row) {
       const BackLattice::Part& part = back_.parts[back_.part[i]];
-      const double bulge = part.distance2 > 0.0 ? part.bulge_by_distance / part.distance2 : 0.0;
-      const float slope = std::clamp(2.0F * static_cast<float>(bulge), rules_.least_slope, 2.0F);
+      const double bulge = part.round2 > 0.0 ? part.bulge_by_round / part.round2 : 0.0;
+      const float roundness = std::clamp(static_cast<float>(bulge), rules_.least_roundness, 1.0F);
       const float inverse = lattice_.inverse_depth[i];
       const float depth_m = 1.0F / inverse;
-      const float thickness_m = std::min(
-          rules_.least_thickness_m + slope * back_.rim_px[i] * depth_m / focal_px_, rules_.most_thickness_m);
+      const float thickness_m =
+          std::min(rules_.least_thickness_m +
+                       2.0F * roundness * round_px(back_.rim_px[i], back_.width_px[i]) * depth_m / focal_px_,
+                   rules_.most_thickness_m);
       back_.thickness_m[i] = thickness_m;
       const float back_m = limited(depth_m, thickness_m, least_expected(column, row), rules_);
       back_.inverse_depth[i] = 1.0F / back_m;
@@ -157,6 +179,11 @@ class BackMaker {
         if (lattice_.inverse_depth[i] > 0.0F) work(i, column, row);
       }
     }
+  }
+
+  /// How far a round thing of this width bulges out of its outline here.
+  static float round_px(float rim_px, float width_px) {
+    return rim_px < kFar_px ? std::sqrt(rim_px * (2.0F * width_px - rim_px)) : kFar_px;
   }
 
   /// Whether the thing itself ends beside this point, towards one of its four neighbours.
@@ -206,7 +233,7 @@ void make_back(const MovedPixels& pixels, const MovedLattice& lattice, const Dep
   back.tolerance.assign(size, 0.0F);
   back.joined.assign(size, 0);
   back.rim_px.assign(size, kFar_px);
-  back.rim_inverse_depth.assign(size, 0.0F);
+  back.rim_at.assign(size, 0);
   back.part.assign(size, 0);
   back.stack.reserve(size);
   back.parts.reserve(size + 1);
@@ -214,6 +241,7 @@ void make_back(const MovedPixels& pixels, const MovedLattice& lattice, const Dep
   BackMaker maker(pixels, lattice, depth_m, expected_depth_m, camera, rules, back);
   maker.join();
   maker.measure_distances();
+  maker.measure_widths();
   maker.measure_bulges();
   maker.set_depths();
 }

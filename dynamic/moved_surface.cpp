@@ -285,8 +285,8 @@ void require_valid(const MovedSurfaceConfig& config) {
           config.least_thickness_m, "over 0 and under 10");
   require(config.most_thickness_m >= config.least_thickness_m && config.most_thickness_m < 10.0F,
           "most_thickness_m", config.most_thickness_m, "at least least_thickness_m and under 10");
-  require(config.least_thickness_slope >= 0.0F && config.least_thickness_slope <= 2.0F,
-          "least_thickness_slope", config.least_thickness_slope, "in 0..2");
+  require(config.least_roundness >= 0.0F && config.least_roundness <= 1.0F, "least_roundness",
+          config.least_roundness, "in 0..1");
   require(config.back_clearance_m >= 0.0F && config.back_clearance_m < 1.0F, "back_clearance_m",
           config.back_clearance_m, "at least 0 and under 1");
 }
@@ -332,7 +332,7 @@ void mesh_moved(const DepthImage& depth_m, const MaskImage& moved_mask, const De
                   static_cast<float>(camera.cx_px), static_cast<float>(camera.cy_px),
                   T_world_camera.linear().cast<float>()};
   const BackRules back_rules{JumpRule(config.jump_sigmas, config.jump_incidence_deg, kCell_px, camera),
-                             config.least_thickness_m, config.most_thickness_m, config.least_thickness_slope,
+                             config.least_thickness_m, config.most_thickness_m, config.least_roundness,
                              config.back_clearance_m};
   Assembler assembler(expected_depth_m, rays, back_rules, scratch, surface);
   assembler.make_seen();

@@ -22,13 +22,13 @@ struct MovedSurfaceConfig {
   float flat_sigmas = 1.75F;  ///< RMS of 5 x 5 pixels from a plane; more, and they are a bend, not noise
   float cut_sigmas =
       2.5F;  ///< the same of 4 x 4 pixels at an outline from their triangles; else all are vertices
-  float jump_sigmas = 4.0F;            ///< two pixels whose depths differ by noise alone are one surface
-  float jump_incidence_deg = 80.0F;    ///< and so are two on a plane seen at up to this angle from its normal
-  bool has_back = true;                ///< false: no inferred mesh
-  float least_thickness_m = 0.005F;    ///< of the back at the outline
-  float most_thickness_m = 0.3F;       ///< a person's chest
-  float least_thickness_slope = 0.6F;  ///< thickness of what looks flat, by the distance from its outline
-  float back_clearance_m = 0.005F;     ///< the back stays this far before the static model
+  float jump_sigmas = 4.0F;          ///< two pixels whose depths differ by noise alone are one surface
+  float jump_incidence_deg = 80.0F;  ///< and so are two on a plane seen at up to this angle from its normal
+  bool has_back = true;              ///< false: no inferred mesh
+  float least_thickness_m = 0.005F;  ///< of the back at the outline
+  float most_thickness_m = 0.3F;     ///< a person's chest
+  float least_roundness = 0.3F;       ///< of what looks flat: 1 is as round as a ball
+  float back_clearance_m = 0.005F;   ///< the back stays this far before the static model
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const MovedSurfaceConfig& config);

@@ -1,6 +1,7 @@
 // contact.hpp: what a moving object would touch first, and after how far, between bounds that hold.
 #pragma once
 #include <Eigen/Core>
+#include <cstddef>
 #include <limits>
 #include <string_view>
 
@@ -22,7 +23,15 @@ enum class Touched {
   kDynamic,          ///< what moved since
   kObject,           ///< another virtual object
   kUnknownFrontier,  ///< where seen free space ends and unseen space begins
+  kInferredBack,     ///< the back and the sides that a thing that moved is taken to have
 };
+constexpr std::size_t kTouchedKinds = 6;
+
+/// Surfaces that nobody has seen are met from their outside only: they keep nothing in, so that what they came
+/// about, or was put behind them, can leave.
+constexpr bool is_one_sided(Touched touched) {
+  return touched == Touched::kUnknownFrontier || touched == Touched::kInferredBack;
+}
 
 /// As reports call it.
 constexpr std::string_view to_string(Touched touched) {
@@ -37,6 +46,8 @@ constexpr std::string_view to_string(Touched touched) {
       return "virtual object";
     case Touched::kUnknownFrontier:
       return "unknown frontier";
+    case Touched::kInferredBack:
+      return "inferred back";
   }
   return "nothing";
 }

@@ -118,6 +118,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   // Says whether the object overlaps this scene triangle.
   const auto settle = [&](const SceneItem& item) {
     const FrameTriangle s = scene_.triangle(item);
+    if (s.normal.z() > kEdgeOn && is_one_sided(scene_.kind(item))) return false;
     bool overlaps_here = false;
     bool has_ahead = is_thick && item.low_m < 0.0F;  // a thick object's triangles are not told apart
     const auto limit_here_m = [&] { return overlaps_here ? -kInfinity : limit_m(); };

@@ -77,6 +77,9 @@ struct RadarQuery {
 /// (the bar of a handle behind a hand that is in the handle): no contact until the last of it has been
 /// passed.
 ///
+/// One-sided surfaces (is_one_sided()) are met from their outside only: what of them faces along the motion is
+/// left, wherever it is.
+///
 /// Contact point: of all places that are equally near (a face that lands flat) the one nearest to their
 /// middle.
 ///

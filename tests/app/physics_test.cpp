@@ -485,13 +485,13 @@ TEST(PushDirections, PointFromTheBodyToWhatMovesNearIt) {
   Mesh hand;
   hand.origin = {10, 0, 0};
   hand.vertices = {{0.3F, 0, 0.1F}, {0.35F, 0.02F, 0.1F}, {2, 0, 0}, {std::nanf(""), 0, 0}};
-  const PushDirections found = push_directions(hand, {10, 0, 0}, 0.5);
+  const PushDirections found = push_directions({&hand}, {10, 0, 0}, 0.5);
   ASSERT_EQ(found.count, 1);
   EXPECT_NEAR(found.direction_world[0].dot(Vec3::UnitX()), 1.0, 1e-9);
-  EXPECT_EQ(push_directions(hand, {10, 0, 0}, 0.1).count, 0);
-  EXPECT_EQ(push_directions(Mesh{}, {0, 0, 0}, 1.0).count, 0);
+  EXPECT_EQ(push_directions({&hand}, {10, 0, 0}, 0.1).count, 0);
+  EXPECT_EQ(push_directions({}, {0, 0, 0}, 1.0).count, 0);
   hand.vertices = {{0, 0, 0.3F}};  // straight above
-  EXPECT_EQ(push_directions(hand, {10, 0, 0}, 0.5).count, 0);
+  EXPECT_EQ(push_directions({&hand}, {10, 0, 0}, 0.5).count, 0);
 }
 
 TEST(PhysicsConfig, NamesTheFieldThatIsWrong) {

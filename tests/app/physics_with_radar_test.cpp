@@ -63,7 +63,7 @@ class PhysicsWithRadar : public ::testing::Test {
     const TravelQuery query = [&](const Eigen::Isometry3d& T, const Vec3& direction, double distance_m) {
       return radar_.query({{&teapot_, T}, direction, distance_m}, {scene, {}});
     };
-    const PushDirections push = push_directions(hand_mesh_, body_.T_world_object * Vec3(0, 0, 0.07), 0.25);
+    const PushDirections push = push_directions({&hand_mesh_}, body_.T_world_object * Vec3(0, 0, 0.07), 0.25);
     return advance(body_, kFrame_s, query, {}, push.span());
   }
   void set_hand(const Mesh& mesh) {

@@ -129,7 +129,8 @@ Thrown thrown(Session& session, const Eigen::Vector3d& from_world, double up_mps
   for (std::int64_t i = 0; i < 45; ++i) {
     Frame frame = depth_only(i, kAtTheSky);
     frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
-    result.unknown_contacts += session.step(frame, times).unknown_contacts;
+    result.unknown_contacts +=
+        session.step(frame, times).contacts_by_kind[static_cast<std::size_t>(Touched::kUnknownFrontier)];
   }
   return result;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -15,11 +14,12 @@
 #include "app/sim/counter_random.hpp"
 #include "app/sources/folder_source.hpp"
 #include "dynamic/change_tracker.hpp"
-#include "dynamic/depth_mesh.hpp"
 #include "dynamic/foreground.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "radar/depth_pass.hpp"
+#include "tests/bench/bench_times.hpp"
+#include "tests/bench/dynamic_bench_mesh.hpp"
 #include "tests/dynamic/foreground_judge.hpp"
 #include "tests/support/recordings.hpp"
 
@@ -27,21 +27,6 @@ namespace roomradar::test {
 namespace {
 
 using Rows = nlohmann::json;
-
-// Time that this thread spent computing: what the wall clock shows on a machine that does nothing else.
-double thread_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-struct Times {
-  std::vector<double> samples_ms;
-  [[nodiscard]] double percentile(double p) {
-    std::sort(samples_ms.begin(), samples_ms.end());
-    return samples_ms[static_cast<std::size_t>(p * static_cast<double>(samples_ms.size() - 1))];
-  }
-};
 
 // Puts a ball-shaped thing that covers a fifth of the image in front of the room.
 void put_in_front(Frame& frame) {
@@ -88,38 +73,6 @@ void measure_times(Rows& rows) {
                   {"median_ms", segmentation.percentile(0.5)},
                   {"p95_ms", segmentation.percentile(0.95)},
                   {"p99_ms", segmentation.percentile(0.99)}});
-
-  for (const int stride_px : {1, 2, 4}) {
-    DepthMeshConfig config;
-    config.stride_px = stride_px;
-    DepthMeshScratch scratch;
-    Mesh mesh;
-    Times masked, whole;
-    const Eigen::Isometry3d T_world_camera = source.truth().T_world_camera;
-    for (int i = 0; i < kWarmUp + kRepeats; ++i) {
-      const double start_ms = thread_ms();
-      mesh_masked(frame.depth_m, moved_mask, frame.depth_camera, T_world_camera, config, scratch, mesh);
-      if (i >= kWarmUp) masked.samples_ms.push_back(thread_ms() - start_ms);
-    }
-    rows.push_back({{"work", "mesh of what moved"},
-                    {"stride_px", stride_px},
-                    {"triangles", mesh.triangles.size()},
-                    {"median_ms", masked.percentile(0.5)},
-                    {"p95_ms", masked.percentile(0.95)},
-                    {"p99_ms", masked.percentile(0.99)}});
-    for (int i = 0; i < kWarmUp + kRepeats / 4; ++i) {
-      const double start_ms = thread_ms();
-      mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, SurfacePolicy::kSkirt, config, scratch,
-                 mesh);
-      if (i >= kWarmUp) whole.samples_ms.push_back(thread_ms() - start_ms);
-    }
-    rows.push_back({{"work", "mesh of the whole frame with skirts"},
-                    {"stride_px", stride_px},
-                    {"triangles", mesh.triangles.size()},
-                    {"median_ms", whole.percentile(0.5)},
-                    {"p95_ms", whole.percentile(0.95)},
-                    {"p99_ms", whole.percentile(0.99)}});
-  }
 }
 
 // Watching for what came to stay: a plate before a wall that covers a part of the image, with the sensor's
@@ -250,17 +203,23 @@ void measure_still_kitchen(Rows& rows) {
 }
 
 int run(int argc, char** argv) {
+  const bool mesh_only = argc > 1 && std::strcmp(argv[1], "--mesh") == 0;
+  if (mesh_only) --argc, ++argv;
   const char* file = nullptr;
   if (argc == 3 && std::strcmp(argv[1], "--json") == 0) file = argv[2];
   if (argc != 1 && !file) {
-    std::cerr << "usage: dynamic_bench [--json FILE]\n";
+    std::cerr << "usage: dynamic_bench [--mesh] [--json FILE]\n";
     return 2;
   }
   Rows rows = Rows::array();
-  measure_times(rows);
-  measure_watching(rows);
-  measure_masks(rows);
-  measure_still_kitchen(rows);
+  measure_mesh_times(rows);
+  measure_mesh_quality(rows);
+  if (!mesh_only) {
+    measure_times(rows);
+    measure_watching(rows);
+    measure_masks(rows);
+    measure_still_kitchen(rows);
+  }
   for (const auto& row : rows) std::cout << row.dump() << "\n";
   if (!file) return 0;
   std::ofstream out(file);

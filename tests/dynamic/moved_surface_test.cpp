@@ -304,7 +304,7 @@ TEST(MovedSurface, WhatTheImageCutsOffIsThickThere) {
   expect_sound(surface, scene);
   const DepthImage back = back_depth(surface, scene);
   const float at_border_m = back.at(1, 240) - 0.7F, inside_m = back.at(60, 240) - 0.7F;
-  EXPECT_GT(at_border_m, 0.02F);  // 0.6 of 40 pixels
+  EXPECT_GT(at_border_m, 0.02F);  // twice 0.3 of 40 pixels
   EXPECT_NEAR(at_border_m, inside_m, 0.005F);
 }
 

@@ -227,7 +227,7 @@ TEST(CyberRadar, SceneInAHollowIsMetByTheLayerBehindIt) {
 
 TEST(CyberRadar, TouchingIsZeroAndWhatIsLeftOrSlidAlongIsNothing) {
   CyberRadar radar;
-  const TriangleTree object = tree_of(shapes::box({0.5F, 0.5F, 0.5F})),
+  const TriangleTree object = tree_of(shapes::box({1.0F, 1.0F, 1.0F})),
                      scene = tree_of(shapes::floor(2.0F, 0.0F));
   for (const double gap_m : {0.0, 1e-7, -1e-7}) {
     SCOPED_TRACE(gap_m);
@@ -243,7 +243,7 @@ TEST(CyberRadar, TouchingIsZeroAndWhatIsLeftOrSlidAlongIsNothing) {
 
 TEST(CyberRadar, AskingWronglyIsSaidSo) {
   CyberRadar radar;
-  const TriangleTree object = tree_of(shapes::box({0.5F, 0.5F, 0.5F})),
+  const TriangleTree object = tree_of(shapes::box({1.0F, 1.0F, 1.0F})),
                      scene = tree_of(shapes::floor(2.0F, 0.0F));
   const TriangleTree empty = tree_of(Mesh{});
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -304,6 +304,25 @@ TEST(CyberRadar, ASpeckInsideIsAnOverlapThickenedOrInSeveralSolidsAtOnce) {
               ContactStatus::kOverlap);
     EXPECT_EQ(radar.query({{&object, at({0.03, 0.05, 0.02})}, kDown, 1.0, 0.001}, {{&s, 1}, {}}).lower_m,
               0.0);
+  }
+}
+
+TEST(CyberRadar, OneSidedSurfacesAreMetFromTheirOutsideOnly) {
+  CyberRadar radar;
+  const TriangleTree ball = tree_of(shapes::ball(0.1F, 12, 24));
+  const TriangleTree hull = tree_of(shapes::box({1.0F, 1.0F, 1.0F}));
+  for (const Touched kind : {Touched::kInferredBack, Touched::kUnknownFrontier, Touched::kDynamic}) {
+    const SceneTree scene{{&hull, Eigen::Isometry3d::Identity()}, kind};
+    const auto ask_at = [&](double height_m, const Eigen::Vector3d& direction) {
+      return radar.query({{&ball, at({0.01, 0.02, height_m})}, direction, 2.0}, {{&scene, 1}, {}});
+    };
+    const Contact from_outside = ask_at(1.0, kDown);
+    ASSERT_EQ(from_outside.status, ContactStatus::kContact);
+    EXPECT_EQ(from_outside.touched, kind);
+    const bool is_left = kind != Touched::kDynamic;
+    EXPECT_EQ(ask_at(0.0, kUp).status, is_left ? ContactStatus::kNoTarget : ContactStatus::kContact);
+    EXPECT_EQ(ask_at(0.45, kUp).status, ContactStatus::kNoTarget) << "half out of it";
+    EXPECT_EQ(ask_at(0.45, kDown).status, ContactStatus::kOverlap);
   }
 }
 
