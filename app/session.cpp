@@ -126,8 +126,6 @@ void Session::finish_adopting() {
 
 std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const {
   std::vector<SceneTree> scene = scene_.surfaces();
-  if (object != nullptr && object->in_unknown)
-    std::erase_if(scene, [](const SceneTree& surface) { return surface.kind == Touched::kUnknownFrontier; });
   for (const auto& other : objects_) {
     if (other.get() != object && other->in_room)
       scene.push_back({{&other->shape.touched, other->body.T_world_object}, Touched::kObject});

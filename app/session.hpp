@@ -65,8 +65,7 @@ class Session {
   Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree = nullptr);
 
   /// From now on objects do not enter space that the map's scan has not seen. One that is put into such space
-  /// is stopped by it only once it has come out. Stage timed: unknown. Throws Error unless the surfaces are
-  /// the map's.
+  /// can leave it. Stage timed: unknown. Throws Error unless the surfaces are the map's.
   void make_unknown_solid(StageTimes& times);
 
   /// One frame, from sensor to picture. Stages timed: locate expected foreground changes mesh radar physics

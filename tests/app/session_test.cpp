@@ -178,6 +178,19 @@ TEST(Session, WhatIsPutIntoUnknownSpaceCanLeaveItAndCannotComeBack) {
   EXPECT_NEAR(pot.body.T_world_object.translation().z() + pot.lowest_m, 0.0, 0.005);
 }
 
+TEST(Session, WhatIsPutOnTheBorderOfUnknownSpaceComesOutAndStaysOnIt) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.make_unknown_solid(times);
+  const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.04}, 0.0).pot;  // sunk in by 4 of its 15 cm
+  EXPECT_TRUE(pot.began_in_unknown);
+  EXPECT_FALSE(pot.in_unknown);
+  EXPECT_TRUE(pot.body.at_rest);
+  EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+  EXPECT_NEAR(pot.body.T_world_object.translation().z() + pot.lowest_m, 0.0, 0.005);
+}
+
 TEST(Session, UnknownSpaceIsNotSolidWithoutTheMapsSurfaces) {
   const SavedMap map = half_floor_map();
   SessionConfig config = by_recorded_poses();
