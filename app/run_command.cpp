@@ -112,7 +112,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
 /// Where it was put: it is free to go where nobody has seen what is there, until it has come out.
 const char* note_on(const VirtualObject& object) {
   if (!object.began_in_unknown) return "";
-  return object.in_unknown ? "; was put into unknown space, and is in it still"
+  return object.in_unknown ? "; was put into unknown space, and a part of it still is there"
                            : "; was put into unknown space, and came out of it";
 }
 
