@@ -68,7 +68,8 @@ int run(const MapDiffCommand& command) {
   const SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);
   // A map that `run --save-map` made from another has its views, and so its world.
-  const bool one_world = a.info.files.at("places.bin").sha256 == b.info.files.at("places.bin").sha256;
+  const bool one_world = !a.places.keyframes.empty() &&
+                         a.info.files.at("places.bin").sha256 == b.info.files.at("places.bin").sha256;
   const Eigen::Isometry3d T_a_b = one_world ? Eigen::Isometry3d::Identity()
                                             : require_registered(a, b, command.a, command.b, report).T_a_b;
   const std::vector<Change> changes =

@@ -127,6 +127,19 @@ TEST(ChangeTracker, WhatSwaysIsNeverFound) {
   }
 }
 
+TEST(ChangeTracker, AThingThatHoldsStillInPartIsNotFoundAsLongAsItHangsTogether) {
+  const Scene held = test::box(Eigen::AlignedBox3d(Vector3d(-0.05, -0.05, 0.1), Vector3d(0.05, 0.05, 0.2)));
+  const auto hand_at = [](double t_s) {
+    return test::sphere({0.11, 0.02 * std::sin(4.0 * t_s), 0.15 + 0.03 * std::cos(4.0 * t_s)}, 0.07);
+  };
+  Watched watched(room());
+  watched.run(0.0, 6.0,
+              [&](double t_s) { return test::nearest_of(test::nearest_of(room(), held), hand_at(t_s)); });
+  EXPECT_TRUE(watched.tracker.settled(2.0).empty());
+  watched.run(6.0, 7.0, test::nearest_of(room(), held));
+  EXPECT_EQ(watched.tracker.settled(2.0).size(), 1U) << "let go";
+}
+
 TEST(ChangeTracker, SomebodyWhoMovesElsewhereDoesNotKeepItFromBeingFound) {
   Watched watched(room());
   watched.run(0.0, 4.0, [&](double t_s) {
