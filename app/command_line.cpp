@@ -246,7 +246,21 @@ void add_record(CLI::App& app, RecordCommand& command, std::function<int()>& wor
 void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand(
       "fallthrough",
-      "drop and push objects behind occluders under each surface policy; simulated truth judges");
+      "drop and push objects behind occluders under each surface policy; simulated truth judges.\n"
+      "With a SOURCE: drop a ball over each cell of a grid in its map, with one frame's surfaces");
+  sub->add_option("SOURCE", command.source, "a recording of the room of --map; its first frame is taken");
+  sub->add_option("--map", command.map, "of SOURCE's room")->type_name("DIR");
+  sub->add_option("--reference", command.reference,
+                  "another map of the recording, whose surface is taken as the truth; else it is --map's own")
+      ->type_name("DIR");
+  add_choice(*sub, "--poses", command.poses, kPoses,
+             "find the frame's camera in the map (tracked), or take the recording's own pose");
+  add_frames_option(*sub, command.frames);
+  sub->add_option("--cell", command.cell_m, "edge of the grid's cells, metres (0.1)")
+      ->check(within(0.01, 10.0, "metres"))
+      ->type_name("M");
+  sub->add_option("--picture", command.picture, "plan: what the ball rests on in each cell")
+      ->type_name("FILE.png");
   sub->add_option("--scenarios", command.scenarios, "how many (200)")
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("N");

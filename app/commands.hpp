@@ -86,6 +86,14 @@ struct RecordCommand {
 };
 
 struct FallthroughCommand {
+  std::string source;     ///< of a recorded room; empty: simulated ones
+  std::string map;        ///< of that room
+  std::string reference;  ///< map whose surface is taken as the truth; empty: `map` itself
+  PoseOrigin poses = PoseOrigin::kTracked;
+  std::optional<FrameRange> frames;
+  double cell_m = 0.1;
+  std::string picture;  ///< plan of the room
+
   int scenarios = 200;
   std::uint64_t seed = 1;
   int random_rooms = 3;

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/commands.hpp"
+#include "app/fallthrough/grid_command.hpp"
 #include "app/fallthrough/mapped_room.hpp"
 #include "app/fallthrough/page.hpp"
 #include "app/fallthrough/replay.hpp"
@@ -99,6 +100,7 @@ int replay(const FallthroughCommand& command, const RoomScan& scan) {
 }  // namespace
 
 int run(const FallthroughCommand& command) {
+  if (!command.source.empty()) return run_grid(command);
   RoomScan scan;
   scan.maps = command.maps;
   for (const std::string& path : {command.report, command.csv, command.html}) require_writable(path);
