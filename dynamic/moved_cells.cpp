@@ -139,7 +139,7 @@ class CellSorter {
         if (cells_.kinds[i] != CellKind::kFlat || busy_sides(column, row) == 0) continue;
         cells_.kinds[i] = CellKind::kCut;
         cells_.is_flat[i] = 0;
-        cells_.parts[i] = {kWholeCell, 0};
+        cells_.parts[i] = {kWholeCell};
         for (const std::size_t corner : corners(column, row)) cells_.must_be_vertex[corner] = 1;
       }
     }
@@ -189,10 +189,10 @@ class CellSorter {
     const auto [least, most] = read(in, column, row, values);
     Jumps jumps;
     if (most - least > rules_.jump.least_jump() * least) jumps = find_jumps(in, values, rules_.jump);
-    std::array<CellBits, 2>& parts = cells_.parts[cell(column, row)];
-    parts = {in, 0};
+    std::array<CellBits, 4>& parts = cells_.parts[cell(column, row)];
+    parts = {in};
     if (jumps.any()) {
-      parts = {0, 0};
+      parts = {};
       std::size_t count = 0;
       for (CellBits left = in, part; left != 0; left &= ~part) {
         part = take_surface(left, jumps);

@@ -17,7 +17,7 @@ namespace roomradar {
 enum class CellKind : std::uint8_t {
   kEmpty,
   kFlat,  ///< all in, all four corners flat: may be part of larger triangles
-  kCut,   ///< a polygon each of up to two surfaces
+  kCut,   ///< a polygon each of up to four surfaces
   kFull,  ///< a vertex at every pixel
 };
 
@@ -33,7 +33,7 @@ using PixelTriangle = std::array<std::uint32_t, 3>;
 struct MovedCells {
   std::vector<CellKind> kinds;                 ///< one between each four lattice points
   std::vector<std::uint8_t> is_flat;           ///< 1 where the kind is kFlat
-  std::vector<std::array<CellBits, 2>> parts;  ///< of cut cells: the pixels of each surface
+  std::vector<std::array<CellBits, 4>> parts;  ///< of cut cells: the pixels of each surface
   std::vector<std::uint8_t> must_be_vertex;    ///< one a lattice point: all corners of cut and full cells
   std::vector<std::uint8_t> is_full_corner;    ///< one a lattice point: corner of a full cell
   std::vector<PixelTriangle> triangles;        ///< of cut and full cells, square by square

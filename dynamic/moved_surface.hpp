@@ -27,7 +27,7 @@ struct MovedSurfaceConfig {
   bool has_back = true;              ///< false: no inferred mesh
   float least_thickness_m = 0.005F;  ///< of the back at the outline
   float most_thickness_m = 0.3F;     ///< a person's chest
-  float least_roundness = 0.3F;       ///< of what looks flat: 1 is as round as a ball
+  float least_roundness = 0.3F;      ///< of what looks flat: 1 is as round as a ball
   float back_clearance_m = 0.005F;   ///< the back stays this far before the static model
 };
 /// Throws Error naming the field, its value and the rule.
@@ -83,8 +83,10 @@ struct MovedSurfaceScratch {
 ///     deviation_sigmas from them. No cracks anywhere: what two triangles share they share whole.
 ///  5. The back: the same outline, behind (make_back); walls join the two.
 ///
-/// So a pixel of the mask lies at most a pixel beside the mesh. From the mesh of every pixel it differs by
-/// at most deviation_sigmas and what noise the averaging took away.
+/// The bound: over flat cells no averaged point is farther than deviation_sigmas from the mesh, and averaging
+/// rounds off what bends by at most 0.7 sigmas more (1.5 sigmas of bend in each of 4 of 9 places); a cut
+/// cell's pixels are cut_sigmas (RMS) from it at most. A pixel of the mask lies no more than a pixel beside
+/// the mesh, but for specks whose neighbours are at other depths.
 ///
 /// @param depth_m           height x width, metres along the axis, 0 = no measurement
 /// @param moved_mask        same size, not 0 = in
