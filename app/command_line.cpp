@@ -44,6 +44,13 @@ void add_frames_option(CLI::App& app, std::optional<FrameRange>& frames) {
       ->type_name("A:B");
 }
 
+void add_calibration_option(CLI::App& app, std::string& calibration) {
+  app.add_option("--calibration", calibration,
+                 "the cameras and their errors, as `roomradar calibrate` writes them; without it a file\n"
+                 "calibration.json in SOURCE, else what SOURCE says")
+      ->type_name("FILE");
+}
+
 void add_report_option(CLI::App& app, std::string& report) {
   app.add_option("--report", report, "write settings, times, memory and results as JSON")->type_name("FILE");
 }
@@ -89,6 +96,7 @@ struct Arguments {
   MapDiffCommand map_diff;
   SimulateCommand simulate;
   RecordCommand record;
+  CalibrateCommand calibrate;
   FallthroughCommand fallthrough;
 };
 
@@ -104,6 +112,7 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
   add_choice(*sub, "--poses", command.poses, kPoses,
              "find the camera's poses (tracked), or take the recording's own");
   add_frames_option(*sub, command.frames);
+  add_calibration_option(*sub, command.calibration);
   sub->add_option("--hold-out", command.hold_out,
                   "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them")
       ->check(CLI::Range(std::int64_t{2}, std::int64_t{1'000'000}))
@@ -131,6 +140,7 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   add_choice(*sub, "--poses", command.poses, kPoses,
              "find the camera in the map (tracked), or take the recording's own poses");
   add_frames_option(*sub, command.frames);
+  add_calibration_option(*sub, command.calibration);
   sub->add_option("--object", command.object, "virtual object: teapot (built in), or a mesh file")
       ->type_name("MESH");
   sub->add_option("--script", command.script,
@@ -239,7 +249,29 @@ void add_record(CLI::App& app, RecordCommand& command, std::function<int()>& wor
   sub->add_option("SOURCE", command.source, kSourceHelp)->required();
   sub->add_option("DIR", command.folder, "folder to write; must be empty or not there")->required();
   add_frames_option(*sub, command.frames);
+  add_calibration_option(*sub, command.calibration);
   add_choice(*sub, "--format", command.format, kFormats, "of the recording (tum)");
+  sub->callback([&] { work = [&command] { return run(command); }; });
+}
+
+void add_calibrate(CLI::App& app, CalibrateCommand& command, std::function<int()>& work) {
+  CLI::App* sub = app.add_subcommand(
+      "calibrate",
+      "find both cameras, their lenses, where they stand to each other, and the depth's errors, from\n"
+      "a recording of a checkerboard that is held still in 20 or more places: near, far, tilted, in\n"
+      "every part of the image");
+  sub->add_option("SOURCE", command.source, kSourceHelp)->required();
+  sub->add_option("--out", command.calibration, "file to write, for --calibration of other commands")
+      ->required()
+      ->type_name("FILE");
+  sub->add_option("--columns", command.board.columns, "inner corners along the board's longer side (8)")
+      ->type_name("N");
+  sub->add_option("--rows", command.board.rows, "inner corners along the other (6)")->type_name("N");
+  sub->add_option("--square", command.board.square_m, "side of a square, metres (0.03)")->type_name("M");
+  add_frames_option(*sub, command.frames);
+  sub->add_option("--plot", command.plot, "draw what was seen, and the errors before and after")
+      ->type_name("FILE.png");
+  add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });
 }
 
@@ -306,6 +338,10 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
   add_run(app, arguments->run, work);
   add_map(app, *arguments, work);
   add_record(app, arguments->record, work);
+  add_calibrate(app, arguments->calibrate, work);
+  CLI::App* doctor = app.add_subcommand(
+      "doctor", "say what of this set-up works, and what to do about the rest; exit status 1 if it is ill");
+  doctor->callback([&] { work = [] { return run(DoctorCommand{}); }; });
   add_simulate(app, arguments->simulate, work);
   add_fallthrough(app, arguments->fallthrough, work);
   try {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "app/calibration/board_views.hpp"
 #include "app/sources/frame_range.hpp"
 #include "app/sources/recording_writer.hpp"
 #include "dynamic/surface_policy.hpp"
@@ -18,6 +19,7 @@ struct PrescanCommand {
   double resolution_m = 0.01;
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
+  std::string calibration;  ///< file of the cameras and their errors; empty: what the source says
   std::int64_t hold_out = 0;        ///< N > 0: every Nth frame judges the map instead of making it
   bool resume = false;              ///< go on with a scan that was cut off, or with a map that is there
   double checkpoint_every_s = 2.5;  ///< 0: none
@@ -30,6 +32,7 @@ struct RunCommand {
   std::string map;
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
+  std::string calibration;  ///< file of the cameras and their errors; empty: what the source says
   std::string object = "teapot";  ///< built in, or a mesh file
   std::string script;             ///< events file; empty: the object is dropped over a level surface in view
   SurfacePolicy surfaces = SurfacePolicy::kMap;
@@ -82,8 +85,20 @@ struct RecordCommand {
   std::string source;
   std::string folder;
   std::optional<FrameRange> frames;
+  std::string calibration;  ///< file of the cameras and their errors; empty: what the source says
   RecordingFormat format = RecordingFormat::kTum;
 };
+
+struct CalibrateCommand {
+  std::string source;
+  std::string calibration;  ///< file to write
+  Board board;
+  std::optional<FrameRange> frames;
+  std::string plot;
+  std::string report;
+};
+
+struct DoctorCommand {};
 
 struct FallthroughCommand {
   std::string source;     ///< of a recorded room; empty: simulated ones
@@ -118,6 +133,8 @@ int run(const MapMergeCommand& command);
 int run(const MapDiffCommand& command);
 int run(const SimulateCommand& command);
 int run(const RecordCommand& command);
+int run(const CalibrateCommand& command);
+int run(const DoctorCommand& command);
 int run(const FallthroughCommand& command);
 
 }  // namespace roomradar

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/calibration/calibrated_source.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "app/sources/folder_source.hpp"
 #include "app/sources/kinect_source.hpp"
@@ -39,8 +40,14 @@ std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceO
 }  // namespace
 
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
+                                         const std::filesystem::path& calibration,
                                          const SourceOptions& options) {
   std::unique_ptr<FrameSource> opened = open_whole(source, options);
+  const std::filesystem::path in_folder = std::filesystem::path(source) / "calibration.json";
+  if (!calibration.empty())
+    opened = calibrated(std::move(opened), read_calibration(calibration));
+  else if (std::filesystem::exists(in_folder))
+    opened = calibrated(std::move(opened), read_calibration(in_folder));
   if (!frames) return opened;
   return limit_frames(std::move(opened), frames->first, frames->last);
 }

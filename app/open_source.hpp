@@ -1,5 +1,6 @@
 // open_source.hpp: from what the user calls a source to its frames.
 #pragma once
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,9 +12,11 @@
 namespace roomradar {
 
 /// `kinect:N`, `sim:ROOM[?key=value&...]`, or a folder, recognised by what is in it; only `frames` of it
-/// where given. Throws Error saying what SOURCE can be if it is none of these, and whatever opening it
-/// throws.
+/// where given. With a calibration, or a file calibration.json in the folder, frames are as the calibrated
+/// cameras would have taken them. Throws Error saying what SOURCE can be if it is none of these, and whatever
+/// opening it or the calibration throws.
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
+                                         const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});
 
 }  // namespace roomradar

@@ -166,6 +166,7 @@ int run(const PrescanCommand& command) {
       {"map", command.map}, {"resolution_m", command.resolution_m}, {"poses", to_string(command.poses)}};
   if (command.hold_out > 0) report.settings["hold_out"] = command.hold_out;
   if (command.max_memory_mb > 0.0) report.settings["max_memory_mb"] = command.max_memory_mb;
+  if (!command.calibration.empty()) report.settings["calibration"] = command.calibration;
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   PrescanConfig config;

@@ -10,7 +10,7 @@
 namespace roomradar {
 
 int run(const RecordCommand& command) {
-  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
+  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames, command.calibration);
   RecordingWriter writer(command.folder, command.format);
   std::int64_t skipped = 0;
   {

@@ -182,6 +182,7 @@ int run(const RunCommand& command) {
                      {"radar_px", command.radar.resolution_px},
                      {"save_map", command.save_map}};
   if (command.adopt_after_s) report.settings["adopt_s"] = *command.adopt_after_s;
+  if (!command.calibration.empty()) report.settings["calibration"] = command.calibration;
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   require_writable(command.report);
@@ -195,7 +196,8 @@ int run(const RunCommand& command) {
     require_can_become_map(command.save_map);
   }
   SavedMap map = load_map(command.map);
-  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
+  const std::unique_ptr<FrameSource> source =
+      open_source(command.source, command.frames, command.calibration);
   SessionConfig config;
   config.poses = command.poses;
   config.scene.surfaces = command.surfaces;

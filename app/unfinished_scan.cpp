@@ -68,7 +68,7 @@ ScanStart start_scan(const PrescanCommand& command) {
 
   const fs::path spool = folder / kSpool;
   const bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
-  if (!spooled) start.source = open_source(command.source, command.frames);
+  if (!spooled) start.source = open_source(command.source, command.frames, command.calibration);
   const bool live = spooled || !start.source->rewind();
   start.is_live = live && !spooled;
   if (start.is_live) start.source = ended_by_interrupt(std::move(start.source));
@@ -93,6 +93,7 @@ ScanStart start_scan(const PrescanCommand& command) {
                        ? std::to_string(command.frames->first) + ":" + std::to_string(command.frames->last)
                        : "all"},
         {"hold-out", std::to_string(command.hold_out)},
+        {"calibration", command.calibration.empty() ? "none" : sha256_of_file(command.calibration)},
         {"into", into}};
     if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
     start.checkpoints = std::make_unique<Checkpoints>(folder, identity, command.checkpoint_every_s);

@@ -67,6 +67,21 @@ CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, 
                        {sway(1.5 * kDegree_rad, 0.2, 0.3), sway(0.15 * kDegree_rad, 0.8, 1.0)}}};
     return path;
   }
+  if (kind == CameraPathKind::kSwing) {
+    const Vector3d before(std::cos(room.view_azimuth_rad), std::sin(room.view_azimuth_rad), 0.0);
+    const Vector3d aside(-before.y(), before.x(), 0.0);
+    path.centre_world = room.focus_world + 1.5 * before;
+    path.target_world = room.focus_world;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double near_and_far_m = 0.75 * std::abs(before[static_cast<Eigen::Index>(axis)]);
+      const double to_the_side_m = 0.9 * std::abs(aside[static_cast<Eigen::Index>(axis)]);
+      path.position_sway[axis] = {sway(near_and_far_m, 0.028, 0.036), sway(to_the_side_m, 0.05, 0.065),
+                                  sway(axis == 2 ? 0.7 : 0.0, 0.075, 0.095)};
+      path.target_sway[axis] = sway(0.4, 0.06, 0.085);
+    }
+    path.turn_sway[2] = {sway(30.0 * kDegree_rad, 0.045, 0.06), Sway{}};
+    return path;
+  }
   const double distance_m = random.uniform(1.25, 1.7);
   const double elevation_rad = random.uniform(25.0, 40.0) * kDegree_rad;
   const double azimuth_rad = room.view_azimuth_rad + random.uniform(-0.4, 0.4);

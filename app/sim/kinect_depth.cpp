@@ -57,21 +57,27 @@ PatchNoise make_patch_noise(const Intrinsics& camera, std::uint64_t key, std::ve
   return noise;
 }
 
+PlanePoint<double> ray_of(const PixelRays& rays, int x, int y) {
+  if (rays.empty()) return {static_cast<double>(x), static_cast<double>(y)};
+  return {rays.at(x, y).x, rays.at(x, y).y};
+}
+
 }  // namespace
 
 void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
-                  ExactView& exact) {
+                  const PixelRays& rays, ExactView& exact) {
   exact.depth_m.resize(camera.width_px, camera.height_px);
   exact.solid.resize(camera.width_px, camera.height_px, -1);
   exact.cosine.resize(camera.width_px, camera.height_px);
   for (int y = 0; y < camera.height_px; ++y)
     for (int x = 0; x < camera.width_px; ++x) {
-      const PixelHit hit = view.cast(x, y);
+      const PlanePoint<double> ray = ray_of(rays, x, y);
+      const PixelHit hit = view.cast(ray.x, ray.y);
       exact.depth_m.at(x, y) = static_cast<float>(hit.depth_m);
       exact.solid.at(x, y) = hit.solid;
       if (hit.solid < 0) continue;
-      const Vector3d p_solid = view.local_point(hit.solid, x, y, hit.depth_m);
-      const Vector3d to_camera = view.local_point(hit.solid, x, y, 0.0) - p_solid;
+      const Vector3d p_solid = view.local_point(hit.solid, ray.x, ray.y, hit.depth_m);
+      const Vector3d to_camera = view.local_point(hit.solid, ray.x, ray.y, 0.0) - p_solid;
       const Vector3d normal = normal_local(solids[static_cast<std::size_t>(hit.solid)], p_solid);
       exact.cosine.at(x, y) =
           static_cast<float>(std::clamp(normal.dot(to_camera) / to_camera.norm(), 0.0, 1.0));
@@ -89,8 +95,8 @@ double quantised_depth_m(const Intrinsics& camera, double depth_m) {
 
 void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
                    const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                   double noise_scale, std::uint64_t seed, std::int64_t frame_index, KinectScratch& scratch,
-                   DepthImage& depth_m) {
+                   const DepthFaults& faults, double noise_scale, std::uint64_t seed,
+                   std::int64_t frame_index, KinectScratch& scratch, DepthImage& depth_m) {
   // Light that returns, relative to a white surface at 1 m: below this nothing is recognised. White paper is
   // seen to beyond the range, black plastic (0.05) to some 3 m, and a wall at 4 m up to 82 degrees from its
   // normal.
@@ -115,10 +121,13 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
       const std::uint64_t pixel_key = mixed(key + exact.depth_m.index(x, y));
       const double sigma_px = noise_scale * camera.width_px / kKinectWidth_px *
                               (0.8 + 0.035 * theta / (0.5 * std::numbers::pi - theta));
-      const double u = x + sigma_px * gaussian(mixed(pixel_key + 1));
-      const double v = y + sigma_px * gaussian(mixed(pixel_key + 2));
-      const int nearest_x = std::clamp(static_cast<int>(std::lround(u)), 0, camera.width_px - 1);
-      const int nearest_y = std::clamp(static_cast<int>(std::lround(v)), 0, camera.height_px - 1);
+      const double aside_x = sigma_px * gaussian(mixed(pixel_key + 1));
+      const double aside_y = sigma_px * gaussian(mixed(pixel_key + 2));
+      const int nearest_x = std::clamp(static_cast<int>(std::lround(x + aside_x)), 0, camera.width_px - 1);
+      const int nearest_y = std::clamp(static_cast<int>(std::lround(y + aside_y)), 0, camera.height_px - 1);
+      const PlanePoint<double> ray = ray_of(faults.rays, x, y);
+      const double u = ray.x + aside_x;
+      const double v = ray.y + aside_y;
       solid = exact.solid.at(nearest_x, nearest_y);
       if (solid < 0) continue;
       double z = view.depth_of(solid, u, v);
@@ -129,6 +138,8 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
       if (infrared[static_cast<std::size_t>(solid)] * cosine / (z * z) < kFaintest * ragged) continue;
       if (scratch.projector.is_blocked(u - disparity_px_m / z, v, z - kShadowMargin_m)) continue;
 
+      if (!faults.inverse_offset_per_m.empty())
+        z = faults.inverse_scale / (1.0 / z - faults.inverse_offset_per_m.at(x, y));
       const double sigma_m = noise_scale * depth_sigma_m(static_cast<float>(z), std::acos(cosine));
       const double step_m = quantisation_step_m(camera, z);
       const double before_quantising_m = std::sqrt(std::max(sigma_m * sigma_m - step_m * step_m / 12.0, 0.0));

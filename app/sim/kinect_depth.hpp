@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "app/sim/sensor_faults.hpp"
 #include "app/sim/view_caster.hpp"
 #include "mapping/types/image.hpp"
 
@@ -21,8 +22,9 @@ struct ExactView {
 };
 
 /// Exact depth, solid and angle of every pixel's centre ray.
+/// @param rays  where the pixels look, in image coordinates of `camera`; empty: where a pinhole's do
 void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
-                  ExactView& exact);
+                  const PixelRays& rays, ExactView& exact);
 
 /// Step between neighbouring depths that disparities in 1/8 px of the Kinect's 640 px wide image can tell, at
 /// depth_m: z^2 / (8 f b). Source: Khoshelham and Elberink, Sensors 2012, equation (5).
@@ -30,6 +32,13 @@ double quantisation_step_m(const Intrinsics& camera, double depth_m);
 
 /// A depth snapped to the nearest disparity that the Kinect can tell.
 double quantised_depth_m(const Intrinsics& camera, double depth_m);
+
+/// What is wrong with the depth camera; empty images: nothing.
+struct DepthFaults {
+  PixelRays rays;
+  Image<float> inverse_offset_per_m;
+  double inverse_scale = 1.0;
+};
 
 /// Scratch memory of measure_depth, and its view from the projector.
 struct KinectScratch {
@@ -44,13 +53,14 @@ struct KinectScratch {
 ///  - axial noise: sigma(z, theta) of depth_noise.hpp, less what quantisation adds, alike over some 3 pixels;
 ///  - quantisation of the disparity, and 0 outside of 0.5 to 8 m.
 /// @param infrared     part of the light that each solid returns
+/// @param exact        made with faults.rays
 /// @param noise_scale  times both sigmas; > 0
 /// @param depth_m      out: of the camera's size
 /// Deterministic in (seed, frame_index); other frames do not matter.
 /// Source: Nguyen, Izadi, Lovell, 3DIMPVT 2012, equations (1) and (3).
 void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
                    const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                   double noise_scale, std::uint64_t seed, std::int64_t frame_index, KinectScratch& scratch,
-                   DepthImage& depth_m);
+                   const DepthFaults& faults, double noise_scale, std::uint64_t seed,
+                   std::int64_t frame_index, KinectScratch& scratch, DepthImage& depth_m);
 
 }  // namespace roomradar

@@ -231,6 +231,26 @@ Colour fabric(const Material& m, float u_m, float v_m) {
                   1.0F + 0.05F * weave + 0.09F * noise(u_m * 120.0F, v_m * 120.0F, m.seed) + 0.06F * fold);
 }
 
+/// Black squares in the middle of a white margin, the corners symmetrical about the middle. Edges are as soft
+/// as a texel is wide, so that where they lie does not depend on the texels.
+Colour checker(const Material& m, float u_m, float v_m, float width_m, float height_m) {
+  constexpr float kSoft_m = 0.003F;
+  const float columns = std::floor(width_m / kCheckerSquare_m - 1.0F);
+  const float rows = std::floor(height_m / kCheckerSquare_m - 1.0F);
+  // 1 in the middle of even squares, -1 in that of odd ones, 0 at the edges, white outside.
+  const auto side = [](float at, float count) {
+    const float nearest_edge = std::clamp(std::round(at), 0.0F, count);
+    const float beyond = std::clamp((at - nearest_edge) * kCheckerSquare_m / kSoft_m, -1.0F, 1.0F);
+    return static_cast<int>(nearest_edge) % 2 == 0 ? beyond : -beyond;
+  };
+  const float x = u_m / kCheckerSquare_m + 0.5F * columns;
+  const float y = v_m / kCheckerSquare_m + 0.5F * rows;
+  const float inside_m = kCheckerSquare_m * std::min({x, columns - x, y, rows - y});
+  const float within = std::clamp(0.5F + 0.5F * inside_m / kSoft_m, 0.0F, 1.0F);
+  const float dark = within * (0.5F + 0.5F * side(x, columns) * side(y, rows));
+  return mixed_colour(colour_of(m.first), colour_of(m.second), dark);
+}
+
 }  // namespace
 
 std::array<float, 3> pattern_colour(const Material& m, float u_m, float v_m, float width_m, float height_m) {
@@ -269,6 +289,8 @@ std::array<float, 3> pattern_colour(const Material& m, float u_m, float v_m, flo
       return brighter(mixed_colour(first, second, 0.4F * cloud + 0.45F * step_between(0.5F, 1.1F, grain)),
                       1.0F + 0.08F * grain);
     }
+    case Pattern::kChecker:
+      return checker(m, u_m, v_m, width_m, height_m);
     case Pattern::kSkin:
       return brighter(mixed_colour(first, second, 0.3F + 0.35F * fractal(u_m * 26.0F, v_m * 26.0F, m.seed)),
                       1.0F + 0.03F * noise(u_m * 400.0F, v_m * 400.0F, m.seed));

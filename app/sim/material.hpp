@@ -20,7 +20,10 @@ enum class Pattern {
   kFabric,     ///< weave with stripes
   kStone,      ///< speckled stone
   kSkin,       ///< for hands and faces
+  kChecker,    ///< squares of kCheckerSquare_m in the middle of a margin at least half as wide
 };
+
+inline constexpr float kCheckerSquare_m = 0.06F;
 
 struct Material {
   Pattern pattern = Pattern::kPlain;

@@ -1,6 +1,7 @@
 // room.cpp: rooms by name, and exact distances and rays in them.
 #include "app/sim/room.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "app/sim/furniture.hpp"
@@ -8,19 +9,24 @@
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
-
 const std::vector<std::string>& room_names() {
   static const std::vector<std::string> names{"table", "shelf", "wall"};
   return names;
 }
 
-std::string known_rooms() {
+void require_room(std::string_view name) {
+  const std::vector<std::string>& furnished = room_names();
+  if (name == kRandomRoom || name == kBoardRoom ||
+      std::find(furnished.begin(), furnished.end(), name) != furnished.end())
+    return;
   std::string known;
-  for (const std::string& one : room_names()) known += one + ", ";
-  return known.append(kRandomRoom);
+  for (const std::string& one : furnished) known.append(one).append(", ");
+  known.append(kRandomRoom).append(", ").append(kBoardRoom);
+  throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known);
 }
 
 Room make_room(std::string_view name, bool crate, std::uint64_t seed) {
+  require_room(name);
   Room room;
   if (name == "table") {
     room = make_table_room();
@@ -31,7 +37,7 @@ Room make_room(std::string_view name, bool crate, std::uint64_t seed) {
   } else if (name == kRandomRoom) {
     room = make_random_room(seed);
   } else {
-    throw Error("no simulated room is called '" + std::string(name) + "'; known are: " + known_rooms());
+    room = make_board_room();
   }
   if (crate) {
     room.solids.push_back(crate_in(room));

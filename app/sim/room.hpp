@@ -44,10 +44,12 @@ struct Room {
 
 /// The furnished rooms that make_room knows.
 const std::vector<std::string>& room_names();
-/// And one that it furnishes by seed.
+/// It also knows one that it furnishes by seed,
 inline constexpr std::string_view kRandomRoom = "random";
-/// "table, shelf, wall, random".
-std::string known_rooms();
+/// and a checkerboard on a stand, to calibrate cameras with.
+inline constexpr std::string_view kBoardRoom = "board";
+/// Throws Error listing the known names if `name` is none of them.
+void require_room(std::string_view name);
 /// @param crate  one more thing than usual: a crate where else a ball could roll
 /// @param seed   of the furniture of kRandomRoom; other rooms are always the same
 /// Throws Error listing the known names if `name` is none of them.

@@ -25,12 +25,12 @@ void render_scenario(const Scenario& scenario, const Room& room, int frame_numbe
   ViewCaster view;
   ExactView exact;
   view.prepare(solids, scenario.depth_camera, scenario.T_world_camera);
-  render_exact(solids, view, scenario.depth_camera, exact);
+  render_exact(solids, view, scenario.depth_camera, {}, exact);
   if (noise_scale > 0.0) {
     KinectScratch scratch;
-    measure_depth(solids, infrared, view, exact, scenario.depth_camera, scenario.T_world_camera, noise_scale,
-                  mixed(scenario.seed + static_cast<std::uint64_t>(scenario.number)), frame_number, scratch,
-                  frame.depth_m);
+    measure_depth(solids, infrared, view, exact, scenario.depth_camera, scenario.T_world_camera, {},
+                  noise_scale, mixed(scenario.seed + static_cast<std::uint64_t>(scenario.number)),
+                  frame_number, scratch, frame.depth_m);
   } else {
     frame.depth_m = exact.depth_m;
     for (float& depth_m : frame.depth_m.pixels)

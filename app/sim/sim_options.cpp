@@ -14,7 +14,7 @@ namespace {
 constexpr MoverKind kAllMovers[] = {MoverKind::kHand, MoverKind::kBall, MoverKind::kPerson};
 constexpr Pace kAllPaces[] = {Pace::kSteady, Pace::kSlow, Pace::kWaits, Pace::kLeaves};
 constexpr CrateKind kAllCrates[] = {CrateKind::kNone, CrateKind::kStays, CrateKind::kComes, CrateKind::kGoes};
-constexpr CameraPathKind kAllPaths[] = {CameraPathKind::kScan, CameraPathKind::kView};
+constexpr CameraPathKind kAllPaths[] = {CameraPathKind::kScan, CameraPathKind::kView, CameraPathKind::kSwing};
 
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -61,7 +61,7 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
   } else if (key == "path") {
     const auto* const found = std::find_if(std::begin(kAllPaths), std::end(kAllPaths),
                                            [&](CameraPathKind kind) { return to_string(kind) == value; });
-    if (found == std::end(kAllPaths)) refuse(key, value, "scan or view");
+    if (found == std::end(kAllPaths)) refuse(key, value, "scan, view or swing");
     options.path = *found;
   } else if (key == "moving") {
     for (const std::string_view one : split(value, ',')) {
@@ -75,6 +75,9 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
                                            [&](CrateKind kind) { return to_string(kind) == value; });
     if (found == std::end(kAllCrates)) refuse(key, value, "0, 1, comes or goes");
     options.crate = *found;
+  } else if (key == "faults") {
+    if (value != "0" && value != "1") refuse(key, value, "0 or 1");
+    options.faults = value == "1";
   } else if (key == "pace") {
     const auto* const found = std::find_if(std::begin(kAllPaces), std::end(kAllPaces),
                                            [&](Pace pace) { return to_string(pace) == value; });
@@ -94,13 +97,23 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
     options.with_colour = value != "none";
   } else {
     throw Error("sim: no option is called '" + std::string(key) +
-                "'; known are: seed, frames, rate, path, moving, pace, noise, crate, width, colour");
+                "'; known are: seed, frames, rate, path, moving, pace, noise, crate, faults, width, colour");
   }
 }
 
 }  // namespace
 
-std::string_view to_string(CameraPathKind kind) { return kind == CameraPathKind::kScan ? "scan" : "view"; }
+std::string_view to_string(CameraPathKind kind) {
+  switch (kind) {
+    case CameraPathKind::kScan:
+      return "scan";
+    case CameraPathKind::kView:
+      return "view";
+    case CameraPathKind::kSwing:
+      return "swing";
+  }
+  return "?";
+}
 
 std::string_view to_string(MoverKind kind) {
   switch (kind) {
@@ -183,15 +196,14 @@ std::string sim_spec(const SimOptions& options) {
   if (options.noise_scale != usual.noise_scale) say("noise", without_trailing_zeros(options.noise_scale));
   if (options.depth_camera.width_px != usual.depth_camera.width_px)
     say("width", std::to_string(options.depth_camera.width_px));
+  if (options.faults) say("faults", "1");
   if (!options.registered_colour) say("colour", "separate");
   if (!options.with_colour) say("colour", "none");
   return spec;
 }
 
 void require_valid(const SimOptions& options) {
-  const std::vector<std::string>& known = room_names();
-  if (options.room != kRandomRoom && std::find(known.begin(), known.end(), options.room) == known.end())
-    throw Error("no simulated room is called '" + options.room + "'; known are: " + known_rooms());
+  require_room(options.room);
   if (options.frames < 1 || options.frames > 100'000'000)
     refuse("frames", std::to_string(options.frames), "a whole number, 1 to 100000000");
   if (!(options.rate_hz >= 0.1 && options.rate_hz <= 1000.0))
@@ -199,6 +211,8 @@ void require_valid(const SimOptions& options) {
   if (!(options.noise_scale >= 0.0 && options.noise_scale <= 10.0))
     refuse("noise", without_trailing_zeros(options.noise_scale),
            "0 (off), 1 (a Kinect's) or another factor up to 10");
+  if (options.faults && options.registered_colour)
+    refuse("faults", "1", "said together with colour=separate: registering needs what it takes away");
   for (std::size_t i = 0; i < options.movers.size(); ++i)
     if (std::find(options.movers.begin(), options.movers.begin() + static_cast<std::ptrdiff_t>(i),
                   options.movers[i]) != options.movers.begin() + static_cast<std::ptrdiff_t>(i))

@@ -10,8 +10,9 @@
 namespace roomradar {
 
 enum class CameraPathKind {
-  kScan,  ///< walks round the room and back to the start, looking across it
-  kView,  ///< stands still, as a hand can, and looks at the room's focus
+  kScan,   ///< walks round the room and back to the start, looking across it
+  kView,   ///< stands still, as a hand can, and looks at the room's focus
+  kSwing,  ///< swings about before the focus, near and far, tilted every way, as one looks at a checkerboard
 };
 enum class MoverKind {
   kHand,    ///< a hand and forearm that reach over the focus and withdraw
@@ -41,7 +42,7 @@ std::string_view to_string(CrateKind kind);  ///< as a spec has it: 0, 1, comes,
 inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 240.0};
 
 struct SimOptions {
-  std::string room = "table";  ///< one of room_names(), or kRandomRoom
+  std::string room = "table";  ///< one of room_names(), kRandomRoom or kBoardRoom
   std::uint64_t seed = 1;      ///< of the camera's path, the movers' phase, the noise, and a random room
   std::int64_t frames = 300;   ///< 1 or more
   double rate_hz = 30.0;       ///< frames a second, > 0
@@ -51,15 +52,16 @@ struct SimOptions {
   CrateKind crate = CrateKind::kNone;
   double noise_scale = 1.0;  ///< times the Kinect's noise; 0: clean depth, without shadow or dropouts
   Intrinsics depth_camera = kKinectDepthCamera;
+  bool faults = false;            ///< the cameras are not quite what the frames say; see sensor_faults.hpp
   bool registered_colour = true;  ///< false: a colour camera of its own, 2.5 cm beside the depth camera
   bool with_colour = true;        ///< false: depth alone, several times as fast
 };
 
 /// Reads `sim:ROOM`, or `sim:ROOM?key=value&key=value` with the keys
-///   seed, frames, rate, path (scan, view), moving (hand, ball, person; several with commas), pace (steady,
-///   slow, waits, leaves), noise (0 = off, 1 = Kinect), crate (0, 1: one more thing in the room; comes, goes:
-///   at half time), width (of the image, 4:3, 64 to 1920 pixels), colour (registered,
-///   separate, none).
+///   seed, frames, rate, path (scan, view, swing), moving (hand, ball, person; several with commas), pace
+///   (steady, slow, waits, leaves), noise (0 = off, 1 = Kinect), crate (0, 1: one more thing in the room;
+///   comes, goes: at half time), width (of the image, 4:3, 64 to 1920 pixels), colour (registered, separate,
+///   none), faults (0, 1: the cameras are not quite what the frames say).
 /// Throws Error naming the key or value that is not known, or out of range, and listing what is.
 SimOptions parse_sim_spec(std::string_view spec);
 

@@ -66,6 +66,22 @@ struct SimulatedSource::State {
       colour_camera.fy_px *= kColourFocal;
       T_colour_depth.translation().x() = -kColourOffset_m;
     }
+    T_colour_depth_true = T_colour_depth;
+    if (options.faults) add_faults();
+  }
+
+  void add_faults() {
+    const Intrinsics& depth_camera = options.depth_camera;
+    const SensorFaults faults = sensor_faults(depth_camera, colour_camera, T_colour_depth);
+    T_colour_depth_true = faults.T_colour_depth;
+    depth_faults.rays = pixel_rays(faults.depth_camera, faults.depth_lens, depth_camera);
+    colour_rays = pixel_rays(faults.colour_camera, faults.colour_lens, colour_camera);
+    depth_faults.inverse_scale = faults.inverse_depth_scale;
+    depth_faults.inverse_offset_per_m.resize(depth_camera.width_px, depth_camera.height_px);
+    for (int y = 0; y < depth_camera.height_px; ++y)
+      for (int x = 0; x < depth_camera.width_px; ++x)
+        depth_faults.inverse_offset_per_m.at(x, y) =
+            static_cast<float>(inverse_depth_offset_per_m(depth_camera, x, y));
   }
 
   /// Two pixels' width at 1 m is as fine as anything is looked at from.
@@ -100,7 +116,10 @@ struct SimulatedSource::State {
   Solid crate;  ///< one that comes or goes, where it stands while it is there
   bool crate_is_there = false;
   Intrinsics colour_camera;
-  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();       ///< as frames say
+  Eigen::Isometry3d T_colour_depth_true = Eigen::Isometry3d::Identity();  ///< as it is
+  DepthFaults depth_faults;
+  PixelRays colour_rays;
   std::int64_t next_index = 0;
 
   std::vector<Solid> solids;  ///< the room's, then the movers', at the time of the current frame
@@ -148,7 +167,9 @@ void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView
       if (seen < 0) continue;
       const auto index = static_cast<std::size_t>(seen);
       const double depth_m = exact.depth_m.at(x, y);
-      const Vector3d p_solid = view.local_point(seen, x, y, depth_m);
+      const Vector3d p_solid = colour_rays.empty() ? view.local_point(seen, x, y, depth_m)
+                                                   : view.local_point(seen, colour_rays.at(x, y).x,
+                                                                      colour_rays.at(x, y).y, depth_m);
       const Vector3d normal_solid = normal_local(solids[index], p_solid);
       const double cosine = std::max(exact.cosine.at(x, y), 0.2F);
       const double footprint_m = depth_m / (colour_camera.fx_px * cosine);
@@ -189,12 +210,12 @@ ReadResult SimulatedSource::next(Frame& frame) {
   const Eigen::Isometry3d T_world_camera = T_world_camera_at(s.path, t_s);
   s.place_solids(t_s);
   s.depth_view.prepare(s.solids, s.options.depth_camera, T_world_camera);
-  render_exact(s.solids, s.depth_view, s.options.depth_camera, s.depth_exact);
+  render_exact(s.solids, s.depth_view, s.options.depth_camera, s.depth_faults.rays, s.depth_exact);
   s.truth.T_world_camera = T_world_camera;
   s.fill_truth();
   if (s.options.noise_scale > 0.0) {
     measure_depth(s.solids, s.infrared, s.depth_view, s.depth_exact, s.options.depth_camera, T_world_camera,
-                  s.options.noise_scale, s.options.seed, index, s.scratch, frame.depth_m);
+                  s.depth_faults, s.options.noise_scale, s.options.seed, index, s.scratch, frame.depth_m);
   } else {
     frame.depth_m = s.truth.depth_m;
   }
@@ -205,8 +226,8 @@ ReadResult SimulatedSource::next(Frame& frame) {
   } else if (s.options.registered_colour) {
     s.fill_colour(s.depth_view, s.depth_exact, colour_key, frame.colour);
   } else {
-    s.colour_view.prepare(s.solids, s.colour_camera, T_world_camera * s.T_colour_depth.inverse());
-    render_exact(s.solids, s.colour_view, s.colour_camera, s.colour_exact);
+    s.colour_view.prepare(s.solids, s.colour_camera, T_world_camera * s.T_colour_depth_true.inverse());
+    render_exact(s.solids, s.colour_view, s.colour_camera, s.colour_rays, s.colour_exact);
     s.fill_colour(s.colour_view, s.colour_exact, colour_key, frame.colour);
   }
 

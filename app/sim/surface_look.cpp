@@ -138,8 +138,10 @@ void SurfaceLook::add_solid(const Solid& solid, const Material& material, double
     level.texels.reserve(static_cast<std::size_t>(level.width) * static_cast<std::size_t>(level.height));
     for (int y = 0; y < level.height; ++y)
       for (int x = 0; x < level.width; ++x) {
-        const float u_m = (static_cast<float>(x) + 0.5F) * face.texel_m - 0.5F * face.width_m;
-        const float v_m = (static_cast<float>(y) + 0.5F) * face.texel_m - 0.5F * face.height_m;
+        const float u_m =
+            ((static_cast<float>(x) + 0.5F) / static_cast<float>(level.width) - 0.5F) * face.width_m;
+        const float v_m =
+            ((static_cast<float>(y) + 0.5F) / static_cast<float>(level.height) - 0.5F) * face.height_m;
         const auto colour = pattern_colour(material, u_m, v_m, face.width_m, face.height_m);
         level.texels.push_back({to_byte(colour[0]), to_byte(colour[1]), to_byte(colour[2])});
       }

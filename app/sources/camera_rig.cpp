@@ -11,6 +11,7 @@
 #include <system_error>
 #include <vector>
 
+#include "app/sources/camera_rig_json.hpp"
 #include "app/sources/parse_numbers.hpp"
 #include "mapping/types/error.hpp"
 
@@ -22,12 +23,15 @@ constexpr const char* kFormat = "roomradar camera";
 constexpr int kVersion = 1;
 constexpr std::uintmax_t kLargestFile_bytes = 1 << 20;
 
-std::string read_text(const std::filesystem::path& path) {
+}  // namespace
+
+std::string read_json_text(const std::filesystem::path& path) {
   std::error_code fault;
   const std::uintmax_t size = std::filesystem::file_size(path, fault);
   if (fault) throw Error(path.string() + ": cannot be read: " + fault.message());
   if (size > kLargestFile_bytes)
-    throw Error(path.string() + ": has " + std::to_string(size) + " bytes, too many for a camera");
+    throw Error(path.string() + ": has " + std::to_string(size) +
+                " bytes, too many for a file about cameras");
   std::ifstream file(path);
   std::ostringstream text;
   text << file.rdbuf();
@@ -35,29 +39,31 @@ std::string read_text(const std::filesystem::path& path) {
   return text.str();
 }
 
-const Json& field(const Json& object, const char* name, const std::string& where) {
+const Json& json_field(const Json& object, const char* name, const std::string& where) {
   if (!object.is_object() || !object.contains(name))
     throw Error(where + ": the field '" + name + "' is missing");
   return object[name];
 }
 
-double number(const Json& object, const char* name, const std::string& where) {
-  const Json& value = field(object, name, where);
+double json_number(const Json& object, const char* name, const std::string& where) {
+  const Json& value = json_field(object, name, where);
   if (!value.is_number()) throw Error(where + ": " + name + " is not a number");
   return value.get<double>();
 }
 
+namespace {
+
 int size_px(const Json& object, const char* name, const std::string& where) {
-  const double value = number(object, name, where);
+  const double value = json_number(object, name, where);
   if (!(value >= 1 && value <= 16384 && value == std::floor(value)))
     throw Error(where + ": " + name + " must be a whole number in 1..16384");
   return static_cast<int>(value);
 }
 
 Intrinsics intrinsics_from(const Json& object, const std::string& where) {
-  const Intrinsics camera{size_px(object, "width_px", where), size_px(object, "height_px", where),
-                          number(object, "fx_px", where),     number(object, "fy_px", where),
-                          number(object, "cx_px", where),     number(object, "cy_px", where)};
+  const Intrinsics camera{size_px(object, "width_px", where),  size_px(object, "height_px", where),
+                          json_number(object, "fx_px", where), json_number(object, "fy_px", where),
+                          json_number(object, "cx_px", where), json_number(object, "cy_px", where)};
   require_valid(camera, where.c_str());
   return camera;
 }
@@ -87,27 +93,29 @@ Eigen::Isometry3d pose_from(const Json& rows, const std::string& where) {
 
 }  // namespace
 
-CameraRig read_camera_file(const std::filesystem::path& path) {
+Json parse_json_of_format(const std::filesystem::path& path, const char* format, int version) {
   const std::string name = path.string();
-  const Json root = Json::parse(read_text(path), nullptr, /*allow_exceptions=*/false);
+  Json root = Json::parse(read_json_text(path), nullptr, /*allow_exceptions=*/false);
   if (root.is_discarded()) throw Error(name + ": is not JSON; is it cut short?");
-  const Json& format = field(root, "format", name);
-  if (format != kFormat)
-    throw Error(name + ": 'format' is " + format.dump() + "; must be \"" + kFormat + "\"");
-  if (const double version = number(root, "version", name); version != kVersion)
-    throw Error(name + ": is of version " + field(root, "version", name).dump() +
-                "; this program reads version " + std::to_string(kVersion));
+  const Json& said = json_field(root, "format", name);
+  if (said != format) throw Error(name + ": 'format' is " + said.dump() + "; must be \"" + format + "\"");
+  if (json_number(root, "version", name) != version)
+    throw Error(name + ": is of version " + json_field(root, "version", name).dump() +
+                "; this program reads version " + std::to_string(version));
+  return root;
+}
 
+CameraRig rig_from_json(const Json& root, const std::string& name) {
   CameraRig rig;
-  rig.depth_camera = intrinsics_from(field(root, "depth", name), name + ", depth");
+  rig.depth_camera = intrinsics_from(json_field(root, "depth", name), name + ", depth");
   if (root.contains("colour")) rig.colour_camera = intrinsics_from(root["colour"], name + ", colour");
   if (root.contains("T_colour_depth"))
     rig.T_colour_depth = pose_from(root["T_colour_depth"], name + ", T_colour_depth");
   return rig;
 }
 
-void write_camera_file(const CameraRig& rig, const std::filesystem::path& path) {
-  Json root = {{"format", kFormat}, {"version", kVersion}, {"depth", json_of(rig.depth_camera)}};
+Json json_of(const CameraRig& rig) {
+  Json root = {{"depth", json_of(rig.depth_camera)}};
   if (rig.colour_camera) {
     root["colour"] = json_of(*rig.colour_camera);
     Json rows = Json::array();
@@ -117,15 +125,30 @@ void write_camera_file(const CameraRig& rig, const std::filesystem::path& path) 
     }
     root["T_colour_depth"] = rows;
   }
+  return root;
+}
+
+void write_json(const Json& root, const std::filesystem::path& path) {
   std::ofstream file(path);
   file << root.dump(2) << '\n';
   file.close();
   if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
 }
 
+CameraRig read_camera_file(const std::filesystem::path& path) {
+  return rig_from_json(parse_json_of_format(path, kFormat, kVersion), path.string());
+}
+
+void write_camera_file(const CameraRig& rig, const std::filesystem::path& path) {
+  Json root = json_of(rig);
+  root["format"] = kFormat;
+  root["version"] = kVersion;
+  write_json(root, path);
+}
+
 Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_px, int height_px) {
   const std::string name = path.string();
-  const std::string text = read_text(path);
+  const std::string text = read_json_text(path);
   std::vector<double> m;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);)

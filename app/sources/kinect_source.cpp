@@ -290,4 +290,13 @@ std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& option
   return std::make_unique<KinectSource>(device, options);
 }
 
+int count_kinects() {
+  freenect_context* context = nullptr;
+  if (freenect_init(&context, nullptr) < 0) return 0;
+  freenect_set_log_level(context, FREENECT_LOG_FATAL);
+  const int devices = freenect_num_devices(context);
+  freenect_shutdown(context);
+  return std::max(devices, 0);
+}
+
 }  // namespace roomradar

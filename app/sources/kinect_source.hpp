@@ -17,4 +17,8 @@ namespace roomradar {
 /// it cannot be opened, if it stops answering, or if it sends no depth for options.device_timeout_s.
 std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& options = {});
 
+/// How many Kinects libfreenect sees; negative if the program was built without Kinect, 0 if libfreenect
+/// cannot start. Opens none.
+int count_kinects();
+
 }  // namespace roomradar

@@ -24,11 +24,11 @@ struct Scene {
   explicit Scene(std::vector<Solid> given, float returned = 0.8F)
       : solids(std::move(given)), infrared(solids.size(), returned) {
     view.prepare(solids, camera, Eigen::Isometry3d::Identity());
-    render_exact(solids, view, camera, exact);
+    render_exact(solids, view, camera, {}, exact);
   }
   DepthImage measured(double noise_scale, std::int64_t frame = 0, std::uint64_t seed = 5) {
     DepthImage depth_m;
-    measure_depth(solids, infrared, view, exact, camera, Eigen::Isometry3d::Identity(), noise_scale, seed,
+    measure_depth(solids, infrared, view, exact, camera, Eigen::Isometry3d::Identity(), {}, noise_scale, seed,
                   frame, scratch, depth_m);
     return depth_m;
   }

@@ -55,7 +55,7 @@ TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
       {"sim:table?rate=nan", "rate"},
       {"sim:table?noise=-1", "noise"},
       {"sim:table?noise=inf", "noise"},
-      {"sim:table?path=fly", "scan or view"},
+      {"sim:table?path=fly", "scan, view or swing"},
       {"sim:table?crate=2", "comes or goes"},
       {"sim:table?moving=cat", "hand, ball, person"},
       {"sim:table?moving=hand,hand", "once"},

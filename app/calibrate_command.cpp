@@ -1,0 +1,114 @@
+// calibrate_command.cpp: roomradar calibrate: cameras and depth errors from a recording of a checkerboard.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "app/calibration/calibrate.hpp"
+#include "app/calibration/calibration_plot.hpp"
+#include "app/commands.hpp"
+#include "app/open_source.hpp"
+#include "app/picture_file.hpp"
+#include "app/progress.hpp"
+#include "app/report.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::size_t kMostViews = 100;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Medians over the views that judge.
+struct Summary {
+  double colour_px, depth_bias_m, depth_rms_m;
+};
+Summary summary_of(const std::vector<ViewResidual>& residuals, const std::vector<std::size_t>& of) {
+  std::vector<double> colour_px, bias_m, rms_m;
+  for (const std::size_t i : of) {
+    colour_px.push_back(residuals[i].colour_rms_px);
+    bias_m.push_back(std::abs(residuals[i].depth_bias_m));
+    rms_m.push_back(residuals[i].depth_rms_m);
+  }
+  return {median(colour_px), median(bias_m), median(rms_m)};
+}
+
+nlohmann::json to_json(const Summary& summary) {
+  return {{"colour_rms_px", summary.colour_px},
+          {"depth_bias_m", summary.depth_bias_m},
+          {"depth_rms_m", summary.depth_rms_m}};
+}
+
+void print_camera(const char* name, const Intrinsics& said, const Intrinsics& camera, const Lens& lens,
+                  double focal_sigma_px, double centre_sigma_px) {
+  std::printf("%-7s f %.2f %.2f +- %.2f px (said %.2f), c %.2f %.2f +- %.2f px (said %.2f %.2f)\n", name,
+              camera.fx_px, camera.fy_px, focal_sigma_px, said.fx_px, camera.cx_px, camera.cy_px,
+              centre_sigma_px, said.cx_px, said.cy_px);
+  std::printf("        lens k1 %.4f k2 %.4f p1 %.5f p2 %.5f k3 %.4f\n", lens.k1, lens.k2, lens.p1, lens.p2,
+              lens.k3);
+}
+
+void print_fit(const BoardViews& views, const CalibrationFit& fit, const Summary& before,
+               const Summary& after) {
+  const Calibration& found = fit.calibration;
+  std::printf("%lld frames, %zu views of the board, %zu of them held out\n",
+              static_cast<long long>(views.frames), views.views.size(), fit.held_out.size());
+  print_camera("colour", views.first.colour_camera, *found.rig.colour_camera, found.colour_lens,
+               fit.sigmas.colour_focal_px, fit.sigmas.colour_centre_px);
+  print_camera("depth", views.first.depth_camera, found.rig.depth_camera, found.depth_lens,
+               fit.sigmas.depth_focal_px, fit.sigmas.depth_centre_px);
+  const Eigen::Vector3d shift = found.rig.T_colour_depth.translation();
+  std::printf("depth to colour %.2f %.2f %.2f +- %.2f mm, turned by %.3f +- %.3f deg\n", 1e3 * shift.x(),
+              1e3 * shift.y(), 1e3 * shift.z(), 1e3 * fit.sigmas.shift_m,
+              Eigen::AngleAxisd(found.rig.T_colour_depth.linear()).angle() * 180.0 / M_PI,
+              fit.sigmas.turn_rad * 180.0 / M_PI);
+  std::printf("held-out views      before      after  (medians)\n");
+  std::printf("corners, RMS     %7.3f px %7.3f px\n", before.colour_px, after.colour_px);
+  std::printf("depth, bias      %7.2f mm %7.2f mm\n", 1e3 * before.depth_bias_m, 1e3 * after.depth_bias_m);
+  std::printf("depth, RMS       %7.2f mm %7.2f mm\n", 1e3 * before.depth_rms_m, 1e3 * after.depth_rms_m);
+}
+
+}  // namespace
+
+int run(const CalibrateCommand& command) {
+  Report report;
+  report.command = "calibrate";
+  report.source = command.source;
+  report.settings = {{"columns", command.board.columns},
+                     {"rows", command.board.rows},
+                     {"square_m", command.board.square_m},
+                     {"calibration", command.calibration}};
+  require_valid(command.board);
+  for (const std::string& path : {command.calibration, command.plot, command.report}) require_writable(path);
+
+  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
+  BoardViews views;
+  {
+    Progress progress("looking for the board", source->frame_count());
+    views = report.times.timed("views", [&] {
+      return find_board_views(*source, command.board, kMostViews,
+                              [&](std::size_t found) { progress.step(std::to_string(found) + " views"); });
+    });
+  }
+  report.frames_read = views.frames;
+  const CalibrationFit fit =
+      report.times.timed("fit", [&] { return calibrate(views, {.board = command.board}); });
+  write_calibration(fit.calibration, command.calibration);
+  if (!command.plot.empty()) write_png(calibration_plot(views, fit), command.plot);
+
+  const Summary before = summary_of(fit.before, fit.held_out);
+  const Summary after = summary_of(fit.after, fit.held_out);
+  print_fit(views, fit, before, after);
+  report.results = {{"views", views.views.size()},
+                    {"held_out_views", fit.held_out.size()},
+                    {"before", to_json(before)},
+                    {"after", to_json(after)}};
+  write_report(report, command.report);
+  return 0;
+}
+
+}  // namespace roomradar

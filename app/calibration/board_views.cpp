@@ -1,0 +1,164 @@
+// board_views.cpp: OpenCV finds the corners; what is left is to choose.
+#include "app/calibration/board_views.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kStill_px = 6.0;    // from one frame to the next, root mean square over the corners
+constexpr double kNew_px = 22.0;     // to every view before
+constexpr int kDepthStep_px = 5;     // noise is alike over some 3 pixels
+constexpr double kNearPlane = 0.06;  // of the depth: farther from the board than any sensor error
+constexpr std::size_t kLeastDepthSamples = 40;
+
+double distance_px(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+/// The same board the other way up shows the same corners in reverse.
+double distance_either_way_px(const std::vector<Eigen::Vector2d>& a, std::vector<Eigen::Vector2d> b) {
+  const double one_way_px = distance_px(a, b);
+  std::reverse(b.begin(), b.end());
+  return std::min(one_way_px, distance_px(a, b));
+}
+
+/// Board pose in the colour camera that the frame says.
+Eigen::Isometry3d board_pose(const Frame& frame, const Board& board,
+                             const std::vector<Eigen::Vector2d>& corners_px) {
+  std::vector<cv::Point3d> on_board;
+  std::vector<cv::Point2d> in_image;
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column) {
+      const Eigen::Vector3d p = corner_board(board, column, row);
+      on_board.emplace_back(p.x(), p.y(), p.z());
+    }
+  for (const Eigen::Vector2d& corner : corners_px) in_image.emplace_back(corner.x(), corner.y());
+  const Intrinsics& camera = frame.colour_camera;
+  const cv::Matx33d matrix(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
+  cv::Mat turn, shift, rotation;
+  cv::solvePnP(on_board, in_image, matrix, cv::noArray(), turn, shift);
+  cv::Rodrigues(turn, rotation);
+  Eigen::Isometry3d T_colour_board = Eigen::Isometry3d::Identity();
+  Eigen::Matrix3d linear;
+  cv::cv2eigen(rotation, linear);
+  T_colour_board.linear() = linear;
+  T_colour_board.translation() =
+      Eigen::Vector3d(shift.at<double>(0), shift.at<double>(1), shift.at<double>(2));
+  return T_colour_board;
+}
+
+/// Depth pixels whose rays, by the cameras that the frame says, meet the board well inside of its corners'
+/// rectangle, and whose depth is about the board's.
+std::vector<DepthSample> depth_on_board(const Frame& frame, const Board& board,
+                                        const Eigen::Isometry3d& T_colour_board) {
+  const Eigen::Isometry3d T_depth_board = frame.T_colour_depth.inverse() * T_colour_board;
+  const Eigen::Vector3d normal = T_depth_board.linear().col(2);
+  const double offset_m = normal.dot(T_depth_board.translation());
+  const double margin_m = 0.25 * board.square_m;
+  std::vector<DepthSample> samples;
+  for (int y = 0; y < frame.depth_m.height; y += kDepthStep_px)
+    for (int x = 0; x < frame.depth_m.width; x += kDepthStep_px) {
+      const double reported_m = static_cast<double>(frame.depth_m.at(x, y));
+      const Eigen::Vector3d ray = back_project(frame.depth_camera, x, y, 1.0);
+      const double plane_m = offset_m / normal.dot(ray);
+      if (!(reported_m > 0.0) || !(std::abs(reported_m - plane_m) < kNearPlane * plane_m)) continue;
+      const Eigen::Vector3d p_board = T_depth_board.inverse() * (ray * plane_m);
+      if (p_board.x() < margin_m || p_board.y() < margin_m ||
+          p_board.x() > (board.columns - 1) * board.square_m - margin_m ||
+          p_board.y() > (board.rows - 1) * board.square_m - margin_m)
+        continue;
+      samples.push_back({static_cast<double>(x), static_cast<double>(y), reported_m});
+    }
+  return samples;
+}
+
+}  // namespace
+
+void require_valid(const Board& board) {
+  const auto require = [](bool holds, const std::string& what, const std::string& rule) {
+    if (!holds) throw Error("board: " + what + ": must be " + rule);
+  };
+  for (const int corners : {board.columns, board.rows})
+    require(corners >= 3 && corners <= 30, std::to_string(corners) + " inner corners along a side",
+            "3 to 30");
+  require(board.columns != board.rows,
+          std::to_string(board.columns) + " by " + std::to_string(board.rows) + " inner corners",
+          "not square, so that its sides can be told apart");
+  require(board.square_m >= 0.001 && board.square_m <= 1.0,
+          "squares of " + std::to_string(board.square_m) + " m", "of 0.001 to 1 m");
+}
+
+std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colour, const Board& board) {
+  const cv::Mat rgb(colour.height, colour.width, CV_8UC3,
+                    const_cast<Rgb*>(colour.pixels.data()));  // only read
+  cv::Mat grey;
+  cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
+  std::vector<cv::Point2f> found;
+  const cv::Size size(board.columns, board.rows);
+  // The quick search says no within milliseconds where there is no board.
+  if (!cv::findChessboardCorners(
+          grey, size, found,
+          cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK))
+    return std::nullopt;
+  // A window as large as half a square at most, or the next corner pulls at this one.
+  double least_px = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < found.size(); ++i)
+    if (i % static_cast<std::size_t>(board.columns) != 0)
+      least_px = std::min(least_px, cv::norm(found[i] - found[i - 1]));
+  const int half_px = std::clamp(static_cast<int>(0.4 * least_px), 2, 11);
+  cv::cornerSubPix(grey, found, cv::Size(half_px, half_px), cv::Size(-1, -1),
+                   cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60, 1e-4));
+  std::vector<Eigen::Vector2d> corners_px;
+  for (const cv::Point2f& corner : found) corners_px.emplace_back(corner.x, corner.y);
+  return corners_px;
+}
+
+BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
+                            const std::function<void(std::size_t)>& progress) {
+  require_valid(board);
+  BoardViews result;
+  std::vector<Eigen::Vector2d> before;  // the corners of the frame before; empty: it had none
+  Frame frame;
+  while (result.views.size() < most) {
+    const ReadResult read = source.next(frame);
+    if (read.status == ReadStatus::kEnd) break;
+    if (read.status == ReadStatus::kSkipped) continue;
+    ++result.frames;
+    if (frame.colour.empty()) {
+      before.clear();
+      continue;
+    }
+    if (result.first.colour.empty()) result.first = frame;
+    const auto corners_px = find_corners(frame.colour, board);
+    const bool still =
+        corners_px && !before.empty() && distance_either_way_px(*corners_px, before) < kStill_px;
+    if (corners_px) ++result.with_board;
+    before = corners_px.value_or(std::vector<Eigen::Vector2d>{});
+    const auto is_known = [&](const BoardView& view) {
+      return distance_either_way_px(*corners_px, view.corners_px) < kNew_px;
+    };
+    if (still && std::none_of(result.views.begin(), result.views.end(), is_known)) {
+      std::vector<DepthSample> depth = depth_on_board(frame, board, board_pose(frame, board, *corners_px));
+      if (depth.size() >= kLeastDepthSamples)
+        result.views.push_back({frame.index, *corners_px, std::move(depth)});
+    }
+    progress(result.views.size());
+  }
+  if (result.frames > 0 && result.first.colour.empty())
+    throw Error(source.name() + ": has no colour images, in which the board's corners would be found");
+  return result;
+}
+
+}  // namespace roomradar

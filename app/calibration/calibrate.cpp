@@ -1,0 +1,410 @@
+// calibrate.cpp: one least-squares problem, its start, and what is left after it.
+#include "app/calibration/calibrate.hpp"
+
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <string>
+#include <utility>
+
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::size_t kLeastViews = 12;
+constexpr double kCornerSigma_px = 0.15;
+// Neighbouring samples share most of their noise, and the board is no perfect plane.
+constexpr double kDepthSigmas = 2.0;
+// The correction changes by about so much from node to node, and is of about this size.
+constexpr double kNodeStep_per_m = 8e-4;
+constexpr double kNodeSize_per_m = 0.02;
+constexpr double kRobust_sigmas = 3.0;
+constexpr double kTilt_rad = 12.0 * M_PI / 180.0;
+constexpr std::ptrdiff_t kLeastTilted = 6;
+constexpr double kMostUnsure = 0.01;  // of a focal length
+
+/// x_a = rotation by turn of x_b, plus shift.
+struct Pose {
+  std::array<double, 6> turn_and_shift{};
+};
+
+Pose pose_of(const Eigen::Isometry3d& T_a_b) {
+  const Eigen::AngleAxisd turn(T_a_b.linear());
+  const Eigen::Vector3d axis = turn.angle() * turn.axis();
+  const Eigen::Vector3d shift = T_a_b.translation();
+  return {{axis.x(), axis.y(), axis.z(), shift.x(), shift.y(), shift.z()}};
+}
+
+Eigen::Isometry3d isometry_of(const Pose& pose) {
+  const Eigen::Vector3d axis(pose.turn_and_shift.data());
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  if (axis.norm() > 0.0) T.linear() = Eigen::AngleAxisd(axis.norm(), axis.normalized()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(pose.turn_and_shift.data() + 3);
+  return T;
+}
+
+/// fx, fy, cx, cy, k1, k2, p1, p2, k3.
+using CameraBlock = std::array<double, 9>;
+
+CameraBlock block_of(const Intrinsics& camera, const Lens& lens) {
+  return {camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px, lens.k1,
+          lens.k2,      lens.p1,      lens.p2,      lens.k3};
+}
+Intrinsics camera_of(const CameraBlock& block, Intrinsics sized) {
+  sized.fx_px = block[0];
+  sized.fy_px = block[1];
+  sized.cx_px = block[2];
+  sized.cy_px = block[3];
+  return sized;
+}
+Lens lens_of(const CameraBlock& block) { return {block[4], block[5], block[6], block[7], block[8]}; }
+
+struct CornerError {
+  Eigen::Vector3d p_board;
+  Eigen::Vector2d seen_px;
+
+  template <typename T>
+  bool operator()(const T* camera, const T* T_colour_board, T* residual) const {
+    const std::array<T, 3> on_board{T(p_board.x()), T(p_board.y()), T(p_board.z())};
+    std::array<T, 3> p;
+    ceres::AngleAxisRotatePoint(T_colour_board, on_board.data(), p.data());
+    for (std::size_t i = 0; i < 3; ++i) p[i] += T_colour_board[3 + i];
+    if (!(p[2] > T(1e-3))) p[2] = T(1e-3);  // a step that turned the board behind the camera: a huge error
+    const PlanePoint<T> at = distorted(PlanePoint<T>{p[0] / p[2], p[1] / p[2]}, camera[4], camera[5],
+                                       camera[6], camera[7], camera[8]);
+    residual[0] = (camera[0] * at.x + camera[2] - seen_px.x()) / kCornerSigma_px;
+    residual[1] = (camera[1] * at.y + camera[3] - seen_px.y()) / kCornerSigma_px;
+    return true;
+  }
+};
+
+struct DepthError {
+  DepthSample sample;
+  GridPlace place;
+  double sigma_per_m;
+
+  /// @param nodes  of the depth correction: up left, up right, down left, down right
+  template <typename T>
+  bool operator()(const T* camera, const T* T_colour_depth, const T* T_colour_board, const T* inverse_scale,
+                  const T* up_left, const T* up_right, const T* down_left, const T* down_right,
+                  T* residual) const {
+    const PlanePoint<T> ray_plane = undistorted(
+        PlanePoint<T>{(sample.x_px - camera[2]) / camera[0], (sample.y_px - camera[3]) / camera[1]},
+        camera[4], camera[5], camera[6], camera[7], camera[8]);
+    // The plane in the colour camera: n . p = distance; a point at depth z of the ray is R ray z + t.
+    const std::array<T, 3> z_board{T(0), T(0), T(1)};
+    std::array<T, 3> n, ray;
+    ceres::AngleAxisRotatePoint(T_colour_board, z_board.data(), n.data());
+    const std::array<T, 3> ray_depth{ray_plane.x, ray_plane.y, T(1)};
+    ceres::AngleAxisRotatePoint(T_colour_depth, ray_depth.data(), ray.data());
+    T distance(0), along(0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      distance += n[i] * (T_colour_board[3 + i] - T_colour_depth[3 + i]);
+      along += n[i] * ray[i];
+    }
+    const T inverse_of_plane = along / distance;
+    const T offset = (1.0 - place.down) * ((1.0 - place.right) * *up_left + place.right * *up_right) +
+                     place.down * ((1.0 - place.right) * *down_left + place.right * *down_right);
+    // What ought to be reported, against what is: noise must not stand beside an unknown factor, which it
+    // would pull towards 0.
+    residual[0] = ((inverse_of_plane - offset) / *inverse_scale - 1.0 / sample.reported_m) / sigma_per_m;
+    return true;
+  }
+};
+
+/// Keeps a node near its neighbour, or near 0.
+struct NodeDifference {
+  double sigma_per_m;
+  template <typename T>
+  bool operator()(const T* a, const T* b, T* residual) const {
+    residual[0] = (*a - *b) / sigma_per_m;
+    return true;
+  }
+};
+struct NodeSize {
+  double sigma_per_m;
+  template <typename T>
+  bool operator()(const T* node, T* residual) const {
+    residual[0] = *node / sigma_per_m;
+    return true;
+  }
+};
+
+double inverse_sigma_per_m(double depth_m) {
+  return kDepthSigmas * static_cast<double>(depth_sigma_m(static_cast<float>(depth_m))) / (depth_m * depth_m);
+}
+
+std::vector<cv::Point3d> corners_on(const Board& board) {
+  std::vector<cv::Point3d> corners;
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column) {
+      const Eigen::Vector3d p = corner_board(board, column, row);
+      corners.emplace_back(p.x(), p.y(), p.z());
+    }
+  return corners;
+}
+
+std::vector<cv::Point2d> as_points(const std::vector<Eigen::Vector2d>& corners_px) {
+  std::vector<cv::Point2d> points;
+  for (const Eigen::Vector2d& corner : corners_px) points.emplace_back(corner.x(), corner.y());
+  return points;
+}
+
+/// Board pose from its corners in a camera with a lens.
+Pose pose_from_corners(const BoardView& view, const Board& board, const Intrinsics& camera,
+                       const Lens& lens) {
+  const cv::Matx33d matrix(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
+  const cv::Vec<double, 5> distortion(lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
+  cv::Vec3d turn, shift;
+  cv::solvePnP(corners_on(board), as_points(view.corners_px), matrix, distortion, turn, shift);
+  return {{turn[0], turn[1], turn[2], shift[0], shift[1], shift[2]}};
+}
+
+struct Unknowns {
+  CameraBlock colour, depth;
+  Pose T_colour_depth;
+  std::vector<Pose> T_colour_board;  // one a view
+  double inverse_scale = 1.0;
+  std::vector<double> nodes;
+};
+
+void add_view(const BoardView& view, std::size_t number, const CalibrateConfig& config,
+              const DepthImage& depth_image, Unknowns& unknowns, ceres::Problem& problem) {
+  double* board_pose = unknowns.T_colour_board[number].turn_and_shift.data();
+  for (int row = 0; row < config.board.rows; ++row)
+    for (int column = 0; column < config.board.columns; ++column) {
+      const auto i = static_cast<std::size_t>(row * config.board.columns + column);
+      auto* error = new CornerError{corner_board(config.board, column, row), view.corners_px[i]};
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CornerError, 2, 9, 6>(error),
+                               new ceres::HuberLoss(kRobust_sigmas), unknowns.colour.data(), board_pose);
+    }
+  for (const DepthSample& sample : view.depth) {
+    const GridPlace place = grid_place(config.grid_columns, config.grid_rows, depth_image.width,
+                                       depth_image.height, sample.x_px, sample.y_px);
+    double* up = unknowns.nodes.data() + place.row * config.grid_columns + place.column;
+    double* down = up + config.grid_columns;
+    auto* error = new DepthError{sample, place, inverse_sigma_per_m(sample.reported_m)};
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<DepthError, 1, 9, 6, 6, 1, 1, 1, 1, 1>(error),
+                             new ceres::HuberLoss(kRobust_sigmas), unknowns.depth.data(),
+                             unknowns.T_colour_depth.turn_and_shift.data(), board_pose,
+                             &unknowns.inverse_scale, up, up + 1, down, down + 1);
+  }
+}
+
+void add_smoothness(const CalibrateConfig& config, Unknowns& unknowns, ceres::Problem& problem) {
+  const auto join = [&](int a, int b) {
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<NodeDifference, 1, 1, 1>(new NodeDifference{kNodeStep_per_m}),
+        nullptr, &unknowns.nodes[static_cast<std::size_t>(a)], &unknowns.nodes[static_cast<std::size_t>(b)]);
+  };
+  for (int row = 0; row < config.grid_rows; ++row)
+    for (int column = 0; column < config.grid_columns; ++column) {
+      const int node = row * config.grid_columns + column;
+      if (column > 0) join(node - 1, node);
+      if (row > 0) join(node - config.grid_columns, node);
+      problem.AddResidualBlock(new ceres::AutoDiffCostFunction<NodeSize, 1, 1>(new NodeSize{kNodeSize_per_m}),
+                               nullptr, &unknowns.nodes[static_cast<std::size_t>(node)]);
+    }
+}
+
+/// The colour camera alone, by OpenCV, as a start.
+CameraBlock start_of_colour(const std::vector<const BoardView*>& views, const Board& board,
+                            const Intrinsics& said) {
+  std::vector<std::vector<cv::Point3f>> on_board;
+  std::vector<std::vector<cv::Point2f>> in_image;
+  for (const BoardView* view : views) {
+    std::vector<cv::Point3f> corners;
+    for (const cv::Point3d& p : corners_on(board)) corners.emplace_back(p);
+    std::vector<cv::Point2f> seen;
+    for (const cv::Point2d& p : as_points(view->corners_px)) seen.emplace_back(p);
+    on_board.push_back(std::move(corners));
+    in_image.push_back(std::move(seen));
+  }
+  cv::Matx33d matrix(said.fx_px, 0, said.cx_px, 0, said.fy_px, said.cy_px, 0, 0, 1);
+  cv::Vec<double, 5> distortion;
+  std::vector<cv::Mat> turns, shifts;
+  cv::calibrateCamera(on_board, in_image, cv::Size(said.width_px, said.height_px), matrix, distortion, turns,
+                      shifts, cv::CALIB_USE_INTRINSIC_GUESS);
+  return {matrix(0, 0),  matrix(1, 1),  matrix(0, 2),  matrix(1, 2), distortion[0],
+          distortion[1], distortion[2], distortion[3], distortion[4]};
+}
+
+CalibrationSigmas sigmas_of(ceres::Problem& problem, const Unknowns& unknowns) {
+  ceres::Covariance::Options options;
+  options.algorithm_type = ceres::SPARSE_QR;
+  ceres::Covariance covariance(options);
+  const double* colour = unknowns.colour.data();
+  const double* depth = unknowns.depth.data();
+  const double* pose = unknowns.T_colour_depth.turn_and_shift.data();
+  if (!covariance.Compute({{colour, colour}, {depth, depth}, {pose, pose}}, &problem))
+    throw Error(
+        "calibrate: the views do not fix all that is asked for; show the board near and far, tilted "
+        "every way, and in all parts of the image");
+  Eigen::Matrix<double, 9, 9, Eigen::RowMajor> of_colour, of_depth;
+  Eigen::Matrix<double, 6, 6, Eigen::RowMajor> of_pose;
+  covariance.GetCovarianceBlock(colour, colour, of_colour.data());
+  covariance.GetCovarianceBlock(depth, depth, of_depth.data());
+  covariance.GetCovarianceBlock(pose, pose, of_pose.data());
+  const auto largest = [](const auto& of, int a, int b) { return std::sqrt(std::max(of(a, a), of(b, b))); };
+  CalibrationSigmas sigmas;
+  sigmas.colour_focal_px = largest(of_colour, 0, 1);
+  sigmas.colour_centre_px = largest(of_colour, 2, 3);
+  sigmas.depth_focal_px = largest(of_depth, 0, 1);
+  sigmas.depth_centre_px = largest(of_depth, 2, 3);
+  sigmas.turn_rad = std::sqrt(of_pose.diagonal().head<3>().maxCoeff());
+  sigmas.shift_m = std::sqrt(of_pose.diagonal().tail<3>().maxCoeff());
+  return sigmas;
+}
+
+/// Planes that all look the same way do not tell focal length from distance.
+void require_tilted(const std::vector<Pose>& T_colour_board) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  std::vector<Eigen::Vector3d> normals;
+  for (const Pose& pose : T_colour_board) {
+    normals.emplace_back(isometry_of(pose).linear().col(2));
+    if (normals.back().dot(normals.front()) < 0.0) normals.back() *= -1.0;
+    mean += normals.back();
+  }
+  const double cosine = std::cos(kTilt_rad);
+  const auto tilted = std::count_if(normals.begin(), normals.end(), [&](const Eigen::Vector3d& normal) {
+    return normal.dot(mean.normalized()) < cosine;
+  });
+  if (tilted >= kLeastTilted) return;
+  throw Error("calibrate: of " + std::to_string(normals.size()) + " views of the board, " +
+              std::to_string(tilted) + " are tilted by 12 degrees or more against the others; it takes " +
+              std::to_string(kLeastTilted) + ". Tilt the board every way, by 30 to 50 degrees");
+}
+
+void require_sure(const char* which, double focal_px, double sigma_px) {
+  if (sigma_px <= kMostUnsure * focal_px) return;
+  throw Error(std::string("calibrate: the views leave the ") + which + " camera's focal length unsure by " +
+              std::to_string(std::lround(sigma_px)) + " px of " + std::to_string(std::lround(focal_px)) +
+              "; tilt the board more, by 30 to 50 degrees, near and far");
+}
+
+Calibration calibration_of(const Unknowns& unknowns, const CalibrateConfig& config, const Frame& first) {
+  Calibration calibration;
+  calibration.rig.depth_camera = camera_of(unknowns.depth, first.depth_camera);
+  calibration.rig.colour_camera = camera_of(unknowns.colour, first.colour_camera);
+  calibration.rig.T_colour_depth = isometry_of(unknowns.T_colour_depth);
+  calibration.depth_lens = lens_of(unknowns.depth);
+  calibration.colour_lens = lens_of(unknowns.colour);
+  calibration.depth_correction = {unknowns.inverse_scale, config.grid_columns, config.grid_rows,
+                                  unknowns.nodes};
+  return calibration;
+}
+
+}  // namespace
+
+CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config) {
+  if (views.views.size() < kLeastViews)
+    throw Error(
+        "calibrate: of " + std::to_string(views.frames) + " frames, " + std::to_string(views.with_board) +
+        " show a board of " + std::to_string(config.board.columns) + " by " +
+        std::to_string(config.board.rows) + " inner corners, and " + std::to_string(views.views.size()) +
+        " of these are still, differ, and have depth on it; it takes " + std::to_string(kLeastViews) +
+        ". Count the inner corners, hold the board still for a moment in each position, 0.6 m or more "
+        "away");
+  CalibrationFit fit;
+  std::vector<const BoardView*> making;
+  for (std::size_t i = 0; i < views.views.size(); ++i) {
+    if (config.hold_out > 0 &&
+        i % static_cast<std::size_t>(config.hold_out) == static_cast<std::size_t>(config.hold_out) / 2)
+      fit.held_out.push_back(i);
+    else
+      making.push_back(&views.views[i]);
+  }
+
+  Unknowns unknowns;
+  unknowns.colour = start_of_colour(making, config.board, views.first.colour_camera);
+  unknowns.depth = block_of(views.first.depth_camera, {});
+  unknowns.T_colour_depth = pose_of(views.first.T_colour_depth);
+  unknowns.nodes.assign(
+      static_cast<std::size_t>(config.grid_columns) * static_cast<std::size_t>(config.grid_rows), 0.0);
+  const Intrinsics colour = camera_of(unknowns.colour, views.first.colour_camera);
+  for (const BoardView* view : making)
+    unknowns.T_colour_board.push_back(
+        pose_from_corners(*view, config.board, colour, lens_of(unknowns.colour)));
+
+  require_tilted(unknowns.T_colour_board);
+
+  ceres::Problem problem;
+  for (std::size_t i = 0; i < making.size(); ++i)
+    add_view(*making[i], i, config, views.first.depth_m, unknowns, problem);
+  add_smoothness(config, unknowns, problem);
+  // r^6 cannot be told from r^4 where the depth camera's noise is a pixel.
+  problem.SetManifold(unknowns.depth.data(), new ceres::SubsetManifold(9, {8}));
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = 200;
+  options.function_tolerance = 1e-9;  // focal length and distance trade slowly
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (!summary.IsSolutionUsable())
+    throw Error("calibrate: the fit does not converge: " + summary.message +
+                "; is the size of the squares right, and the board flat?");
+
+  fit.sigmas = sigmas_of(problem, unknowns);
+  require_sure("colour", unknowns.colour[0], fit.sigmas.colour_focal_px);
+  require_sure("depth", unknowns.depth[0], fit.sigmas.depth_focal_px);
+  fit.calibration = calibration_of(unknowns, config, views.first);
+  Calibration said;
+  said.rig = {views.first.depth_camera, views.first.colour_camera, views.first.T_colour_depth};
+  for (const BoardView& view : views.views) {
+    fit.before.push_back(residual_of(view, config.board, said));
+    fit.after.push_back(residual_of(view, config.board, fit.calibration));
+  }
+  return fit;
+}
+
+ViewResidual residual_of(const BoardView& view, const Board& board, const Calibration& calibration) {
+  const Intrinsics& colour = *calibration.rig.colour_camera;
+  const Intrinsics& depth = calibration.rig.depth_camera;
+  const Eigen::Isometry3d T_colour_board =
+      isometry_of(pose_from_corners(view, board, colour, calibration.colour_lens));
+  ViewResidual residual;
+  double sum_px2 = 0.0;
+  for (int row = 0; row < board.rows; ++row)
+    for (int column = 0; column < board.columns; ++column) {
+      const Eigen::Vector3d p = T_colour_board * corner_board(board, column, row);
+      const PlanePoint<double> at = distorted({p.x() / p.z(), p.y() / p.z()}, calibration.colour_lens);
+      const Eigen::Vector2d shown_px(colour.fx_px * at.x + colour.cx_px, colour.fy_px * at.y + colour.cy_px);
+      sum_px2 +=
+          (shown_px - view.corners_px[static_cast<std::size_t>(row * board.columns + column)]).squaredNorm();
+    }
+  residual.colour_rms_px = std::sqrt(sum_px2 / static_cast<double>(view.corners_px.size()));
+
+  const Eigen::Isometry3d T_depth_board = calibration.rig.T_colour_depth.inverse() * T_colour_board;
+  const Eigen::Vector3d normal = T_depth_board.linear().col(2);
+  const double distance_m = normal.dot(T_depth_board.translation());
+  residual.distance_m = (T_depth_board * corner_board(board, board.columns / 2, board.rows / 2)).z();
+  std::vector<double> errors_m;
+  double sum_m2 = 0.0;
+  for (const DepthSample& sample : view.depth) {
+    const PlanePoint<double> p =
+        undistorted({(sample.x_px - depth.cx_px) / depth.fx_px, (sample.y_px - depth.cy_px) / depth.fy_px},
+                    calibration.depth_lens);
+    const double plane_m = distance_m / normal.dot(Eigen::Vector3d(p.x, p.y, 1.0));
+    const double offset =
+        offset_per_m(calibration.depth_correction, depth.width_px, depth.height_px, sample.x_px, sample.y_px);
+    const auto reported_m = static_cast<float>(sample.reported_m);
+    const double error_m =
+        corrected_depth_m(reported_m, calibration.depth_correction.inverse_scale, offset) - plane_m;
+    errors_m.push_back(error_m);
+    sum_m2 += error_m * error_m;
+  }
+  const auto middle = errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2);
+  std::nth_element(errors_m.begin(), middle, errors_m.end());
+  residual.depth_bias_m = *middle;
+  residual.depth_rms_m = std::sqrt(sum_m2 / static_cast<double>(errors_m.size()));
+  return residual;
+}
+
+}  // namespace roomradar

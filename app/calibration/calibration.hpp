@@ -1,0 +1,51 @@
+// calibration.hpp: what a calibration knows of a Kinect, and its file.
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "app/sources/camera_rig.hpp"
+#include "mapping/types/lens.hpp"
+
+namespace roomradar {
+
+/// 1 / depth = inverse_scale / reported depth + offset(x, y): an error of the disparity, which is what a
+/// structured-light sensor measures. The offset (1/m) is bilinear between nodes that span the image from the
+/// middle of its first pixel to the middle of its last, row by row; without nodes it is 0.
+struct DepthCorrection {
+  double inverse_scale = 1.0;
+  int columns = 0, rows = 0;  ///< both 0, or both 2 to 256
+  std::vector<double> offset_per_m;
+};
+
+/// Where pixel (x, y) lies between the nodes: the node up and left of it, and how far from there, 0 to 1.
+struct GridPlace {
+  int column = 0, row = 0;
+  double right = 0.0, down = 0.0;
+};
+GridPlace grid_place(int columns, int rows, int width_px, int height_px, double x_px, double y_px);
+
+/// Offset (1/m) at a pixel of images of that size.
+double offset_per_m(const DepthCorrection& correction, int width_px, int height_px, double x_px, double y_px);
+
+/// Depth (m) of a reported depth; 0 for 0, and where the correction leaves no depth in front of the camera.
+inline float corrected_depth_m(float reported_m, double inverse_scale, double offset_per_m) {
+  if (!(reported_m > 0.0F)) return 0.0F;
+  const double inverse = inverse_scale / reported_m + offset_per_m;
+  return inverse > 1e-3 ? static_cast<float>(1.0 / inverse) : 0.0F;
+}
+
+struct Calibration {
+  CameraRig rig;
+  Lens depth_lens, colour_lens;
+  DepthCorrection depth_correction;
+};
+
+/// {"format": "roomradar calibration", "version": 1, "depth", "colour", "T_colour_depth": as in camera.json,
+///  "depth_lens", "colour_lens": {"k1", "k2", "p1", "p2", "k3"},
+///  "depth_correction": {"inverse_scale", "columns", "rows", "offset_per_m": [columns * rows numbers]}}
+/// Throws Error naming the file, and the field that is missing, of the wrong type or impossible (a lens that
+/// moves a corner of the image by more than half of its distance from the middle; an offset past 0.2 / m).
+Calibration read_calibration(const std::filesystem::path& path);
+void write_calibration(const Calibration& calibration, const std::filesystem::path& path);
+
+}  // namespace roomradar

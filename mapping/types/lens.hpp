@@ -1,0 +1,52 @@
+// lens.hpp: how a real lens bends the pinhole camera's rays.
+#pragma once
+#include <cmath>
+
+namespace roomradar {
+
+/// Radial and tangential distortion as OpenCV writes it, k1 k2 p1 p2 k3; all 0: a pinhole.
+/// Source: Brown, Decentering distortion of lenses, Photogrammetric Engineering 1966.
+struct Lens {
+  double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;
+  friend bool operator==(const Lens&, const Lens&) = default;
+};
+
+/// A point of the image plane at distance 1 before the camera: x right, y down, no unit.
+template <typename Scalar>
+struct PlanePoint {
+  Scalar x{}, y{};
+};
+
+/// Where the lens puts what a pinhole would show at `p`. Works on any Scalar, also one that carries
+/// derivatives; k1 to k3 are given apart for that reason.
+template <typename Scalar, typename Coefficient>
+PlanePoint<Scalar> distorted(const PlanePoint<Scalar>& p, const Coefficient& k1, const Coefficient& k2,
+                             const Coefficient& p1, const Coefficient& p2, const Coefficient& k3) {
+  const Scalar r2 = p.x * p.x + p.y * p.y;
+  const Scalar radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  return {p.x * radial + 2.0 * p1 * p.x * p.y + p2 * (r2 + 2.0 * p.x * p.x),
+          p.y * radial + p1 * (r2 + 2.0 * p.y * p.y) + 2.0 * p2 * p.x * p.y};
+}
+inline PlanePoint<double> distorted(const PlanePoint<double>& p, const Lens& lens) {
+  return distorted(p, lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
+}
+
+/// The other way, by a fixed number of rounds of p = p_distorted - (what the lens adds at p). Within 1e-9 for
+/// lenses that move no point of the image by more than a tenth of its distance from the middle.
+template <typename Scalar, typename Coefficient>
+PlanePoint<Scalar> undistorted(const PlanePoint<Scalar>& p_distorted, const Coefficient& k1,
+                               const Coefficient& k2, const Coefficient& p1, const Coefficient& p2,
+                               const Coefficient& k3) {
+  constexpr int kRounds = 12;
+  PlanePoint<Scalar> p = p_distorted;
+  for (int round = 0; round < kRounds; ++round) {
+    const PlanePoint<Scalar> there = distorted(p, k1, k2, p1, p2, k3);
+    p = {p.x + p_distorted.x - there.x, p.y + p_distorted.y - there.y};
+  }
+  return p;
+}
+inline PlanePoint<double> undistorted(const PlanePoint<double>& p_distorted, const Lens& lens) {
+  return undistorted(p_distorted, lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
+}
+
+}  // namespace roomradar
