@@ -63,7 +63,7 @@ TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
       {"sim:table?pace=run", "steady, slow, waits or leaves"},
       {"sim:table?width=63", "width"},
       {"sim:table?width=99999999999", "width"},
-      {"sim:table?colour=red", "registered or separate"},
+      {"sim:table?colour=red", "registered, separate or none"},
   };
   for (const auto& [spec, part] : cases)
     EXPECT_NE(message(spec).find(part), std::string::npos) << spec << ": " << message(spec);
