@@ -19,7 +19,7 @@ namespace roomradar {
 struct MovedSurfaceConfig {
   /// How far, in depth, the mesh may be from the surface that the pixels show on average over 5 x 5 of them.
   float deviation_sigmas = 0.8F;
-  float flat_sigmas = 1.75F;  ///< RMS of 5 x 5 pixels from a plane; more, and they are a bend, not noise
+  float flat_sigmas = 2.0F;  ///< RMS of 5 x 5 pixels from a plane; more, and they are a bend, not noise
   float cut_sigmas =
       2.5F;  ///< the same of 4 x 4 pixels at an outline from their triangles; else all are vertices
   float jump_sigmas = 4.0F;          ///< two pixels whose depths differ by noise alone are one surface
