@@ -34,7 +34,9 @@ struct Locator {
 /// @param moved_mask  of the frame before: pixels at 255 moved and are left out; empty, or of the depth's
 /// size
 /// @return with status kTracked or kDegenerate a pose to go on with (in kDegenerate the directions that the
-///         room does not fix are the prediction's); any other status: not located, the next frame starts anew
+///         room does not fix are the prediction's, or it is the last frame's pose, where the sensor's
+///         depth bent and alignment took that for a motion); any other status: not located, the next frame
+///         starts anew
 Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
                 const ExpectedDepth& expected_depth);
 
