@@ -59,20 +59,37 @@ void weigh_row(const float* live, const float* expected, int width, const Foregr
     labels[x] = known ? PixelLabel::kStatic : PixelLabel::kNotKnown;
   }
   // Holes of the model: they prove nothing, but what moved may cover them.
+  int holes = 0;
+  for (int x = 0; x < width; ++x) holes |= !(expected[x] > 0.0F);
+  if (holes == 0) return;
   const float* around = state.around_hole_m.data();
   for (int x = 0; x < width; ++x) {
     if (expected[x] > 0.0F || !(live[x] > 0.0F) || around[x] == kNoDepth_m) continue;
-    if (live[x] < around[x] - config.strong_sigmas *
-                                  facing_sigma_m(around[x], config.model_sigma_m, state.fit.misfit_per_m))
-      evidence[x] = kWeakMoved | kInHole;
+    const float sigma = facing_sigma_m(around[x], config.model_sigma_m, state.fit.misfit_per_m);
+    if (live[x] < around[x] - config.strong_sigmas * sigma) evidence[x] = kWeakMoved | kInHole;
+  }
+}
+
+// The bits of all pixels of each block of a row.
+void gather_blocks(const std::uint8_t* evidence, int width, int rows_px, std::uint8_t* row_bits,
+                   std::uint8_t* blocks) {
+  std::copy_n(evidence, width, row_bits);
+  for (int y = 1; y < rows_px; ++y) {
+    const std::uint8_t* row = evidence + static_cast<std::size_t>(y) * width;
+    for (int x = 0; x < width; ++x) row_bits[x] |= row[x];
+  }
+  const int columns = blocks_along(width);
+  for (int column = 0; column < columns; ++column) {
+    const std::uint8_t* bits = row_bits + column * kBlock_px;  // padded with 0
+    blocks[column] = static_cast<std::uint8_t>(bits[0] | bits[1] | bits[2] | bits[3]);
   }
 }
 
 // A pixel behind a near edge's reach, as of a ball behind a box, is no less moved if no expected surface
 // within reach lies at its depth, give or take. A block that holds an edge stands for its two sides, not for
 // what is between them.
-void settle_doubts(const DepthImage& depth_m, int column, int row, const ForegroundConfig& config,
-                   ForegroundState& state) {
+std::uint8_t settle_doubts(const DepthImage& depth_m, int column, int row, const ForegroundConfig& config,
+                           ForegroundState& state) {
   const ExpectedBounds& bounds = state.bounds;
   constexpr int kLanes = kBlock_px * kBlock_px;
   std::array<std::size_t, kLanes> pixel;
@@ -107,8 +124,13 @@ void settle_doubts(const DepthImage& depth_m, int column, int row, const Foregro
       }
     }
   }
-  for (int i = 0; i < count; ++i)
-    if (!is_expected[i]) state.evidence[pixel[i]] |= kStrongMoved;
+  std::uint8_t found = 0;
+  for (int i = 0; i < count; ++i) {
+    if (is_expected[i]) continue;
+    state.evidence[pixel[i]] |= kStrongMoved;
+    found = kStrongMoved;
+  }
+  return found;
 }
 
 void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const ForegroundConfig& settings,
@@ -125,30 +147,20 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
                 state.evidence.data() + depth_m.index(0, y), labels.row(y));
     }
     std::uint8_t* blocks = state.block_evidence.data() + grid.at(0, row);
+    std::uint8_t* evidence = state.evidence.data() + depth_m.index(0, row * kBlock_px);
+    gather_blocks(evidence, width, end - row * kBlock_px, state.row_bits.data(), blocks);
     const std::uint8_t* before = state.before.data() + grid.at(0, row);
     for (int column = 0; column < grid.columns; ++column) {
-      std::uint8_t all = 0;
+      if ((blocks[column] & kDoubtMoved) != 0)
+        blocks[column] |= settle_doubts(depth_m, column, row, config, state);
+      if (before[column] == 0 || blocks[column] == 0) continue;
+      const int was = ((before[column] & (kBlockMoved | kBlockMaybeMoved)) != 0 ? kMovedBefore : 0) |
+                      ((before[column] & (kBlockRevealed | kBlockMaybeRevealed)) != 0 ? kRevealedBefore : 0);
       const int x_end = std::min((column + 1) * kBlock_px, width);
       for (int y = row * kBlock_px; y < end; ++y) {
-        for (int x = column * kBlock_px; x < x_end; ++x) all |= state.evidence[depth_m.index(x, y)];
+        for (int x = column * kBlock_px; x < x_end; ++x)
+          state.evidence[depth_m.index(x, y)] |= static_cast<std::uint8_t>(was);
       }
-      if ((all & kDoubtMoved) != 0) {
-        settle_doubts(depth_m, column, row, config, state);
-        all = 0;
-        for (int y = row * kBlock_px; y < end; ++y) {
-          for (int x = column * kBlock_px; x < x_end; ++x) all |= state.evidence[depth_m.index(x, y)];
-        }
-      }
-      if (before[column] != 0 && all != 0) {
-        const int was =
-            ((before[column] & (kBlockMoved | kBlockMaybeMoved)) != 0 ? kMovedBefore : 0) |
-            ((before[column] & (kBlockRevealed | kBlockMaybeRevealed)) != 0 ? kRevealedBefore : 0);
-        for (int y = row * kBlock_px; y < end; ++y) {
-          for (int x = column * kBlock_px; x < x_end; ++x)
-            state.evidence[depth_m.index(x, y)] |= static_cast<std::uint8_t>(was);
-        }
-      }
-      blocks[column] = all;
     }
   }
 }
@@ -244,14 +256,17 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   assert(depth_m.width == camera.width_px && depth_m.height == camera.height_px);
   const std::size_t pixels = depth_m.pixels.size();
   const auto width = static_cast<std::size_t>(depth_m.width);
-  labels.resize(depth_m.width, depth_m.height, PixelLabel::kNotKnown);
-  moved_mask.resize(depth_m.width, depth_m.height, 0);
+  if (labels.width != depth_m.width || labels.height != depth_m.height)
+    labels.resize(depth_m.width, depth_m.height);
+  if (moved_mask.width != depth_m.width || moved_mask.height != depth_m.height)
+    moved_mask.resize(depth_m.width, depth_m.height);
   if (pixels == 0) return {};
   state.evidence.resize(pixels);
   for (auto* row :
        {&state.weak_m, &state.strong_m, &state.nearest_m, &state.farthest_m, &state.around_hole_m})
     row->resize(width);
   state.keep.resize(width);
+  state.row_bits.assign(static_cast<std::size_t>(blocks_along(depth_m.width)) * kBlock_px, 0);
 
   follow_misfit(depth_m, expected_depth_m, state.fit);
   find_bounds(expected_depth_m, camera, config, state.fit.misfit_per_m, state.bounds);
@@ -276,11 +291,18 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   counts.revealed = label_regions(depth_m, revealed, camera, config, state, labels);
   remember(camera, T_world_camera, state.memory);
 
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const int live = depth_m.pixels[i] > 0.0F;
-    moved_mask.pixels[i] = labels.pixels[i] == PixelLabel::kMoved ? 255 : 0;
-    counts.valid += live;
-    counts.not_known += live & (labels.pixels[i] == PixelLabel::kNotKnown);
+  for (int y = 0; y < depth_m.height; ++y) {
+    const float* live = depth_m.row(y);
+    const PixelLabel* label = labels.row(y);
+    std::uint8_t* mask = moved_mask.row(y);
+    int valid = 0, not_known = 0;
+    for (int x = 0; x < depth_m.width; ++x) {
+      valid += live[x] > 0.0F;
+      not_known += (live[x] > 0.0F) & (label[x] == PixelLabel::kNotKnown);
+    }
+    for (int x = 0; x < depth_m.width; ++x) mask[x] = label[x] == PixelLabel::kMoved ? 255 : 0;
+    counts.valid += static_cast<std::size_t>(valid);
+    counts.not_known += static_cast<std::size_t>(not_known);
   }
   return counts;
 }

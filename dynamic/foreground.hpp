@@ -34,7 +34,7 @@ struct ForegroundState {
   std::vector<std::uint8_t> block_evidence, along_rows;
   std::vector<float> weak_m, strong_m;  // one value a pixel of a row
   std::vector<float> nearest_m, farthest_m, around_hole_m;
-  std::vector<std::uint8_t> keep;
+  std::vector<std::uint8_t> keep, row_bits;
   std::vector<std::uint8_t> evidence;  // bits a pixel, see foreground.cpp
   DepthRegions regions;
 };
