@@ -12,21 +12,16 @@
 #include <vector>
 
 #include "app/sim/counter_random.hpp"
-#include "app/sources/folder_source.hpp"
 #include "dynamic/change_tracker.hpp"
 #include "dynamic/foreground.hpp"
-#include "mapping/surface.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "radar/depth_pass.hpp"
 #include "tests/bench/bench_times.hpp"
+#include "tests/bench/dynamic_bench_foreground.hpp"
 #include "tests/bench/dynamic_bench_mesh.hpp"
 #include "tests/dynamic/foreground_judge.hpp"
-#include "tests/support/recordings.hpp"
 
 namespace roomradar::test {
 namespace {
-
-using Rows = nlohmann::json;
 
 // Puts a ball-shaped thing that covers a fifth of the image in front of the room.
 void put_in_front(Frame& frame) {
@@ -125,83 +120,6 @@ void measure_watching(Rows& rows) {
   }
 }
 
-// Movers in simulated rooms, camera standing as a hand holds it, against the exact room seen from the true
-// pose and from one that is 5 mm and 0.1 degrees off.
-void measure_masks(Rows& rows) {
-  for (const double shift_m : {0.0, 0.005}) {
-    for (const std::string& room : room_names()) {
-      for (const MoverKind mover : {MoverKind::kHand, MoverKind::kBall, MoverKind::kPerson}) {
-        SimOptions options;
-        options.room = room;
-        options.frames = 150;
-        options.path = CameraPathKind::kView;
-        options.movers = {mover};
-        std::int64_t step = 30;
-        if (mover == MoverKind::kBall) {  // on the floor, which a viewer may not see
-          options.path = CameraPathKind::kScan;
-          options.frames = 1200;
-          step = 150;
-        }
-        const MaskScore score = judge_foreground(options, step, shift_m, shift_m > 0.0 ? 0.1 : 0.0);
-        rows.push_back({{"work", "masks"},
-                        {"room", room},
-                        {"mover", std::string(to_string(mover))},
-                        {"pose_error_m", shift_m},
-                        {"frames", score.frames},
-                        {"iou", score.iou()},
-                        {"false_fraction", score.false_fraction()}});
-      }
-    }
-  }
-}
-
-// The kitchen: frames 0 to 399 make the map, by the recorded poses; in the rest nothing moves.
-void measure_still_kitchen(Rows& rows) {
-  const auto folder = recording("kitchen");
-  if (!folder) {
-    std::cout << "kitchen: SKIPPED, the recording is not here (set ROOMRADAR_DATA to its folder)\n";
-    return;
-  }
-  const auto source = open_folder(*folder);
-  StaticMap map(0.01);
-  Frame frame;
-  GlContext context;
-  DepthPass depth_pass(context);
-  GpuMesh room(context);
-  DepthImage expected_m;
-  ForegroundState foreground;
-  LabelImage labels;
-  MaskImage moved_mask;
-  ForegroundCounts all;
-  for (ReadResult read = source->next(frame); read.status != ReadStatus::kEnd; read = source->next(frame)) {
-    if (read.status != ReadStatus::kFrame || !frame.T_world_camera) continue;
-    if (frame.index < 400) {
-      if (frame.index % 2 == 0) map.fuse(frame, *frame.T_world_camera);
-      continue;
-    }
-    if (room.triangle_count() == 0) room.upload(extract_surface(map), MeshUsage::kStatic);
-    const MeshInstance instance{&room, Eigen::Isometry3d::Identity()};
-    depth_pass.render({&instance, 1}, frame.depth_camera, *frame.T_world_camera, expected_m);
-    const ForegroundCounts counts =
-        mark_foreground(frame.depth_m, expected_m, frame.depth_camera, *frame.T_world_camera, {}, foreground,
-                        labels, moved_mask);
-    all.valid += counts.valid;
-    all.moved += counts.moved;
-    all.revealed += counts.revealed;
-    all.not_known += counts.not_known;
-  }
-  const auto fraction = [&](std::size_t pixels) {
-    return static_cast<double>(pixels) / static_cast<double>(std::max<std::size_t>(all.valid, 1));
-  };
-  rows.push_back({{"work", "nothing moves"},
-                  {"recording", "kitchen"},
-                  {"frames", "400:499"},
-                  {"resolution_m", 0.01},
-                  {"moved_fraction", fraction(all.moved)},
-                  {"revealed_fraction", fraction(all.revealed)},
-                  {"not_known_fraction", fraction(all.not_known)}});
-}
-
 int run(int argc, char** argv) {
   const bool mesh_only = argc > 1 && std::strcmp(argv[1], "--mesh") == 0;
   if (mesh_only) --argc, ++argv;
@@ -217,8 +135,7 @@ int run(int argc, char** argv) {
   if (!mesh_only) {
     measure_times(rows);
     measure_watching(rows);
-    measure_masks(rows);
-    measure_still_kitchen(rows);
+    measure_foreground(rows);
   }
   for (const auto& row : rows) std::cout << row.dump() << "\n";
   if (!file) return 0;

@@ -54,6 +54,28 @@ inline DepthImage table_view(double shift_m, double turn_deg) {
   return depth_m;
 }
 
+// A table 0.9 m below a camera that looks down at `below_deg` under the horizon, and a hand as large as a
+// hand, so far above it; 0: no hand. Truth: where the hand is.
+inline DepthImage hand_over_table(double below_deg, double above_m, MaskImage& truth) {
+  const double down = below_deg * M_PI / 180.0;
+  DepthImage depth_m = flat(0.0F);
+  truth.resize(kKinect.width_px, kKinect.height_px, 0);
+  for (int y = 0; y < kKinect.height_px; ++y) {
+    for (int x = 0; x < kKinect.width_px; ++x) {
+      const Eigen::Vector3d ray = back_project(kKinect, x, y, 1.0);
+      const double falls = ray.y() * std::cos(down) + ray.z() * std::sin(down);
+      const double forward = ray.z() * std::cos(down) - ray.y() * std::sin(down);
+      if (falls < 1e-3 || 0.9 / falls > 5.0) continue;
+      const double t = (0.9 - above_m) / falls;
+      const bool hand = above_m > 0.0 && std::abs(ray.x() * t) < 0.05 &&
+                        std::abs(forward * t - 0.9 / std::tan(down)) < 0.09;
+      truth.at(x, y) = hand ? 255 : 0;
+      depth_m.at(x, y) = static_cast<float>(hand ? t : 0.9 / falls);
+    }
+  }
+  return depth_m;
+}
+
 // What is marked after so many frames that show the same.
 struct Marked {
   LabelImage labels;

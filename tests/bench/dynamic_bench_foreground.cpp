@@ -1,0 +1,215 @@
+// dynamic_bench_foreground.cpp: how right the foreground is, on simulated movers and where nothing moves.
+#include "tests/bench/dynamic_bench_foreground.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/session.hpp"
+#include "app/sources/folder_source.hpp"
+#include "app/sources/frame_range.hpp"
+#include "mapping/prescan.hpp"
+#include "mapping/static_map.hpp"
+#include "mapping/surface.hpp"
+#include "radar/depth_pass.hpp"
+#include "tests/dynamic/foreground_judge.hpp"
+#include "tests/dynamic/foreground_views.hpp"
+#include "tests/support/recordings.hpp"
+
+namespace roomradar::test {
+namespace {
+
+// The room's mesh from 100 noisy frames of a walk round it, 1 cm.
+Mesh prescanned(const std::string& room) {
+  SimOptions options;
+  options.room = room;
+  options.frames = 1200;
+  SimulatedSource source(options);
+  StaticMap map(0.01);
+  Frame frame;
+  for (std::int64_t i = 0; i < options.frames; i += 12) {
+    source.seek(i);
+    if (source.next(frame).status == ReadStatus::kFrame) map.fuse(frame, source.truth().T_world_camera);
+  }
+  return extract_surface(map);
+}
+
+// A static model, its pose's error, and how the masks against it score.
+struct Opponent {
+  const char* model;
+  double shift_m, turn_deg;
+  ForegroundState state = {};
+  MaskScore score = {};
+};
+
+// Four frames in a row, eight times: a new burst finds the foreground without memory, as after a start.
+void judge_mover(const std::string& room, MoverKind mover, GlContext& context, const GpuMesh& mesh,
+                 Rows& rows) {
+  constexpr int kBursts = 8, kInARow = 4;
+  SimOptions options;
+  options.room = room;
+  options.frames = 160;
+  options.path = CameraPathKind::kView;
+  options.movers = {mover};
+  if (mover == MoverKind::kBall) {  // on the floor, which a viewer may not see
+    options.path = CameraPathKind::kScan;
+    options.frames = 1200;
+  }
+  SimulatedSource source(options);
+  ViewCaster caster;
+  DepthPass depth_pass(context);
+  const MeshInstance instance{&mesh, Eigen::Isometry3d::Identity()};
+  std::array<Opponent, 4> opponents{Opponent{"exact", 0.0, 0.0}, Opponent{"exact", 0.005, 0.1},
+                                    Opponent{"prescanned", 0.0, 0.0}, Opponent{"prescanned", 0.005, 0.1}};
+  Frame frame;
+  DepthImage expected_m;
+  LabelImage labels;
+  MaskImage moved_mask;
+  for (int burst = 0; burst < kBursts; ++burst) {
+    for (Opponent& opponent : opponents) opponent.state = {};
+    for (int i = 0; i < kInARow; ++i) {
+      source.seek(burst * options.frames / kBursts + i);
+      if (source.next(frame).status != ReadStatus::kFrame) continue;
+      for (Opponent& opponent : opponents) {
+        const Eigen::Isometry3d T_world_camera =
+            source.truth().T_world_camera * pose_error(opponent.shift_m, opponent.turn_deg, burst);
+        if (opponent.model == std::string("exact"))
+          cast_room(source.room(), frame.depth_camera, T_world_camera, caster, expected_m);
+        else
+          depth_pass.render({&instance, 1}, frame.depth_camera, T_world_camera, expected_m);
+        mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, {}, opponent.state,
+                        labels, moved_mask);
+        add_frame(frame.depth_m, moved_mask, source.truth().moved, opponent.score);
+      }
+    }
+  }
+  for (const Opponent& opponent : opponents) {
+    rows.push_back({{"work", "masks"},
+                    {"room", room},
+                    {"mover", std::string(to_string(mover))},
+                    {"model", opponent.model},
+                    {"pose_error_m", opponent.shift_m},
+                    {"frames", opponent.score.frames},
+                    {"iou", opponent.score.iou()},
+                    {"false_fraction", opponent.score.false_fraction()}});
+  }
+}
+
+void measure_masks(Rows& rows) {
+  GlContext context;
+  const std::size_t first = rows.size();
+  for (const std::string& room : room_names()) {
+    GpuMesh mesh(context);
+    mesh.upload(prescanned(room), MeshUsage::kStatic);
+    for (const MoverKind mover : {MoverKind::kHand, MoverKind::kBall, MoverKind::kPerson})
+      judge_mover(room, mover, context, mesh, rows);
+  }
+  for (const char* model : {"exact", "prescanned"}) {
+    double sum = 0.0, worst = 1.0;
+    int count = 0;
+    for (std::size_t i = first; i < rows.size(); ++i) {
+      if (rows[i]["work"] != "masks" || rows[i]["model"] != model) continue;
+      const double iou = rows[i]["iou"];
+      sum += iou;
+      worst = std::min(worst, iou);
+      ++count;
+    }
+    rows.push_back({{"work", "masks, all"}, {"model", model}, {"iou", sum / count}, {"iou_worst", worst}});
+  }
+}
+
+// A hand over a table that is seen from above it and from the side.
+void measure_hand_over_table(Rows& rows) {
+  for (const double below_deg : {35.0, 60.0, 89.0}) {
+    MaskImage truth;
+    const DepthImage expected_m = hand_over_table(below_deg, 0.0, truth);
+    for (const double above_m : {0.01, 0.02, 0.03, 0.05, 0.1, 0.2}) {
+      DepthImage live_m = hand_over_table(below_deg, above_m, truth);
+      add_noise(live_m, 1);
+      const Marked marked = mark(live_m, expected_m, {}, kKinect, 2);
+      MaskScore score;
+      add_frame(live_m, marked.moved_mask, truth, score);
+      rows.push_back({{"work", "hand over a table"},
+                      {"camera_below_horizon_deg", below_deg},
+                      {"above_m", above_m},
+                      {"iou", score.iou()}});
+    }
+  }
+}
+
+// A recording in which nothing moves: what makes the map, and what is run in it.
+struct StillPart {
+  const char* recording;
+  FrameRange mapped, run;
+  std::int64_t hold_out = 0;  ///< of the mapped frames; then only these are judged
+};
+
+void measure_still(const StillPart& part, Rows& rows) {
+  const auto folder = recording(part.recording);
+  if (!folder) {
+    std::cout << part.recording
+              << ": SKIPPED, the recording is not here (set ROOMRADAR_DATA to its folder)\n";
+    return;
+  }
+  PrescanConfig config;
+  config.hold_out = part.hold_out;
+  StageTimes times;
+  const auto mapped = limit_frames(open_folder(*folder), part.mapped.first, part.mapped.last);
+  const SavedMap map = prescan(*mapped, config, times).map;
+  SessionConfig session_config;
+  session_config.make_picture = false;
+  Session session(map, session_config);
+  const auto run = limit_frames(open_folder(*folder), part.run.first, part.run.last);
+  Frame frame;
+  ForegroundCounts all;
+  double most = 0.0;
+  int frames = 0, located = 0;
+  for (ReadResult read = run->next(frame); read.status != ReadStatus::kEnd; read = run->next(frame)) {
+    if (read.status != ReadStatus::kFrame) continue;
+    const FrameResult result = session.step(frame, times);
+    if (part.hold_out > 0 && !is_held_out(frame.index, part.hold_out)) continue;
+    ++frames;
+    if (result.status != FrameStatus::kDone) continue;
+    ++located;
+    const ForegroundCounts& counts = result.foreground;
+    all.valid += counts.valid;
+    all.moved += counts.moved;
+    all.revealed += counts.revealed;
+    all.not_known += counts.not_known;
+    most = std::max(most, static_cast<double>(counts.moved) /
+                              static_cast<double>(std::max<std::size_t>(counts.valid, 1)));
+  }
+  const auto range = [](const FrameRange& frames_of) {
+    return std::to_string(frames_of.first) + ":" + std::to_string(frames_of.last);
+  };
+  const auto fraction = [&](std::size_t pixels) {
+    return static_cast<double>(pixels) / static_cast<double>(std::max<std::size_t>(all.valid, 1));
+  };
+  rows.push_back({{"work", "nothing moves"},
+                  {"recording", part.recording},
+                  {"mapped", range(part.mapped)},
+                  {"run", range(part.run)},
+                  {"hold_out", part.hold_out},
+                  {"frames", frames},
+                  {"located", located},
+                  {"moved_fraction", fraction(all.moved)},
+                  {"moved_fraction_max", most},
+                  {"revealed_fraction", fraction(all.revealed)},
+                  {"not_known_fraction", fraction(all.not_known)}});
+}
+
+}  // namespace
+
+void measure_foreground(Rows& rows) {
+  measure_hand_over_table(rows);
+  measure_masks(rows);
+  measure_still({"fakenect-planes/planes", {0, 8}, {0, 8}}, rows);
+  measure_still({"fakenect-planes/planes", {0, 8}, {9, 35}}, rows);  // the sensor recalibrates at frame 10
+  measure_still({"kitchen", {0, 399}, {400, 499}}, rows);
+  measure_still({"kitchen", {0, 299}, {0, 299}, 10}, rows);
+}
+
+}  // namespace roomradar::test
