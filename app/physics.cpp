@@ -28,7 +28,9 @@ bool make_usable(Contact& contact, const Vec3& direction) {
   if (contact.status == ContactStatus::kInvalidInput || contact.status == ContactStatus::kNoAnswer)
     return false;
   if (!contact) return true;
-  if (!std::isfinite(contact.travel_m) || !std::isfinite(contact.lower_m)) return false;
+  // An overlap may be deeper than the radar looked.
+  const bool has_lower = std::isfinite(contact.lower_m) || contact.status == ContactStatus::kOverlap;
+  if (!std::isfinite(contact.travel_m) || !has_lower) return false;
   const double length = contact.normal_world.norm();
   const bool faces_object =
       std::isfinite(length) && length > 0.5 && contact.normal_world.dot(direction) < -1e-3 * length;
@@ -227,13 +229,14 @@ void Stepper::move(double dt_s) {
     if (failed()) return;
     // The gap is kept across the surface; seen along a grazing motion it is longer.
     const double steepness = std::max(-contact.normal_world.dot(direction), kGrazing);
-    const double free_m = contact ? contact.lower_m - config_.contact_margin_m / steepness : distance_m;
+    const double free_m = contact ? contact.lower_m - config_.contact_margin_m / steepness : contact.lower_m;
     if (free_m >= distance_m) {
       position += remaining;
       break;
     }
     const Vec3 moved = std::max(free_m, 0.0) * direction;
     position += moved;
+    if (!contact) break;  // the radar did not look farther
     remaining -= moved;
     if (contact.normal_world.dot(down_) < -kSupportCosine) {
       is_supported = true;

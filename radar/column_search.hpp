@@ -56,6 +56,12 @@ struct PendingNode {
   std::uint32_t first, count;
 };
 
+/// Scratch of searches, and how much they did.
+struct ColumnScratch {
+  std::vector<PendingNode> pending;
+  std::uint64_t work = 0;  ///< nodes looked into and triangles handed out, some 0.1 us each; grows
+};
+
 /// Sorts the nodes from `first` on, so that the nearest is the next. A handful: the children of one node.
 inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t first) {
   for (std::size_t i = first + 1; i < pending.size(); ++i) {
@@ -64,6 +70,36 @@ inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t firs
     }
   }
 }
+
+/// A scene triangle's column along the motion, as an object's tree is asked about it: linear functions of the
+/// points of the object's mesh, relative to the tree's centre, with all rounding in float counted in.
+struct SceneColumn {
+  Eigen::Vector3f x_axis, y_axis, z_axis;
+  float x0, x1, y0, y1, z0, z1;  ///< around the triangle, m
+  /// Beyond the triangle's longest edge across the motion: edge . p > edge_reach.
+  Eigen::Vector3f edge;
+  float edge_reach;
+  /// Height of the triangle's plane above a point: offset + plane . p, give or take plane_slack. Seen
+  /// edge-on: the distance from its plane; what is farther from it than -beside does not reach through it.
+  Eigen::Vector3f plane = Eigen::Vector3f::Zero();
+  float offset = 0.0F, plane_slack = std::numeric_limits<float>::infinity();
+  float beside = -std::numeric_limits<float>::infinity();
+  bool is_edge_on = false;
+  bool is_steep = true;  ///< heights say more than the plane, or as much
+
+  SceneColumn(const TurnedTree& object, const FrameTriangle& scene);
+
+  /// No gap between the triangle and this one of the object is less, whatever the triangle's outline.
+  [[nodiscard]] float least_gap(const TriangleTree& tree, std::uint32_t triangle) const {
+    if (is_edge_on) return -std::numeric_limits<float>::infinity();
+    const Eigen::Vector3f centre = tree.centre().cast<float>();
+    float least = std::numeric_limits<float>::infinity();
+    for (const std::uint32_t v : tree.triangles()[triangle]) {
+      least = std::min(least, plane.dot(tree.vertices()[v] - centre));
+    }
+    return offset + least - plane_slack;
+  }
+};
 
 /// Goes through the object's triangles that may share a place across the motion with `scene`, those that can
 /// have the least gap first.
@@ -76,88 +112,61 @@ inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t firs
 /// @param limit_m   called with nothing; what cannot have a gap under it is passed over
 /// @param floor_m   what cannot have a gap of at least this is passed over
 /// @param leaf      called with the object's triangle's number
-/// @param pending   scratch
 /// @return whether a box was passed over because it lies ahead of the scene by more than -floor_m
 template <typename Limit, typename Leaf>
 bool search_column(const TurnedTree& object, const FrameTriangle& scene, const Limit& limit_m, double floor_m,
-                   std::vector<PendingNode>& pending, const Leaf& leaf) {
+                   ColumnScratch& scratch, const Leaf& leaf) {
+  std::vector<PendingNode>& pending = scratch.pending;
   const TriangleTree& tree = *object.tree;
-  const Eigen::Matrix3f R = object.R_frame_mesh.cast<float>();
-  Eigen::Vector3d low = scene.corners[0], high = scene.corners[0];
-  for (const Eigen::Vector3d& corner : scene.corners) {
-    low = low.cwiseMin(corner);
-    high = high.cwiseMax(corner);
-  }
+  const SceneColumn column(object, scene);
   constexpr float kRounding = 16.0F * std::numeric_limits<float>::epsilon();
-  const float size_m = tree.half_size().sum();
-  const auto margin_m = static_cast<float>(object.margin_m) * (1.0F + kRounding);
-  const float slack_m = kRounding * size_m + margin_m;
-  const auto near_m = static_cast<float>(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff());
-  const float far_slack_m = slack_m + kRounding * near_m;
-  const float x0 = static_cast<float>(low.x()) - far_slack_m, x1 = static_cast<float>(high.x()) + far_slack_m;
-  const float y0 = static_cast<float>(low.y()) - far_slack_m, y1 = static_cast<float>(high.y()) + far_slack_m;
-  const float z0 = static_cast<float>(low.z()) - far_slack_m, z1 = static_cast<float>(high.z()) + far_slack_m;
-
-  // Height of the scene's plane above a point: offset + g . p.
-  Eigen::Vector3f g = Eigen::Vector3f::Zero();
-  float offset_m = 0.0F, plane_slack_m = std::numeric_limits<float>::infinity();
-  const bool is_edge_on = std::abs(scene.normal.z()) <= kEdgeOn && !scene.normal.isZero(0.0);
-  if (std::abs(scene.normal.z()) > kEdgeOn) {
-    const Eigen::Vector3d in_frame(-scene.normal.x() / scene.normal.z(), -scene.normal.y() / scene.normal.z(),
-                                   -1.0);
-    const double offset = scene.normal.dot(scene.corners[0]) / scene.normal.z();
-    g = (object.R_frame_mesh.transpose() * in_frame).cast<float>();
-    offset_m = static_cast<float>(offset);
-    const float slope = g.cwiseAbs().sum();
-    plane_slack_m = kRounding * (slope * (size_m + near_m) + std::abs(offset_m)) + slope * margin_m;
-  }
-  // Seen edge-on: distance from the scene's plane instead; what does not reach through it is slid along.
-  float beside_m = 0.0F;
-  if (is_edge_on) {
-    g = (object.R_frame_mesh.transpose() * scene.normal).cast<float>();
-    offset_m = static_cast<float>(-scene.normal.dot(scene.corners[0]));
-    beside_m = static_cast<float>(object.touching_m) - 2.0F * far_slack_m - kRounding * std::abs(offset_m);
-  }
-  const Eigen::Vector3f x_axis = R.row(0), y_axis = R.row(1), z_axis = R.row(2);
-
+  const auto limit_above = [&] {
+    return static_cast<float>(limit_m()) * (1.0F + kRounding) + std::numeric_limits<float>::min();
+  };
   const auto floor = static_cast<float>(floor_m);
   bool has_passed = false;
+  LinearOverBoxes x, y, z{}, edge, gap;
   pending.clear();
   pending.push_back({-std::numeric_limits<float>::infinity(), 0, 0});
   while (!pending.empty()) {
     const PendingNode next = pending.back();
     pending.pop_back();
-    if (!(next.low_m < limit_m())) continue;
+    const float limit = limit_above();
+    if (!(next.low_m < limit)) continue;
     if (next.count > 0) {
-      for (std::uint32_t i = next.first; i < next.first + next.count; ++i) leaf(i);
+      for (std::uint32_t i = next.first; i < next.first + next.count; ++i) {
+        if (column.least_gap(tree, i) >= limit_above()) continue;
+        ++scratch.work;
+        leaf(i);
+      }
       continue;
     }
+    ++scratch.work;
     const TreeNode& node = tree.nodes()[next.first];
-    LinearOverBoxes x, y, z, gap;
-    linear_over_boxes(node, x_axis, x);
-    linear_over_boxes(node, y_axis, y);
-    linear_over_boxes(node, z_axis, z);
-    linear_over_boxes(node, g, gap);
-    alignas(32) std::array<float, TreeNode::kWidth> low_m, high_m;
+    linear_over_boxes(node, column.x_axis, x);
+    linear_over_boxes(node, column.y_axis, y);
+    linear_over_boxes(node, column.edge, edge);
+    linear_over_boxes(node, column.plane, gap);
+    if (column.is_steep) linear_over_boxes(node, column.z_axis, z);
+    // Without branches, so that compilers make it eight at a time.
+    alignas(32) std::array<float, TreeNode::kWidth> low_m, high_m, apart;
     for (std::size_t i = 0; i < TreeNode::kWidth; ++i) {
-      const float across =
-          std::max(gap.value[i] + offset_m - gap.reach[i], -gap.value[i] - offset_m - gap.reach[i]);
-      const float beside = is_edge_on ? across + beside_m : -1.0F;
-      const float outside = std::max(std::max(x.value[i] - x.reach[i] - x1, x0 - x.value[i] - x.reach[i]),
-                                     std::max(y.value[i] - y.reach[i] - y1, y0 - y.value[i] - y.reach[i]));
-      const float apart = std::max(outside, beside);
-      const float plane_low = offset_m + gap.value[i] - gap.reach[i] - plane_slack_m;
-      const float plane_high = offset_m + gap.value[i] + gap.reach[i] + plane_slack_m;
-      const float box_low = z0 - z.value[i] - z.reach[i];
-      const float box_high = z1 - z.value[i] + z.reach[i];
-      const float low_i = std::max(plane_low, box_low);
-      low_m[i] = apart > 0.0F ? std::numeric_limits<float>::infinity() : low_i;
+      const float plane_at = column.offset + gap.value[i];
+      const float beside = std::max(plane_at, -plane_at) - gap.reach[i] + column.beside;
+      const float outside_x = std::max(x.value[i] - column.x1, column.x0 - x.value[i]) - x.reach[i];
+      const float outside_y = std::max(y.value[i] - column.y1, column.y0 - y.value[i]) - y.reach[i];
+      const float outside_edge = edge.value[i] - edge.reach[i] - column.edge_reach;
+      apart[i] = std::max(std::max(outside_x, outside_y), std::max(outside_edge, beside));
+      const float plane_low = plane_at - gap.reach[i] - column.plane_slack;
+      const float plane_high = plane_at + gap.reach[i] + column.plane_slack;
+      const float box_low = column.z0 - z.value[i] - z.reach[i];
+      const float box_high = column.z1 - z.value[i] + z.reach[i];
+      low_m[i] = std::max(plane_low, box_low);
       high_m[i] = std::min(plane_high, box_high);
     }
-    const auto limit = static_cast<float>(limit_m()) * (1.0F + kRounding) + std::numeric_limits<float>::min();
     const std::size_t first_new = pending.size();
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      if (!(low_m[i] < limit)) continue;
+      if (apart[i] > 0.0F || !(low_m[i] < limit)) continue;
       if (high_m[i] < floor) {
         has_passed = true;
         continue;

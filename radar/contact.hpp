@@ -59,7 +59,7 @@ struct [[nodiscard]] Contact {
   double travel_m = 0.0;
   /// The true way to contact is not shorter than lower_m and not longer than upper_m. Where nothing was found
   /// lower_m is what is free for certain, at most the distance asked for, and upper_m infinite. In an overlap
-  /// both are travel_m.
+  /// both are travel_m; where that is too deep to be told (see CyberRadar) lower_m is minus infinity.
   double lower_m = 0.0;
   double upper_m = std::numeric_limits<double>::infinity();
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< on the scene's surface

@@ -56,10 +56,12 @@ Eigen::Vector3d nearest_in(const PatchPiece& piece, const Eigen::Vector2d& p) {
 
 void ContactPatch::add(const TriangleGap& gap, double travel_m, double equally_m, const FrameTriangle& scene,
                        Touched kind, double best_m) {
-  if (is_full()) {
+  const auto leave_out_what_is_farther = [&] {
+    if (!is_full()) return;
     std::erase_if(pieces_, [&](const PatchPiece& p) { return p.travel_m > best_m + equally_m; });
-    if (is_full()) return;
-  }
+  };
+  leave_out_what_is_farther();
+  if (is_full()) return;
   PatchPiece& piece = pieces_.emplace_back();
   piece.travel_m = travel_m;
   piece.normal = scene.normal;
@@ -70,6 +72,7 @@ void ContactPatch::add(const TriangleGap& gap, double travel_m, double equally_m
     if (i != gap.lowest && p.gap > travel_m + equally_m) continue;
     piece.corners[piece.count++] = {p.x, p.y, p.scene_z};
   }
+  leave_out_what_is_farther();
 }
 
 PatchPoint ContactPatch::middle(double best_m, double equally_m) {

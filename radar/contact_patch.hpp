@@ -30,6 +30,7 @@ class ContactPatch {
  public:
   static constexpr std::size_t kCapacity = 512;
   void clear() { pieces_.clear(); }
+  /// Whether it holds kCapacity pieces that were equally near when the last one came.
   [[nodiscard]] bool is_full() const { return pieces_.size() >= kCapacity; }
   /// @param equally_m  how much farther than the nearest is still as near
   void add(const TriangleGap& gap, double travel_m, double equally_m, const FrameTriangle& scene,

@@ -15,13 +15,18 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool is_valid(const RadarQuery& q) {
-  return q.direction_world.allFinite() && q.direction_world.stableNorm() > 0.0 && q.distance_m > 0.0 &&
-         std::isfinite(q.distance_m) && q.margin_m >= 0.0 && std::isfinite(q.margin_m) &&
-         q.object.tree != nullptr && !q.object.tree->empty() && q.object.T_world_mesh.matrix().allFinite();
-}
-
 bool is_farther(const SceneItem& a, const SceneItem& b) { return a.low_m > b.low_m; }
+
+void push(std::vector<SceneItem>& heap, const SceneItem& item) {
+  heap.push_back(item);
+  std::push_heap(heap.begin(), heap.end(), is_farther);
+}
+SceneItem pop(std::vector<SceneItem>& heap) {
+  std::pop_heap(heap.begin(), heap.end(), is_farther);
+  const SceneItem item = heap.back();
+  heap.pop_back();
+  return item;
+}
 
 /// What the gap of two triangles cannot be less than, cheaply: by their heights, and by the object's corners
 /// under the scene's plane, extended. Infinite where the object slides along the scene.
@@ -41,12 +46,14 @@ double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, 
   }
   if (std::abs(scene.normal.z()) < 1e-3) return by_height_m;
   const double per_m = 1.0 / scene.normal.z();
-  const double at_m = scene.normal.dot(s[0]);
-  double by_plane_m = kInfinity;
+  double by_plane_m = kInfinity, size_m = s[0].lpNorm<1>();
   for (const Eigen::Vector3d& corner : o) {
-    by_plane_m = std::min(by_plane_m, (at_m - scene.normal.dot(corner)) * per_m);
+    by_plane_m = std::min(by_plane_m, scene.normal.dot(s[0] - corner) * per_m);
+    size_m = std::max(size_m, corner.lpNorm<1>());
   }
-  return std::max(by_height_m, by_plane_m - 1e-12);
+  // A difference, a product and a sum of three, and what the normal's own rounding tilts.
+  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+  return std::max(by_height_m, by_plane_m - kRounding * size_m * std::abs(per_m));
 }
 
 }  // namespace
@@ -57,203 +64,280 @@ void require_valid(const RadarConfig& config) {
   }
 }
 
+bool is_valid(const RadarQuery& q) {
+  return q.direction_world.allFinite() && q.direction_world.stableNorm() > 0.0 && q.distance_m > 0.0 &&
+         std::isfinite(q.distance_m) && q.margin_m >= 0.0 && std::isfinite(q.margin_m) &&
+         q.object.tree != nullptr && !q.object.tree->empty() && q.object.T_world_mesh.matrix().allFinite();
+}
+
 double touching_m(const TriangleTree& object) {
   return 1e-6 + 2.0 * std::numeric_limits<float>::epsilon() * object.half_size().cast<double>().norm();
 }
 
 CyberRadar::CyberRadar(const RadarConfig& config) : config_(config) { require_valid(config); }
 
-/// Coarse for a direction that may never come again, finer where it is seen to stay. The exact answer does
-/// not depend on how fine M is, and past kExact_px it is not found any sooner.
+/// One question, in its frame: origin at the object's middle, z along the direction. The frame is fixed to
+/// the object, so that M stays as it is while the direction does in the object's own frame.
+struct CyberRadar::Search {
+  const RadarQuery& query;
+  const TriangleTree& tree;
+  TurnedTree object;
+  Eigen::Matrix3d R_frame_world;
+  Eigen::Vector3d origin_world;
+  bool is_thick;
+
+  double best_m = kInfinity;      // least travel that was settled
+  bool overlaps = false;          // settled, and nothing else matters any more
+  bool leaves_something = false;  // which faces along the motion and crosses the object now
+  bool met_a_back = false;        // of something that faces along the motion
+  bool collects_backs = false;    // instead of meeting them
+  bool is_cut_short = false;      // not all that may be behind the front was settled
+
+  Search(const RadarQuery& q, const Eigen::Vector3d& u_mesh)
+      : query(q), tree(*q.object.tree), is_thick(q.margin_m > 0.0) {
+    object.tree = &tree;
+    object.R_frame_mesh = frame_along(u_mesh);
+    object.margin_m = q.margin_m;
+    object.touching_m = touching_m(tree);
+    R_frame_world = object.R_frame_mesh * q.object.T_world_mesh.linear().transpose();
+    origin_world = q.object.T_world_mesh * (tree.origin() + tree.centre());
+  }
+  /// What is no farther from the nearest than this touches with it.
+  [[nodiscard]] double equally_m() const { return object.touching_m; }
+  [[nodiscard]] bool is_rear(const FrameTriangle& o) const {
+    return tree.is_closed() && o.normal.z() < -kEdgeOn;
+  }
+};
+
+Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
+  if (!is_valid(query)) return {};
+  Search search(query, direction_in_object(query));
+  if (!search.origin_world.allFinite()) return {};
+  if (!scene_.place(scene, query.own_tree, search.R_frame_world, search.origin_world)) return {};
+  build_front(search.object);  // M
+  look(search);                // R, L
+  if (search.leaves_something && search.met_a_back && !search.overlaps && !search.is_cut_short) leave(search);
+  if (search.is_thick) return thick_contact_of(search);
+  return search.overlaps ? overlap_of(search) : contact_of(search);
+}
+
+/// Unit, in the object's frame; the same as the last time but for the rounding of a turn: M is kept.
+Eigen::Vector3d CyberRadar::direction_in_object(const RadarQuery& query) {
+  const Eigen::Vector3d u_mesh =
+      (query.object.T_world_mesh.linear().transpose() * query.direction_world.stableNormalized())
+          .normalized();
+  if (!((u_mesh - u_mesh_).squaredNorm() < 1e-26)) u_mesh_ = u_mesh;
+  return u_mesh_;
+}
+
+/// Coarse for a direction that may never come again, fine where it is seen to stay: then nearly all of the
+/// scene is ruled out by M's pixels, whatever the object's triangles are. The exact answer does not depend on
+/// how fine M is.
 void CyberRadar::build_front(const TurnedTree& object) {
-  constexpr int kExact_px = 64, kSeenToStay = 3;
-  constexpr std::size_t kFewTriangles = 500;  // their M costs little at any size
-  const int kept_px = config_.mode == RadarMode::kExact ? kExact_px : config_.resolution_px;
-  const int fresh_px = std::min(24, kept_px);
+  constexpr int kFresh_px = 24, kFewFresh_px = 64, kKept_px = 256, kSeenToStay = 3;
+  constexpr std::size_t kFewTriangles = 500;  // their M costs little
+  const int kept_px = config_.mode == RadarMode::kExact ? kKept_px : config_.resolution_px;
   if (front_.holds(object)) {
     ++front_uses_;
     if (front_uses_ == kSeenToStay) front_.build(object, kept_px);
   } else {
     front_uses_ = 1;
-    front_.build(object, object.tree->triangle_count() < kFewTriangles ? kept_px : fresh_px);
+    const bool has_few = object.tree->triangle_count() < kFewTriangles;
+    front_.build(object, std::min(has_few ? kFewFresh_px : kFresh_px, kept_px));
   }
 }
 
-Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
-  if (!is_valid(query)) return {};
-  const TriangleTree& tree = *query.object.tree;
-  const Eigen::Isometry3d& T_world_mesh = query.object.T_world_mesh;
+/// Nothing farther than this is looked at.
+double CyberRadar::limit_m(const Search& search) const {
+  const bool wants_equals = !patch_.is_full() && !search.is_thick;
+  return std::min(search.best_m, search.query.distance_m) + (wants_equals ? search.equally_m() : 0.0);
+}
 
-  // The frame: origin at the object's middle, z along the direction. Fixed to the object, so that M stays as
-  // it is while the direction does in the object's own frame, rounding of a turn aside.
-  const Eigen::Vector3d u_mesh =
-      (T_world_mesh.linear().transpose() * query.direction_world.stableNormalized()).normalized();
-  if (!((u_mesh - u_mesh_).squaredNorm() < 1e-26)) u_mesh_ = u_mesh;
-  TurnedTree object;
-  object.tree = &tree;
-  object.R_frame_mesh = frame_along(u_mesh_);
-  object.margin_m = query.margin_m;
-  object.touching_m = touching_m(tree);
-  const Eigen::Matrix3d R_frame_world = object.R_frame_mesh * T_world_mesh.linear().transpose();
-  const Eigen::Vector3d origin_world = T_world_mesh * (tree.origin() + tree.centre());
-  if (!origin_world.allFinite()) return {};
-  if (!scene_.place(scene, R_frame_world, origin_world)) return {};
-
-  build_front(object);
-  const bool is_thick = query.margin_m > 0.0;
-  const double equally_m = object.touching_m;
+/// Settles what has the least bound until nothing can be nearer, or enough is known.
+void CyberRadar::look(Search& search) {
+  const double distance_m = search.query.distance_m;
   Eigen::AlignedBox3d volume = front_.bounds();
-  const SceneBound bound{&front_, static_cast<float>(volume.min().z() - object.touching_m)};
-  volume.max().z() += query.distance_m + equally_m;
-  volume.min().z() -= object.touching_m;
-
-  double best_m = kInfinity;
-  bool leaves_something = false;  // which faces along the motion and crosses the object now
-  bool met_a_back = false;        // of something that faces along the motion
-  bool collects_backs = false;    // instead of meeting them
-  backs_.clear();
-  const auto limit_m = [&] {
-    return std::min(best_m, query.distance_m) + (patch_.is_full() || is_thick ? 0.0 : equally_m);
-  };
-  // Says whether the object overlaps this scene triangle.
-  const auto settle = [&](const SceneItem& item) {
-    const FrameTriangle s = scene_.triangle(item);
-    if (s.normal.z() > kEdgeOn && is_one_sided(scene_.kind(item))) return false;
-    bool overlaps_here = false;
-    bool has_ahead = is_thick && item.low_m < 0.0F;  // a thick object's triangles are not told apart
-    const auto limit_here_m = [&] { return overlaps_here ? -kInfinity : limit_m(); };
-    has_ahead |= search_column(object, s, limit_here_m, -object.touching_m, pending_, [&](std::uint32_t i) {
-      if (is_thick) {
-        best_m = std::min(best_m, thick_travel(turned_triangle(object, i), s, query.margin_m, limit_m()));
-        return;
-      }
-      FrameTriangle o = turned_corners(object, i);
-      if (least_gap_bound(o, s, object.touching_m) >= limit_m()) return;
-      TriangleGap gap;
-      if (!find_gap(o, s, gap)) return;
-      has_ahead = has_ahead || gap.low_m < -object.touching_m;
-      if (gap.low_m >= limit_m()) return;
-      if (collects_backs && s.normal.z() > kEdgeOn) {
-        backs_.push_back({gap.low_m, gap.high_m, i, item});
-        return;
-      }
-      set_normal(o);
-      switch (meeting_of(o, s, gap, object.touching_m)) {
-        case Meeting::kNone:
-          return;
-        case Meeting::kCrossing:
-          overlaps_here = true;
-          return;
-        case Meeting::kLeaving:
-          leaves_something = true;
-          return;
-        case Meeting::kContact:
-          break;
-      }
-      // The rear of a closed object only meets what is inside it.
-      if (tree.is_closed() && o.normal.z() < -kEdgeOn) return;
-      met_a_back = met_a_back || s.normal.z() > kEdgeOn;
-      const double travel_m = std::max(gap.low_m, 0.0);
-      best_m = std::min(best_m, travel_m);
-      patch_.add(gap, travel_m, equally_m, s, scene_.kind(item), best_m);
-    });
-    if (has_ahead && !overlaps_here && s.normal.z() <= kEdgeOn) {
-      overlaps_here = is_inside(object, s, pending_, layers_);
+  volume.min().z() -= search.object.touching_m;
+  volume.max().z() += distance_m + search.equally_m();
+  const SceneBound bound{&front_, static_cast<float>(volume.min().z())};
+  const bool may_stop_early = config_.mode == RadarMode::kSampled && !search.collects_backs;
+  int settled_count = 0;
+  columns_.work = 0;
+  patch_.clear();
+  heap_.clear();
+  scene_.begin(volume, bound, static_cast<float>(limit_m(search)), heap_);
+  std::make_heap(heap_.begin(), heap_.end(), is_farther);
+  while (!heap_.empty() && !search.overlaps && heap_.front().low_m < limit_m(search)) {
+    const bool is_enough = may_stop_early && settled_count >= kSampledSettles &&
+                           search.best_m <= distance_m && heap_.front().low_m >= 0.0F;
+    if (is_enough || (search.is_thick && search.best_m <= 0.0)) return;
+    SceneItem item = pop(heap_);
+    columns_.work += 2;
+    if (item.low_m < 0.0F && columns_.work > kMostWorkBehind && !search.is_thick) {
+      cut_short(search);
+      continue;
     }
-    return overlaps_here;
-  };
-
-  bool overlaps = false;
-  const auto look = [&] {
-    patch_.clear();
-    heap_.clear();
-    scene_.begin(volume, bound, static_cast<float>(limit_m()), heap_);
-    std::make_heap(heap_.begin(), heap_.end(), is_farther);
-    int settled_count = 0;
-    while (!heap_.empty() && !overlaps) {
-      const SceneItem item = heap_.front();
-      if (!(item.low_m < limit_m())) break;
-      const bool is_enough = config_.mode == RadarMode::kSampled && !collects_backs &&
-                             settled_count >= kSampledSettles && best_m <= query.distance_m &&
-                             item.low_m >= 0.0F;
-      if (is_enough || (is_thick && best_m <= 0.0)) break;
-      std::pop_heap(heap_.begin(), heap_.end(), is_farther);
-      heap_.pop_back();
-      if (item.kind == SceneItem::Kind::kTriangle) {
-        ++settled_count;
-        overlaps = settle(item);
-        continue;
-      }
+    if (item.kind != SceneItem::Kind::kTriangle && item.kind != SceneItem::Kind::kBounded) {
       found_.clear();
-      scene_.expand(item, bound, static_cast<float>(limit_m()), found_);
-      for (const SceneItem& part : found_) {
-        heap_.push_back(part);
-        std::push_heap(heap_.begin(), heap_.end(), is_farther);
-      }
+      scene_.expand(item, bound, static_cast<float>(limit_m(search)), found_);
+      for (const SceneItem& part : found_) push(heap_, part);
+      continue;
     }
-  };
-  look();
-  // What is left, until it is left as a whole, is met by nothing; what faces so and comes after that is.
-  if (leaves_something && met_a_back && !overlaps) {
-    collects_backs = true;
-    best_m = kInfinity;
-    look();
-    std::sort(backs_.begin(), backs_.end(), [](const Back& a, const Back& b) { return a.low_m < b.low_m; });
-    double left_m = object.touching_m;
-    for (const Back& back : backs_) {
-      if (back.low_m <= left_m) {
-        left_m = std::max(left_m, back.high_m + object.touching_m);
+    const FrameTriangle triangle = scene_.triangle(item);
+    if (item.kind == SceneItem::Kind::kTriangle) {
+      item.kind = SceneItem::Kind::kBounded;
+      item.low_m = std::max(item.low_m, bound.low_m(triangle));
+      if (!(item.low_m < limit_m(search))) continue;
+      if (!heap_.empty() && heap_.front().low_m < item.low_m) {
+        push(heap_, item);
         continue;
       }
-      const FrameTriangle o = turned_triangle(object, back.object_triangle);
-      if (back.low_m >= best_m || (tree.is_closed() && o.normal.z() < -kEdgeOn)) continue;
-      const FrameTriangle s = scene_.triangle(back.item);
-      TriangleGap gap;
-      if (!find_gap(o, s, gap)) continue;
-      best_m = back.low_m;
-      patch_.clear();
-      patch_.add(gap, best_m, equally_m, s, scene_.kind(back.item), best_m);
-      break;
     }
+    ++settled_count;
+    settle(search, item, triangle);
   }
+}
 
+/// Lets be what may be behind the object's front, and goes on with what is ahead for certain.
+void CyberRadar::cut_short(Search& search) {
+  std::erase_if(heap_, [](const SceneItem& item) { return item.low_m < 0.0F; });
+  std::make_heap(heap_.begin(), heap_.end(), is_farther);
+  search.is_cut_short = true;
+  search.collects_backs = true;  // what is left as a whole is not known: none of them is met
+  if (!search.met_a_back) return;
+  search.best_m = kInfinity;
+  patch_.clear();
+}
+
+/// One triangle of the scene against all of the object's in its column.
+void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriangle& s) {
+  if (s.normal.z() > kEdgeOn && is_one_sided(scene_.kind(item))) return;
+  const TurnedTree& object = search.object;
+  // A thick object's triangles are not told apart.
+  bool has_ahead = search.is_thick && item.low_m < 0.0F;
+  const auto limit = [&] { return search.overlaps ? -kInfinity : limit_m(search); };
+  has_ahead |= search_column(object, s, limit, -object.touching_m, columns_, [&](std::uint32_t i) {
+    if (search.is_thick) {
+      const double travel_m =
+          thick_travel(turned_triangle(object, i), s, search.query.margin_m, limit_m(search));
+      search.best_m = std::min(search.best_m, travel_m);
+      return;
+    }
+    FrameTriangle o = turned_corners(object, i);
+    const double least_m = least_gap_bound(o, s, object.touching_m);
+    if (least_m >= limit_m(search)) return;
+    // The rear of a closed object meets only what is inside it: cheap to tell where much is behind the front.
+    const bool is_ahead = item.low_m < 0.0F && least_m > object.touching_m;
+    if (is_ahead) set_normal(o);
+    if (is_ahead && search.is_rear(o)) return;
+    TriangleGap gap;
+    if (!find_gap(o, s, gap)) return;
+    has_ahead = has_ahead || gap.low_m < -object.touching_m;
+    if (gap.low_m >= limit_m(search)) return;
+    if (search.collects_backs && s.normal.z() > kEdgeOn) {
+      backs_.push_back({gap.low_m, gap.high_m, i, item});
+      return;
+    }
+    set_normal(o);
+    switch (meeting_of(o, s, gap, object.touching_m)) {
+      case Meeting::kNone:
+        return;
+      case Meeting::kCrossing:
+        search.overlaps = true;
+        return;
+      case Meeting::kLeaving:
+        search.leaves_something = true;
+        return;
+      case Meeting::kContact:
+        break;
+    }
+    if (search.is_rear(o)) return;
+    search.met_a_back = search.met_a_back || s.normal.z() > kEdgeOn;
+    const double travel_m = std::max(gap.low_m, 0.0);
+    search.best_m = std::min(search.best_m, travel_m);
+    patch_.add(gap, travel_m, search.equally_m(), s, scene_.kind(item), search.best_m);
+  });
+  if (has_ahead && !search.overlaps && s.normal.z() <= kEdgeOn) {
+    search.overlaps = is_inside(object, s, columns_, layers_);
+  }
+}
+
+/// What is left, until it is left as a whole, is met by nothing; what faces so and comes after that is.
+void CyberRadar::leave(Search& search) {
+  search.collects_backs = true;
+  search.best_m = kInfinity;
+  backs_.clear();
+  look(search);
+  if (search.is_cut_short) return;
+  std::sort(backs_.begin(), backs_.end(), [](const Back& a, const Back& b) { return a.low_m < b.low_m; });
+  double left_m = search.object.touching_m;
+  for (const Back& back : backs_) {
+    if (back.low_m <= left_m) {
+      left_m = std::max(left_m, back.high_m + search.object.touching_m);
+      continue;
+    }
+    const FrameTriangle o = turned_triangle(search.object, back.object_triangle);
+    if (back.low_m >= search.best_m || search.is_rear(o)) continue;
+    const FrameTriangle s = scene_.triangle(back.item);
+    TriangleGap gap;
+    if (!find_gap(o, s, gap)) continue;
+    search.best_m = back.low_m;
+    patch_.clear();
+    patch_.add(gap, back.low_m, search.equally_m(), s, scene_.kind(back.item), back.low_m);
+    return;
+  }
+}
+
+Contact CyberRadar::nothing_found(const Search& search) const {
   Contact contact;
   contact.status = ContactStatus::kNoTarget;
   contact.pixel_m = front_.side_m() / config_.resolution_px;
-  contact.lower_m = query.distance_m;
-  const auto to_world = [&](const Eigen::Vector3d& p) {
-    return Eigen::Vector3d(origin_world + R_frame_world.transpose() * p);
-  };
-  const auto touch = [&](const Eigen::Vector3d& point, const Eigen::Vector3d& normal, Touched kind) {
-    contact.point_world = to_world(point);
-    const Eigen::Vector3d facing = normal.isZero(0.0) ? -Eigen::Vector3d::UnitZ()
-                                   : normal.z() > 0.0 ? Eigen::Vector3d(-normal)
-                                                      : normal;
-    contact.normal_world = R_frame_world.transpose() * facing;
-    contact.touched = kind;
-  };
-  if (is_thick) {
-    if (!overlaps && best_m > query.distance_m) return contact;
-    contact.status = ContactStatus::kContact;
-    const double unsettled_m = heap_.empty() ? kInfinity : heap_.front().low_m;  // sampled mode
-    contact.lower_m = overlaps ? 0.0 : std::max(std::min(best_m, unsettled_m), 0.0);
-    contact.travel_m = contact.lower_m;
-    return contact;
-  }
-  if (overlaps) {
-    const Overlap overlap = overlap_depth(object, front_, scene_, overlap_);
-    contact.status = ContactStatus::kOverlap;
-    contact.travel_m = contact.lower_m = contact.upper_m = -overlap.depth_m;
-    touch(overlap.point, overlap.normal, overlap.kind);
-    return contact;
-  }
-  if (!(best_m <= query.distance_m)) return contact;
+  contact.lower_m = search.query.distance_m;
+  return contact;
+}
+
+/// No contact that is not known is nearer.
+double CyberRadar::least_unsettled_m(const Search& search) const {
+  if (search.is_cut_short) return 0.0;
+  return heap_.empty() ? kInfinity : std::max(heap_.front().low_m, 0.0F);
+}
+
+void CyberRadar::touch(const Search& search, const PatchPoint& at, Contact& contact) {
+  const Eigen::Matrix3d R_world_frame = search.R_frame_world.transpose();
+  contact.point_world = search.origin_world + R_world_frame * at.point;
+  const Eigen::Vector3d facing = at.normal.isZero(0.0) ? -Eigen::Vector3d::UnitZ()
+                                 : at.normal.z() > 0.0 ? Eigen::Vector3d(-at.normal)
+                                                       : at.normal;
+  contact.normal_world = R_world_frame * facing;
+  contact.touched = at.kind;
+}
+
+Contact CyberRadar::thick_contact_of(const Search& search) const {
+  Contact contact = nothing_found(search);
+  const double free_m = search.overlaps ? 0.0 : std::min(search.best_m, least_unsettled_m(search));
+  if (free_m > search.query.distance_m) return contact;
   contact.status = ContactStatus::kContact;
-  contact.travel_m = contact.upper_m = best_m;
-  const double unsettled_m = heap_.empty() ? kInfinity : heap_.front().low_m;
-  contact.lower_m = std::clamp(unsettled_m, 0.0, best_m);
-  const PatchPoint middle = patch_.middle(best_m, equally_m);
-  touch(middle.point, middle.normal, middle.kind);
+  contact.travel_m = contact.lower_m = free_m;
+  return contact;
+}
+
+Contact CyberRadar::overlap_of(const Search& search) {
+  Contact contact = nothing_found(search);
+  const Overlap overlap = overlap_depth(search.object, front_, scene_, overlap_);
+  contact.status = ContactStatus::kOverlap;
+  contact.travel_m = contact.upper_m = -overlap.depth_m;
+  contact.lower_m = overlap.is_all ? -overlap.depth_m : -kInfinity;
+  touch(search, {overlap.point, overlap.normal, overlap.kind}, contact);
+  return contact;
+}
+
+Contact CyberRadar::contact_of(const Search& search) {
+  Contact contact = nothing_found(search);
+  contact.lower_m = std::min({search.best_m, least_unsettled_m(search), search.query.distance_m});
+  if (!(search.best_m <= search.query.distance_m)) return contact;
+  contact.status = ContactStatus::kContact;
+  contact.travel_m = contact.upper_m = search.best_m;
+  touch(search, patch_.middle(search.best_m, search.equally_m()), contact);
   return contact;
 }
 

@@ -34,14 +34,20 @@ struct RadarConfig {
 void require_valid(const RadarConfig& config);
 
 struct RadarQuery {
-  TreeInstance object;                                        ///< must not be in the scene
+  TreeInstance object;                                        ///< not in the scene, but for own_tree
   Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();  ///< any length but 0
   double distance_m = 0.0;                                    ///< how far ahead to look, > 0
   /// The object is thickened by this all round: lower_m then holds for any motion that strays no farther from
   /// the straight one (turning, noise). > 0: only lower_m is of use; upper_m is infinite, overlap and
   /// touching are lower_m = 0, and what the object leaves counts as well.
   double margin_m = 0.0;
+  /// Which of the scene's trees is the object itself, and is left out.
+  std::size_t own_tree = kNotInScene;
+  static constexpr std::size_t kNotInScene = static_cast<std::size_t>(-1);
 };
+
+/// Whether it can be asked: see CyberRadar::query() for what cannot.
+bool is_valid(const RadarQuery& query);
 
 /// Cyber Radar on the processor: M, the object's leading surface, against R, the scene ahead; the least gap
 /// L between them is the way to go.
@@ -49,7 +55,8 @@ struct RadarQuery {
 ///  1. M: for each pixel the greatest height that the object may have anywhere in it (FrontMap). Kept while
 ///     the object's tree and the direction in its frame stay.
 ///  2. R: the scene's boxes, large to small, nearest first (SceneInFrame). A box's least height less the
-///     greatest M under it is a lower bound of every contact in it.
+///     greatest M under it is a lower bound of every contact in it; for a triangle, that of its plane over
+///     each of M's pixels.
 ///  3. L: what has the least bound is settled: the scene's triangle against the object's triangles in its
 ///     column, all layers of them, in double (search_column, find_gap, meeting_of). The least travel settled
 ///     is an upper bound; the least bound unsettled is a lower one; when they meet, both are the truth.
@@ -66,7 +73,10 @@ struct RadarQuery {
 /// pair of surfaces that cross by more than that, or scene inside a closed object
 /// (TriangleTree::is_closed()), unless the scene's triangle faces along the motion. travel_m = lower_m =
 /// upper_m is then minus the way back along the direction until the object is free: the near end of the union
-/// of all pairs' spans of crossing, the inside of a closed object included, that holds 0.
+/// of all pairs' spans of crossing, the inside of a closed object included, that holds 0. Where that is long
+/// (an object that is sunk in the ground and moves along it is free again where the ground ends) the search
+/// is cut short (kMostOverlapWork): travel_m = upper_m is then how far the union reaches for certain, and
+/// lower_m minus infinity.
 ///
 /// Sliding: a scene triangle exactly edge-on (|n . u| <= 1e-9) that has an object triangle wholly on one side
 /// is slid along by that triangle. So an open sheet that runs exactly along edges of the object's mesh is not
@@ -100,6 +110,10 @@ class CyberRadar {
   [[nodiscard]] const RadarConfig& config() const { return config_; }
 
   static constexpr int kSampledSettles = 48;
+  /// What an object that is sunk in a very fine mesh, or holds one in its hollow, may cost before it is left
+  /// at that: some milliseconds. lower_m is then 0 in exact mode too, and no surface that faces along the
+  /// motion counts as found.
+  static constexpr std::uint64_t kMostWorkBehind = 40'000;
 
  private:
   /// A scene triangle that faces along the motion, and from which travel to which an object triangle crosses
@@ -117,12 +131,25 @@ class CyberRadar {
   OverlapScratch overlap_;
   std::vector<SceneItem> heap_;
   std::vector<SceneItem> found_;
-  std::vector<PendingNode> pending_;
+  ColumnScratch columns_;
   std::vector<Back> backs_;
   std::vector<Layer> layers_;
   Eigen::Vector3d u_mesh_ = Eigen::Vector3d::Zero();
 
+  struct Search;
+  Eigen::Vector3d direction_in_object(const RadarQuery& query);
   void build_front(const TurnedTree& object);
+  void look(Search& search);
+  void settle(Search& search, const SceneItem& item, const FrameTriangle& s);
+  void cut_short(Search& search);
+  void leave(Search& search);
+  [[nodiscard]] double limit_m(const Search& search) const;
+  [[nodiscard]] double least_unsettled_m(const Search& search) const;
+  [[nodiscard]] Contact nothing_found(const Search& search) const;
+  [[nodiscard]] Contact thick_contact_of(const Search& search) const;
+  [[nodiscard]] Contact overlap_of(const Search& search);
+  [[nodiscard]] Contact contact_of(const Search& search);
+  static void touch(const Search& search, const PatchPoint& at, Contact& contact);
 };
 
 /// Surfaces of this object that are nearer to the scene than this touch it, m: 1 um and what float vertices

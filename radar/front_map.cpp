@@ -17,6 +17,31 @@ int to_pixel(float at_px, float last) {
   return static_cast<int>(above < last ? above : last);
 }
 
+/// a x + b y + c <= 0 at the middle of a pixel that a triangle may touch.
+struct Line {
+  float a, b, c;
+};
+/// Along the edges, `half_px` farther out. Each goes through the corner farthest out, whichever that is, so
+/// that a sliver's rounding cannot shut itself out.
+std::array<Line, 3> outlines_of(const std::array<Eigen::Vector3f, 3>& corners, float half_px) {
+  const Eigen::Vector3f e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
+  const float area = e1.x() * e2.y() - e1.y() * e2.x();
+  std::array<Line, 3> lines;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3f edge = corners[(i + 1) % 3] - corners[i];
+    const float a = area >= 0.0F ? edge.y() : -edge.y(), b = area >= 0.0F ? -edge.x() : edge.x();
+    float most = a * corners[0].x() + b * corners[0].y();
+    for (const Eigen::Vector3f& corner : corners) most = std::max(most, a * corner.x() + b * corner.y());
+    lines[i] = {a, b, -most - (std::abs(a) + std::abs(b)) * half_px};
+  }
+  return lines;
+}
+float outside_by(const std::array<Line, 3>& lines, float x, float y) {
+  return std::max(
+      std::max(lines[0].a * x + lines[0].b * y + lines[0].c, lines[1].a * x + lines[1].b * y + lines[1].c),
+      lines[2].a * x + lines[2].b * y + lines[2].c);
+}
+
 /// Greatest value of g . p over the tree's vertices in use, or up to tolerance_m more: many are nearly as
 /// far.
 double support(const TriangleTree& tree, const Eigen::Vector3d& g, double tolerance_m,
@@ -55,9 +80,9 @@ double support(const TriangleTree& tree, const Eigen::Vector3d& g, double tolera
 
 }  // namespace
 
-Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, std::vector<PendingNode>& pending) {
+Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, double tolerance_m,
+                                  std::vector<PendingNode>& pending) {
   const double slack_m = 1e-15 * object.tree->half_size().cast<double>().sum() + object.margin_m;
-  const double tolerance_m = 5e-3 * object.tree->half_size().cast<double>().sum();
   Eigen::Vector3d low, high;
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Vector3d g = object.R_frame_mesh.row(axis);
@@ -79,7 +104,8 @@ void FrontMap::build(const TurnedTree& object, int resolution_px) {
   margin_m_ = object.margin_m;
   resolution_px_ = resolution_px;
 
-  bounds_ = turned_bounds(object, pending_);
+  constexpr double kTolerance = 5e-3;  // of the size: many vertices are nearly as far out
+  bounds_ = turned_bounds(object, kTolerance * object.tree->half_size().cast<double>().sum(), pending_);
   const Eigen::Vector3d size_m = bounds_.sizes();
   const PixelGrid grid = fit_pixels(size_m.x(), size_m.y(), resolution_px);
   pixel_m_ = grid.pixel_m;
@@ -190,24 +216,11 @@ void FrontMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) 
             py1 = to_pixel((high.y() - y0_) * per_m_, last_y);
   if (px1 - px0 <= 1 && py1 - py0 <= 1) return enter_box(px0, px1, py0, py1, top);
 
-  // Lines along the edges: a x + b y + c <= 0 at the centre of a pixel that the triangle may touch. The line
-  // goes through the corner farthest out, whichever that is, so that a sliver's rounding cannot shut itself
-  // out.
+  const float half_px = static_cast<float>(0.5 * pixel_m_ * (1.0 + 1e-6)) + slack_m;
+  const std::array<Line, 3> lines = outlines_of(c, half_px + kRounding * size_m);
+  // The plane, where it is not too steep for float to tell.
   const Eigen::Vector3f e1 = c[1] - c[0], e2 = c[2] - c[0];
   const float area = e1.x() * e2.y() - e1.y() * e2.x();
-  const float half_px = static_cast<float>(0.5 * pixel_m_ * (1.0 + 1e-6)) + slack_m;
-  struct Line {
-    float a, b, c;
-  };
-  std::array<Line, 3> lines;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Eigen::Vector3f edge = c[(i + 1) % 3] - c[i];
-    const float a = area >= 0.0F ? edge.y() : -edge.y(), b = area >= 0.0F ? -edge.x() : edge.x();
-    float most = a * c[0].x() + b * c[0].y();
-    for (const Eigen::Vector3f& corner : c) most = std::max(most, a * corner.x() + b * corner.y());
-    lines[i] = {a, b, -most - (std::abs(a) + std::abs(b)) * (half_px + kRounding * size_m)};
-  }
-  // The plane, where it is not too steep for float to tell.
   float gx = 0.0F, gy = 0.0F, plane = top;
   const float size2 = e1.squaredNorm() + e2.squaredNorm();
   if (std::abs(area) > 1e-3F * size2) {
@@ -226,9 +239,7 @@ void FrontMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) 
     float* row = &heights_[static_cast<std::size_t>(py) * static_cast<std::size_t>(levels_[0].width)];
     for (int px = px0; px <= px1; ++px) {
       const float x = x0_ + (static_cast<float>(px) + 0.5F) * pixel;
-      const float outside = std::max(std::max(lines[0].a * x + lines[0].b * y + lines[0].c,
-                                              lines[1].a * x + lines[1].b * y + lines[1].c),
-                                     lines[2].a * x + lines[2].b * y + lines[2].c);
+      const float outside = outside_by(lines, x, y);
       const float z = std::min(top, plane + gx * x + gy * y);
       row[px] = outside <= 0.0F ? std::max(row[px], z) : row[px];
     }
@@ -259,6 +270,56 @@ float FrontMap::max_under(float x0_m, float x1_m, float y0_m, float y1_m) const 
     for (int x = x0; x <= x1; ++x) most = std::max(most, row[x]);
   }
   return most;
+}
+
+float FrontMap::least_gap_under(const FrameTriangle& scene) const {
+  std::array<Eigen::Vector3f, 3> c;
+  for (std::size_t i = 0; i < 3; ++i) c[i] = scene.corners[i].cast<float>();
+  const Eigen::Vector3f low = c[0].cwiseMin(c[1]).cwiseMin(c[2]);
+  const Eigen::Vector3f high = c[0].cwiseMax(c[1]).cwiseMax(c[2]);
+  const float size_m = std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());
+  if (!(size_m < 1e15F)) return -kInfinity;
+  const float slack_m = kRounding * size_m;
+  const Level& finest = levels_[0];
+  const auto last_x = static_cast<float>(finest.width - 1), last_y = static_cast<float>(finest.height - 1);
+  // A hair wider, as in max_under().
+  const float fx0 = (low.x() - slack_m - x0_) * per_m_ - 1e-3F,
+              fx1 = (high.x() + slack_m - x0_) * per_m_ + 1e-3F;
+  const float fy0 = (low.y() - slack_m - y0_) * per_m_ - 1e-3F,
+              fy1 = (high.y() + slack_m - y0_) * per_m_ + 1e-3F;
+  if (!(fx1 >= -0.01F && fy1 >= -0.01F && fx0 <= last_x + 1.01F && fy0 <= last_y + 1.01F)) return kInfinity;
+  int px0 = to_pixel(fx0, last_x), px1 = to_pixel(fx1, last_x);
+  int py0 = to_pixel(fy0, last_y), py1 = to_pixel(fy1, last_y);
+  constexpr unsigned kMostSide = 8;
+  const auto side = static_cast<unsigned>(std::max(px1 - px0, py1 - py0));
+  const int level = std::max(static_cast<int>(std::bit_width(side / kMostSide)), 0);
+  px0 >>= level, px1 >>= level, py0 >>= level, py1 >>= level;
+  const Level& l = levels_[static_cast<std::size_t>(level)];
+  const auto pixel = static_cast<float>(pixel_m_) * static_cast<float>(1 << level);
+  const float half_px = 0.5F * pixel * (1.0F + 1e-3F) + slack_m;
+
+  // The plane's height over the middle of a pixel, less what it may fall towards the pixel's corners.
+  float gx = 0.0F, gy = 0.0F, at0 = low.z() - slack_m;
+  const Eigen::Vector3f n = scene.normal.cast<float>();
+  if (std::abs(n.z()) > 1e-2F) {
+    gx = -n.x() / n.z();
+    gy = -n.y() / n.z();
+    const float slope = std::abs(gx) + std::abs(gy);
+    at0 = c[0].z() - gx * c[0].x() - gy * c[0].y() - slope * half_px -
+          kRounding * (1.0F + slope) * (size_m + pixel);
+  }
+  const auto lines = outlines_of(c, half_px + kRounding * size_m);
+  float least = kInfinity;
+  for (int py = py0; py <= py1; ++py) {
+    const float y = y0_ + (static_cast<float>(py) + 0.5F) * pixel;
+    const float* row = &heights_[l.first + static_cast<std::size_t>(py) * static_cast<std::size_t>(l.width)];
+    for (int px = px0; px <= px1; ++px) {
+      const float x = x0_ + (static_cast<float>(px) + 0.5F) * pixel;
+      if (outside_by(lines, x, y) > 0.0F) continue;
+      least = std::min(least, std::max(low.z() - slack_m, at0 + gx * x + gy * y) - row[px]);
+    }
+  }
+  return least;
 }
 
 }  // namespace roomradar

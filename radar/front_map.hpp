@@ -25,6 +25,11 @@ class FrontMap {
   /// Greatest height under a rectangle, -infinity where no pixel is.
   [[nodiscard]] float max_under(float x0_m, float x1_m, float y0_m, float y1_m) const;
 
+  /// How near a triangle of the scene can be: the least, over the pixels that it touches, of its plane's
+  /// height there less M. Infinite where it touches none. Never more than the truth; finer than what its box
+  /// says.
+  [[nodiscard]] float least_gap_under(const FrameTriangle& scene) const;
+
   /// Of the whole object in the frame, the margin included, m.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
   /// Longer side across the motion, m.
@@ -52,7 +57,9 @@ class FrontMap {
   [[nodiscard]] bool is_under(int x0, int x1, int y0, int y1, float height) const;
 };
 
-/// Bounds of the tree's triangles in the turned frame, rounding counted in: one search a side.
-Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, std::vector<PendingNode>& pending);
+/// Bounds of the tree's triangles in the turned frame, rounding and margin counted in, no more than
+/// tolerance_m too large: one search a side.
+Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, double tolerance_m,
+                                  std::vector<PendingNode>& pending);
 
 }  // namespace roomradar

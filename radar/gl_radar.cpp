@@ -18,8 +18,8 @@ namespace roomradar {
 namespace {
 
 constexpr double kMaxDistance_m = 1e4;
-constexpr std::size_t kMasksKept = 16;  // at least, where the atlas may be that large
-const Eigen::Vector2d kSample_px(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // as in tile_shaders.hpp
+constexpr std::size_t kMasksKept = 16;                       // at least, where the atlas may be that large
+const Eigen::Vector2d kSample_px(kSampleX_px, kSampleY_px);  // as in tile_shaders.hpp
 
 /// L this near to 0 is touching.
 double touching_m(const RadarOutline& outline, double distance_m) {

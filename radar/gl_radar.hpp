@@ -13,6 +13,7 @@
 #include "radar/gpu_mesh.hpp"
 #include "radar/least_gap.hpp"
 #include "radar/mask_cache.hpp"
+#include "radar/radar_pictures.hpp"
 #include "radar/radar_volume.hpp"
 #include "radar/scene_boxes.hpp"
 #include "radar/tile_atlas.hpp"
@@ -47,14 +48,6 @@ struct GlQuery {
   double distance_m = 0.0;                                    ///< how far ahead to look, > 0, at most 10 km
   /// Which of the scene is the object itself, and is left out.
   std::size_t own_index = kNotInScene;
-};
-
-/// R, M and L of one query, row by row, volume.width_px x height_px.
-struct RadarPictures {
-  RadarVolume volume;
-  Image<float> range_m;   ///< R, volume.depth_m where there is nothing or L is undefined
-  Image<float> mask_m;    ///< M, volume.depth_m where there is nothing
-  Image<float> lookat_m;  ///< L, NaN where undefined
 };
 
 /// Cyber Radar: an object that moves along a line touches first where the scene is nearest ahead of its

@@ -1,6 +1,8 @@
 // overlap_depth.cpp: step back from span to span until none holds.
 #include "radar/overlap_depth.hpp"
 
+#include <algorithm>
+
 namespace roomradar {
 namespace {
 
@@ -13,7 +15,7 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
   bool crosses_now = false;
   search_column(
       object, scene, [&] { return at_m + touching_m; }, -std::numeric_limits<double>::infinity(),
-      scratch.pending,
+      scratch.columns,
       [&](std::uint32_t i) {
         const FrameTriangle o = turned_triangle(object, i);
         TriangleGap gap;
@@ -31,7 +33,7 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
   if (object.tree->is_closed()) {
     for (int which = 0; which < 5 && !knows_inside; ++which) {
       knows_inside =
-          layers_at(object, inner_point(scene, which), at_m + touching_m, scratch.pending, scratch.layers);
+          layers_at(object, inner_point(scene, which), at_m + touching_m, scratch.columns, scratch.layers);
     }
   }
   const auto is_inside_at = [&](double travel_m) {
@@ -40,34 +42,27 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
   if (!crosses_now) {
     if (at_m == 0.0) {
       std::vector<Layer>& layers = scratch.layers;
-      if (!is_inside(object, scene, scratch.pending, layers)) return at_m;
+      if (!is_inside(object, scene, scratch.columns, layers)) return at_m;
       knows_inside = false;
       for (int which = 0; which < 5 && !knows_inside; ++which)
-        knows_inside = layers_at(object, inner_point(scene, which), touching_m, scratch.pending, layers);
+        knows_inside = layers_at(object, inner_point(scene, which), touching_m, scratch.columns, layers);
     } else if (!is_inside_at(at_m)) {
       return at_m;
     }
   }
+  // What reaches farthest ahead first: whatever is crossed at free_m is before what is not.
+  std::sort(scratch.spans.begin(), scratch.spans.end(),
+            [](const auto& a, const auto& b) { return a.high_m > b.high_m; });
+  constexpr double kTogether_m = 1e-9;
   double free_m = at_m;
-  while (true) {
-    const OverlapScratch::Span* lowest = nullptr;
-    const OverlapScratch::Span* next_below = nullptr;
-    for (const OverlapScratch::Span& span : scratch.spans) {
-      if (span.low_m >= free_m) continue;
-      if (span.high_m >= free_m - 1e-9) {
-        if (lowest == nullptr || span.low_m < lowest->low_m) lowest = &span;
-      } else if (next_below == nullptr || span.high_m > next_below->high_m) {
-        next_below = &span;
-      }
+  for (auto span = scratch.spans.begin();;) {
+    for (; span != scratch.spans.end() && span->high_m >= free_m - kTogether_m; ++span) {
+      if (!(span->low_m < free_m)) continue;
+      free_m = span->low_m;
+      point = span->point;
     }
-    if (lowest != nullptr) {
-      free_m = lowest->low_m;
-      point = lowest->point;
-    } else if (next_below != nullptr && is_inside_at(free_m - 1e-9)) {
-      free_m = next_below->high_m;
-    } else {
-      return free_m;
-    }
+    if (span == scratch.spans.end() || !is_inside_at(free_m - kTogether_m)) return free_m;
+    free_m = span->high_m;
   }
 }
 
@@ -77,8 +72,8 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
                       OverlapScratch& scratch) {
   Overlap result;
   double free_m = 0.0;
-  const double deepest_m = -1e3 * (1e-3 + front.bounds().sizes().norm());  // a scene without end
-  for (double before_m = 1.0; before_m > free_m && free_m > deepest_m;) {
+  scratch.columns.work = 0;
+  for (double before_m = 1.0; before_m > free_m;) {
     before_m = free_m;
     Eigen::AlignedBox3d volume = front.bounds();
     volume.min().z() += before_m;
@@ -96,6 +91,11 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
       const SceneItem item = scratch.items.back();
       scratch.items.pop_back();
       if (!(item.low_m < limit())) break;
+      scratch.columns.work += 2;
+      if (scratch.columns.work > kMostOverlapWork) {
+        result.is_all = false;
+        return result;
+      }
       if (item.kind != SceneItem::Kind::kTriangle) {
         const std::size_t before = scratch.items.size();
         scene.expand(item, bound, limit(), scratch.items);
@@ -106,12 +106,12 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
         continue;
       }
       const FrameTriangle triangle = scene.triangle(item);
-      if (triangle.normal.z() > kEdgeOn) continue;
+      if (triangle.normal.z() > kEdgeOn || !(bound.low_m(triangle) < limit())) continue;
       Eigen::Vector3d point = inner_point(triangle, 0);
       const double end_m = free_below(object, triangle, before_m, scratch, point);
       if (!(end_m < free_m)) continue;
       free_m = end_m;
-      result = {-free_m, point, triangle.normal, scene.kind(item)};
+      result = {.depth_m = -free_m, .point = point, .normal = triangle.normal, .kind = scene.kind(item)};
     }
   }
   return result;

@@ -16,16 +16,21 @@ struct OverlapScratch {
   };
   std::vector<Span> spans;
   std::vector<Layer> layers;
-  std::vector<PendingNode> pending;
+  ColumnScratch columns;
   std::vector<SceneItem> items;
 };
 
 struct Overlap {
   double depth_m = 0.0;                              ///< > 0; 0: they do not overlap
+  bool is_all = true;                                ///< false: at least so deep; the search was cut short
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the frame, where they part last
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the scene's triangle, by the winding
   Touched kind = Touched::kNothing;
 };
+
+/// Work after which the search is cut short: a few milliseconds. An object that is sunk in the ground and
+/// moves along it would be free again only where the ground ends.
+inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 
 /// Each pair of triangles crosses over a span of travels, from its least gap to its greatest; a scene
 /// triangle is inside a closed object between the spans where more ways out of it than in are ahead. The

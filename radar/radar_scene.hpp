@@ -40,10 +40,15 @@ struct SceneDepth {
   Touched kind = Touched::kDynamic;
 };
 
+class SceneBoxes;
+
 /// Instances with a null or empty mesh, and images that are null or empty, are left out.
 struct RadarScene {
   std::span<const SceneTree> trees;
   std::span<const SceneDepth> depths;
+  /// Built of these trees as they stand now, so that a query asks only those near it; null: asks all. Pays
+  /// from some tens of trees on, where many queries share it.
+  const SceneBoxes* boxes = nullptr;
 };
 
 }  // namespace roomradar

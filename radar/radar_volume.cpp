@@ -65,17 +65,6 @@ Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, cons
   return result;
 }
 
-Eigen::AlignedBox3d RadarVolume::bounds_world() const {
-  Eigen::AlignedBox3d bounds(origin_world);
-  const Eigen::Vector3d sides[3] = {width_px * pixel_m * x_world, height_px * pixel_m * y_world,
-                                    depth_m * u_world};
-  for (const Eigen::Vector3d& side : sides) {
-    bounds.min() += side.cwiseMin(0.0);
-    bounds.max() += side.cwiseMax(0.0);
-  }
-  return bounds;
-}
-
 RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m) {
   const Eigen::Matrix3d R_world_outline = object.T_world_mesh.linear() * outline.R_outline_mesh.transpose();
   RadarVolume volume;

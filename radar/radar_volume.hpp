@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "radar/gpu_mesh.hpp"
+#include "radar/radar_pictures.hpp"
 
 namespace roomradar {
 
@@ -33,24 +34,7 @@ Eigen::Matrix<double, 3, 4> outline_from_object(const RadarOutline& outline);
 Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, const MeshInstance& object,
                                                const MeshInstance& instance);
 
-/// Where the images of one query stand: pixel (i, j) is centred at
-/// origin_world + (i + 0.5) * pixel_m * x_world + (j + 0.5) * pixel_m * y_world, and depth runs along
-/// u_world.
-struct RadarVolume {
-  /// Corner of the rear plane, just behind the object.
-  Eigen::Vector3d origin_world = Eigen::Vector3d::Zero();
-  Eigen::Vector3d x_world = Eigen::Vector3d::UnitX();
-  Eigen::Vector3d y_world = Eigen::Vector3d::UnitY();
-  Eigen::Vector3d u_world = Eigen::Vector3d::UnitZ();  ///< unit, the direction of motion; x cross y = u
-  double pixel_m = 0.0;
-  double length_m = 0.0;  ///< of the object along u
-  double depth_m = 0.0;   ///< d: the object's length plus the distance asked for
-  int width_px = 0;
-  int height_px = 0;
-
-  /// Corners of the box, in the world.
-  [[nodiscard]] Eigen::AlignedBox3d bounds_world() const;
-};
+/// The box of space that the object sweeps, in the world.
 RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m);
 
 }  // namespace roomradar

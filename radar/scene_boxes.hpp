@@ -10,6 +10,7 @@
 #include "radar/box_tree.hpp"
 #include "radar/contact.hpp"
 #include "radar/gpu_mesh.hpp"
+#include "radar/radar_scene.hpp"
 
 namespace roomradar {
 
@@ -19,12 +20,16 @@ struct SceneMesh {
   Touched kind = Touched::kStatic;
 };
 
-/// Boxes around the meshes of a scene, by place. Made anew for every call: allocates nothing once as many
+/// Boxes around the meshes of a scene, by place. Made anew for every frame: allocates nothing once as many
 /// meshes were held.
 class SceneBoxes {
  public:
-  /// Meshes that are null or empty are left out.
+  /// Meshes that are null or empty, and poses that are not finite, are left out.
   void build(std::span<const SceneMesh> scene);
+  void build(std::span<const SceneTree> scene);
+
+  /// Whether all poses were finite.
+  [[nodiscard]] bool are_finite() const { return are_finite_; }
 
   /// Calls work(index in scene) for each mesh whose box meets `around_world`, always in the same order.
   template <typename Work>
@@ -37,6 +42,10 @@ class SceneBoxes {
   std::vector<std::pair<std::uint64_t, std::size_t>> by_place_;  // Morton code, index in scene
   std::vector<Eigen::AlignedBox3d> boxes_;
   BoxTree tree_;
+  bool are_finite_ = true;
+
+  template <typename Instance>
+  void build_of(std::span<const Instance> scene);
 };
 
 }  // namespace roomradar

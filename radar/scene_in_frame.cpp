@@ -4,11 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "radar/scene_boxes.hpp"
+
 namespace roomradar {
 namespace {
 
 constexpr float kRounding = 16.0F * std::numeric_limits<float>::epsilon();
 
+bool is_finite(const SceneTree& s) {
+  return s.instance.tree == nullptr || s.instance.tree->empty() ||
+         s.instance.T_world_mesh.matrix().allFinite();
+}
 bool has_surface(const SceneTree& s) { return s.instance.tree != nullptr && !s.instance.tree->empty(); }
 bool has_surface(const SceneDepth& s) { return s.depth_m != nullptr && !s.depth_m->empty(); }
 
@@ -24,49 +30,56 @@ bool is_usable(const SceneDepth& s) {
 
 }  // namespace
 
-bool SceneInFrame::place(const RadarScene& scene, const Eigen::Matrix3d& R_frame_world,
+bool SceneInFrame::place(const RadarScene& scene, std::size_t own_tree, const Eigen::Matrix3d& R_frame_world,
                          const Eigen::Vector3d& origin_world) {
+  scene_ = scene;
+  own_tree_ = own_tree;
   R_frame_world_ = R_frame_world;
   origin_world_ = origin_world;
   trees_.clear();
-  depths_.clear();
-  for (const SceneTree& s : scene.trees) {
-    if (!has_surface(s)) continue;
-    const TriangleTree& tree = *s.instance.tree;
-    if (!s.instance.T_world_mesh.matrix().allFinite()) return false;
-    const Eigen::Vector3d centre_world = s.instance.T_world_mesh * (tree.origin() + tree.centre());
-    const Eigen::Vector3d t = R_frame_world * (centre_world - origin_world);
-    const auto reach_m = static_cast<float>(t.cwiseAbs().sum()) + tree.half_size().sum();
-    trees_.push_back({&s, R_frame_world * s.instance.T_world_mesh.linear(), t, kRounding * reach_m});
-  }
-  for (const SceneDepth& s : scene.depths) {
-    if (!has_surface(s)) continue;
-    if (!is_usable(s)) return false;
-    depths_.push_back(&s);
-  }
-  return true;
+  views_.clear();
+  const bool are_finite = scene.boxes != nullptr
+                              ? scene.boxes->are_finite()
+                              : std::all_of(scene.trees.begin(), scene.trees.end(), is_finite);
+  return are_finite && std::all_of(scene.depths.begin(), scene.depths.end(),
+                                   [](const SceneDepth& s) { return !has_surface(s) || is_usable(s); });
 }
 
-/// Whether the ball around an instance reaches into the volume: of many objects most do not.
-bool SceneInFrame::reaches(const TreeView& view, const Eigen::AlignedBox3d& volume) {
-  const double reach_m = view.scene->instance.tree->half_size().cast<double>().norm() + view.slack_m;
-  return volume.squaredExteriorDistance(view.t_frame_centre) <= reach_m * reach_m;
+/// Keeps a tree if the ball around it reaches into the volume: of many objects most do not.
+void SceneInFrame::begin_tree(const SceneTree& s, const Eigen::AlignedBox3d& volume) {
+  const TriangleTree& tree = *s.instance.tree;
+  const Eigen::Vector3d centre_world = s.instance.T_world_mesh * (tree.origin() + tree.centre());
+  const Eigen::Vector3d t = R_frame_world_ * (centre_world - origin_world_);
+  const float slack_m = kRounding * (static_cast<float>(t.cwiseAbs().sum()) + tree.half_size().sum());
+  const double reach_m = tree.half_size().cast<double>().norm() + slack_m;
+  if (volume.squaredExteriorDistance(t) > reach_m * reach_m) return;
+  trees_.push_back({&s, R_frame_world_ * s.instance.T_world_mesh.linear(), t, slack_m});
 }
 
 void SceneInFrame::begin(const Eigen::AlignedBox3d& volume, const SceneBound& bound, float limit_m,
                          std::vector<SceneItem>& items) {
+  trees_.clear();
+  const auto begin_at = [&](std::size_t i) {
+    if (i != own_tree_ && has_surface(scene_.trees[i])) begin_tree(scene_.trees[i], volume);
+  };
+  if (scene_.boxes != nullptr) {
+    const Eigen::Vector3d centre_world = origin_world_ + R_frame_world_.transpose() * volume.center();
+    const Eigen::Vector3d half = R_frame_world_.transpose().cwiseAbs() * (0.5 * volume.sizes());
+    scene_.boxes->visit({centre_world - half, centre_world + half}, begin_at);
+  } else {
+    for (std::size_t i = 0; i < scene_.trees.size(); ++i) begin_at(i);
+  }
   for (std::uint32_t i = 0; i < trees_.size(); ++i) {
-    if (!reaches(trees_[i], volume)) continue;
-    const SceneItem root{-std::numeric_limits<float>::infinity(), SceneItem::Kind::kNode, i, 0, 0};
-    expand(root, bound, limit_m, items);
+    expand({-std::numeric_limits<float>::infinity(), SceneItem::Kind::kNode, i, 0, 0}, bound, limit_m, items);
   }
   blocks_.clear();
   views_.clear();
-  for (const SceneDepth* s : depths_) {
+  for (const SceneDepth& s : scene_.depths) {
+    if (!has_surface(s)) continue;
     const auto source = static_cast<std::uint32_t>(trees_.size() + views_.size());
     DepthView& view = views_.emplace_back();
     const std::size_t first = blocks_.size();
-    if (place_depth(*s, R_frame_world_, origin_world_, volume, view)) append_blocks(view, scratch_, blocks_);
+    if (place_depth(s, R_frame_world_, origin_world_, volume, view)) append_blocks(view, scratch_, blocks_);
     for (std::size_t b = first; b < blocks_.size(); ++b) {
       const float low_m = bound.low_m(blocks_[b].box);
       if (!(low_m < limit_m)) continue;
@@ -77,7 +90,14 @@ void SceneInFrame::begin(const Eigen::AlignedBox3d& volume, const SceneBound& bo
 
 void SceneInFrame::expand(const SceneItem& item, const SceneBound& bound, float limit_m,
                           std::vector<SceneItem>& items) {
+  // The object is no higher under any part of a block than under all of it.
+  float most_m = std::numeric_limits<float>::infinity();
+  if (item.kind == SceneItem::Kind::kBlock) {
+    const float z0 = blocks_[item.first].box.z0;
+    most_m = z0 - item.low_m + kRounding * (std::abs(z0) + std::abs(item.low_m));
+  }
   const auto put = [&](const FrameBox& box, SceneItem::Kind kind, std::uint32_t first, std::uint32_t count) {
+    if (box.z0 - most_m >= limit_m) return;
     const float low_m = std::max(bound.low_m(box), item.low_m);
     if (low_m < limit_m) items.push_back({low_m, kind, item.source, first, count});
   };
@@ -136,7 +156,7 @@ FrameTriangle SceneInFrame::triangle(const SceneItem& item) const {
 
 Touched SceneInFrame::kind(const SceneItem& item) const {
   if (item.source < trees_.size()) return trees_[item.source].scene->kind;
-  return depths_[item.source - trees_.size()]->kind;
+  return views_[item.source - trees_.size()].scene->kind;
 }
 
 }  // namespace roomradar

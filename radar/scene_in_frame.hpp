@@ -13,10 +13,11 @@ namespace roomradar {
 /// Some of the scene that is not looked into yet, and what it cannot be nearer than.
 struct SceneItem {
   enum class Kind : std::uint32_t {
-    kNode,     ///< of a tree
-    kLeaf,     ///< `count` triangles of a tree
-    kBlock,    ///< of a depth image
-    kTriangle  ///< one, of a tree or a depth image
+    kNode,      ///< of a tree
+    kLeaf,      ///< `count` triangles of a tree
+    kBlock,     ///< of a depth image
+    kTriangle,  ///< one, of a tree or a depth image; low_m is its box's
+    kBounded    ///< one whose low_m is its plane's, pixel by pixel
   };
   float low_m;  ///< no way to contact is shorter
   Kind kind;
@@ -33,14 +34,19 @@ struct SceneBound {
     if (box.z1 < behind_m) return std::numeric_limits<float>::infinity();
     return box.z0 - front->max_under(box.x0, box.x1, box.y0, box.y1);
   }
+  /// The same for a triangle, finer: its plane instead of its box.
+  [[nodiscard]] float low_m(const FrameTriangle& triangle) const { return front->least_gap_under(triangle); }
 };
 
 class SceneInFrame {
  public:
+  /// The scene must stay while this is used.
+  /// @param own_tree  which of scene.trees is left out
   /// @return false if a pose is not finite or a camera cannot be one; then nothing is placed
-  bool place(const RadarScene& scene, const Eigen::Matrix3d& R_frame_world,
+  bool place(const RadarScene& scene, std::size_t own_tree, const Eigen::Matrix3d& R_frame_world,
              const Eigen::Vector3d& origin_world);
-  /// Appends what can be nearer than limit_m in the volume, whole trees and blocks. Before expand().
+  /// Appends what can be nearer than limit_m in the volume, whole trees and blocks; items from before are not
+  /// to be used any more. Before expand().
   void begin(const Eigen::AlignedBox3d& volume, const SceneBound& bound, float limit_m,
              std::vector<SceneItem>& items);
   /// Appends those parts of an item (not a triangle) that can be nearer than limit_m.
@@ -58,14 +64,15 @@ class SceneInFrame {
   };
   Eigen::Matrix3d R_frame_world_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();
-  std::vector<TreeView> trees_;
-  std::vector<const SceneDepth*> depths_;
-  std::vector<DepthView> views_;  // of depths_
+  RadarScene scene_;
+  std::size_t own_tree_ = 0;
+  std::vector<TreeView> trees_;  // of those that reach the volume
+  std::vector<DepthView> views_;
   std::vector<DepthBlock> blocks_;
   std::vector<DepthTriangle> triangles_;
   std::vector<float> scratch_;
 
-  static bool reaches(const TreeView& view, const Eigen::AlignedBox3d& volume);
+  void begin_tree(const SceneTree& tree, const Eigen::AlignedBox3d& volume);
   [[nodiscard]] FrameTriangle tree_triangle(const TreeView& view, std::uint32_t triangle) const;
 };
 

@@ -23,12 +23,12 @@ double distance_to(const FrameTriangle& t, const Eigen::Vector3d& p) {
   return is_over_face ? std::abs(t.normal.dot(p - c[0])) : nearest;
 }
 
-bool is_near_surface(const TurnedTree& object, const Eigen::Vector3d& p, std::vector<PendingNode>& pending) {
+bool is_near_surface(const TurnedTree& object, const Eigen::Vector3d& p, ColumnScratch& scratch) {
   TurnedTree thick = object;
   thick.margin_m = object.touching_m;
   bool is_near = false;
   search_column(
-      thick, at_point(p), [&] { return is_near ? -1e30 : object.touching_m; }, -object.touching_m, pending,
+      thick, at_point(p), [&] { return is_near ? -1e30 : object.touching_m; }, -object.touching_m, scratch,
       [&](std::uint32_t i) {
         is_near = is_near || distance_to(turned_triangle(object, i), p) <= object.touching_m;
       });
@@ -46,12 +46,12 @@ Eigen::Vector3d inner_point(const FrameTriangle& triangle, int which) {
   return c[0] + w[0] * (c[1] - c[0]) + w[1] * (c[2] - c[0]);
 }
 
-bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m,
-               std::vector<PendingNode>& pending, std::vector<Layer>& layers) {
+bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m, ColumnScratch& scratch,
+               std::vector<Layer>& layers) {
   layers.clear();
   bool is_sure = true;
   search_column(
-      object, at_point(point), [&] { return limit_m; }, -std::numeric_limits<double>::infinity(), pending,
+      object, at_point(point), [&] { return limit_m; }, -std::numeric_limits<double>::infinity(), scratch,
       [&](std::uint32_t i) {
         const FrameTriangle t = turned_triangle(object, i);
         const auto& c = t.corners;
@@ -83,14 +83,14 @@ bool is_within(const std::vector<Layer>& layers, double travel_m) {
   return ways_out > 0;
 }
 
-bool is_inside(const TurnedTree& object, const FrameTriangle& scene, std::vector<PendingNode>& pending,
+bool is_inside(const TurnedTree& object, const FrameTriangle& scene, ColumnScratch& scratch,
                std::vector<Layer>& layers) {
   if (!object.tree->is_closed()) return false;
   for (int which = 0; which < 5; ++which) {
     const Eigen::Vector3d point = inner_point(scene, which);
-    if (!layers_at(object, point, 0.0, pending, layers)) continue;
+    if (!layers_at(object, point, 0.0, scratch, layers)) continue;
     if (!is_within(layers, 0.0)) return false;
-    if (!is_near_surface(object, point, pending)) return true;
+    if (!is_near_surface(object, point, scratch)) return true;
   }
   return false;
 }

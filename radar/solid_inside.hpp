@@ -14,8 +14,8 @@ struct Layer {
 
 /// All of the object's layers over a point, ahead of it and up to limit_m behind it.
 /// @return false if the line along the motion through the point runs too near an edge to count layers
-bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m,
-               std::vector<PendingNode>& pending, std::vector<Layer>& layers);
+bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m, ColumnScratch& scratch,
+               std::vector<Layer>& layers);
 
 /// Whether a point travel_m back along the motion from the one whose layers these are is in a solid: more
 /// ways out than in are ahead of it, so that solids may overlap.
@@ -23,7 +23,7 @@ bool is_within(const std::vector<Layer>& layers, double travel_m);
 
 /// Whether a triangle that does not cross the object's surface lies in the solid that it encloses, deeper
 /// than touching_m. By the layers ahead of it. False for an object that is not closed.
-bool is_inside(const TurnedTree& object, const FrameTriangle& scene, std::vector<PendingNode>& pending,
+bool is_inside(const TurnedTree& object, const FrameTriangle& scene, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 
 /// A point of the triangle, one of several, none of them special.

@@ -49,6 +49,7 @@ struct Room {
     const Vec3 centre = T_world_object.translation();
     Contact best;
     best.status = ContactStatus::kNoTarget;
+    best.lower_m = distance_m;
     for (const Plane& plane : planes) {
       const double closing = -plane.normal.dot(direction);
       if (closing < 1e-9) continue;

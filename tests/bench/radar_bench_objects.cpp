@@ -12,6 +12,7 @@
 #include "radar/exact_travel.hpp"
 #include "radar/gl_radar.hpp"
 #include "radar/gpu_mesh.hpp"
+#include "radar/scene_boxes.hpp"
 
 namespace roomradar::bench {
 namespace {
@@ -110,19 +111,19 @@ Row measure_objects(const FrameScene& frame, int count, int radar_px, RadarMode 
   depth.max_jump_m = 1e6F;
   CyberRadar radar({.mode = mode, .resolution_px = radar_px});
   std::vector<SceneTree> scene;
+  SceneBoxes boxes;
   Row row = measure_frames(frame, meshes, count, [&](const Crowd& objects, std::vector<Contact>& contacts) {
     scene.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       scene.push_back({{&trees[objects.shape[i]], objects.T_world_object[i]}, Touched::kObject});
     }
+    boxes.build(std::span<const SceneTree>(scene));
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      std::swap(scene[i], scene.back());  // all but itself come first
-      const RadarQuery query{.object = scene.back().instance,
+      const RadarQuery query{.object = scene[i].instance,
                              .direction_world = objects.velocity_m_s[i],
-                             .distance_m = kAhead_m};
-      contacts[i] =
-          radar.query(query, {.trees = std::span(scene).first(scene.size() - 1), .depths = {&depth, 1}});
-      std::swap(scene[i], scene.back());
+                             .distance_m = kAhead_m,
+                             .own_tree = i};
+      contacts[i] = radar.query(query, {.trees = scene, .depths = {&depth, 1}, .boxes = &boxes});
     }
   });
   row.method = mode == RadarMode::kExact ? "exact" : "sampled";
