@@ -227,7 +227,7 @@ TEST(CyberRadar, SceneInAHollowIsMetByTheLayerBehindIt) {
 
 TEST(CyberRadar, TouchingIsZeroAndWhatIsLeftOrSlidAlongIsNothing) {
   CyberRadar radar;
-  const TriangleTree object = tree_of(shapes::box({1.0F, 1.0F, 1.0F})),
+  const TriangleTree object = tree_of(shapes::box({0.5F, 0.5F, 0.5F})),
                      scene = tree_of(shapes::floor(2.0F, 0.0F));
   for (const double gap_m : {0.0, 1e-7, -1e-7}) {
     SCOPED_TRACE(gap_m);
@@ -243,7 +243,7 @@ TEST(CyberRadar, TouchingIsZeroAndWhatIsLeftOrSlidAlongIsNothing) {
 
 TEST(CyberRadar, AskingWronglyIsSaidSo) {
   CyberRadar radar;
-  const TriangleTree object = tree_of(shapes::box({1.0F, 1.0F, 1.0F})),
+  const TriangleTree object = tree_of(shapes::box({0.5F, 0.5F, 0.5F})),
                      scene = tree_of(shapes::floor(2.0F, 0.0F));
   const TriangleTree empty = tree_of(Mesh{});
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -321,8 +321,8 @@ TEST(CyberRadar, OneSidedSurfacesAreMetFromTheirOutsideOnly) {
     EXPECT_EQ(from_outside.touched, kind);
     const bool is_left = kind != Touched::kDynamic;
     EXPECT_EQ(ask_at(0.0, kUp).status, is_left ? ContactStatus::kNoTarget : ContactStatus::kContact);
-    EXPECT_EQ(ask_at(0.45, kUp).status, ContactStatus::kNoTarget) << "half out of it";
-    EXPECT_EQ(ask_at(0.45, kDown).status, ContactStatus::kOverlap);
+    EXPECT_EQ(ask_at(0.47, kUp).status, ContactStatus::kNoTarget) << "half out of it";
+    EXPECT_EQ(ask_at(0.47, kDown).status, ContactStatus::kOverlap);
   }
 }
 
