@@ -70,7 +70,16 @@ void join_all(KeyframeGraph& graph, const JoinConfig& config);
 /// Moves all keyframes to where the constraints and anchors want them.
 void solve(KeyframeGraph& graph);
 
-/// The same, but only those that look about where the newest looks are moved.
+/// Moves all keyframes to where the constraints and anchors want them for good, in two steps. Averaged over
+/// as many points as two keyframes share, noise is nothing; what is left is the depth's own distortion, fixed
+/// to the camera. It cancels where two keyframes look alike, and bends the motion between them the more they
+/// differ, mostly into a turn about what is seen, which to the alignment looks well measured. So positions
+/// come first, with constraints that weigh by how alike their keyframes look (view_distance()) and not by
+/// their information, but for directions that have none; then the turns that fit these positions best, by
+/// information.
+void solve_positions_then_turns(KeyframeGraph& graph);
+
+/// The same as solve(), but only those that look about where the newest looks are moved.
 void solve_near_newest(KeyframeGraph& graph, double furthest);
 
 }  // namespace roomradar

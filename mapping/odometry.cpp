@@ -347,7 +347,7 @@ std::vector<TrackedFrame> Odometry::optimise() {
     KeyframeGraph graph = s.kept.graph;
     s.warm = WarmKeyframes(s.config.graph.warm);  // of no use now, and large
     join_all(graph, job_config(s.config).join);
-    solve(graph);
+    solve_positions_then_turns(graph);
     s.move_keyframes(graph.keyframes);
     graph.keyframes = s.kept.graph.keyframes;
     s.kept.graph = std::move(graph);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/keyframe_job.hpp"
+#include "mapping/trajectory.hpp"
 #include "tests/support/noisy_room.hpp"
 
 namespace roomradar {
@@ -152,6 +153,103 @@ TEST(KeyframeGraph, JoiningAllAnewDoesNotDependOnThreads) {
   one.keyframes.push_back(again.keyframes[0]);
   join_all(one, {});
   EXPECT_TRUE(one.constraints.empty());
+}
+
+/// Keyframes along a way that turns as it goes, each joined with the next `reach` exactly, and put off from
+/// where they stand.
+struct Way {
+  std::vector<Eigen::Isometry3d> truth;
+  KeyframeGraph graph;
+
+  explicit Way(std::size_t reach) {
+    for (int i = 0; i < 16; ++i) {
+      truth.push_back(Eigen::Translation3d(0.08 * i, 0.02 * i * (i % 3), 0.01 * i) *
+                      Eigen::AngleAxisd(0.06 * i, Eigen::Vector3d(0.2, 1.0, 0.1).normalized()));
+      const double off = i == 0 ? 0.0 : 0.02 * (i % 5 - 2);
+      const Eigen::Isometry3d T = truth.back() * Eigen::Translation3d(off, -off, 0.01) *
+                                  Eigen::AngleAxisd(off, Eigen::Vector3d::UnitX());
+      graph.keyframes.push_back(
+          {i, i == 0 ? truth.back() : T, std::make_shared<const StoredView>(), 0, 0.1 * i});
+    }
+    for (std::size_t a = 0; a < truth.size(); ++a) {
+      for (std::size_t b = a + 1; b < truth.size() && b <= a + reach; ++b)
+        graph.constraints.push_back(
+            {a, b, truth[a].inverse() * truth[b], 1e6 * Matrix6d::Identity(), b - a > 2});
+    }
+  }
+  /// The RMS of all keyframes', laid on the true ones as well as can be.
+  [[nodiscard]] double position_error_m() const {
+    std::vector<TimedPose> found, true_poses;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const auto index = static_cast<std::int64_t>(i);
+      found.push_back({index, 0.0, graph.keyframes[i].T_world_camera});
+      true_poses.push_back({index, 0.0, truth[i]});
+    }
+    return absolute_trajectory_error(found, true_poses).rmse_m;
+  }
+};
+
+TEST(PositionsThenTurns, ExactMotionsGiveTheExactPosesAndTheFirstStays) {
+  Way way(4);
+  solve_positions_then_turns(way.graph);
+  EXPECT_TRUE(way.graph.keyframes[0].T_world_camera.isApprox(way.truth[0], 1e-9));
+  for (std::size_t i = 0; i < way.truth.size(); ++i)
+    EXPECT_TRUE(way.graph.keyframes[i].T_world_camera.isApprox(way.truth[i], 1e-5)) << i;
+}
+
+TEST(PositionsThenTurns, MotionsBetweenLikeViewsOverruleThoseBetweenUnlikeOnes) {
+  // What a fixed distortion does: the less alike two keyframes look, the further off is the motion between.
+  Way way(8);
+  for (PoseConstraint& c : way.graph.constraints) {
+    if (view_distance(c.T_a_b) > 1.0) c.T_a_b = c.T_a_b * Eigen::Translation3d(0.03, 0.0, 0.0);
+  }
+  solve_positions_then_turns(way.graph);
+  EXPECT_LT(way.position_error_m(), 0.005);
+}
+
+TEST(PositionsThenTurns, ADirectionThatAMotionDoesNotFixIsTakenFromOthers) {
+  // Each keyframe and the one after the next see one wall: along it their alignment is only a guess.
+  Way way(2);
+  for (PoseConstraint& c : way.graph.constraints) {
+    if (c.b != c.a + 2) continue;
+    const Eigen::Vector3d along = Eigen::Vector3d(1.0, 2.0, 0.5).normalized();
+    c.information.topLeftCorner<3, 3>() -= 1e6 * along * along.transpose();
+    c.T_a_b = c.T_a_b * Eigen::Translation3d(0.3 * along);
+  }
+  solve_positions_then_turns(way.graph);
+  EXPECT_LT(way.position_error_m(), 1e-4);
+}
+
+TEST(PositionsThenTurns, AWrongLoopIsOverruled) {
+  Way way(4);
+  // It says that the last keyframe, 1.2 m further on, stands where the first one does.
+  way.graph.constraints.push_back({0, 15, Eigen::Isometry3d::Identity(), 1e6 * Matrix6d::Identity(), true});
+  solve_positions_then_turns(way.graph);
+  EXPECT_LT(way.position_error_m(), 0.015);
+}
+
+TEST(PositionsThenTurns, AnchoredKeyframesStandWhereTheMapSays) {
+  Way way(4);
+  const Eigen::Isometry3d T_map_world =
+      Eigen::Translation3d(2.0, -1.0, 0.5) * Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ());
+  for (const std::size_t i : {2UL, 13UL})
+    way.graph.anchors.push_back({i, T_map_world * way.truth[i], 1e4 * Matrix6d::Identity()});
+  for (Keyframe& keyframe : way.graph.keyframes)
+    keyframe.T_world_camera = T_map_world * keyframe.T_world_camera;
+  solve_positions_then_turns(way.graph);
+  for (std::size_t i = 0; i < way.truth.size(); ++i)
+    EXPECT_TRUE(way.graph.keyframes[i].T_world_camera.isApprox(T_map_world * way.truth[i], 1e-4)) << i;
+}
+
+TEST(PositionsThenTurns, NothingAndOneStayAsTheyAre) {
+  KeyframeGraph none;
+  solve_positions_then_turns(none);
+  EXPECT_TRUE(none.keyframes.empty());
+  Way one(1);
+  one.graph.keyframes.resize(1);
+  one.graph.constraints.clear();
+  solve_positions_then_turns(one.graph);
+  EXPECT_TRUE(one.graph.keyframes[0].T_world_camera.isApprox(one.truth[0], 1e-12));
 }
 
 }  // namespace
