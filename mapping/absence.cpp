@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <limits>
 #include <unordered_map>
 
 #include "mapping/types/cell_code.hpp"
@@ -15,13 +14,14 @@ using State = AbsenceVotes::State;
 
 constexpr float kNearest_m = 0.6F;   // nearer, sensors may give no depth of what is there
 constexpr float kFarthest_m = 4.5F;  // and farther
-constexpr float kGoneShare = 0.1F;   // of the pixels round a voxel may have depth
 constexpr float kUnmeasuredShare = 0.5F;
-constexpr int kBorder = 32;           // the outermost 1/32 of the image, where sensors have no depth
-constexpr double kOnePlace = 0.1;     // camera centres, by the distance of what is seen: 6 degrees
-constexpr int kMinGone = 3;           // frames
-constexpr double kTurnChange = 30.0;  // of 255, more than between two looks at what stays
-constexpr double kMinTurned = 0.1;    // of a group's voxels that have colour
+constexpr float kGoneShare = 0.25F;    // of the pixels round a voxel may have depth
+constexpr int kBorder = 32;            // the outermost 1/32 of the image, where sensors have no depth
+constexpr double kOnePlace = 0.1;      // camera centres, by the distance of what is seen: 6 degrees
+constexpr int kMinGone = 3;            // frames
+constexpr int kSeenForUnmeasured = 4;  // frames that may see a voxel for each that does not
+constexpr double kTurnChange = 30.0;   // of 255, more than between two looks at what stays
+constexpr double kMinTurned = 0.1;     // of a group's voxels that have colour
 
 template <typename Count>
 void add(Count& count, int n = 1) {
@@ -31,40 +31,42 @@ void add(Count& count, int n = 1) {
 // Voxels by place, each handed out once.
 class Unreached {
  public:
-  explicit Unreached(std::span<const AbsenceCandidate> voxels) : voxels_(voxels) {
+  explicit Unreached(std::span<const VotedVoxel> voxels) : voxels_(voxels) {
     index_of_.reserve(voxels.size());
     for (std::size_t i = 0; i < voxels.size(); ++i) index_of_.emplace(cell_code(voxels[i].voxel), i);
   }
 
+  void take(const VoxelIndex& voxel) { index_of_.erase(cell_code(voxel)); }
   // Takes a voxel and its 26 neighbours, those that are there.
   template <typename Take>
   void take_round(const VoxelIndex& voxel, const Take& take) {
     for (int i = 0; i < kCellsRound; ++i) {
       const auto found = index_of_.find(cell_code(voxel + cell_round(i)));
       if (found == index_of_.end()) continue;
-      const AbsenceCandidate& taken = voxels_[found->second];
+      const VotedVoxel& taken = voxels_[found->second];
       index_of_.erase(found);
       take(taken);
     }
   }
 
  private:
-  std::span<const AbsenceCandidate> voxels_;
+  std::span<const VotedVoxel> voxels_;
   std::unordered_map<std::uint64_t, std::size_t> index_of_;
 };
 
 // Mean change of colour at the group's turns, beyond that between two looks at it; negative if too few
 // turned.
-double turn_change(std::span<const AbsenceCandidate> group) {
+double turn_change(std::span<const VotedVoxel> group, std::span<const AbsenceVotes> all_votes) {
   double turns = 0.0, turn_sum = 0.0, steadies = 0.0, steady_sum = 0.0;
   double coloured = 0.0, turned = 0.0;  // voxels
-  for (const AbsenceCandidate& one : group) {
-    coloured += one.votes.state != State::kUnknown ? 1.0 : 0.0;
-    turned += one.votes.turns > 0 ? 1.0 : 0.0;
-    turns += one.votes.turns;
-    turn_sum += one.votes.turn_change;
-    steadies += one.votes.steadies;
-    steady_sum += one.votes.steady_change;
+  for (const VotedVoxel& one : group) {
+    const AbsenceVotes& votes = all_votes[one.position];
+    coloured += votes.state != State::kUnknown ? 1.0 : 0.0;
+    turned += votes.turns > 0 ? 1.0 : 0.0;
+    turns += votes.turns;
+    turn_sum += votes.turn_change;
+    steadies += votes.steadies;
+    steady_sum += votes.steady_change;
   }
   if (turned < 1.0 || turned < kMinTurned * coloured) return -1.0;
   return turn_sum / std::max(turns, 1.0) - steady_sum / std::max(steadies, 1.0);
@@ -116,14 +118,15 @@ void AbsenceLooks::measured(const Frame& frame, const Eigen::Vector3f& p_camera,
 }
 
 void AbsenceLooks::unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera,
-                              float measured_share, bool has_colour, AbsenceVotes& votes) const {
+                              float measured_share, bool beside_nearer, bool has_colour,
+                              AbsenceVotes& votes) const {
   const float z = p_camera.z();
   const int border_x = frame.depth_m.width / kBorder;
   const int border_y = frame.depth_m.height / kBorder;
   if (!(z > kNearest_m && z < kFarthest_m) || measured_share >= kUnmeasuredShare || x < border_x ||
       y < border_y || x >= frame.depth_m.width - border_x || y >= frame.depth_m.height - border_y)
     return;
-  add(votes.unmeasured);
+  if (!beside_nearer) add(votes.unmeasured);
   if (measured_share >= kGoneShare) return;
   add(votes.gone);
   if (has_colour) turn(frame, p_camera, State::kGone, votes);
@@ -134,37 +137,36 @@ bool may_be_absent(const AbsenceVotes& votes, int seen) {
 }
 
 bool may_go_along(const AbsenceVotes& votes, int seen) {
-  if (votes.unmeasured >= kMinGone && 2 * votes.unmeasured >= seen) return true;
+  if (votes.unmeasured >= kMinGone && kSeenForUnmeasured * votes.unmeasured >= seen) return true;
   return votes.turns > 0 && votes.turn_change >= kTurnChange * votes.turns;
 }
 
-std::vector<AbsenceCandidate> find_absent(std::span<const AbsenceCandidate> candidates,
-                                          double min_group_voxels) {
-  std::vector<AbsenceCandidate> absent, group;
+std::vector<VotedVoxel> find_absent(std::span<const VotedVoxel> candidates,
+                                    std::span<const AbsenceVotes> votes, double min_group_voxels) {
+  std::vector<VotedVoxel> absent, group;
   Unreached unreached(candidates);
-  for (const AbsenceCandidate& seed : candidates) {
+  for (const VotedVoxel& seed : candidates) {
     group.clear();
-    const auto take = [&](const AbsenceCandidate& one) { group.push_back(one); };
+    const auto take = [&](const VotedVoxel& one) { group.push_back(one); };
     unreached.take_round(seed.voxel, take);
     for (std::size_t done = 0; done < group.size(); ++done)
       unreached.take_round(VoxelIndex(group[done].voxel), take);
-    if (static_cast<double>(group.size()) >= min_group_voxels && turn_change(group) >= kTurnChange)
+    if (static_cast<double>(group.size()) >= min_group_voxels && turn_change(group, votes) >= kTurnChange)
       absent.insert(absent.end(), group.begin(), group.end());
   }
   return absent;
 }
 
-std::vector<std::uint32_t> spread_absence(std::span<const AbsenceCandidate> absent,
-                                          std::span<const AbsenceCandidate> going_along) {
-  std::vector<AbsenceCandidate> reached(absent.begin(), absent.end());
+std::vector<VotedVoxel> spread(std::vector<VotedVoxel> cores, std::span<const VotedVoxel> going_along,
+                               int max_steps) {
   Unreached unreached(going_along);
-  for (std::size_t done = 0; done < reached.size(); ++done)
-    unreached.take_round(VoxelIndex(reached[done].voxel),
-                         [&](const AbsenceCandidate& one) { reached.push_back(one); });
-  std::vector<std::uint32_t> positions;
-  positions.reserve(reached.size());
-  for (const AbsenceCandidate& one : reached) positions.push_back(one.position);
-  return positions;
+  for (const VotedVoxel& core : cores) unreached.take(core.voxel);
+  std::size_t done = 0;
+  for (int step = 0; step < max_steps && done < cores.size(); ++step)
+    for (const std::size_t end = cores.size(); done < end; ++done)
+      unreached.take_round(VoxelIndex(cores[done].voxel),
+                           [&](const VotedVoxel& one) { cores.push_back(one); });
+  return cores;
 }
 
 }  // namespace roomradar

@@ -3,7 +3,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <optional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,8 +18,9 @@ namespace roomradar {
 struct AbsenceVotes {
   enum class State : std::uint8_t { kUnknown, kMeasured, kGone };
 
-  std::uint16_t gone = 0;           ///< frames without depth all round it
-  std::uint16_t unmeasured = 0;     ///< frames without depth at it and in most pixels round it
+  std::uint16_t gone = 0;  ///< frames without depth all round it
+  /// Frames without depth at it and in most pixels round it, of which none is nearer.
+  std::uint16_t unmeasured = 0;
   std::uint16_t last_look = 0;      ///< when it was last measured or gone
   std::uint16_t turn_change = 0;    ///< sum over `turns` of the greatest change of a colour channel
   std::uint16_t steady_change = 0;  ///< the same over `steadies`
@@ -37,9 +38,10 @@ class AbsenceLooks {
   void measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const;
   /// The frame has no depth in pixel x, y, which should see the voxel.
   /// @param measured_share  pixels with depth, of those within some 3 cm round it
+  /// @param beside_nearer   whether any of those is nearer than the voxel: it may be in that thing's shadow
   /// @param has_colour      whether the voxel is one of those whose colour is looked at
   void unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera, float measured_share,
-                  bool has_colour, AbsenceVotes& votes) const;
+                  bool beside_nearer, bool has_colour, AbsenceVotes& votes) const;
 
  private:
   void turn(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes::State state,
@@ -50,11 +52,10 @@ class AbsenceLooks {
   Eigen::Vector3f K_t_colour_depth_ = Eigen::Vector3f::Zero();
 };
 
-/// A voxel that may be absent: twice as often gone as seen; or only connected to such ones if it is.
-struct AbsenceCandidate {
+/// A voxel and where its votes stand.
+struct VotedVoxel {
   VoxelIndex voxel = VoxelIndex::Zero();
-  std::uint32_t position = 0;  ///< whatever the caller knows it by
-  AbsenceVotes votes;
+  std::uint32_t position = 0;
 };
 
 /// Whether a voxel that was seen so often is gone so often that it may be the core of what moved on.
@@ -63,12 +64,12 @@ bool may_be_absent(const AbsenceVotes& votes, int seen);
 bool may_go_along(const AbsenceVotes& votes, int seen);
 
 /// Of the voxels that may be absent, those of groups that hang together, have at least so many voxels, and
-/// changed their colour when they turned from measured to gone or back.
-std::vector<AbsenceCandidate> find_absent(std::span<const AbsenceCandidate> candidates,
-                                          double min_group_voxels);
+/// changed their colour when they turned from measured to gone or back. `votes` is by their position.
+std::vector<VotedVoxel> find_absent(std::span<const VotedVoxel> candidates,
+                                    std::span<const AbsenceVotes> votes, double min_group_voxels);
 
-/// The positions of all that hang together with the absent: those themselves, and what goes along.
-std::vector<std::uint32_t> spread_absence(std::span<const AbsenceCandidate> absent,
-                                          std::span<const AbsenceCandidate> going_along);
+/// The cores, and all that hang together with them over voxels that go along, so many from one to the next.
+std::vector<VotedVoxel> spread(std::vector<VotedVoxel> cores, std::span<const VotedVoxel> going_along,
+                               int max_steps = std::numeric_limits<int>::max());
 
 }  // namespace roomradar

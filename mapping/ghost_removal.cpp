@@ -58,7 +58,7 @@ std::int64_t remove_ghosts(FrameSource& source, std::span<const FusedFrame> fuse
   // Out with it, and with all samples that it may have spoiled.
   const GhostZone zone = times.timed("ghosts", [&] { return GhostZone(verdicts, map.resolution_m()); });
   times.timed("ghosts", [&] {
-    map.revise_samples([&](const SurfaceSample& sample) { return zone.fate_of(sample.voxel); });
+    map.revise_samples([&](const SurfaceSample& sample) { return zone.fate_of(sample); });
   });
 
   // What is there without it?

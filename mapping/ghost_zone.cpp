@@ -104,12 +104,15 @@ const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {
   return found == marks_.end() ? nullptr : &found->second;
 }
 
-SampleFate GhostZone::fate_of(const VoxelIndex& voxel) const {
-  const Marks* marks = marks_of(voxel);
+SampleFate GhostZone::fate_of(const SurfaceSample& sample) const {
+  const Marks* marks = marks_of(sample.voxel);
   if (!marks) return SampleFate::kKeep;
-  if (marks->ghost.test(offset_of(voxel))) return SampleFate::kFree;
-  if (marks->absent.test(offset_of(voxel))) return SampleFate::kUnknown;
-  return marks->cells.test(cell_of(voxel)) ? SampleFate::kForget : SampleFate::kKeep;
+  const std::size_t offset = offset_of(sample.voxel);
+  if (marks->ghost.test(offset)) return SampleFate::kFree;
+  if (marks->absent.test(offset)) return SampleFate::kUnknown;
+  if (!(sample.weight > 0.0F) && marks->near_ghost.test(offset) && !marks->near_still.test(offset))
+    return SampleFate::kUnknown;
+  return marks->cells.test(cell_of(sample.voxel)) ? SampleFate::kForget : SampleFate::kKeep;
 }
 
 bool GhostZone::in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const {

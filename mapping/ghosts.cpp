@@ -22,6 +22,11 @@ constexpr float kNearest_m = 0.1F;  // nothing is projected from nearer to the c
 constexpr float kTooNear_m = 0.8F;
 constexpr int kHiddenCell_px = 8;  // a voxel of a centimetre at that distance
 
+// What hangs together with something that moved on, and is no farther from it, stays only if more looks saw
+// it.
+constexpr int kHardlySeen = 3;
+constexpr double kHardlySeenReach_m = 0.1;
+
 constexpr std::size_t kEveryColour =
     4;  // of so many voxels one looks at its colour: it is a group's that counts
 
@@ -46,7 +51,7 @@ Eigen::Vector3i in_brick(std::uint16_t offset) {
 }
 
 // For each voxel, how many hang together with it, itself among them: those in cells of 4^3 voxels that touch.
-std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) {
+std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) {
   const auto cell_of = [](const VoxelIndex& voxel) -> VoxelIndex {
     return voxel.unaryExpr([](int v) { return v >> 2; });
   };
@@ -57,7 +62,8 @@ std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) 
   };
   std::vector<Cell> cells;
   std::unordered_map<std::uint64_t, std::size_t> position;
-  for (const VoxelIndex& voxel : voxels) {
+  for (const VotedVoxel& one : voxels) {
+    const VoxelIndex& voxel = one.voxel;
     const auto [found, is_new] = position.try_emplace(cell_code(cell_of(voxel)), cells.size());
     if (is_new) cells.push_back({cell_of(voxel)});
     ++cells[found->second].voxels;
@@ -83,8 +89,8 @@ std::vector<std::size_t> voxels_together(const std::vector<VoxelIndex>& voxels) 
   }
   std::vector<std::size_t> together;
   together.reserve(voxels.size());
-  for (const VoxelIndex& voxel : voxels)
-    together.push_back(cells[position.at(cell_code(cell_of(voxel)))].together);
+  for (const VotedVoxel& one : voxels)
+    together.push_back(cells[position.at(cell_code(cell_of(one.voxel)))].together);
   return together;
 }
 
@@ -199,15 +205,18 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
       return window_depth(windows_, x, y, radius_px);
     };
     const bool has_colour = i % kEveryColour == 0;
-    if (!(measured_m > 0.0F)) {
-      if (!is_hidden[cell_at(x / kHiddenCell_px, y / kHiddenCell_px)])
-        absence_looks_.unmeasured(frame, x, y, p_camera, window_at().measured_share, has_colour, absence_[i]);
-      return;
-    }
     const auto margin_m = [this](float depth) {
       return std::max(
           {config_.margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
     };
+    if (!(measured_m > 0.0F)) {
+      if (is_hidden[cell_at(x / kHiddenCell_px, y / kHiddenCell_px)]) return;
+      const WindowDepth window = window_at();
+      const bool beside_nearer = window.nearest_m < z - margin_m(z);
+      absence_looks_.unmeasured(frame, x, y, p_camera, window.measured_share, beside_nearer, has_colour,
+                                absence_[i]);
+      return;
+    }
     if (std::abs(measured_m - z) <= margin_m(measured_m)) {
       ++votes.seen;
       if (has_colour) absence_looks_.measured(frame, p_camera, absence_[i]);
@@ -218,59 +227,72 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
     if (window.nearest_m - z > margin_m(window.nearest_m) &&
         window.measured_share >= config_.min_measured_share)
       ++votes.through;
+    else if (measured_m - z > margin_m(measured_m))
+      ++votes.glimpsed;
   });
 }
 
-std::vector<bool> GhostVotes::find_absent() const {
-  std::vector<bool> is_absent(votes_.size(), false);
-  const auto candidates = [this](bool (*may_be)(const AbsenceVotes&, int)) {
-    std::vector<AbsenceCandidate> found;
+bool GhostVotes::is_share(int part, int others) const {
+  return part > 0 &&
+         static_cast<float>(part) >= static_cast<float>(part + others) * config_.min_through_share;
+}
+
+std::vector<GhostVotes::Fate> GhostVotes::fates() const {
+  std::vector<Fate> fates(votes_.size(), Fate::kStill);
+  const auto those = [this](const auto& are_such) {
+    std::vector<VotedVoxel> found;
     std::uint32_t next = 0;
     for (const Brick& brick : bricks_)
       for (; next < brick.end; ++next)
-        if (may_be(absence_[next], votes_[next].seen))
-          found.push_back({brick.first + in_brick(votes_[next].offset), next, absence_[next]});
+        if (are_such(votes_[next], absence_[next]))
+          found.push_back({brick.first + in_brick(votes_[next].offset), next});
     return found;
   };
   const double edge_voxels = static_cast<double>(config_.min_extent_m) / resolution_m_;
-  const auto absent = roomradar::find_absent(candidates(may_be_absent), 2.0 * edge_voxels * edge_voxels);
-  if (absent.empty()) return is_absent;
-  for (const std::uint32_t position : spread_absence(absent, candidates(may_go_along)))
-    is_absent[position] = true;
-  return is_absent;
+  const double min_voxels = 2.0 * edge_voxels * edge_voxels;
+
+  // Enough evidence, and enough of them together.
+  const auto may_be_gone = those(
+      [](const Votes& votes, const AbsenceVotes& absence) { return may_be_absent(absence, votes.seen); });
+  const auto seen_through = those([this](const Votes& votes, const AbsenceVotes&) {
+    return votes.through >= config_.min_through && is_share(votes.through, votes.seen);
+  });
+  std::vector<VotedVoxel> moved_on = find_absent(may_be_gone, absence_, min_voxels);
+  const std::vector<std::size_t> together = voxels_together(seen_through);
+  for (std::size_t i = 0; i < seen_through.size(); ++i)
+    if (static_cast<double>(together[i]) >= min_voxels) moved_on.push_back(seen_through[i]);
+  if (moved_on.empty()) return fates;
+
+  // What hangs together with those goes along on less, and what was hardly seen if it is near.
+  const auto going_along = those([this](const Votes& votes, const AbsenceVotes& absence) {
+    return is_share(votes.through + votes.glimpsed, votes.seen) || may_go_along(absence, votes.seen);
+  });
+  const auto hardly_seen =
+      those([](const Votes& votes, const AbsenceVotes&) { return votes.seen <= kHardlySeen; });
+  const int hardly_seen_steps = static_cast<int>(std::lround(kHardlySeenReach_m / resolution_m_));
+  moved_on = spread(std::move(moved_on), going_along);
+  moved_on = spread(std::move(moved_on), hardly_seen, hardly_seen_steps);
+  for (const VotedVoxel& one : moved_on) {
+    const Votes& votes = votes_[one.position];
+    fates[one.position] = votes.through + votes.glimpsed > 0 ? Fate::kGhost : Fate::kAbsent;
+  }
+  return fates;
 }
 
 GhostVotes::Verdicts GhostVotes::verdicts() const {
-  const std::vector<bool> is_absent = find_absent();
-  std::vector<VoxelIndex> seen_through;
-  std::vector<std::size_t> position;
+  const std::vector<Fate> fates = this->fates();
   Verdicts verdicts;
   std::size_t next = 0;
-  for (const Brick& brick : bricks_) {
+  for (const Brick& brick : bricks_)
     for (; next < brick.end; ++next) {
-      const Votes& votes = votes_[next];
-      const VoxelIndex voxel = brick.first + in_brick(votes.offset);
-      const auto share = static_cast<float>(votes.seen + votes.through) * config_.min_through_share;
-      if (votes.through >= config_.min_through && static_cast<float>(votes.through) >= share) {
-        seen_through.push_back(voxel);
-        position.push_back(next);
-      } else if (is_absent[next]) {
+      const VoxelIndex voxel = brick.first + in_brick(votes_[next].offset);
+      if (fates[next] == Fate::kGhost)
+        verdicts.ghosts.push_back(voxel);
+      else if (fates[next] == Fate::kAbsent)
         verdicts.absent.push_back(voxel);
-      } else if (votes.occupied != 0) {
+      else if (votes_[next].occupied != 0)
         verdicts.still.push_back(voxel);
-      }
     }
-  }
-  const double edge_voxels = static_cast<double>(config_.min_extent_m) / resolution_m_;
-  const std::vector<std::size_t> together = voxels_together(seen_through);
-  for (std::size_t i = 0; i < seen_through.size(); ++i) {
-    if (static_cast<double>(together[i]) >= 2.0 * edge_voxels * edge_voxels)
-      verdicts.ghosts.push_back(seen_through[i]);
-    else if (is_absent[position[i]])
-      verdicts.absent.push_back(seen_through[i]);
-    else if (votes_[position[i]].occupied != 0)
-      verdicts.still.push_back(seen_through[i]);
-  }
   return verdicts;
 }
 

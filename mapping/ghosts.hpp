@@ -47,27 +47,32 @@ class GhostVotes {
   /// Adds one frame's votes. The frame is one that was fused at this pose.
   void look(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
+  /// What moved on are voxels with enough evidence that are enough together, what hangs together with them on
+  /// less evidence, and what hangs together with those and was hardly seen at all.
   struct Verdicts {
-    std::vector<VoxelIndex> ghosts;  ///< seen through often enough, and enough of them together
-    std::vector<VoxelIndex> absent;  ///< gone, with nothing measured behind
+    std::vector<VoxelIndex> ghosts;  ///< of that, what is seen through
+    std::vector<VoxelIndex> absent;  ///< of that, what is gone with nothing measured behind
     std::vector<VoxelIndex> still;   ///< other surface that is occupied
   };
   /// Each in the octree's order.
   [[nodiscard]] Verdicts verdicts() const;
 
  private:
-  [[nodiscard]] std::vector<bool> find_absent() const;  // by the votes' order
-
+  enum class Fate : std::uint8_t { kStill, kGhost, kAbsent };
+  [[nodiscard]] std::vector<Fate> fates() const;  // in the votes' order
   struct Votes {
     std::uint16_t offset : 9 = 0;  // in its brick
     std::uint16_t occupied : 1 = 0;
     std::uint16_t seen = 0;
     std::uint16_t through = 0;
+    std::uint16_t glimpsed = 0;  // its own pixel sees through it, but not all of the window
   };
   struct Brick {
     VoxelIndex first = VoxelIndex::Zero();
     std::size_t end = 0;  // of its votes; they begin where those of the brick before end
   };
+  // Whether so many of all of them are min_through_share or more, and one at least.
+  [[nodiscard]] bool is_share(int part, int others) const;
 
   double resolution_m_;
   GhostConfig config_;

@@ -133,7 +133,8 @@ Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, 
   if (place.depth == kLeafDepth - 1)
     return change_leaves(tree, node, [&](LeafBlock& block) {
       for (unsigned i = 0; i < 8; ++i) {
-        if (block.weight[i] == 0 || !range.holds(place.child(i).key)) continue;
+        const bool is_surface = block.weight[i] != 0 || block.log_odds[i] > 0;
+        if (!is_surface || !range.holds(place.child(i).key)) continue;
         const SampleFate fate = decide(sample_of(tree, block, i, place.child(i).key));
         if (fate == SampleFate::kKeep) continue;
         forget_sample(block, i);

@@ -1,8 +1,8 @@
 // ghost_bench.cpp: what is left of people and hands in the map after a simulated prescan.
 //
-// usage: ghost_bench [--resolution M] [--poses recorded|tracked] [--frames N] [--width PX] [--keep-ghosts]
-//                    [--json FILE] [CASE...]            CASE: one of those below, all of them if none is
-//                    named
+// usage: ghost_bench [--resolution M] [--poses recorded|tracked] [--frames N] [--width PX] [--seed N]
+//                    [--keep-ghosts] [--json FILE] [CASE...]    CASE: one of those below, all of them if
+//                    none is named
 // Each case is scanned twice, with the one who moves and without, camera and noise alike. An occupied leaf is
 // hers if the scan without her has none in it or beside it, it lies farther from the room's true surface than
 // the noise explains (half a leaf's diagonal and four standard deviations of the depth at the range from
@@ -38,6 +38,7 @@ struct Settings {
   PoseOrigin poses = PoseOrigin::kRecorded;
   std::int64_t frames = 300;
   int width_px = 320;
+  int seed = 1;  // of the camera's path, her walk and the noise
   bool keep_ghosts = false;
   std::string json;
   std::vector<std::string> cases;
@@ -210,8 +211,8 @@ class Passage {
 
 nlohmann::json bench(const Case& chosen, const Settings& settings) {
   SimOptions options =
-      parse_sim_spec(std::string(chosen.options) + "&frames=" + std::to_string(settings.frames) +
-                     "&width=" + std::to_string(settings.width_px));
+      parse_sim_spec(std::string(chosen.options) + "&frames=" + std::to_string(settings.frames) + "&width=" +
+                     std::to_string(settings.width_px) + "&seed=" + std::to_string(settings.seed));
   const Scan with_her = scan(options, chosen.glass, settings);
   const Passage passage(options);
   const Room room = make_room(options.room);
@@ -242,6 +243,7 @@ nlohmann::json bench(const Case& chosen, const Settings& settings) {
   };
   const nlohmann::json row = {{"case", chosen.name},
                               {"poses", to_string(settings.poses)},
+                              {"seed", settings.seed},
                               {"resolution_m", leaf_m},
                               {"frames_fused", with_her.counts.frames_fused},
                               {"occupied_leaves", with_her.occupied.size()},
@@ -280,6 +282,8 @@ Settings parse(int argc, char** argv) {
       settings.frames = std::stoll(value());
     } else if (option == "--width") {
       settings.width_px = std::stoi(value());
+    } else if (option == "--seed") {
+      settings.seed = std::stoi(value());
     } else if (option == "--keep-ghosts") {
       settings.keep_ghosts = true;
     } else if (option == "--json") {

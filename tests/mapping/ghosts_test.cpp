@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mapping/ghost_removal.hpp"
+#include "mapping/ghost_zone.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
 #include "tests/support/exact_depth.hpp"
@@ -128,8 +129,8 @@ TEST(Ghosts, ABoxThatWasThereForHalfOfTheFramesVanishesAndTheWallBehindIsThere) 
   });
   const Scan scanned = scan(FrameList(frames));
   const auto vertices = surface_of(scanned.map);
-  EXPECT_EQ(count_before_wall(vertices, 0.03), 0);
-  EXPECT_EQ(occupied_before_wall(scanned.map, 0.04), 0);
+  EXPECT_EQ(count_before_wall(vertices, 0.02), 0);
+  EXPECT_EQ(occupied_before_wall(scanned.map, 0.03), 0);
   // The wall where the box hid it: a vertex for each voxel, 1 cm off at most.
   const auto behind = std::count_if(vertices.begin(), vertices.end(), [](const auto& v) {
     return std::abs(v.x()) < 0.08 && std::abs(v.z()) < 0.08 && std::abs(v.y() - 2.0) < 0.01;
@@ -144,6 +145,68 @@ TEST(Ghosts, WhatCameLaterAndStayedForHalfOfTheFramesVanishesToo) {
   const Scan scanned = scan(FrameList(frames));
   EXPECT_EQ(count_before_wall(surface_of(scanned.map), 0.03), 0);
   EXPECT_EQ(scanned.map.occupancy_at({0.0, 1.61, 0.0}), Occupancy::kFree);
+}
+
+// A box in the last frames. Before it came, something nearer hid from most frames what is behind its left
+// part.
+std::vector<Frame> record_box_half_hidden_before(int frames_with_box, std::initializer_list<int> unhidden) {
+  const Scene box = before_wall({-0.08, 1.6, -0.2}, {0.2, 1.8, 0.2});
+  const Scene hider = test::nearest_of(
+      wall(), test::box({Eigen::Vector3d(-0.6, 0.9, -0.4), Eigen::Vector3d(0.06, 1.0, 0.4)}));
+  return record(40, [&, frames_with_box](int i) {
+    if (i >= 40 - frames_with_box) return box;
+    return std::find(unhidden.begin(), unhidden.end(), i) != unhidden.end() ? wall() : hider;
+  });
+}
+std::int64_t occupied_of_its_left_face(const StaticMap& map) {
+  std::int64_t count = 0;
+  for (double x = -0.07; x < -0.04; x += kResolution_m)
+    for (double z = -0.15; z < 0.15; z += kResolution_m)
+      count += map.occupancy_at({x, 1.61, z}) == Occupancy::kOccupied;
+  return count;
+}
+
+TEST(Ghosts, WhatHangsTogetherWithAGhostGoesOnLessEvidence) {
+  // Two frames see through the left part: too few by themselves.
+  const Scan scanned = scan(FrameList(record_box_half_hidden_before(10, {10, 20})));
+  EXPECT_EQ(occupied_of_its_left_face(scanned.map), 0);
+}
+
+TEST(Ghosts, WhatHangsTogetherWithAGhostAndWasHardlySeenGoes) {
+  EXPECT_EQ(occupied_of_its_left_face(scan(FrameList(record_box_half_hidden_before(3, {}))).map), 0);
+}
+
+TEST(Ghosts, WhatHangsTogetherWithAGhostAndWasOftenSeenStays) {
+  EXPECT_GE(occupied_of_its_left_face(scan(FrameList(record_box_half_hidden_before(12, {}))).map), 10);
+}
+
+TEST(Ghosts, OccupiedVoxelsWithoutASampleGoWithWhatTheyTouch) {
+  GhostVotes::Verdicts verdicts;
+  verdicts.absent = {{0, 0, 0}};
+  verdicts.still = {{5, 0, 0}};
+  const GhostZone zone(verdicts, kResolution_m);
+  const auto fate_at = [&](const VoxelIndex& voxel, float weight) {
+    SurfaceSample sample;
+    sample.voxel = voxel;
+    sample.occupancy = Occupancy::kOccupied;
+    sample.weight = weight;
+    return zone.fate_of(sample);
+  };
+  EXPECT_EQ(fate_at({1, 1, 0}, 0.0F), SampleFate::kUnknown);
+  EXPECT_EQ(fate_at({1, 1, 0}, 1.0F), SampleFate::kForget);  // to be measured anew
+  EXPECT_EQ(fate_at({3, 0, 0}, 0.0F), SampleFate::kForget);  // near what is still there
+  EXPECT_EQ(fate_at({40, 0, 0}, 0.0F), SampleFate::kKeep);
+}
+
+TEST(Ghosts, NoDepthBesideSomethingNearerMayBeItsShadow) {
+  const Frame frame = exact_frame(wall(), kCamera, looking_at({0, 0, 0}, {0, 2, 0}));
+  AbsenceLooks looks;
+  looks.begin(frame, Eigen::Isometry3d::Identity());
+  AbsenceVotes votes;
+  looks.unmeasured(frame, 80, 60, {0.0F, 0.0F, 2.0F}, 0.3F, /*beside_nearer=*/true, false, votes);
+  EXPECT_EQ(votes.unmeasured, 0);
+  looks.unmeasured(frame, 80, 60, {0.0F, 0.0F, 2.0F}, 0.3F, /*beside_nearer=*/false, false, votes);
+  EXPECT_EQ(votes.unmeasured, 1);
 }
 
 TEST(Ghosts, AThinPoleStaysThoughThePosesAreACentimetreOff) {
