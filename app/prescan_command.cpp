@@ -1,4 +1,6 @@
 // prescan_command.cpp: roomradar prescan: scan a room once and keep it.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -191,6 +193,11 @@ int run(const PrescanCommand& command) {
   announce_memory(*source, config, report);
 
   std::unique_ptr<Progress> progress;
+  if (start.checkpoints)
+    start.checkpoints->tell_failure([](const std::string& sentence) {
+      // On a terminal the line of the progress is not ended yet.
+      std::fprintf(stderr, "%sroomradar: %s\n", isatty(STDERR_FILENO) != 0 ? "\n" : "", sentence.c_str());
+    });
   std::string stage_shown;
   const auto show = [&](const std::string& stage, const std::string& note) {
     if (stage != stage_shown) {

@@ -251,6 +251,12 @@ int run(const RunCommand& command) {
       }
       if (quit) break;
       const FrameResult result = session.step(frame, report.times);
+      if (result.status == FrameStatus::kBadFrame) {
+        ++totals.skipped;
+        totals.last_fault = command.source + ": frame " + std::to_string(frame.index) + ": " +
+                            std::string(result.fault) + "; it is passed over";
+        continue;
+      }
       totals.add(result);
       if (video) video->write(session.picture());
       if (!command.pictures.empty() && run_frame % command.pictures_every == 0)

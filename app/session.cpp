@@ -9,6 +9,7 @@
 
 #include "app/placement.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -48,6 +49,12 @@ void Session::make_unknown_solid(StageTimes& times) {
 }
 
 FrameResult Session::step(const Frame& frame, StageTimes& times) {
+  if (const std::string_view fault = fault_of(frame); !fault.empty()) {
+    FrameResult bad;
+    bad.status = FrameStatus::kBadFrame;
+    bad.fault = fault;
+    return bad;
+  }
   FrameResult result = times.timed("frame", [&] { return pass_through(frame, times); });
   if (config_.measure_penetration && result.status == FrameStatus::kDone)
     result.deepest_penetration_m = penetration_m();

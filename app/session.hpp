@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/compose.hpp"
@@ -41,10 +42,12 @@ struct SessionConfig {
 enum class FrameStatus {
   kDone,
   kNotLocated,  ///< the camera was not found in the room: objects hold still, the picture is the camera's own
+  kBadFrame,    ///< its images do not fit its cameras: nothing changes, the picture neither
 };
 
 struct FrameResult {
   FrameStatus status = FrameStatus::kNotLocated;
+  std::string_view fault;  ///< of a bad frame, as fault_of() says it
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< only if done
   TrackStatus tracking = TrackStatus::kDiverged;
   ForegroundCounts foreground;

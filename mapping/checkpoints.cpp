@@ -229,15 +229,17 @@ void Checkpoints::write(const std::string& stage, const WriteFiles& write_files)
   try {
     ensure_folder();
   } catch (const Error&) {
-    ++failures_;
+    fail_to_write();
     return;
   }
   const pid_t parent = ::getpid();
   writer_ = ::fork();
   if (writer_ > 0) return;
   if (writer_ < 0) {  // no memory for a child: then the work has to wait
-    const bool written = try_to_write(stage, write_files);
-    ++(written ? last_number_ : failures_);
+    if (try_to_write(stage, write_files))
+      ++last_number_;
+    else
+      fail_to_write();
     return;
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -294,7 +296,14 @@ void Checkpoints::reap(bool wait) {
   if (ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0)
     ++last_number_;
   else
-    ++failures_;
+    fail_to_write();
+}
+
+void Checkpoints::fail_to_write() {
+  if (++failures_ > 1 || !tell_) return;
+  tell_(folder_.string() +
+        ": a checkpoint could not be written; is the disk full? The scan goes on, and if " +
+        "it is cut off " + (last_number_ > 0 ? "it resumes from the checkpoint before" : "it begins anew"));
 }
 
 bool Checkpoints::has_any() {

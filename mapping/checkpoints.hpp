@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace roomradar {
@@ -53,7 +54,7 @@ class Checkpoints {
   /// Since the last one was begun, or this object made.
   [[nodiscard]] double since_last_s() const;
   /// Writes a checkpoint beside the work; takes some milliseconds itself. A failure (disk full) leaves the
-  /// one before, and is counted in failures().
+  /// one before, is counted in failures(), and the first one is told.
   void write(const std::string& stage, const WriteFiles& write_files);
   /// Whether there is one to go on from, after the one that is being written.
   [[nodiscard]] bool has_any();
@@ -66,9 +67,12 @@ class Checkpoints {
   /// One sentence for each damaged checkpoint that resume() passed over.
   [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
   [[nodiscard]] std::int64_t failures() const { return failures_; }
+  /// Whom to tell, in one sentence, as soon as a checkpoint could not be written; nobody by default.
+  void tell_failure(std::function<void(const std::string& sentence)> tell) { tell_ = std::move(tell); }
 
  private:
   void take_lock();
+  void fail_to_write();
   void reap(bool wait);
   bool try_to_write(const std::string& stage, const WriteFiles& write_files) const;
   void write_numbered(std::int64_t number, const std::string& stage, const WriteFiles& write_files) const;
@@ -82,6 +86,7 @@ class Checkpoints {
   int lock_ = -1;
   pid_t writer_ = -1;
   std::int64_t failures_ = 0;
+  std::function<void(const std::string& sentence)> tell_;
   std::vector<std::string> faults_;
 };
 

@@ -13,6 +13,7 @@
 #include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -134,7 +135,7 @@ GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
 void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   const DepthImage& depth_m = frame.depth_m;
   const Intrinsics& camera = frame.depth_camera;
-  if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px) return;
+  if (!depth_fault_of(frame).empty()) return;
   build_windows(depth_m, windows_);
   absence_looks_.begin(frame, T_world_camera);
 

@@ -9,6 +9,7 @@
 
 #include "mapping/static_map_octree.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -187,16 +188,6 @@ double checked_resolution(double resolution_m) {
   return resolution_m;
 }
 
-bool is_usable(const Frame& frame) {
-  const Intrinsics& camera = frame.depth_camera;
-  return camera.width_px == frame.depth_m.width && camera.height_px == frame.depth_m.height &&
-         frame.depth_m.pixels.size() ==
-             static_cast<std::size_t>(frame.depth_m.width) * static_cast<std::size_t>(frame.depth_m.height) &&
-         !frame.depth_m.empty() && std::isfinite(camera.fx_px) && std::isfinite(camera.fy_px) &&
-         camera.fx_px > 0.0 && camera.fy_px > 0.0 && std::isfinite(camera.cx_px) &&
-         std::isfinite(camera.cy_px);
-}
-
 bool is_rigid(const Eigen::Isometry3d& T) {
   const Eigen::Matrix3d R = T.linear();
   return T.matrix().allFinite() &&
@@ -217,7 +208,7 @@ StaticMap::StaticMap(StaticMap&&) noexcept = default;
 StaticMap& StaticMap::operator=(StaticMap&&) noexcept = default;
 
 FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  if (!is_usable(frame)) return FuseStatus::kInvalidFrame;
+  if (!depth_fault_of(frame).empty()) return FuseStatus::kInvalidFrame;
   if (!is_rigid(T_world_camera)) return FuseStatus::kInvalidPose;
   Octree& o = *octree_;
   switch (collect_hits(frame, T_world_camera, resolution_m(), o.config, o.scratch)) {

@@ -98,8 +98,7 @@ class StaticMap {
   /// Throws Error if the voxel is past the octree's reach, or a number is not finite or the weight not > 0.
   void add_evidence(const SurfaceSample& sample);
 
-  /// Asks for the fate of each voxel that holds a signed distance, in the same order, and of those occupied
-  /// ones that hold none: their weight is 0.
+  /// Asks for the fate of each voxel with a signed distance, or occupied without (weight 0), in that order.
   void revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide);
   /// The same for the voxels whose centre lies in a box.
   void revise_samples(const Eigen::AlignedBox3d& box_world,

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/validity.hpp"
 #include "radar/draw_positions.hpp"
 #include "radar/gl_program.hpp"
 
@@ -18,13 +19,6 @@ namespace {
 constexpr const char* kFragmentShader = R"(#version 450 core
 void main() {}
 )";
-
-bool is_usable(const Intrinsics& camera) {
-  return camera.width_px > 0 && camera.height_px > 0 && camera.width_px <= 16384 &&
-         camera.height_px <= 16384 && std::isfinite(camera.fx_px) && camera.fx_px > 0 &&
-         std::isfinite(camera.fy_px) && camera.fy_px > 0 && std::isfinite(camera.cx_px) &&
-         std::isfinite(camera.cy_px);
-}
 
 }  // namespace
 
@@ -66,7 +60,7 @@ std::size_t DepthPass::render(std::span<const MeshInstance> scene, const Intrins
 std::size_t DepthPass::render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                               const Eigen::Isometry3d& T_world_camera, const PixelRect& rect,
                               DepthImage& depth_m) {
-  if (!is_usable(camera)) {
+  if (!is_valid(camera)) {
     depth_m.resize(0, 0);
     return 0;
   }

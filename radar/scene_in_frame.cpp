@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapping/types/validity.hpp"
 #include "radar/scene_boxes.hpp"
 
 namespace roomradar {
@@ -19,13 +20,11 @@ bool has_surface(const SceneTree& s) { return s.instance.tree != nullptr && !s.i
 bool has_surface(const SceneDepth& s) { return s.depth_m != nullptr && !s.depth_m->empty(); }
 
 bool is_usable(const SceneDepth& s) {
-  const Intrinsics& c = s.camera;
-  const bool has_camera = std::isfinite(c.fx_px) && c.fx_px > 0.0 && std::isfinite(c.fy_px) &&
-                          c.fy_px > 0.0 && std::isfinite(c.cx_px) && std::isfinite(c.cy_px);
   const bool has_mask =
       s.mask == nullptr || (s.mask->width == s.depth_m->width && s.mask->height == s.depth_m->height);
   const bool has_rule = s.max_jump_m >= 0.0F && s.max_jump_slope >= 0.0F;  // NaN is no rule either
-  return has_camera && has_mask && has_rule && s.stride_px >= 1 && s.T_world_camera.matrix().allFinite();
+  return can_project(s.camera) && has_mask && has_rule && s.stride_px >= 1 &&
+         s.T_world_camera.matrix().allFinite();
 }
 
 }  // namespace

@@ -200,6 +200,22 @@ TEST(Session, UnknownSpaceIsNotSolidWithoutTheMapsSurfaces) {
   EXPECT_THROW(session.make_unknown_solid(times), Error);
 }
 
+TEST(Session, AFrameThatDoesNotFitItsCameraIsPassedOver) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame small = depth_only(0, kAtTheFloor);
+  small.depth_m.resize(80, 60, 2.0F);
+  const FrameResult bad = session.step(small, times);
+  EXPECT_EQ(bad.status, FrameStatus::kBadFrame);
+  EXPECT_NE(bad.fault.find("differ in size"), std::string_view::npos) << bad.fault;
+  Frame coloured = depth_only(1, kAtTheFloor);
+  coloured.colour_camera = kCamera;
+  coloured.colour.resize(80, 60);
+  EXPECT_EQ(session.step(coloured, times).status, FrameStatus::kBadFrame);
+  EXPECT_EQ(session.step(depth_only(2, kAtTheFloor), times).status, FrameStatus::kDone);
+}
+
 TEST(VirtualObject, FootprintReachesToACorner) {
   GlContext context;
   Mesh plate;

@@ -112,13 +112,19 @@ TEST_F(CheckpointsTest, TheStateIsThatOfTheMomentWhateverTheWorkDoesMeanwhile) {
 TEST_F(CheckpointsTest, AWriterThatFailsLeavesTheOneBefore) {
   write(1);
   Checkpoints checkpoints(folder(), kScan, 0.0);
+  std::vector<std::string> told;
+  checkpoints.tell_failure([&](const std::string& sentence) { told.push_back(sentence); });
   ASSERT_TRUE(checkpoints.resume());
-  checkpoints.write("track", [](const fs::path& into, const fs::path&) {
-    std::ofstream(into / "state") << "half";
-    throw std::runtime_error("disk full");
-  });
-  EXPECT_TRUE(checkpoints.is_due(/*wait=*/true));
-  EXPECT_EQ(checkpoints.failures(), 1);
+  for (int failures = 1; failures <= 2; ++failures) {
+    checkpoints.write("track", [](const fs::path& into, const fs::path&) {
+      std::ofstream(into / "state") << "half";
+      throw std::runtime_error("disk full");
+    });
+    EXPECT_TRUE(checkpoints.is_due(/*wait=*/true));
+    EXPECT_EQ(checkpoints.failures(), failures);
+    ASSERT_EQ(told.size(), 1U);  // at once, and once
+  }
+  EXPECT_NE(told[0].find("the checkpoint before"), std::string::npos) << told[0];
   const auto newest = checkpoints.resume();
   ASSERT_TRUE(newest);
   EXPECT_EQ(text_of(newest->folder / "state"), "1");

@@ -7,6 +7,7 @@
 #include "mapping/types/error.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/stage_times.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -48,6 +49,37 @@ TEST(Intrinsics, WhatCannotBeACameraIsNamed) {
   bad = kKinect;
   bad.cy_px = std::numeric_limits<double>::infinity();
   EXPECT_NE(message(bad).find("cy_px"), std::string::npos);
+  EXPECT_FALSE(is_valid(bad));
+  EXPECT_TRUE(is_valid(kKinect));
+}
+
+TEST(Intrinsics, ProjectionAsksNothingOfTheImagesSize) {
+  Intrinsics camera = kKinect;
+  camera.width_px = 0;
+  camera.cx_px = -5e3;
+  EXPECT_TRUE(can_project(camera));
+  EXPECT_FALSE(is_valid(camera));
+  camera.fy_px = 0.0;
+  EXPECT_FALSE(can_project(camera));
+}
+
+TEST(Frame, ImagesThatDoNotFitTheirCamerasAreNamed) {
+  Frame frame;
+  EXPECT_NE(fault_of(frame), "");
+  frame.depth_camera = kKinect;
+  frame.depth_m.resize(640, 480, 1.0F);
+  EXPECT_EQ(fault_of(frame), "");  // no colour is no fault
+  frame.depth_m.resize(320, 240, 1.0F);
+  EXPECT_EQ(fault_of(frame), "its depth image and its depth camera differ in size");
+  frame.depth_m.resize(640, 480, 1.0F);
+  frame.depth_m.pixels.pop_back();
+  EXPECT_NE(depth_fault_of(frame), "");
+  frame.depth_m.resize(640, 480, 1.0F);
+  frame.colour.resize(320, 240);
+  EXPECT_EQ(fault_of(frame), "its colour camera cannot be one");
+  frame.colour_camera = kKinect;
+  EXPECT_EQ(fault_of(frame), "its colour image and its colour camera differ in size");
+  EXPECT_EQ(depth_fault_of(frame), "");
 }
 
 TEST(DepthNoise, FollowsNguyenAndStaysFiniteAtTheEnds) {
