@@ -214,9 +214,14 @@ std::optional<Checkpoint> Checkpoints::resume() {
   return std::nullopt;
 }
 
-bool Checkpoints::is_due(bool wait) {
-  reap(wait);
+bool Checkpoints::is_due() {
+  reap(/*wait=*/false);
   return writer_ < 0 && since_last_s() >= every_s_.count();
+}
+
+bool Checkpoints::is_due_at_end() {
+  reap(/*wait=*/true);
+  return since_last_s() >= every_s_.count() / 3.0;
 }
 
 double Checkpoints::since_last_s() const {

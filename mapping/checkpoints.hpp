@@ -49,8 +49,10 @@ class Checkpoints {
   /// difference, or another process has it.
   std::optional<Checkpoint> resume();
 
-  /// Whether the time for a checkpoint has come and the last one is written, which it can wait for.
-  bool is_due(bool wait = false);
+  /// Whether the time for a checkpoint has come and the last one is written.
+  bool is_due();
+  /// Whether it has come at the end of a stage, where a third of the time is enough; waits for the last one.
+  bool is_due_at_end();
   /// Since the last one was begun, or this object made.
   [[nodiscard]] double since_last_s() const;
   /// Writes a checkpoint beside the work; takes some milliseconds itself. A failure (disk full) leaves the

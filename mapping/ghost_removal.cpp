@@ -1,9 +1,6 @@
 // ghost_removal.cpp: two more passes over the recording: find the ghosts, then look again at where they were.
 #include "mapping/ghost_removal.hpp"
 
-#include <algorithm>
-#include <optional>
-
 #include "mapping/ghost_zone.hpp"
 #include "mapping/types/error.hpp"
 
@@ -39,40 +36,47 @@ class ChosenFrames {
 
 }  // namespace
 
-std::int64_t remove_ghosts(FrameSource& source, std::span<const FusedFrame> fused, const GhostConfig& config,
-                           StaticMap& map, StageTimes& times,
-                           const std::function<void(const std::string& note)>& progress) {
+GhostRevision take_out_ghosts(FrameSource& source, std::span<const FusedFrame> fused,
+                              const GhostConfig& config, StaticMap& map, StageTimes& times,
+                              const GhostProgress& progress) {
   // What is seen through?
   GhostVotes votes(map, config);
   Frame frame;
   const std::size_t stride = 1 + (fused.size() - 1) / static_cast<std::size_t>(config.max_looks);
-  ChosenFrames first_pass(source, times);
+  ChosenFrames chosen(source, times);
   for (std::size_t i = 0; i < fused.size(); i += stride) {
-    if (!first_pass.read(fused[i], frame)) continue;
+    if (!chosen.read(fused[i], frame)) continue;
     times.timed("ghosts", [&] { votes.look(frame, fused[i].T_world_camera); });
     if (progress) progress("looked");
   }
-  const GhostVotes::Verdicts verdicts = votes.verdicts();
-  if (verdicts.ghosts.empty() && verdicts.absent.empty()) return 0;
 
   // Out with it, and with all samples that it may have spoiled.
-  const GhostZone zone = times.timed("ghosts", [&] { return GhostZone(verdicts, map.resolution_m()); });
+  GhostRevision revision;
   times.timed("ghosts", [&] {
+    revision.verdicts = votes.verdicts();
+    if (revision.voxels() == 0) return;
+    const GhostZone zone(revision.verdicts, map.resolution_m());
     map.revise_samples([&](const SurfaceSample& sample) { return zone.fate_of(sample); });
   });
+  return revision;
+}
 
-  // What is there without it?
-  ChosenFrames second_pass(source, times);
-  for (const FusedFrame& chosen : fused) {
-    if (!zone.in_view(chosen.depth_camera, chosen.T_world_camera)) continue;
-    if (!second_pass.read(chosen, frame)) continue;
+void look_again(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,
+                StaticMap& map, StageTimes& times, const GhostProgress& progress) {
+  if (revision.voxels() == 0) return;
+  const GhostZone zone =
+      times.timed("ghosts", [&] { return GhostZone(revision.verdicts, map.resolution_m()); });
+  Frame frame;
+  ChosenFrames chosen(source, times);
+  while (revision.next < fused.size()) {
+    const FusedFrame& one = fused[revision.next++];
+    if (!zone.in_view(one.depth_camera, one.T_world_camera) || !chosen.read(one, frame)) continue;
     times.timed("ghosts", [&] {
-      zone.mask(frame.depth_camera, chosen.T_world_camera, frame.depth_m);
-      map.fuse(frame, chosen.T_world_camera);
+      zone.mask(frame.depth_camera, one.T_world_camera, frame.depth_m);
+      map.fuse(frame, one.T_world_camera);
     });
     if (progress) progress("fused again");
   }
-  return static_cast<std::int64_t>(verdicts.ghosts.size() + verdicts.absent.size());
 }
 
 }  // namespace roomradar

@@ -61,11 +61,11 @@ bool is_full(const PrescanConfig& config, double needed_later_bytes) {
 }
 
 /// Writes the state beside the work when it is time; between two frames that is put off while the last one is
-/// being written.
+/// being written. At the end of a stage it is time sooner: what comes next may take seconds before it writes.
 template <typename Pass>
 void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, StageTimes& times,
           bool between_frames = true) {
-  if (!checkpoints || !checkpoints->is_due(/*wait=*/!between_frames)) return;
+  if (!checkpoints || !(between_frames ? checkpoints->is_due() : checkpoints->is_due_at_end())) return;
   times.timed("checkpoint", [&] {
     checkpoints->write(stage,
                        [&](const auto& into, const auto& previous) { write_state(pass, into, previous); });
@@ -269,8 +269,15 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
 
   // What of that moved on?
   if (config.remove_ghosts && !pass.ghost_voxels) {
-    const auto show = [&](const std::string& note) { work.show("ghosts", note); };
-    pass.ghost_voxels = remove_ghosts(source, pass.fused, config.ghosts, pass.octree, times, show);
+    if (!pass.revision)
+      pass.revision = take_out_ghosts(source, pass.fused, config.ghosts, pass.octree, times,
+                                      [&](const std::string& note) { work.show("ghosts", note); });
+    look_again(source, pass.fused, *pass.revision, pass.octree, times, [&](const std::string& note) {
+      work.show("ghosts", note);
+      keep(work.checkpoints, kFusingStage, pass, times);
+    });
+    pass.ghost_voxels = pass.revision->voxels();
+    pass.revision.reset();
     keep(work.checkpoints, kFusingStage, pass, times, /*between_frames=*/false);
   }
   map.octree = std::move(pass.octree);

@@ -5,6 +5,7 @@
 // (odometry_checkpoint.cpp), and in the second octree.ot and places.bin as in a map.
 #include "mapping/prescan_state.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include "mapping/binary_file.hpp"
@@ -60,6 +61,23 @@ void transfer(Archive& archive, FusedFrame& frame) {
   transfer(archive, frame.T_world_camera);
 }
 
+template <typename Archive>
+void transfer(Archive& archive, GhostRevision& revision) {
+  GhostVotes::Verdicts& verdicts = revision.verdicts;
+  for (std::vector<VoxelIndex>* voxels : {&verdicts.ghosts, &verdicts.absent, &verdicts.still}) {
+    transfer(archive, *voxels);
+    if constexpr (Archive::kReads) {
+      static constexpr int kReach = 32768;  // of an octree's keys
+      const auto is_in_reach = [](const VoxelIndex& v) {
+        return (v.array() >= -kReach).all() && (v.array() < kReach).all();
+      };
+      if (!std::all_of(voxels->begin(), voxels->end(), is_in_reach))
+        archive.fail("is damaged: a voxel is past the octree's reach");
+    }
+  }
+  transfer(archive, revision.next);
+}
+
 namespace {
 
 constexpr const char* kState = "state.bin";
@@ -67,7 +85,7 @@ constexpr const char* kOdometry = "odometry";
 constexpr const char* kOctree = "octree.ot";
 constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRPRSCAN";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 template <typename Archive>
 void transfer_state(Archive& archive, TrackingPass& pass) {
@@ -85,6 +103,7 @@ void transfer_state(Archive& archive, FusingPass& pass) {
   transfer(archive, pass.T_world_found);
   transfer(archive, pass.frames_read);
   transfer(archive, pass.fused);
+  transfer(archive, pass.revision);
   transfer(archive, pass.ghost_voxels);
 }
 

@@ -36,7 +36,8 @@ struct FusingPass {
   std::int64_t frames_read = 0;                                     ///< in this pass
   StaticMap octree{0.01};
   std::vector<FusedFrame> fused;
-  std::optional<std::int64_t> ghost_voxels;  ///< once they are out of the octree
+  std::optional<GhostRevision> revision;     ///< while the octree is put right where they were
+  std::optional<std::int64_t> ghost_voxels;  ///< once it is
 };
 
 inline constexpr const char* kTrackingStage = "track";

@@ -14,6 +14,7 @@
 #include "mapping/types/error.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roomradar {
 namespace {
@@ -76,7 +77,9 @@ Scan scan(FrameList source, double pose_noise_m = 0.0) {
     fused.push_back({position, frame.index, frame.depth_camera, T_world_camera});
   }
   StageTimes times;
-  scan.ghosts = remove_ghosts(source, fused, {}, scan.map, times);
+  GhostRevision revision = take_out_ghosts(source, fused, {}, scan.map, times);
+  look_again(source, fused, revision, scan.map, times);
+  scan.ghosts = revision.voxels();
   return scan;
 }
 
@@ -345,6 +348,40 @@ TEST(Ghosts, TheSameFramesGiveTheSameMapWhetherTheSourceCanSeekOrNot) {
     ASSERT_EQ(samples_a[i].distance_m, samples_b[i].distance_m);
     ASSERT_EQ(samples_a[i].weight, samples_b[i].weight);
   }
+}
+
+TEST(Ghosts, ASecondLookThatIsCutOffGoesOnToTheSameMap) {
+  FrameList source(record(30, [](int i) {
+    return i >= 15 ? before_wall({-0.2, 1.6, -0.2}, {0.2, 1.8, 0.2}) : wall();
+  }));
+  StaticMap map(kResolution_m);
+  std::vector<FusedFrame> fused;
+  for (const Frame& frame : source.frames()) {
+    ASSERT_EQ(map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+    fused.push_back({frame.index, frame.index, frame.depth_camera, *frame.T_world_camera});
+  }
+  StageTimes times;
+  GhostRevision revision = take_out_ghosts(source, fused, {}, map, times);
+  ASSERT_GT(revision.voxels(), 0);
+  const test::TemporaryFolder folder;
+  GhostRevision kept;
+  look_again(source, fused, revision, map, times, [&](const std::string&) {
+    if (revision.next != 11) return;
+    kept = revision;
+    map.write_ot(folder.path() / "octree.ot");
+  });
+  ASSERT_EQ(kept.next, 11U);
+  StaticMap resumed = StaticMap::read_ot(folder.path() / "octree.ot");
+  look_again(source, fused, kept, resumed, times);
+  std::vector<SurfaceSample> expected;
+  map.visit_samples([&](const SurfaceSample& sample) { expected.push_back(sample); });
+  std::size_t next = 0;
+  resumed.visit_samples([&](const SurfaceSample& sample) {
+    ASSERT_LT(next, expected.size());
+    ASSERT_EQ(sample.voxel, expected[next].voxel);
+    ASSERT_EQ(sample.distance_m, expected[next++].distance_m);
+  });
+  EXPECT_EQ(next, expected.size());
 }
 
 TEST(Ghosts, FramesThatDoNotFitTheirCameraSayNothing) {
