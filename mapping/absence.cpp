@@ -19,7 +19,7 @@ constexpr float kGoneShare = 0.25F;    // of the pixels round a voxel may have d
 constexpr int kBorder = 32;            // the outermost 1/32 of the image, where sensors have no depth
 constexpr double kOnePlace = 0.1;      // camera centres, by the distance of what is seen: 6 degrees
 constexpr int kMinGone = 3;            // frames
-constexpr int kSeenForUnmeasured = 4;  // frames that may see a voxel for each that does not
+constexpr int kSeenForUnmeasured = 2;  // frames that may see a voxel for each that does not
 constexpr double kTurnChange = 30.0;   // of 255, more than between two looks at what stays
 constexpr double kMinTurned = 0.1;     // of a group's voxels that have colour
 

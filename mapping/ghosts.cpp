@@ -23,10 +23,11 @@ constexpr float kNearest_m = 0.1F;  // nothing is projected from nearer to the c
 constexpr float kTooNear_m = 0.8F;
 constexpr int kHiddenCell_px = 8;  // a voxel of a centimetre at that distance
 
-// What hangs together with something that moved on, and is no farther from it, stays only if more looks saw
-// it.
-constexpr int kHardlySeen = 3;
-constexpr double kHardlySeenReach_m = 0.1;
+// A group of ghosts that covers a square of this edge is no error of tracking. Round it, and no farther away,
+// less evidence is enough; without both limits rows of static edges go along.
+constexpr double kSureExtent_m = 0.5;
+constexpr double kReach_m = 0.1;
+constexpr int kHardlySeen = 3;  // looks: what hangs together with such a group stays only if more saw it
 
 constexpr std::size_t kEveryColour =
     4;  // of so many voxels one looks at its colour: it is a group's that counts
@@ -249,8 +250,10 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
           found.push_back({brick.first + in_brick(votes_[next].offset), next});
     return found;
   };
-  const double edge_voxels = static_cast<double>(config_.min_extent_m) / resolution_m_;
-  const double min_voxels = 2.0 * edge_voxels * edge_voxels;
+  const auto voxels_of = [this](double edge_m) {
+    return 2.0 * edge_m * edge_m / (resolution_m_ * resolution_m_);
+  };
+  const double min_voxels = voxels_of(static_cast<double>(config_.min_extent_m));
 
   // Enough evidence, and enough of them together.
   const auto may_be_gone = those(
@@ -258,21 +261,40 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
   const auto seen_through = those([this](const Votes& votes, const AbsenceVotes&) {
     return votes.through >= config_.min_through && is_share(votes.through, votes.seen);
   });
-  std::vector<VotedVoxel> moved_on = find_absent(may_be_gone, absence_, min_voxels);
+  std::vector<VotedVoxel> absent = find_absent(may_be_gone, absence_, min_voxels);
+  std::vector<VotedVoxel> ghosts, sure;
   const std::vector<std::size_t> together = voxels_together(seen_through);
-  for (std::size_t i = 0; i < seen_through.size(); ++i)
-    if (static_cast<double>(together[i]) >= min_voxels) moved_on.push_back(seen_through[i]);
-  if (moved_on.empty()) return fates;
+  for (std::size_t i = 0; i < seen_through.size(); ++i) {
+    const auto size = static_cast<double>(together[i]);
+    if (size >= min_voxels) ghosts.push_back(seen_through[i]);
+    if (size >= voxels_of(kSureExtent_m)) sure.push_back(seen_through[i]);
+  }
 
-  // What hangs together with those goes along on less, and what was hardly seen if it is near.
-  const auto going_along = those([this](const Votes& votes, const AbsenceVotes& absence) {
-    return is_share(votes.through + votes.glimpsed, votes.seen) || may_go_along(absence, votes.seen);
-  });
-  const auto hardly_seen =
-      those([](const Votes& votes, const AbsenceVotes&) { return votes.seen <= kHardlySeen; });
-  const int hardly_seen_steps = static_cast<int>(std::lround(kHardlySeenReach_m / resolution_m_));
-  moved_on = spread(std::move(moved_on), going_along);
-  moved_on = spread(std::move(moved_on), hardly_seen, hardly_seen_steps);
+  // What hangs together with those goes along on less.
+  std::vector<VotedVoxel> moved_on;
+  const auto add = [&](const std::vector<VotedVoxel>& more) {
+    moved_on.insert(moved_on.end(), more.begin(), more.end());
+  };
+  const auto is_once_through = [this](const Votes& votes, const AbsenceVotes&) {
+    return is_share(votes.through, votes.seen);
+  };
+  const auto goes_along = [](const Votes& votes, const AbsenceVotes& absence) {
+    return may_go_along(absence, votes.seen);
+  };
+  if (!absent.empty()) add(spread(std::move(absent), those(goes_along)));
+  if (!ghosts.empty()) add(spread(std::move(ghosts), those(is_once_through)));
+  if (!sure.empty()) {
+    const int reach = static_cast<int>(std::lround(kReach_m / resolution_m_));
+    const auto is_glimpsed = [this](const Votes& votes, const AbsenceVotes&) {
+      return is_share(votes.through + votes.glimpsed, votes.seen);
+    };
+    const auto is_hardly_seen = [](const Votes& votes, const AbsenceVotes&) {
+      return votes.seen <= kHardlySeen;
+    };
+    sure = spread(std::move(sure), those(is_once_through));
+    sure = spread(std::move(sure), those(is_glimpsed), reach);
+    add(spread(std::move(sure), those(is_hardly_seen), reach));
+  }
   for (const VotedVoxel& one : moved_on) {
     const Votes& votes = votes_[one.position];
     fates[one.position] = votes.through + votes.glimpsed > 0 ? Fate::kGhost : Fate::kAbsent;

@@ -153,9 +153,9 @@ TEST(Ghosts, WhatCameLaterAndStayedForHalfOfTheFramesVanishesToo) {
 // A box in the last frames. Before it came, something nearer hid from most frames what is behind its left
 // part.
 std::vector<Frame> record_box_half_hidden_before(int frames_with_box, std::initializer_list<int> unhidden) {
-  const Scene box = before_wall({-0.08, 1.6, -0.2}, {0.2, 1.8, 0.2});
+  const Scene box = before_wall({-0.08, 1.6, -0.4}, {0.5, 1.8, 0.4});
   const Scene hider = test::nearest_of(
-      wall(), test::box({Eigen::Vector3d(-0.6, 0.9, -0.4), Eigen::Vector3d(0.06, 1.0, 0.4)}));
+      wall(), test::box({Eigen::Vector3d(-0.6, 0.9, -0.6), Eigen::Vector3d(0.06, 1.0, 0.6)}));
   return record(40, [&, frames_with_box](int i) {
     if (i >= 40 - frames_with_box) return box;
     return std::find(unhidden.begin(), unhidden.end(), i) != unhidden.end() ? wall() : hider;
