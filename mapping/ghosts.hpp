@@ -47,8 +47,8 @@ class GhostVotes {
   /// Adds one frame's votes. The frame is one that was fused at this pose.
   void look(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// What moved on are voxels with enough evidence that are enough together, and what hangs together with them
-  /// on less: little round a small group, more round one that is too large to be an error of tracking.
+  /// What moved on are voxels with enough evidence that are enough together, and what hangs together with
+  /// them on less: little round a small group, more round one that is too large to be an error of tracking.
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< of that, what is seen through
     std::vector<VoxelIndex> absent;  ///< of that, what is gone with nothing measured behind
