@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 #include <string>
 
-#include "mapping/types/depth_noise.hpp"
+#include "dynamic/jump_rule.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -39,21 +38,6 @@ struct Projection {
   }
 };
 
-// How far two neighbours on the grid may differ in depth and still be one surface: noise of both, and slope.
-struct JumpRule {
-  float sigmas, slope_straight, slope_diagonal;
-  JumpRule(const DepthMeshConfig& config, const Intrinsics& camera)
-      : sigmas(config.jump_sigmas * std::numbers::sqrt2_v<float>),
-        slope_straight(std::tan(config.jump_incidence_deg * std::numbers::pi_v<float> / 180.0F) *
-                       static_cast<float>(config.stride_px) /
-                       static_cast<float>(std::min(camera.fx_px, camera.fy_px))),
-        slope_diagonal(slope_straight * std::numbers::sqrt2_v<float>) {}
-  [[nodiscard]] bool joins(float a_m, float b_m, float slope) const {
-    const float z = std::min(a_m, b_m);
-    return std::abs(a_m - b_m) <= sigmas * depth_sigma_m(z) + slope * z;
-  }
-};
-
 // One corner of a grid cell. A vertex is made when the first triangle needs it, so none is without a
 // triangle.
 struct Corner {
@@ -69,7 +53,7 @@ class GridMesher {
       : project_{static_cast<float>(1.0 / camera.fx_px), static_cast<float>(1.0 / camera.fy_px),
                  static_cast<float>(camera.cx_px), static_cast<float>(camera.cy_px),
                  T_world_camera.linear().cast<float>()},
-        rule_(config, camera),
+        rule_(config.jump_sigmas, config.jump_incidence_deg, static_cast<float>(config.stride_px), camera),
         skirts_(skirts),
         mesh_(mesh) {}
 
@@ -109,9 +93,9 @@ class GridMesher {
  private:
   void triangle(const Corner& corner, const Corner& second, const Corner& third) {
     if (!(corner.depth_m > 0.0F && second.depth_m > 0.0F && third.depth_m > 0.0F)) return;
-    const bool one_surface = rule_.joins(corner.depth_m, second.depth_m, rule_.slope_straight) &&
-                             rule_.joins(corner.depth_m, third.depth_m, rule_.slope_straight) &&
-                             rule_.joins(second.depth_m, third.depth_m, rule_.slope_diagonal);
+    const bool one_surface = rule_.joins(corner.depth_m, second.depth_m) &&
+                             rule_.joins(corner.depth_m, third.depth_m) &&
+                             rule_.joins_diagonally(second.depth_m, third.depth_m);
     if (!one_surface && !skirts_) return;
     const Triangle t = {vertex(corner), vertex(second), vertex(third)};
     mesh_.triangles.push_back(t);

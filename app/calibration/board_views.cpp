@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
+#include "app/calibration/board_pose.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -32,31 +32,6 @@ double distance_either_way_px(const std::vector<Eigen::Vector2d>& a, std::vector
   const double one_way_px = distance_px(a, b);
   std::reverse(b.begin(), b.end());
   return std::min(one_way_px, distance_px(a, b));
-}
-
-/// Board pose in the colour camera that the frame says.
-Eigen::Isometry3d board_pose(const Frame& frame, const Board& board,
-                             const std::vector<Eigen::Vector2d>& corners_px) {
-  std::vector<cv::Point3d> on_board;
-  std::vector<cv::Point2d> in_image;
-  for (int row = 0; row < board.rows; ++row)
-    for (int column = 0; column < board.columns; ++column) {
-      const Eigen::Vector3d p = corner_board(board, column, row);
-      on_board.emplace_back(p.x(), p.y(), p.z());
-    }
-  for (const Eigen::Vector2d& corner : corners_px) in_image.emplace_back(corner.x(), corner.y());
-  const Intrinsics& camera = frame.colour_camera;
-  const cv::Matx33d matrix(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
-  cv::Mat turn, shift, rotation;
-  cv::solvePnP(on_board, in_image, matrix, cv::noArray(), turn, shift);
-  cv::Rodrigues(turn, rotation);
-  Eigen::Isometry3d T_colour_board = Eigen::Isometry3d::Identity();
-  Eigen::Matrix3d linear;
-  cv::cv2eigen(rotation, linear);
-  T_colour_board.linear() = linear;
-  T_colour_board.translation() =
-      Eigen::Vector3d(shift.at<double>(0), shift.at<double>(1), shift.at<double>(2));
-  return T_colour_board;
 }
 
 /// Depth pixels whose rays, by the cameras that the frame says, meet the board well inside of its corners'
@@ -150,7 +125,8 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
       return distance_either_way_px(*corners_px, view.corners_px) < kNew_px;
     };
     if (still && std::none_of(result.views.begin(), result.views.end(), is_known)) {
-      std::vector<DepthSample> depth = depth_on_board(frame, board, board_pose(frame, board, *corners_px));
+      std::vector<DepthSample> depth =
+          depth_on_board(frame, board, pose_of_board(*corners_px, board, frame.colour_camera, {}));
       if (depth.size() >= kLeastDepthSamples)
         result.views.push_back({frame.index, *corners_px, std::move(depth)});
     }

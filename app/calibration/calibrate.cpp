@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "app/calibration/board_pose.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/error.hpp"
 
@@ -141,32 +142,6 @@ double inverse_sigma_per_m(double depth_m) {
   return kDepthSigmas * static_cast<double>(depth_sigma_m(static_cast<float>(depth_m))) / (depth_m * depth_m);
 }
 
-std::vector<cv::Point3d> corners_on(const Board& board) {
-  std::vector<cv::Point3d> corners;
-  for (int row = 0; row < board.rows; ++row)
-    for (int column = 0; column < board.columns; ++column) {
-      const Eigen::Vector3d p = corner_board(board, column, row);
-      corners.emplace_back(p.x(), p.y(), p.z());
-    }
-  return corners;
-}
-
-std::vector<cv::Point2d> as_points(const std::vector<Eigen::Vector2d>& corners_px) {
-  std::vector<cv::Point2d> points;
-  for (const Eigen::Vector2d& corner : corners_px) points.emplace_back(corner.x(), corner.y());
-  return points;
-}
-
-/// Board pose from its corners in a camera with a lens.
-Pose pose_from_corners(const BoardView& view, const Board& board, const Intrinsics& camera,
-                       const Lens& lens) {
-  const cv::Matx33d matrix(camera.fx_px, 0, camera.cx_px, 0, camera.fy_px, camera.cy_px, 0, 0, 1);
-  const cv::Vec<double, 5> distortion(lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
-  cv::Vec3d turn, shift;
-  cv::solvePnP(corners_on(board), as_points(view.corners_px), matrix, distortion, turn, shift);
-  return {{turn[0], turn[1], turn[2], shift[0], shift[1], shift[2]}};
-}
-
 struct Unknowns {
   CameraBlock colour, depth;
   Pose T_colour_depth;
@@ -221,9 +196,14 @@ CameraBlock start_of_colour(const std::vector<const BoardView*>& views, const Bo
   std::vector<std::vector<cv::Point2f>> in_image;
   for (const BoardView* view : views) {
     std::vector<cv::Point3f> corners;
-    for (const cv::Point3d& p : corners_on(board)) corners.emplace_back(p);
+    for (int row = 0; row < board.rows; ++row)
+      for (int column = 0; column < board.columns; ++column) {
+        const Eigen::Vector3f p = corner_board(board, column, row).cast<float>();
+        corners.emplace_back(p.x(), p.y(), p.z());
+      }
     std::vector<cv::Point2f> seen;
-    for (const cv::Point2d& p : as_points(view->corners_px)) seen.emplace_back(p);
+    for (const Eigen::Vector2d& corner : view->corners_px)
+      seen.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
     on_board.push_back(std::move(corners));
     in_image.push_back(std::move(seen));
   }
@@ -331,7 +311,7 @@ CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config)
   const Intrinsics colour = camera_of(unknowns.colour, views.first.colour_camera);
   for (const BoardView* view : making)
     unknowns.T_colour_board.push_back(
-        pose_from_corners(*view, config.board, colour, lens_of(unknowns.colour)));
+        pose_of(pose_of_board(view->corners_px, config.board, colour, lens_of(unknowns.colour))));
 
   require_tilted(unknowns.T_colour_board);
 
@@ -368,7 +348,7 @@ ViewResidual residual_of(const BoardView& view, const Board& board, const Calibr
   const Intrinsics& colour = *calibration.rig.colour_camera;
   const Intrinsics& depth = calibration.rig.depth_camera;
   const Eigen::Isometry3d T_colour_board =
-      isometry_of(pose_from_corners(view, board, colour, calibration.colour_lens));
+      pose_of_board(view.corners_px, board, colour, calibration.colour_lens);
   ViewResidual residual;
   double sum_px2 = 0.0;
   for (int row = 0; row < board.rows; ++row)
