@@ -63,6 +63,7 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
 
 FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   FrameResult result;
+  const auto handed_over = std::chrono::steady_clock::now();
   const double dt_s = has_last_stamp_ ? std::max(0.0, frame.stamp_s - last_stamp_s_) : 0.0;
   last_stamp_s_ = frame.stamp_s;
   has_last_stamp_ = true;
@@ -89,6 +90,7 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera, fine_regions_); });
   release_waiting(frame, T_world_camera);
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
+  times.add_ms("contact", ms_since(handed_over));
   if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera); });
 
   result.status = FrameStatus::kDone;
@@ -254,6 +256,10 @@ VirtualObject& Session::object_named(const std::string& name) {
   return **found;
 }
 
+void Session::add_object(const std::string& name, const Mesh& mesh) {
+  objects_.push_back(std::make_unique<VirtualObject>(context_, name, mesh));
+}
+
 void Session::apply(const ScriptEvent& event) {
   const auto put = [&](VirtualObject& object, const Eigen::Vector3d& position_world) {
     object.body.T_world_object.translation() = position_world;
@@ -266,8 +272,7 @@ void Session::apply(const ScriptEvent& event) {
   std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
   switch (event.action) {
     case Action::kAdd:
-      objects_.push_back(std::make_unique<VirtualObject>(
-          context_, event.name, object_mesh(event.mesh, event.size_m.value_or(0.0))));
+      add_object(event.name, object_mesh(event.mesh, event.size_m.value_or(0.0)));
       break;
     case Action::kPlace:
     case Action::kThrow:

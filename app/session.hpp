@@ -72,8 +72,12 @@ class Session {
   void make_unknown_solid(StageTimes& times);
 
   /// One frame, from sensor to picture. Stages timed: locate expected foreground changes mesh radar physics
-  /// compose frame.
+  /// compose frame, and contact: from the frame handed over to where its contacts have moved the objects.
   FrameResult step(const Frame& frame, StageTimes& times);
+
+  /// Loads an object under a name that no other has; it is not in the room yet. Throws Error if the mesh
+  /// cannot be an object.
+  void add_object(const std::string& name, const Mesh& mesh);
 
   /// Adds, places, drops, throws or removes an object, before the frame it is due in. A drop over "a surface
   /// in view" that has none waits for a frame that shows one, or for the object's next event, which replaces

@@ -1,4 +1,4 @@
-// depth_pass.cpp: draw depth only, read it back, turn it into metres.
+// depth_pass.cpp: draw depth only; with OpenGL, read it back and turn it into metres.
 #include "radar/depth_pass.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -28,8 +28,14 @@ void require_valid(const DepthPassConfig& config) {
   }
 }
 
-DepthPass::DepthPass(GlContext& /*context*/, const DepthPassConfig& config) : config_(config) {
+DepthPass::DepthPass(GlContext& context, const DepthPassConfig& config) : config_(config) {
   require_valid(config);
+  const bool by_processor = config.renderer == DepthRenderer::kProcessor ||
+                            (config.renderer == DepthRenderer::kAuto && context.is_software());
+  if (by_processor) {
+    raster_ = std::make_unique<DepthRaster>();
+    return;
+  }
   program_ = make_program("depth pass", kPositionShader, kFragmentShader);
   glCreateFramebuffers(1, &framebuffer_);
   glNamedFramebufferDrawBuffer(framebuffer_, GL_NONE);
@@ -69,7 +75,15 @@ std::size_t DepthPass::render(std::span<const MeshInstance> scene, const Intrins
   }
   const PixelRect inside = clamped(rect, camera.width_px, camera.height_px);
   if (inside.width == 0 || inside.height == 0) return 0;
+  if (raster_)
+    return raster_->render(scene, camera, T_world_camera, inside, config_.near_m, config_.cull_back_faces,
+                           depth_m);
+  return render_with_gl(scene, camera, T_world_camera, inside, depth_m);
+}
 
+std::size_t DepthPass::render_with_gl(std::span<const MeshInstance> scene, const Intrinsics& camera,
+                                      const Eigen::Isometry3d& T_world_camera, const PixelRect& inside,
+                                      DepthImage& depth_m) {
   fit_framebuffer(inside.width, inside.height);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   glViewport(0, 0, inside.width, inside.height);

@@ -2,24 +2,33 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <memory>
 #include <span>
 
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
+#include "radar/depth_raster.hpp"
 #include "radar/gl_context.hpp"
 #include "radar/gpu_mesh.hpp"
 #include "radar/projection.hpp"
 
 namespace roomradar {
 
+enum class DepthRenderer {
+  kAuto,       ///< OpenGL on a GPU; the processor where OpenGL is software
+  kOpenGl,     ///< whatever the context runs on
+  kProcessor,  ///< DepthRaster
+};
+
 struct DepthPassConfig {
+  DepthRenderer renderer = DepthRenderer::kAuto;
   double near_m = 0.1;           ///< nearer surfaces are cut away; a Kinect sees from 0.4 m on
   bool cull_back_faces = false;  ///< true: only triangles that are counter-clockwise seen from the camera
 };
 /// @throws Error naming the field, its value and the rule
 void require_valid(const DepthPassConfig& config);
 
-/// Owns the program and the framebuffer; both grow to the largest image asked for. Not thread safe.
+/// Owns what it draws with, which grows to the largest image asked for. Not thread safe.
 class DepthPass {
  public:
   explicit DepthPass(GlContext& context, const DepthPassConfig& config = {});
@@ -34,8 +43,9 @@ class DepthPass {
   /// @param T_world_camera  camera pose
   /// @param depth_m         gets camera's size; metres along the optical axis, 0 where nothing is
   /// @return triangles handed to the renderer
-  /// There is no far end. Error against the exact ray: a 1/256 pixel snap of vertices across the surface's
-  /// slope, and about 1e-7 of the depth along it.
+  /// There is no far end. Error against the exact ray: 1/256 pixel (of vertices that OpenGL snaps, or of
+  /// outlines that the processor widens by less) across the surface's slope, and about 1e-7 of the depth
+  /// along it.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 
@@ -46,6 +56,7 @@ class DepthPass {
 
  private:
   DepthPassConfig config_;
+  std::unique_ptr<DepthRaster> raster_;  ///< null: OpenGL
   unsigned program_ = 0;
   unsigned framebuffer_ = 0;
   unsigned depth_texture_ = 0;
@@ -53,6 +64,9 @@ class DepthPass {
   int texture_height_px_ = 0;
 
   void fit_framebuffer(int width_px, int height_px);
+  std::size_t render_with_gl(std::span<const MeshInstance> scene, const Intrinsics& camera,
+                             const Eigen::Isometry3d& T_world_camera, const PixelRect& rect,
+                             DepthImage& depth_m);
 };
 
 /// The smallest rectangle of whole pixels that holds the instance's bounding box as the camera sees it; the

@@ -118,13 +118,19 @@ void expect_rays_agree(DepthPass& pass, GlContext& context, const Mesh& mesh, co
   EXPECT_LT(worst_flat_m, 1e-4);
 }
 
-class DepthPassTest : public testing::Test {
+class DepthPassTest : public testing::TestWithParam<DepthRenderer> {
  protected:
   GlContext context;
-  DepthPass pass{context};
+  DepthPass pass{context, {.renderer = GetParam()}};
 };
 
-TEST_F(DepthPassTest, AgreesWithRaysOnRandomTriangles) {
+INSTANTIATE_TEST_SUITE_P(EachRenderer, DepthPassTest,
+                         testing::Values(DepthRenderer::kOpenGl, DepthRenderer::kProcessor),
+                         [](const auto& renderer) {
+                           return renderer.param == DepthRenderer::kOpenGl ? "OpenGl" : "Processor";
+                         });
+
+TEST_P(DepthPassTest, AgreesWithRaysOnRandomTriangles) {
   std::mt19937 random(1);
   for (int round = 0; round < 3; ++round) {
     Eigen::Isometry3d T_world_camera(shapes::random_rotation(random));
@@ -134,7 +140,7 @@ TEST_F(DepthPassTest, AgreesWithRaysOnRandomTriangles) {
   }
 }
 
-TEST_F(DepthPassTest, FollowsThePrincipalPointThroughSubPixelShifts) {
+TEST_P(DepthPassTest, FollowsThePrincipalPointThroughSubPixelShifts) {
   std::mt19937 random(2);
   const Mesh mesh = random_triangles(random, 60, Eigen::Isometry3d::Identity());
   for (const double shift_px : {-0.75, -0.5, -0.25, 0.1, 0.37, 0.5}) {
@@ -145,7 +151,7 @@ TEST_F(DepthPassTest, FollowsThePrincipalPointThroughSubPixelShifts) {
   }
 }
 
-TEST_F(DepthPassTest, LosesNothingAThousandKilometresFromZero) {
+TEST_P(DepthPassTest, LosesNothingAThousandKilometresFromZero) {
   std::mt19937 random(3);
   Eigen::Isometry3d T_world_camera(shapes::random_rotation(random));
   T_world_camera.pretranslate(Eigen::Vector3d(1e6, -1e6, 1e6));
@@ -153,7 +159,7 @@ TEST_F(DepthPassTest, LosesNothingAThousandKilometresFromZero) {
   expect_rays_agree(pass, context, mesh, kCamera, T_world_camera);
 }
 
-TEST_F(DepthPassTest, WallAt8MetresIsThereToATenthOfAMillimetre) {
+TEST_P(DepthPassTest, WallAt8MetresIsThereToATenthOfAMillimetre) {
   Mesh wall = shapes::floor(20.0F, 8.0F);
   std::swap(wall.triangles[0][1], wall.triangles[0][2]);
   GpuMesh gpu(context);
@@ -165,7 +171,7 @@ TEST_F(DepthPassTest, WallAt8MetresIsThereToATenthOfAMillimetre) {
     EXPECT_NEAR(z_m, 8.0F, 1e-5F);  // flat, so the depth step alone: 0.5 um
 }
 
-TEST_F(DepthPassTest, FirstPixelIsCentredAtZeroZero) {
+TEST_P(DepthPassTest, FirstPixelIsCentredAtZeroZero) {
   // A wall from image coordinates (9.9, 4.9) to (30.1, 20.1): half a pixel either way would win or lose a
   // row.
   const Eigen::Vector3f a = back_project(kCamera, 9.9, 4.9, 2.0).cast<float>();
@@ -184,7 +190,7 @@ TEST_F(DepthPassTest, FirstPixelIsCentredAtZeroZero) {
   }
 }
 
-TEST_F(DepthPassTest, RectangleGivesTheSamePixelsAndLeavesTheRestAlone) {
+TEST_P(DepthPassTest, RectangleGivesTheSamePixelsAndLeavesTheRestAlone) {
   std::mt19937 random(4);
   const Mesh mesh = random_triangles(random, 200, Eigen::Isometry3d::Identity());
   GpuMesh gpu(context);
@@ -212,7 +218,7 @@ TEST_F(DepthPassTest, RectangleGivesTheSamePixelsAndLeavesTheRestAlone) {
   EXPECT_EQ(part_m.at(0, 0), -7.0F);
 }
 
-TEST_F(DepthPassTest, BackFacesAreSeenUnlessCulled) {
+TEST_P(DepthPassTest, BackFacesAreSeenUnlessCulled) {
   const Mesh floor_up = shapes::floor(1.0F, 0.0F);
   GpuMesh gpu(context);
   gpu.upload(floor_up, MeshUsage::kStatic);
@@ -222,7 +228,7 @@ TEST_F(DepthPassTest, BackFacesAreSeenUnlessCulled) {
   T_world_above.pretranslate(Eigen::Vector3d(0, 0, 2));
   Eigen::Isometry3d T_world_below = Eigen::Isometry3d::Identity();
   T_world_below.pretranslate(Eigen::Vector3d(0, 0, -2));
-  DepthPass culling(context, {.cull_back_faces = true});
+  DepthPass culling(context, {.renderer = GetParam(), .cull_back_faces = true});
   DepthImage depth_m;
   pass.render({&instance, 1}, kCamera, T_world_above, depth_m);
   EXPECT_NEAR(depth_m.at(80, 60), 2.0F, 1e-5F);
@@ -234,7 +240,7 @@ TEST_F(DepthPassTest, BackFacesAreSeenUnlessCulled) {
   EXPECT_EQ(depth_m.at(80, 60), 0.0F);
 }
 
-TEST_F(DepthPassTest, NothingNearerThanTheNearPlaneAndNothingBehind) {
+TEST_P(DepthPassTest, NothingNearerThanTheNearPlaneAndNothingBehind) {
   GpuMesh gpu(context);
   gpu.upload(shapes::floor(5.0F, 0.0F), MeshUsage::kStatic);
   DepthImage depth_m;
@@ -245,13 +251,13 @@ TEST_F(DepthPassTest, NothingNearerThanTheNearPlaneAndNothingBehind) {
   }
 }
 
-TEST_F(DepthPassTest, EmptySceneIsAllZero) {
+TEST_P(DepthPassTest, EmptySceneIsAllZero) {
   DepthImage depth_m(kCamera.width_px, kCamera.height_px, 5.0F);
   pass.render({}, kCamera, Eigen::Isometry3d::Identity(), depth_m);
   EXPECT_EQ(*std::max_element(depth_m.pixels.begin(), depth_m.pixels.end()), 0.0F);
 }
 
-TEST_F(DepthPassTest, UnusableCameraGivesAnEmptyImage) {
+TEST_P(DepthPassTest, UnusableCameraGivesAnEmptyImage) {
   DepthImage depth_m(3, 3, 5.0F);
   Intrinsics camera = kCamera;
   camera.fx_px = std::numeric_limits<double>::quiet_NaN();
@@ -259,7 +265,7 @@ TEST_F(DepthPassTest, UnusableCameraGivesAnEmptyImage) {
   EXPECT_TRUE(depth_m.empty());
 }
 
-TEST_F(DepthPassTest, ChunksOutOfSightAreNotDrawn) {
+TEST_P(DepthPassTest, ChunksOutOfSightAreNotDrawn) {
   // A ring of ground around the camera, of which it sees an eighth or so.
   GpuMesh gpu(context);
   gpu.upload(shapes::torus(600, 60, 4.0F, 0.5F, 0.0F), MeshUsage::kStatic);
@@ -271,7 +277,7 @@ TEST_F(DepthPassTest, ChunksOutOfSightAreNotDrawn) {
   EXPECT_LT(drawn, gpu.triangle_count() / 3);
 }
 
-TEST_F(DepthPassTest, PixelsOfAnInstanceHoldAllItsDepths) {
+TEST_P(DepthPassTest, PixelsOfAnInstanceHoldAllItsDepths) {
   std::mt19937 random(6);
   GpuMesh gpu(context);
   gpu.upload(shapes::box({0.3F, 0.2F, 0.4F}), MeshUsage::kStatic);
@@ -295,7 +301,7 @@ TEST_F(DepthPassTest, PixelsOfAnInstanceHoldAllItsDepths) {
   EXPECT_EQ(pixels_of(around, kCamera, Eigen::Isometry3d::Identity(), 0.1), (PixelRect{0, 0, 160, 120}));
 }
 
-TEST_F(DepthPassTest, NearPlaneMustBePositive) { EXPECT_THROW(DepthPass(context, {.near_m = 0.0}), Error); }
+TEST_P(DepthPassTest, NearPlaneMustBePositive) { EXPECT_THROW(DepthPass(context, {.near_m = 0.0}), Error); }
 
 }  // namespace
 }  // namespace roomradar

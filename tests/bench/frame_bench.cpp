@@ -1,0 +1,309 @@
+// frame_bench.cpp: whole frames of a session in a saved room: what each stage costs, how soon a contact is
+// known, and how right the frames are.
+//
+// usage: frame_bench [--scene NAME]... [--object TRIANGLES]... [--maps FOLDER] [--json FILE]
+// Scenes: kitchen (frames 400-499 of the recording, in the map of 0-399; left out, with a word, where the
+// recording is not here), room (a simulated dining room with a hand, the camera held still by a hand), walk
+// (the same, walked round). Maps are made once and kept in FOLDER (frame-bench-maps). An object is dropped
+// over what is in view every 25 frames. The first 10 frames are not counted.
+// Reference: drawing the whole map's depth with OpenGL at the frames' poses, before and after each row.
+// Scenes, seeds and frames are fixed: changing them breaks comparison with old numbers.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/open_source.hpp"
+#include "app/session.hpp"
+#include "mapping/map_folder.hpp"
+#include "mapping/prescan.hpp"
+#include "tests/bench/bench_times.hpp"
+#include "tests/bench/radar_bench_shapes.hpp"
+#include "tests/support/recordings.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kWarmUpFrames = 10;
+constexpr std::size_t kMotionFrames = 10;
+constexpr int kDropEvery = 25;
+constexpr double kDropHeight_m = 0.2;
+
+struct Scene {
+  std::string name;
+  std::string scanned, run;  ///< sources
+  std::optional<FrameRange> scanned_frames, run_frames;
+};
+
+std::vector<Scene> scenes() {
+  std::vector<Scene> all = {{.name = "room",
+                             .scanned = "sim:table?seed=1&frames=360&rate=15",
+                             .run = "sim:table?seed=7&frames=110&path=view&moving=hand",
+                             .scanned_frames = {},
+                             .run_frames = {}},
+                            {.name = "walk",
+                             .scanned = "sim:table?seed=1&frames=360&rate=15",
+                             .run = "sim:table?seed=3&frames=720&moving=hand",
+                             .scanned_frames = {},
+                             .run_frames = FrameRange{100, 209}}};
+  if (const auto kitchen = test::recording("kitchen")) {
+    all.insert(all.begin(), {.name = "kitchen",
+                             .scanned = kitchen->string(),
+                             .run = kitchen->string(),
+                             .scanned_frames = FrameRange{0, 399},
+                             .run_frames = FrameRange{400, 499}});
+  } else {
+    std::fprintf(stderr,
+                 "kitchen is left out: the recording is not here; set ROOMRADAR_DATA to its folder\n");
+  }
+  return all;
+}
+
+struct Settings {
+  std::vector<std::string> scenes;
+  std::vector<std::size_t> objects;
+  std::filesystem::path maps = "frame-bench-maps";
+  std::string json;
+};
+
+/// Rooms scanned from one source share a map.
+SavedMap map_of(const Scene& scene, const std::filesystem::path& maps) {
+  const std::filesystem::path folder = maps / (scene.name == "walk" ? "room" : scene.name);
+  if (std::filesystem::exists(folder)) return load_map(folder);
+  std::fprintf(stderr, "%s: scanning %s\n", folder.c_str(), scene.scanned.c_str());
+  StageTimes times;
+  const auto source = open_source(scene.scanned, scene.scanned_frames);
+  save_map(folder, prescan(*source, {}, times).map);
+  return load_map(folder);
+}
+
+std::vector<Frame> frames_of(const Scene& scene) {
+  const auto source = open_source(scene.run, scene.run_frames);
+  std::vector<Frame> frames;
+  for (Frame frame;;) {
+    const ReadStatus status = source->next(frame).status;
+    if (status == ReadStatus::kEnd) return frames;
+    if (status == ReadStatus::kFrame) frames.push_back(frame);
+  }
+}
+
+double process_cpu_ms() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto ms = [](const timeval& t) {
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
+  };
+  return ms(usage.ru_utime) + ms(usage.ru_stime);
+}
+
+/// Wall-clock microseconds that OpenGL takes for 1,000 triangles of the whole map, as the frames see it.
+void measure_reference(const SavedMap& map, const std::vector<Frame>& frames, test::Times& us_per_1000) {
+  GlContext context;
+  GpuMesh mesh(context);
+  mesh.upload(map.mesh, MeshUsage::kStatic);
+  DepthPass pass(context, {.renderer = DepthRenderer::kOpenGl});
+  DepthImage depth_m;
+  const MeshInstance room{&mesh, Eigen::Isometry3d::Identity()};
+  for (std::size_t i = 0; i < frames.size(); i += 5) {
+    if (!frames[i].T_world_camera) continue;
+    const Eigen::Isometry3d T_world_camera = map.info.T_world_recorded * *frames[i].T_world_camera;
+    const auto start = std::chrono::steady_clock::now();
+    const std::size_t drawn = pass.render({&room, 1}, frames[i].depth_camera, T_world_camera, depth_m);
+    if (i > 0 && drawn > 0)
+      us_per_1000.samples_ms.push_back(1e6 * ms_since(start) / static_cast<double>(drawn));
+  }
+}
+
+nlohmann::json to_json(const StageSummary& summary) {
+  return {{"count", summary.count},
+          {"median_ms", summary.median_ms},
+          {"p95_ms", summary.p95_ms},
+          {"p99_ms", summary.p99_ms},
+          {"max_ms", summary.max_ms}};
+}
+
+double median(test::Times times) { return times.samples_ms.empty() ? 0.0 : times.percentile(0.5); }
+
+nlohmann::json bench(const Scene& scene, const SavedMap& map, const std::vector<Frame>& frames,
+                     const Mesh& object) {
+  test::Times reference_us;
+  measure_reference(map, frames, reference_us);
+
+  StageTimes warm_up, times;
+  test::Times apart_m, turned_deg, cpu_ms;
+  double moved = 0.0, valid = 0.0, deepest_m = 0.0, static_triangles = 0.0;
+  int located = 0, contacts = 0;
+  std::vector<std::pair<Eigen::Isometry3d, Eigen::Isometry3d>> poses;  // the source's, and the one found
+  std::string renderer;
+  {
+    SessionConfig config;
+    config.measure_penetration = true;
+    Session session(map, config);
+    renderer = session.renderer();
+    session.add_object("object", object);
+    int number = 0;
+    for (const Frame& frame : frames) {
+      if (number % kDropEvery == 0) {
+        ScriptEvent drop;
+        drop.action = Action::kDrop;
+        drop.name = "object";
+        drop.height_m = kDropHeight_m;
+        session.apply(drop);
+      }
+      const bool counts = number++ >= kWarmUpFrames;
+      const double cpu_before_ms = process_cpu_ms();
+      const FrameResult result = session.step(frame, counts ? times : warm_up);
+      if (counts) cpu_ms.samples_ms.push_back(process_cpu_ms() - cpu_before_ms);
+      if (!counts || result.status != FrameStatus::kDone) continue;
+      ++located;
+      contacts += result.contacts;
+      moved += static_cast<double>(result.foreground.moved);
+      valid += static_cast<double>(result.foreground.valid);
+      deepest_m = std::max(deepest_m, result.deepest_penetration_m);
+      static_triangles += static_cast<double>(result.static_triangles_drawn);
+      if (!frame.T_world_camera) continue;
+      poses.push_back({*frame.T_world_camera, result.T_world_camera});
+      if (poses.size() <= kMotionFrames) continue;
+      const auto& before = poses[poses.size() - 1 - kMotionFrames];
+      const Eigen::Isometry3d T_true_found = (before.first.inverse() * poses.back().first).inverse() *
+                                             (before.second.inverse() * poses.back().second);
+      apart_m.samples_ms.push_back(T_true_found.translation().norm());
+      turned_deg.samples_ms.push_back(Eigen::AngleAxisd(T_true_found.linear()).angle() * 180.0 / M_PI);
+    }
+  }
+  measure_reference(map, frames, reference_us);
+
+  nlohmann::json stages = nlohmann::json::object();
+  for (const auto& [stage, summary] : times.summaries()) stages[stage] = to_json(summary);
+  const auto frame = stages.find("frame"), contact = stages.find("contact");
+  const auto of = [](const auto& found, const char* key, const auto& end) {
+    return found == end ? 0.0 : found->at(key).template get<double>();
+  };
+  return {{"scene", scene.name},
+          {"scene_triangles", map.mesh.triangles.size()},
+          {"object_triangles", object.triangles.size()},
+          {"renderer", renderer},
+          {"frames", cpu_ms.samples_ms.size()},
+          {"located", located},
+          {"median_ms", of(frame, "median_ms", stages.end())},
+          {"p95_ms", of(frame, "p95_ms", stages.end())},
+          {"p99_ms", of(frame, "p99_ms", stages.end())},
+          {"contact_median_ms", of(contact, "median_ms", stages.end())},
+          {"contact_p95_ms", of(contact, "p95_ms", stages.end())},
+          {"cpu_median_ms", median(cpu_ms)},
+          {"stages", stages},
+          {"motion_error_median_m", median(apart_m)},
+          {"motion_error_p95_m", apart_m.samples_ms.empty() ? 0.0 : apart_m.percentile(0.95)},
+          {"motion_error_median_deg", median(turned_deg)},
+          {"moved_fraction", valid > 0.0 ? moved / valid : 0.0},
+          {"contacts", contacts},
+          {"deepest_penetration_m", deepest_m},
+          {"static_triangles_drawn", located > 0 ? static_triangles / located : 0.0},
+          {"reference_us_per_1000_triangles", median(reference_us)}};
+}
+
+void print_row(const nlohmann::json& row) {
+  const auto number = [&](const char* key) { return row[key].get<double>(); };
+  const auto stage = [&](const char* name) {
+    return row["stages"].contains(name) ? row["stages"][name]["median_ms"].get<double>() : 0.0;
+  };
+  std::printf(
+      "%-8s %7.0f %7.0f | %7.2f %7.2f %7.2f | %7.2f %7.2f | %7.2f %6.1f | "
+      "%6.2f %6.2f %6.2f %6.2f %6.2f %6.2f | %6.1f %6.3f %8.4f %6.2f %5.0f\n",
+      row["scene"].get<std::string>().c_str(), number("scene_triangles"), number("object_triangles"),
+      number("median_ms"), number("p95_ms"), number("p99_ms"), number("contact_median_ms"),
+      number("contact_p95_ms"), number("cpu_median_ms"), number("reference_us_per_1000_triangles"),
+      stage("locate"), stage("expected"), stage("foreground"), stage("mesh"), stage("radar"),
+      stage("compose"), 1e3 * number("motion_error_median_m"), number("motion_error_median_deg"),
+      100.0 * number("moved_fraction"), 1e3 * number("deepest_penetration_m"), number("located"));
+  std::fflush(stdout);
+}
+
+/// The finest object's frame over the coarsest's.
+nlohmann::json ratio_row(const std::string& scene, const nlohmann::json& few, const nlohmann::json& many) {
+  const auto ratio = [&](const char* key) { return many[key].get<double>() / few[key].get<double>(); };
+  return {{"scene", scene},
+          {"work", "frame of most : fewest object triangles"},
+          {"median_ratio", ratio("median_ms")},
+          {"cpu_ratio", ratio("cpu_median_ms")}};
+}
+
+Settings read_arguments(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string key = argv[i], value = argv[i + 1];
+    if (key == "--scene") settings.scenes.push_back(value);
+    if (key == "--object") settings.objects.push_back(std::stoul(value));
+    if (key == "--maps") settings.maps = value;
+    if (key == "--json") settings.json = value;
+  }
+  return settings;
+}
+
+template <typename Value>
+bool is_wanted(const std::vector<Value>& wanted, const Value& value) {
+  return wanted.empty() || std::find(wanted.begin(), wanted.end(), value) != wanted.end();
+}
+
+int run(int argc, char** argv) {
+  const Settings settings = read_arguments(argc, argv);
+  std::vector<Mesh> objects = {bench::torus_sized_box().mesh};
+  for (bench::Sensor& sensor : bench::sensors())
+    if (sensor.mesh.triangles.size() > 12) objects.push_back(std::move(sensor.mesh));
+
+  std::printf("compiler %s, flags %s\n", __VERSION__, ROOMRADAR_FLAGS);
+  std::printf(
+      "median ms of stages; frame, p95, p99; contact: depth handed over to contact known; cpu: of all "
+      "threads; ref: us for 1,000 triangles with OpenGL; pose error mm and deg against the source's "
+      "poses; %% moved; mm deepest overlap; frames located\n"
+      "scene       room  object |   frame     p95     p99 | contact     p95 |     cpu    ref | "
+      "locate expect foregr   mesh  radar compos |     mm    deg  %% moved  deep   loc\n");
+  nlohmann::json rows = nlohmann::json::array();
+  for (const Scene& scene : scenes()) {
+    if (!is_wanted(settings.scenes, scene.name)) continue;
+    const SavedMap map = map_of(scene, settings.maps);
+    const std::vector<Frame> frames = frames_of(scene);
+    std::vector<nlohmann::json> of_scene;
+    for (const Mesh& object : objects) {
+      if (!is_wanted(settings.objects, object.triangles.size())) continue;
+      of_scene.push_back(bench(scene, map, frames, object));
+      print_row(of_scene.back());
+      rows.push_back(of_scene.back());
+    }
+    if (of_scene.size() < 2) continue;
+    rows.push_back(ratio_row(scene.name, of_scene.front(), of_scene.back()));
+    std::printf("%s: most : fewest triangles of the object: %.2f of the median frame, %.2f of its cpu\n",
+                scene.name.c_str(), rows.back()["median_ratio"].get<double>(),
+                rows.back()["cpu_ratio"].get<double>());
+  }
+  if (settings.json.empty()) return 0;
+  std::ofstream out(settings.json);
+  out << rows.dump(1) << "\n";
+  if (!out.flush()) {
+    std::fprintf(stderr, "%s: cannot be written\n", settings.json.c_str());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace roomradar
+
+int main(int argc, char** argv) {
+  try {
+    return roomradar::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
