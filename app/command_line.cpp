@@ -14,7 +14,7 @@ namespace roomradar {
 namespace {
 
 constexpr char kSourceHelp[] =
-    "where frames come from: kinect:N, sim:ROOM[?seed=N&...], or a folder with a recording\n"
+    "where frames come from: kinect:N[?depth=raw|mm|registered], sim:ROOM[?seed=N&...], or a folder with a recording\n"
     "(7-Scenes, TUM RGB-D, fakenect, or numbered color/ and depth/)";
 
 const std::map<std::string, PoseOrigin> kPoses = {{"tracked", PoseOrigin::kTracked},

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 
@@ -33,6 +34,7 @@ class EndedByInterrupt final : public FrameSource {
     return at_end_ ? ReadResult{ReadStatus::kEnd, {}} : source_->next(frame);
   }
   bool rewind() override { return source_->rewind(); }
+  bool seek(std::int64_t index) override { return source_->seek(index); }
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
   [[nodiscard]] std::string name() const override { return source_->name(); }
 

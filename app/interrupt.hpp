@@ -19,7 +19,7 @@ class Interrupt {
   static bool take();
 };
 
-/// A live source that comes to its end when Ctrl-C is pressed while it is read.
+/// A source that comes to its end when Ctrl-C is pressed while it is read.
 std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source);
 
 }  // namespace roomradar

@@ -17,18 +17,29 @@ namespace {
 constexpr std::string_view kKinect = "kinect:";
 constexpr std::string_view kSim = "sim:";
 
-int kinect_number(const std::string& source) {
+/// kinect:N[?depth=raw|mm|registered]
+std::unique_ptr<FrameSource> open_kinect_named(const std::string& source, SourceOptions options) {
   int device = -1;
   const char* begin = source.data() + kKinect.size();
   const char* end = source.data() + source.size();
   const auto parsed = std::from_chars(begin, end, device);
-  if (parsed.ec != std::errc() || parsed.ptr != end || device < 0)
-    throw Error(source + ": must be kinect:N with N the number of the device, from 0");
-  return device;
+  const std::string_view rest(parsed.ptr, static_cast<std::size_t>(end - parsed.ptr));
+  if (rest == "?depth=mm")
+    options.kinect_depth = KinectDepth::kMillimetres;
+  else if (rest == "?depth=registered")
+    options.kinect_depth = KinectDepth::kRegistered;
+  const bool is_known = rest.empty() || rest == "?depth=raw" || options.kinect_depth != KinectDepth::kRaw;
+  if (parsed.ec != std::errc() || !is_known || device < 0)
+    throw Error(
+        source +
+        ": must be kinect:N with N the number of the device, from 0, and maybe ?depth=raw (as it "
+        "measures), ?depth=mm (made millimetres by libfreenect) or ?depth=registered (and seen from its "
+        "colour camera)");
+  return open_kinect(device, options);
 }
 
 std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceOptions& options) {
-  if (source.starts_with(kKinect)) return open_kinect(kinect_number(source), options);
+  if (source.starts_with(kKinect)) return open_kinect_named(source, options);
   if (source.starts_with(kSim)) return std::make_unique<SimulatedSource>(parse_sim_spec(source));
   if (!std::filesystem::exists(source))
     throw Error(source +

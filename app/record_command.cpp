@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "app/commands.hpp"
+#include "app/interrupt.hpp"
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "mapping/types/error.hpp"
@@ -10,7 +11,11 @@
 namespace roomradar {
 
 int run(const RecordCommand& command) {
-  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames, command.calibration);
+  SourceOptions options;
+  options.keep_all = true;
+  const Interrupt interrupt;
+  const std::unique_ptr<FrameSource> source =
+      ended_by_interrupt(open_source(command.source, command.frames, command.calibration, options));
   RecordingWriter writer(command.folder, command.format);
   std::int64_t skipped = 0;
   {
@@ -19,6 +24,7 @@ int run(const RecordCommand& command) {
     for (;;) {
       const ReadResult read = source->next(frame);
       if (read.status == ReadStatus::kEnd) break;
+      if (read.waiting) continue;
       if (read.status == ReadStatus::kSkipped) {
         ++skipped;
         progress.step("skipped: " + read.fault);

@@ -5,8 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/commands.hpp"
+#include "app/interrupt.hpp"
 #include "app/open_source.hpp"
 #include "app/picture_file.hpp"
 #include "app/progress.hpp"
@@ -46,6 +48,14 @@ struct RunTotals {
   double deepest_penetration_m = 0.0;
   double first_stamp_s = 0.0;
   std::string last_fault;
+  std::int64_t dropped = 0;  // by a live source, for newer ones
+  std::optional<std::int64_t> first_index;
+
+  /// Every frame that was read before, and those that were dropped, have a lower index.
+  void count_dropped(std::int64_t index) {
+    if (!first_index) first_index = index - (read - 1);
+    dropped = std::max(dropped, index - *first_index - (read - 1));
+  }
 
   void add(const FrameResult& frame) {
     if (frame.status != FrameStatus::kDone) return;
@@ -92,6 +102,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
   nlohmann::json results = {
       {"frames_located", totals.located},
       {"frames_degenerate", totals.degenerate},
+      {"frames_dropped", totals.dropped},
       {"moved_fraction_mean", totals.per_frame(totals.moved_fraction)},
       {"moved_fraction_max", totals.max_moved_fraction},
       {"dynamic_triangles_mean", totals.per_frame(totals.dynamic_triangles)},
@@ -196,8 +207,9 @@ int run(const RunCommand& command) {
     require_can_become_map(command.save_map);
   }
   SavedMap map = load_map(command.map);
+  const Interrupt interrupt;
   const std::unique_ptr<FrameSource> source =
-      open_source(command.source, command.frames, command.calibration);
+      ended_by_interrupt(open_source(command.source, command.frames, command.calibration));
   SessionConfig config;
   config.poses = command.poses;
   config.scene.surfaces = command.surfaces;
@@ -235,6 +247,7 @@ int run(const RunCommand& command) {
     for (std::int64_t run_frame = 0; !quit; ++run_frame) {
       const ReadResult read = report.times.timed("read", [&] { return source->next(frame); });
       if (read.status == ReadStatus::kEnd) break;
+      if (read.waiting) continue;  // what a live source waits for it says itself
       ++totals.read;
       if (read.status == ReadStatus::kSkipped) {
         ++totals.skipped;
@@ -242,6 +255,7 @@ int run(const RunCommand& command) {
         continue;
       }
       if (totals.read - totals.skipped == 1) totals.first_stamp_s = frame.stamp_s;
+      totals.count_dropped(frame.index);
       for (; next_event < script.events.size() &&
              is_due(script.events[next_event], run_frame, frame.stamp_s - totals.first_stamp_s);
            ++next_event) {
@@ -272,7 +286,7 @@ int run(const RunCommand& command) {
 
   if (!command.save_map.empty()) save_changed(map, session.adopted().size(), command.save_map);
   report.frames_read = totals.read;
-  report.frames_skipped = totals.skipped;
+  report.frames_skipped = totals.skipped + totals.dropped;
   report.results = results_of(totals, session);
   write_report(report, command.report);
   print_summary(totals, session);

@@ -68,7 +68,9 @@ ScanStart start_scan(const PrescanCommand& command) {
 
   const fs::path spool = folder / kSpool;
   const bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
-  if (!spooled) start.source = open_source(command.source, command.frames, command.calibration);
+  SourceOptions options;
+  options.keep_all = true;
+  if (!spooled) start.source = open_source(command.source, command.frames, command.calibration, options);
   const bool live = spooled || !start.source->rewind();
   start.is_live = live && !spooled;
   if (start.is_live) start.source = ended_by_interrupt(std::move(start.source));

@@ -26,6 +26,7 @@ bool read(FrameSource& source, StageTimes& times, Frame& frame, PrescanCounts& c
   for (;;) {
     const ReadResult result = times.timed("read", [&] { return source.next(frame); });
     if (result.status == ReadStatus::kEnd) return false;
+    if (result.waiting) continue;
     ++counts.frames_read;
     if (result.status == ReadStatus::kFrame) return true;
     ++counts.frames_skipped;

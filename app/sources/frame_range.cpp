@@ -32,6 +32,7 @@ class FrameRangeSource final : public FrameSource {
     while (position_ <= last_) {
       ReadResult result = source_->next(frame);
       if (result.status == ReadStatus::kEnd) fail_outside(*source_, first_, last_, position_);
+      if (result.waiting) return result;
       // A live device counts frames that it dropped, which are not delivered.
       const std::int64_t at = result.status == ReadStatus::kFrame ? frame.index : position_;
       position_ = at + 1;

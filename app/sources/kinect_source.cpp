@@ -1,161 +1,79 @@
-// kinect_source.cpp: libfreenect behind a thread of its own, its images paired as a recording's are.
+// kinect_source.cpp: a feed's numbers made frames: metres, cameras, gravity.
 #include "app/sources/kinect_source.hpp"
-
-#include <libfreenect.h>
-#include <sys/time.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <condition_variable>
-#include <cstdlib>
+#include <cstdio>
 #include <cstring>
-#include <deque>
-#include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
-#include <vector>
 
+#include "app/sources/fakenect_replay.hpp"
+#include "app/sources/freenect_device.hpp"
 #include "app/sources/kinect_units.hpp"
 #include "app/sources/nominal_rig.hpp"
-#include "app/sources/stamp_pairing.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
 
-/// What fakenect's library itself goes by. A replay is not in a hurry: it can wait for whoever reads the
-/// frames.
-bool is_replay() { return std::getenv("FAKENECT_PATH") != nullptr; }
+constexpr ImageSize kSize{640, 480};
+// 200 MB: four seconds, in which a tracker that looked for its way catches up.
+constexpr std::size_t kAllWaiting = 120;
 
-/// libfreenect's context and an opened device, closed in the right order.
-class FreenectDevice {
- public:
-  explicit FreenectDevice(int number) {
-    const std::string name = "kinect:" + std::to_string(number);
-    if (freenect_init(&context_, nullptr) < 0)
-      throw Error(name + ": libfreenect cannot start; is USB accessible?");
-    freenect_set_log_level(context_, FREENECT_LOG_ERROR);
-    freenect_select_subdevices(
-        context_, static_cast<freenect_device_flags>(FREENECT_DEVICE_CAMERA | FREENECT_DEVICE_MOTOR));
-    const int devices = freenect_num_devices(context_);
-    if (number < 0 || number >= devices) {
-      freenect_shutdown(context_);
-      throw Error(name + ": there is no such Kinect; libfreenect sees " +
-                  std::to_string(std::max(devices, 0)) +
-                  ", counted from 0. Is it plugged into USB and into its own power supply?");
-    }
-    if (freenect_open_device(context_, &device_, number) < 0) {
-      freenect_shutdown(context_);
-      throw Error(name +
-                  ": cannot be opened. Does another program use it, or does this user lack the right to "
-                  "(udev rule 60-libfreenect, group plugdev)?");
-    }
+/// Metres of each number that a depth image can hold.
+std::vector<float> metres_of(KinectDepth depth, const std::optional<KinectConstants>& constants) {
+  constexpr int kMost_mm = 10'000;
+  const bool is_raw = depth == KinectDepth::kRaw;
+  std::vector<float> metres(is_raw ? kRawNoDepth : kMost_mm + 1, 0.0F);
+  for (std::size_t i = 0; i < metres.size(); ++i) {
+    const auto number = static_cast<std::uint16_t>(i);
+    metres[i] = !is_raw     ? static_cast<float>(i) / 1000.0F
+                : constants ? raw_depth_m(number, constants->zero_plane)
+                            : raw_depth_m(number);
   }
-  FreenectDevice(const FreenectDevice&) = delete;
-  FreenectDevice& operator=(const FreenectDevice&) = delete;
-  ~FreenectDevice() {
-    freenect_stop_depth(device_);
-    freenect_stop_video(device_);
-    freenect_close_device(device_);
-    freenect_shutdown(context_);
+  return metres;
+}
+
+CameraRig rig_of(KinectDepth depth, const std::optional<KinectConstants>& constants,
+                 const std::filesystem::path& recording, const SourceOptions& options) {
+  CameraRig rig = rig_of_recording(recording, NominalRig::kKinect, options.depth_camera, kSize, kSize);
+  if (constants)
+    if (const auto fitted = fit_kinect_rig(constants->seen_by_both, rig)) rig = *fitted;
+  if (depth == KinectDepth::kRegistered) {
+    rig.depth_camera = options.depth_camera.value_or(*rig.colour_camera);
+    rig.colour_camera = rig.depth_camera;
+    rig.T_colour_depth.setIdentity();
   }
-  [[nodiscard]] freenect_context* context() const { return context_; }
-  [[nodiscard]] freenect_device* device() const { return device_; }
-
- private:
-  freenect_context* context_ = nullptr;
-  freenect_device* device_ = nullptr;
-};
-
-struct RawDepth {
-  std::int64_t number = 0;
-  double stamp_s = 0.0;
-  std::vector<std::uint16_t> raw{};
-  std::optional<Eigen::Vector3d> down_camera{};
-};
-struct RawColour {
-  std::int64_t number = 0;
-  std::vector<Rgb> pixels{};  ///< empty: no image
-};
-struct RawFrame {
-  RawDepth depth;
-  RawColour colour{};
-  bool stamp_goes_back = false;
-};
+  return rig;
+}
 
 class KinectSource final : public FrameSource {
  public:
-  KinectSource(int number, const SourceOptions& options)
-      : name_("kinect:" + std::to_string(number)),
+  KinectSource(KinectOpener opener, KinectFeedConfig config, const SourceOptions& options,
+               const std::filesystem::path& recording)
+      : name_(config.name),
+        is_replay_(config.is_replay),
+        silence_s_(config.silence_s),
         timeout_s_(options.device_timeout_s),
-        replay_(is_replay()),
-        device_(number) {
-    const auto depth_mode = freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM, FREENECT_DEPTH_11BIT);
-    const auto video_mode = freenect_find_video_mode(FREENECT_RESOLUTION_MEDIUM, FREENECT_VIDEO_RGB);
-    depth_size_ = {depth_mode.width, depth_mode.height};
-    colour_size_ = {video_mode.width, video_mode.height};
-    // A replay may bring a camera.json of its own; nothing else stands in a live device's place.
-    const char* replayed = std::getenv("FAKENECT_PATH");
-    rig_ = rig_of_recording(replayed ? replayed : "", NominalRig::kKinect, options.depth_camera, depth_size_,
-                            colour_size_);
-
-    freenect_set_user(device_.device(), this);
-    freenect_set_depth_callback(
-        device_.device(), [](freenect_device* device, void* pixels, std::uint32_t ticks) {
-          static_cast<KinectSource*>(freenect_get_user(device))->on_depth(pixels, ticks);
-        });
-    freenect_set_video_callback(
-        device_.device(), [](freenect_device* device, void* pixels, std::uint32_t ticks) {
-          static_cast<KinectSource*>(freenect_get_user(device))->on_colour(pixels, ticks);
-        });
-    const bool started = freenect_set_depth_mode(device_.device(), depth_mode) >= 0 &&
-                         freenect_set_video_mode(device_.device(), video_mode) >= 0 &&
-                         freenect_start_depth(device_.device()) >= 0 &&
-                         freenect_start_video(device_.device()) >= 0;
-    if (!started) throw Error(name_ + ": its cameras cannot be started; unplug it and plug it in again");
-    thread_ = std::thread([this] { serve(); });
-  }
-
-  ~KinectSource() override {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-    }
-    changed_.notify_all();
-    thread_.join();
-  }
+        feed_(std::move(opener), std::move(config)),
+        metres_(metres_of(options.kinect_depth, feed_.constants())),
+        rig_(rig_of(options.kinect_depth, feed_.constants(), recording, options)) {}
 
   ReadResult next(Frame& frame) override {
-    RawFrame raw;
-    {
-      std::unique_lock lock(mutex_);
-      const auto something = [&] { return !ready_.empty() || ended_; };
-      if (replay_) changed_.wait(lock, something);  // a recording may have long gaps
-      const bool arrived = changed_.wait_for(lock, std::chrono::duration<double>(timeout_s_), something);
-      if (!arrived)
-        throw Error(name_ + ": has sent no depth image for " + std::to_string(timeout_s_) +
-                    " s; check its cable and power supply");
-      if (ready_.empty()) {
-        if (replay_) return {ReadStatus::kEnd, {}};
-        throw Error(name_ + ": the device has gone; was it unplugged?");
-      }
-      raw = std::move(ready_.front());
-      ready_.pop_front();
+    switch (feed_.take(raw_, silence_s_)) {
+      case KinectFeed::Take::kFrame:
+        break;
+      case KinectFeed::Take::kEnd:
+        return {ReadStatus::kEnd, {}};
+      case KinectFeed::Take::kNothing:
+        return waited();
     }
-    changed_.notify_all();
-
-    if (raw.stamp_goes_back) {
-      const std::string fault = name_ + ": depth image " + std::to_string(raw.depth.number) +
-                                " has a stamp that is not later than that of the one before it";
-      if (++bad_in_a_row_ >= kBadFramesInARow)
-        throw Error(fault + ", for the " + std::to_string(bad_in_a_row_) + "th time in a row" +
-                    (replay_ ? "; replay without a loop: FAKENECT_LOOP=0" : ""));
-      return {ReadStatus::kSkipped, fault};
-    }
+    if (!raw_.fault.empty()) return passed_over();
     bad_in_a_row_ = 0;
-    fill(raw, frame);
+    last_frame_ = Clock::now();
+    fill(frame);
     return {ReadStatus::kFrame, {}};
   }
 
@@ -164,139 +82,82 @@ class KinectSource final : public FrameSource {
   [[nodiscard]] std::string name() const override { return name_; }
 
  private:
-  // One being waited for, one in hand; more would only be late.
-  static constexpr std::size_t kReadyFrames = 2;
+  using Clock = std::chrono::steady_clock;
   static constexpr int kBadFramesInARow = 10;
-  static constexpr int kInterrupted = -10;  // LIBUSB_ERROR_INTERRUPTED: a signal came in between; no fault
 
-  // ---- the device's thread ----
-
-  void serve() {
-    for (;;) {
-      {
-        std::unique_lock lock(mutex_);
-        if (replay_) changed_.wait(lock, [&] { return ready_.size() < kReadyFrames || stop_; });
-        if (stop_) return;
-      }
-      timeval patience{.tv_sec = 0, .tv_usec = 100'000};
-      const int result = freenect_process_events_timeout(device_.context(), &patience);
-      if (result < 0 && (replay_ || result != kInterrupted)) break;
-      if (depth_arrived_) {
-        // A USB transfer, which libusb forbids within the callback. The answer goes with the next depth
-        // image.
-        freenect_update_tilt_state(device_.device());
-        depth_arrived_ = false;
-      }
-      hand_over();
-    }
-    pairing_.finish();
-    hand_over();
-    {
-      const std::lock_guard lock(mutex_);
-      ended_ = true;
-    }
-    changed_.notify_all();
+  ReadResult waited() {
+    const double silent_s = std::chrono::duration<double>(Clock::now() - last_frame_).count();
+    char text[64];
+    std::snprintf(text, sizeof text, ": no depth image for %.1f s", silent_s);
+    if (is_replay_) return {ReadStatus::kSkipped, name_ + text + ": the recording has a gap", true};
+    if (silent_s > timeout_s_)
+      throw Error(name_ + text + "; check its cable and power supply, then begin again");
+    return {ReadStatus::kSkipped, name_ + text + "; it is waited for", true};
   }
 
-  void on_depth(const void* pixels, std::uint32_t ticks) {
-    RawDepth depth{.number = depth_count_++, .stamp_s = clock_.seconds(ticks)};
-    const auto* raw = static_cast<const std::uint16_t*>(pixels);
-    depth.raw.assign(raw, raw + depth_size_.width_px * depth_size_.height_px);
-    const freenect_raw_tilt_state* tilt = freenect_get_tilt_state(device_.device());
-    if (tilt)
-      depth.down_camera = down_from_acceleration(
-          Eigen::Vector3d(tilt->accelerometer_x, tilt->accelerometer_y, tilt->accelerometer_z) /
-          kKinectCountsPerG);
-    pairing_.add_depth(depth.number, depth.stamp_s);
-    depths_.push_back(std::move(depth));
-    depth_arrived_ = true;
+  ReadResult passed_over() {
+    // A device's are watched by time: it is opened anew if no good one comes.
+    if (is_replay_ && ++bad_in_a_row_ >= kBadFramesInARow)
+      throw Error(
+          raw_.fault + ", the " + std::to_string(bad_in_a_row_) +
+          "th in a row that cannot be used; a replay must not begin again by itself: FAKENECT_LOOP=0");
+    return {ReadStatus::kSkipped, raw_.fault};
   }
 
-  void on_colour(const void* pixels, std::uint32_t ticks) {
-    RawColour colour{.number = colour_count_++};
-    const auto* rgb = static_cast<const Rgb*>(pixels);
-    colour.pixels.assign(rgb, rgb + colour_size_.width_px * colour_size_.height_px);
-    pairing_.add_colour(colour.number, clock_.seconds(ticks));
-    colours_.push_back(std::move(colour));
-    if (colours_.size() > kColoursKept) colours_.pop_front();
-  }
-
-  /// Moves what the pairing has decided on to where next() takes it.
-  void hand_over() {
-    while (const auto pair = pairing_.take()) {
-      RawFrame raw{.depth = std::move(depths_.front()), .stamp_goes_back = pair->stamp_goes_back};
-      depths_.pop_front();
-      const auto colour = std::find_if(colours_.begin(), colours_.end(), [&](const RawColour& candidate) {
-        return pair->colour && candidate.number == *pair->colour;
-      });
-      if (colour != colours_.end()) raw.colour = std::move(*colour);
-      {
-        const std::lock_guard lock(mutex_);
-        if (!replay_ && ready_.size() == kReadyFrames) ready_.pop_front();
-        ready_.push_back(std::move(raw));
-      }
-      changed_.notify_all();
-    }
-  }
-
-  // ---- the reader's thread ----
-
-  void fill(const RawFrame& raw, Frame& frame) const {
-    frame.index = raw.depth.number;
-    frame.stamp_s = raw.depth.stamp_s;
+  void fill(Frame& frame) const {
+    frame.index = raw_.number;
+    frame.stamp_s = raw_.stamp_s;
     frame.depth_camera = rig_.depth_camera;
     frame.colour_camera = *rig_.colour_camera;
     frame.T_colour_depth = rig_.T_colour_depth;
     frame.T_world_camera.reset();
-    frame.down_camera = raw.depth.down_camera;
-    frame.depth_m.resize(depth_size_.width_px, depth_size_.height_px);
-    std::transform(raw.depth.raw.begin(), raw.depth.raw.end(), frame.depth_m.pixels.begin(), raw_depth_m);
-    const bool has_colour = !raw.colour.pixels.empty();
-    frame.colour.resize(has_colour ? colour_size_.width_px : 0, has_colour ? colour_size_.height_px : 0);
-    std::copy(raw.colour.pixels.begin(), raw.colour.pixels.end(), frame.colour.pixels.begin());
+    frame.down_camera = raw_.down_camera;
+    frame.depth_m.resize(kSize.width_px, kSize.height_px);
+    std::transform(raw_.depth.begin(), raw_.depth.end(), frame.depth_m.pixels.begin(),
+                   [&](std::uint16_t number) { return number < metres_.size() ? metres_[number] : 0.0F; });
+    const bool has_colour = !raw_.colour.empty();
+    frame.colour.resize(has_colour ? kSize.width_px : 0, has_colour ? kSize.height_px : 0);
+    static_assert(sizeof(Rgb) == 3);
+    if (has_colour) std::memcpy(frame.colour.pixels.data(), raw_.colour.data(), raw_.colour.size());
   }
 
   const std::string name_;
+  const bool is_replay_;
+  const double silence_s_;
   const double timeout_s_;
-  const bool replay_;
-  ImageSize depth_size_;
-  ImageSize colour_size_;
-  CameraRig rig_;
+  KinectFeed feed_;
+  const std::vector<float> metres_;
+  const CameraRig rig_;
+  KinectFrame raw_;
   int bad_in_a_row_ = 0;
-
-  // Of the device's thread alone.
-  KinectClock clock_;
-  StampPairing pairing_{kDevicePairing};
-  std::int64_t depth_count_ = 0;
-  std::int64_t colour_count_ = 0;
-  std::deque<RawDepth> depths_;
-  std::deque<RawColour> colours_;
-  bool depth_arrived_ = false;
-
-  // Shared, under mutex_.
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<RawFrame> ready_;
-  bool ended_ = false;
-  bool stop_ = false;
-
-  FreenectDevice device_;  // after all that its callbacks fill: it is closed before that goes
-  std::thread thread_;
+  Clock::time_point last_frame_ = Clock::now();
 };
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& options) {
-  return std::make_unique<KinectSource>(device, options);
+void say_on_stderr(const std::string& sentence) {
+  std::fprintf(stderr, "\nroomradar: %s\n", sentence.c_str());
 }
 
-int count_kinects() {
-  freenect_context* context = nullptr;
-  if (freenect_init(&context, nullptr) < 0) return 0;
-  freenect_set_log_level(context, FREENECT_LOG_FATAL);
-  const int devices = freenect_num_devices(context);
-  freenect_shutdown(context);
-  return std::max(devices, 0);
+std::unique_ptr<FrameSource> open_kinect(KinectOpener opener, KinectFeedConfig config,
+                                         const SourceOptions& options,
+                                         const std::filesystem::path& recording) {
+  config.depth = options.kinect_depth;
+  config.most_waiting = options.keep_all ? kAllWaiting : 1;
+  config.say = options.say;
+  return std::make_unique<KinectSource>(std::move(opener), std::move(config), options, recording);
+}
+
+std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& options) {
+  KinectFeedConfig config{.name = "kinect:" + std::to_string(device), .number = device};
+  const auto folder = replayed_folder();
+  if (!folder) return open_kinect(open_freenect, std::move(config), options);
+  // The opener, and the thread that has it, keep it for as long as the replay may read from it.
+  const auto replay = std::make_shared<FakenectReplay>(*folder);
+  config.is_replay = true;
+  config.broken = replay->broken();
+  return open_kinect([replay](const KinectWish& wish) { return open_freenect(wish); }, std::move(config),
+                     options, *folder);
 }
 
 }  // namespace roomradar

@@ -37,6 +37,17 @@ std::uint16_t raw_from_depth_m(float depth_m) {
   return static_cast<std::uint16_t>(nearest - table.begin());
 }
 
+float raw_depth_m(std::uint16_t raw, const KinectZeroPlane& zero_plane) {
+  constexpr double kSubPixels = 4.0;  // of a raw step in a column
+  constexpr double kOffset_px = 0.375;
+  constexpr double kNearest_m = 0.2, kFarthest_m = 10.0;
+  if (raw >= kRawNoDepth) return 0.0F;
+  const double shift_cm = (raw / kSubPixels - zero_plane.const_shift_px - kOffset_px) * zero_plane.pixel_cm;
+  const double depth_m = 0.01 * (shift_cm * zero_plane.distance_cm / (zero_plane.emitter_cm - shift_cm) +
+                                 zero_plane.distance_cm);
+  return depth_m >= kNearest_m && depth_m <= kFarthest_m ? static_cast<float>(depth_m) : 0.0F;
+}
+
 std::optional<Eigen::Vector3d> down_from_acceleration(const Eigen::Vector3d& acceleration_g) {
   const double magnitude_g = acceleration_g.norm();
   if (!(magnitude_g >= 0.8 && magnitude_g <= 1.2)) return std::nullopt;

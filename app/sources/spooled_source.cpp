@@ -6,13 +6,11 @@
 #include "app/sources/spooled_source.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <cstring>
 #include <system_error>
 #include <utility>
 
 #include "app/sources/image_file.hpp"
+#include "app/sources/temporary_folder.hpp"
 #include "mapping/types/byte_archive.hpp"
 #include "mapping/types/error.hpp"
 
@@ -23,16 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kList = "list.bin";
 constexpr std::string_view kMagic = "RRSPOOL1";
-
-fs::path make_temporary_folder(fs::path parent) {
-  std::error_code fault;
-  if (parent.empty()) parent = fs::temp_directory_path(fault);
-  if (fault) throw Error("there is no folder for temporary files; set TMPDIR to one: " + fault.message());
-  std::string pattern = (parent / "roomradar-spool-XXXXXX").string();
-  if (!mkdtemp(pattern.data()))
-    throw Error(parent.string() + ": no temporary folder can be made there: " + std::strerror(errno));
-  return pattern;
-}
 
 fs::path depth_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".depth.png");
@@ -178,6 +166,7 @@ ReadResult SpooledSource::read_on(Frame& frame) {
     at_end_ = true;
     return result;
   }
+  if (result.waiting) return result;
   Entry entry;
   if (result.status == ReadStatus::kSkipped) {
     entry.fault = result.fault;

@@ -16,7 +16,8 @@ enum class ReadStatus {
 
 struct [[nodiscard]] ReadResult {
   ReadStatus status = ReadStatus::kEnd;
-  std::string fault;  ///< a sentence, only if skipped
+  std::string fault;     ///< a sentence, only if skipped
+  bool waiting = false;  ///< skipped, but no frame was passed over: a live source has had none for a while
 };
 
 /// Frames in the order of their stamps. Not thread safe.

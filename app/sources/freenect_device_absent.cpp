@@ -1,11 +1,13 @@
-// kinect_source_absent.cpp: stands in for kinect_source.cpp where the program is built without libfreenect.
+// freenect_device_absent.cpp: stands in for freenect_device.cpp where the program is built without
+// libfreenect.
+#include "app/sources/freenect_device.hpp"
 #include "app/sources/kinect_source.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
 
-std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& /*options*/) {
-  throw Error("kinect:" + std::to_string(device) +
+std::unique_ptr<KinectDevice> open_freenect(const KinectWish& wish) {
+  throw Error("kinect:" + std::to_string(wish.number) +
               ": this program was built without Kinect; configure it with -DROOMRADAR_WITH_KINECT=ON and "
               "libfreenect-dev");
 }

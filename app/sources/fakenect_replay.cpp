@@ -1,0 +1,91 @@
+// fakenect_replay.cpp: sizes of files, and a folder of links.
+#include "app/sources/fakenect_replay.hpp"
+
+#include <cstdlib>
+#include <fstream>
+#include <system_error>
+#include <vector>
+
+#include "app/sources/recording_index.hpp"
+#include "app/sources/temporary_folder.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPath = "FAKENECT_PATH";
+constexpr std::uintmax_t kDepthBytes = std::uintmax_t{640} * 480 * 2,
+                         kColourBytes = std::uintmax_t{640} * 480 * 3;
+constexpr std::streamsize kLongestHeader = 256;
+
+/// Empty if fakenect can copy an image out of the file: a first line, and the pixels behind it.
+std::string fault_of(const fs::path& file, std::uintmax_t pixel_bytes) {
+  std::error_code missing;
+  const std::uintmax_t bytes = fs::file_size(file, missing);
+  if (missing) return "cannot be read: " + missing.message();
+  if (pixel_bytes == 0) return bytes > 0 ? "" : "is empty";
+  std::string head(kLongestHeader, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), kLongestHeader);
+  const std::size_t line = head.find('\n');
+  if (line == std::string::npos) return "has no header";
+  if (bytes < line + 1 + pixel_bytes)
+    return "is cut short: " + std::to_string(bytes) + " bytes of " + std::to_string(line + 1 + pixel_bytes);
+  return {};
+}
+
+}  // namespace
+
+std::optional<fs::path> replayed_folder() {
+  const char* path = std::getenv(kPath);
+  if (!path) return std::nullopt;
+  return path;
+}
+
+FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
+  index_fakenect(folder);  // refuses a list that is broken
+  std::ifstream list(folder / "INDEX.txt");
+  std::vector<std::string> sound;
+  bool all_sound = true;
+  std::int64_t depth_images = 0;
+  for (std::string line; std::getline(list, line);) {
+    if (line.ends_with('\r')) line.pop_back(), all_sound = false;
+    if (line.empty()) {
+      all_sound = false;  // fakenect takes it for the end
+      continue;
+    }
+    const bool is_depth = line[0] == 'd';
+    const std::string fault = fault_of(folder / line, is_depth         ? kDepthBytes
+                                                      : line[0] == 'r' ? kColourBytes
+                                                                       : 0);
+    if (fault.empty()) sound.push_back(line);
+    all_sound = all_sound && fault.empty();
+    if (is_depth && !fault.empty())
+      broken_[depth_images] = "cannot be used: " + (folder / line).string() + " " + fault;
+    depth_images += is_depth ? 1 : 0;
+  }
+  if (static_cast<std::int64_t>(broken_.size()) == depth_images)
+    throw Error(folder.string() + ": holds no whole depth image");
+  if (all_sound) return;
+
+  links_ = make_temporary_folder();
+  std::ofstream index(links_ / "INDEX.txt");
+  for (const std::string& line : sound) {
+    fs::create_symlink(fs::absolute(folder / line), links_ / line);
+    index << line << '\n';
+  }
+  index.close();
+  if (!index) throw Error(links_.string() + ": cannot be written; is the disk full?");
+  setenv(kPath, links_.c_str(), 1);
+}
+
+FakenectReplay::~FakenectReplay() {
+  if (links_.empty()) return;
+  setenv(kPath, folder_.c_str(), 1);
+  std::error_code ignored;  // nobody is left to be told
+  fs::remove_all(links_, ignored);
+}
+
+}  // namespace roomradar
