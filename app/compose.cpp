@@ -16,12 +16,12 @@ PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
   const ContactShadow& shadow = *caster.shadow;
   if (shadow.covered.empty()) return {};
   constexpr double kNear_m = 0.05;
-  const Eigen::Vector3d low(shadow.x0_m, shadow.y0_m, shadow.bottom_m - shadow.extent_m);
-  const Eigen::Vector3d size(shadow.columns * shadow.cell_m, shadow.rows * shadow.cell_m,
-                             1.1 * shadow.extent_m);
+  const Eigen::Vector3f low(shadow.x0_m, shadow.y0_m, shadow.bottom_m - shadow.extent_m);
+  const Eigen::Vector3f size(static_cast<float>(shadow.columns) * shadow.cell_m,
+                             static_cast<float>(shadow.rows) * shadow.cell_m, 1.1F * shadow.extent_m);
   const Eigen::Isometry3d T_camera_shadow =
       T_world_camera.inverse() * Eigen::Translation3d(caster.T_world_object.translation());
-  return pixels_of(Eigen::AlignedBox3d(low, low + size), camera, T_camera_shadow, kNear_m);
+  return pixels_of(Eigen::AlignedBox3f(low, low + size).cast<double>(), camera, T_camera_shadow, kNear_m);
 }
 
 std::uint8_t to_byte(float value) {
@@ -54,55 +54,35 @@ void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
   }
 }
 
-/// How much of an object at object_m shows at pixel (x, y), 0..1: the weighted mean over 3 x 3 pixels of
-/// whether the real surface there is not nearer.
-float visible_part(const DepthImage& real_depth_m, int x, int y, float object_m,
-                   const ComposeConfig& config) {
-  constexpr float kWeight[3] = {1.0F, 2.0F, 1.0F};
-  const float tolerance_m = config.occlusion_tolerance_m + config.tolerance_per_m2 * object_m * object_m;
-  float sum = 0.0F;
-  float weights = 0.0F;
-  for (int j = -1; j <= 1; ++j) {
-    for (int i = -1; i <= 1; ++i) {
-      if (!real_depth_m.contains(x + i, y + j)) continue;
-      const float real_m = real_depth_m.at(x + i, y + j);
-      const float weight = kWeight[i + 1] * kWeight[j + 1];
-      const float past_m = real_m > 0.0F ? object_m - real_m - tolerance_m : 0.0F;
-      sum += weight * std::clamp(1.0F - past_m / config.occlusion_softness_m, 0.0F, 1.0F);
-      weights += weight;
-    }
-  }
-  return sum / weights;
-}
-
-void lay_over(const ObjectLayer& layer, const DepthImage& real_depth_m, const ComposeConfig& config,
-              ColourImage& picture) {
-  const float samples = static_cast<float>(layer.samples * layer.samples);
+void lay_over(const ObjectLayer& layer, const Occlusion& occlusion, ColourImage& picture) {
+  const float part_a_sample = 1.0F / static_cast<float>(layer.samples * layer.samples);
   for (int y = 0; y < layer.rect.height; ++y) {
     for (int x = 0; x < layer.rect.width; ++x) {
-      float r = 0.0F, g = 0.0F, b = 0.0F, depth_sum_m = 0.0F, covered = 0.0F;
+      float r = 0.0F, g = 0.0F, b = 0.0F, covered = 0.0F;
       for (int j = 0; j < layer.samples; ++j) {
         const std::size_t first = layer.depth_m.index(x * layer.samples, y * layer.samples + j);
         for (std::size_t k = first; k < first + static_cast<std::size_t>(layer.samples); ++k) {
-          const float depth_m = layer.depth_m.pixels[k];
-          if (!(depth_m > 0.0F)) continue;
+          if (!(layer.depth_m.pixels[k] > 0.0F)) continue;
           const Rgb& colour = layer.colour.pixels[k];
           r += static_cast<float>(colour.r);
           g += static_cast<float>(colour.g);
           b += static_cast<float>(colour.b);
-          depth_sum_m += depth_m;
-          covered += 1.0F;
+          covered += part_a_sample;
         }
       }
       if (covered == 0.0F) continue;
-      const float visible =
-          visible_part(real_depth_m, layer.rect.x + x, layer.rect.y + y, depth_sum_m / covered, config);
-      const float object_part = visible / samples;  // of each covered sub-pixel
-      const float behind_part = 1.0F - covered * object_part;
+      const int u = layer.rect.x + x - occlusion.rect.x, v = layer.rect.y + y - occlusion.rect.y;
+      const float hidden = occlusion.hidden.at(u, v);
+      const Rgb& front = occlusion.front.at(u, v);
+      const float object_part = (1.0F - hidden) * part_a_sample;  // of each covered sub-pixel
+      const float front_part = hidden * covered;
+      const float beside_part = 1.0F - covered;
       Rgb& pixel = picture.at(layer.rect.x + x, layer.rect.y + y);
-      pixel = {to_byte(object_part * r + behind_part * static_cast<float>(pixel.r)),
-               to_byte(object_part * g + behind_part * static_cast<float>(pixel.g)),
-               to_byte(object_part * b + behind_part * static_cast<float>(pixel.b))};
+      const auto mixed = [&](float object, std::uint8_t before, std::uint8_t beside) {
+        return to_byte(object_part * object + front_part * static_cast<float>(before) +
+                       beside_part * static_cast<float>(beside));
+      };
+      pixel = {mixed(r, front.r, pixel.r), mixed(g, front.g, pixel.g), mixed(b, front.b, pixel.b)};
     }
   }
 }
@@ -118,26 +98,23 @@ void require_size(const char* what, const Image<Pixel>& image, int width_px, int
 }  // namespace
 
 void require_valid(const ComposeConfig& config) {
+  require_valid(config.occlusion);
   const auto require = [](bool holds, const char* name, float value, const char* rule) {
     if (!holds)
       throw Error(std::string("compose.") + name + " = " + std::to_string(value) + ": must be " + rule);
   };
   const auto is_length = [](float value_m) { return value_m >= 0.0F && value_m <= 1.0F; };
-  require(is_length(config.occlusion_tolerance_m), "occlusion_tolerance_m", config.occlusion_tolerance_m,
-          "in 0..1");
-  require(is_length(config.tolerance_per_m2), "tolerance_per_m2", config.tolerance_per_m2, "in 0..1");
-  require(config.occlusion_softness_m > 0.0F && config.occlusion_softness_m <= 1.0F, "occlusion_softness_m",
-          config.occlusion_softness_m, "in 0..1, not 0");
   require(is_length(config.shadow_strength), "shadow_strength", config.shadow_strength, "in 0..1");
 }
 
 PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
-                            const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer) {
-  // One pixel more: visibility is averaged with the neighbours.
+                            const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
+                            const OcclusionConfig& config) {
+  const int margin = occlusion_margin_px(config);
   const bool has_objects = layer.rect.width > 0 && layer.rect.height > 0;
-  PixelRect rect =
-      has_objects ? PixelRect{layer.rect.x - 1, layer.rect.y - 1, layer.rect.width + 2, layer.rect.height + 2}
-                  : PixelRect{};
+  PixelRect rect = has_objects ? PixelRect{layer.rect.x - margin, layer.rect.y - margin,
+                                           layer.rect.width + 2 * margin, layer.rect.height + 2 * margin}
+                               : PixelRect{};
   for (const ShadowCaster& caster : casters)
     if (caster.shadow != nullptr) rect = united(rect, shadowed_pixels(caster, camera, T_world_camera));
   return clamped(rect, camera.width_px, camera.height_px);
@@ -145,7 +122,7 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 
 void compose(const ColourImage& background, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
              const DepthImage& real_depth_m, std::span<const ShadowCaster> casters, const ObjectLayer& layer,
-             const ComposeConfig& config, ColourImage& picture) {
+             const ComposeConfig& config, Occlusion& occlusion, ColourImage& picture) {
   require_size("the background", background, camera.width_px, camera.height_px);
   require_size("the real depth", real_depth_m, camera.width_px, camera.height_px);
   picture.width = background.width;
@@ -163,7 +140,8 @@ void compose(const ColourImage& background, const Intrinsics& camera, const Eige
                layer.rect.height * layer.samples);
   require_size("the layer's depth", layer.depth_m, layer.rect.width * layer.samples,
                layer.rect.height * layer.samples);
-  lay_over(layer, real_depth_m, config, picture);
+  find_occlusion(picture, real_depth_m, layer, config.occlusion, occlusion);
+  lay_over(layer, occlusion, picture);
 }
 
 void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture) {

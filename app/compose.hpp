@@ -5,16 +5,14 @@
 
 #include "app/contact_shadow.hpp"
 #include "app/object_layer.hpp"
+#include "app/occlusion.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {
 
 struct ComposeConfig {
-  float occlusion_tolerance_m = 0.006F;  ///< a real surface must be nearer by this at 1 m to hide the object
-  float tolerance_per_m2 = 0.003F;       ///< and by this more per squared metre of distance: sensor noise
-  /// Over this depth the object fades out: no hard line where it touches.
-  float occlusion_softness_m = 0.004F;
+  OcclusionConfig occlusion;
   float shadow_strength = 0.75F;  ///< 0 none .. 1: black where the object covers the whole sky
 };
 /// Throws Error "compose.shadow_strength = 2: must be in 0..1" and the like.
@@ -26,10 +24,11 @@ struct ShadowCaster {
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
 
-/// The pixels whose real depth `compose` looks at: those of the layer and of the shadows. Only these need
-/// rendering.
+/// The pixels whose real depth `compose` looks at: those of the layer, about it, and of the shadows. Only
+/// these need rendering.
 PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
-                            const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer);
+                            const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
+                            const OcclusionConfig& config);
 
 /// The picture of the room with the objects in it.
 ///
@@ -39,13 +38,13 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 /// @param real_depth_m     real surfaces as this camera sees them, of its size; 0 hides nothing
 /// @param casters          objects that cast a soft shadow on real surfaces
 /// @param layer            the objects as this camera sees them (ObjectDrawer::draw)
+/// @param occlusion        what hides the objects; buffers that are reused
 /// @param picture          of the camera's size; may not be `background`
 /// @throws Error if sizes disagree, or the layer reaches past the picture
-/// Visibility is averaged over 3 x 3 pixels, so that edges of what hides the object are soft as the object's
-/// own are. Only the objects' and shadows' rectangles cost time beyond one copy.
+/// Only the objects' and shadows' rectangles cost time beyond one copy.
 void compose(const ColourImage& background, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
              const DepthImage& real_depth_m, std::span<const ShadowCaster> casters, const ObjectLayer& layer,
-             const ComposeConfig& config, ColourImage& picture);
+             const ComposeConfig& config, Occlusion& occlusion, ColourImage& picture);
 
 /// A grey picture of a depth image, lit from the camera, for sources without colour. Pixels without depth are
 /// dark.

@@ -6,17 +6,19 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace roomradar {
 namespace {
 
-// Along the longer side: a cell of a 25 cm teapot is 1 cm, a shadow is soft.
-constexpr int kUndersideCells = 24;
-constexpr double kSpread = 1.0;  // the table reaches this many longer sides past the footprint and below it
+constexpr int kPoints = 8000;
+// Along the longer side: a cell of a 25 cm teapot is 1.5 cm, a shadow is soft.
+constexpr int kUndersideCells = 16;
+constexpr float kSpread = 1.0F;  // the table reaches this many longer sides past the footprint and below it
 // A noisy surface may stand this much above the object's lowest point.
-constexpr double kAboveBottom_m = 0.04;
-constexpr double kFadeAbove_m = 0.02;
-constexpr std::array<double, 8> kLevels = {0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0};  // of extent_m
+constexpr float kAboveBottom_m = 0.04F;
+constexpr float kFadeAbove_m = 0.02F;
+constexpr std::array<float, 8> kLevels = {0.0F, 0.02F, 0.05F, 0.1F, 0.2F, 0.4F, 0.7F, 1.0F};  // of extent_m
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
 /// One piece of the underside: its middle relative to the table's first cell, and its height over the bottom.
@@ -24,66 +26,31 @@ struct Patch {
   float x_m, y_m, height_m;
 };
 
-/// Lowest height over each cell, by sampling triangles at the cells' middles, and vertices for what is
-/// thinner.
-class Underside {
- public:
-  Underside(double x0_m, double y0_m, double cell_m, int columns, int rows)
-      : x0_m_(x0_m),
-        y0_m_(y0_m),
-        cell_m_(cell_m),
-        columns_(columns),
-        rows_(rows),
-        lowest_m_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), kNothing) {}
-
-  void add(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-    for (const Eigen::Vector3d& p : {a, b, c}) lower(column(p.x()), row(p.y()), p.z());
-    const double twice_area = (b - a).head<2>().dot(Eigen::Vector2d(c.y() - a.y(), a.x() - c.x()));
-    if (std::abs(twice_area) < 1e-12) return;
-    const auto [left, right] = std::minmax({a.x(), b.x(), c.x()});
-    const auto [near, far] = std::minmax({a.y(), b.y(), c.y()});
-    for (int j = row(near); j <= row(far); ++j) {
-      for (int i = column(left); i <= column(right); ++i) {
-        const Eigen::Vector2d p(x0_m_ + i * cell_m_ - a.x(), y0_m_ + j * cell_m_ - a.y());
-        const double wb = p.dot(Eigen::Vector2d(c.y() - a.y(), a.x() - c.x())) / twice_area;
-        const double wc = p.dot(Eigen::Vector2d(a.y() - b.y(), b.x() - a.x())) / twice_area;
-        if (wb >= 0.0 && wc >= 0.0 && wb + wc <= 1.0)
-          lower(i, j, a.z() + wb * (b.z() - a.z()) + wc * (c.z() - a.z()));
-      }
+/// The lowest point over each cell, where there is any.
+std::vector<Patch> underside(const std::vector<Eigen::Vector3f>& points, const ContactShadow& table) {
+  std::vector<float> lowest_m(static_cast<std::size_t>(table.columns) * static_cast<std::size_t>(table.rows),
+                              kNothing);
+  for (const Eigen::Vector3f& p : points) {
+    const int i =
+        std::clamp(static_cast<int>(std::lround((p.x() - table.x0_m) / table.cell_m)), 0, table.columns - 1);
+    const int j =
+        std::clamp(static_cast<int>(std::lround((p.y() - table.y0_m) / table.cell_m)), 0, table.rows - 1);
+    float& lowest = lowest_m[static_cast<std::size_t>(j) * static_cast<std::size_t>(table.columns) +
+                             static_cast<std::size_t>(i)];
+    lowest = std::min(lowest, p.z());
+  }
+  std::vector<Patch> patches;
+  for (int j = 0; j < table.rows; ++j) {
+    for (int i = 0; i < table.columns; ++i) {
+      const float lowest = lowest_m[static_cast<std::size_t>(j) * static_cast<std::size_t>(table.columns) +
+                                    static_cast<std::size_t>(i)];
+      if (lowest < kNothing)
+        patches.push_back({static_cast<float>(i) * table.cell_m, static_cast<float>(j) * table.cell_m,
+                           lowest - table.bottom_m});
     }
   }
-  [[nodiscard]] std::vector<Patch> patches(double bottom_m) const {
-    std::vector<Patch> result;
-    for (int j = 0; j < rows_; ++j) {
-      for (int i = 0; i < columns_; ++i) {
-        const float lowest = lowest_m_[index(i, j)];
-        if (lowest == kNothing) continue;
-        result.push_back({static_cast<float>(i * cell_m_), static_cast<float>(j * cell_m_),
-                          lowest - static_cast<float>(bottom_m)});
-      }
-    }
-    return result;
-  }
-
- private:
-  [[nodiscard]] std::size_t index(int i, int j) const {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(i);
-  }
-  [[nodiscard]] int column(double x_m) const {
-    return std::clamp(static_cast<int>(std::lround((x_m - x0_m_) / cell_m_)), 0, columns_ - 1);
-  }
-  [[nodiscard]] int row(double y_m) const {
-    return std::clamp(static_cast<int>(std::lround((y_m - y0_m_) / cell_m_)), 0, rows_ - 1);
-  }
-  void lower(int i, int j, double z_m) {
-    float& lowest = lowest_m_[index(i, j)];
-    lowest = std::min(lowest, static_cast<float>(z_m));
-  }
-
-  double x0_m_, y0_m_, cell_m_;
-  int columns_, rows_;
-  std::vector<float> lowest_m_;
-};
+  return patches;
+}
 
 /// Goes to 0 over the outer fifth of the table, so that the shadow has no edge.
 float window(int i, int count) {
@@ -97,87 +64,126 @@ float form_factor(float dx_m, float dy_m, float h_m, float area_m2) {
   return h_m * h_m * area_m2 / (std::numbers::pi_v<float> * d2 * d2);
 }
 
-/// Sum of the patches' form factors at a level point (x, y) that is clearance_m below the bottom. A patch
-/// that is near against its size is taken in nine pieces.
-float covered_at(const std::vector<Patch>& patches, float x_m, float y_m, float clearance_m, float cell_m) {
+/// Adds a patch's form factors at the level points of a row that is clearance_m below the bottom. What is
+/// near against the patch's size sees it as nine pieces.
+void add_patch(const Patch& patch, float y_m, float clearance_m, float cell_m, std::span<float> row) {
   const float area_m2 = cell_m * cell_m;
   const float third_m = cell_m / 3.0F;
-  float sum = 0.0F;
-  for (const Patch& patch : patches) {
-    const float dx = patch.x_m - x_m;
-    const float dy = patch.y_m - y_m;
-    const float h = patch.height_m + clearance_m;
-    if (dx * dx + dy * dy + h * h > 9.0F * area_m2) {
-      sum += form_factor(dx, dy, h, area_m2);
-      continue;
-    }
+  const float dy = patch.y_m - y_m;
+  const float h = patch.height_m + clearance_m;
+  const float near_squared_m2 = 9.0F * area_m2 - dy * dy - h * h;
+  for (std::size_t i = 0; i < row.size(); ++i)
+    row[i] += form_factor(patch.x_m - static_cast<float>(i) * cell_m, dy, h, area_m2);
+  if (near_squared_m2 <= 0.0F) return;
+  const float reach_m = std::sqrt(near_squared_m2);
+  const auto first = static_cast<std::size_t>(std::max(0.0F, std::ceil((patch.x_m - reach_m) / cell_m)));
+  const auto end = std::min(row.size(), static_cast<std::size_t>((patch.x_m + reach_m) / cell_m) + 1);
+  for (std::size_t i = first; i < end; ++i) {
+    const float dx = patch.x_m - static_cast<float>(i) * cell_m;
+    float pieces = 0.0F;
     for (const float v : {-third_m, 0.0F, third_m})
-      for (const float u : {-third_m, 0.0F, third_m}) sum += form_factor(dx + u, dy + v, h, area_m2 / 9.0F);
+      for (const float u : {-third_m, 0.0F, third_m})
+        pieces += form_factor(dx + u, dy + v, h, area_m2 / 9.0F);
+    row[i] += pieces - form_factor(dx, dy, h, area_m2);
   }
-  return std::min(sum, 1.0F);
 }
 
 }  // namespace
 
-ContactShadow make_contact_shadow(const Mesh& mesh, const Eigen::Matrix3d& R_world_object) {
-  ContactShadow shadow;
-  const auto placed = [&](std::uint32_t index) -> Eigen::Vector3d {
-    return R_world_object * (mesh.origin + mesh.vertices[index].cast<double>());
-  };
+SurfacePoints spread_points(const Mesh& mesh) {
+  SurfacePoints spread;
   const auto is_usable = [&](const Triangle& triangle) {
     return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t index) {
       return index < mesh.vertices.size() && mesh.vertices[index].allFinite();
     });
   };
-  Eigen::AlignedBox3d bounds;
+  const auto corner = [&](std::uint32_t index) -> Eigen::Vector3f {
+    return mesh.origin.cast<float>() + mesh.vertices[index];
+  };
+  const auto area_m2 = [&](const Triangle& triangle) {
+    const Eigen::Vector3f a = corner(triangle[0]);
+    return 0.5 * static_cast<double>((corner(triangle[1]) - a).cross(corner(triangle[2]) - a).norm());
+  };
+  double total_m2 = 0.0;
   for (const Triangle& triangle : mesh.triangles)
-    if (is_usable(triangle))
-      for (const std::uint32_t index : triangle) bounds.extend(placed(index));
-  if (bounds.isEmpty() || !(bounds.sizes().maxCoeff() > 0.0)) return shadow;
+    if (is_usable(triangle)) total_m2 += area_m2(triangle);
+  if (!(total_m2 > 0.0)) return spread;
 
-  const double longer_side_m = std::max(bounds.sizes().head<2>().maxCoeff(), 0.1 * bounds.sizes().z());
-  const double spread_m = kSpread * longer_side_m;
+  // Every kPoints-th part of the area in the order of the triangles, at places of an even sequence within
+  // them. Source: Roberts, The unreasonable effectiveness of quasirandom sequences, 2018 (R2).
+  constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
+  spread.p_object_m.reserve(kPoints + 1);
+  double owed = 0.5, u = 0.5, v = 0.5;
+  for (const Triangle& triangle : mesh.triangles) {
+    if (!is_usable(triangle)) continue;
+    const Eigen::Vector3f a = corner(triangle[0]), b = corner(triangle[1]), c = corner(triangle[2]);
+    for (owed += kPoints * area_m2(triangle) / total_m2; owed >= 1.0; owed -= 1.0) {
+      u = std::fmod(u + kStepU, 1.0);
+      v = std::fmod(v + kStepV, 1.0);
+      const bool is_past = u + v > 1.0;  // in the other half of the parallelogram
+      spread.p_object_m.emplace_back(a + static_cast<float>(is_past ? 1.0 - u : u) * (b - a) +
+                                     static_cast<float>(is_past ? 1.0 - v : v) * (c - a));
+    }
+  }
+  return spread;
+}
+
+void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_world_object,
+                         ContactShadow& shadow) {
+  shadow.R_world_object = R_world_object;
+  shadow.columns = shadow.rows = 0;
+  shadow.clearances_m.clear();
+  shadow.covered.clear();
+  const Eigen::Matrix3f R = R_world_object.cast<float>();
+  std::vector<Eigen::Vector3f> turned;
+  turned.reserve(object.p_object_m.size());
+  Eigen::AlignedBox3f bounds;
+  for (const Eigen::Vector3f& p : object.p_object_m) bounds.extend(turned.emplace_back(R * p));
+  if (bounds.isEmpty() || !(bounds.sizes().maxCoeff() > 0.0F)) return;
+
+  const float longer_side_m = std::max(bounds.sizes().head<2>().maxCoeff(), 0.1F * bounds.sizes().z());
+  const float spread_m = kSpread * longer_side_m;
+  const auto cells = [&](float side_m) {
+    return static_cast<int>(std::ceil((side_m + 2.0F * spread_m) / shadow.cell_m)) + 1;
+  };
   shadow.cell_m = longer_side_m / kUndersideCells;
-  shadow.x0_m = bounds.min().x() - spread_m;
-  shadow.y0_m = bounds.min().y() - spread_m;
-  shadow.columns = static_cast<int>(std::ceil((bounds.sizes().x() + 2.0 * spread_m) / shadow.cell_m)) + 1;
-  shadow.rows = static_cast<int>(std::ceil((bounds.sizes().y() + 2.0 * spread_m) / shadow.cell_m)) + 1;
+  // Cells begin where the object does: half a cell off they would make it larger.
+  shadow.x0_m = bounds.min().x() - spread_m + 0.5F * shadow.cell_m;
+  shadow.y0_m = bounds.min().y() - spread_m + 0.5F * shadow.cell_m;
+  shadow.columns = cells(bounds.sizes().x());
+  shadow.rows = cells(bounds.sizes().y());
   shadow.bottom_m = bounds.min().z();
   shadow.extent_m = spread_m;
+  const std::vector<Patch> patches = underside(turned, shadow);
 
-  Underside underside(shadow.x0_m, shadow.y0_m, shadow.cell_m, shadow.columns, shadow.rows);
-  for (const Triangle& triangle : mesh.triangles)
-    if (is_usable(triangle)) underside.add(placed(triangle[0]), placed(triangle[1]), placed(triangle[2]));
-  const std::vector<Patch> patches = underside.patches(shadow.bottom_m);
-
-  const float cell_m = static_cast<float>(shadow.cell_m);
-  const float least_clearance_m = 0.4F * cell_m;  // nearer, the pieces of a patch would be told apart
-  for (const double level : kLevels) {
+  const float least_clearance_m = 0.4F * shadow.cell_m;  // nearer, the pieces of a patch would be told apart
+  const auto row_length = static_cast<std::size_t>(shadow.columns);
+  for (const float level : kLevels) {
     shadow.clearances_m.push_back(level * shadow.extent_m);
-    const float clearance_m = std::max(static_cast<float>(shadow.clearances_m.back()), least_clearance_m);
-    const float fade = level < 1.0 ? 1.0F : 0.0F;
+    const float clearance_m = std::max(shadow.clearances_m.back(), least_clearance_m);
     for (int j = 0; j < shadow.rows; ++j) {
+      shadow.covered.resize(shadow.covered.size() + row_length, 0.0F);
+      const float edge_y = level < 1.0F ? window(j, shadow.rows) : 0.0F;
+      if (edge_y == 0.0F) continue;
+      const std::span<float> row(shadow.covered.end() - static_cast<std::ptrdiff_t>(row_length), row_length);
+      for (const Patch& patch : patches)
+        add_patch(patch, static_cast<float>(j) * shadow.cell_m, clearance_m, shadow.cell_m, row);
       for (int i = 0; i < shadow.columns; ++i) {
-        const float edge = window(i, shadow.columns) * window(j, shadow.rows) * fade;
-        const float x_m = static_cast<float>(i) * cell_m;
-        const float y_m = static_cast<float>(j) * cell_m;
-        shadow.covered.push_back(edge > 0.0F ? edge * covered_at(patches, x_m, y_m, clearance_m, cell_m)
-                                             : 0.0F);
+        float& covered = row[static_cast<std::size_t>(i)];
+        covered = std::min(covered, 1.0F) * edge_y * window(i, shadow.columns);
       }
     }
   }
-  return shadow;
 }
 
 float sky_taken(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m) {
   if (shadow.covered.empty()) return 0.0F;
-  const float clearance_m = static_cast<float>(shadow.bottom_m) - p_object_m.z();
-  const float u = (p_object_m.x() - static_cast<float>(shadow.x0_m)) / static_cast<float>(shadow.cell_m);
-  const float v = (p_object_m.y() - static_cast<float>(shadow.y0_m)) / static_cast<float>(shadow.cell_m);
+  const float clearance_m = shadow.bottom_m - p_object_m.z();
+  const float u = (p_object_m.x() - shadow.x0_m) / shadow.cell_m;
+  const float v = (p_object_m.y() - shadow.y0_m) / shadow.cell_m;
   const bool is_inside = u >= 0.0F && v >= 0.0F && u < static_cast<float>(shadow.columns - 1) &&
-                         v < static_cast<float>(shadow.rows - 1) &&
-                         clearance_m < static_cast<float>(shadow.extent_m) &&
-                         clearance_m > static_cast<float>(-kAboveBottom_m);
+                         v < static_cast<float>(shadow.rows - 1) && clearance_m < shadow.extent_m &&
+                         clearance_m > -kAboveBottom_m;
   if (!is_inside) return 0.0F;
 
   const int i = static_cast<int>(u);
@@ -194,15 +200,13 @@ float sky_taken(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m) 
            b * ((1.0F - a) * cell[shadow.columns] + a * cell[shadow.columns + 1]);
   };
   if (clearance_m <= 0.0F) {
-    const float fade = (clearance_m + static_cast<float>(kAboveBottom_m)) / static_cast<float>(kFadeAbove_m);
+    const float fade = (clearance_m + kAboveBottom_m) / kFadeAbove_m;
     return std::min(fade, 1.0F) * in_level(0);
   }
   std::size_t upper = 1;
-  while (upper + 1 < shadow.clearances_m.size() &&
-         static_cast<float>(shadow.clearances_m[upper]) < clearance_m)
-    ++upper;
-  const float low_m = static_cast<float>(shadow.clearances_m[upper - 1]);
-  const float high_m = static_cast<float>(shadow.clearances_m[upper]);
+  while (upper + 1 < shadow.clearances_m.size() && shadow.clearances_m[upper] < clearance_m) ++upper;
+  const float low_m = shadow.clearances_m[upper - 1];
+  const float high_m = shadow.clearances_m[upper];
   const float part = std::clamp((clearance_m - low_m) / (high_m - low_m), 0.0F, 1.0F);
   return (1.0F - part) * in_level(upper - 1) + part * in_level(upper);
 }

@@ -7,22 +7,34 @@
 
 namespace roomradar {
 
-/// Ambient occlusion by an object's underside, tabulated over (x, y, clearance). Made once an object and
-/// orientation: physics only translates. Axes are the world's (z up); the origin is the object's.
+/// Points spread evenly over an object's surface, in its own frame: all that a shadow needs to know of it.
+struct SurfacePoints {
+  std::vector<Eigen::Vector3f> p_object_m;
+};
+
+/// Some 8,000 points, each standing for the same area; each triangle that has less area than that has one by
+/// chance, the same each time. Triangles that are broken are left out; of none there are no points.
+SurfacePoints spread_points(const Mesh& mesh);
+
+/// Ambient occlusion by an object's underside, tabulated over (x, y, clearance) for one orientation. Axes are
+/// the world's (z up); the origin is the object's.
 struct ContactShadow {
-  double x0_m = 0.0, y0_m = 0.0;  ///< centre of the first cell, relative to the object's origin
-  double cell_m = 0.0;
+  Eigen::Matrix3d R_world_object = Eigen::Matrix3d::Identity();  ///< that it was made for
+  float x0_m = 0.0F, y0_m = 0.0F;  ///< centre of the first cell, relative to the object's origin
+  float cell_m = 0.0F;
   int columns = 0, rows = 0;
-  double bottom_m = 0.0;             ///< the object's lowest point relative to its origin
-  double extent_m = 0.0;             ///< no shadow farther below the bottom than this
-  std::vector<double> clearances_m;  ///< of the levels, growing
-  std::vector<float> covered;        ///< part of the sky that is taken, 0..1; level by level, row by row
+  float bottom_m = 0.0F;            ///< the object's lowest point relative to its origin
+  float extent_m = 0.0F;            ///< no shadow farther below the bottom than this
+  std::vector<float> clearances_m;  ///< of the levels, growing
+  std::vector<float> covered;       ///< part of the sky that is taken, 0..1; level by level, row by row
 };
 
 /// Tabulates it by the form factor of each piece of the underside seen from a level point below:
 /// dF = H^2 dA / (pi (r^2 + H^2)^2). Source: Cohen, Wallace, Radiosity and Realistic Image Synthesis 1993,
-/// section 4. R_world_object: the object's orientation. An object without triangles gives an empty table.
-ContactShadow make_contact_shadow(const Mesh& mesh, const Eigen::Matrix3d& R_world_object);
+/// section 4. An object without points gives an empty table. Reuses the shadow's allocations; a few
+/// milliseconds.
+void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_world_object,
+                         ContactShadow& shadow);
 
 /// Part of the sky taken from a real surface point; p_object_m = point minus the object's origin, world axes.
 /// Points above the object's bottom by more than some centimetres get none.

@@ -227,11 +227,28 @@ Session::PictureView Session::view_of(const Frame& frame) {
   return {frame.depth_camera, Eigen::Isometry3d::Identity()};
 }
 
+void Session::renew_a_shadow() {
+  constexpr double kTurned_rad = 0.05;
+  VirtualObject* most_turned = nullptr;
+  double turned_rad = kTurned_rad;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    const Eigen::AngleAxisd turn(object->shadow.R_world_object.transpose() *
+                                 object->body.T_world_object.linear());
+    if (!(turn.angle() > turned_rad)) continue;
+    turned_rad = turn.angle();
+    most_turned = object.get();
+  }
+  if (most_turned != nullptr)
+    make_contact_shadow(most_turned->surface, most_turned->body.T_world_object.linear(), most_turned->shadow);
+}
+
 void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   const PictureView view = view_of(frame);
   const Intrinsics& camera = view.camera;
   const Eigen::Isometry3d T_world_view = T_world_camera * view.T_view_depth.inverse();
 
+  renew_a_shadow();
   std::vector<DrawnObject> drawn;
   std::vector<ShadowCaster> casters;
   for (const auto& object : objects_) {
@@ -242,11 +259,12 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   drawer_.draw(drawn, camera, T_world_view, {}, layer_);
 
   real_depth_m_.resize(camera.width_px, camera.height_px);
-  const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_);
+  const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
   if (rect.width > 0 && rect.height > 0) {
     depth_pass_.render(scene_.drawn_surfaces(), camera, T_world_view, rect, real_depth_m_);
   }
-  compose(background_, camera, T_world_view, real_depth_m_, casters, layer_, config_.picture, picture_);
+  compose(background_, camera, T_world_view, real_depth_m_, casters, layer_, config_.picture, occlusion_,
+          picture_);
 }
 
 VirtualObject& Session::object_named(const std::string& name) {

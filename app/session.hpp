@@ -124,6 +124,7 @@ class Session {
   std::optional<PictureView> colour_view_;  ///< of the last frame with colour
   DepthImage real_depth_m_;                 ///< as the colour camera sees it, where objects are
   ObjectLayer layer_;
+  Occlusion occlusion_;
   ColourImage background_;
   ColourImage picture_;
 
@@ -140,6 +141,8 @@ class Session {
   /// Sets background_ and says which camera saw it: the frame's colour; where this one frame has none, the
   /// last colour there was; in a recording without any, the depth, shaded, as the depth camera sees it.
   PictureView view_of(const Frame& frame);
+  /// Makes the shadow of the object that has turned most since its own was made anew: one a frame.
+  void renew_a_shadow();
   void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   VirtualObject& object_named(const std::string& name);
 };

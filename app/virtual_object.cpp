@@ -18,7 +18,8 @@ constexpr double kTeapotHeight_m = 0.15;
 }  // namespace
 
 VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& mesh)
-    : shape(context), shadow(make_contact_shadow(mesh, Eigen::Matrix3d::Identity())) {
+    : shape(context), surface(spread_points(mesh)) {
+  make_contact_shadow(surface, body.T_world_object.linear(), shadow);
   body.name = std::move(name);
   shape.set(mesh, MeshUsage::kStatic);
   if (shape.touched.empty()) throw Error(body.name + ": has no triangles; a virtual object is a surface");

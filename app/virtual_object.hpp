@@ -20,7 +20,8 @@ struct VirtualObject {
   double lowest_m = 0.0;                             ///< z of its lowest point, in its own frame
   double footprint_radius_m = 0.0;                   ///< how far it reaches sideways from its origin
   Shape shape;
-  ContactShadow shadow;
+  SurfacePoints surface;  ///< what its shadow is made of
+  ContactShadow shadow;   ///< as it stood when this was made last
 
   /// Throws Error if the mesh cannot be a virtual object (no triangles, vertices that are not finite).
   VirtualObject(GlContext& context, std::string name, const Mesh& mesh);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -30,8 +31,9 @@ ObjectLayer flat_layer(const PixelRect& rect, float depth_m, int samples = 2) {
 ColourImage composed(const DepthImage& real_depth_m, const ObjectLayer& layer,
                      const ComposeConfig& config = {}) {
   ColourImage picture;
+  Occlusion occlusion;
   compose(ColourImage(kCamera.width_px, kCamera.height_px, kGrey), kCamera, Eigen::Isometry3d::Identity(),
-          real_depth_m, {}, layer, config, picture);
+          real_depth_m, {}, layer, config, occlusion, picture);
   return picture;
 }
 
@@ -42,6 +44,13 @@ Mesh plate(float half_m, float z_m) {
       {-half_m, -half_m, z_m}, {half_m, -half_m, z_m}, {half_m, half_m, z_m}, {-half_m, half_m, z_m}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return mesh;
+}
+
+ContactShadow shadow_of(const Mesh& mesh,
+                        const Eigen::Matrix3d& R_world_object = Eigen::Matrix3d::Identity()) {
+  ContactShadow shadow;
+  make_contact_shadow(spread_points(mesh), R_world_object, shadow);
+  return shadow;
 }
 
 TEST(Compose, ShowsTheObjectInFrontOfTheRoomAndHidesItBehind) {
@@ -107,13 +116,13 @@ TEST(Compose, NamesTheFieldThatIsWrong) {
     EXPECT_NE(std::string(error.what()).find("compose.shadow_strength"), std::string::npos);
   }
   config = {};
-  config.occlusion_softness_m = 0.0F;
+  config.occlusion.softness_m = 0.0F;
   EXPECT_THROW(require_valid(config), Error);
 }
 
 TEST(ContactShadow, AgreesWithTheFormFactorOfASquarePlate) {
   const float half_m = 0.1F;
-  const ContactShadow shadow = make_contact_shadow(plate(half_m, 0.0F), Eigen::Matrix3d::Identity());
+  const ContactShadow shadow = shadow_of(plate(half_m, 0.0F));
   // A point under a corner of a rectangle: 1/(2 pi) (A/sqrt(1+A^2) atan(B/sqrt(1+A^2)) + B/... ), four times
   // under the middle. Howell's catalogue of configuration factors, B-3.
   for (const double below_m : {0.02, 0.05, 0.1, 0.14}) {
@@ -126,7 +135,7 @@ TEST(ContactShadow, AgreesWithTheFormFactorOfASquarePlate) {
 }
 
 TEST(ContactShadow, IsDarkestInContactAndFadesSidewaysAndDownwards) {
-  const ContactShadow shadow = make_contact_shadow(plate(0.1F, 0.05F), Eigen::Matrix3d::Identity());
+  const ContactShadow shadow = shadow_of(plate(0.1F, 0.05F));
   EXPECT_NEAR(shadow.bottom_m, 0.05, 1e-6);
   float before = 2.0F;
   for (float below_m = 0.0F; below_m < 0.25F; below_m += 0.01F) {
@@ -151,12 +160,37 @@ TEST(ContactShadow, IsDarkestInContactAndFadesSidewaysAndDownwards) {
   EXPECT_EQ(sky_taken(shadow, {0, 0, -5.0F}), 0.0F);
 }
 
+TEST(ContactShadow, OfAPlateOnEdgeIsASliver) {
+  const ContactShadow flat = shadow_of(plate(0.1F, 0.0F));
+  const ContactShadow on_edge =
+      shadow_of(plate(0.1F, 0.0F), Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix());
+  EXPECT_NEAR(on_edge.bottom_m, -0.1F, 0.002F);
+  EXPECT_GT(sky_taken(flat, {0, 0.06F, -0.02F}), 0.7F);
+  EXPECT_LT(sky_taken(on_edge, {0, 0.06F, -0.12F}), 0.1F);
+  EXPECT_GT(sky_taken(on_edge, {0, 0.0F, -0.1F}), 0.2F);
+}
+
+TEST(ContactShadow, PointsStandForTheSameArea) {
+  Mesh mesh = plate(0.1F, 0.0F);
+  mesh.vertices.insert(mesh.vertices.end(), {{1, 0, 0}, {1.02F, 0, 0}, {1, 0.02F, 0}});  // 0.0002 of 0.0402
+  mesh.triangles.push_back({4, 5, 6});
+  const SurfacePoints points = spread_points(mesh);
+  const auto small = std::count_if(points.p_object_m.begin(), points.p_object_m.end(),
+                                   [](const Eigen::Vector3f& p) { return p.x() > 0.5F; });
+  EXPECT_NEAR(static_cast<double>(points.p_object_m.size()), 8000.0, 2.0);
+  EXPECT_NEAR(static_cast<double>(small), 8000.0 * 0.0002 / 0.0402, 1.0);
+  const auto left = std::count_if(points.p_object_m.begin(), points.p_object_m.end(),
+                                  [](const Eigen::Vector3f& p) { return p.x() < 0.0F; });
+  EXPECT_NEAR(static_cast<double>(left), 3980.0, 60.0);
+  EXPECT_TRUE(spread_points(Mesh{}).p_object_m.empty());
+}
+
 TEST(ContactShadow, NothingCastsNone) {
-  EXPECT_EQ(sky_taken(make_contact_shadow(Mesh{}, Eigen::Matrix3d::Identity()), {0, 0, 0}), 0.0F);
+  EXPECT_EQ(sky_taken(shadow_of(Mesh{}), {0, 0, 0}), 0.0F);
   Mesh broken = plate(0.1F, 0.0F);
   broken.vertices[0].x() = std::nanf("");
   broken.triangles[1][2] = 99;
-  EXPECT_EQ(sky_taken(make_contact_shadow(broken, Eigen::Matrix3d::Identity()), {0, 0, -0.01F}), 0.0F);
+  EXPECT_EQ(sky_taken(shadow_of(broken), {0, 0, -0.01F}), 0.0F);
   EXPECT_EQ(sky_taken(ContactShadow{}, {0, 0, 0}), 0.0F);
 }
 
@@ -165,17 +199,19 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
   T_world_camera.translation().z() = 1.0;
-  const ContactShadow shadow = make_contact_shadow(plate(0.1F, 0.0F), Eigen::Matrix3d::Identity());
+  const ContactShadow shadow = shadow_of(plate(0.1F, 0.0F));
   ShadowCaster caster{&shadow, Eigen::Isometry3d::Identity()};
   caster.T_world_object.translation() = Eigen::Vector3d(0.2, 0.1, 0.03);
   const DepthImage table_m(64, 48, 1.0F);
   ColourImage picture;
-  compose(ColourImage(64, 48, kGrey), kCamera, T_world_camera, table_m, {&caster, 1}, {}, {}, picture);
+  Occlusion occlusion;
+  compose(ColourImage(64, 48, kGrey), kCamera, T_world_camera, table_m, {&caster, 1}, {}, {}, occlusion,
+          picture);
   const int x = static_cast<int>(std::lround(60.0 * 0.2 + 31.5));
   const int y = static_cast<int>(std::lround(60.0 * -0.1 + 23.5));  // world y is up in the picture
   EXPECT_LT(picture.at(x, y).r, 60);
   EXPECT_EQ(picture.at(3, 24), kGrey);
-  const PixelRect rect = pixels_to_compose({&caster, 1}, kCamera, T_world_camera, {});
+  const PixelRect rect = pixels_to_compose({&caster, 1}, kCamera, T_world_camera, {}, {});
   for (int v = 0; v < 48; ++v) {
     for (int u = 0; u < 64; ++u) {
       const bool is_inside =
@@ -186,7 +222,7 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
     }
   }
   compose(ColourImage(64, 48, kGrey), kCamera, T_world_camera, DepthImage(64, 48), {&caster, 1}, {}, {},
-          picture);
+          occlusion, picture);
   EXPECT_EQ(picture.pixels, ColourImage(64, 48, kGrey).pixels);  // no surface, no shadow
 }
 
