@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/commands.hpp"
+#include "app/manual_page.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/version.hpp"
 
@@ -14,7 +15,8 @@ namespace roomradar {
 namespace {
 
 constexpr char kSourceHelp[] =
-    "where frames come from: kinect:N[?depth=raw|mm|registered], sim:ROOM[?seed=N&...], or a folder with a recording\n"
+    "where frames come from: kinect:N[?depth=raw|mm|registered], sim:ROOM[?seed=N&...], or a folder with a "
+    "recording\n"
     "(7-Scenes, TUM RGB-D, fakenect, or numbered color/ and depth/)";
 
 const std::map<std::string, PoseOrigin> kPoses = {{"tracked", PoseOrigin::kTracked},
@@ -344,6 +346,12 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
   doctor->callback([&] { work = [] { return run(DoctorCommand{}); }; });
   add_simulate(app, arguments->simulate, work);
   add_fallthrough(app, arguments->fallthrough, work);
+  app.add_flag_callback("--manual",
+                        [&app] {
+                          std::fputs(manual_page(app).c_str(), stdout);
+                          throw CLI::Success();
+                        })
+      ->group("");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

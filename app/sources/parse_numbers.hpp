@@ -11,7 +11,7 @@ namespace roomradar {
 std::vector<std::string_view> split_words(std::string_view line);
 
 /// The number that all of `word` is, or nothing. NaN and infinities are numbers here, in C's and in
-/// Microsoft's spelling (nan, inf, -1.#IND, 1.#QNAN, 1.#INF).
+/// Microsoft's spelling (nan, inf, `-1.#IND`, `1.#QNAN`, `1.#INF`).
 std::optional<double> parse_number(std::string_view word);
 
 /// The whole number that all of `word` is, or nothing.

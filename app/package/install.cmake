@@ -1,0 +1,58 @@
+# What is installed, and how Debian packages are made of it: the program, and the libraries for other programs.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(libraries types mapping radar dynamic sources)
+set(targets roomradar_options roomradar_warnings)
+foreach(name IN LISTS libraries)
+  set_target_properties(roomradar_${name} PROPERTIES EXPORT_NAME ${name})
+  list(APPEND targets roomradar_${name})
+endforeach()
+set_target_properties(roomradar_options PROPERTIES EXPORT_NAME options)
+set_target_properties(roomradar_warnings PROPERTIES EXPORT_NAME warnings)
+
+# The program.
+install(TARGETS roomradar COMPONENT program)
+install(FILES ${PROJECT_BINARY_DIR}/roomradar.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
+
+# The libraries: find_package(roomradar), then link roomradar::mapping, ::radar, ::dynamic or ::sources.
+install(TARGETS ${targets} EXPORT roomradar COMPONENT development)
+set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/roomradar)
+install(DIRECTORY mapping radar dynamic DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY app/sources DESTINATION ${header_dir}/app COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+install(FILES ${PROJECT_BINARY_DIR}/generated/mapping/types/version.hpp
+  DESTINATION ${header_dir}/mapping/types COMPONENT development)
+set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/roomradar)
+install(EXPORT roomradar NAMESPACE roomradar:: FILE roomradar-targets.cmake DESTINATION ${config_dir} COMPONENT development)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/roomradar-config.cmake.in ${PROJECT_BINARY_DIR}/roomradar-config.cmake
+  INSTALL_DESTINATION ${config_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/roomradar-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/roomradar-config.cmake ${PROJECT_BINARY_DIR}/roomradar-config-version.cmake
+  DESTINATION ${config_dir} COMPONENT development)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME roomradar)
+set(CPACK_PACKAGE_CONTACT "roomradar developers <roomradar@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "prescan a room with a Kinect, then run augmented reality in it")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME roomradar)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+# Mesa's EGL and its software renderer, for machines without a GPU; the Kinect's udev rules come with its library.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libfreenect-bin")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+  "Keeps a scanned room as an octree on disk with a mesh, and lets virtual objects rest on, slide along and be stopped by its\n surfaces, also by those that the camera cannot see now.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroomradar-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "libassimp-dev, libceres-dev, libegl-dev, libeigen3-dev, libfreenect-dev, liboctomap-dev, libopencv-dev, libopengl-dev, libssl-dev, nlohmann-json3-dev, pkg-config")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+  "Static libraries and headers of roomradar: maps of rooms, Cyber Radar, what moved, and frame sources.")
+include(CPack)

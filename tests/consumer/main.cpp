@@ -1,0 +1,47 @@
+// main.cpp: how far may a cube fall onto a floor? And, given a saved map, onto the room's surface below a
+// point.
+#include <cstdio>
+#include <exception>
+#include <vector>
+
+#include "mapping/map_folder.hpp"
+#include "radar/cyber_radar.hpp"
+
+namespace {
+
+roomradar::Mesh square(float half_m, float z_m) {
+  roomradar::Mesh mesh;
+  mesh.vertices = {
+      {-half_m, -half_m, z_m}, {half_m, -half_m, z_m}, {half_m, half_m, z_m}, {-half_m, half_m, z_m}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+roomradar::Contact fall(const roomradar::TriangleTree& object, const roomradar::TriangleTree& ground,
+                        const Eigen::Vector3d& from_world) {
+  const std::vector<roomradar::SceneTree> scene{{{&ground, Eigen::Isometry3d::Identity()}}};
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+  T_world_object.translation() = from_world;
+  roomradar::CyberRadar radar;
+  return radar.query({{&object, T_world_object}, -Eigen::Vector3d::UnitZ(), 10.0}, {scene, {}});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    roomradar::TriangleTree plate, floor;
+    plate.build_by_place(square(0.1F, 0.0F));
+    floor.build_by_place(square(2.0F, -0.75F));
+    std::printf("falls %.6f m\n", fall(plate, floor, {0.3, 0.2, 0.0}).travel_m);
+    if (argc < 2) return 0;
+    const roomradar::SavedMap map = roomradar::load_map(argv[1]);
+    floor.build_by_place(map.mesh);
+    std::printf("map of %zu triangles, falls %.3f m\n", map.mesh.triangles.size(),
+                fall(plate, floor, {0.0, 0.0, 2.0}).travel_m);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "consumer: %s\n", error.what());
+    return 1;
+  }
+}
