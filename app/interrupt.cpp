@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdint>
 #include <string_view>
@@ -11,7 +12,9 @@
 namespace roomradar {
 namespace {
 
-volatile std::sig_atomic_t asked = 0;
+// Set by a signal handler, taken by whichever thread reads the source.
+std::atomic<int> asked = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 
 /// Calls only what a signal handler may call.
 void on_interrupt(int signal) {
@@ -52,11 +55,7 @@ Interrupt::Interrupt() {
 
 Interrupt::~Interrupt() { std::signal(SIGINT, SIG_DFL); }
 
-bool Interrupt::take() {
-  const bool was_asked = asked != 0;
-  asked = 0;
-  return was_asked;
-}
+bool Interrupt::take() { return asked.exchange(0) != 0; }
 
 std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source) {
   return std::make_unique<EndedByInterrupt>(std::move(source));

@@ -283,13 +283,17 @@ class KinectFeed::Work {
   }
 
   void put(KinectFrame frame) {
-    const std::lock_guard lock(mutex_);
-    if (!config_.is_replay && ready_.size() >= config_.most_waiting) {
+    std::unique_lock lock(mutex_);
+    const bool is_full = !config_.is_replay && ready_.size() >= config_.most_waiting;
+    if (is_full) {
       spare_.push_back(std::move(ready_.front()));
       ready_.pop_front();
     }
     ready_.push_back(std::move(frame));
     changed_.notify_all();
+    lock.unlock();
+    if (is_full && config_.most_waiting > 1 && !std::exchange(has_said_full_, true))
+      config_.say(config_.name + ": sends frames faster than they are used; some are dropped from now on");
   }
 
   /// With the memory of one that is not needed any more.
@@ -320,6 +324,7 @@ class KinectFeed::Work {
   bool depth_arrived_ = false;
   bool tried_for_colour_ = false;
   bool is_finishing_ = false;
+  bool has_said_full_ = false;
   int backwards_ = 0;
   double last_stamp_s_ = 0.0;
   Clock::time_point last_stamp_at_ = Clock::now();

@@ -127,7 +127,7 @@ bool SpooledSource::has_end(const fs::path& folder) {
 
 void SpooledSource::take(Left left) {
   name_ = std::move(left.name);
-  entries_ = std::move(left.entries);
+  entries_.assign(std::make_move_iterator(left.entries.begin()), std::make_move_iterator(left.entries.end()));
   at_end_ = left.at_end;
   if (entries_.empty()) return;
   stamp_offset_s_.reset();
@@ -145,32 +145,44 @@ void SpooledSource::append(Entry* entry) {
   if (!list_) throw Error((folder_ / kList).string() + ": cannot be written; is the disk full?");
 }
 
+void SpooledSource::stop_capture() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  thread_.join();
+  thread_ = {};
+  stop_ = false;
+}
+
 SpooledSource::~SpooledSource() {
+  stop_capture();
   if (kept_) return;
   std::error_code ignored;  // nobody is left to be told
   fs::remove_all(folder_, ignored);
 }
 
-ReadResult SpooledSource::next(Frame& frame) {
-  if (position_ < entries_.size()) return read_again(position_++, frame);
-  return read_on(frame);
+void SpooledSource::capture() {
+  Frame frame;
+  try {
+    while (capture_one(frame)) {
+    }
+  } catch (...) {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::current_exception();
+  }
+  changed_.notify_all();
 }
 
-ReadResult SpooledSource::read_on(Frame& frame) {
-  if (at_end_) return {ReadStatus::kEnd, {}};
+/// False at the end, or when nobody wants more.
+bool SpooledSource::capture_one(Frame& frame) {
+  const std::size_t position = entries_.size();  // no other thread changes it
   const auto most = source_->frame_count();
   ReadResult result;  // the end, if earlier processes have read all that was asked for
-  if (!most || static_cast<std::int64_t>(entries_.size()) < *most) result = source_->next(frame);
-  if (result.status == ReadStatus::kEnd) {
-    append(nullptr);
-    at_end_ = true;
-    return result;
-  }
-  if (result.waiting) return result;
-  Entry entry;
-  if (result.status == ReadStatus::kSkipped) {
-    entry.fault = result.fault;
-  } else {
+  if (!most || static_cast<std::int64_t>(position) < *most) result = source_->next(frame);
+  std::optional<Entry> entry;
+  if (result.status == ReadStatus::kFrame) {
     constexpr double kFrame_s = 1.0 / 30.0;
     if (!stamp_offset_s_) {
       double last_s = 0.0;
@@ -179,18 +191,42 @@ ReadResult SpooledSource::read_on(Frame& frame) {
     }
     frame.index += index_offset_;
     frame.stamp_s += *stamp_offset_s_;
-    write_exact_depth_file(frame.depth_m, depth_file(folder_, entries_.size()));
-    if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder_, entries_.size()));
-    entry.frame = without_images(frame);
+    write_exact_depth_file(frame.depth_m, depth_file(folder_, position));
+    if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder_, position));
+    entry = Entry{without_images(frame), {}};
+  } else if (result.status == ReadStatus::kSkipped && !result.waiting) {
+    entry = Entry{{}, result.fault};
   }
-  append(&entry);
-  entries_.push_back(std::move(entry));
-  ++position_;
-  return result;
+  if (!result.waiting) append(entry ? &*entry : nullptr);
+  const std::lock_guard lock(mutex_);
+  waiting_.reset();
+  if (entry)
+    entries_.push_back(std::move(*entry));
+  else if (result.waiting)
+    waiting_ = std::move(result);
+  else
+    at_end_ = true;
+  changed_.notify_all();
+  return !at_end_ && !stop_;
 }
 
-ReadResult SpooledSource::read_again(std::size_t position, Frame& frame) const {
-  const Entry& entry = entries_[position];
+ReadResult SpooledSource::next(Frame& frame) {
+  std::unique_lock lock(mutex_);
+  if (position_ == entries_.size()) {
+    if (!thread_.joinable() && !at_end_ && !failure_) thread_ = std::thread([this] { capture(); });
+    changed_.wait(lock, [&] { return position_ < entries_.size() || at_end_ || failure_ || waiting_; });
+    if (position_ == entries_.size()) {
+      if (at_end_) return {ReadStatus::kEnd, {}};
+      if (failure_) std::rethrow_exception(failure_);
+      return *std::exchange(waiting_, std::nullopt);
+    }
+  }
+  const Entry& entry = entries_[position_];
+  lock.unlock();
+  return read_again(entry, position_++, frame);
+}
+
+ReadResult SpooledSource::read_again(const Entry& entry, std::size_t position, Frame& frame) const {
   if (!entry.fault.empty()) return {ReadStatus::kSkipped, entry.fault};
   DepthImage depth_m = std::move(frame.depth_m);
   ColourImage colour = std::move(frame.colour);
@@ -207,17 +243,21 @@ ReadResult SpooledSource::read_again(std::size_t position, Frame& frame) const {
 }
 
 bool SpooledSource::rewind() {
+  // Nobody wants more of a source that is gone back in, until somebody has come to the end of what there is.
+  stop_capture();
   position_ = 0;
   return true;
 }
 
 bool SpooledSource::seek(std::int64_t index) {
+  const std::lock_guard lock(mutex_);
   if (index < 0 || static_cast<std::size_t>(index) >= entries_.size()) return false;
   position_ = static_cast<std::size_t>(index);
   return true;
 }
 
 std::optional<std::int64_t> SpooledSource::frame_count() const {
+  const std::lock_guard lock(mutex_);
   if (at_end_) return static_cast<std::int64_t>(entries_.size());
   return source_->frame_count();
 }

@@ -1,13 +1,17 @@
 // sources_units_test.cpp: the Kinect's units, the pairing of images, frame ranges and spooling.
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "app/sources/frame_range.hpp"
 #include "app/sources/kinect_units.hpp"
 #include "app/sources/parse_numbers.hpp"
 #include "app/sources/spooled_source.hpp"
 #include "app/sources/stamp_pairing.hpp"
+#include "mapping/types/error.hpp"
 #include "tests/app/sources_support.hpp"
 
 namespace roomradar {
@@ -216,14 +220,92 @@ TEST(SpooledSource, LeavesNothingBehind) {
       "absent"));
 }
 
+/// Gives so many of a source's frames, then has nothing more for the time being.
+class PausingSource final : public FrameSource {
+ public:
+  PausingSource(std::unique_ptr<FrameSource> source, int count) : source_(std::move(source)), left_(count) {}
+  ReadResult next(Frame& frame) override {
+    if (left_-- > 0) return source_->next(frame);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return {ReadStatus::kSkipped, "nothing yet", /*waiting=*/true};
+  }
+  bool rewind() override { return false; }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
+  [[nodiscard]] std::string name() const override { return source_->name(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  int left_;
+};
+
+TEST(SpooledSource, ASourceThatWaitsIsNoFrameAndHoldsNobody) {
+  SpooledSource source(std::make_unique<PausingSource>(std::make_unique<MadeSource>(9, false), 2));
+  Frame frame;
+  EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);
+  EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(source.next(frame).waiting);
+  EXPECT_FALSE(source.seek(2));
+  ASSERT_TRUE(source.seek(1));
+  EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);
+  EXPECT_EQ(frame.index, 1);
+}
+
+TEST(SpooledSource, AReaderThatIsSlowLosesNothing) {
+  // The source is at its end before the second frame is asked for.
+  const auto made = std::make_shared<std::atomic<int>>(0);
+  class Counting final : public FrameSource {
+   public:
+    explicit Counting(std::shared_ptr<std::atomic<int>> ends) : source_(20, false), ends_(std::move(ends)) {}
+    ReadResult next(Frame& frame) override {
+      ReadResult result = source_.next(frame);
+      if (result.status == ReadStatus::kEnd) ++*ends_;
+      return result;
+    }
+    bool rewind() override { return false; }
+    [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
+    [[nodiscard]] std::string name() const override { return "counting"; }
+
+   private:
+    MadeSource source_;
+    std::shared_ptr<std::atomic<int>> ends_;
+  };
+  SpooledSource source(std::make_unique<Counting>(made));
+  Frame frame;
+  ASSERT_EQ(source.next(frame).status, ReadStatus::kFrame);
+  while (*made == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_EQ(read_all(source).frames.size(), 19U);
+}
+
+TEST(SpooledSource, WhatTheSourceThrowsComesAfterItsLastFrame) {
+  class Failing final : public FrameSource {
+   public:
+    ReadResult next(Frame& frame) override {
+      if (given_++ == 3) throw Error("the device has gone");
+      return source_.next(frame);
+    }
+    bool rewind() override { return false; }
+    [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
+    [[nodiscard]] std::string name() const override { return "failing"; }
+
+   private:
+    MadeSource source_{9, false};
+    int given_ = 0;
+  };
+  SpooledSource source(std::make_unique<Failing>());
+  Frame frame;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(error_of([&] { (void)source.next(frame); }), "the device has gone");
+}
+
 TEST(SpooledSource, KeptGoesOnInALaterProcess) {
   const test::TemporaryFolder parent;
   const std::filesystem::path folder = parent.path() / "spool";
   Frame frame;
   std::vector<Frame> first;
   {
-    const auto source =
-        SpooledSource::kept(std::make_unique<MadeSource>(9, false, std::vector<int>{1}), folder);
+    const auto source = SpooledSource::kept(
+        std::make_unique<PausingSource>(std::make_unique<MadeSource>(9, false, std::vector<int>{1}), 4),
+        folder);
     for (int i = 0; i < 4; ++i)
       if (source->next(frame).status == ReadStatus::kFrame) first.push_back(frame);
   }
