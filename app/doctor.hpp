@@ -1,5 +1,6 @@
 // doctor.hpp: what of a set-up works, what does not, and what to do about it, in words.
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct Finding {
 /// What the Kinects on the bus, and the number of them that libfreenect sees (negative: this program was
 /// built without it), say together.
 std::vector<Finding> judge_kinects(const std::vector<KinectOnUsb>& on_usb, int seen_by_libfreenect);
+
+/// What fakenect replays in the place of a Kinect, and what is broken in it.
+Finding judge_replay(const std::filesystem::path& recording);
 
 /// Whether there is a renderer, which, and how large the images are that it draws.
 Finding judge_renderer();

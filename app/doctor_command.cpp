@@ -4,12 +4,18 @@
 
 #include "app/commands.hpp"
 #include "app/doctor.hpp"
+#include "app/sources/fakenect_replay.hpp"
 #include "app/sources/kinect_source.hpp"
 
 namespace roomradar {
 
 int run(const DoctorCommand& /*command*/) {
-  std::vector<Finding> findings = judge_kinects(kinects_on_usb(), count_kinects());
+  const auto replayed = replayed_folder();
+  std::vector<Finding> findings;
+  if (replayed)
+    findings.push_back(judge_replay(*replayed));
+  else
+    findings = judge_kinects(kinects_on_usb(), count_kinects());
   findings.push_back(judge_renderer());
   const char* path = std::getenv("PATH");
   findings.push_back(judge_fakenect(path ? path : ""));

@@ -23,8 +23,8 @@ std::string line_of(const fs::path& file) {
 }
 
 std::string model_of(const std::string& product) {
-  if (product == "02ae") return "Kinect for Xbox 360";
-  if (product == "02bf") return "Kinect for Windows";
+  if (product == "02ae") return kKinectForXbox;
+  if (product == "02bf") return kKinectForWindows;
   return {};
 }
 
@@ -42,6 +42,13 @@ std::string three_digits(const std::string& text) {
   char digits[8];
   std::snprintf(digits, sizeof digits, "%03d", number);
   return digits;
+}
+
+/// 0 where it is none.
+double positive_number(const std::string& text) {
+  double number = 0.0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return fault == std::errc{} && end == text.data() + text.size() && number > 0.0 ? number : 0.0;
 }
 
 /// The driver of the first interface that has one.
@@ -75,6 +82,8 @@ std::vector<KinectOnUsb> kinects_on_usb(const fs::path& sys_devices, const fs::p
     const std::string bus = three_digits(line_of(device / "busnum"));
     const std::string number = three_digits(line_of(device / "devnum"));
     if (bus.empty() || number.empty()) continue;
+    kinect.bus = std::stoi(bus);
+    kinect.speed_mbit_s = positive_number(line_of(device / "speed"));
     kinect.node = dev_usb / bus / number;
     kinect.may_open = access(kinect.node.c_str(), R_OK | W_OK) == 0;
     kinect.kernel_driver = kernel_driver_of(device);

@@ -7,9 +7,14 @@
 
 namespace roomradar {
 
+constexpr const char* kKinectForXbox = "Kinect for Xbox 360";
+constexpr const char* kKinectForWindows = "Kinect for Windows";
+
 /// The camera of a Kinect v1, one of the three devices behind its plug.
 struct KinectOnUsb {
-  std::string model;           ///< "Kinect for Xbox 360", "Kinect for Windows"
+  std::string model;  ///< one of the above
+  int bus = 0;
+  double speed_mbit_s = 0.0;   ///< 480 where all is well; 0: not known
   std::filesystem::path node;  ///< what libfreenect must open, /dev/bus/usb/BBB/DDD
   bool may_open = false;       ///< whether this user may read and write it
   std::string kernel_driver;   ///< what holds it, such as gspca_kinect; empty: nothing does

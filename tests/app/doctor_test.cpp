@@ -20,13 +20,14 @@ struct Bus {
   fs::path sys = folder.path() / "sys", dev = folder.path() / "dev";
 
   void plug_in(const std::string& name, const std::string& product, int number,
-               const std::string& driver = {}) const {
+               const std::string& driver = {}, const std::string& speed = "480") const {
     const fs::path device = sys / name;
     fs::create_directories(device / (name + ":1.0"));
     std::ofstream(device / "idVendor") << "045e\n";
     std::ofstream(device / "idProduct") << product << "\n";
     std::ofstream(device / "busnum") << "3\n";
     std::ofstream(device / "devnum") << number << "\n";
+    std::ofstream(device / "speed") << speed << "\n";
     char node[8];
     std::snprintf(node, sizeof node, "%03d", number);
     fs::create_directories(dev / "003");
@@ -110,6 +111,43 @@ TEST(Doctor, ADeviceThatLibfreenectDoesNotSeeIsToldOf) {
   bus.plug_in("3-1.2", "02bf", 7);
   bus.plug_in("3-1.1", "02c2", 6);
   EXPECT_TRUE(says(judge_kinects(bus.kinects(), 0), Health::kBad, "libfreenect sees 0"));
+}
+
+TEST(Doctor, AKinectForWindowsWithoutRightsIsGivenARuleOfItsOwn) {
+  const Bus bus;
+  bus.plug_in("3-1.2", "02bf", 7);
+  fs::remove(bus.dev / "003" / "007");
+  EXPECT_TRUE(says(judge_kinects(bus.kinects(), 0), Health::kBad, "/etc/udev/rules.d/60-kinect.rules"));
+}
+
+TEST(Doctor, APortThatIsTooSlowIsTold) {
+  const Bus bus;
+  bus.plug_in("3-1.2", "02ae", 7, {}, "12");
+  bus.plug_in("3-1.1", "02b0", 6);
+  EXPECT_TRUE(says(judge_kinects(bus.kinects(), 1), Health::kBad, "12 Mbit/s"));
+}
+
+TEST(Doctor, TwoKinectsOnOneBusAreOneTooMany) {
+  const Bus bus;
+  bus.plug_in("3-1.2", "02ae", 7);
+  bus.plug_in("3-2.2", "02ae", 9);
+  EXPECT_TRUE(says(judge_kinects(bus.kinects(), 2), Health::kBad, "share USB bus 3"));
+}
+
+TEST(Doctor, AReplayIsToldFromADeviceAndItsBrokenImagesAreCounted) {
+  const TemporaryFolder folder;
+  const fs::path recording = folder.path();
+  std::ofstream(recording / "INDEX.txt") << "d-1.0-0.pgm\nd-1.1-2000000.pgm\n";
+  const std::string image = "P5 640 480 65535\n" + std::string(640 * 480 * 2, '\1');
+  std::ofstream(recording / "d-1.0-0.pgm") << image;
+  std::ofstream(recording / "d-1.1-2000000.pgm") << image;
+  EXPECT_EQ(judge_replay(recording).health, Health::kGood);
+  fs::resize_file(recording / "d-1.1-2000000.pgm", 1000);
+  const Finding finding = judge_replay(recording);
+  EXPECT_EQ(finding.health, Health::kBad);
+  EXPECT_NE(finding.what.find("1 of its depth images"), std::string::npos) << finding.what;
+  fs::remove(recording / "INDEX.txt");
+  EXPECT_NE(judge_replay(recording).what.find("INDEX.txt"), std::string::npos);
 }
 
 TEST(Doctor, FilesThatMakeNoSenseArePassedOver) {

@@ -123,7 +123,7 @@ std::vector<Act> images(int count, std::uint32_t first_ticks = 0, bool with_colo
 std::unique_ptr<FrameSource> open_scripted(const std::shared_ptr<Script>& script, SourceOptions options = {},
                                            std::size_t most_waiting = 0) {
   KinectFeedConfig config{.name = "kinect:0"};
-  config.silence_s = 0.03;
+  config.silence_s = 0.1;
   config.retry_s = 0.005;
   config.patience_s = 5.0;
   config.stop_s = 0.1;
@@ -199,7 +199,7 @@ TEST(KinectSource, OneThatFallsSilentIsSaidAndStartedAnewAndGoesOn) {
     EXPECT_EQ(frames[i].index, frames[i - 1].index + 1);
     EXPECT_GT(frames[i].stamp_s, frames[i - 1].stamp_s);
   }
-  EXPECT_GT(frames[3].stamp_s - frames[2].stamp_s, 0.03);  // what passed here
+  EXPECT_GT(frames[3].stamp_s - frames[2].stamp_s, 0.1);  // what passed here
   EXPECT_TRUE(script->has_said("no depth image"));
   EXPECT_TRUE(script->has_said("is back after"));
   EXPECT_EQ(script->wished_serials.at(0), "");
@@ -235,7 +235,7 @@ TEST(KinectSource, OneThatStaysAwayIsGivenUp) {
   const auto script = std::make_shared<Script>();
   script->openings = {images(1)};
   SourceOptions options;
-  options.device_timeout_s = 0.2;
+  options.device_timeout_s = 0.4;
   const auto source = open_scripted(script, options);
   const std::string error = error_of([&] { read_frames(*source, 5); });
   EXPECT_TRUE(contains(error, "cable")) << error;
@@ -244,14 +244,14 @@ TEST(KinectSource, OneThatStaysAwayIsGivenUp) {
 TEST(KinectSource, OneThatSendsNoColourIsStartedAnewOnceThenGoesOnWithout) {
   const auto script = std::make_shared<Script>();
   std::vector<Act> depth_only;
-  for (std::uint32_t i = 0; i < 500; ++i) {  // some 0.5 s
+  for (std::uint32_t i = 0; i < 900; ++i) {  // some 0.9 s
     depth_only.push_back({Act::Kind::kDepth, i * kFrameTicks});
     depth_only.push_back({Act::Kind::kSilence});
   }
   script->openings = {depth_only, depth_only, depth_only, depth_only};
   const auto source = open_scripted(script);
-  const auto frames = read_frames(*source, 400).frames;
-  EXPECT_EQ(frames.size(), 400U);
+  const auto frames = read_frames(*source, 800).frames;
+  EXPECT_EQ(frames.size(), 800U);
   EXPECT_TRUE(frames.back().colour.empty());
   const std::lock_guard lock(script->mutex);
   EXPECT_EQ(std::count_if(script->said.begin(), script->said.end(),
