@@ -11,16 +11,16 @@ namespace {
 using Corners = std::array<Eigen::Vector3d, 3>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The shortest way from one set to another that was seen so far.
+/// The shortest way from one set to another that was seen so far, and where it begins.
 struct Shortest {
-  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  ShortestWay best;
   double length2 = kInfinity;
 
-  void see(const Eigen::Vector3d& candidate) {
-    const double candidate2 = candidate.squaredNorm();
+  void see(const Eigen::Vector3d& from, const Eigen::Vector3d& way) {
+    const double candidate2 = way.squaredNorm();
     if (candidate2 < length2) {
       length2 = candidate2;
-      way = candidate;
+      best = {from, way};
     }
   }
 };
@@ -34,7 +34,7 @@ void see_edges(const Eigen::Vector3d& a, const Eigen::Vector3d& u, const Eigen::
   double s = across > 0.0 ? std::clamp((uv * vw - uw * vv) / across, 0.0, 1.0) : 0.0;
   const double t = vv > 0.0 ? std::clamp((uv * s + vw) / vv, 0.0, 1.0) : 0.0;
   if (uu > 0.0) s = std::clamp((uv * t - uw) / uu, 0.0, 1.0);
-  shortest.see(t * v - s * u - w);
+  shortest.see(a + s * u, t * v - s * u - w);
 }
 
 /// From the corners of `from` down to the face of `t`, where their feet lie in it; sign 1: the way to t, -1:
@@ -47,12 +47,15 @@ void see_face(const Corners& from, const FrameTriangle& t, double sign, Shortest
   for (const Eigen::Vector3d& p : from) {
     bool is_over = true;
     for (std::size_t i = 0; i < 3 && is_over; ++i) is_over = inward[i].dot(p - t.corners[i]) >= 0.0;
-    if (is_over) shortest.see(-sign * n.dot(p - t.corners[0]) * n);
+    if (!is_over) continue;
+    const Eigen::Vector3d to_face = -n.dot(p - t.corners[0]) * n;
+    shortest.see(sign > 0.0 ? p : Eigen::Vector3d(p + to_face), sign * to_face);
   }
 }
 
-/// From the object, moved by travel_m, to the scene; where they cross, not to be used.
-Eigen::Vector3d shortest_way(const FrameTriangle& object, const FrameTriangle& scene, double travel_m) {
+}  // namespace
+
+ShortestWay shortest_way(const FrameTriangle& object, const FrameTriangle& scene, double travel_m) {
   FrameTriangle moved = object;
   for (Eigen::Vector3d& corner : moved.corners) corner.z() += travel_m;
   Shortest shortest;
@@ -66,10 +69,8 @@ Eigen::Vector3d shortest_way(const FrameTriangle& object, const FrameTriangle& s
       see_edges(a, u, b, scene.corners[(j + 1) % 3] - b, shortest);
     }
   }
-  return shortest.way;
+  return shortest.best;
 }
-
-}  // namespace
 
 double thick_travel(const FrameTriangle& object, const FrameTriangle& scene, double margin_m,
                     double limit_m) {
@@ -96,7 +97,7 @@ double thick_travel(const FrameTriangle& object, const FrameTriangle& scene, dou
   constexpr int kSteps = 20;
   constexpr double kClose_m = 1e-10;
   for (int step = 0; step < kSteps && travel_m < limit_m; ++step) {
-    const Eigen::Vector3d way = shortest_way(object, scene, travel_m);
+    const Eigen::Vector3d way = shortest_way(object, scene, travel_m).way;
     const double distance_m = way.norm();
     if (!(distance_m > margin_m + kClose_m)) return travel_m;
     if (!(way.z() > 0.0)) return kInfinity;  // it will only get farther

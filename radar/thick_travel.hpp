@@ -13,4 +13,12 @@ namespace roomradar {
 /// margin, which is never past the true place.
 double thick_travel(const FrameTriangle& object, const FrameTriangle& scene, double margin_m, double limit_m);
 
+struct ShortestWay {
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< on the object's triangle
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();   ///< to the scene's
+};
+/// The shortest way from the object's triangle, moved by travel_m along z, to the scene's; where they cross,
+/// not to be used.
+ShortestWay shortest_way(const FrameTriangle& object, const FrameTriangle& scene, double travel_m);
+
 }  // namespace roomradar
