@@ -3,10 +3,15 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "app/rigid_motion.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/stage_times.hpp"
+#include "radar/cyber_radar.hpp"
 
 namespace roomradar {
 namespace {
@@ -19,7 +24,9 @@ constexpr double kSupportCosine = 0.5;  // a surface within 60 degrees of level 
 constexpr double kDoubtful_m = 0.003;   // deeper overlap along gravity: the way out may be sideways
 
 bool is_finite(const Body& body) {
-  return body.T_world_object.matrix().allFinite() && body.velocity_world_mps.allFinite();
+  return body.T_world_object.matrix().allFinite() && body.velocity_world_mps.allFinite() &&
+         body.spin_world_rad_s.allFinite() && body.mass.centre_object.allFinite() &&
+         body.mass.inertia_m2.allFinite();
 }
 
 /// Whether the radar's answer can be built on. A normal that is missing or does not face the object is
@@ -41,8 +48,8 @@ bool make_usable(Contact& contact, const Vec3& direction) {
 /// One call of advance: the body, the radar, and what is reported.
 class Stepper {
  public:
-  Stepper(Body& body, const TravelQuery& query, const PhysicsConfig& config, StepReport& report)
-      : body_(body), query_(query), config_(config), report_(report) {
+  Stepper(Body& body, const BodyProbe& probe, const PhysicsConfig& config, StepReport& report)
+      : body_(body), probe_(probe), config_(config), report_(report) {
     const double g = config.gravity_world_mps2.norm();
     if (g > 0.0) down_ = config.gravity_world_mps2 / g;
   }
@@ -54,7 +61,7 @@ class Stepper {
   /// Whether what leave_overlaps saw below still holds the body up, within the noise.
   [[nodiscard]] bool is_held_up() const;
 
-  /// One piece of free motion: sweep, touch, slide, and perhaps rest.
+  /// One piece of motion, and perhaps rest.
   void move(double dt_s);
 
   void wake();
@@ -64,29 +71,33 @@ class Stepper {
   struct Way {
     double depth_m = 0.0;  // 0: no overlap
     Vec3 direction = Vec3::Zero();
-    Touched touched = Touched::kNothing;
+    Contact contact;
   };
 
+  /// Without turning, from surface to surface along the radar's directions; whether one held it up.
+  bool slide(double dt_s);
   Contact ask(const Vec3& direction, double distance_m);
   static Way overlap_in(const Contact& contact, const Vec3& direction);
   void note(Touched touched);
   void hold();
   void collide(const Contact& contact, Vec3& remaining);
-  void linger(double dt_s);
+  void linger(double dt_s, bool is_balanced);
 
   Body& body_;
-  const TravelQuery& query_;
+  const BodyProbe& probe_;
   const PhysicsConfig& config_;
   StepReport& report_;
   Vec3 down_ = Vec3::Zero();
   Contact below_;  // along gravity, before any motion
+  std::optional<Push> push_;
+  RigidScratch scratch_;
   std::array<Vec3, 2> met_normals_;
   int met_count_ = 0;
 };
 
 Contact Stepper::ask(const Vec3& direction, double distance_m) {
   ++report_.queries;
-  Contact contact = query_(body_.T_world_object, direction, distance_m);
+  Contact contact = probe_.travel(body_.T_world_object, direction, distance_m);
   if (!make_usable(contact, direction)) hold();
   return contact;
 }
@@ -94,6 +105,7 @@ Contact Stepper::ask(const Vec3& direction, double distance_m) {
 void Stepper::hold() {
   report_.status = StepStatus::kHeld;
   body_.velocity_world_mps.setZero();
+  body_.spin_world_rad_s.setZero();
 }
 
 void Stepper::note(Touched touched) {
@@ -111,7 +123,7 @@ void Stepper::wake() {
 
 Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) {
   if (contact.status != ContactStatus::kOverlap) return {};
-  return {std::max(-contact.travel_m, 0.0), direction, contact.touched};
+  return {std::max(-contact.travel_m, 0.0), direction, contact};
 }
 
 void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world) {
@@ -137,13 +149,19 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   if (failed() || way.depth_m <= 0.0) return;
 
   report_.deepest_overlap_m = std::max(report_.deepest_overlap_m, way.depth_m);
-  if (way.touched == Touched::kStatic)
+  if (way.contact.touched == Touched::kStatic)
     report_.deepest_static_overlap_m = std::max(report_.deepest_static_overlap_m, way.depth_m);
-  note(way.touched);
+  note(way.contact.touched);
   if (way.depth_m <= (body_.at_rest ? config_.wake_overlap_m : config_.overlap_allowed_m)) return;
 
   wake();
-  const double push_m = std::min(way.depth_m, config_.push_out_mps * dt_s);
+  const double push_m = std::min(way.depth_m + config_.contact_margin_m, config_.push_out_mps * dt_s);
+  if (is_moving_surface(way.contact.touched)) {
+    const bool is_out_at_once = way.direction == down_ && way.depth_m <= push_m;
+    if (!is_out_at_once)
+      push_ = Push{way.contact.point_world, -way.direction, push_m / dt_s, way.contact.touched};
+    if (way.direction != down_) return;
+  }
   // What stands behind stops the push: the body is squeezed, and the next call asks again.
   const Contact behind = ask(-way.direction, push_m + config_.contact_margin_m);
   if (failed()) return;
@@ -198,20 +216,41 @@ void Stepper::collide(const Contact& contact, Vec3& remaining) {
   note(contact.touched);
 }
 
-/// Counts time on a support, from where the body first lingered; there for long enough, it is at rest.
-void Stepper::linger(double dt_s) {
-  const Vec3 position = body_.T_world_object.translation();
-  if (body_.lingered_s <= 0.0 || (position - body_.lingers_at_world).norm() > config_.rest_drift_m) {
-    body_.lingers_at_world = position;
+/// Counts time on a support, from where the body first lingered; there for long enough, it is at rest. What
+/// is not balanced has to stay for longer: it may be about to tip.
+void Stepper::linger(double dt_s, bool is_balanced) {
+  constexpr double kLongerUnbalanced = 4.0;
+  const Eigen::Isometry3d moved = body_.lingers_at.inverse() * body_.T_world_object;
+  const double drift_m = (centre_world(body_) - body_.lingers_at * body_.mass.centre_object).norm() +
+                         Eigen::AngleAxisd(moved.linear()).angle() * body_.mass.radius_m;
+  if (body_.lingered_s <= 0.0 || !(drift_m <= config_.rest_drift_m)) {
+    body_.lingers_at = body_.T_world_object;
     body_.lingered_s = 0.0;
   }
   body_.lingered_s += dt_s;
-  if (body_.lingered_s < config_.rest_after_s) return;
+  if (body_.lingered_s < config_.rest_after_s * (is_balanced ? 1.0 : kLongerUnbalanced)) return;
   body_.at_rest = true;
   body_.velocity_world_mps.setZero();
+  body_.spin_world_rad_s.setZero();
 }
 
 void Stepper::move(double dt_s) {
+  const RigidPiece piece = move_rigidly(body_, dt_s, probe_, config_, push_, scratch_, report_);
+  if (piece.crosses) {
+    if (slide(piece.left_s)) linger(dt_s, /*is_balanced=*/true);
+    return;
+  }
+  if (piece.is_held_up) {
+    body_.rests_on = piece.rests_on;
+    note(piece.rests_on);
+    if (!push_) linger(dt_s, piece.is_balanced);
+  } else {
+    body_.rests_on = Touched::kNothing;
+  }
+}
+
+bool Stepper::slide(double dt_s) {
+  body_.spin_world_rad_s.setZero();
   body_.velocity_world_mps += config_.gravity_world_mps2 * dt_s;
   const double speed_mps = body_.velocity_world_mps.norm();
   if (speed_mps > config_.max_speed_mps) body_.velocity_world_mps *= config_.max_speed_mps / speed_mps;
@@ -226,7 +265,7 @@ void Stepper::move(double dt_s) {
     if (distance_m < kShortest_m) break;
     const Vec3 direction = remaining / distance_m;
     const Contact contact = ask(direction, distance_m + config_.contact_margin_m / kGrazing);
-    if (failed()) return;
+    if (failed()) return false;
     // The gap is kept across the surface; seen along a grazing motion it is longer.
     const double steepness = std::max(-contact.normal_world.dot(direction), kGrazing);
     const double free_m = contact ? contact.lower_m - config_.contact_margin_m / steepness : contact.lower_m;
@@ -244,7 +283,7 @@ void Stepper::move(double dt_s) {
     }
     collide(contact, remaining);
   }
-  if (is_supported) linger(dt_s);
+  return is_supported;
 }
 
 }  // namespace
@@ -266,6 +305,7 @@ void require_valid(const PhysicsConfig& config) {
           "in 0..1");
   require_not_negative("bounce_mps", config.bounce_mps);
   require_not_negative("friction", config.friction);
+  require_not_negative("rolling", config.rolling);
   require_not_negative("contact_margin_m", config.contact_margin_m);
   require_positive("max_step_s", config.max_step_s);
   require_positive("max_advance_s", config.max_advance_s);
@@ -279,9 +319,38 @@ void require_valid(const PhysicsConfig& config) {
   require_not_negative("overlap_allowed_m", config.overlap_allowed_m);
   require_positive("push_out_mps", config.push_out_mps);
   require_positive("max_speed_mps", config.max_speed_mps);
+  require_positive("max_spin_rad_s", config.max_spin_rad_s);
 }
 
-StepReport advance(Body& body, double dt_s, const TravelQuery& query, const PhysicsConfig& config,
+BodyProbe probe_of(CyberRadar& radar, NearField& field, const TriangleTree& object, const RadarScene& scene,
+                   double* spent_ms) {
+  struct Spent {
+    double* spent_ms;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    ~Spent() {
+      if (spent_ms != nullptr) *spent_ms += ms_since(start);
+    }
+  };
+  BodyProbe probe;
+  probe.travel = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const Vec3& direction,
+                               double distance_m) {
+    const Spent spent{spent_ms};
+    return radar.query({{&object, T_world_object}, direction, distance_m}, scene);
+  };
+  probe.near = [&, spent_ms](const Eigen::Isometry3d& T_world_object, double reach_m, Kinds left_out,
+                             std::vector<NearPoint>& points) {
+    const Spent spent{spent_ms};
+    return field.near({&object, T_world_object}, scene, reach_m, left_out, points);
+  };
+  probe.free_time = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
+                                  double duration_s, double keep_m, Kinds left_out) {
+    const Spent spent{spent_ms};
+    return field.free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out);
+  };
+  return probe;
+}
+
+StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
                    std::span<const Eigen::Vector3d> push_directions_world) {
   StepReport report;
   if (!std::isfinite(dt_s) || dt_s < 0.0 || !is_finite(body)) {
@@ -291,10 +360,11 @@ StepReport advance(Body& body, double dt_s, const TravelQuery& query, const Phys
   if (dt_s == 0.0) return report;
   dt_s = std::min(dt_s, config.max_advance_s);
 
-  Stepper stepper(body, query, config, report);
+  Stepper stepper(body, probe, config, report);
   stepper.leave_overlaps(dt_s, push_directions_world);
   if (stepper.failed()) return report;
-  if (body.at_rest && body.velocity_world_mps.isZero() && stepper.is_held_up()) return report;
+  const bool is_still = body.velocity_world_mps.isZero() && body.spin_world_rad_s.isZero();
+  if (body.at_rest && is_still && stepper.is_held_up()) return report;
   stepper.wake();
 
   const int pieces = static_cast<int>(std::ceil(dt_s / config.max_step_s - 1e-9));

@@ -1,4 +1,4 @@
-// physics.hpp: move a virtual object by what the radar answers alone: fall, touch, slide, rest.
+// physics.hpp: move a virtual object by what the radar answers alone: fall, touch, slide, roll, tip, rest.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -7,20 +7,26 @@
 #include <initializer_list>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "app/mass_properties.hpp"
 #include "mapping/types/mesh.hpp"
 #include "radar/contact.hpp"
+#include "radar/near_field.hpp"
+#include "radar/sweep.hpp"
 
 namespace roomradar {
 
-/// A rigid virtual object. It is translated only; its orientation stays as it was placed.
+/// A rigid virtual object.
 struct Body {
   std::string name;
+  MassProperties mass;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
+  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< of the centre of mass
+  Eigen::Vector3d spin_world_rad_s = Eigen::Vector3d::Zero();    ///< about it, right-handed
   bool at_rest = false;
-  double lingered_s = 0.0;  ///< for how long it has been on a support within rest_drift_m of lingers_at_world
-  Eigen::Vector3d lingers_at_world = Eigen::Vector3d::Zero();
+  double lingered_s = 0.0;  ///< for how long it has been on a support within rest_drift_m of lingers_at
+  Eigen::Isometry3d lingers_at = Eigen::Isometry3d::Identity();
   Touched rests_on = Touched::kNothing;  ///< what held it up when it was last moved
 };
 
@@ -30,20 +36,24 @@ struct PhysicsConfig {
   double restitution = 0.0;
   double bounce_mps = 0.3;  ///< slower impacts do not bounce
   double friction = 0.5;    ///< Coulomb's coefficient, >= 0
+  /// What holds a rolling body back: a torque of this part of the normal force times its arm, >= 0. A ball
+  /// that rolls at 0.5 m/s stops after 0.9 m.
+  double rolling = 0.02;
   /// Gap kept to a surface, on top of what the radar's lower bound keeps where it is not exact: a body that
   /// touches could not tell resting from overlap.
   double contact_margin_m = 0.001;
-  double max_step_s = 1.0 / 30.0;  ///< a longer step is cut into such pieces
+  double max_step_s = 1.0 / 60.0;  ///< a longer step is cut into such pieces
   /// Time past this in one call is dropped (a stalled camera must not launch things).
   double max_advance_s = 0.5;
-  int max_slides = 4;           ///< surfaces met one after the other in one piece of a step
-  double rest_drift_m = 0.012;  ///< stays within this on a support for rest_after_s: at rest
+  int max_slides = 16;  ///< times that a piece of a step may be stopped; what is left of it then is dropped
+  double rest_drift_m = 0.012;  ///< no point strays farther on a support for rest_after_s: at rest
   double rest_after_s = 0.3;
   double wake_gap_m = 0.012;         ///< support sank by more than this: falls again; sensor noise is some mm
   double wake_overlap_m = 0.008;     ///< support or a hand came in by more than this: moves out of the way
   double overlap_allowed_m = 0.001;  ///< less is left as it is
   double push_out_mps = 1.0;  ///< fastest way out of an overlap; also the speed of a hand that still pushes
   double max_speed_mps = 20.0;
+  double max_spin_rad_s = 60.0;  ///< ten turns a second
 };
 /// Throws Error "physics.friction = -1: must be >= 0" and the like.
 void require_valid(const PhysicsConfig& config);
@@ -53,6 +63,22 @@ void require_valid(const PhysicsConfig& config);
 /// tests.
 using TravelQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
                                           const Eigen::Vector3d& direction_world, double distance_m)>;
+
+/// What a body asks of the radar as it moves: its own mesh against the frame's scene.
+struct BodyProbe {
+  TravelQuery travel;
+  /// NearField::near() and free_time().
+  std::function<Kinds(const Eigen::Isometry3d& T_world_object, double reach_m, Kinds left_out,
+                      std::vector<NearPoint>& points)>
+      near;
+  std::function<FreeTime(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
+                         double duration_s, double keep_m, Kinds left_out)>
+      free_time;
+};
+/// Of an object's tree. All that is given must stay while the probe is used.
+/// @param spent_ms  in which the time of all answers is summed up; may be null
+BodyProbe probe_of(CyberRadar& radar, NearField& field, const TriangleTree& object, const RadarScene& scene,
+                   double* spent_ms = nullptr);
 
 enum class StepStatus {
   kMoved,    ///< or is free to move, at rest or not
@@ -64,7 +90,8 @@ struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
   int contacts = 0;                                   ///< surfaces met
   std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by what was touched
-  int queries = 0;                                    ///< of the radar
+  int queries = 0;                                    ///< of the radar along a direction
+  int moves = 0;                                      ///< pieces of motion that were shown free
   /// Deepest overlap seen before it was resolved, by the shortest way out, >= 0.
   double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only
@@ -74,17 +101,24 @@ struct [[nodiscard]] StepReport {
   bool woke = false;  ///< was at rest before and is not any more
 };
 
-/// Moves `body` on by dt_s: gravity, contact, Coulomb friction along the surface met, rest. Each piece of
-/// motion is first swept by the radar, so nothing is tunnelled through however large the step is.
+/// Moves `body` on by dt_s: gravity, contact, Coulomb friction, rest.
+///
+/// A piece of a step: where the body nearly touches (near) are its contacts. Impulses there turn back what
+/// enters them (with restitution, if fast), then hold it up against gravity over the piece and rub (without).
+/// With the mean of the velocities before and after, it goes on for as long as that is free (free_time); what
+/// is left of the piece begins anew from there. So nothing is tunnelled through, moving or turning, however
+/// large the step is. Between contacts the path is a parabola and the angular momentum stays.
+///
+/// A body that a surface came into is first moved out of it, along gravity by a shift, sideways with the
+/// speed that a hand has that came so far in dt_s, at the place that is deepest: it slides, turns or tips.
+/// While it crosses a surface yet, it is moved without turning, by the radar along its way.
 ///
 /// @param dt_s   seconds since the last call, >= 0; 0 changes nothing
-/// @param query  the radar: asked once about what is below, once for each push direction, for each piece of
-///               motion 1 to max_slides times, and in a deep overlap four times sideways and once behind
 /// @param push_directions_world  unit directions from the body to moving surfaces (push_directions): an
 ///               overlap there moves the body away by the shortest of these ways; may be empty
 /// A body at rest is asked about along gravity only (and along push_directions), and does not move by noise.
 /// A body at rest with a velocity is woken by it. Steps longer than max_advance_s count as that.
-StepReport advance(Body& body, double dt_s, const TravelQuery& query, const PhysicsConfig& config,
+StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
                    std::span<const Eigen::Vector3d> push_directions_world = {});
 
 /// Whether what `back` asks about, the inferred backs of what moved, has come about the body rather than

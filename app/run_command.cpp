@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 #include "app/commands.hpp"
@@ -82,12 +83,18 @@ struct RunTotals {
 nlohmann::json results_of(const RunTotals& totals, const Session& session) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : session.objects()) {
+    const Eigen::Matrix3d R_world_object = object->body.T_world_object.linear();
+    const Eigen::Quaterniond q(R_world_object);
+    const double turned_deg = Eigen::AngleAxisd(object->R_world_put.transpose() * R_world_object).angle() *
+                              (180.0 / std::numbers::pi);
     objects.push_back({{"name", object->body.name},
                        {"in_room", object->in_room},
                        {"at_rest", object->body.at_rest},
                        {"rests_on", to_string(object->body.rests_on)},
                        {"began_in_unknown", object->began_in_unknown},
-                       {"position_m", to_json(object->body.T_world_object.translation())}});
+                       {"position_m", to_json(object->body.T_world_object.translation())},
+                       {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+                       {"turned_deg", turned_deg}});
   }
   nlohmann::json adopted = nlohmann::json::array();
   for (const AdoptedChange& change : session.adopted())

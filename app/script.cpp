@@ -1,10 +1,12 @@
 // script.cpp: the events file of `roomradar run --script FILE`.
 #include "app/script.hpp"
 
+#include <Eigen/Geometry>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <system_error>
 
 #include "mapping/types/error.hpp"
@@ -15,6 +17,7 @@ namespace {
 constexpr std::size_t kMaxBytes = 1U << 20U;
 constexpr double kMaxCoordinate_m = 1000.0;  // farther away than any room
 constexpr double kMaxSpeed_mps = 100.0;
+constexpr double kMaxSpin_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
 
 std::string in_quotes(std::string_view text) {
@@ -83,6 +86,17 @@ Eigen::Vector3d read_position(LineReader& line) {
   return line.vector("a position X Y Z (m)", kMaxCoordinate_m);
 }
 
+/// The rest of the line, if it says how the object stands.
+void read_turned(LineReader& line, ScriptEvent& event) {
+  if (!line.take_if("turned")) return;
+  const Eigen::Vector3d angles =
+      line.vector("the angles YAW PITCH ROLL (degrees), -360..360", 360.0) * (std::numbers::pi / 180.0);
+  event.R_world_object = (Eigen::AngleAxisd(angles[0], Eigen::Vector3d::UnitZ()) *
+                          Eigen::AngleAxisd(angles[1], Eigen::Vector3d::UnitY()) *
+                          Eigen::AngleAxisd(angles[2], Eigen::Vector3d::UnitX()))
+                             .toRotationMatrix();
+}
+
 void read_when(LineReader& line, ScriptEvent& event) {
   const std::string_view when = line.word("'frame' or 'time'");
   if (when == "frame") {
@@ -119,6 +133,7 @@ void read_action(LineReader& line, ScriptEvent& event) {
   } else if (action == "place") {
     event.action = Action::kPlace;
     event.position_world = read_position(line);
+    read_turned(line, event);
   } else if (action == "drop") {
     event.action = Action::kDrop;
     if (!line.take_if("view")) {
@@ -126,11 +141,14 @@ void read_action(LineReader& line, ScriptEvent& event) {
       event.position_world = read_position(line);
     }
     if (line.take_if("height")) event.height_m = line.number("a height (m), 0..5", 0.0, 5.0);
+    read_turned(line, event);
   } else if (action == "throw") {
     event.action = Action::kThrow;
     event.position_world = read_position(line);
     line.expect("velocity");
     event.velocity_world_mps = line.vector("a velocity X Y Z (m/s)", kMaxSpeed_mps);
+    if (line.take_if("spin")) event.spin_world_rad_s = line.vector("a spin X Y Z (rad/s)", kMaxSpin_rad_s);
+    read_turned(line, event);
   } else {
     event.action = Action::kRemove;
   }

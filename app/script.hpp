@@ -32,7 +32,10 @@ struct ScriptEvent {
   /// kPlace, kDrop, kThrow; kDrop without one: over a surface in view.
   std::optional<Eigen::Vector3d> position_world;
   double height_m = 0.3;  ///< kDrop: its lowest point starts this far above the position or surface
-  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow
+  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow: of the centre of mass
+  Eigen::Vector3d spin_world_rad_s = Eigen::Vector3d::Zero();    ///< kThrow: about it, right-handed
+  /// kPlace, kDrop, kThrow: how it stands; as it stood last if absent.
+  std::optional<Eigen::Matrix3d> R_world_object;
 };
 
 /// In the order of the file, which is the order in which they happen: one that is due waits for those before
@@ -48,9 +51,13 @@ struct Script {
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
 ///     time 4     place pot 0.4 -0.1 0.9
 ///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
+///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0       spin in rad/s about x y z
 ///     time 6     remove pot
 ///     time 7     adopt                           what stands still now in view becomes part of the room
 ///     frame 300  quit
+///
+/// place, drop and throw may end with `turned YAW PITCH ROLL`: degrees about z, then y, then x, each of them
+/// the axes as they were turned before. Without it an object stands as it stood last, upright at first.
 ///
 /// Throws Error "FILE:LINE: ..." with what was found and what is wanted for: an unknown word, a missing or
 /// surplus word, a number that is none, not finite or out of range, a negative frame or time, a name that was

@@ -2,7 +2,6 @@
 #include "app/session.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -176,22 +175,16 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
       push = push_directions({&scene_.moved_world().seen_world, &scene_.moved_world().inferred_world},
                              object->body.T_world_object * object->middle, kNearbyReach_m);
     std::vector<SceneTree> scene = scene_without(object.get());
-    const auto ask = [&](std::span<const SceneTree> surfaces) {
-      return [this, surfaces, &object, &radar_ms](const Eigen::Isometry3d& T_world_object,
-                                                  const Eigen::Vector3d& direction_world, double distance_m) {
-        const auto start = std::chrono::steady_clock::now();
-        const Contact contact = radar_.query(
-            {{&object->shape.touched, T_world_object}, direction_world, distance_m}, {surfaces, {}});
-        radar_ms += ms_since(start);
-        return contact;
-      };
-    };
     const auto is_back = [](const SceneTree& surface) { return surface.kind == Touched::kInferredBack; };
     const auto back = std::find_if(scene.begin(), scene.end(), is_back);
-    if (back != scene.end() &&
-        is_swallowed(object->body, dt_s, ask({&*back, 1}), config_.physics, push.span()))
-      scene.erase(back);
-    const StepReport moved = advance(object->body, dt_s, ask(scene), config_.physics, push.span());
+    if (back != scene.end()) {
+      const RadarScene of_back{{&*back, 1}, {}};
+      const BodyProbe probe = probe_of(radar_, near_field_, object->shape.touched, of_back, &radar_ms);
+      if (is_swallowed(object->body, dt_s, probe.travel, config_.physics, push.span())) scene.erase(back);
+    }
+    const RadarScene radar_scene{scene, {}};
+    const BodyProbe probe = probe_of(radar_, near_field_, object->shape.touched, radar_scene, &radar_ms);
+    const StepReport moved = advance(object->body, dt_s, probe, config_.physics, push.span());
     result.contacts += moved.contacts;
     for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
       result.contacts_by_kind[kind] += moved.contacts_by_kind[kind];
@@ -281,13 +274,17 @@ void Session::add_object(const std::string& name, const Mesh& mesh) {
 void Session::apply(const ScriptEvent& event) {
   const auto put = [&](VirtualObject& object, const Eigen::Vector3d& position_world) {
     object.body.T_world_object.translation() = position_world;
+    object.R_world_put = object.body.T_world_object.linear();
     object.body.velocity_world_mps = event.velocity_world_mps;
+    object.body.spin_world_rad_s = event.spin_world_rad_s;
     object.body.at_rest = false;
     object.in_room = true;
     object.in_unknown = object.began_in_unknown = is_in_unknown(object);
   };
   // Whatever is said of an object now takes the place of a drop that it waits for.
   std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
+  if (event.R_world_object && event.position_world)
+    object_named(event.name).body.T_world_object.linear() = *event.R_world_object;
   switch (event.action) {
     case Action::kAdd:
       add_object(event.name, object_mesh(event.mesh, event.size_m.value_or(0.0)));
@@ -302,7 +299,7 @@ void Session::apply(const ScriptEvent& event) {
         waiting_.push_back(event);
         break;
       }
-      put(object, *event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - object.lowest_m));
+      put(object, *event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
       break;
     }
     case Action::kRemove:

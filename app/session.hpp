@@ -107,6 +107,7 @@ class Session {
   std::unique_ptr<LivingMap> living_map_;  ///< null: the room stays as it is
   Locator locator_;
   CyberRadar radar_;
+  NearField near_field_;
   CyberRadar exact_radar_;  ///< measures penetration
   DepthPass depth_pass_;
   ObjectDrawer drawer_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "app/teapot.hpp"
@@ -23,15 +24,26 @@ VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& m
   body.name = std::move(name);
   shape.set(mesh, MeshUsage::kStatic);
   if (shape.touched.empty()) throw Error(body.name + ": has no triangles; a virtual object is a surface");
+  body.mass = mass_properties(mesh, shape.touched.is_closed());
   const Eigen::AlignedBox3d box = shape.drawn.bounds();
   middle = box.center();
-  lowest_m = box.min().z();
   for (const Triangle& triangle : shape.drawn.triangles()) {
     for (const std::uint32_t vertex : triangle) {
       const Eigen::Vector3d p = shape.drawn.origin() + shape.drawn.vertices()[vertex].cast<double>();
       footprint_radius_m = std::max(footprint_radius_m, p.head<2>().norm());
     }
   }
+}
+
+double lowest_m(const VirtualObject& object) {
+  const GpuMesh& mesh = object.shape.drawn;
+  const Eigen::Vector3d z = object.body.T_world_object.linear().row(2);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Triangle& triangle : mesh.triangles()) {
+    for (const std::uint32_t vertex : triangle)
+      lowest = std::min(lowest, z.dot(mesh.origin() + mesh.vertices()[vertex].cast<double>()));
+  }
+  return lowest;
 }
 
 Mesh object_mesh(const std::string& name_or_path, double size_m) {

@@ -14,11 +14,11 @@ namespace roomradar {
 struct VirtualObject {
   Body body;  ///< its name and pose
   bool in_room = false;
-  bool began_in_unknown = false;                     ///< was put where nobody has seen what is there
-  bool in_unknown = false;                           ///< and has not come out of there since
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of its bounding box, in its own frame
-  double lowest_m = 0.0;                             ///< z of its lowest point, in its own frame
-  double footprint_radius_m = 0.0;                   ///< how far it reaches sideways from its origin
+  bool began_in_unknown = false;                              ///< was put where nobody has seen what is there
+  bool in_unknown = false;                                    ///< and has not come out of there since
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();           ///< of its bounding box, in its own frame
+  double footprint_radius_m = 0.0;                            ///< how far it reaches sideways from its origin
+  Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< how it stood when it was last put somewhere
   Shape shape;
   SurfacePoints surface;  ///< what its shadow is made of
   ContactShadow shadow;   ///< as it stood when this was made last
@@ -26,6 +26,9 @@ struct VirtualObject {
   /// Throws Error if the mesh cannot be a virtual object (no triangles, vertices that are not finite).
   VirtualObject(GlContext& context, std::string name, const Mesh& mesh);
 };
+
+/// How far its lowest point is above its origin, as it is turned now, m.
+double lowest_m(const VirtualObject& object);
 
 /// The mesh that a user names: `teapot`, the built-in one, 0.15 m high, or a file that read_mesh reads.
 /// Scaled so that its longest side is size_m, if that is > 0. Throws Error naming the file and the fault.

@@ -73,7 +73,7 @@ class AdoptingSession {
   /// The height of its lowest point.
   [[nodiscard]] double pot_m() const {
     const VirtualObject& pot = *session.objects().front();
-    return pot.body.T_world_object.translation().z() + pot.lowest_m;
+    return pot.body.T_world_object.translation().z() + lowest_m(pot);
   }
 
  private:

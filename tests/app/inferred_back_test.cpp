@@ -82,19 +82,18 @@ class InferredBack : public ::testing::Test {
 
   StepReport step() {
     std::vector<SceneTree> scene = {{{&table_, Eigen::Isometry3d::Identity()}, Touched::kStatic}, seen()};
-    const auto query = [this](const std::vector<SceneTree>& surfaces) {
-      return [this, &surfaces](const Eigen::Isometry3d& T, const Vec3& direction, double distance_m) {
-        return radar_.query({{&cube_, T}, direction, distance_m}, {surfaces, {}});
-      };
-    };
     const PushDirections push = push_directions({&surface_.seen_world, &surface_.inferred_world},
                                                 body_.T_world_object.translation(), 0.25);
     const std::vector<SceneTree> back = {inferred()};
-    if (!is_swallowed(body_, kFrame_s, query(back), {}, push.span())) scene.push_back(inferred());
-    return advance(body_, kFrame_s, query(scene), {}, push.span());
+    const RadarScene of_back{back, {}};
+    const BodyProbe back_probe = probe_of(radar_, field_, cube_, of_back);
+    if (!is_swallowed(body_, kFrame_s, back_probe.travel, {}, push.span())) scene.push_back(inferred());
+    const RadarScene of_all{scene, {}};
+    return advance(body_, kFrame_s, probe_of(radar_, field_, cube_, of_all), {}, push.span());
   }
 
   CyberRadar radar_;
+  NearField field_;
   Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();
   MovedSurfaceScratch scratch_;
   MovedSurface surface_;

@@ -142,7 +142,7 @@ TEST(Session, SolidUnknownSpaceHoldsAnObjectUpAndSaysSo) {
     StageTimes times;
     if (is_solid) session.make_unknown_solid(times);
     const auto [pot, unknown_contacts] = thrown(session, {1.0, 0.0, 0.6}, 0.0);
-    const double bottom_m = pot.body.T_world_object.translation().z() + pot.lowest_m;
+    const double bottom_m = pot.body.T_world_object.translation().z() + lowest_m(pot);
     EXPECT_FALSE(pot.began_in_unknown);
     EXPECT_EQ(unknown_contacts > 0, is_solid);
     if (is_solid) {
@@ -175,7 +175,7 @@ TEST(Session, WhatIsPutIntoUnknownSpaceCanLeaveItAndCannotComeBack) {
   EXPECT_TRUE(pot.began_in_unknown);
   EXPECT_FALSE(pot.in_unknown);
   EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
-  EXPECT_NEAR(pot.body.T_world_object.translation().z() + pot.lowest_m, 0.0, 0.005);
+  EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
 }
 
 TEST(Session, WhatIsPutOnTheBorderOfUnknownSpaceComesOutAndStaysOnIt) {
@@ -188,7 +188,7 @@ TEST(Session, WhatIsPutOnTheBorderOfUnknownSpaceComesOutAndStaysOnIt) {
   EXPECT_FALSE(pot.in_unknown);
   EXPECT_TRUE(pot.body.at_rest);
   EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
-  EXPECT_NEAR(pot.body.T_world_object.translation().z() + pot.lowest_m, 0.0, 0.005);
+  EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
 }
 
 TEST(Session, UnknownSpaceIsNotSolidWithoutTheMapsSurfaces) {
@@ -223,7 +223,7 @@ TEST(VirtualObject, FootprintReachesToACorner) {
   plate.triangles = {{0, 1, 2}};
   const VirtualObject object(context, "plate", plate);
   EXPECT_NEAR(object.footprint_radius_m, 0.5, 1e-6);
-  EXPECT_NEAR(object.lowest_m, 0.1, 1e-6);
+  EXPECT_NEAR(lowest_m(object), 0.1, 1e-6);
 }
 
 TEST(VirtualObject, MeshWithoutTrianglesIsRefused) {

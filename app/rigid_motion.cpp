@@ -1,0 +1,255 @@
+// rigid_motion.cpp: from contact to contact, each time as far as is free.
+#include "app/rigid_motion.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+constexpr double kSupportCosine = 0.5;  // a surface within 60 degrees of level holds a body up
+constexpr double kTouchingBand = 0.5;   // of the margin: so much farther away than it is still a contact
+constexpr double kKept = 0.5;           // of the margin: what approaches is stopped there
+constexpr double kNoTime_s = 1e-12;
+
+/// Columns at right angles again, after any number of turns.
+void make_orthonormal(Eigen::Isometry3d& T) {
+  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+}
+
+void limit(Vec3& v, double most) {
+  const double size = v.norm();
+  if (size > most) v *= most / size;
+}
+
+/// One piece: the body, what it touches now, and what is left of the time.
+class Piece {
+ public:
+  Piece(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
+        const std::optional<Push>& push, RigidScratch& scratch, StepReport& report)
+      : body_(body),
+        left_s_(dt_s),
+        probe_(probe),
+        config_(config),
+        push_(push),
+        scratch_(scratch),
+        report_(report),
+        velocity_{body.velocity_world_mps, body.spin_world_rad_s},
+        resting_{config.friction, config.rolling} {
+    const double g = config.gravity_world_mps2.norm();
+    if (g > 0.0) up_ = -config.gravity_world_mps2 / g;
+    if (push) left_out_ = bit_of(Touched::kDynamic) | bit_of(Touched::kInferredBack);
+  }
+
+  RigidPiece run();
+
+ private:
+  bool find_contacts();
+  void bounce();
+  [[nodiscard]] Velocity held_up_after(Velocity velocity, double dt_s);
+  [[nodiscard]] Velocity lift_back(double dt_s);
+  void see_support(RigidPiece& piece);
+  void go(const Velocity& after);
+
+  Body& body_;
+  double left_s_;
+  const BodyProbe& probe_;
+  const PhysicsConfig& config_;
+  const std::optional<Push>& push_;
+  RigidScratch& scratch_;
+  StepReport& report_;
+  Velocity velocity_;
+  Rubbing resting_;
+  Vec3 up_ = Vec3::Zero();
+  Vec3 centre_ = Vec3::Zero();
+  Eigen::Matrix3d inertia_ = Eigen::Matrix3d::Identity();
+  NearPoint limited_by_;
+  Kinds left_out_ = 0;
+};
+
+/// Contacts at the pose as it is; false where a surface crosses the body that does not push it.
+bool Piece::find_contacts() {
+  const double margin_m = config_.contact_margin_m;
+  const double reach_m = (1.0 + kTouchingBand) * margin_m;
+  if (probe_.near(body_.T_world_object, std::max(reach_m, 1e-6), left_out_, scratch_.near) != 0) return false;
+  centre_ = centre_world(body_);
+  inertia_ = inertia_world_m2(body_);
+  if (limited_by_.kind != Touched::kNothing) {
+    const bool is_known = std::any_of(scratch_.near.begin(), scratch_.near.end(), [&](const NearPoint& p) {
+      return (p.point_world - limited_by_.point_world).norm() < margin_m &&
+             p.normal_world.dot(limited_by_.normal_world) > 0.99;
+    });
+    if (!is_known && limited_by_.gap_m <= reach_m) scratch_.near.push_back(limited_by_);
+  }
+  scratch_.contacts.clear();
+  scratch_.kinds.clear();
+  for (const NearPoint& p : scratch_.near) {
+    scratch_.contacts.push_back({p.point_world + p.gap_m * p.normal_world - centre_, p.normal_world});
+    scratch_.kinds.push_back(p.kind);
+  }
+  if (push_) {
+    scratch_.contacts.push_back({push_->point_world - centre_, push_->normal_world});
+    scratch_.kinds.push_back(push_->touched);
+  }
+  return true;
+}
+
+/// Turns back what enters a contact before the time is over: what is fast with restitution.
+void Piece::bounce() {
+  bool enters = false, is_fast = false;
+  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
+    SolverContact& contact = scratch_.contacts[i];
+    const bool is_push = i >= scratch_.near.size();
+    const double room_m = is_push ? 0.0 : scratch_.near[i].gap_m - config_.contact_margin_m;
+    const double closing_mps = -velocity_at(velocity_, contact.arm_m).dot(contact.normal);
+    contact.leaves_mps = is_push ? push_->speed_mps : -std::max(room_m, 0.0) / left_s_;
+    if (!(closing_mps > -contact.leaves_mps + 1e-9)) continue;
+    enters = true;
+    if (is_push || !(closing_mps > config_.bounce_mps)) continue;
+    is_fast = true;
+    contact.leaves_mps = config_.restitution * closing_mps;
+  }
+  if (!enters) return;
+  const double before = energy(velocity_, inertia_);
+  const Velocity entering = velocity_;
+  const Rubbing rubbing{config_.friction, 0.0};
+  solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_);
+  if (is_fast && !push_ && energy(velocity_, inertia_) > before) {
+    // Several contacts with friction may gain by Newton's restitution: then there is none.
+    velocity_ = entering;
+    for (SolverContact& contact : scratch_.contacts) contact.leaves_mps = std::min(contact.leaves_mps, 0.0);
+    solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_);
+  }
+  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
+    if (!(scratch_.contacts[i].impulse_mps > 0.0)) continue;
+    const Touched kind = scratch_.kinds[i];
+    ++report_.contacts;
+    ++report_.contacts_by_kind[static_cast<std::size_t>(kind)];
+    report_.touched_static |= kind == Touched::kStatic;
+    report_.touched_dynamic |= kind == Touched::kDynamic;
+    report_.touched_object |= kind == Touched::kObject;
+  }
+}
+
+/// The velocity after dt_s of gravity on these contacts.
+Velocity Piece::held_up_after(Velocity velocity, double dt_s) {
+  velocity.linear_mps += config_.gravity_world_mps2 * dt_s;
+  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
+    const bool is_push = i >= scratch_.near.size();
+    const double room_m = is_push ? 0.0 : scratch_.near[i].gap_m - config_.contact_margin_m;
+    scratch_.contacts[i].leaves_mps = is_push ? push_->speed_mps : -std::max(room_m, 0.0) / dt_s;
+  }
+  solve_contacts(scratch_.contacts, inertia_, resting_, velocity);
+  return velocity;
+}
+
+/// A motion, without momentum, that brings contacts nearer than the margin back to it.
+Velocity Piece::lift_back(double dt_s) {
+  constexpr double kAtOnce = 0.3, kFastest_mps = 0.1, kLeft = 0.05;
+  Velocity lift;
+  bool is_needed = false;
+  for (std::size_t i = 0; i < scratch_.near.size(); ++i) {
+    const double missing_m = config_.contact_margin_m - scratch_.near[i].gap_m;
+    is_needed |= missing_m > kLeft * config_.contact_margin_m;
+    scratch_.contacts[i].leaves_mps =
+        missing_m > 0.0 ? std::min(kAtOnce * missing_m / dt_s, kFastest_mps) : missing_m / dt_s;
+  }
+  if (is_needed) {
+    solve_contacts({scratch_.contacts.data(), scratch_.near.size()}, inertia_, {}, lift);
+  }
+  return lift;
+}
+
+void Piece::see_support(RigidPiece& piece) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
+    const SolverContact& contact = scratch_.contacts[i];
+    if (!(contact.impulse_mps > most) || contact.normal.dot(up_) < kSupportCosine) continue;
+    most = contact.impulse_mps;
+    piece.is_held_up = true;
+    piece.rests_on = scratch_.kinds[i];
+  }
+}
+
+/// On with the mean of the velocities before and after, as far as that is free.
+void Piece::go(const Velocity& after) {
+  RigidMotion motion;
+  motion.centre_object = body_.mass.centre_object;
+  motion.linear_m_s = 0.5 * (velocity_.linear_mps + after.linear_mps);
+  motion.angular_rad_s = 0.5 * (velocity_.angular_rad_s + after.angular_rad_s);
+  // What turns freely keeps its angular momentum, not its angular velocity: half-way that is another one.
+  const Vec3 momentum = inertia_ * motion.angular_rad_s;
+  const Eigen::Isometry3d T_half = pose_after(body_.T_world_object, motion, 0.5 * left_s_);
+  const Eigen::Matrix3d inertia_half = T_half.linear() * body_.mass.inertia_m2 * T_half.linear().transpose();
+  motion.angular_rad_s = inertia_half.inverse() * momentum;
+  limit(motion.angular_rad_s, config_.max_spin_rad_s);
+  const Velocity lift = lift_back(left_s_);
+  motion.linear_m_s += lift.linear_mps;
+  motion.angular_rad_s += lift.angular_rad_s;
+
+  ++report_.moves;
+  const FreeTime free =
+      probe_.free_time(body_.T_world_object, motion, left_s_, kKept * config_.contact_margin_m, left_out_);
+  const double gone_s = std::clamp(free.free_s, 0.0, left_s_);
+  limited_by_ = free.limit;
+  if (gone_s > 0.0) {
+    body_.T_world_object = pose_after(body_.T_world_object, motion, gone_s);
+    make_orthonormal(body_.T_world_object);
+  }
+  const double part = gone_s / left_s_;
+  velocity_.linear_mps += part * (after.linear_mps - velocity_.linear_mps);
+  const Vec3 momentum_after =
+      inertia_ * (velocity_.angular_rad_s + part * (after.angular_rad_s - velocity_.angular_rad_s));
+  velocity_.angular_rad_s = inertia_world_m2(body_).inverse() * momentum_after;
+  limit(velocity_.linear_mps, config_.max_speed_mps);
+  limit(velocity_.angular_rad_s, config_.max_spin_rad_s);
+  left_s_ -= gone_s;
+}
+
+RigidPiece Piece::run() {
+  RigidPiece piece;
+  limit(velocity_.linear_mps, config_.max_speed_mps);
+  limit(velocity_.angular_rad_s, config_.max_spin_rad_s);
+  const double whole_s = left_s_;
+  for (int stop = 0; stop < config_.max_slides && left_s_ > kNoTime_s; ++stop) {
+    if (!find_contacts()) {
+      piece.crosses = true;
+      piece.left_s = left_s_;
+      break;
+    }
+    if (!scratch_.contacts.empty()) {
+      bounce();
+      if (!piece.is_balanced) {
+        const Velocity moved = held_up_after({}, whole_s);
+        const double begins_mps = moved.linear_mps.norm() + moved.angular_rad_s.norm() * body_.mass.radius_m;
+        piece.is_balanced = begins_mps < 0.05 * config_.gravity_world_mps2.norm() * whole_s;
+      }
+    }
+    const Velocity after = held_up_after(velocity_, left_s_);
+    see_support(piece);
+    go(after);
+  }
+  body_.velocity_world_mps = velocity_.linear_mps;
+  body_.spin_world_rad_s = velocity_.angular_rad_s;
+  piece.is_balanced = piece.is_balanced && piece.is_held_up;
+  return piece;
+}
+
+}  // namespace
+
+Eigen::Vector3d centre_world(const Body& body) { return body.T_world_object * body.mass.centre_object; }
+
+Eigen::Matrix3d inertia_world_m2(const Body& body) {
+  const Eigen::Matrix3d R = body.T_world_object.linear();
+  return R * body.mass.inertia_m2 * R.transpose();
+}
+
+RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
+                        const std::optional<Push>& push, RigidScratch& scratch, StepReport& report) {
+  return Piece(body, dt_s, probe, config, push, scratch, report).run();
+}
+
+}  // namespace roomradar

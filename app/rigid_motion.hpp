@@ -1,0 +1,49 @@
+// rigid_motion.hpp: a piece of a rigid body's motion: contacts, impulses, and as far as the way is free.
+#pragma once
+#include <optional>
+
+#include "app/contact_solver.hpp"
+#include "app/physics.hpp"
+
+namespace roomradar {
+
+/// A moving surface that pushes the body, for the whole of a step; moving surfaces say nothing else then,
+/// since they are in the body yet.
+struct Push {
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, towards the body
+  double speed_mps = 0.0;                                  ///< at least so fast along the normal
+  Touched touched = Touched::kDynamic;
+};
+
+constexpr bool is_moving_surface(Touched kind) {
+  return kind == Touched::kDynamic || kind == Touched::kInferredBack;
+}
+
+struct [[nodiscard]] RigidPiece {
+  /// A surface crosses the body that does not push it out: the rest of the piece was not moved.
+  bool crosses = false;
+  double left_s = 0.0;       ///< of the piece, then
+  bool is_held_up = false;   ///< by a contact within 60 degrees of up
+  bool is_balanced = false;  ///< held up, it would not begin to move if it stood still
+  Touched rests_on = Touched::kNothing;
+};
+
+/// The body's frame and the scratch of its motion; kept to allocate nothing.
+struct RigidScratch {
+  std::vector<NearPoint> near;
+  std::vector<SolverContact> contacts;
+  std::vector<Touched> kinds;
+};
+
+/// Moves the body on by dt_s, as advance() says it for one piece of a step.
+/// @param report  contacts and moves are counted
+RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
+                        const std::optional<Push>& push, RigidScratch& scratch, StepReport& report);
+
+/// Centre of mass, in the world.
+Eigen::Vector3d centre_world(const Body& body);
+/// About the centre, along the world's axes.
+Eigen::Matrix3d inertia_world_m2(const Body& body);
+
+}  // namespace roomradar
