@@ -127,7 +127,8 @@ void ObjectDrawer::draw(std::span<const DrawnObject> objects, const Intrinsics& 
   glViewport(0, 0, width, height);
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_BLEND);
-  glDisable(GL_CULL_FACE);
+  glFrontFace(GL_CW);  // image rows run down, framebuffer rows run up
+  glCullFace(GL_BACK);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_GREATER);
@@ -163,6 +164,7 @@ void ObjectDrawer::draw(std::span<const DrawnObject> objects, const Intrinsics& 
     glUniform4f(2, part(object.colour.r), part(object.colour.g), part(object.colour.b),
                 mesh.has_colours() ? 0.0F : 1.0F);
     glUniform1i(6, mesh.has_normals() ? 1 : 0);
+    object.is_closed ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
     mesh.draw(clip);
   }
 

@@ -14,6 +14,7 @@ namespace roomradar {
 struct DrawnObject {
   MeshInstance instance;
   Rgb colour{198, 120, 72};
+  bool is_closed = false;  ///< true: its inside is never seen, and faces that are turned away are left out
 };
 
 struct Lighting {

@@ -15,40 +15,65 @@ namespace {
 
 constexpr float kUnseen = -std::numeric_limits<float>::infinity();
 
-/// What is seen from above: the height of the topmost surface in each cell of a level grid about the camera.
+/// What is seen from above: the height of the topmost surface in each cell of a level grid about what is
+/// seen; no cells where nothing is.
 class HeightGrid {
  public:
   HeightGrid(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
              const PlacementConfig& config)
       : cell_m_(config.cell_m), origin_world_(T_world_camera.translation()) {
-    half_ =
-        static_cast<int>(std::ceil(1.5 * config.max_range_m / cell_m_));  // a wide lens sees farther sideways
+    struct Seen {
+      int i, j;  // of the cell: 0 below the camera, until the grid is laid
+      float height_m;
+    };
+    std::vector<Seen> points;
+    points.reserve(depth_m.pixels.size());
+    const int stride = std::max(camera.width_px / 400, 1);
+    const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
+    const Eigen::Vector3f step = R.col(0) / static_cast<float>(camera.fx_px);
+    const auto per_m = static_cast<float>(1.0 / cell_m_);
+    const auto nearest_m = static_cast<float>(config.min_range_m),
+               farthest_m = static_cast<float>(config.max_range_m);
+    // A wide lens sees farther sideways.
+    const int most = static_cast<int>(std::ceil(1.5 * config.max_range_m / cell_m_));
+    Eigen::AlignedBox2i seen;
+    for (int y = 0; y < camera.height_px; y += stride) {
+      const Eigen::Vector3f row = R * back_project(camera, 0.0, y, 1.0).cast<float>();
+      for (int x = 0; x < camera.width_px; x += stride) {
+        const float z_m = depth_m.at(x, y);
+        if (!(z_m >= nearest_m && z_m <= farthest_m)) continue;
+        const Eigen::Vector3f p = z_m * (row + static_cast<float>(x) * step);
+        const int i = static_cast<int>(std::floor(p.x() * per_m + 0.5F));
+        const int j = static_cast<int>(std::floor(p.y() * per_m + 0.5F));
+        if (std::max(std::abs(i), std::abs(j)) > most) continue;
+        points.push_back({i, j, p.z()});
+        seen.extend(Eigen::Vector2i(i, j));
+      }
+    }
+    if (points.empty()) return;
+
+    // A square about what is seen.
+    half_ = (seen.sizes().maxCoeff() + 1) / 2;
     size_ = 2 * half_ + 1;
+    const Eigen::Vector2i middle = seen.min() + seen.sizes() / 2;
+    origin_world_.head<2>() += cell_m_ * middle.cast<double>();
     const std::size_t cells = static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_);
     std::vector<float> highest_m(cells, kUnseen);
     std::vector<float> sum_m(cells, 0.0F);
     std::vector<int> count(cells, 0);
-    const auto for_each_point = [&](const auto& visit) {
-      const int stride = std::max(camera.width_px / 400, 1);
-      for (int y = 0; y < camera.height_px; y += stride) {
-        for (int x = 0; x < camera.width_px; x += stride) {
-          const double z_m = depth_m.at(x, y);
-          if (!(z_m >= config.min_range_m && z_m <= config.max_range_m)) continue;
-          const Eigen::Vector3d p = T_world_camera.linear() * back_project(camera, x, y, z_m);
-          const int i = static_cast<int>(std::lround(p.x() / cell_m_)) + half_;
-          const int j = static_cast<int>(std::lround(p.y() / cell_m_)) + half_;
-          if (is_inside(i, j)) visit(index(i, j), static_cast<float>(p.z()));
-        }
-      }
+    const auto cell_of = [&](const Seen& point) {
+      return index(point.i - middle.x() + half_, point.j - middle.y() + half_);
     };
-    for_each_point([&](std::size_t cell, float z_m) { highest_m[cell] = std::max(highest_m[cell], z_m); });
+    for (const Seen& point : points)
+      highest_m[cell_of(point)] = std::max(highest_m[cell_of(point)], point.height_m);
     // The mean of the topmost layer rather than its highest point, which is the noisiest.
-    const float layer_m = static_cast<float>(2.0 * config.flatness_m);
-    for_each_point([&](std::size_t cell, float z_m) {
-      if (z_m < highest_m[cell] - layer_m) return;
-      sum_m[cell] += z_m;
+    const auto layer_m = static_cast<float>(2.0 * config.flatness_m);
+    for (const Seen& point : points) {
+      const std::size_t cell = cell_of(point);
+      if (point.height_m < highest_m[cell] - layer_m) continue;
+      sum_m[cell] += point.height_m;
       ++count[cell];
-    });
+    }
     top_m_.assign(cells, kUnseen);
     for (std::size_t cell = 0; cell < cells; ++cell)
       if (count[cell] > 0) top_m_[cell] = sum_m[cell] / static_cast<float>(count[cell]);
@@ -67,7 +92,7 @@ class HeightGrid {
 
  private:
   double cell_m_;
-  Eigen::Vector3d origin_world_;
+  Eigen::Vector3d origin_world_;  // above the middle cell, at the camera's height
   int half_ = 0;
   int size_ = 0;
   std::vector<float> top_m_;

@@ -246,7 +246,8 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   std::vector<ShadowCaster> casters;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
-    drawn.push_back({.instance = {&object->shape.drawn, object->body.T_world_object}});
+    drawn.push_back({.instance = {&drawn_mesh(*object, camera, T_world_view), object->body.T_world_object},
+                     .is_closed = object->shape.touched.is_closed()});
     casters.push_back({&object->shadow, object->body.T_world_object});
   }
   drawer_.draw(drawn, camera, T_world_view, {}, layer_);

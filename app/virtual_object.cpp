@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "app/object_levels.hpp"
 #include "app/teapot.hpp"
 #include "mapping/mesh_file.hpp"
 #include "mapping/types/error.hpp"
@@ -33,6 +34,22 @@ VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& m
       footprint_radius_m = std::max(footprint_radius_m, p.head<2>().norm());
     }
   }
+  for (const ObjectLevel& level : object_levels(mesh)) {
+    levels.push_back({level.deviation_m, std::make_unique<GpuMesh>(context)});
+    levels.back().mesh->upload(level.mesh, MeshUsage::kStatic);
+  }
+}
+
+const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
+                          const Eigen::Isometry3d& T_world_camera) {
+  const Eigen::Vector3d middle_camera =
+      T_world_camera.inverse() * (object.body.T_world_object * object.middle);
+  const double nearest_m = middle_camera.z() - 0.5 * object.shape.drawn.bounds().sizes().norm();
+  const double pixel_m = nearest_m / std::max(camera.fx_px, camera.fy_px);
+  const GpuMesh* mesh = &object.shape.drawn;
+  for (const DrawnLevel& level : object.levels)
+    if (is_fine_enough(level.deviation_m, pixel_m)) mesh = level.mesh.get();
+  return *mesh;
 }
 
 double lowest_m(const VirtualObject& object) {

@@ -3,13 +3,21 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "app/contact_shadow.hpp"
 #include "app/physics.hpp"
 #include "app/shape.hpp"
+#include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
+
+/// A coarser mesh of an object, for the picture.
+struct DrawnLevel {
+  float deviation_m = 0.0F;  ///< how far it lies off the full one, at most
+  std::unique_ptr<GpuMesh> mesh;
+};
 
 struct VirtualObject {
   Body body;  ///< its name and pose
@@ -20,8 +28,9 @@ struct VirtualObject {
   double footprint_radius_m = 0.0;                            ///< how far it reaches sideways from its origin
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< how it stood when it was last put somewhere
   Shape shape;
-  SurfacePoints surface;  ///< what its shadow is made of
-  ContactShadow shadow;   ///< as it stood when this was made last
+  SurfacePoints surface;           ///< what its shadow is made of
+  ContactShadow shadow;            ///< as it stood when this was made last
+  std::vector<DrawnLevel> levels;  ///< finest first
 
   /// Throws Error if the mesh cannot be a virtual object (no triangles, vertices that are not finite).
   VirtualObject(GlContext& context, std::string name, const Mesh& mesh);
@@ -29,6 +38,11 @@ struct VirtualObject {
 
 /// How far its lowest point is above its origin, as it is turned now, m.
 double lowest_m(const VirtualObject& object);
+
+/// The coarsest mesh of the object that lies no farther than half a pixel off the full one, as the camera
+/// sees it at its nearest point.
+const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
+                          const Eigen::Isometry3d& T_world_camera);
 
 /// The mesh that a user names: `teapot`, the built-in one, 0.15 m high, or a file that read_mesh reads.
 /// Scaled so that its longest side is size_m, if that is > 0. Throws Error naming the file and the fault.

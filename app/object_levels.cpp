@@ -1,0 +1,112 @@
+// object_levels.cpp: simplify step by step, each level from the one before.
+#include "app/object_levels.hpp"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "mapping/mesh_simplify.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::size_t kFewTriangles = 1000;
+constexpr std::size_t kManyTriangles = 10'000;  // fewer are drawn as they are, within a millisecond
+constexpr float kFinestOfSize = 1.0F / 1024.0F;
+constexpr int kMostLevels = 8;           // the last lies off by a 32nd of the size
+constexpr float kSpacingOfSize = 0.02F;  // of the points at which deviations are measured
+constexpr float kWorthHaving = 0.75F;    // of the triangles of the level before
+
+Eigen::Vector3f area_normal(const Mesh& mesh, const Triangle& t) {
+  const Eigen::Vector3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  return (b - a).cross(c - a);
+}
+
+/// Vertices at one place become one: some files have three for each triangle, and nothing hangs together.
+void weld(Mesh& mesh) {
+  std::map<std::array<float, 3>, std::uint32_t> known;
+  std::vector<std::uint32_t> name(mesh.vertices.size());
+  std::vector<Eigen::Vector3f> vertices;
+  std::vector<Rgb> colours;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Eigen::Vector3f& p = mesh.vertices[v];
+    const auto [at, is_new] =
+        known.try_emplace({p.x(), p.y(), p.z()}, static_cast<std::uint32_t>(vertices.size()));
+    name[v] = at->second;
+    if (!is_new) continue;
+    vertices.push_back(p);
+    if (!mesh.colours.empty()) colours.push_back(mesh.colours[v]);
+  }
+  for (Triangle& t : mesh.triangles)
+    for (std::uint32_t& vertex : t) vertex = name[vertex];
+  std::erase_if(mesh.triangles,
+                [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  mesh.vertices = std::move(vertices);
+  mesh.colours = std::move(colours);
+}
+
+void set_mean_normals(Mesh& mesh) {
+  mesh.normals.assign(mesh.vertices.size(), Eigen::Vector3f::Zero());
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t vertex : t) mesh.normals[vertex] += area_normal(mesh, t);
+  for (Eigen::Vector3f& normal : mesh.normals) {
+    const float length = normal.norm();
+    normal = length > 0.0F ? Eigen::Vector3f(normal / length) : Eigen::Vector3f::UnitZ();
+  }
+}
+
+/// Gives corners at the thing's edges a vertex of their own with the face's normal.
+void sharpen(Mesh& mesh) {
+  constexpr float kCosSmooth = 0.906F;  // of 25 degrees
+  for (Triangle& t : mesh.triangles) {
+    const Eigen::Vector3f along = area_normal(mesh, t);
+    const float length = along.norm();
+    if (!(length > 0.0F)) continue;
+    const Eigen::Vector3f face = along / length;
+    for (std::uint32_t& vertex : t) {
+      if (mesh.normals[vertex].dot(face) >= kCosSmooth) continue;
+      mesh.vertices.push_back(Eigen::Vector3f(mesh.vertices[vertex]));
+      mesh.normals.push_back(face);
+      if (!mesh.colours.empty()) mesh.colours.push_back(Rgb(mesh.colours[vertex]));
+      vertex = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
+  std::vector<ObjectLevel> levels;
+  if (mesh.triangles.size() < kManyTriangles) return levels;
+  Eigen::AlignedBox3f box;
+  for (const Triangle& t : mesh.triangles)
+    for (const std::uint32_t vertex : t) box.extend(mesh.vertices[vertex]);
+  const float size_m = box.diagonal().norm();
+  if (!(size_m > 0.0F) || !std::isfinite(size_m)) return levels;
+
+  const bool has_normals = !mesh.normals.empty();
+  Mesh finer = mesh;
+  if (!has_normals) {
+    weld(finer);
+    set_mean_normals(finer);
+  }
+  float bound_m = kFinestOfSize * size_m, off_m = 0.0F;
+  for (int level = 0; level < kMostLevels && finer.triangles.size() > kFewTriangles;
+       ++level, bound_m *= 2.0F) {
+    // This one may lie so far off the one before that all of them together stay within the bound.
+    SimplifiedMesh simple = simplified(finer, bound_m - off_m, kSpacingOfSize * size_m);
+    if (static_cast<float>(simple.mesh.triangles.size()) >
+        kWorthHaving * static_cast<float>(finer.triangles.size()))
+      continue;
+    finer = std::move(simple.mesh);
+    off_m += simple.deviation_m;
+    levels.push_back({finer, off_m});
+    if (!has_normals) sharpen(levels.back().mesh);
+  }
+  return levels;
+}
+
+}  // namespace roomradar
