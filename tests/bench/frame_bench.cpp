@@ -2,12 +2,13 @@
 // known, and how right the frames are.
 //
 // usage: frame_bench [--scene NAME]... [--object TRIANGLES]... [--maps FOLDER] [--json FILE]
-// Scenes: kitchen (frames 400-499 of the recording, in the map of 0-399; left out, with a word, where the
-// recording is not here), room (a simulated dining room with a hand, the camera held still by a hand), walk
-// (the same, walked round). Maps are made once and kept in FOLDER (frame-bench-maps). An object is dropped
-// over what is in view every 25 frames. The first 10 frames are not counted.
-// Reference: drawing the whole map's depth with OpenGL at the frames' poses, before and after each row.
-// Scenes, seeds and frames are fixed: changing them breaks comparison with old numbers.
+// It links little, to run on another machine: copy it with the maps and the libraries that ldd names; the
+// scenes room and walk need no more there. Scenes: kitchen (frames 400-499 of the recording, in the map of
+// 0-399; left out, with a word, where the recording is not here), room (a simulated dining room with a hand,
+// the camera held still by a hand), walk (the same, walked round). Maps are made once and kept in FOLDER
+// (frame-bench-maps). An object is dropped over what is in view every 25 frames. The first 10 frames are not
+// counted. Reference: drawing the whole map's depth with OpenGL at the frames' poses, before and after each
+// row. Scenes, seeds and frames are fixed: changing them breaks comparison with old numbers.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -23,11 +24,13 @@
 #include <utility>
 #include <vector>
 
-#include "app/open_source.hpp"
 #include "app/session.hpp"
+#include "app/sim/simulated_source.hpp"
+#include "app/sources/frame_range.hpp"
 #include "mapping/map_folder.hpp"
-#include "mapping/prescan.hpp"
+#include "mapping/types/error.hpp"
 #include "tests/bench/bench_times.hpp"
+#include "tests/bench/frame_bench_pipe.hpp"
 #include "tests/bench/radar_bench_shapes.hpp"
 #include "tests/support/recordings.hpp"
 
@@ -42,7 +45,8 @@ constexpr double kDropHeight_m = 0.2;
 struct Scene {
   std::string name;
   std::string scanned, run;  ///< sources
-  std::optional<FrameRange> scanned_frames, run_frames;
+  std::optional<FrameRange> scanned_frames;
+  FrameRange run_frames;
 };
 
 std::vector<Scene> scenes() {
@@ -50,18 +54,18 @@ std::vector<Scene> scenes() {
                              .scanned = "sim:table?seed=1&frames=360&rate=15",
                              .run = "sim:table?seed=7&frames=110&path=view&moving=hand",
                              .scanned_frames = {},
-                             .run_frames = {}},
+                             .run_frames = {0, 109}},
                             {.name = "walk",
                              .scanned = "sim:table?seed=1&frames=360&rate=15",
                              .run = "sim:table?seed=3&frames=720&moving=hand",
                              .scanned_frames = {},
-                             .run_frames = FrameRange{100, 209}}};
+                             .run_frames = {100, 209}}};
   if (const auto kitchen = test::recording("kitchen")) {
     all.insert(all.begin(), {.name = "kitchen",
                              .scanned = kitchen->string(),
                              .run = kitchen->string(),
                              .scanned_frames = FrameRange{0, 399},
-                             .run_frames = FrameRange{400, 499}});
+                             .run_frames = {400, 499}});
   } else {
     std::fprintf(stderr,
                  "kitchen is left out: the recording is not here; set ROOMRADAR_DATA to its folder\n");
@@ -76,25 +80,50 @@ struct Settings {
   std::string json;
 };
 
+std::string range_text(const FrameRange& frames) {
+  return std::to_string(frames.first) + ":" + std::to_string(frames.last);
+}
+
+/// What reads recordings and scans rooms is a program beside this one, which therefore runs on a machine
+/// without the libraries that it takes.
+std::string reader_command(const std::vector<std::string>& arguments) {
+  std::error_code error;
+  const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  std::string command = "'" + (folder / "frame_bench_reader").string() + "'";
+  for (const std::string& argument : arguments) command += " '" + argument + "'";
+  return command;
+}
+
 /// Rooms scanned from one source share a map.
 SavedMap map_of(const Scene& scene, const std::filesystem::path& maps) {
   const std::filesystem::path folder = maps / (scene.name == "walk" ? "room" : scene.name);
-  if (std::filesystem::exists(folder)) return load_map(folder);
-  std::fprintf(stderr, "%s: scanning %s\n", folder.c_str(), scene.scanned.c_str());
-  StageTimes times;
-  const auto source = open_source(scene.scanned, scene.scanned_frames);
-  save_map(folder, prescan(*source, {}, times).map);
+  if (!std::filesystem::exists(folder)) {
+    std::fprintf(stderr, "%s: scanning %s\n", folder.c_str(), scene.scanned.c_str());
+    std::vector<std::string> arguments = {"scan", scene.scanned};
+    if (scene.scanned_frames) arguments.push_back(range_text(*scene.scanned_frames));
+    arguments.push_back(folder.string());
+    if (std::system(reader_command(arguments).c_str()) != 0)
+      throw Error(folder.string() + ": is not there, and the scan that makes it failed");
+  }
   return load_map(folder);
 }
 
 std::vector<Frame> frames_of(const Scene& scene) {
-  const auto source = open_source(scene.run, scene.run_frames);
   std::vector<Frame> frames;
-  for (Frame frame;;) {
-    const ReadStatus status = source->next(frame).status;
-    if (status == ReadStatus::kEnd) return frames;
-    if (status == ReadStatus::kFrame) frames.push_back(frame);
+  if (scene.run.starts_with("sim:")) {
+    SimulatedSource source(parse_sim_spec(scene.run));
+    for (Frame frame; source.next(frame).status == ReadStatus::kFrame;) {
+      if (frame.index >= scene.run_frames.first) frames.push_back(frame);
+      if (frame.index == scene.run_frames.last) break;
+    }
+    return frames;
   }
+  std::FILE* const pipe =
+      popen(reader_command({"frames", scene.run, range_text(scene.run_frames)}).c_str(), "r");
+  if (pipe == nullptr) throw Error(scene.run + ": cannot be read");
+  for (Frame frame; bench::read_frame(pipe, frame);) frames.push_back(frame);
+  if (pclose(pipe) != 0) throw Error(scene.run + ": cannot be read");
+  return frames;
 }
 
 double process_cpu_ms() {
@@ -238,14 +267,21 @@ nlohmann::json ratio_row(const std::string& scene, const nlohmann::json& few, co
           {"cpu_ratio", ratio("cpu_median_ms")}};
 }
 
-Settings read_arguments(int argc, char** argv) {
+std::optional<Settings> read_arguments(int argc, char** argv) {
   Settings settings;
-  for (int i = 1; i + 1 < argc; i += 2) {
+  for (int i = 1; i < argc; i += 2) {
+    if (i + 1 == argc) return std::nullopt;
     const std::string key = argv[i], value = argv[i + 1];
-    if (key == "--scene") settings.scenes.push_back(value);
-    if (key == "--object") settings.objects.push_back(std::stoul(value));
-    if (key == "--maps") settings.maps = value;
-    if (key == "--json") settings.json = value;
+    if (key == "--scene")
+      settings.scenes.push_back(value);
+    else if (key == "--object")
+      settings.objects.push_back(std::strtoul(value.c_str(), nullptr, 10));
+    else if (key == "--maps")
+      settings.maps = value;
+    else if (key == "--json")
+      settings.json = value;
+    else
+      return std::nullopt;
   }
   return settings;
 }
@@ -256,7 +292,15 @@ bool is_wanted(const std::vector<Value>& wanted, const Value& value) {
 }
 
 int run(int argc, char** argv) {
-  const Settings settings = read_arguments(argc, argv);
+  const std::optional<Settings> asked = read_arguments(argc, argv);
+  if (!asked) {
+    std::fprintf(
+        stderr,
+        "usage: frame_bench [--scene kitchen|room|walk]... [--object 12|6256|181412]... [--maps FOLDER] "
+        "[--json FILE]\n");
+    return 2;
+  }
+  const Settings& settings = *asked;
   std::vector<Mesh> objects = {bench::torus_sized_box().mesh};
   for (bench::Sensor& sensor : bench::sensors())
     if (sensor.mesh.triangles.size() > 12) objects.push_back(std::move(sensor.mesh));

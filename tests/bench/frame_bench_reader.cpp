@@ -1,0 +1,51 @@
+// frame_bench_reader.cpp: the part of frame_bench that reads recordings and scans rooms, as a program beside
+// it: frame_bench itself runs without the libraries that this takes.
+//
+// usage: frame_bench_reader scan SOURCE [A:B] FOLDER     saves the map of the source's frames A to B
+//        frame_bench_reader frames SOURCE A:B            writes them to stdout, as frame_bench_pipe.hpp says
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "app/open_source.hpp"
+#include "mapping/map_folder.hpp"
+#include "mapping/prescan.hpp"
+#include "tests/bench/frame_bench_pipe.hpp"
+
+namespace roomradar {
+namespace {
+
+int run(int argc, char** argv) {
+  const std::string work = argc > 1 ? argv[1] : "";
+  if (work == "scan" && (argc == 4 || argc == 5)) {
+    StageTimes times;
+    std::optional<FrameRange> frames;
+    if (argc == 5) frames = parse_frame_range(argv[3]);
+    const auto source = open_source(argv[2], frames);
+    save_map(argv[argc - 1], prescan(*source, {}, times).map);
+    return 0;
+  }
+  if (work != "frames" || argc != 4) {
+    std::fprintf(stderr, "usage: frame_bench_reader scan SOURCE [A:B] FOLDER | frames SOURCE A:B\n");
+    return 2;
+  }
+  const auto source = open_source(argv[2], parse_frame_range(argv[3]));
+  for (Frame frame;;) {
+    const ReadStatus status = source->next(frame).status;
+    if (status == ReadStatus::kEnd) return 0;
+    if (status == ReadStatus::kFrame && !bench::write_frame(frame, stdout)) return 1;
+  }
+}
+
+}  // namespace
+}  // namespace roomradar
+
+int main(int argc, char** argv) {
+  try {
+    return roomradar::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "frame_bench_reader: %s\n", error.what());
+    return 1;
+  }
+}
