@@ -26,6 +26,7 @@
 #include "app/sources/folder_source.hpp"
 #include "mapping/static_map.hpp"
 #include "mapping/types/error.hpp"
+#include "tests/bench/bench_times.hpp"
 
 namespace roomradar {
 namespace {
@@ -39,12 +40,6 @@ struct Settings {
 };
 
 constexpr double kFinestJudged_m = 0.0099;
-
-double thread_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
 
 double percentile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;
@@ -130,9 +125,9 @@ void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) 
   std::vector<double> ours_ms;
   StaticMap map(resolution_m);
   for_frames(settings.recording, settings.frames, 1, [&](const Frame& frame) {
-    const double start = thread_ms();
+    const double start = test::thread_ms();
     static_cast<void>(map.fuse(frame, *frame.T_world_camera));
-    ours_ms.push_back(thread_ms() - start);
+    ours_ms.push_back(test::thread_ms() - start);
   });
   const MapCounts counts = map.counts();
   nlohmann::json ours = row("roomradar", resolution_m, ours_ms);
@@ -154,9 +149,9 @@ void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) 
       std::max<std::int64_t>(settings.frames / std::max<std::int64_t>(settings.judged, 1), 1);
   for_frames(settings.recording, settings.judged, step, [&](const Frame& frame) {
     static_cast<void>(judged.fuse(frame, *frame.T_world_camera));
-    const double start = thread_ms();
+    const double start = test::thread_ms();
     insert_rays(reference, frame, judged.config().max_range_m);
-    reference_ms.push_back(thread_ms() - start);
+    reference_ms.push_back(test::thread_ms() - start);
   });
   const Agreement agreement = compare(judged, reference);
   ours["agree"] = agreement.agree;

@@ -13,6 +13,7 @@
 #include "radar/gl_radar.hpp"
 #include "radar/gpu_mesh.hpp"
 #include "radar/scene_boxes.hpp"
+#include "tests/bench/bench_times.hpp"
 
 namespace roomradar::bench {
 namespace {
@@ -77,9 +78,9 @@ Row measure_frames(const FrameScene& frame, const Meshes& meshes, int count, con
       objects.T_world_object[i].pretranslate(objects.velocity_m_s[i] / 30.0);
     }
     const auto start = std::chrono::steady_clock::now();
-    const double start_cpu_ms = thread_cpu_ms();
+    const double start_cpu_ms = test::thread_ms();
     answer(objects, contacts);
-    cpu_ms.push_back(thread_cpu_ms() - start_cpu_ms);
+    cpu_ms.push_back(test::thread_ms() - start_cpu_ms);
     wall_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     for (int j = 0; j < kJudgedPerFrame; ++j) {

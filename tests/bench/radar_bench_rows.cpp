@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "mapping/types/error.hpp"
+#include "tests/bench/bench_times.hpp"
 
 namespace roomradar::bench {
 
@@ -51,9 +51,9 @@ std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<P
         static_cast<void>(methods[m].query(poses[static_cast<std::size_t>(i) % poses.size()]));
       for (std::size_t i = 0; i < poses.size(); ++i) {
         const auto start = Clock::now();
-        const double start_cpu_ms = thread_cpu_ms();
+        const double start_cpu_ms = test::thread_ms();
         const Contact contact = methods[m].query(poses[i]);
-        samples[m].cpu_ms.push_back(thread_cpu_ms() - start_cpu_ms);
+        samples[m].cpu_ms.push_back(test::thread_ms() - start_cpu_ms);
         samples[m].wall_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
         if (round > 0) continue;  // the answers repeat
         if (const auto error_m = judge(contact, exact_m[i], rows[m])) samples[m].error_m.push_back(*error_m);
@@ -76,12 +76,6 @@ double quantile(std::vector<double> values, double q) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
   return values[static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1)))];
-}
-
-double thread_cpu_ms() {
-  std::timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
 void write_json(const std::string& path, const std::vector<Row>& rows) {

@@ -37,7 +37,6 @@ std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<P
                          const std::vector<std::optional<double>>& exact_m);
 
 double quantile(std::vector<double> values, double q);
-double thread_cpu_ms();
 
 /// @throws Error if the file cannot be written
 void write_json(const std::string& path, const std::vector<Row>& rows);

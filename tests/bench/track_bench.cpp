@@ -25,6 +25,7 @@
 #include "mapping/odometry.hpp"
 #include "mapping/odometry_snapshot.hpp"
 #include "mapping/trajectory.hpp"
+#include "tests/bench/bench_times.hpp"
 
 namespace roomradar {
 namespace {
@@ -45,13 +46,6 @@ std::unique_ptr<FrameSource> open(const std::string& name) {
 
 double since_ms(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-/// Of this thread alone: what others do on the machine has less of a say in it.
-double thread_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
 double peak_rss_mb() {
@@ -105,9 +99,9 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
     if (read.status == ReadStatus::kEnd) break;
     if (read.status == ReadStatus::kSkipped) continue;
     const auto start = Clock::now();
-    const double cpu_start_ms = thread_ms();
+    const double cpu_start_ms = test::thread_ms();
     const Tracking tracking = odometry.track(frame);
-    cpu_ms.push_back(thread_ms() - cpu_start_ms);
+    cpu_ms.push_back(test::thread_ms() - cpu_start_ms);
     times_ms.push_back(since_ms(start));
     inliers += tracking.inlier_fraction;
     truth.push_back(
