@@ -1,6 +1,8 @@
 // live_scene.cpp: expected depth, moved pixels and their mesh, frame by frame.
 #include "app/live_scene.hpp"
 
+#include <array>
+
 namespace roomradar {
 namespace {
 
@@ -61,11 +63,11 @@ std::vector<SceneTree> LiveScene::surfaces() const {
   return surfaces;
 }
 
-std::vector<MeshInstance> LiveScene::drawn_surfaces() const {
-  std::vector<MeshInstance> drawn;
-  if (config_.surfaces == SurfacePolicy::kMap) drawn.push_back({&room_.drawn, Eigen::Isometry3d::Identity()});
-  drawn.push_back({&moved_.drawn, Eigen::Isometry3d::Identity()});
-  return drawn;
+void LiveScene::render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                                const PixelRect& rect, DepthImage& depth_m) {
+  std::array<MeshInstance, 2> drawn{MeshInstance{&moved_.drawn}};
+  if (config_.surfaces == SurfacePolicy::kMap) drawn[1].mesh = &room_.drawn;
+  depth_pass_.render(drawn, camera, T_world_camera, rect, depth_m);
 }
 
 }  // namespace roomradar

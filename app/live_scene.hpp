@@ -51,8 +51,10 @@ class LiveScene {
   /// What can be touched: kMap: the room, what moved and its back, and the border of the unknown; kHoles,
   /// kSkirt: the frame's own mesh.
   [[nodiscard]] std::vector<SceneTree> surfaces() const;
-  /// What is drawn of that.
-  [[nodiscard]] std::vector<MeshInstance> drawn_surfaces() const;
+  /// The depth of what can be seen of that, and not of the room alone, as any camera sees it: in `rect` of
+  /// its image, the rest of which stays as it is.
+  void render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                       const PixelRect& rect, DepthImage& depth_m);
 
   [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
   [[nodiscard]] const LabelImage& labels() const { return labels_; }

@@ -23,7 +23,6 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
       room_(context_),
       scene_(context_, room_, config.scene, &unknown_tree_),
       radar_(config.radar),
-      depth_pass_(context_),
       drawer_(context_) {
   require_valid(config.physics);
   require_valid(config.picture);
@@ -142,6 +141,7 @@ std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const
 }
 
 bool Session::is_in_unknown(const VirtualObject& object) const {
+  if (!unknown_is_solid_) return false;
   const Eigen::Isometry3d& T_world_object = object.body.T_world_object;
   const GpuMesh& mesh = object.shape.drawn;
   const auto corner = [&](std::uint32_t vertex) -> Eigen::Vector3d {
@@ -255,7 +255,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   real_depth_m_.resize(camera.width_px, camera.height_px);
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
   if (rect.width > 0 && rect.height > 0) {
-    depth_pass_.render(scene_.drawn_surfaces(), camera, T_world_view, rect, real_depth_m_);
+    scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);
   }
   compose(background_, camera, T_world_view, real_depth_m_, casters, layer_, config_.picture, occlusion_,
           picture_);

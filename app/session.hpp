@@ -21,7 +21,6 @@
 #include "mapping/types/stage_times.hpp"
 #include "mapping/unknown_surface.hpp"
 #include "radar/cyber_radar.hpp"
-#include "radar/depth_pass.hpp"
 #include "radar/gl_context.hpp"
 
 namespace roomradar {
@@ -109,7 +108,6 @@ class Session {
   CyberRadar radar_;
   NearField near_field_;
   CyberRadar exact_radar_;  ///< measures penetration
-  DepthPass depth_pass_;
   ObjectDrawer drawer_;
 
   std::vector<std::unique_ptr<VirtualObject>> objects_;
