@@ -19,6 +19,8 @@
 #include <string>
 
 #include "mapping/ply_writer.hpp"
+#include "mapping/run_apart.hpp"
+#include "mapping/types/byte_archive.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -172,6 +174,13 @@ class Collector {
   Mesh mesh_;
 };
 
+bool has_empty_face(const aiScene& scene) {
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+    for (unsigned k = 0; k < scene.mMeshes[i]->mNumFaces; ++k)
+      if (scene.mMeshes[i]->mFaces[k].mNumIndices == 0) return true;
+  return false;
+}
+
 void require_writable(const Mesh& mesh, const std::filesystem::path& path) {
   if (mesh.vertices.empty() || mesh.triangles.empty()) fail(path, "not written: the mesh has no triangles");
   if ((!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) ||
@@ -230,11 +239,7 @@ std::string assimp_bytes(const Mesh& mesh, const Format& format, const std::file
   return {static_cast<const char*>(blob->data), blob->size};
 }
 
-}  // namespace
-
-Mesh read_mesh(const std::filesystem::path& path) {
-  const Format& format = format_of(path);
-  check_claimed_size(path, format);
+Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
   // An .stl repeats its corners and knows facet normals only: corners are joined by place, normals left to
   // the user.
   const bool facets = std::strcmp(format.extension, ".stl") == 0;
@@ -245,9 +250,13 @@ Mesh read_mesh(const std::filesystem::path& path) {
                                   aiComponent_LIGHTS | aiComponent_CAMERAS |
                                   (facets ? static_cast<int>(aiComponent_NORMALS) : 0));
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(
-      path.string(), aiProcess_ValidateDataStructure | aiProcess_RemoveComponent | aiProcess_Triangulate |
-                         aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
+  const aiScene* scene =
+      importer.ReadFile(path.string(), aiProcess_ValidateDataStructure | aiProcess_RemoveComponent);
+  // assimp takes a face without corners for a polygon, and ends the process when it turns out to be none.
+  if (scene && has_empty_face(*scene)) fail(path, "has a face without corners; is it damaged?");
+  if (scene)
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
+                                         aiProcess_JoinIdenticalVertices);
   if (!scene) {
     std::string reason = importer.GetErrorString();
     fail(path, "cannot be read as a mesh" +
@@ -256,6 +265,51 @@ Mesh read_mesh(const std::filesystem::path& path) {
   }
   Mesh mesh = Collector(path, *scene).take();
   if (mesh.triangles.empty()) fail(path, "holds no triangles with an area; wanted a surface mesh");
+  return mesh;
+}
+
+// All bytes at once: item by item a large mesh would take seconds.
+template <typename Archive, typename Item>
+void transfer_items(Archive& archive, std::vector<Item>& items) {
+  std::uint64_t count = items.size();
+  transfer(archive, count);
+  if constexpr (Archive::kReads) {
+    archive.require(count, sizeof(Item));
+    items.resize(count);
+  }
+  archive.raw(items.data(), count * sizeof(Item));
+}
+
+template <typename Archive>
+void transfer(Archive& archive, Mesh& mesh) {
+  archive.raw(mesh.origin.data(), 3 * sizeof(double));
+  transfer_items(archive, mesh.normals);
+  transfer_items(archive, mesh.vertices);
+  transfer_items(archive, mesh.colours);
+  transfer_items(archive, mesh.triangles);
+}
+
+}  // namespace
+
+Mesh read_mesh(const std::filesystem::path& path) {
+  const Format& format = format_of(path);
+  check_claimed_size(path, format);
+  // assimp crashes over damaged files, or never ends; so it reads them apart.
+  const std::uintmax_t bytes = std::filesystem::file_size(path);
+  const auto most_s = static_cast<unsigned>(3 + (bytes >> 20U));
+  const std::size_t most_bytes = (std::size_t{1} << 30U) + 64 * bytes;
+  const std::string answer = run_apart(
+      [&] {
+        Mesh mesh = read_by_assimp(path, format);
+        ByteWriter writer;
+        transfer(writer, mesh);
+        return writer.bytes();
+      },
+      path.string(), most_s, most_bytes);
+  ByteReader reader(answer, path.string());
+  Mesh mesh;
+  transfer(reader, mesh);
+  reader.require_end();
   return mesh;
 }
 

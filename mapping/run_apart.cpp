@@ -1,0 +1,120 @@
+// run_apart.cpp: fork, limits, and a pipe for the answer.
+#include "mapping/run_apart.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <string_view>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr char kAnswer = 'a', kError = 'e';
+// Sanitizers keep a map of all addresses there are: no limit fits.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kMemoryCanBeLimited = false;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kMemoryCanBeLimited = false;
+#else
+constexpr bool kMemoryCanBeLimited = true;
+#endif
+#else
+constexpr bool kMemoryCanBeLimited = true;
+#endif
+
+void write_all(int to, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(to, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return;  // nobody listens any more
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+std::string read_all(int from) {
+  std::string bytes;
+  std::array<char, 1U << 16U> buffer;
+  for (;;) {
+    const ssize_t count = ::read(from, buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return bytes;
+    bytes.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+}
+
+/// Addresses that this process has taken.
+std::size_t taken_bytes() {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
+[[noreturn]] void be_child(const std::function<std::string()>& work, int to, unsigned most_s,
+                           std::size_t most_bytes) {
+  for (const int number : {SIGINT, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) std::signal(number, SIG_DFL);
+  const int nowhere = ::open("/dev/null", O_WRONLY);  // it may complain at length
+  dup2(nowhere, STDOUT_FILENO);
+  dup2(nowhere, STDERR_FILENO);
+  const rlimit no_core{0, 0}, time{most_s, most_s};
+  setrlimit(RLIMIT_CORE, &no_core);
+  setrlimit(RLIMIT_CPU, &time);
+  if (const std::size_t taken = taken_bytes(); kMemoryCanBeLimited && taken > 0) {
+    const rlimit memory{taken + most_bytes, taken + most_bytes};
+    setrlimit(RLIMIT_AS, &memory);
+  }
+  try {
+    const std::string answer = work();
+    write_all(to, {&kAnswer, 1});
+    write_all(to, answer);
+  } catch (const Error& error) {
+    write_all(to, {&kError, 1});
+    write_all(to, error.what());
+  } catch (...) {
+    _exit(1);  // most likely out of memory
+  }
+  _exit(0);  // what the parent has to do at its end is not done twice
+}
+
+}  // namespace
+
+std::string run_apart(const std::function<std::string()>& work, const std::string& where, unsigned most_s,
+                      std::size_t most_bytes) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw Error(where + ": no pipe can be made: " + std::strerror(errno));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::close(ends[0]);
+    be_child(work, ends[1], most_s, most_bytes);
+  }
+  ::close(ends[1]);
+  std::string answer = child > 0 ? read_all(ends[0]) : std::string{};
+  ::close(ends[0]);
+  if (child < 0) throw Error(where + ": no process can be started to read it: " + std::strerror(errno));
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (WIFSIGNALED(status)) {
+    const bool took_long = WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL;
+    throw Error(where + (took_long ? ": takes too long or too much memory to read; is it damaged?"
+                                   : ": cannot be read: what reads it crashed over it; is it damaged?"));
+  }
+  if (status != 0 || answer.empty())
+    throw Error(where + ": cannot be read with the memory that is allowed for it; is it damaged?");
+  const bool is_answer = answer.front() == kAnswer;
+  answer.erase(0, 1);
+  if (!is_answer) throw Error(answer);
+  return answer;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,66 @@
+// run_apart_test.cpp: work that crashes, hangs, or takes all memory, and this process that goes on.
+#include "mapping/run_apart.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <vector>
+
+#include "mapping/types/error.hpp"
+#include "tests/support/error_of.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::size_t kBytes = std::size_t{256} << 20U;
+
+std::string apart(const std::function<std::string()>& work) { return run_apart(work, "file.obj", 1, kBytes); }
+
+TEST(RunApart, GivesTheAnswerWhateverItsLength) {
+  EXPECT_EQ(apart([] { return std::string(); }), "");
+  const std::string bytes(5'000'000, '\7');  // more than a pipe holds
+  EXPECT_EQ(apart([&] { return bytes; }), bytes);
+}
+
+TEST(RunApart, ThrowsWhatTheWorkThrows) {
+  EXPECT_EQ(test::error_of([] { apart([]() -> std::string { throw Error("file.obj: has no end"); }); }),
+            "file.obj: has no end");
+}
+
+TEST(RunApart, ACrashIsASentence) {
+  const std::string error = test::error_of([] { apart([]() -> std::string { std::abort(); }); });
+  EXPECT_NE(error.find("file.obj: cannot be read"), std::string::npos) << error;
+}
+
+TEST(RunApart, ALoopWithoutAnEndIsASentence) {
+  const std::string error = test::error_of([] {
+    apart([]() -> std::string {
+      for (std::atomic<int> i = 0;; ++i) {
+      }
+    });
+  });
+  EXPECT_NE(error.find("takes too long"), std::string::npos) << error;
+}
+
+TEST(RunApart, NothingIsChangedHere) {
+  int value = 1;
+  apart([&] { return value = 2, std::string(); });
+  EXPECT_EQ(value, 1);
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(RunApart, AllTheMemoryThereIsIsASentence) {
+  const std::string error = test::error_of([] {
+    apart([] {
+      std::vector<std::string> kept;
+      for (;;) kept.emplace_back(std::size_t{1} << 26U, 'x');
+      return kept.front();
+    });
+  });
+  EXPECT_NE(error.find("memory"), std::string::npos) << error;
+}
+#endif
+
+}  // namespace
+}  // namespace roomradar
