@@ -7,10 +7,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <random>
 #include <string>
+#include <thread>
 
 #include "mapping/mesh_file.hpp"
 #include "mapping/surface.hpp"
@@ -308,6 +312,60 @@ TEST_F(MapFolder, WhatAKilledProcessLeftBesideTheMapGoesAndALivingOnesStays) {
   save_map(map_, room_);
   EXPECT_FALSE(fs::exists(beside + std::to_string(gone)));
   for (const std::string& folder : kept) EXPECT_TRUE(fs::exists(folder)) << folder;
+}
+
+TEST_F(MapFolder, KilledAtAnyMomentOfSavingItIsTheOldMapOrTheNew) {
+  constexpr int kKills = 100;
+  SavedMap other = a_room();
+  other.info.source = "another";
+  other.trajectory.pop_back();
+  std::mt19937 random(5);
+  std::uniform_int_distribution<int> moment_us(0, 60'000);
+  int others = 0;
+  for (int i = 0; i < kKills; ++i) {
+    const pid_t child = fork();
+    if (child == 0) {
+      for (;;) {
+        save_map(map_, other);
+        save_map(map_, room_);
+      }
+    }
+    std::this_thread::sleep_for(std::chrono::microseconds(moment_us(random)));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    ASSERT_EQ(verify_map(map_), std::vector<std::string>{}) << "after kill " << i;
+    const MapInfo info = load_map_info(map_);
+    const bool is_other = info.source == other.info.source;
+    ASSERT_EQ(info.poses, (is_other ? other : room_).trajectory.size());
+    others += is_other ? 1 : 0;
+  }
+  EXPECT_GT(others, 0);
+  save_map(map_, room_);
+  EXPECT_EQ(std::distance(fs::directory_iterator(map_.parent_path()), {}), 1);  // nothing is left beside it
+}
+
+TEST_F(MapFolder, TwoProcessesThatSaveAtOnceLeaveOneWholeMap) {
+  std::array<pid_t, 2> children{};
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    children[i] = fork();
+    if (children[i] != 0) continue;
+    SavedMap mine = a_room();
+    mine.info.source = std::to_string(i);
+    for (int k = 0; k < 10; ++k) {
+      try {
+        save_map(map_, mine);
+      } catch (const Error& error) {
+        if (std::string(error.what()).empty()) _exit(2);  // it may be refused, in words
+      }
+    }
+    _exit(0);
+  }
+  for (const pid_t child : children) {
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
 }
 
 TEST_F(MapFolder, EveryExportIsReadable) {
