@@ -135,10 +135,6 @@ class KinectSource final : public FrameSource {
 
 }  // namespace
 
-void say_on_stderr(const std::string& sentence) {
-  std::fprintf(stderr, "\nroomradar: %s\n", sentence.c_str());
-}
-
 std::unique_ptr<FrameSource> open_kinect(KinectOpener opener, KinectFeedConfig config,
                                          const SourceOptions& options,
                                          const std::filesystem::path& recording) {

@@ -1,5 +1,6 @@
 // source_options.hpp: what a caller may say about a source that the source itself does not say.
 #pragma once
+#include <cstdio>
 #include <functional>
 #include <optional>
 #include <string>
@@ -15,8 +16,10 @@ enum class KinectDepth {
   kRegistered,   ///< millimetres, as the colour camera would see them
 };
 
-/// A line on stderr.
-void say_on_stderr(const std::string& sentence);
+/// A line on stderr, below the line of a progress bar that may be there.
+inline void say_on_stderr(const std::string& sentence) {
+  std::fprintf(stderr, "\nroomradar: %s\n", sentence.c_str());
+}
 
 struct SourceOptions {
   /// Taken instead of what the recording's files or the format's published figures say. Must be of the depth

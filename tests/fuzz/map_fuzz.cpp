@@ -1,0 +1,41 @@
+// map_fuzz.cpp: the parts of a map folder, by the first byte, as they are read after their checksums matched.
+#include "mapping/mesh_file.hpp"
+#include "mapping/places.hpp"
+#include "mapping/static_map.hpp"
+#include "mapping/trajectory.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
+
+namespace {
+
+/// With the FNV-1a hash at its end that binary files have, so that what is before it is read.
+std::string sealed(std::string_view bytes) {
+  std::string file(bytes.substr(0, bytes.size() - std::min<std::size_t>(bytes.size(), 8)));
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char byte : file) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
+  file.append(reinterpret_cast<const char*>(&hash), sizeof hash);
+  return file;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace roomradar;
+  if (size == 0) return 0;
+  const std::string_view bytes = test::as_text(data + 1, size - 1);
+  test::read_or_refuse([&] {
+    switch (data[0]) {
+      case 'o':
+        (void)StaticMap::read_ot(test::file_with(bytes, "octree.ot"));
+        break;
+      case 'p':
+        (void)read_places(test::file_with(sealed(bytes), "places.bin"));
+        break;
+      case 't':
+        (void)read_trajectory(test::file_with(bytes, "trajectory.txt"));
+        break;
+      default:
+        (void)read_mesh(test::file_with(bytes, "mesh.ply"));
+    }
+  });
+  return 0;
+}

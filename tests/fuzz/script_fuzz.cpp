@@ -1,0 +1,15 @@
+// script_fuzz.cpp: events files, simulated rooms' names and frame ranges: what a user writes.
+#include "app/script.hpp"
+#include "app/sim/sim_options.hpp"
+#include "app/sources/frame_range.hpp"
+#include "tests/fuzz/fuzz_input.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace roomradar;
+  const std::string_view text = test::as_text(data, size);
+  test::read_or_refuse([&] { (void)parse_script(text, "script"); });
+  const std::string_view argument = text.substr(0, text.find('\0'));  // of the command line: it ends there
+  test::read_or_refuse([&] { (void)parse_sim_spec(argument); });
+  test::read_or_refuse([&] { (void)parse_frame_range(argument); });
+  return 0;
+}
