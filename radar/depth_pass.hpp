@@ -45,7 +45,7 @@ class DepthPass {
   /// @return triangles handed to the renderer
   /// There is no far end. Error against the exact ray: 1/256 pixel (of vertices that OpenGL snaps, or of
   /// outlines that the processor widens by less) across the surface's slope, and about 1e-7 of the depth
-  /// along it.
+  /// along it; by the processor, of triangles that reach to near_m, 4e-6 / m of inverse depth: 0.3 mm at 8 m.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 
