@@ -180,11 +180,13 @@ void Piece::go(const Velocity& after) {
   motion.centre_object = body_.mass.centre_object;
   motion.linear_m_s = 0.5 * (velocity_.linear_mps + after.linear_mps);
   motion.angular_rad_s = 0.5 * (velocity_.angular_rad_s + after.angular_rad_s);
-  // What turns freely keeps its angular momentum, not its angular velocity: half-way that is another one.
-  const Vec3 momentum = inertia_ * motion.angular_rad_s;
-  const Eigen::Isometry3d T_half = pose_after(body_.T_world_object, motion, 0.5 * left_s_);
-  const Eigen::Matrix3d inertia_half = T_half.linear() * body_.mass.inertia_m2 * T_half.linear().transpose();
-  motion.angular_rad_s = inertia_half.inverse() * momentum;
+  if (scratch_.contacts.empty()) {
+    // What turns freely keeps its angular momentum, not its angular velocity: half-way that is another one.
+    const Eigen::Isometry3d T_half = pose_after(body_.T_world_object, motion, 0.5 * left_s_);
+    const Eigen::Matrix3d inertia_half =
+        T_half.linear() * body_.mass.inertia_m2 * T_half.linear().transpose();
+    motion.angular_rad_s = inertia_half.inverse() * (inertia_ * motion.angular_rad_s);
+  }
   limit(motion.angular_rad_s, config_.max_spin_rad_s);
   const Velocity lift = lift_back(left_s_);
   motion.linear_m_s += lift.linear_mps;

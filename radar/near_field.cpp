@@ -205,6 +205,12 @@ FrameTriangle moved(const FrameTriangle& t, const Eigen::Isometry3d& T) {
   return result;
 }
 
+/// Whether a leaf's triangles may tell more of the other tree's box than their own box does.
+template <typename Box>
+bool are_large_against(const Box& leaf, const Box& other) {
+  return leaf.count > 0 && leaf.half.maxCoeff() > 2.0F * other.half.maxCoeff();
+}
+
 /// Collects the places of one pair of triangles.
 struct PairPlaces {
   double reach_m;
@@ -291,9 +297,27 @@ Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, doubl
     const PairPlaces places{
         reach_m, object.tree->is_closed(), is_one_sided(tree.kind), tree.kind, T_world_frame, found_};
     const auto reach = static_cast<float>(reach_m);
-    const auto key = [&](const Box& o, const Box& s) {
+    const auto key = [&](const Box& o, const Box& s) -> float {
       const Eigen::Array3f apart = (o.centre - s.centre).array().abs() - o.half.array() - s.half.array();
-      return crosses || apart.maxCoeff() > reach ? std::numeric_limits<float>::infinity() : 0.0F;
+      if (crosses || apart.maxCoeff() > reach) return std::numeric_limits<float>::infinity();
+      const auto is_far_from = [&](const FrameTriangle& t, const Box& box) {
+        return std::abs(t.normal.dot(box.centre.cast<double>() - t.corners[0])) -
+                   t.normal.cwiseAbs().dot(box.half.cast<double>()) >
+               reach_m;
+      };
+      if (are_large_against(o, s)) {
+        for (std::uint32_t i = o.first; i < o.first + o.count; ++i)
+          if (!is_far_from(moved(triangle_of(*object.tree, i), T_scene_object), s)) return 0.0F;
+      } else if (are_large_against(s, o)) {
+        for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
+          FrameTriangle t = triangle_of(*tree.instance.tree, i);
+          set_normal(t);
+          if (!is_far_from(t, o)) return 0.0F;
+        }
+      } else {
+        return 0.0F;
+      }
+      return std::numeric_limits<float>::infinity();
     };
     visit(*object.tree, *tree.instance.tree, T_scene_object, key, [&](const Box& o_box, const Box& s_box) {
       std::array<Face, kLeafTriangles> objects;
@@ -346,10 +370,23 @@ struct NearField::Course {
     }
     return static_cast<float>(free_s) * (1.0F - 1e-6F);
   }
+  /// The same for a box and a triangle of the scene, by the triangle's plane.
+  [[nodiscard]] double free_s(const FrameTriangle& s, const Box& o) const {
+    const Vec3 middle = o.centre.cast<double>(), half = o.half.cast<double>();
+    const double side = s.normal.dot(middle - s.corners[0]) >= 0.0 ? 1.0 : -1.0;
+    const Vec3 direction = side * s.normal, turning = direction.cross(angular);
+    const double apart_m = direction.dot(middle - s.corners[0]) - direction.cwiseAbs().dot(half);
+    if (!(apart_m > 0.0)) return 0.0;
+    const double closing = -direction.dot(velocity_at(middle)) + turning.cwiseAbs().dot(half);
+    return time_for(allowed_m(apart_m, keep_m), closing, 0.5 * turning.norm() * turn_rad_s * reach_m);
+  }
   /// The same for two triangles and a direction from the scene's to the object's: for each corner from where
   /// it is now. Negative where the direction does not keep them apart.
   [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, const FrameTriangle& s) const {
-    const double face_at = range_along(direction, s.corners).high;
+    return free_s(direction, o, range_along(direction, s.corners).high);
+  }
+  /// The same for all that lies no farther along the direction than face_at.
+  [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, double face_at) const {
     const double turning = direction.cross(angular).norm();
     const double quadratic = 0.5 * turning * turn_rad_s * reach_m;
     const double fastest = -direction.dot(linear) + turning * reach_m;
@@ -390,9 +427,27 @@ FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& mot
                         motion.angular_rad_s.norm(),
                         reach_m,
                         keep_m};
-    const auto key = [&](const Box& o, const Box& s) {
+    const auto key = [&](const Box& o, const Box& s) -> float {
       const float free_s = course.free_s(o, s);
-      return static_cast<double>(free_s) < result.free_s ? free_s : std::numeric_limits<float>::infinity();
+      if (!(static_cast<double>(free_s) < result.free_s)) return std::numeric_limits<float>::infinity();
+      if (are_large_against(o, s)) {
+        const Vec3 centre = s.centre.cast<double>(), half = s.half.cast<double>();
+        for (std::uint32_t i = o.first; i < o.first + o.count; ++i) {
+          const FrameTriangle t = moved(triangle_of(*object.tree, i), T_scene_object);
+          const Vec3 direction = t.normal.dot(t.corners[0] - centre) >= 0.0 ? t.normal : Vec3(-t.normal);
+          const double face_at = direction.dot(centre) + direction.cwiseAbs().dot(half);
+          if (course.free_s(direction, t, face_at) < result.free_s) return free_s;
+        }
+      } else if (are_large_against(s, o)) {
+        for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
+          FrameTriangle t = triangle_of(*tree.instance.tree, i);
+          set_normal(t);
+          if (course.free_s(t, o) < result.free_s) return free_s;
+        }
+      } else {
+        return free_s;
+      }
+      return std::numeric_limits<float>::infinity();
     };
     const auto look = [&](const FrameTriangle& o, const FrameTriangle& s) {
       double free_s = -1.0;
@@ -408,7 +463,10 @@ FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& mot
       const auto [from, way] = shortest_way(o, s, 0.0);
       const double distance_m = way.norm();
       if (distance_m > 0.0 && consider(-way / distance_m)) return;
-      if (free_s < 0.0) return;  // they cross
+      if (free_s < 0.0) {
+        if (!(distance_m > 0.0) || cross(face_of(o), face_of(s))) return;
+        free_s = 0.0;  // so near that rounding hides the plane between them
+      }
       result.free_s = free_s;
       result.limit = {T_world_frame * (from + way), T_world_frame.linear() * (-way / distance_m), distance_m,
                       tree.kind};
