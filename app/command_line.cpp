@@ -8,6 +8,7 @@
 
 #include "app/commands.hpp"
 #include "app/manual_page.hpp"
+#include "app/session_folder.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/version.hpp"
 
@@ -26,6 +27,8 @@ const std::map<std::string, SurfacePolicy> kSurfaces = {{"holes", SurfacePolicy:
                                                         {"border", SurfacePolicy::kBorder},
                                                         {"map", SurfacePolicy::kMap}};
 const std::map<std::string, bool> kUnknownIsSolid = {{"free", false}, {"solid", true}};
+const std::map<std::string, AtEnd> kAtEnd = {
+    {"end", AtEnd::kEnd}, {"stay", AtEnd::kStay}, {"loop", AtEnd::kLoop}};
 const std::map<std::string, RadarMode> kRadarModes = {{"exact", RadarMode::kExact},
                                                       {"sampled", RadarMode::kSampled}};
 const std::map<std::string, RecordingFormat> kFormats = {{"tum", RecordingFormat::kTum},
@@ -135,10 +138,30 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
   sub->callback([&] { work = [&command] { return run(command); }; });
 }
 
+/// A recorded session brings its own settings; what is given on the command line goes before them.
+void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
+  const RunCommand recorded = read_session(command.source);
+  const auto is_given = [&](const char* name) { return sub.count(name) > 0; };
+  if (!is_given("--map")) command.map = recorded.map;
+  if (!is_given("--poses")) command.poses = recorded.poses;
+  if (!is_given("--script")) command.script = recorded.script;
+  if (!is_given("--surfaces")) command.surfaces = recorded.surfaces;
+  if (!is_given("--unknown")) command.unknown_is_solid = recorded.unknown_is_solid;
+  if (!is_given("--radar")) command.radar.mode = recorded.radar.mode;
+  if (!is_given("--radar-px")) command.radar.resolution_px = recorded.radar.resolution_px;
+  if (!is_given("--adopt")) command.adopt_after_s = recorded.adopt_after_s;
+  if (!is_given("--at-end")) command.at_end = recorded.at_end;
+}
+
 void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand("run", "augmented reality in a saved map");
-  sub->add_option("SOURCE", command.source, kSourceHelp)->required();
-  sub->add_option("--map", command.map, "the saved map; it is only read")->required()->type_name("DIR");
+  sub->add_option(
+         "SOURCE", command.source,
+         std::string(kSourceHelp) +
+             ",\nor a session that was recorded by --record-session: it is played again, with its own\n"
+             "settings where none are given")
+      ->required();
+  sub->add_option("--map", command.map, "the saved map; it is only read")->type_name("DIR");
   add_choice(*sub, "--poses", command.poses, kPoses,
              "find the camera in the map (tracked), or take the recording's own poses");
   add_frames_option(*sub, command.frames);
@@ -171,6 +194,13 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
          "folder to save the room with what was adopted in, as a map; an older map there is replaced,\n"
          "so give --map's own folder to change that")
       ->type_name("DIR");
+  sub->add_flag("--window", command.window,
+                "play in a window: pick, drop, throw, turn; watch what the radar sees");
+  sub->add_option("--record-session", command.record_session,
+                  "folder for frames, events and settings; `run DIR` plays them again, the same to the bit")
+      ->type_name("DIR");
+  add_choice(*sub, "--at-end", command.at_end, kAtEnd,
+             "after the last frame: end (without a window), stay there (with one), or begin again");
   sub->add_option("--video", command.video, "write the composed pictures as .mp4, .avi or .mkv")
       ->type_name("FILE");
   sub->add_option("--pictures", command.pictures,
@@ -180,7 +210,10 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
   add_report_option(*sub, command.report);
-  sub->callback([&] {
+  sub->callback([&, sub] {
+    if (command.window && sub->count("--at-end") == 0) command.at_end = AtEnd::kStay;
+    if (is_session_folder(command.source)) take_recorded_settings(command, *sub);
+    if (command.map.empty()) throw CLI::RequiredError("--map");
     if (command.unknown_is_solid && command.surfaces != SurfacePolicy::kMap)
       throw CLI::ValidationError(
           "--unknown solid: only the map knows what was seen; it needs --surfaces map");

@@ -6,6 +6,7 @@
 
 #include "app/calibration/board_views.hpp"
 #include "app/sources/frame_range.hpp"
+#include "app/sources/playback_source.hpp"
 #include "app/sources/recording_writer.hpp"
 #include "dynamic/surface_policy.hpp"
 #include "mapping/prescan.hpp"
@@ -19,7 +20,7 @@ struct PrescanCommand {
   double resolution_m = 0.01;
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
-  std::string calibration;  ///< file of the cameras and their errors; empty: what the source says
+  std::string calibration;          ///< file of the cameras and their errors; empty: what the source says
   std::int64_t hold_out = 0;        ///< N > 0: every Nth frame judges the map instead of making it
   bool resume = false;              ///< go on with a scan that was cut off, or with a map that is there
   double checkpoint_every_s = 2.5;  ///< 0: none
@@ -32,14 +33,17 @@ struct RunCommand {
   std::string map;
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
-  std::string calibration;  ///< file of the cameras and their errors; empty: what the source says
+  std::string calibration;        ///< file of the cameras and their errors; empty: what the source says
   std::string object = "teapot";  ///< built in, or a mesh file
   std::string script;             ///< events file; empty: the object is dropped over a level surface in view
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = false;  ///< kMap only: objects do not enter what the scan has not seen
   RadarConfig radar;
   std::optional<double> adopt_after_s;  ///< none: only what the script asks for, if it does
-  std::string save_map;                 ///< folder for the map as it is at the end; empty: it is not saved
+  AtEnd at_end = AtEnd::kEnd;           ///< what follows the source's last frame
+  bool window = false;
+  std::string record_session;  ///< folder for frames, events and settings; empty: none
+  std::string save_map;        ///< folder for the map as it is at the end; empty: it is not saved
   std::string video;
   std::string pictures;  ///< folder for composed frames as PNG
   std::int64_t pictures_every = 10;

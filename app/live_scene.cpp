@@ -33,6 +33,12 @@ std::size_t LiveScene::render_expected(const Intrinsics& camera, const Eigen::Is
   return expected_triangles_;
 }
 
+void LiveScene::set_surfaces(SurfacePolicy surfaces) {
+  config_.surfaces = surfaces;
+  moved_world_.inferred_world = {};  // backs are inferred with the map only
+  inferred_.build_in_order(moved_world_.inferred_world);
+}
+
 ForegroundCounts LiveScene::find_moved(const Frame& frame) {
   return mark_foreground(frame.depth_m, expected_depth_m_, frame.depth_camera, T_world_expected_,
                          config_.foreground, foreground_, labels_, moved_mask_);

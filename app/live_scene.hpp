@@ -39,6 +39,10 @@ class LiveScene {
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
   std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
+  /// From the next frame on something else can be touched.
+  void set_surfaces(SurfacePolicy surfaces);
+  /// Null: space that nobody has seen is free.
+  void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
   /// The room's shape is another by now.
   void room_changed() { expected_camera_ = {}; }
   /// Labels the frame's pixels against the expected depth, and by what the frame before showed.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/calibration/calibrated_source.hpp"
+#include "app/session_folder.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "app/sources/folder_source.hpp"
 #include "app/sources/kinect_source.hpp"
@@ -45,6 +46,7 @@ std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceO
     throw Error(source +
                 ": no such folder. A source is a folder with a recording (7-Scenes, TUM RGB-D, fakenect), " +
                 "kinect:N for a device, or sim:ROOM for the simulated one");
+  if (is_session_folder(source)) return open_session_frames(source);
   return open_folder(source, options);
 }
 

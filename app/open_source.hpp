@@ -11,7 +11,8 @@
 
 namespace roomradar {
 
-/// `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder, recognised by what is in it; only `frames` of it
+/// `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder with a recording or a
+/// recorded session, recognised by what is in it; only `frames` of it
 /// where given. With a calibration, or a file calibration.json in the folder, frames are as the calibrated
 /// cameras would have taken them. Throws Error saying what SOURCE can be if it is none of these, and whatever
 /// opening it or the calibration throws.

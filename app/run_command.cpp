@@ -1,12 +1,11 @@
 // run_command.cpp: roomradar run: augmented reality in a saved room.
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
+#include <vector>
 
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
@@ -14,9 +13,14 @@
 #include "app/picture_file.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
+#include "app/run_results.hpp"
 #include "app/script.hpp"
 #include "app/session.hpp"
+#include "app/session_folder.hpp"
+#include "app/sources/playback_source.hpp"
 #include "app/video_writer.hpp"
+#include "app/window/play_host.hpp"
+#include "app/window/play_window.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
@@ -38,124 +42,6 @@ Script drop_over_view(const std::string& object) {
   drop.action = Action::kDrop;
   drop.name = add.name;
   return {{add, drop}};
-}
-
-/// Sums over the frames of a run, as the report wants them.
-struct RunTotals {
-  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0;
-  std::array<std::int64_t, kTouchedKinds> contacts_by_kind{};
-  double moved_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
-  double max_moved_fraction = 0.0;
-  double deepest_penetration_m = 0.0;
-  double first_stamp_s = 0.0;
-  std::string last_fault;
-  std::int64_t dropped = 0;  // by a live source, for newer ones
-  std::optional<std::int64_t> first_index;
-
-  /// Every frame that was read before, and those that were dropped, have a lower index.
-  void count_dropped(std::int64_t index) {
-    if (!first_index) first_index = index - (read - 1);
-    dropped = std::max(dropped, index - *first_index - (read - 1));
-  }
-
-  void add(const FrameResult& frame) {
-    if (frame.status != FrameStatus::kDone) return;
-    ++located;
-    if (frame.tracking == TrackStatus::kDegenerate) ++degenerate;
-    contacts += frame.contacts;
-    for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
-      contacts_by_kind[kind] += frame.contacts_by_kind[kind];
-    const double fraction = frame.foreground.valid > 0 ? static_cast<double>(frame.foreground.moved) /
-                                                             static_cast<double>(frame.foreground.valid)
-                                                       : 0.0;
-    moved_fraction += fraction;
-    max_moved_fraction = std::max(max_moved_fraction, fraction);
-    dynamic_triangles += static_cast<double>(frame.dynamic_triangles);
-    inferred_triangles += static_cast<double>(frame.inferred_triangles);
-    static_triangles += static_cast<double>(frame.static_triangles_drawn);
-    deepest_penetration_m = std::max(deepest_penetration_m, frame.deepest_penetration_m);
-  }
-  [[nodiscard]] double per_frame(double sum) const {
-    return located > 0 ? sum / static_cast<double>(located) : 0.0;
-  }
-};
-
-nlohmann::json results_of(const RunTotals& totals, const Session& session) {
-  nlohmann::json objects = nlohmann::json::array();
-  for (const auto& object : session.objects()) {
-    const Eigen::Matrix3d R_world_object = object->body.T_world_object.linear();
-    const Eigen::Quaterniond q(R_world_object);
-    const double turned_deg = Eigen::AngleAxisd(object->R_world_put.transpose() * R_world_object).angle() *
-                              (180.0 / std::numbers::pi);
-    objects.push_back({{"name", object->body.name},
-                       {"in_room", object->in_room},
-                       {"at_rest", object->body.at_rest},
-                       {"rests_on", to_string(object->body.rests_on)},
-                       {"began_in_unknown", object->began_in_unknown},
-                       {"position_m", to_json(object->body.T_world_object.translation())},
-                       {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
-                       {"turned_deg", turned_deg}});
-  }
-  nlohmann::json adopted = nlohmann::json::array();
-  for (const AdoptedChange& change : session.adopted())
-    adopted.push_back({{"change", to_string(change.kind)},
-                       {"time_s", change.stamp_s - totals.first_stamp_s},
-                       {"frame", change.frame},
-                       {"position_m", to_json(change.box_world.center())},
-                       {"size_m", to_json(change.box_world.sizes())}});
-  nlohmann::json contacts_by_kind = nlohmann::json::object();
-  for (std::size_t kind = 1; kind < kTouchedKinds; ++kind)
-    contacts_by_kind[std::string(to_string(static_cast<Touched>(kind)))] = totals.contacts_by_kind[kind];
-  nlohmann::json results = {
-      {"frames_located", totals.located},
-      {"frames_degenerate", totals.degenerate},
-      {"frames_dropped", totals.dropped},
-      {"moved_fraction_mean", totals.per_frame(totals.moved_fraction)},
-      {"moved_fraction_max", totals.max_moved_fraction},
-      {"dynamic_triangles_mean", totals.per_frame(totals.dynamic_triangles)},
-      {"inferred_triangles_mean", totals.per_frame(totals.inferred_triangles)},
-      {"static_triangles_drawn_mean", totals.per_frame(totals.static_triangles)},
-      {"contacts", totals.contacts},
-      {"contacts_by_kind", contacts_by_kind},
-      {"unknown_triangles", session.unknown().mesh_world.triangles.size()},
-      {"unknown_mb", static_cast<double>(session.unknown().memory_bytes) / 1e6},
-      {"deepest_penetration_m", totals.deepest_penetration_m},
-      {"objects", objects},
-      {"adopted", adopted},
-  };
-  if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;
-  return results;
-}
-
-/// Where it was put: it is free to go where nobody has seen what is there, until it has come out.
-const char* note_on(const VirtualObject& object) {
-  if (!object.began_in_unknown) return "";
-  return object.in_unknown ? "; was put into unknown space, and a part of it still is there"
-                           : "; was put into unknown space, and came out of it";
-}
-
-void print_summary(const RunTotals& totals, const Session& session) {
-  std::printf(
-      "located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
-      static_cast<long long>(totals.located), static_cast<long long>(totals.read),
-      100.0 * totals.per_frame(totals.moved_fraction), totals.per_frame(totals.dynamic_triangles));
-  for (const AdoptedChange& change : session.adopted()) {
-    const Eigen::Vector3d p = change.box_world.center(), size = change.box_world.sizes();
-    std::printf("adopted at %.1f s: what %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
-                change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
-                p.x(), p.y(), p.z(), size.x(), size.y(), size.z());
-  }
-  for (const auto& object : session.objects()) {
-    const Eigen::Vector3d p = object->body.T_world_object.translation();
-    if (!object->in_room)
-      std::printf("%s: not in the room\n", object->body.name.c_str());
-    else
-      std::printf(
-          "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),
-          object->body.at_rest ? "at rest" : "moving", p.x(), p.y(), p.z(),
-          object->body.rests_on == Touched::kUnknownFrontier ? ", on the border of unknown space" : "",
-          note_on(*object));
-  }
 }
 
 /// The composed picture, and what moved as the depth camera saw it.
@@ -184,9 +70,34 @@ void save_changed(SavedMap& map, std::size_t changes, const std::string& folder)
   std::printf("%s: saved with %zu changes\n", folder.c_str(), changes);
 }
 
-}  // namespace
+void control(PlaybackSource& source, CameraPlay camera) {
+  switch (camera) {
+    case CameraPlay::kHold:
+    case CameraPlay::kGo:
+      source.hold(camera == CameraPlay::kHold);
+      break;
+    case CameraPlay::kRewind:
+      if (!source.rewind()) throw Error(source.name() + ": a live device cannot go back to its first frame");
+      break;
+    case CameraPlay::kLoop:
+    case CameraPlay::kStay:
+      source.set_at_end(camera == CameraPlay::kLoop ? AtEnd::kLoop : AtEnd::kStay);
+      break;
+  }
+}
 
-int run(const RunCommand& command) {
+/// Says on stderr how a replay compares with what was recorded.
+nlohmann::json report_replay(const ReplayCheck& check) {
+  std::fprintf(stderr, "replay: %lld of %lld frames the same as recorded",
+               static_cast<long long>(check.same()), static_cast<long long>(check.recorded()));
+  if (check.different() > 0)
+    std::fprintf(stderr, ", the first that is not: %lld", static_cast<long long>(check.first_different()));
+  std::fprintf(stderr, "\n");
+  return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
+}
+
+/// @param link  to the window; null: there is none
+int run_frames(const RunCommand& command, PlayLink* link) {
   Report report;
   report.command = "run";
   report.source = command.source;
@@ -198,6 +109,9 @@ int run(const RunCommand& command) {
                      {"unknown", command.unknown_is_solid ? "solid" : "free"},
                      {"radar", to_string(command.radar.mode)},
                      {"radar_px", command.radar.resolution_px},
+                     {"at_end", to_string(command.at_end)},
+                     {"window", command.window},
+                     {"record_session", command.record_session},
                      {"save_map", command.save_map}};
   if (command.adopt_after_s) report.settings["adopt_s"] = *command.adopt_after_s;
   if (!command.calibration.empty()) report.settings["calibration"] = command.calibration;
@@ -214,19 +128,37 @@ int run(const RunCommand& command) {
     require_can_become_map(command.save_map);
   }
   SavedMap map = load_map(command.map);
+  std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
+  const bool is_live = !opened->frame_count();
+  std::optional<SessionRecorder> recorder;
+  if (!command.record_session.empty()) {
+    recorder.emplace(command.record_session, command, map.info);
+    opened = recorder->recorded(std::move(opened));
+  }
+  std::optional<ReplayCheck> check;
+  if (is_session_folder(command.source)) {
+    check.emplace(command.source);
+    if (const std::string fault = map_difference(command.source, map.info); !fault.empty())
+      std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
+  }
+  // A session that was cut off has no event that ends it.
+  const bool ends = std::any_of(script.events.begin(), script.events.end(),
+                                [](const ScriptEvent& event) { return event.action == Action::kQuit; });
+  auto played =
+      std::make_unique<PlaybackSource>(std::move(opened), check && !ends ? AtEnd::kEnd : command.at_end);
+  PlaybackSource& playback = *played;
   const Interrupt interrupt;
-  const std::unique_ptr<FrameSource> source =
-      ended_by_interrupt(open_source(command.source, command.frames, command.calibration));
+  const std::unique_ptr<FrameSource> source = ended_by_interrupt(std::move(played));
   SessionConfig config;
   config.poses = command.poses;
   config.scene.surfaces = command.surfaces;
   config.radar = command.radar;
-  config.make_picture = !command.video.empty() || !command.pictures.empty();
+  config.make_picture = link != nullptr || !command.video.empty() || !command.pictures.empty();
   config.measure_penetration = !command.report.empty();
   if (command.adopt_after_s || asks) {
     config.adopt.emplace();
     config.adopt->after_s = command.adopt_after_s;
-    config.adopt->wait = source->frame_count().has_value();  // a device does not wait
+    config.adopt->wait = !is_live || recorder;  // a device does not wait, unless it is to be repeated
   }
   Session session(map, config, &map.octree);
   report.renderer = session.renderer();
@@ -247,14 +179,36 @@ int run(const RunCommand& command) {
 
   RunTotals totals;
   Frame frame;
+  std::optional<PlayHost> host;
+  if (link != nullptr)
+    host.emplace(*link, session, playback, report.times, map.mesh, command.object, is_live);
   std::size_t next_event = 0;
+  std::int64_t run_frame = 0;
   bool quit = false;
+  const auto perform = [&](const ScriptEvent& event, bool is_from_script) {
+    if (event.action == Action::kQuit) quit = true;
+    if (event.action == Action::kCamera) control(playback, event.camera);
+    if (event.action != Action::kAdd || !is_from_script) session.apply(event);
+    if (recorder) recorder->write(event, run_frame);
+  };
+  const auto perform_users = [&](const std::vector<ScriptEvent>& events) {
+    for (const ScriptEvent& event : events) {
+      try {
+        perform(event, /*is_from_script=*/false);
+      } catch (const Error& fault) {
+        host->complain(fault.what());
+        break;  // those that follow are about what this one should have made
+      }
+    }
+  };
   {
     Progress progress("running", source->frame_count());
-    for (std::int64_t run_frame = 0; !quit; ++run_frame) {
-      const ReadResult read = report.times.timed("read", [&] { return source->next(frame); });
-      if (read.status == ReadStatus::kEnd) break;
-      if (read.waiting) continue;  // what a live source waits for it says itself
+    for (; !quit; ++run_frame) {
+      ReadResult read;
+      do {  // what a live source waits for it says itself
+        read = report.times.timed("read", [&] { return source->next(frame); });
+      } while (read.waiting && !(host && host->is_closed()));
+      if (read.status == ReadStatus::kEnd || read.waiting) break;
       ++totals.read;
       if (read.status == ReadStatus::kSkipped) {
         ++totals.skipped;
@@ -263,13 +217,14 @@ int run(const RunCommand& command) {
       }
       if (totals.read - totals.skipped == 1) totals.first_stamp_s = frame.stamp_s;
       totals.count_dropped(frame.index);
-      for (; next_event < script.events.size() &&
-             is_due(script.events[next_event], run_frame, frame.stamp_s - totals.first_stamp_s);
-           ++next_event) {
-        const ScriptEvent& event = script.events[next_event];
-        quit = quit || event.action == Action::kQuit;
-        if (event.action != Action::kAdd) session.apply(event);
-      }
+      const double run_time_s = frame.stamp_s - totals.first_stamp_s;
+      if (host && !host->wait_turn(frame))
+        perform(ScriptEvent{}, /*is_from_script=*/false);  // it says to quit
+      for (; !quit && next_event < script.events.size() &&
+             is_due(script.events[next_event], run_frame, run_time_s);
+           ++next_event)
+        perform(script.events[next_event], /*is_from_script=*/true);
+      if (host && !quit) perform_users(host->take_events());
       if (quit) break;
       const FrameResult result = session.step(frame, report.times);
       if (result.status == FrameStatus::kBadFrame) {
@@ -279,12 +234,19 @@ int run(const RunCommand& command) {
         continue;
       }
       totals.add(result);
+      if (host) host->show(run_frame, run_time_s, frame, result);
+      if (recorder || check) {
+        const FrameFingerprint fingerprint = fingerprint_of(run_frame, session);
+        if (recorder) recorder->write(fingerprint);
+        if (check) check->compare(fingerprint);
+      }
       if (video) video->write(session.picture());
       if (!command.pictures.empty() && run_frame % command.pictures_every == 0)
         write_pictures(session, result, std::filesystem::path(command.pictures), frame.index);
       progress.step(result.status == FrameStatus::kDone ? "located" : "not located");
     }
   }
+  if (recorder && !quit) recorder->write(ScriptEvent{}, run_frame);  // it says to quit
   if (video) video->close();
   session.finish_adopting();
   if (totals.read == totals.skipped)
@@ -295,12 +257,21 @@ int run(const RunCommand& command) {
   report.frames_read = totals.read;
   report.frames_skipped = totals.skipped + totals.dropped;
   report.results = results_of(totals, session);
+  if (check) report.results["replay"] = report_replay(*check);
   write_report(report, command.report);
   print_summary(totals, session);
   if (totals.located > 0 || quit) return 0;
   std::fprintf(stderr, "roomradar: %s: no frame shows where in %s the camera is; was that room mapped?\n",
                command.source.c_str(), command.map.c_str());
   return 1;
+}
+
+}  // namespace
+
+int run(const RunCommand& command) {
+  if (!command.window) return run_frames(command, nullptr);
+  return run_in_window("roomradar - " + command.source,
+                       [&](PlayLink& link) { return run_frames(command, &link); });
 }
 
 }  // namespace roomradar

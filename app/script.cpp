@@ -2,6 +2,8 @@
 #include "app/script.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -14,11 +16,60 @@
 namespace roomradar {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1U << 20U;
-constexpr double kMaxCoordinate_m = 1000.0;  // farther away than any room
+constexpr std::size_t kMaxBytes = 1U << 26U;  // a day of dragging things about, recorded
+constexpr double kMaxCoordinate_m = 1000.0;   // farther away than any room
 constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxSpin_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
+constexpr double kMaxTurn_deg = 3600.0;
+
+template <typename Value>
+struct Word {
+  std::string_view word;
+  Value value;
+};
+constexpr std::array<Word<Action>, 14> kActions = {{{"add", Action::kAdd},
+                                                    {"place", Action::kPlace},
+                                                    {"drop", Action::kDrop},
+                                                    {"throw", Action::kThrow},
+                                                    {"remove", Action::kRemove},
+                                                    {"turn", Action::kTurn},
+                                                    {"carry", Action::kCarry},
+                                                    {"release", Action::kRelease},
+                                                    {"surfaces", Action::kSurfaces},
+                                                    {"unknown", Action::kUnknown},
+                                                    {"radar", Action::kRadar},
+                                                    {"camera", Action::kCamera},
+                                                    {"adopt", Action::kAdopt},
+                                                    {"quit", Action::kQuit}}};
+constexpr std::array<Word<SurfacePolicy>, 4> kSurfaces = {{{"holes", SurfacePolicy::kHoles},
+                                                           {"skirt", SurfacePolicy::kSkirt},
+                                                           {"border", SurfacePolicy::kBorder},
+                                                           {"map", SurfacePolicy::kMap}}};
+constexpr std::array<Word<bool>, 2> kUnknown = {{{"free", false}, {"solid", true}}};
+constexpr std::array<Word<RadarMode>, 2> kRadarModes = {
+    {{"exact", RadarMode::kExact}, {"sampled", RadarMode::kSampled}}};
+constexpr std::array<Word<CameraPlay>, 5> kCameraPlays = {{{"hold", CameraPlay::kHold},
+                                                           {"go", CameraPlay::kGo},
+                                                           {"rewind", CameraPlay::kRewind},
+                                                           {"loop", CameraPlay::kLoop},
+                                                           {"stay", CameraPlay::kStay}}};
+
+/// "add, place or drop"
+template <typename Value, std::size_t kCount>
+std::string listed(const std::array<Word<Value>, kCount>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < kCount; ++i)
+    list.append(i == 0 ? "" : i + 1 == kCount ? " or " : ", ").append(words[i].word);
+  return list;
+}
+
+template <typename Value, std::size_t kCount>
+std::string_view word_of(const std::array<Word<Value>, kCount>& words, Value value) {
+  const auto found =
+      std::find_if(words.begin(), words.end(), [&](const auto& word) { return word.value == value; });
+  return found == words.end() ? std::string_view{} : found->word;
+}
 
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
@@ -66,6 +117,19 @@ class LineReader {
     if (value < lowest || value > highest) fail(in_quotes(text) + " is out of range for " + wanted);
     return value;
   }
+  double whole_number(const char* wanted, double lowest, double highest) {
+    const double value = number(wanted, lowest, highest);
+    if (value != std::floor(value)) fail("a whole number is wanted: " + std::string(wanted));
+    return value;
+  }
+  template <typename Value, std::size_t kCount>
+  Value choice(const char* wanted, const std::array<Word<Value>, kCount>& words) {
+    const std::string list = listed(words);
+    const std::string_view found = word((std::string(wanted) + ": " + list).c_str());
+    for (const Word<Value>& candidate : words)
+      if (candidate.word == found) return candidate.value;
+    fail("unknown word " + in_quotes(found) + "; wanted is " + wanted + ": " + list);
+  }
   Eigen::Vector3d vector(const char* wanted, double limit) {
     Eigen::Vector3d value;
     for (int axis = 0; axis < 3; ++axis) value[axis] = number(wanted, -limit, limit);
@@ -89,8 +153,8 @@ Eigen::Vector3d read_position(LineReader& line) {
 /// The rest of the line, if it says how the object stands.
 void read_turned(LineReader& line, ScriptEvent& event) {
   if (!line.take_if("turned")) return;
-  const Eigen::Vector3d angles =
-      line.vector("the angles YAW PITCH ROLL (degrees), -360..360", 360.0) * (std::numbers::pi / 180.0);
+  event.turned_deg = line.vector("the angles YAW PITCH ROLL (degrees), -360..360", 360.0);
+  const Eigen::Vector3d angles = event.turned_deg * (std::numbers::pi / 180.0);
   event.R_world_object = (Eigen::AngleAxisd(angles[0], Eigen::Vector3d::UnitZ()) *
                           Eigen::AngleAxisd(angles[1], Eigen::Vector3d::UnitY()) *
                           Eigen::AngleAxisd(angles[2], Eigen::Vector3d::UnitX()))
@@ -100,9 +164,7 @@ void read_turned(LineReader& line, ScriptEvent& event) {
 void read_when(LineReader& line, ScriptEvent& event) {
   const std::string_view when = line.word("'frame' or 'time'");
   if (when == "frame") {
-    const double frame = line.number("a frame number, a whole number from 0", 0.0, 1e12);
-    if (frame != std::floor(frame)) line.fail("a frame number is a whole number");
-    event.frame = static_cast<std::int64_t>(frame);
+    event.frame = static_cast<std::int64_t>(line.whole_number("a frame number from 0", 0.0, 1e12));
   } else if (when == "time") {
     event.time_s = line.number("a time in seconds, from 0", 0.0, kMaxTime_s);
   } else {
@@ -110,47 +172,75 @@ void read_when(LineReader& line, ScriptEvent& event) {
   }
 }
 
+/// Whether the action is of an object, whose name follows it.
+bool has_object(Action action) {
+  switch (action) {
+    case Action::kSurfaces:
+    case Action::kUnknown:
+    case Action::kRadar:
+    case Action::kCamera:
+    case Action::kAdopt:
+    case Action::kQuit:
+      return false;
+    default:
+      return true;
+  }
+}
+
 void read_action(LineReader& line, ScriptEvent& event) {
-  const std::string_view action = line.word("an action: add, place, drop, throw, remove, adopt or quit");
-  if (action == "adopt") {
-    event.action = Action::kAdopt;
-    return;
-  }
-  if (action == "quit") {
-    event.action = Action::kQuit;
-    return;
-  }
-  const bool known =
-      action == "add" || action == "place" || action == "drop" || action == "throw" || action == "remove";
-  if (!known)
-    line.fail("unknown action " + in_quotes(action) +
-              "; there are add, place, drop, throw, remove, adopt and quit");
-  event.name = line.word("the object's name");
-  if (action == "add") {
-    event.action = Action::kAdd;
-    event.mesh = line.word("'teapot' or a mesh file");
-    if (line.take_if("size")) event.size_m = line.number("a size (m), 0.001..10", 0.001, 10.0);
-  } else if (action == "place") {
-    event.action = Action::kPlace;
-    event.position_world = read_position(line);
-    read_turned(line, event);
-  } else if (action == "drop") {
-    event.action = Action::kDrop;
-    if (!line.take_if("view")) {
-      line.expect("at");
+  event.action = line.choice("an action", kActions);
+  if (has_object(event.action)) event.name = line.word("the object's name");
+  switch (event.action) {
+    case Action::kAdd:
+      event.mesh = line.word("'teapot' or a mesh file");
+      if (line.take_if("size")) event.size_m = line.number("a size (m), 0.001..10", 0.001, 10.0);
+      break;
+    case Action::kPlace:
       event.position_world = read_position(line);
-    }
-    if (line.take_if("height")) event.height_m = line.number("a height (m), 0..5", 0.0, 5.0);
-    read_turned(line, event);
-  } else if (action == "throw") {
-    event.action = Action::kThrow;
-    event.position_world = read_position(line);
-    line.expect("velocity");
-    event.velocity_world_mps = line.vector("a velocity X Y Z (m/s)", kMaxSpeed_mps);
-    if (line.take_if("spin")) event.spin_world_rad_s = line.vector("a spin X Y Z (rad/s)", kMaxSpin_rad_s);
-    read_turned(line, event);
-  } else {
-    event.action = Action::kRemove;
+      read_turned(line, event);
+      break;
+    case Action::kCarry:
+      event.position_world = read_position(line);
+      break;
+    case Action::kDrop:
+      if (!line.take_if("view")) {
+        line.expect("at");
+        event.position_world = read_position(line);
+      }
+      if (line.take_if("height")) event.height_m = line.number("a height (m), 0..5", 0.0, 5.0);
+      read_turned(line, event);
+      break;
+    case Action::kThrow:
+      event.position_world = read_position(line);
+      line.expect("velocity");
+      event.velocity_world_mps = line.vector("a velocity X Y Z (m/s)", kMaxSpeed_mps);
+      if (line.take_if("spin")) event.spin_world_rad_s = line.vector("a spin X Y Z (rad/s)", kMaxSpin_rad_s);
+      read_turned(line, event);
+      break;
+    case Action::kRelease:
+      line.expect("velocity");
+      event.velocity_world_mps = line.vector("a velocity X Y Z (m/s)", kMaxSpeed_mps);
+      break;
+    case Action::kTurn:
+      event.turn_world_deg = line.vector("a turn X Y Z (degrees about the world's axes)", kMaxTurn_deg);
+      break;
+    case Action::kSurfaces:
+      event.surfaces = line.choice("what can be touched", kSurfaces);
+      break;
+    case Action::kUnknown:
+      event.unknown_is_solid = line.choice("what unknown space is", kUnknown);
+      break;
+    case Action::kRadar:
+      event.radar.mode = line.choice("the radar's mode", kRadarModes);
+      event.radar.resolution_px = static_cast<int>(line.whole_number("pixels, 1..4096", 1.0, 4096.0));
+      break;
+    case Action::kCamera:
+      event.camera = line.choice("what the camera does", kCameraPlays);
+      break;
+    case Action::kRemove:
+    case Action::kAdopt:
+    case Action::kQuit:
+      break;
   }
 }
 
@@ -193,7 +283,7 @@ Script read_script(const std::filesystem::path& path) {
     throw Error(path.string() + ": no such file; --script wants a text file with one event a line");
   const std::uintmax_t bytes = std::filesystem::file_size(path, fault);
   if (fault || bytes > kMaxBytes)
-    throw Error(path.string() + ": is longer than 1 MiB; that is no events file");
+    throw Error(path.string() + ": is longer than 64 MiB; that is no events file");
   std::ifstream file(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(bytes), '\0');
   if (!file || !file.read(text.data(), static_cast<std::streamsize>(bytes)))
@@ -206,6 +296,68 @@ Script read_script(const std::filesystem::path& path) {
       event.mesh = (path.parent_path() / event.mesh).string();
   }
   return script;
+}
+
+std::string to_line(const ScriptEvent& event) {
+  const auto number = [](double value) {
+    std::array<char, 32> text{};  // the shortest that reads back to the same double
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+    return " " + std::string(text.data(), end);
+  };
+  const auto vector = [&](const Eigen::Vector3d& v) { return number(v.x()) + number(v.y()) + number(v.z()); };
+
+  const auto turned = [&] {
+    return event.R_world_object ? " turned" + vector(event.turned_deg) : std::string();
+  };
+
+  std::string line = event.frame ? "frame " + std::to_string(*event.frame) : "time" + number(*event.time_s);
+  line.append(" ").append(word_of(kActions, event.action));
+  if (has_object(event.action)) line.append(" ").append(event.name);
+  switch (event.action) {
+    case Action::kAdd:
+      line.append(" ").append(event.mesh);
+      if (event.size_m) line += " size" + number(*event.size_m);
+      break;
+    case Action::kPlace:
+      line += vector(*event.position_world) + turned();
+      break;
+    case Action::kCarry:
+      line += vector(*event.position_world);
+      break;
+    case Action::kDrop:
+      line += event.position_world ? " at" + vector(*event.position_world) : " view";
+      line += " height" + number(event.height_m) + turned();
+      break;
+    case Action::kThrow:
+      line += vector(*event.position_world) + " velocity" + vector(event.velocity_world_mps);
+      if (!event.spin_world_rad_s.isZero(0.0)) line += " spin" + vector(event.spin_world_rad_s);
+      line += turned();
+      break;
+    case Action::kRelease:
+      line += " velocity" + vector(event.velocity_world_mps);
+      break;
+    case Action::kTurn:
+      line += vector(event.turn_world_deg);
+      break;
+    case Action::kSurfaces:
+      line.append(" ").append(word_of(kSurfaces, event.surfaces));
+      break;
+    case Action::kUnknown:
+      line.append(" ").append(word_of(kUnknown, event.unknown_is_solid));
+      break;
+    case Action::kRadar:
+      line.append(" ").append(word_of(kRadarModes, event.radar.mode));
+      line += " " + std::to_string(event.radar.resolution_px);
+      break;
+    case Action::kCamera:
+      line.append(" ").append(word_of(kCameraPlays, event.camera));
+      break;
+    case Action::kRemove:
+    case Action::kAdopt:
+    case Action::kQuit:
+      break;
+  }
+  return line;
 }
 
 bool is_due(const ScriptEvent& event, std::int64_t run_frame, double run_time_s) {

@@ -3,17 +3,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
 #include "app/placement.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/validity.hpp"
+#include "radar/sweep.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from an object than this do not push it
+
+/// What moves an object that a user's hand holds: no weight, and it slides along what it meets.
+PhysicsConfig in_hand(PhysicsConfig config) {
+  config.gravity_world_mps2.setZero();
+  config.friction = config.restitution = 0.0;
+  return config;
+}
+
+/// On its way to where it is wanted, to be there after this frame.
+void set_in_hand(VirtualObject& object, double dt_s) {
+  const Eigen::Vector3d way = *object.carried_to_world - object.body.T_world_object.translation();
+  object.body.at_rest = false;
+  object.body.spin_world_rad_s.setZero();
+  object.body.velocity_world_mps = dt_s > 0.0 ? Eigen::Vector3d(way / dt_s) : Eigen::Vector3d::Zero();
+}
 
 }  // namespace
 
@@ -21,7 +38,7 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
     : map_(map),
       config_(config),
       room_(context_),
-      scene_(context_, room_, config.scene, &unknown_tree_),
+      scene_(context_, room_, config.scene),
       radar_(config.radar),
       drawer_(context_) {
   require_valid(config.physics);
@@ -39,11 +56,41 @@ void Session::make_unknown_solid(StageTimes& times) {
   if (config_.scene.surfaces != SurfacePolicy::kMap)
     throw Error("unknown space is solid only with the map's surfaces: the others do not know what was seen");
   times.timed("unknown", [&] {
-    unknown_ = unknown_surface(map_.octree, map_.mesh);
-    unknown_tree_.build_by_place(unknown_.mesh_world);
+    if (unknown_tree_.empty()) {
+      if (living_map_ && (has_last_stamp_ || !living_map_->adopted().empty()))
+        throw Error(
+            "unknown solid: changes are being adopted into the map; begin the run with --unknown solid");
+      unknown_ = unknown_surface(map_.octree, map_.mesh);
+      unknown_tree_.build_by_place(unknown_.mesh_world);
+      if (living_map_) living_map_->keep_up_unknown();
+    }
     unknown_is_solid_ = true;
-    if (living_map_) living_map_->keep_up_unknown();
+    scene_.set_unknown(&unknown_tree_);
+    for (const auto& object : objects_)
+      object->in_unknown = object->began_in_unknown = object->in_room && is_in_unknown(*object);
   });
+}
+
+void Session::make_unknown_free() {
+  unknown_is_solid_ = false;
+  scene_.set_unknown(nullptr);
+  for (const auto& object : objects_) object->in_unknown = object->began_in_unknown = false;
+}
+
+void Session::set_surfaces(SurfacePolicy surfaces) {
+  if (surfaces != SurfacePolicy::kMap && living_map_)
+    throw Error("surfaces " + std::string(to_string(surfaces)) +
+                ": changes are being adopted into the map, which needs its surfaces");
+  if (surfaces != SurfacePolicy::kMap && unknown_is_solid_)
+    throw Error("surfaces " + std::string(to_string(surfaces)) +
+                ": unknown space is solid, which only the map can say; make it free first");
+  config_.scene.surfaces = surfaces;
+  scene_.set_surfaces(surfaces);
+}
+
+void Session::set_radar(const RadarConfig& config) {
+  radar_ = CyberRadar(config);
+  config_.radar = config;
 }
 
 FrameResult Session::step(const Frame& frame, StageTimes& times) {
@@ -72,6 +119,7 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
     if (config_.make_picture) {
       view_of(frame);
+      shown_view_.reset();
       picture_ = background_;
     }
     return result;
@@ -116,7 +164,7 @@ Tracking Session::locate_camera(const Frame& frame) {
 void Session::renew_room() {
   ChangedRoom& room = living_map_->room();
   room_.set(room.mesh, std::move(room.tree));
-  if (unknown_is_solid_) {
+  if (!unknown_tree_.empty()) {  // it was made once, and is kept up since
     unknown_ = std::move(room.unknown);
     unknown_tree_ = std::move(room.unknown_tree);
   }
@@ -184,7 +232,10 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
     }
     const RadarScene radar_scene{scene, {}};
     const BodyProbe probe = probe_of(radar_, near_field_, object->shape.touched, radar_scene, &radar_ms);
-    const StepReport moved = advance(object->body, dt_s, probe, config_.physics, push.span());
+    if (object->carried_to_world) set_in_hand(*object, dt_s);
+    const StepReport moved =
+        advance(object->body, dt_s, probe,
+                object->carried_to_world ? in_hand(config_.physics) : config_.physics, push.span());
     result.contacts += moved.contacts;
     for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
       result.contacts_by_kind[kind] += moved.contacts_by_kind[kind];
@@ -240,6 +291,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   const PictureView view = view_of(frame);
   const Intrinsics& camera = view.camera;
   const Eigen::Isometry3d T_world_view = T_world_camera * view.T_view_depth.inverse();
+  shown_view_ = {camera, T_world_view};
 
   renew_a_shadow();
   std::vector<DrawnObject> drawn;
@@ -272,8 +324,56 @@ void Session::add_object(const std::string& name, const Mesh& mesh) {
   objects_.push_back(std::make_unique<VirtualObject>(context_, name, mesh));
 }
 
+void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg) {
+  RigidMotion motion;
+  motion.angular_rad_s = turn_world_deg * (std::numbers::pi / 180.0);
+  motion.centre_object = object.middle;
+  const std::vector<SceneTree> scene = scene_without(&object);
+  const SweepResult free =
+      sweep(radar_, {&object.shape.touched, object.body.T_world_object}, motion, 1.0, {scene, {}});
+  if (free.status == SweepStatus::kInvalidInput || free.status == SweepStatus::kNoAnswer) return;
+  object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
+  object.body.at_rest = false;
+}
+
 void Session::apply(const ScriptEvent& event) {
-  const auto put = [&](VirtualObject& object, const Eigen::Vector3d& position_world) {
+  switch (event.action) {
+    case Action::kSurfaces:
+      set_surfaces(event.surfaces);
+      break;
+    case Action::kUnknown: {
+      StageTimes unreported;
+      if (event.unknown_is_solid)
+        make_unknown_solid(unreported);
+      else
+        make_unknown_free();
+      break;
+    }
+    case Action::kRadar:
+      set_radar(event.radar);
+      break;
+    case Action::kAdopt:
+      if (!living_map_) throw Error("script: adopt: this session does not watch for changes");
+      living_map_->ask();
+      break;
+    case Action::kCamera:  // the source's affair
+    case Action::kQuit:
+      break;
+    default:
+      change_objects(event);
+  }
+}
+
+void Session::change_objects(const ScriptEvent& event) {
+  if (event.action == Action::kAdd) {
+    const bool is_there = std::any_of(objects_.begin(), objects_.end(),
+                                      [&](const auto& object) { return object->body.name == event.name; });
+    if (is_there) throw Error("script: there is an object named " + event.name + " already");
+    add_object(event.name, object_mesh(event.mesh, event.size_m.value_or(0.0)));
+    return;
+  }
+  VirtualObject& object = object_named(event.name);
+  const auto put = [&](const Eigen::Vector3d& position_world) {
     object.body.T_world_object.translation() = position_world;
     object.R_world_put = object.body.T_world_object.linear();
     object.body.velocity_world_mps = event.velocity_world_mps;
@@ -285,32 +385,34 @@ void Session::apply(const ScriptEvent& event) {
   // Whatever is said of an object now takes the place of a drop that it waits for.
   std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
   if (event.R_world_object && event.position_world)
-    object_named(event.name).body.T_world_object.linear() = *event.R_world_object;
+    object.body.T_world_object.linear() = *event.R_world_object;
+  if (event.action != Action::kTurn) object.carried_to_world.reset();
   switch (event.action) {
-    case Action::kAdd:
-      add_object(event.name, object_mesh(event.mesh, event.size_m.value_or(0.0)));
-      break;
     case Action::kPlace:
     case Action::kThrow:
-      put(object_named(event.name), *event.position_world);
+      put(*event.position_world);
       break;
-    case Action::kDrop: {
-      VirtualObject& object = object_named(event.name);
-      if (!event.position_world) {
+    case Action::kDrop:
+      if (event.position_world)
+        put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
+      else
         waiting_.push_back(event);
-        break;
-      }
-      put(object, *event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
       break;
-    }
+    case Action::kCarry:
+      if (!object.in_room) put(*event.position_world);
+      object.carried_to_world = event.position_world;
+      break;
+    case Action::kRelease:
+      object.body.velocity_world_mps = event.velocity_world_mps;
+      object.R_world_put = object.body.T_world_object.linear();
+      break;
+    case Action::kTurn:
+      if (object.in_room) turn(object, event.turn_world_deg);
+      break;
     case Action::kRemove:
-      object_named(event.name).in_room = false;
+      object.in_room = false;
       break;
-    case Action::kAdopt:
-      if (!living_map_) throw Error("script: adopt: this session does not watch for changes");
-      living_map_->ask();
-      break;
-    case Action::kQuit:
+    default:
       break;
   }
 }

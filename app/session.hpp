@@ -70,6 +70,14 @@ class Session {
   /// can leave it. Stage timed: unknown. Throws Error unless the surfaces are the map's.
   void make_unknown_solid(StageTimes& times);
 
+  /// From now on it is free; all objects count as having begun in seen space.
+  void make_unknown_free();
+  /// From the next frame on. Throws Error if changes are adopted or unknown space is solid, and the surfaces
+  /// are not the map's.
+  void set_surfaces(SurfacePolicy surfaces);
+  /// From the next frame on. Throws Error if the config is out of its rules.
+  void set_radar(const RadarConfig& config);
+
   /// One frame, from sensor to picture. Stages timed: locate expected foreground changes mesh radar physics
   /// compose frame, and contact: from the frame handed over to where its contacts have moved the objects.
   FrameResult step(const Frame& frame, StageTimes& times);
@@ -78,15 +86,30 @@ class Session {
   /// cannot be an object.
   void add_object(const std::string& name, const Mesh& mesh);
 
-  /// Adds, places, drops, throws or removes an object, before the frame it is due in. A drop over "a surface
-  /// in view" that has none waits for a frame that shows one, or for the object's next event, which replaces
-  /// it.
+  /// Adds, places, drops, throws, turns, carries or removes an object, or changes a policy, before the frame
+  /// it is due in. A drop over "a surface in view" that has none waits for a frame that shows one, or for the
+  /// object's next event, which replaces it. Throws Error where that cannot be, and changes nothing: no such
+  /// object, two of one name, a mesh that cannot be read, a policy that does not go with another.
   void apply(const ScriptEvent& event);
 
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_; }
   [[nodiscard]] const ColourImage& picture() const { return picture_; }
   [[nodiscard]] const LiveScene& scene() const { return scene_; }
+  /// As it is by now.
+  [[nodiscard]] const Shape& room() const { return room_; }
+  /// As it was given, but for the policies that were changed since.
+  [[nodiscard]] const SessionConfig& config() const { return config_; }
+  [[nodiscard]] bool unknown_is_solid() const { return unknown_is_solid_; }
+  /// All that an object can touch, without itself; null: with every object in the room.
+  [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
+  /// The camera that the picture was taken with, and its pose; nothing before the first frame that was
+  /// located and had a picture made.
+  struct ShownView {
+    Intrinsics camera;
+    Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
+  };
+  [[nodiscard]] const std::optional<ShownView>& shown_view() const { return shown_view_; }
   /// Without triangles unless it was made solid.
   [[nodiscard]] const UnknownSurface& unknown() const { return unknown_; }
   /// What came and stayed, or was taken away, and is part of the room by now.
@@ -120,6 +143,7 @@ class Session {
     Intrinsics camera;
     Eigen::Isometry3d T_view_depth = Eigen::Isometry3d::Identity();  ///< depth-camera points to this camera's
   };
+  std::optional<ShownView> shown_view_;
   std::optional<PictureView> colour_view_;  ///< of the last frame with colour
   DepthImage real_depth_m_;                 ///< as the colour camera sees it, where objects are
   ObjectLayer layer_;
@@ -130,7 +154,7 @@ class Session {
   void renew_room();
   FrameResult pass_through(const Frame& frame, StageTimes& times);
   Tracking locate_camera(const Frame& frame);
-  [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
+  void turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg);
   /// Balls about the objects, in which what moved is meshed as finely as it was seen.
   void find_fine_regions();
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
@@ -144,6 +168,7 @@ class Session {
   void renew_a_shadow();
   void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   VirtualObject& object_named(const std::string& name);
+  void change_objects(const ScriptEvent& event);
 };
 
 }  // namespace roomradar

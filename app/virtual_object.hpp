@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct VirtualObject {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();           ///< of its bounding box, in its own frame
   double footprint_radius_m = 0.0;                            ///< how far it reaches sideways from its origin
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< how it stood when it was last put somewhere
+  /// While it is held by a user's hand: where its origin is wanted. Gravity does not move it then.
+  std::optional<Eigen::Vector3d> carried_to_world;
   Shape shape;
   SurfacePoints surface;           ///< what its shadow is made of
   ContactShadow shadow;            ///< as it stood when this was made last

@@ -125,6 +125,14 @@ bool SpooledSource::has_end(const fs::path& folder) {
   return fs::exists(folder / kList) && read_list(folder).at_end;
 }
 
+std::unique_ptr<SpooledSource> SpooledSource::again(const fs::path& folder) {
+  if (!fs::exists(folder / kList)) throw Error((folder / kList).string() + ": there are no recorded frames");
+  std::unique_ptr<SpooledSource> spooled(new SpooledSource(nullptr, folder, /*kept=*/true));
+  spooled->take(read_list(folder));
+  spooled->at_end_ = true;
+  return spooled;
+}
+
 void SpooledSource::take(Left left) {
   name_ = std::move(left.name);
   entries_.assign(std::make_move_iterator(left.entries.begin()), std::make_move_iterator(left.entries.end()));

@@ -38,6 +38,11 @@ class SpooledSource final : public FrameSource {
   /// Whether a spool is in the folder whose source had come to its end.
   static bool has_end(const std::filesystem::path& folder);
 
+  /// What was spooled to `folder`, to its end or to where the process that did it was cut off; the folder is
+  /// only read.
+  /// @throws Error if the folder holds no spool
+  static std::unique_ptr<SpooledSource> again(const std::filesystem::path& folder);
+
   ~SpooledSource() override;
 
   ReadResult next(Frame& frame) override;

@@ -34,6 +34,11 @@ class StageTimes {
   void add_ms(std::string_view stage, double elapsed_ms);
   /// Nearest-rank percentiles of each stage; an empty map if nothing was timed.
   [[nodiscard]] std::map<std::string, StageSummary> summaries() const;
+  /// Calls work(stage, count, newest_ms) for each stage.
+  template <typename Work>
+  void visit_newest(Work&& work) const {
+    for (const auto& [stage, samples] : samples_ms_) work(stage, samples.size(), samples.back());
+  }
 
  private:
   struct Stop {

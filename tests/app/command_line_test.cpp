@@ -103,6 +103,86 @@ TEST_F(CommandLine, MapInfoAndEveryExportWork) {
   expect_fault(roomradar("map export " + map() + " " + map() + "/unknown.ply --unknown"), 1, "map");
 }
 
+/// Everything that a user can do, one after the other.
+constexpr const char* kPlayed = R"(frame 0 add pot teapot
+time 0 drop pot view height 0.2
+frame 5 carry pot 0.2 0.1 1.2
+frame 9 turn pot 0 0 30
+frame 10 release pot velocity 0.5 0 0.5
+frame 12 surfaces skirt
+frame 14 surfaces map
+frame 15 unknown solid
+frame 17 camera hold
+frame 21 camera go
+frame 22 radar sampled 32
+frame 24 camera rewind
+frame 44 quit
+)";
+
+TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path session = folder_ / "session", script = folder_ / "played.txt";
+  std::ofstream(script) << kPlayed;
+  const auto pictures = [&](const char* name) { return " --pictures " + (folder_ / name).string(); };
+  const Outcome played = roomradar("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
+                                   " --poses recorded --at-end loop --script " + script.string() +
+                                   " --record-session " + session.string() + pictures("played"));
+  ASSERT_EQ(played.status, 0) << played.out;
+  const fs::path report_path = folder_ / "replay.json";
+  const Outcome replayed =
+      roomradar("run " + session.string() + pictures("replayed") + " --report " + report_path.string());
+  ASSERT_EQ(replayed.status, 0) << replayed.out;
+  EXPECT_NE(replayed.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos)
+      << replayed.out;
+  const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
+  EXPECT_EQ(report["replay"], (nlohmann::json{{"same", 44}, {"different", 0}, {"recorded", 44}}));
+  EXPECT_EQ(report["settings"]["unknown"], "free");
+  EXPECT_EQ(read_text(folder_ / "played" / "000010.png"), read_text(folder_ / "replayed" / "000010.png"));
+
+  // It can fail: dropped from higher up the pot is elsewhere, and that is told.
+  std::ofstream(script) << "frame 0 add pot teapot\nframe 0 drop pot view height 0.4\nframe 44 quit\n";
+  const Outcome other = roomradar("run " + session.string() + " --script " + script.string());
+  EXPECT_EQ(other.status, 0) << other.out;
+  EXPECT_EQ(other.out.find("replay: 44 of 44"), std::string::npos) << other.out;
+  EXPECT_NE(other.out.find("the first that is not"), std::string::npos) << other.out;
+  // A session is a folder of its own, and its frames are a source like others.
+  expect_fault(roomradar("run 'sim:table?frames=3&width=160' --map " + map() + " --record-session " +
+                         session.string()),
+               1, "not empty");
+  EXPECT_EQ(roomradar("record " + session.string() + " " + (folder_ / "frames").string()).status, 0);
+}
+
+TEST_F(CommandLine, ASessionThatWasCutOffReplaysToWhereItCame) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path session = folder_ / "cut";
+  const Outcome played =
+      roomradar("run 'sim:table?frames=12&width=160&path=view&seed=2' --poses recorded --map " + map() +
+                " --record-session " + session.string());
+  ASSERT_EQ(played.status, 0) << played.out;
+  // As if it had been killed: the last frame's entry and the last result are not whole.
+  fs::resize_file(session / "frames" / "list.bin", fs::file_size(session / "frames" / "list.bin") - 9);
+  fs::resize_file(session / "results.txt", fs::file_size(session / "results.txt") - 20);
+  const Outcome replayed = roomradar("run " + session.string());
+  EXPECT_EQ(replayed.status, 0) << replayed.out;
+  EXPECT_NE(replayed.out.find("replay: 11 of 11 frames the same"), std::string::npos) << replayed.out;
+
+  std::ofstream(session / "session.json") << "{ \"format\": \"roomradar session\", \"format_version\": 9 }";
+  expect_fault(roomradar("run " + session.string()), 1, "version 9");
+  std::ofstream(session / "session.json") << "{ \"format\": \"roomr";
+  expect_fault(roomradar("run " + session.string()), 1, "session.json: is not the settings");
+  fs::remove(session / "session.json");
+  fs::remove_all(session / "frames");
+  expect_fault(roomradar("run " + session.string() + " --map " + map()), 1, session.string());
+}
+
+TEST_F(CommandLine, AWindowWithoutADisplaySaysWhatToDo) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const Outcome outcome = shell("env -u DISPLAY -u WAYLAND_DISPLAY " ROOMRADAR_PROGRAM
+                                " run 'sim:table?frames=3&width=160' --window --map " +
+                                map());
+  expect_fault(outcome, 1, "--video");
+}
+
 TEST_F(CommandLine, SolidUnknownSpaceIsInTheReportAndNeedsTheMap) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const fs::path report_path = folder_ / "solid.json";

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -31,12 +32,19 @@ time 4     place pot 0.4 -0.1 0.9
 time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 5e-1
 frame 200  remove pot
 time 8     adopt
+time 9     turn pot 0 0 -45.5
+frame 250  carry pot 0.4 -0.1 1
+frame 251  release pot velocity 0.1 0 0
+frame 252  surfaces border
+frame 253  unknown solid
+frame 254  radar sampled 48
+frame 255  camera hold
 frame 300  quit
 )";
 
 TEST(Script, ReadsEachAction) {
   const Script script = parse_script(kWhole, "events.txt");
-  ASSERT_EQ(script.events.size(), 8U);
+  ASSERT_EQ(script.events.size(), 15U);
   const auto& add = script.events[0];
   EXPECT_EQ(add.action, Action::kAdd);
   EXPECT_EQ(add.line, 2);
@@ -57,8 +65,64 @@ TEST(Script, ReadsEachAction) {
   EXPECT_EQ(script.events[5].action, Action::kRemove);
   EXPECT_EQ(script.events[6].action, Action::kAdopt);
   EXPECT_TRUE(script.events[6].name.empty());
-  EXPECT_EQ(script.events[7].action, Action::kQuit);
-  EXPECT_EQ(script.events[7].line, 10);
+  EXPECT_EQ(script.events[7].action, Action::kTurn);
+  EXPECT_EQ(script.events[7].turn_world_deg, Eigen::Vector3d(0, 0, -45.5));
+  EXPECT_EQ(script.events[8].action, Action::kCarry);
+  EXPECT_EQ(script.events[8].position_world, Eigen::Vector3d(0.4, -0.1, 1));
+  EXPECT_EQ(script.events[9].action, Action::kRelease);
+  EXPECT_EQ(script.events[9].velocity_world_mps, Eigen::Vector3d(0.1, 0, 0));
+  EXPECT_EQ(script.events[10].surfaces, SurfacePolicy::kBorder);
+  EXPECT_TRUE(script.events[11].unknown_is_solid);
+  EXPECT_EQ(script.events[12].radar.mode, RadarMode::kSampled);
+  EXPECT_EQ(script.events[12].radar.resolution_px, 48);
+  EXPECT_EQ(script.events[13].action, Action::kCamera);
+  EXPECT_EQ(script.events[13].camera, CameraPlay::kHold);
+  EXPECT_EQ(script.events[14].action, Action::kQuit);
+  EXPECT_EQ(script.events[14].line, 17);
+}
+
+TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
+  Script script = parse_script(
+      std::string(kWhole) + "frame 301 throw pot 0 0 1 velocity 1 0 0 spin 0 6.1 0 turned 10 20.3 -30\n"
+                            "frame 302 drop pot view height 0.1 turned 1 2 3\n",
+      "events.txt");
+  // Numbers that no short decimal fraction holds.
+  script.events[3].position_world = Eigen::Vector3d(1.0 / 3.0, -1e-17, 0.1 + 0.2);
+  script.events[4].velocity_world_mps = Eigen::Vector3d(std::sqrt(2.0), -0.0, 1e-9);
+  script.events[2].time_s = 1.0 / 30.0;
+  for (const CameraPlay camera :
+       {CameraPlay::kHold, CameraPlay::kGo, CameraPlay::kRewind, CameraPlay::kLoop, CameraPlay::kStay}) {
+    ScriptEvent event;
+    event.frame = 7;
+    event.action = Action::kCamera;
+    event.camera = camera;
+    script.events.push_back(event);
+  }
+  std::string text;
+  for (const ScriptEvent& event : script.events) text += to_line(event) + "\n";
+  const Script again = parse_script(text, "again.txt");
+  ASSERT_EQ(again.events.size(), script.events.size());
+  for (std::size_t i = 0; i < script.events.size(); ++i) {
+    const ScriptEvent& a = script.events[i];
+    const ScriptEvent& b = again.events[i];
+    EXPECT_EQ(a.frame, b.frame) << text;
+    EXPECT_EQ(a.time_s, b.time_s);
+    EXPECT_EQ(a.action, b.action);
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.mesh, b.mesh);
+    EXPECT_EQ(a.size_m, b.size_m);
+    EXPECT_EQ(a.position_world, b.position_world);
+    EXPECT_EQ(a.height_m, b.height_m);
+    EXPECT_EQ(a.velocity_world_mps, b.velocity_world_mps);
+    EXPECT_EQ(a.turn_world_deg, b.turn_world_deg);
+    EXPECT_EQ(a.spin_world_rad_s, b.spin_world_rad_s);
+    EXPECT_EQ(a.R_world_object, b.R_world_object);
+    EXPECT_EQ(a.surfaces, b.surfaces);
+    EXPECT_EQ(a.unknown_is_solid, b.unknown_is_solid);
+    EXPECT_EQ(a.radar.mode, b.radar.mode);
+    EXPECT_EQ(a.radar.resolution_px, b.radar.resolution_px);
+    EXPECT_EQ(a.camera, b.camera);
+  }
 }
 
 TEST(Script, NothingIsAScriptToo) {
@@ -72,7 +136,7 @@ TEST(Script, NamesFileLineAndFault) {
     const char* text;
     const char* expected;
   } faults[] = {
-      {"frame 1 jump pot", "unknown action 'jump'"},
+      {"frame 1 jump pot", "unknown word 'jump'; wanted is an action: add, place,"},
       {"at 1 quit", "not with 'at'"},
       {"frame -1 quit", "'-1' is out of range"},
       {"frame 1.5 quit", "whole number"},
@@ -97,6 +161,16 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 add pot teapot", "added in line 1 already"},
       {"frame 1 add cup teapot size 0", "'0' is out of range"},
       {"frame 1 quit now", "'now' is too much"},
+      {"frame 1 turn pot 0 0", "the line ends"},
+      {"frame 1 turn pot 0 0 4000", "'4000' is out of range"},
+      {"frame 1 carry pot 0 0", "the line ends"},
+      {"frame 1 release pot 1 0 0", "'velocity' is wanted"},
+      {"frame 1 surfaces all",
+       "unknown word 'all'; wanted is what can be touched: holes, skirt, border or map"},
+      {"frame 1 unknown", "the line ends"},
+      {"frame 1 radar exact 0", "'0' is out of range"},
+      {"frame 1 radar exact 1.5", "whole number"},
+      {"frame 1 camera jump", "hold, go, rewind, loop or stay"},
   };
   for (const auto& fault : faults) {
     const std::string message = message_of(add + fault.text);
@@ -141,7 +215,7 @@ TEST_F(ScriptFile, RefusesMissingFoldersAndHugeFiles) {
   EXPECT_THROW((void)read_script(folder_ / "none.txt"), Error);
   EXPECT_THROW((void)read_script(folder_), Error);
   std::ofstream(folder_ / "huge.txt") << "#";
-  std::filesystem::resize_file(folder_ / "huge.txt", (1U << 20U) + 1U);
+  std::filesystem::resize_file(folder_ / "huge.txt", (1U << 26U) + 1U);
   EXPECT_THROW((void)read_script(folder_ / "huge.txt"), Error);
 }
 

@@ -1,0 +1,224 @@
+// session_folder.cpp: writes and reads recorded sessions.
+#include "app/session_folder.hpp"
+
+#include <array>
+#include <cinttypes>
+#include <cstdio>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "app/sources/spooled_source.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSettings = "session.json";
+constexpr const char* kEvents = "events.txt";
+constexpr const char* kFrames = "frames";
+constexpr const char* kMeshes = "meshes";
+constexpr const char* kResults = "results.txt";
+constexpr const char* kFormat = "roomradar session";
+constexpr int kFormatVersion = 1;
+constexpr std::uintmax_t kMaxSettingsBytes = 1U << 20U;
+
+/// Fowler, Noll and Vo's hash FNV-1a, over words of 8 bytes.
+class Fingerprint {
+ public:
+  void add(const void* data, std::size_t size_bytes) {
+    const char* bytes = static_cast<const char*>(data);
+    for (std::size_t at = 0; at < size_bytes; at += sizeof(std::uint64_t)) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes + at, std::min(sizeof word, size_bytes - at));
+      value_ = (value_ ^ word) * 1099511628211ULL;
+      value_ ^= value_ >> 29U;  // words' high bits would never come down by the product alone
+    }
+  }
+  [[nodiscard]] std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_ = 14695981039346656037ULL;
+};
+
+std::string checksum_of(const MapInfo& map) {
+  const auto found = map.files.find("octree.ot");
+  return found == map.files.end() ? "" : found->second.sha256;
+}
+
+nlohmann::json read_settings(const fs::path& folder) {
+  const fs::path path = folder / kSettings;
+  std::error_code fault;
+  const std::uintmax_t bytes = fs::file_size(path, fault);
+  if (fault) throw Error(path.string() + ": there is no recorded session: " + fault.message());
+  if (bytes > kMaxSettingsBytes) throw Error(path.string() + ": is longer than 1 MiB; that is no session's");
+  std::ifstream file(path);
+  nlohmann::json json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || json.value("format", "") != kFormat)
+    throw Error(path.string() + ": is not the settings of a recorded session, or is damaged");
+  if (json.value("format_version", 0) != kFormatVersion)
+    throw Error(path.string() + ": is of format version " + std::to_string(json.value("format_version", 0)) +
+                "; this program reads version " + std::to_string(kFormatVersion));
+  return json;
+}
+
+template <typename Value>
+Value choice_of(const nlohmann::json& json, const char* key, std::initializer_list<Value> values,
+                const fs::path& folder) {
+  const auto word = json.at(key).get<std::string>();
+  for (const Value value : values)
+    if (to_string(value) == word) return value;
+  throw Error((folder / kSettings).string() + ": " + key + " \"" + word + "\" is not known");
+}
+
+void require_written(const std::ofstream& file, const fs::path& path) {
+  if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
+}
+
+}  // namespace
+
+FrameFingerprint fingerprint_of(std::int64_t run_frame, const Session& session) {
+  Fingerprint objects;
+  for (const auto& object : session.objects()) {
+    objects.add(object->body.name.data(), object->body.name.size());
+    const Eigen::Matrix<double, 3, 4> pose = object->body.T_world_object.matrix().topRows<3>();
+    objects.add(pose.data(), sizeof(double) * 12);
+    objects.add(&object->in_room, sizeof object->in_room);
+  }
+  FrameFingerprint result{run_frame, objects.value(), 0};
+  if (!session.picture().empty()) {
+    Fingerprint picture;
+    picture.add(session.picture().pixels.data(), session.picture().pixels.size() * sizeof(Rgb));
+    result.picture = picture.value();
+  }
+  return result;
+}
+
+SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map)
+    : folder_(std::move(folder)) {
+  std::error_code fault;
+  fs::create_directories(folder_, fault);
+  if (fault) throw Error(folder_.string() + ": the folder cannot be made: " + fault.message());
+  if (!fs::is_empty(folder_, fault) || fault)
+    throw Error(folder_.string() +
+                ": is not empty; a session is recorded to a folder of its own, name a new one");
+  nlohmann::json json = {{"format", kFormat},
+                         {"format_version", kFormatVersion},
+                         {"source", command.source},
+                         {"map", fs::absolute(command.map).lexically_normal().string()},
+                         {"map_sha256", checksum_of(map)},
+                         {"poses", to_string(command.poses)},
+                         {"surfaces", to_string(command.surfaces)},
+                         {"unknown_is_solid", command.unknown_is_solid},
+                         {"radar", to_string(command.radar.mode)},
+                         {"radar_px", command.radar.resolution_px},
+                         {"at_end", to_string(command.at_end)}};
+  if (command.adopt_after_s) json["adopt_s"] = *command.adopt_after_s;
+  std::ofstream settings(folder_ / kSettings);
+  settings << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n' << std::flush;
+  require_written(settings, folder_ / kSettings);
+  events_.open(folder_ / kEvents);
+  events_ << "# events of " << command.source << ", as they were applied\n" << std::flush;
+  require_written(events_, folder_ / kEvents);
+  results_.open(folder_ / kResults);
+  results_ << "# frame, fingerprint of the objects, fingerprint of the picture (0: none was made)\n"
+           << std::flush;
+  require_written(results_, folder_ / kResults);
+}
+
+std::unique_ptr<FrameSource> SessionRecorder::recorded(std::unique_ptr<FrameSource> source) const {
+  return SpooledSource::kept(std::move(source), folder_ / kFrames);
+}
+
+void SessionRecorder::write(ScriptEvent event, std::int64_t run_frame) {
+  event.frame = run_frame;
+  event.time_s.reset();
+  if (event.action == Action::kAdd && event.mesh != "teapot") {
+    const fs::path original = event.mesh;
+    const std::string name = "mesh-" + std::to_string(++meshes_) + original.extension().string();
+    std::error_code fault;
+    fs::create_directories(folder_ / kMeshes, fault);
+    if (!fault) fs::copy_file(original, folder_ / kMeshes / name, fault);
+    if (fault) throw Error((folder_ / kMeshes / name).string() + ": cannot be copied: " + fault.message());
+    event.mesh = std::string(kMeshes) + "/" + name;
+  }
+  events_ << to_line(event) << '\n' << std::flush;
+  require_written(events_, folder_ / kEvents);
+}
+
+void SessionRecorder::write(const FrameFingerprint& fingerprint) {
+  std::array<char, 80> line{};
+  std::snprintf(line.data(), line.size(), "%" PRId64 " %016" PRIx64 " %016" PRIx64 "\n",
+                fingerprint.run_frame, fingerprint.objects, fingerprint.picture);
+  results_ << line.data() << std::flush;
+  require_written(results_, folder_ / kResults);
+}
+
+bool is_session_folder(const fs::path& folder) {
+  std::error_code fault;
+  return fs::is_regular_file(folder / kSettings, fault);
+}
+
+RunCommand read_session(const fs::path& folder) {
+  const nlohmann::json json = read_settings(folder);
+  RunCommand command;
+  command.source = folder.string();
+  command.script = (folder / kEvents).string();
+  try {
+    command.map = json.at("map").get<std::string>();
+    command.poses = choice_of(json, "poses", {PoseOrigin::kTracked, PoseOrigin::kRecorded}, folder);
+    command.surfaces = choice_of(
+        json, "surfaces",
+        {SurfacePolicy::kMap, SurfacePolicy::kBorder, SurfacePolicy::kSkirt, SurfacePolicy::kHoles}, folder);
+    command.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
+    command.radar.mode = choice_of(json, "radar", {RadarMode::kExact, RadarMode::kSampled}, folder);
+    command.radar.resolution_px = json.at("radar_px").get<int>();
+    require_valid(command.radar);
+    command.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
+    if (json.contains("adopt_s")) command.adopt_after_s = json.at("adopt_s").get<double>();
+  } catch (const nlohmann::json::exception& fault) {
+    throw Error((folder / kSettings).string() + ": is damaged: " + fault.what());
+  }
+  return command;
+}
+
+std::unique_ptr<FrameSource> open_session_frames(const fs::path& folder) {
+  return SpooledSource::again(folder / kFrames);
+}
+
+std::string map_difference(const fs::path& folder, const MapInfo& map) {
+  const std::string recorded = read_settings(folder).value("map_sha256", "");
+  if (recorded.empty() || recorded == checksum_of(map)) return {};
+  return folder.string() + ": was recorded in a map that was another one than this; results will differ";
+}
+
+ReplayCheck::ReplayCheck(const fs::path& folder) {
+  std::ifstream file(folder / kResults);
+  for (std::string line; std::getline(file, line);) {
+    FrameFingerprint fingerprint;
+    if (std::sscanf(line.c_str(), "%" SCNd64 " %" SCNx64 " %" SCNx64, &fingerprint.run_frame,
+                    &fingerprint.objects, &fingerprint.picture) == 3)
+      recorded_.push_back(fingerprint);
+  }
+}
+
+void ReplayCheck::compare(const FrameFingerprint& fingerprint) {
+  if (next_ == recorded_.size()) return;  // the recording was cut off
+  const FrameFingerprint& recorded = recorded_[next_++];
+  const bool both_pictures = recorded.picture != 0 && fingerprint.picture != 0;
+  const bool is_same = recorded.run_frame == fingerprint.run_frame &&
+                       recorded.objects == fingerprint.objects &&
+                       (!both_pictures || recorded.picture == fingerprint.picture);
+  if (is_same) {
+    ++same_;
+  } else if (different_++ == 0) {
+    first_different_ = recorded.run_frame;
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,83 @@
+// session_folder.hpp: a run as it was played, in a folder: its frames, its events, its settings, its results.
+//
+//   session.json   format, settings, source, map
+//   events.txt     every event, as `--script` reads it
+//   frames/        the source's frames, to the bit (SpooledSource)
+//   meshes/        files of virtual objects
+//   results.txt    a line a frame: number, fingerprint of the objects, fingerprint of the picture
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.hpp"
+#include "app/script.hpp"
+#include "app/session.hpp"
+#include "mapping/types/frame_source.hpp"
+
+namespace roomradar {
+
+/// What a frame came to.
+struct FrameFingerprint {
+  std::int64_t run_frame = 0;
+  std::uint64_t objects =
+      0;  ///< of every object's name, pose, and whether it is in the room, to the last bit
+  std::uint64_t picture = 0;  ///< 0: none was made
+};
+FrameFingerprint fingerprint_of(std::int64_t run_frame, const Session& session);
+
+/// Writes a session while it is played. What is written is whole lines at any moment, so that a run that was
+/// killed replays to where it came.
+class SessionRecorder {
+ public:
+  /// Makes the folder, or takes an empty one. Throws Error if it holds anything, or cannot be written.
+  /// @param map  as it was loaded; its checksums tell later whether it is still the same
+  SessionRecorder(std::filesystem::path folder, const RunCommand& command, const MapInfo& map);
+
+  /// The source, which from now on is recorded as it is read, and can be read again.
+  [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
+  /// An event as it was applied before frame `run_frame`; the mesh file of an added object is copied. Throws
+  /// Error if the disk does not take it.
+  void write(ScriptEvent event, std::int64_t run_frame);
+  void write(const FrameFingerprint& fingerprint);
+
+ private:
+  std::filesystem::path folder_;
+  std::ofstream events_, results_;
+  int meshes_ = 0;
+};
+
+/// Whether a folder holds a recorded session.
+bool is_session_folder(const std::filesystem::path& folder);
+
+/// The command that was recorded: source (the folder itself), map, script, and the settings that a session's
+/// results depend on. Throws Error naming the file and the fault.
+RunCommand read_session(const std::filesystem::path& folder);
+
+/// The recorded frames. Throws Error if there are none.
+std::unique_ptr<FrameSource> open_session_frames(const std::filesystem::path& folder);
+
+/// Says by a sentence that the map is not as it was when the session was recorded; empty if it is.
+std::string map_difference(const std::filesystem::path& folder, const MapInfo& map);
+
+/// Compares a replay, frame by frame, with what was recorded.
+class ReplayCheck {
+ public:
+  explicit ReplayCheck(const std::filesystem::path& folder);
+  void compare(const FrameFingerprint& fingerprint);
+
+  [[nodiscard]] std::int64_t same() const { return same_; }
+  [[nodiscard]] std::int64_t different() const { return different_; }
+  [[nodiscard]] std::int64_t recorded() const { return static_cast<std::int64_t>(recorded_.size()); }
+  [[nodiscard]] std::int64_t first_different() const { return first_different_; }
+
+ private:
+  std::vector<FrameFingerprint> recorded_;
+  std::size_t next_ = 0;
+  std::int64_t same_ = 0, different_ = 0, first_different_ = -1;
+};
+
+}  // namespace roomradar

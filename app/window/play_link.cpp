@@ -1,0 +1,150 @@
+// play_link.cpp: one mutex, one condition.
+#include "app/window/play_link.hpp"
+
+#include <algorithm>
+
+namespace roomradar {
+
+void PlayLink::ask(Wish wish) {
+  const std::lock_guard lock(mutex_);
+  if (is_paused_ && wish.kind != WishKind::kGrab) message_ = "paused: it happens with the next frame";
+  // Of a mouse that moves faster than frames come, only the newest place counts.
+  if (wish.kind == WishKind::kDrag && !wishes_.empty() && wishes_.back().kind == WishKind::kDrag)
+    wishes_.back() = std::move(wish);
+  else
+    wishes_.push_back(std::move(wish));
+}
+
+void PlayLink::set_paused(bool is_paused) {
+  const std::lock_guard lock(mutex_);
+  is_paused_ = is_paused;
+  steps_ = 0;
+  changed_.notify_all();
+}
+
+bool PlayLink::is_paused() const {
+  const std::lock_guard lock(mutex_);
+  return is_paused_;
+}
+
+void PlayLink::step() {
+  const std::lock_guard lock(mutex_);
+  ++steps_;
+  changed_.notify_all();
+}
+
+void PlayLink::set_speed(double speed) {
+  const std::lock_guard lock(mutex_);
+  speed_ = speed;
+  last_turn_.reset();
+  changed_.notify_all();
+}
+
+void PlayLink::want(const ViewsWanted& views) {
+  const std::lock_guard lock(mutex_);
+  if (views == wanted_) return;
+  wanted_ = views;
+  wants_changed_ = true;
+  changed_.notify_all();
+}
+
+bool PlayLink::take(Snapshot& shown) {
+  const std::lock_guard lock(mutex_);
+  if (!is_fresh_) return false;
+  std::swap(newest_, shown);
+  is_fresh_ = false;
+  return true;
+}
+
+std::string PlayLink::take_message() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(message_, {});
+}
+
+void PlayLink::close() {
+  const std::lock_guard lock(mutex_);
+  is_closed_ = true;
+  changed_.notify_all();
+}
+
+bool PlayLink::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return is_over_;
+}
+
+bool PlayLink::wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh) {
+  constexpr double kCatchUp_s = 0.2;  // what was missed by more is not made up for
+  std::unique_lock lock(mutex_);
+  while (!is_closed_) {
+    if (wants_changed_) {
+      wants_changed_ = false;
+      lock.unlock();
+      refresh();
+      lock.lock();
+      continue;
+    }
+    if (is_paused_ && steps_ == 0) {
+      last_turn_.reset();
+      changed_.wait(lock);
+      continue;
+    }
+    const Clock::time_point now = Clock::now();
+    Clock::time_point due = now;
+    if (in_time && speed_ > 0.0 && last_turn_ && steps_ == 0) {
+      const double wait_s = std::clamp((stamp_s - last_turn_->first) / speed_, 0.0, 1.0);
+      due = last_turn_->second +
+            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
+    }
+    if (now < due) {
+      changed_.wait_until(lock, due);
+      continue;
+    }
+    if (now - due > std::chrono::duration<double>(kCatchUp_s)) due = now;
+    last_turn_ = {stamp_s, due};
+    steps_ = std::max(steps_ - 1, 0);
+    return true;
+  }
+  return false;
+}
+
+bool PlayLink::is_closed() const {
+  const std::lock_guard lock(mutex_);
+  return is_closed_;
+}
+
+std::vector<Wish> PlayLink::take_wishes() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(wishes_, {});
+}
+
+ViewsWanted PlayLink::wanted() const {
+  const std::lock_guard lock(mutex_);
+  return wanted_;
+}
+
+void PlayLink::publish(Snapshot& filled) {
+  {
+    const std::lock_guard lock(mutex_);
+    std::swap(newest_, filled);
+    is_fresh_ = true;
+  }
+  wake_();
+}
+
+void PlayLink::say(std::string message) {
+  {
+    const std::lock_guard lock(mutex_);
+    message_ = std::move(message);
+  }
+  wake_();
+}
+
+void PlayLink::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  wake_();
+}
+
+}  // namespace roomradar

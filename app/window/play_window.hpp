@@ -1,0 +1,20 @@
+// play_window.hpp: the window of `roomradar run --window`.
+#pragma once
+#include <functional>
+#include <string>
+
+#include "app/window/play_link.hpp"
+
+namespace roomradar {
+
+/// Opens a window, runs `work` on a thread of its own, and shows what it publishes until the user closes the
+/// window or the work is over and the window is closed. Must be called on the main thread.
+///
+/// @param title  of the window
+/// @return what `work` returned; what it throws is thrown here
+/// @throws Error saying what to do where this build has no window, there is no display, or the display gives
+/// no
+///         OpenGL 3.3
+int run_in_window(const std::string& title, const std::function<int(PlayLink&)>& work);
+
+}  // namespace roomradar

@@ -1,0 +1,13 @@
+// play_window_absent.cpp: in the place of the window where GLFW or Dear ImGui were not there to build it.
+#include "app/window/play_window.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+
+int run_in_window(const std::string& /*title*/, const std::function<int(PlayLink&)>& /*work*/) {
+  throw Error(
+      "--window: this roomradar was built without it; install libglfw3-dev and libimgui-dev and configure "
+      "again, or write the pictures with --video FILE");
+}
+
+}  // namespace roomradar

@@ -1,0 +1,49 @@
+// window_layout.hpp: which part of the window shows what.
+#pragma once
+#include <algorithm>
+
+namespace roomradar {
+
+/// Pixels of the window, from its top left.
+struct Area {
+  float x = 0.0F, y = 0.0F, width = 0.0F, height = 0.0F;
+  [[nodiscard]] bool empty() const { return width < 8.0F || height < 8.0F; }
+};
+
+enum class MainView { kCamera, kModels, kBoth };
+
+struct WindowLayout {
+  Area bar, camera, models, side, timing, radar;
+};
+
+constexpr WindowLayout window_layout(float width, float height, MainView view) {
+  constexpr float kBar = 48.0F, kSide = 292.0F;
+  const float strip = std::clamp(0.27F * height, 120.0F, 250.0F);
+  const float main_width = std::max(width - kSide, 0.0F);
+  const float main_height = std::max(height - kBar - strip, 0.0F);
+  WindowLayout layout;
+  layout.bar = {0.0F, 0.0F, width, kBar};
+  layout.side = {main_width, kBar, kSide, height - kBar};
+  layout.timing = {0.0F, kBar + main_height, 0.5F * main_width, strip};
+  layout.radar = {0.5F * main_width, kBar + main_height, 0.5F * main_width, strip};
+  const Area whole{0.0F, kBar, main_width, main_height};
+  if (view == MainView::kCamera) layout.camera = whole;
+  if (view == MainView::kModels) layout.models = whole;
+  if (view == MainView::kBoth) {
+    layout.camera = {whole.x, whole.y, 0.5F * whole.width, whole.height};
+    layout.models = {whole.x + 0.5F * whole.width, whole.y, 0.5F * whole.width, whole.height};
+  }
+  return layout;
+}
+
+/// The largest area of an image's shape in the middle of another.
+constexpr Area fitted(const Area& area, int image_width_px, int image_height_px) {
+  if (image_width_px <= 0 || image_height_px <= 0) return {};
+  const float scale = std::min(area.width / static_cast<float>(image_width_px),
+                               area.height / static_cast<float>(image_height_px));
+  const float width = scale * static_cast<float>(image_width_px);
+  const float height = scale * static_cast<float>(image_height_px);
+  return {area.x + 0.5F * (area.width - width), area.y + 0.5F * (area.height - height), width, height};
+}
+
+}  // namespace roomradar

@@ -1,0 +1,220 @@
+// player_test.cpp: what a user does with the mouse, as events of a script, on a floor that is known.
+#include "app/window/player.hpp"
+
+#include <gtest/gtest.h>
+
+#include "app/window/play_link.hpp"
+#include "mapping/types/error.hpp"
+#include "tests/support/exact_depth.hpp"
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+constexpr Intrinsics kCamera{160, 120, 146.0, 146.0, 79.5, 59.5};
+const Eigen::Isometry3d kAtTheFloor = test::looking_at({0.0, -1.2, 1.2}, {0.0, 0.0, 0.0});
+
+/// A level floor of 4 x 4 m at z = 0.
+SavedMap floor_map() {
+  SavedMap map;
+  map.mesh.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
+  map.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return map;
+}
+
+/// A session over that floor with one pot, and a camera that looks down at it.
+class Playing : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ScriptEvent add;
+    add.action = Action::kAdd;
+    add.name = "pot";
+    add.mesh = "teapot";
+    session_.apply(add);
+    step();
+  }
+  void step() {
+    frame_.index = frames_;
+    frame_.stamp_s = static_cast<double>(frames_++) / 30.0;
+    frame_.depth_camera = kCamera;
+    frame_.depth_m.resize(kCamera.width_px, kCamera.height_px, 0.0F);
+    frame_.T_world_camera = kAtTheFloor;
+    result_ = session_.step(frame_, times_);
+  }
+  /// Does what one wish leads to, and goes one frame on.
+  std::vector<ScriptEvent> play(const Wish& wish) {
+    std::vector<ScriptEvent> events = player_.events_of({&wish, 1}, session_);
+    for (const ScriptEvent& event : events) session_.apply(event);
+    step();
+    return events;
+  }
+  static Wish wish(WishKind kind, const Vec3& p_world = Vec3::Zero()) {
+    Wish wish;
+    wish.kind = kind;
+    wish.pixel = project(kCamera, kAtTheFloor.inverse() * p_world);
+    return wish;
+  }
+  [[nodiscard]] const VirtualObject& pot() const { return *session_.objects().front(); }
+  [[nodiscard]] Vec3 position() const { return pot().body.T_world_object.translation(); }
+  /// Where the pot is seen.
+  [[nodiscard]] Vec3 middle() const { return pot().body.T_world_object * pot().middle; }
+
+  static SessionConfig config() {
+    SessionConfig config;
+    config.poses = PoseOrigin::kRecorded;
+    return config;
+  }
+  SavedMap map_ = floor_map();
+  Session session_{map_, config()};
+  Player player_{"teapot"};
+  StageTimes times_;
+  Frame frame_;
+  FrameResult result_;
+  std::int64_t frames_ = 0;
+};
+
+TEST_F(Playing, AnObjectIsDroppedWhereOneClicks) {
+  const Vec3 there(0.3, 0.2, 0.0);
+  EXPECT_TRUE(play(wish(WishKind::kGrab, there)).empty());  // nothing is there to be grabbed
+  Wish click = wish(WishKind::kLetGo, there);
+  click.event.height_m = 0.25;
+  const auto events = play(click);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].action, Action::kDrop);
+  EXPECT_EQ(events[0].name, "pot");
+  EXPECT_LT((*events[0].position_world - there).norm(), 1e-6);
+  EXPECT_EQ(events[0].height_m, 0.25);
+  for (int i = 0; i < 60; ++i) step();
+  EXPECT_TRUE(pot().body.at_rest);
+  EXPECT_LT((position() - there).norm(), 0.01);
+}
+
+TEST_F(Playing, AnObjectIsPlacedOntoTheSurface) {
+  const auto events = play(wish(WishKind::kPlace, {-0.4, 0.1, 0.0}));
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].action, Action::kPlace);
+  EXPECT_NEAR(events[0].position_world->z() + lowest_m(pot()), 0.002, 1e-6);
+  EXPECT_NEAR(events[0].position_world->x(), -0.4, 1e-6);
+}
+
+TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  for (int i = 0; i < 30; ++i) step();
+  ASSERT_TRUE(play(wish(WishKind::kGrab, middle())).empty());
+  EXPECT_TRUE(player_.is_grabbed());
+  // Half a metre to the right and up, at the distance at which it was taken.
+  const Vec3 before = position();
+  const double distance_m = (middle() - kAtTheFloor.translation()).norm();
+  for (int i = 1; i <= 10; ++i) play(wish(WishKind::kDrag, middle() + Vec3(0.05, 0.0, 0.04)));
+  for (int i = 0; i < 3; ++i) step();
+  EXPECT_GT(position().x(), before.x() + 0.2);
+  EXPECT_GT(position().z(), before.z() + 0.1);
+  EXPECT_NEAR((middle() - kAtTheFloor.translation()).norm(), distance_m, 0.1);
+  const Vec3 held = position();
+  for (int i = 0; i < 20; ++i) step();
+  EXPECT_LT((position() - held).norm(), 1e-6) << "it hangs in the air while it is held";
+  // Through the floor, if nothing stopped it.
+  for (int i = 0; i < 10; ++i) play(wish(WishKind::kDrag, {0.3, -0.4, 0.0}));
+  EXPECT_GT(position().z() + lowest_m(pot()), -1e-6);
+  const auto events = play(wish(WishKind::kLetGo, {0.3, -0.4, 0.0}));
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].action, Action::kRelease);
+  EXPECT_FALSE(player_.is_grabbed());
+  EXPECT_FALSE(pot().carried_to_world);
+}
+
+TEST_F(Playing, WhatIsLetGoInMotionFliesOnAsFastAsTheMouseWas) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  play(wish(WishKind::kGrab, middle()));
+  play(wish(WishKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
+  Wish let_go = wish(WishKind::kLetGo, middle() + Vec3(0.02, 0.0, 0.2));
+  let_go.pixel_velocity_s = {146.0, 0.0};  // one metre a second, a metre away
+  const auto events = play(let_go);
+  ASSERT_EQ(events.size(), 1U);
+  const double distance_m = (middle() - kAtTheFloor.translation()).norm();
+  EXPECT_NEAR(events[0].velocity_world_mps.x(), distance_m, 0.15 * distance_m);
+  EXPECT_NEAR(events[0].velocity_world_mps.y(), 0.0, 0.1);
+}
+
+TEST_F(Playing, AThrownObjectFliesThroughThePixel) {
+  Wish wish = Playing::wish(WishKind::kThrow, {0.5, 0.5, 0.0});
+  wish.speed_mps = 4.0;
+  const auto events = play(wish);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_NEAR(events[0].velocity_world_mps.norm(), 4.0, 1e-9);
+  const Vec3 to_there = Vec3(0.5, 0.5, 0.0) - kAtTheFloor.translation();
+  EXPECT_NEAR(events[0].velocity_world_mps.normalized().dot(to_there.normalized()), 1.0, 1e-9);
+}
+
+TEST_F(Playing, AnotherObjectHasANameOfItsOwnAndIsChosen) {
+  const auto events = play(wish(WishKind::kNew));
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].action, Action::kAdd);
+  EXPECT_EQ(events[0].name, "teapot");
+  EXPECT_EQ(player_.chosen(), "teapot");
+  EXPECT_EQ(play(wish(WishKind::kNew))[0].name, "teapot2");
+  EXPECT_EQ(session_.objects().size(), 3U);
+  const auto reset = play(wish(WishKind::kReset));
+  EXPECT_EQ(reset.back().action, Action::kDrop);
+  EXPECT_EQ(reset.back().name, "teapot2");
+}
+
+TEST_F(Playing, WhereThereIsNothingTheUserIsTold) {
+  const Wish at_the_sky = wish(WishKind::kDrop, {0.0, 40.0, 0.0});
+  EXPECT_TRUE(play(at_the_sky).empty());
+  EXPECT_NE(player_.complaint().find("no surface"), std::string::npos);
+  EXPECT_EQ(play(wish(WishKind::kDrop)).size(), 1U);
+  EXPECT_TRUE(player_.complaint().empty());
+}
+
+TEST_F(Playing, PoliciesThatDoNotGoTogetherAreRefusedAndNothingChanges) {
+  ScriptEvent solid, skirt;
+  solid.action = Action::kUnknown;
+  solid.unknown_is_solid = true;
+  skirt.action = Action::kSurfaces;
+  skirt.surfaces = SurfacePolicy::kSkirt;
+  session_.apply(skirt);
+  EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kSkirt);
+  EXPECT_THROW(session_.apply(solid), Error);
+  EXPECT_FALSE(session_.unknown_is_solid());
+  skirt.surfaces = SurfacePolicy::kMap;
+  session_.apply(skirt);
+  session_.apply(solid);
+  EXPECT_TRUE(session_.unknown_is_solid());
+  skirt.surfaces = SurfacePolicy::kHoles;
+  EXPECT_THROW(session_.apply(skirt), Error);
+  EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kMap);
+}
+
+TEST(PlayLink, APausedSessionWaitsForAStepOrTheEnd) {
+  PlayLink link;
+  link.set_paused(true);
+  link.step();
+  int refreshed = 0;
+  link.want({.radar = true, .models = false});
+  EXPECT_TRUE(link.wait_turn(1.0, true, [&] { ++refreshed; }));
+  EXPECT_EQ(refreshed, 1);
+  link.close();
+  EXPECT_FALSE(link.wait_turn(2.0, true, [] {}));
+}
+
+TEST(PlayLink, OfManyDragsOnlyTheNewestCountsAndTheOrderOfTheRestStays) {
+  PlayLink link;
+  Wish wish;
+  for (const WishKind kind :
+       {WishKind::kGrab, WishKind::kDrag, WishKind::kDrag, WishKind::kDrag, WishKind::kLetGo}) {
+    wish.kind = kind;
+    wish.pixel.x() += 1.0;
+    link.ask(wish);
+  }
+  const std::vector<Wish> wishes = link.take_wishes();
+  ASSERT_EQ(wishes.size(), 3U);
+  EXPECT_EQ(wishes[1].kind, WishKind::kDrag);
+  EXPECT_EQ(wishes[1].pixel.x(), 4.0);
+  EXPECT_EQ(wishes[2].kind, WishKind::kLetGo);
+  EXPECT_TRUE(link.take_wishes().empty());
+}
+
+}  // namespace
+}  // namespace roomradar

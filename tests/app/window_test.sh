@@ -1,0 +1,136 @@
+#!/usr/bin/env bash
+# Plays in the window by real keys and mouse events on a screen of its own, looks at what it did through the recorded
+# events, screenshots and the report, and replays the session without a window to the same results.
+#
+# usage: window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
+set -euo pipefail
+program=$1
+for tool in Xvfb xdotool import identify; do
+  command -v "$tool" > /dev/null || { echo "skipped: $tool is not installed (packages xvfb xdotool imagemagick)"; exit 77; }
+done
+work=$(mktemp -d)
+shots=${2:-$work}
+mkdir -p "$shots"
+trap 'kill $(jobs -p) 2> /dev/null || true; wait; rm -rf "$work"' EXIT
+
+fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" "$work/session/events.txt" >&2 || true; exit 1; }
+# until WORDS... : tries a command for as long as a slow machine may need.
+until_true() {
+  for _ in $(seq 400); do
+    "$@" && return
+    kill -0 "$player" 2> /dev/null || fail "the window is gone, while waiting for: $*"
+    sleep 0.1
+  done
+  fail "in vain waited for: $*"
+}
+has_event() { grep -qE "$1" "$work/session/events.txt" 2> /dev/null; }
+has_frames() { [[ $(grep -cv '^#' "$work/session/results.txt" 2> /dev/null) -ge $1 ]]; }
+shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 500 ]] || fail "$1.png is empty"; }
+
+"$program" prescan 'sim:table?frames=40&width=160' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 || fail prescan
+
+exec 3> >(cat > "$work/display")
+Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp > /dev/null 2>&1 &
+for _ in $(seq 100); do [[ -s $work/display ]] && break; sleep 0.1; done
+DISPLAY=:$(cat "$work/display")
+export DISPLAY
+
+"$program" run 'sim:table?frames=30&width=320&path=view&seed=2' --poses recorded --map "$work/map" --window --at-end loop \
+  --record-session "$work/session" --report "$work/report.json" > "$work/log" 2>&1 &
+player=$!
+until_true xdotool search --name '^roomradar - ' > /dev/null
+xdotool windowfocus "$(xdotool search --name '^roomradar - ' | head -n 1)"
+until_true has_frames 3
+
+echo "== a click drops the object where it points"
+xdotool mousemove 494 330
+xdotool click 1
+until_true has_event '^frame [0-9]+ drop object at '
+shot dropped
+
+echo "== keys change policies, hold the camera, add and remove"
+xdotool key u
+until_true has_event ' unknown solid$'
+xdotool key u
+until_true has_event ' unknown free$'
+xdotool key s
+until_true has_event ' surfaces holes$'
+for policy in skirt border map; do
+  xdotool key s
+  until_true has_event " surfaces $policy\$"
+done
+xdotool key x
+until_true has_event ' radar sampled 64$'
+xdotool key f
+until_true has_event ' camera hold$'
+xdotool key a
+until_true has_event ' add teapot teapot$'
+until_true has_event ' drop teapot view '
+xdotool key Delete
+until_true has_event ' remove teapot$'
+
+echo "== drag, throw, turn"
+xdotool key Tab
+xdotool mousemove 494 330
+xdotool key p
+until_true has_event ' place object '
+has_turned() {
+  # The mouse button grabs what is under the mouse; it is asked again until the object is there.
+  xdotool mousemove 494 322 mousedown 3 mousemove_relative 40 0 mouseup 3
+  has_event ' turn object '
+}
+until_true has_turned
+has_carried() {
+  xdotool mousemove 494 322 mousedown 1
+  sleep 0.3
+  xdotool mousemove_relative -- 30 -30
+  sleep 0.3
+  xdotool mousemove_relative -- 30 -30
+  sleep 0.3
+  xdotool mouseup 1
+  has_event ' carry object '
+}
+until_true has_carried
+until_true has_event ' release object velocity '
+xdotool key t
+until_true has_event ' throw object '
+xdotool key f
+until_true has_event ' camera go$'
+
+echo "== pause and step"
+xdotool key space
+sleep 1
+before=$(wc -l < "$work/session/results.txt")
+sleep 1
+[[ $(wc -l < "$work/session/results.txt") == "$before" ]] || fail "frames go on while it is paused"
+xdotool key period
+stepped() { [[ $(wc -l < "$work/session/results.txt") == $((before + 1)) ]]; }
+until_true stepped
+xdotool key space
+
+echo "== views"
+xdotool key r v
+until_true has_event ' drop object view '
+sleep 2
+shot models
+xdotool key v
+sleep 1
+shot both
+xdotool key v h
+sleep 1
+shot help
+
+echo "== quit, and play it again without a window"
+xdotool key Escape
+xdotool key ctrl+q
+status=0
+wait "$player" || status=$?
+[[ $status == 0 ]] || fail "exit status $status"
+has_event '^frame [0-9]+ quit$' || fail "the session does not say where it ended"
+grep -q '"object"' "$work/report.json" || fail "no object in the report"
+unset DISPLAY
+"$program" run "$work/session" --video "$work/again.avi" > "$work/log" 2>&1 || fail replay
+grep -E '^replay: ' "$work/log"
+read -r same recorded < <(sed -nE 's/^replay: ([0-9]+) of ([0-9]+) frames.*/\1 \2/p' "$work/log")
+[[ $same == "$recorded" && $recorded -gt 20 ]] || fail "the replay is not the same"
+echo "passed"
