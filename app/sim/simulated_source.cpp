@@ -206,8 +206,13 @@ ReadResult SimulatedSource::next(Frame& frame) {
   State& s = *state_;
   if (s.next_index >= s.options.frames) return {ReadStatus::kEnd, {}};
   const std::int64_t index = s.next_index++;
+  look(index, T_world_camera_at(s.path, static_cast<double>(index) / s.options.rate_hz), frame);
+  return {ReadStatus::kFrame, {}};
+}
+
+void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame) {
+  State& s = *state_;
   const double t_s = static_cast<double>(index) / s.options.rate_hz;
-  const Eigen::Isometry3d T_world_camera = T_world_camera_at(s.path, t_s);
   s.place_solids(t_s);
   s.depth_view.prepare(s.solids, s.options.depth_camera, T_world_camera);
   render_exact(s.solids, s.depth_view, s.options.depth_camera, s.depth_faults.rays, s.depth_exact);
@@ -238,7 +243,6 @@ ReadResult SimulatedSource::next(Frame& frame) {
   frame.T_colour_depth = s.T_colour_depth;
   frame.T_world_camera = T_world_camera;
   frame.down_camera = T_world_camera.linear().transpose() * -Vector3d::UnitZ();
-  return {ReadStatus::kFrame, {}};
 }
 
 bool SimulatedSource::rewind() {

@@ -11,7 +11,7 @@ namespace roomradar {
 
 struct Room;
 
-/// What the sensor would have delivered without its faults, for the frame read last.
+/// What the sensor would have delivered without its faults, for the frame filled last.
 struct SimTruth {
   /// Exact depth of the pixel's centre ray, within the sensor's range; 0 = outside of it.
   DepthImage depth_m;
@@ -32,12 +32,15 @@ class SimulatedSource final : public FrameSource {
   ~SimulatedSource() override;
 
   ReadResult next(Frame& frame) override;
+  /// The frame of that index (any, of time index / rate) as a camera at another pose takes it; `next` goes on
+  /// where it was.
+  void look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame);
   bool rewind() override;
   bool seek(std::int64_t index) override;
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override;
   [[nodiscard]] std::string name() const override;
 
-  [[nodiscard]] const SimTruth& truth() const;  ///< of the frame that `next` filled last
+  [[nodiscard]] const SimTruth& truth() const;  ///< of the frame that was filled last
   [[nodiscard]] const SimOptions& options() const;
   [[nodiscard]] const Room& room() const;
 
