@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "mapping/align.hpp"
+#include "mapping/patch_matching.hpp"
 #include "mapping/places.hpp"
 #include "mapping/view.hpp"
 
@@ -15,21 +16,29 @@ using ExpectedDepth = std::function<const DepthImage&(const Eigen::Isometry3d& T
 
 /// What is remembered from frame to frame, and buffers that are reused.
 struct Locator {
-  ViewConfig live_view;
-  ViewConfig expected_view{.noisy = false};  ///< rendered depth needs no smoothing
+  ViewConfig live_view{.finest_width_px = 160};  ///< twice as fine is 3 ms slower and no nearer to the truth
+  ViewConfig expected_view{.finest_width_px = 160, .noisy = false};  ///< rendered depth needs no smoothing
   AlignConfig align;
   RelocaliseConfig relocalise;
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< of the last frame; nothing while lost
   /// Motion from the frame before to the last one.
   Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
+  int doubtful_frames = 0;  ///< in a row, whose depth speaks against where the camera is taken to be
+  int sure_until = 0;       ///< so many more doubtful frames pass before the map is searched again
+  /// Where the camera was lost, for some frames after that, and how many have passed.
+  std::optional<Eigen::Isometry3d> T_world_lost;
+  int lost_frames = 0;
 
+  KnownPatches known;  ///< of the places; made when they are first asked for
   ViewPyramid live_pyramid, expected_pyramid;
   LiveView live;
   ReferenceView expected;
 };
 
 /// Finds the frame's camera: by alignment with the expected depth at the pose predicted from the last motion,
-/// or, when that fails or nothing is known, by relocalisation among the places and alignment from there.
+/// or, when that fails, when the depth has spoken against it for three frames, or when nothing is known, by
+/// what it sees of the map's patches, or where there is no colour of its places, and alignment from there. A
+/// pose found anew must be borne out by the depth, and no other pose may explain the frame about as well.
 ///
 /// @param moved_mask  of the frame before: pixels at 255 moved and are left out; empty, or of the depth's
 /// size
@@ -37,6 +46,7 @@ struct Locator {
 ///         room does not fix are the prediction's, or it is the last frame's pose, where the sensor's
 ///         depth bent and alignment took that for a motion); any other status: not located, the next frame
 ///         starts anew
+/// The expected depth at the pose returned is the last that was asked for.
 Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
                 const ExpectedDepth& expected_depth);
 

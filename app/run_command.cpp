@@ -234,6 +234,8 @@ int run_frames(const RunCommand& command, PlayLink* link) {
         continue;
       }
       totals.add(result);
+      const std::string news = totals.lost.add(frame.index, result.status == FrameStatus::kDone);
+      if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
       if (host) host->show(run_frame, run_time_s, frame, result);
       if (recorder || check) {
         const FrameFingerprint fingerprint = fingerprint_of(run_frame, session);

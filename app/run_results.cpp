@@ -41,12 +41,16 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                        {"frame", change.frame},
                        {"position_m", to_json(change.box_world.center())},
                        {"size_m", to_json(change.box_world.sizes())}});
+  nlohmann::json lost = nlohmann::json::array();
+  for (const LostSpan& span : totals.lost.spans)
+    lost.push_back({{"from_frame", span.from}, {"until_frame", span.until}});
   nlohmann::json contacts_by_kind = nlohmann::json::object();
   for (std::size_t kind = 1; kind < kTouchedKinds; ++kind)
     contacts_by_kind[std::string(to_string(static_cast<Touched>(kind)))] = totals.contacts_by_kind[kind];
   nlohmann::json results = {
       {"frames_located", totals.located},
       {"frames_degenerate", totals.degenerate},
+      {"lost", lost},
       {"frames_dropped", totals.dropped},
       {"moved_fraction_mean", totals.per_frame(totals.moved_fraction)},
       {"moved_fraction_max", totals.max_moved_fraction},

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/lost_spans.hpp"
 #include "app/session.hpp"
 
 namespace roomradar {
@@ -20,6 +21,7 @@ struct RunTotals {
   double deepest_penetration_m = 0.0;
   double first_stamp_s = 0.0;
   std::string last_fault;
+  LostSpans lost;
   std::int64_t dropped = 0;  // by a live source, for newer ones
   std::optional<std::int64_t> first_index;
 

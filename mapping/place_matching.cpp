@@ -60,11 +60,6 @@ std::vector<std::pair<std::size_t, std::size_t>> matches(const std::vector<Bits>
   return pairs;
 }
 
-struct PointPair {
-  Eigen::Vector3d a, b;  // m, in a's and b's camera
-  double gate_m;         // how far they may be apart once moved onto each other
-};
-
 /// Best rigid motion of the chosen pairs' b onto a.
 Eigen::Isometry3d rigid_motion(const std::vector<PointPair>& pairs, const std::vector<std::size_t>& chosen) {
   Eigen::Matrix3Xd a(3, static_cast<Eigen::Index>(chosen.size())), b = a;
@@ -127,18 +122,23 @@ PlaceMatch match_places(const Place& a, const Place& b) {
     const float sigma_m = depth_sigma_m(std::max(pa.z(), pb.z()));
     pairs.push_back({pa.cast<double>(), pb.cast<double>(), 0.015 + 3.0 * static_cast<double>(sigma_m)});
   }
+  return pairs.size() < kMinMatches ? PlaceMatch{} : motion_of(pairs, kSamples);
+}
+
+PlaceMatch motion_of(const std::vector<PointPair>& pairs, int samples) {
+  constexpr std::size_t kMinPairs = 4;
   PlaceMatch match;
-  if (pairs.size() < kMinMatches) return match;
+  if (pairs.size() < kMinPairs) return match;
 
   std::mt19937 random(1);
   std::vector<std::size_t> best, triple(3);
-  for (int sample = 0; sample < kSamples; ++sample) {
+  for (int sample = 0; sample < samples; ++sample) {
     for (std::size_t& i : triple) i = random() % pairs.size();
     if (!is_usable_triple(pairs, triple)) continue;
     std::vector<std::size_t> inliers = inliers_of(pairs, rigid_motion(pairs, triple));
     if (inliers.size() > best.size()) best = std::move(inliers);
   }
-  for (int round = 0; round < 5 && best.size() >= kMinMatches; ++round) {
+  for (int round = 0; round < 5 && best.size() >= kMinPairs; ++round) {
     match.T_a_b = rigid_motion(pairs, best);
     best = inliers_of(pairs, match.T_a_b);
     match.inliers = static_cast<int>(best.size());

@@ -20,6 +20,16 @@ struct PlaceMatch {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< only if inliers > 0
 };
 
+/// One point in two frames.
+struct PointPair {
+  Eigen::Vector3d a, b;  ///< m
+  double gate_m;         ///< how far they may be apart once moved onto each other
+};
+
+/// The motion that most pairs agree on, by RANSAC over so many triples with a fixed seed, refined over all
+/// inliers.
+PlaceMatch motion_of(const std::vector<PointPair>& pairs, int samples);
+
 /// Matches all features (nearest descriptor, clearly nearer than the second) and finds the motion that most
 /// of their points agree on within the depth noise, by RANSAC over triples with a fixed seed, refined over
 /// all inliers. Source: Fischler and Bolles 1981; Umeyama 1991; Lowe 2004 (ratio test).

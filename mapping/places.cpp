@@ -7,51 +7,12 @@
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 
+#include "mapping/surface_point.hpp"
 #include "mapping/view.hpp"
 
 namespace roomradar {
 namespace {
-
-/// Depth at a pixel as the middle one of its 3 x 3 surroundings; 0 if fewer than five of them have any.
-float median_depth_m(const DepthImage& depth_m, int x, int y) {
-  std::array<float, 9> around{};
-  std::size_t count = 0;
-  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth_m.height - 1); ++v) {
-    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, depth_m.width - 1); ++u) {
-      if (depth_m.at(u, v) > 0.0F) around[count++] = depth_m.at(u, v);
-    }
-  }
-  if (count < 5) return 0.0F;
-  const auto middle = around.begin() + static_cast<std::ptrdiff_t>(count / 2);
-  std::nth_element(around.begin(), middle, around.begin() + static_cast<std::ptrdiff_t>(count));
-  return *middle;
-}
-
-/// The surface point seen at a colour pixel, in the depth camera. The point's depth decides where in the
-/// depth image to look for it, so it is searched for along the ray, from near and from far.
-std::optional<Eigen::Vector3f> point_at(const Frame& frame, const Eigen::Isometry3d& T_depth_colour,
-                                        double u_px, double v_px) {
-  for (const double start_m : {0.8, 3.0}) {
-    double z_colour_m = start_m;
-    for (int step = 0; step < 8; ++step) {
-      const Eigen::Vector3d p = T_depth_colour * back_project(frame.colour_camera, u_px, v_px, z_colour_m);
-      if (p.z() < 0.1) break;
-      const Eigen::Vector2d at_px = project(frame.depth_camera, p);
-      if (!(at_px.cwiseAbs().maxCoeff() < 1e5)) break;
-      const int x = static_cast<int>(std::lround(at_px.x())), y = static_cast<int>(std::lround(at_px.y()));
-      if (!frame.depth_m.contains(x, y)) break;
-      const auto depth_m = static_cast<double>(median_depth_m(frame.depth_m, x, y));
-      if (depth_m <= 0.0) break;
-      const Eigen::Vector3d seen = p * (depth_m / p.z());
-      const double next_m = (frame.T_colour_depth * seen).z();
-      if (std::abs(next_m - z_colour_m) < 0.01 * next_m) return seen.cast<float>();
-      z_colour_m = next_m;
-    }
-  }
-  return std::nullopt;
-}
 
 void describe_features(const Frame& frame, int most, Place& place) {
   cv::Mat3b colour(frame.colour.height, frame.colour.width);
@@ -72,8 +33,8 @@ void describe_features(const Frame& frame, int most, Place& place) {
   });
   const Eigen::Isometry3d T_depth_colour = frame.T_colour_depth.inverse();
   for (const std::size_t i : strongest) {
-    const auto p = point_at(frame, T_depth_colour, static_cast<double>(keypoints[i].pt.x),
-                            static_cast<double>(keypoints[i].pt.y));
+    const auto p = surface_point_at(frame, T_depth_colour, static_cast<double>(keypoints[i].pt.x),
+                                    static_cast<double>(keypoints[i].pt.y));
     if (!p) continue;
     Descriptor& bits = place.descriptors.emplace_back();
     std::memcpy(bits.data(), descriptors.ptr(static_cast<int>(i)), bits.size());
@@ -100,6 +61,7 @@ Place describe_place(const Frame& frame, const Eigen::Isometry3d& T_world_camera
                  });
   // ORB needs 31 pixels of surroundings and OpenCV's pyramid some more.
   constexpr int kSmallest_px = 64;
+  place.patches = describe_patches(frame, config.patches);
   if (config.features > 0 && std::min(frame.colour.width, frame.colour.height) >= kSmallest_px) {
     describe_features(frame, config.features, place);
   }

@@ -2,26 +2,26 @@
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
 #include <vector>
 
+#include "mapping/patches.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
-
-/// ORB's 256 bits. Source: Rublee et al., ORB: an efficient alternative to SIFT or SURF, ICCV 2011.
-using Descriptor = std::array<std::uint8_t, 32>;
 
 /// One remembered view.
 struct Place {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< of the depth camera
   std::vector<Eigen::Vector3f> points_camera;  ///< m, in this view's depth camera; one a descriptor
-  std::vector<Descriptor> descriptors;         ///< empty where the source has no colour
+  /// ORB's; empty where the source has no colour. Source: Rublee et al., ORB: an efficient alternative to
+  /// SIFT or SURF, ICCV 2011.
+  std::vector<Descriptor> descriptors;
+  std::vector<SurfacePatch> patches;  ///< in this view's depth camera
   Intrinsics preview_camera;
   Image<std::uint16_t> preview_depth_mm;  ///< of preview_camera's size; 0: none
 };
@@ -32,6 +32,7 @@ struct Places {
 
 struct PlaceConfig {
   int features = 800;  ///< at most, a view
+  int patches = 800;   ///< at most, a view
   int preview_width_px = 160;
 };
 

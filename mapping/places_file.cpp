@@ -2,8 +2,9 @@
 //
 // All numbers little-endian. "RRPLACES", version (u32), number of views (u32); then each view: frame index
 // (i64), pose (12 f64: rotation row by row, translation), preview camera (2 u32, 4 f64), preview depth (u16
-// each pixel), number of features (u32), their points (3 f32 each), their descriptors (32 bytes each). At the
-// end the FNV-1a hash (u64) of all bytes before it.
+// each pixel), number of features (u32), their points (3 f32 each), their descriptors (32 bytes each), number
+// of patches (u32), of each point, normal and direction (3 f32 each), size (u8) and descriptor (32 bytes). At
+// the end the FNV-1a hash (u64) of all bytes before it.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -16,7 +17,7 @@ namespace roomradar {
 namespace {
 
 constexpr std::string_view kMagic = "RRPLACES";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;           // 1 had no patches
 constexpr std::uint32_t kMaxPreview_px = 4096;  // a side
 
 void put_place(std::string& out, const Place& place) {
@@ -35,6 +36,28 @@ void put_place(std::string& out, const Place& place) {
   put(out, static_cast<std::uint32_t>(place.descriptors.size()));
   for (const Eigen::Vector3f& p : place.points_camera) put(out, p.data(), 3);
   for (const Descriptor& bits : place.descriptors) put(out, bits.data(), bits.size());
+  put(out, static_cast<std::uint32_t>(place.patches.size()));
+  for (const SurfacePatch& patch : place.patches) {
+    for (const Eigen::Vector3f* v : {&patch.point, &patch.normal, &patch.along}) put(out, v->data(), 3);
+    put(out, patch.size);
+    put(out, patch.bits.data(), patch.bits.size());
+  }
+}
+
+SurfacePatch take_patch(BinaryReader& in) {
+  SurfacePatch patch;
+  for (Eigen::Vector3f* v : {&patch.point, &patch.normal, &patch.along}) {
+    in.take(v->data(), 3, "patches");
+    if (!v->allFinite()) in.fail("a patch's position is not a number");
+  }
+  constexpr float kUnit = 1e-3F;
+  if (std::abs(patch.normal.norm() - 1.0F) > kUnit || std::abs(patch.along.norm() - 1.0F) > kUnit ||
+      std::abs(patch.normal.dot(patch.along)) > kUnit)
+    in.fail("a patch's directions are not two at right angles");
+  patch.size = in.take<std::uint8_t>("patches");
+  if (patch.size >= kPatchSizes) in.fail("a patch of size " + std::to_string(patch.size));
+  in.take(patch.bits.data(), patch.bits.size(), "patches");
+  return patch;
 }
 
 Place take_place(BinaryReader& in) {
@@ -73,6 +96,11 @@ Place take_place(BinaryReader& in) {
     if (!p.allFinite()) in.fail("a feature's point is not a number");
   }
   for (Descriptor& bits : place.descriptors) in.take(bits.data(), bits.size(), "descriptors");
+
+  const auto patches = in.take<std::uint32_t>("number of patches");
+  in.require(patches, 9 * sizeof(float) + 1 + sizeof(Descriptor), "patches");
+  place.patches.reserve(patches);
+  for (std::uint32_t i = 0; i < patches; ++i) place.patches.push_back(take_patch(in));
   return place;
 }
 

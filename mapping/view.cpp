@@ -295,11 +295,11 @@ void make_reference(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world
   }
 }
 
-void make_live(const ViewPyramid& pyramid, LiveView& live, const MaskImage& ignore) {
+void make_live(const ViewPyramid& pyramid, LiveView& live, const MaskImage& ignore, int finest_step_px) {
   live.levels.resize(pyramid.levels.size());
   for (std::size_t i = 0; i < pyramid.levels.size(); ++i) {
     const ViewPyramid::Level& level = pyramid.levels[i];
-    const int step = i == 0 ? 2 : 1;
+    const int step = i == 0 ? std::max(finest_step_px, 1) : 1;
     const double mask_scale =
         ignore.empty() ? 0.0 : static_cast<double>(ignore.width) / level.camera.width_px;
     std::vector<LivePoint>& points = live.levels[i];

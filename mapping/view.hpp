@@ -78,13 +78,14 @@ struct LivePoint {
   float intensity;           ///< 0..255, or -1
 };
 
-/// The points of an image to be aligned, levels from fine to coarse; the finest is thinned to every second
-/// pixel.
+/// The points of an image to be aligned, levels from fine to coarse; the finest may be thinned.
 struct LiveView {
   std::vector<std::vector<LivePoint>> levels;
 };
 
 /// `ignore`, unless empty, has the depth image's size; pixels that it has at 255 are left out.
-void make_live(const ViewPyramid& pyramid, LiveView& live, const MaskImage& ignore = {});
+/// Of the finest level every `finest_step_px`-th pixel of every such row is taken.
+void make_live(const ViewPyramid& pyramid, LiveView& live, const MaskImage& ignore = {},
+               int finest_step_px = 2);
 
 }  // namespace roomradar

@@ -200,6 +200,23 @@ TEST_F(CommandLine, SolidUnknownSpaceIsInTheReportAndNeedsTheMap) {
   expect_fault(roomradar(run + " --surfaces skirt"), 2, "needs --surfaces map");
 }
 
+TEST_F(CommandLine, RunChangesNothingOfTheMap) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const auto state = [] {
+    std::map<std::string, std::pair<std::string, fs::file_time_type>> files;
+    for (const auto& entry : fs::directory_iterator(map()))
+      files[entry.path().filename().string()] = {read_text(entry.path()), fs::last_write_time(entry)};
+    return files;
+  };
+  const auto before = state();
+  ASSERT_GT(before.size(), 4U);
+  const Outcome ran =
+      roomradar("run 'sim:table?frames=30&width=160&moving=hand&crate=comes' --adopt 0.3 --map " + map() +
+                " --unknown solid");
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_TRUE(state() == before);
+}
+
 TEST_F(CommandLine, RunFindsItselfAndDropsTheTeapotOnTheTable) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const fs::path report_path = folder_ / "run.json";

@@ -49,7 +49,7 @@ struct RoundTrip {
     places.keyframes.push_back(describe_place(first, T_first));
     for (int i = 1; i <= 3; ++i)
       places.keyframes.push_back(
-          {i, graph.keyframes[static_cast<std::size_t>(i)].T_world_camera, {}, {}, {}, {}});
+          {i, graph.keyframes[static_cast<std::size_t>(i)].T_world_camera, {}, {}, {}, {}, {}});
   }
   KeyframeJobResult run_job() const {
     return run({last, graph, WarmKeyframes(8), &places, nullptr},

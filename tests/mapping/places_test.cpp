@@ -98,6 +98,16 @@ TEST(PlacesFile, ComesBackAsItWas) {
     EXPECT_EQ(read.keyframes[i].points_camera, places.keyframes[i].points_camera);
     EXPECT_EQ(read.keyframes[i].preview_depth_mm.pixels, places.keyframes[i].preview_depth_mm.pixels);
     EXPECT_EQ(read.keyframes[i].preview_camera, places.keyframes[i].preview_camera);
+    ASSERT_GT(read.keyframes[i].patches.size(), 100U);
+    ASSERT_EQ(read.keyframes[i].patches.size(), places.keyframes[i].patches.size());
+    for (std::size_t k = 0; k < read.keyframes[i].patches.size(); ++k) {
+      const SurfacePatch &is = read.keyframes[i].patches[k], &was = places.keyframes[i].patches[k];
+      EXPECT_EQ(is.point, was.point);
+      EXPECT_EQ(is.normal, was.normal);
+      EXPECT_EQ(is.along, was.along);
+      EXPECT_EQ(is.size, was.size);
+      EXPECT_EQ(is.bits, was.bits);
+    }
   }
   write_places({}, folder.path() / "none.bin");
   EXPECT_TRUE(read_places(folder.path() / "none.bin").keyframes.empty());
@@ -132,7 +142,7 @@ TEST(PlacesFile, SizesThatLieAreRefusedBeforeMemoryIsTaken) {
   // A file whose checksum is right and whose counts are not: 4 billion views, none of them there.
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "places.bin";
-  std::string bytes("RRPLACES\x01\0\0\0\xff\xff\xff\xff", 16);
+  std::string bytes("RRPLACES\x02\0\0\0\xff\xff\xff\xff", 16);
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
   bytes.append(reinterpret_cast<const char*>(&hash), sizeof(hash));

@@ -1,0 +1,171 @@
+// locator_test.cpp: found from anywhere, followed, lost when it is lost, and never sure of a wrong place.
+#include "app/locator.hpp"
+
+#include <gtest/gtest.h>
+
+#include "app/evidence.hpp"
+#include "tests/support/exact_depth.hpp"
+#include "tests/support/painted_frame.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr Intrinsics kCamera{320, 240, 292.5, 292.5, 159.5, 119.5};
+
+/// 4 x 5 m with a ball and two boxes.
+test::Scene room() {
+  using namespace test;
+  const Scene walls = nearest_of(nearest_of(plane({0, 1, 0}, 2.5), plane({0, 1, 0}, -2.5)),
+                                 nearest_of(plane({1, 0, 0}, 2.0), plane({1, 0, 0}, -2.0)));
+  const Scene things = nearest_of(box({Eigen::Vector3d(-1.9, 1.2, 0.0), Eigen::Vector3d(-1.0, 2.4, 0.8)}),
+                                  box({Eigen::Vector3d(1.1, -2.4, 0.0), Eigen::Vector3d(1.9, -1.0, 1.3)}));
+  return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), walls),
+                    nearest_of(things, sphere({0.9, 1.8, 0.4}, 0.4)));
+}
+
+/// The same turned by half a circle about the z axis fits onto itself, walls, things and paint.
+test::Scene twin_room() {
+  const test::Scene half = test::box({Eigen::Vector3d(-1.9, 1.2, 0.0), Eigen::Vector3d(-1.0, 2.4, 0.8)});
+  const test::Scene other = test::box({Eigen::Vector3d(1.0, -2.4, 0.0), Eigen::Vector3d(1.9, -1.2, 0.8)});
+  using namespace test;
+  const Scene walls = nearest_of(nearest_of(plane({0, 1, 0}, 2.5), plane({0, 1, 0}, -2.5)),
+                                 nearest_of(plane({1, 0, 0}, 2.0), plane({1, 0, 0}, -2.0)));
+  return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), walls), nearest_of(half, other));
+}
+std::uint8_t twin_grey(const Eigen::Vector3d& p) {
+  return test::cube_grey(p.y() > 0.0 ? p : Eigen::Vector3d(-p.x(), -p.y(), p.z()));
+}
+
+using Grey = std::function<std::uint8_t(const Eigen::Vector3d&)>;
+
+/// A room that was scanned by a camera turning in its middle, and a locator that looks for itself in it.
+struct Mapped {
+  explicit Mapped(test::Scene its_scene, Grey its_grey = test::cube_grey)
+      : scene(std::move(its_scene)), grey(std::move(its_grey)) {
+    for (int i = 0; i < 10; ++i) {
+      const double angle_rad = 0.628 * i;
+      const Eigen::Vector3d outward(std::cos(angle_rad), std::sin(angle_rad), 0.0);
+      const Eigen::Isometry3d eye =
+          test::looking_at(Eigen::Vector3d(0, 0, 1.3) - 0.4 * outward, Eigen::Vector3d(0, 0, 0.8) + outward);
+      places.keyframes.push_back(describe_place(seen_from(eye), eye));
+    }
+  }
+  [[nodiscard]] Frame seen_from(const Eigen::Isometry3d& T_world_camera) const {
+    Frame frame = test::exact_frame(scene, kCamera, T_world_camera);
+    test::paint_with(grey, frame, T_world_camera);
+    test::add_depth_noise(frame, 7);
+    return frame;
+  }
+  Tracking find(const Frame& frame) {
+    return locate(locator, frame, places, {}, [this](const Eigen::Isometry3d& T) -> const DepthImage& {
+      expected_m = test::exact_frame(scene, kCamera, T).depth_m;
+      return expected_m;
+    });
+  }
+
+  test::Scene scene;
+  Grey grey;
+  Places places;
+  Locator locator;
+  DepthImage expected_m;
+};
+
+bool is_located(const Tracking& tracking) {
+  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
+}
+
+double error_m(const Tracking& tracking, const Eigen::Isometry3d& truth) {
+  return (tracking.T_world_camera.translation() - truth.translation()).norm();
+}
+
+Eigen::Isometry3d walk(int step) {
+  return test::looking_at({0.5 - 0.02 * step, -0.6, 1.2}, {-0.6, 2.0, 0.5});
+}
+Eigen::Isometry3d elsewhere(int step) {
+  return test::looking_at({-0.9, 0.8 - 0.01 * step, 1.5}, {1.2, -1.6, 0.6});
+}
+
+TEST(Locator, FindsViewsFarFromEveryPlace) {
+  const Mapped mapped(room());
+  for (const auto& truth : {test::looking_at({1.1, -0.9, 1.0}, {-1.2, 1.6, 0.5}),
+                            test::looking_at({-1.3, -1.6, 1.7}, {1.0, 1.0, 0.2}),
+                            test::looking_at({0.8, 0.9, 0.7}, {-1.5, 0.9, 0.5}, {0.3, 0.1, 0.9})}) {
+    Mapped fresh = mapped;
+    const Tracking found = fresh.find(fresh.seen_from(truth));
+    ASSERT_TRUE(is_located(found));
+    EXPECT_LT(error_m(found, truth), 0.02);
+  }
+}
+
+TEST(Locator, IsMendedWithinFiveFramesWhenTheCameraIsCarriedAway) {
+  Mapped mapped(room());
+  for (int i = 0; i < 4; ++i) ASSERT_LT(error_m(mapped.find(mapped.seen_from(walk(i))), walk(i)), 0.02) << i;
+  for (int i = 0; i < 10; ++i) {
+    const Tracking found = mapped.find(mapped.seen_from(elsewhere(i)));
+    if (i < 5 && (!is_located(found) || error_m(found, elsewhere(i)) > 0.02)) continue;
+    ASSERT_TRUE(is_located(found)) << i;
+    EXPECT_LT(error_m(found, elsewhere(i)), 0.02) << i;
+  }
+}
+
+TEST(Locator, SaysSoWhileTheLensIsCoveredAndGoesOnAfterwards) {
+  Mapped mapped(room());
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(is_located(mapped.find(mapped.seen_from(walk(i)))));
+  Frame dark = mapped.seen_from(walk(4));
+  dark.depth_m.resize(kCamera.width_px, kCamera.height_px);
+  EXPECT_FALSE(is_located(mapped.find(dark)));
+  Frame covered = mapped.seen_from(walk(4));
+  covered.depth_m.resize(kCamera.width_px, kCamera.height_px, 0.5F);
+  covered.colour.resize(kCamera.width_px, kCamera.height_px, {90, 60, 50});
+  EXPECT_FALSE(is_located(mapped.find(covered)));
+  const Tracking found = mapped.find(mapped.seen_from(walk(5)));
+  ASSERT_TRUE(is_located(found));
+  EXPECT_LT(error_m(found, walk(5)), 0.02);
+  EXPECT_FALSE(mapped.locator.T_world_lost && mapped.locator.lost_frames > 3);
+}
+
+TEST(Locator, ACoveredLensIsNoticedWithinFiveFramesThoughItsMotionSeemsKnown) {
+  Mapped mapped(room());
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(is_located(mapped.find(mapped.seen_from(walk(i)))));
+  Frame covered = mapped.seen_from(walk(4));
+  for (int y = 0; y < kCamera.height_px; ++y)  // a hand's shape, close, and a rim of the room
+    for (int x = 20; x < kCamera.width_px; ++x) {
+      covered.depth_m.at(x, y) = 0.45F + 0.0001F * static_cast<float>(x);
+      covered.colour.at(x, y) = {90, 60, 50};
+    }
+  bool is_noticed = false;
+  for (int i = 0; i < 5; ++i) is_noticed = is_noticed || !is_located(mapped.find(covered));
+  EXPECT_TRUE(is_noticed);
+}
+
+TEST(Locator, DoesNotChooseBetweenTwoPlacesThatLookTheSame) {
+  Mapped twins(twin_room(), twin_grey);
+  const Eigen::Isometry3d truth = test::looking_at({0.8, -0.2, 1.2}, {-1.2, 2.0, 0.5});
+  EXPECT_FALSE(is_located(twins.find(twins.seen_from(truth))));
+  // One poster that the other wall has not tells them apart.
+  Mapped told(twin_room(), [](const Eigen::Vector3d& p) {
+    return p.y() > 1.0 ? test::cube_grey(p) : twin_grey(p + Eigen::Vector3d(7.0, 3.0, 0.0));
+  });
+  const Tracking found = told.find(told.seen_from(truth));
+  ASSERT_TRUE(is_located(found));
+  EXPECT_LT(error_m(found, truth), 0.02);
+}
+
+TEST(Evidence, CountsWhatFitsAndWhatIsSeenThrough) {
+  DepthImage live(40, 40, 2.0F), expected(40, 40, 2.0F);
+  EXPECT_EQ(evidence_of(live, expected).alike_part(), 1.0);
+  EXPECT_EQ(evidence_of(live, expected).valid, 100);
+  for (int y = 0; y < 40; ++y)
+    for (int x = 0; x < 20; ++x) expected.at(x, y) = y < 20 ? 1.5F : 2.5F;
+  const Evidence half = evidence_of(live, expected);
+  EXPECT_EQ(half.alike, 50);
+  EXPECT_EQ(half.farther, 25);
+  EXPECT_DOUBLE_EQ(half.score(), 0.0);
+  const Evidence none = evidence_of(DepthImage(40, 40), expected);
+  EXPECT_EQ(none.valid, 0);
+  EXPECT_EQ(none.score(), 0.0);
+  EXPECT_EQ(none.alike_part(), 0.0);
+}
+
+}  // namespace
+}  // namespace roomradar
