@@ -1,0 +1,203 @@
+// where_bench.cpp: how well a camera is found in a saved map, and followed in it.
+//
+// usage: where_bench --maps FOLDER [--views N] [--only WORD] [--pictures FOLDER] [--json FILE]
+//        maps are scanned once and kept in FOLDER; WORD: part of a row's name
+//
+// found      frames for which a pose is given; right: within 5 cm and 5 degrees of the truth; wrong: the
+//            other found ones
+// ms         of a frame that is looked for anew; thread: the time the processor worked for it
+// Kitchen: frames 400 to 499 in the map of 0 to 399, its recorded poses taken for the truth. Rooms: random
+// views in simulated rooms, see where_bench_rooms.hpp. Settings are those of `run`; changing them breaks
+// comparison with old numbers.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+
+#include "app/open_source.hpp"
+#include "app/picture_file.hpp"
+#include "app/sim/room.hpp"
+#include "app/sources/folder_source.hpp"
+#include "app/sources/recording_writer.hpp"
+#include "bench_times.hpp"
+#include "where_bench_rooms.hpp"
+#include "where_bench_tracking.hpp"
+
+namespace roomradar {
+namespace {
+
+struct Settings {
+  std::filesystem::path maps;
+  std::size_t views = 50;
+  std::string only, json, pictures;
+};
+
+/// Looks for each frame of the source anew.
+nlohmann::json find_all(const std::string& name, FrameSource& source, MappedRoom& mapped,
+                        const Settings& settings) {
+  Frame frame;
+  test::Times wall, thread;
+  std::vector<double> errors_mm;
+  int asked = 0, found = 0, right = 0;
+  Locator fresh;
+  fresh.known = known_patches(mapped.map.places);
+  nlohmann::json failed = nlohmann::json::array();
+  while (source.next(frame).status == ReadStatus::kFrame) {
+    ++asked;
+    Locator locator = fresh;
+    const auto start = std::chrono::steady_clock::now();
+    const double thread_start_ms = test::thread_ms();
+    const Tracking tracking = mapped.find(locator, frame);
+    thread.samples_ms.push_back(test::thread_ms() - thread_start_ms);
+    wall.samples_ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    const bool is_found =
+        tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
+    const Eigen::Isometry3d truth = mapped.map.info.T_world_recorded * *frame.T_world_camera;
+    const Eigen::Isometry3d error = truth.inverse() * tracking.T_world_camera;
+    const double error_m = error.translation().norm();
+    const double error_deg = Eigen::AngleAxisd(error.linear()).angle() * 180.0 / std::numbers::pi;
+    const bool is_right = is_found && error_m < 0.05 && error_deg < 5.0;
+    found += is_found, right += is_right;
+    if (is_found) errors_mm.push_back(1e3 * error_m);
+    if (is_right) continue;
+    failed.push_back({{"frame", frame.index}, {"found", is_found}, {"m", error_m}, {"deg", error_deg}});
+    if (settings.pictures.empty()) continue;
+    std::filesystem::create_directories(settings.pictures);
+    write_png(frame.colour,
+              std::filesystem::path(settings.pictures) /
+                  (name + "-" + std::to_string(frame.index) + (is_found ? "-wrong" : "") + ".png"));
+  }
+  std::sort(errors_mm.begin(), errors_mm.end());
+  return {{"row", name},
+          {"keyframes", mapped.map.places.keyframes.size()},
+          {"asked", asked},
+          {"found", found},
+          {"right", right},
+          {"wrong", found - right},
+          {"error_median_mm", errors_mm.empty() ? -1.0 : errors_mm[errors_mm.size() / 2]},
+          {"median_ms", wall.percentile(0.5)},
+          {"p95_ms", wall.percentile(0.95)},
+          {"thread_median_ms", thread.percentile(0.5)},
+          {"failed", failed}};
+}
+
+/// Random views of a simulated room, as a recording that is kept beside the maps.
+std::unique_ptr<FrameSource> free_views(const SimOptions& scan, const SavedMap& map,
+                                        const std::vector<MoverKind>& movers, bool bare,
+                                        const std::string& name, const Settings& settings) {
+  const std::filesystem::path folder =
+      settings.maps / ("views-" + name + "-" + std::to_string(settings.views));
+  if (!std::filesystem::exists(folder / "groundtruth.txt")) {
+    SimOptions options = scan;
+    options.movers = movers;
+    SimulatedSource source(options);
+    RecordingWriter writer(folder, RecordingFormat::kTum);
+    Frame frame;
+    std::int64_t index = 0;
+    for (const Eigen::Isometry3d& T_room_camera :
+         draw_free_views(source.room(), map, poses_of(scan), settings.views, 1, {.bare = bare})) {
+      source.look(5 * index++, T_room_camera, frame);
+      writer.write(frame);
+    }
+    writer.close();
+  }
+  return open_folder(folder);
+}
+
+Settings parse(int argc, char** argv) {
+  Settings settings;
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string word = argv[i], value = argv[i + 1];
+    if (word == "--maps") settings.maps = value;
+    if (word == "--views") settings.views = static_cast<std::size_t>(std::atoll(value.c_str()));
+    if (word == "--only") settings.only = value;
+    if (word == "--pictures") settings.pictures = value;
+    if (word == "--json") settings.json = value;
+  }
+  return settings;
+}
+
+nlohmann::json bench(const Settings& settings) {
+  nlohmann::json rows = nlohmann::json::array();
+  const auto add = [&](const std::string& name, const std::function<nlohmann::json()>& row) {
+    if (name.find(settings.only) == std::string::npos) return;
+    rows.push_back(row());
+    std::printf("%s\n", rows.back().dump().c_str());
+    std::fflush(stdout);
+  };
+  const std::string kitchen = std::string(ROOMRADAR_DATA_DEFAULT) + "/kitchen";
+  add("kitchen", [&] {
+    MappedRoom mapped(
+        map_of(*open_source(kitchen, FrameRange{0, 399}), PoseOrigin::kRecorded, settings.maps / "kitchen"));
+    return find_all("kitchen", *open_source(kitchen, FrameRange{400, 499}), mapped, settings);
+  });
+  struct Room {
+    std::string name, kind;
+    std::uint64_t seed;
+  };
+  for (const Room& room : {Room{"table", "table", 1}, Room{"shelf", "shelf", 1}, Room{"random2", "random", 2},
+                           Room{"random3", "random", 3}}) {
+    const SimOptions scan = scan_of(room.kind, room.seed);
+    const auto scan_map = [&] {
+      SimulatedSource source(scan);
+      return map_of(source, PoseOrigin::kTracked, settings.maps / room.name);
+    };
+    for (const char* what : {"", "-people", "-bare"}) {
+      const std::string name = room.name + what;
+      add(name, [&] {
+        MappedRoom mapped(scan_map());
+        const std::vector<MoverKind> movers = std::string(what) == "-people"
+                                                  ? std::vector{MoverKind::kPerson, MoverKind::kHand}
+                                                  : std::vector<MoverKind>{};
+        return find_all(name,
+                        *free_views(scan, mapped.map, movers, std::string(what) == "-bare", name, settings),
+                        mapped, settings);
+      });
+    }
+    const auto on_map = [&](const char* what, const auto& row) {
+      add(room.name + what, [&] {
+        MappedRoom mapped(scan_map());
+        return row(room.name + what, scan, mapped, static_cast<std::int64_t>(settings.views));
+      });
+    };
+    on_map("-ball", [](const auto& name, const auto& of, auto& mapped, std::int64_t views) {
+      return follow_behind_ball(name, of, mapped, 3 * views);
+    });
+    on_map("-still", [](const auto& name, const auto& of, auto& mapped, std::int64_t views) {
+      return stand_still(name, of, mapped, 2 * views);
+    });
+    on_map("-carried", [](const auto& name, const auto& of, auto& mapped, std::int64_t views) {
+      return carry_away(name, of, mapped, views / 5);
+    });
+  }
+  return rows;
+}
+
+}  // namespace
+}  // namespace roomradar
+
+int main(int argc, char** argv) {
+  try {
+    const roomradar::Settings settings = roomradar::parse(argc, argv);
+    if (settings.maps.empty()) {
+      std::fprintf(
+          stderr,
+          "usage: where_bench --maps FOLDER [--views N] [--only WORD] [--pictures FOLDER] [--json FILE]\n");
+      return 2;
+    }
+    const nlohmann::json rows = roomradar::bench(settings);
+    if (!settings.json.empty()) std::ofstream(settings.json) << rows.dump(1) << '\n';
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "where_bench: %s\n", error.what());
+    return 1;
+  }
+}
