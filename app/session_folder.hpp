@@ -23,8 +23,7 @@ namespace roomradar {
 /// What a frame came to.
 struct FrameFingerprint {
   std::int64_t run_frame = 0;
-  std::uint64_t objects =
-      0;  ///< of every object's name, pose, and whether it is in the room, to the last bit
+  std::uint64_t objects = 0;  ///< names and poses, to the last bit, of those in the room
   std::uint64_t picture = 0;  ///< 0: none was made
 };
 FrameFingerprint fingerprint_of(std::int64_t run_frame, const Session& session);

@@ -25,6 +25,8 @@ until_true() {
 }
 has_event() { grep -qE "$1" "$work/session/events.txt" 2> /dev/null; }
 has_frames() { [[ $(grep -cv '^#' "$work/session/results.txt" 2> /dev/null) -ge $1 ]]; }
+# Some frames later, so that the window shows what has happened.
+settle() { until_true has_frames $(($(grep -cv '^#' "$work/session/results.txt") + 4)); }
 shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 500 ]] || fail "$1.png is empty"; }
 
 "$program" prescan 'sim:table?frames=40&width=160' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 || fail prescan
@@ -51,11 +53,14 @@ shot dropped
 echo "== keys change policies, hold the camera, add and remove"
 xdotool key u
 until_true has_event ' unknown solid$'
+settle
 xdotool key u
 until_true has_event ' unknown free$'
+settle
 xdotool key s
 until_true has_event ' surfaces holes$'
 for policy in skirt border map; do
+  settle
   xdotool key s
   until_true has_event " surfaces $policy\$"
 done
@@ -68,12 +73,14 @@ until_true has_event ' add teapot teapot$'
 until_true has_event ' drop teapot view '
 xdotool key Delete
 until_true has_event ' remove teapot$'
+settle
 
 echo "== drag, throw, turn"
 xdotool key Tab
 xdotool mousemove 494 330
 xdotool key p
 until_true has_event ' place object '
+settle
 has_turned() {
   # The mouse button grabs what is under the mouse; it is asked again until the object is there.
   xdotool mousemove 494 322 mousedown 3 mousemove_relative 40 0 mouseup 3
@@ -94,6 +101,7 @@ until_true has_carried
 until_true has_event ' release object velocity '
 xdotool key t
 until_true has_event ' throw object '
+settle
 xdotool key f
 until_true has_event ' camera go$'
 
