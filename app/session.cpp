@@ -32,6 +32,20 @@ void set_in_hand(VirtualObject& object, double dt_s) {
   object.body.velocity_world_mps = dt_s > 0.0 ? Eigen::Vector3d(way / dt_s) : Eigen::Vector3d::Zero();
 }
 
+/// A camera's pose after_s after it was at T_world_now, moving on as it moved for dt_s until then; no farther
+/// than that motion, either way. Without a time to go by it stands.
+Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eigen::Isometry3d& T_world_now,
+                              double dt_s, double after_s) {
+  if (!(dt_s > 0.0) || after_s == 0.0) return T_world_now;
+  const double part = std::clamp(after_s / dt_s, -1.0, 1.0);
+  const Eigen::Isometry3d T_before_now = T_world_before.inverse() * T_world_now;
+  const Eigen::AngleAxisd turn(T_before_now.linear());
+  Eigen::Isometry3d T_now_then = Eigen::Isometry3d::Identity();
+  T_now_then.linear() = Eigen::AngleAxisd(part * turn.angle(), turn.axis()).toRotationMatrix();
+  T_now_then.translation() = part * T_before_now.linear().transpose() * T_before_now.translation();
+  return T_world_now * T_now_then;
+}
+
 }  // namespace
 
 Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
@@ -117,11 +131,8 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
   result.tracking = tracking.status;
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
-    if (config_.make_picture) {
-      view_of(frame);
-      shown_view_.reset();
-      picture_ = background_;
-    }
+    if (config_.make_picture) show_camera_alone(frame);
+    T_world_before_.reset();
     return result;
   }
   const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
@@ -137,7 +148,8 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   release_waiting(frame, T_world_camera);
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
   times.add_ms("contact", ms_since(handed_over));
-  if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera); });
+  if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera, dt_s); });
+  T_world_before_ = T_world_camera;
 
   result.status = FrameStatus::kDone;
   result.T_world_camera = T_world_camera;
@@ -261,14 +273,28 @@ double Session::penetration_m() {
   return deepest_m;
 }
 
-Session::PictureView Session::view_of(const Frame& frame) {
+Session::ShownView Session::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                                    double dt_s) {
   if (!frame.colour.empty()) {
-    colour_view_ = {frame.colour_camera, frame.T_colour_depth};
+    const Eigen::Isometry3d T_world_then =
+        T_world_before_ ? pose_beside(*T_world_before_, T_world_camera, dt_s, frame.colour_after_depth_s)
+                        : T_world_camera;
+    colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
     background_ = frame.colour;
   }
   if (colour_view_) return *colour_view_;
   shade_depth(frame.depth_m, frame.depth_camera, background_);
-  return {frame.depth_camera, Eigen::Isometry3d::Identity()};
+  return {frame.depth_camera, T_world_camera};
+}
+
+void Session::show_camera_alone(const Frame& frame) {
+  shown_view_.reset();
+  if (!frame.colour.empty())
+    picture_ = frame.colour;
+  else if (colour_view_)
+    picture_ = background_;
+  else
+    shade_depth(frame.depth_m, frame.depth_camera, picture_);
 }
 
 void Session::renew_a_shadow() {
@@ -287,11 +313,9 @@ void Session::renew_a_shadow() {
     make_contact_shadow(most_turned->surface, most_turned->body.T_world_object.linear(), most_turned->shadow);
 }
 
-void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  const PictureView view = view_of(frame);
-  const Intrinsics& camera = view.camera;
-  const Eigen::Isometry3d T_world_view = T_world_camera * view.T_view_depth.inverse();
-  shown_view_ = {camera, T_world_view};
+void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
+  shown_view_ = view_of(frame, T_world_camera, dt_s);
+  const auto& [camera, T_world_view] = *shown_view_;
 
   renew_a_shadow();
   std::vector<DrawnObject> drawn;

@@ -139,13 +139,10 @@ class Session {
   double last_stamp_s_ = 0.0;
   bool has_last_stamp_ = false;
 
-  struct PictureView {
-    Intrinsics camera;
-    Eigen::Isometry3d T_view_depth = Eigen::Isometry3d::Identity();  ///< depth-camera points to this camera's
-  };
+  std::optional<Eigen::Isometry3d> T_world_before_;  ///< of the frame before, if it was located
   std::optional<ShownView> shown_view_;
-  std::optional<PictureView> colour_view_;  ///< of the last frame with colour
-  DepthImage real_depth_m_;                 ///< as the colour camera sees it, where objects are
+  std::optional<ShownView> colour_view_;  ///< of the last colour
+  DepthImage real_depth_m_;               ///< as the colour camera sees it, where objects are
   ObjectLayer layer_;
   Occlusion occlusion_;
   ColourImage background_;
@@ -161,12 +158,15 @@ class Session {
   void move_objects(double dt_s, StageTimes& times, FrameResult& result);
   [[nodiscard]] bool is_in_unknown(const VirtualObject& object) const;
   double penetration_m();
-  /// Sets background_ and says which camera saw it: the frame's colour; where this one frame has none, the
-  /// last colour there was; in a recording without any, the depth, shaded, as the depth camera sees it.
-  PictureView view_of(const Frame& frame);
+  /// Sets background_ and says which camera saw it from where: the frame's colour, from where the camera was
+  /// when that was taken; where this one frame has none, the last colour there was; in a recording without
+  /// any, the depth, shaded, as the depth camera sees it.
+  ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
+  /// The picture of a frame whose place is not known.
+  void show_camera_alone(const Frame& frame);
   /// Makes the shadow of the object that has turned most since its own was made anew: one a frame.
   void renew_a_shadow();
-  void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
   VirtualObject& object_named(const std::string& name);
   void change_objects(const ScriptEvent& event);
 };

@@ -102,6 +102,7 @@ class FolderSource final : public FrameSource {
     if (!recorded.fault.empty()) throw Error(recorded.fault);
     frame.index = static_cast<std::int64_t>(position);
     frame.stamp_s = recorded.stamp_s;
+    frame.colour_after_depth_s = recorded.colour_after_depth_s;
     frame.depth_camera = rig_.depth_camera;
     frame.colour_camera = rig_.colour_camera.value_or(Intrinsics{});
     frame.T_colour_depth = rig_.T_colour_depth;

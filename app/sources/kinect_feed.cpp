@@ -255,7 +255,10 @@ class KinectFeed::Work {
       const auto colour = std::find_if(colours_.begin(), colours_.end(), [&](const Colour& candidate) {
         return pair->colour && candidate.number == *pair->colour;
       });
-      if (colour != colours_.end()) std::swap(frame.colour, colour->pixels);
+      if (colour != colours_.end()) {
+        std::swap(frame.colour, colour->pixels);
+        frame.colour_after_depth_s = pair->colour_after_depth_s;
+      }
       put(std::move(frame));
     }
   }

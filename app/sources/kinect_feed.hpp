@@ -21,6 +21,7 @@ struct KinectFrame {
   double stamp_s = 0.0;
   std::vector<std::uint16_t> depth{};  ///< 640 x 480
   std::vector<std::uint8_t> colour{};  ///< 640 x 480 x 3, or empty
+  double colour_after_depth_s = 0.0;   ///< how much later it was taken, by the device's clock
   std::optional<Eigen::Vector3d> down_camera{};
   std::string fault{};  ///< if not empty: a sentence; the rest but the number is not to be used
 };

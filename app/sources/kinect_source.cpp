@@ -107,6 +107,7 @@ class KinectSource final : public FrameSource {
   void fill(Frame& frame) const {
     frame.index = raw_.number;
     frame.stamp_s = raw_.stamp_s;
+    frame.colour_after_depth_s = raw_.colour_after_depth_s;
     frame.depth_camera = rig_.depth_camera;
     frame.colour_camera = *rig_.colour_camera;
     frame.T_colour_depth = rig_.T_colour_depth;

@@ -152,6 +152,7 @@ void pair_up(StampPairing& pairing, const std::vector<ListedImage>& colours,
     if (!pair->colour) continue;
     const ListedImage& colour = colours[static_cast<std::size_t>(*pair->colour)];
     frame.colour_file = colour.file;
+    frame.colour_after_depth_s = pair->colour_after_depth_s;
     if (!colour.fault.empty()) frame.fault = colour.fault;
   }
 }

@@ -17,6 +17,7 @@ struct RecordedFrame {
   double stamp_s = 0.0;
   std::filesystem::path depth_file{};
   std::filesystem::path colour_file{};  ///< empty: this frame has no colour
+  double colour_after_depth_s = 0.0;    ///< how much later the colour was taken
   std::filesystem::path pose_file{};    ///< empty: the pose is below, or there is none
   std::optional<Eigen::Isometry3d> T_world_camera{};
   std::optional<Eigen::Vector3d> down_camera{};

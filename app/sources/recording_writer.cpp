@@ -122,10 +122,11 @@ void RecordingWriter::write_tum(const Frame& frame) {
   write_depth_file(frame.depth_m, DepthEncoding::kTum, folder_ / depth_file);
   add_line(depth_list_, folder_ / "depth.txt", stamp + " " + depth_file, "# stamp_s file\n");
   if (!frame.colour.empty()) {
-    const std::string colour_file = "rgb/" + stamp + ".png";
+    const std::string colour_stamp = fixed_6(frame.stamp_s + frame.colour_after_depth_s);
+    const std::string colour_file = "rgb/" + colour_stamp + ".png";
     if (!colour_list_.is_open()) make_folder(folder_ / "rgb");
     write_colour_file(frame.colour, folder_ / colour_file);
-    add_line(colour_list_, folder_ / "rgb.txt", stamp + " " + colour_file, "# stamp_s file\n");
+    add_line(colour_list_, folder_ / "rgb.txt", colour_stamp + " " + colour_file, "# stamp_s file\n");
   }
   if (frame.T_world_camera) {
     const Eigen::Vector3d t = frame.T_world_camera->translation();
@@ -165,9 +166,11 @@ void RecordingWriter::write_fakenect(const Frame& frame) {
     throw Error(folder_.string() +
                 ": fakenect replays images of 640 x 480 only; choose the format tum or 7scenes");
   const fs::path index_file = folder_ / "INDEX.txt";
-  const auto total_ticks = static_cast<std::int64_t>(std::llround(frame.stamp_s * kKinectTicksPerSecond));
-  const std::string stamps =
-      fixed_6(frame.stamp_s) + "-" + std::to_string(static_cast<std::uint32_t>(total_ticks));
+  const auto stamps_at = [](double stamp_s) {
+    const auto total_ticks = static_cast<std::int64_t>(std::llround(stamp_s * kKinectTicksPerSecond));
+    return fixed_6(stamp_s) + "-" + std::to_string(static_cast<std::uint32_t>(total_ticks));
+  };
+  const std::string stamps = stamps_at(frame.stamp_s);
 
   // Gravity first: the reader gives a depth image the latest before it.
   if (frame.down_camera) {
@@ -182,12 +185,20 @@ void RecordingWriter::write_fakenect(const Frame& frame) {
     if (!dump) throw Error(file.string() + ": cannot be written; is the disk full, or the folder read-only?");
     add_line(depth_list_, index_file, file.filename().string());
   }
-  write_depth_file(frame.depth_m, DepthEncoding::kKinectRaw, folder_ / ("d-" + stamps + ".pgm"));
-  add_line(depth_list_, index_file, "d-" + stamps + ".pgm");
-  if (!frame.colour.empty()) {
-    write_colour_file(frame.colour, folder_ / ("r-" + stamps + ".ppm"));
-    add_line(depth_list_, index_file, "r-" + stamps + ".ppm");
-  }
+  const auto add_depth = [&] {
+    write_depth_file(frame.depth_m, DepthEncoding::kKinectRaw, folder_ / ("d-" + stamps + ".pgm"));
+    add_line(depth_list_, index_file, "d-" + stamps + ".pgm");
+  };
+  const auto add_colour = [&] {
+    if (frame.colour.empty()) return;
+    const std::string file = "r-" + stamps_at(frame.stamp_s + frame.colour_after_depth_s) + ".ppm";
+    write_colour_file(frame.colour, folder_ / file);
+    add_line(depth_list_, index_file, file);
+  };
+  // In the order in which they came.
+  if (frame.colour_after_depth_s < 0.0) add_colour();
+  add_depth();
+  if (!(frame.colour_after_depth_s < 0.0)) add_colour();
 }
 
 void RecordingWriter::close() {

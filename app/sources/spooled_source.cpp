@@ -1,7 +1,7 @@
 // spooled_source.cpp: images in files, everything else in memory and, where it is kept, in a list beside
 // them.
 //
-// list.bin: "RRSPOOL1", the source's name, then for each frame the bytes of its entry with their number (u32)
+// list.bin: "RRSPOOL2", the source's name, then for each frame the bytes of its entry with their number (u32)
 // before them; 0 for the end of the source.
 #include "app/sources/spooled_source.hpp"
 
@@ -34,6 +34,7 @@ Frame without_images(const Frame& frame) {
   Frame rest;
   rest.index = frame.index;
   rest.stamp_s = frame.stamp_s;
+  rest.colour_after_depth_s = frame.colour_after_depth_s;
   rest.depth_camera = frame.depth_camera;
   rest.colour_camera = frame.colour_camera;
   rest.T_colour_depth = frame.T_colour_depth;
@@ -51,6 +52,7 @@ void SpooledSource::transfer_entry(Archive& archive, Entry& entry) {
   if (!entry.fault.empty()) return;
   transfer(archive, frame.index);
   transfer(archive, frame.stamp_s);
+  transfer(archive, frame.colour_after_depth_s);
   transfer(archive, frame.depth_camera);
   bool coloured = frame.colour_camera.width_px > 0;
   transfer(archive, coloured);

@@ -38,6 +38,7 @@ std::optional<DepthColourPair> StampPairing::take() {
   last_depth_s_ = depth.stamp_s;
   if (nearest != colours_.end() && distance_s(*nearest) <= config_.tolerance_s) {
     pair.colour = nearest->number;
+    pair.colour_after_depth_s = nearest->stamp_s - depth.stamp_s;
     colours_.erase(nearest);
   }
   std::erase_if(colours_, [&](const Stamped& colour) { return colour.stamp_s <= depth.stamp_s; });

@@ -22,6 +22,7 @@ constexpr PairingConfig kDevicePairing{.tolerance_s = 0.030, .unbeatable_s = 1.0
 struct DepthColourPair {
   std::int64_t depth = 0;
   std::optional<std::int64_t> colour{};
+  double colour_after_depth_s = 0.0;  ///< by their stamps; 0 without colour
   bool stamp_goes_back = false;  ///< not later than the depth image before it: not to be used
 };
 

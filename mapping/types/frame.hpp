@@ -19,6 +19,7 @@ struct Frame {
 
   ColourImage colour;  ///< of colour_camera's size, or empty where the source has none
   Intrinsics colour_camera;
+  double colour_after_depth_s = 0.0;  ///< how much later the colour was taken; 0 where the source cannot say
   /// Depth-camera points to colour-camera points.
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
 

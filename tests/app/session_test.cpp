@@ -76,6 +76,31 @@ TEST(Session, OneFrameWithoutColourKeepsTheLastPicture) {
   }
 }
 
+TEST(Session, ObjectsAreDrawnFromWhereTheCameraWasWhenTheColourWasTaken) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame before = depth_only(0, kAtTheFloor), after = depth_only(1, kAtTheFloor);
+  Eigen::Isometry3d T_before_after = Eigen::Isometry3d::Identity();
+  T_before_after.linear() = Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  T_before_after.translation() = Eigen::Vector3d(0.03, 0.0, 0.0);
+  after.T_world_camera = kAtTheFloor * T_before_after;
+  after.colour_after_depth_s = -0.5 / 30.0;  // half a frame sooner
+  for (Frame* frame : {&before, &after}) {
+    frame->colour_camera = kCamera;
+    frame->colour.resize(kCamera.width_px, kCamera.height_px);
+    static_cast<void>(session.step(*frame, times));
+  }
+  ASSERT_TRUE(session.shown_view());
+  const Eigen::Isometry3d T_before_shown = kAtTheFloor.inverse() * session.shown_view()->T_world_view;
+  EXPECT_NEAR(T_before_shown.translation().x(), 0.015, 1e-3);
+  EXPECT_NEAR(Eigen::AngleAxisd(T_before_shown.linear()).angle(), 0.01, 1e-6);
+  // A picture that is shown on stays where it was taken.
+  Frame without = depth_only(2, *after.T_world_camera * T_before_after);
+  static_cast<void>(session.step(without, times));
+  EXPECT_NEAR((kAtTheFloor.inverse() * session.shown_view()->T_world_view).translation().x(), 0.015, 1e-3);
+}
+
 TEST(Session, DropWaitsForAFrameThatShowsALevelSurface) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());

@@ -85,7 +85,12 @@ TEST(RecordingRoundTrip, TumKeepsDepthColourPosesGravityAndStamps) {
   const TemporaryFolder folder;
   write_recording(folder.path(), RecordingFormat::kTum);
   expect_some_frames(folder.path(), 0.000101, true, true, 1e-8);
-  EXPECT_NEAR(read_all(*open_folder(folder.path())).frames[3].stamp_s, some_frame(3).stamp_s, 1e-6);
+  const auto all = read_all(*open_folder(folder.path()));
+  for (int i = 0; i < kFrames; ++i) {
+    const Frame& got = all.frames[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(got.stamp_s, some_frame(i).stamp_s, 1e-6);
+    EXPECT_NEAR(got.colour_after_depth_s, some_frame(i).colour_after_depth_s, 2e-6);
+  }
 }
 
 TEST(RecordingRoundTrip, SevenScenesKeepsDepthColourAndPoses) {
@@ -110,6 +115,7 @@ TEST(RecordingRoundTrip, FakenectKeepsDepthToTheRawStepColourAndGravity) {
     EXPECT_EQ(got.colour.pixels, want.colour.pixels);
     EXPECT_EQ(got.depth_camera, want.depth_camera);
     EXPECT_TRUE(got.down_camera->isApprox(*want.down_camera, 1.0 / 819));
+    EXPECT_NEAR(got.colour_after_depth_s, want.colour_after_depth_s, 1e-6);
     EXPECT_FALSE(got.T_world_camera);
   }
   // Raw depth that has been through once comes back the same to the bit.
@@ -397,10 +403,10 @@ TEST(Tum, BadColourLineSkipsTheFrameItWouldGoWith) {
   const TemporaryFolder folder;
   write_recording(folder.path(), RecordingFormat::kTum);
   std::string list;
-  for (int i = 0; i < kFrames; ++i)
-    list += i == 2 ? "oops\n"
-                   : std::to_string(some_frame(i).stamp_s) + " rgb/" + std::to_string(some_frame(i).stamp_s) +
-                         ".png\n";
+  for (int i = 0; i < kFrames; ++i) {
+    const std::string stamp = std::to_string(some_frame(i).stamp_s + some_frame(i).colour_after_depth_s);
+    list += i == 2 ? "oops\n" : stamp + " rgb/" + stamp + ".png\n";
+  }
   write_text(folder.path() / "rgb.txt", list);
   const auto all = read_all(*open_folder(folder.path()));
   EXPECT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames - 1));

@@ -35,6 +35,7 @@ inline Frame some_frame(int i, int width_px = 16, int height_px = 12) {
   Frame frame;
   frame.index = i;
   frame.stamp_s = 100.0 + i / 30.0;
+  frame.colour_after_depth_s = 0.005 * (i % 3 - 1);
   frame.depth_camera = {width_px,        height_px,      0.9 * width_px,
                         0.91 * width_px, width_px / 2.0, height_px / 2.0};
   frame.colour_camera = {width_px,       height_px,      0.8 * width_px,

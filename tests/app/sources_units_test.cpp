@@ -97,6 +97,7 @@ TEST(StampPairing, TakesTheNearerOfTheImagesBeforeAndAfter) {
   const auto pairs = take_all(pairing);
   ASSERT_EQ(pairs.size(), 1U);
   EXPECT_EQ(pairs[0].colour, 1);
+  EXPECT_NEAR(pairs[0].colour_after_depth_s, 0.004, 1e-12);
 }
 
 TEST(StampPairing, UsesEachImageOnceAndNoneThatIsTooFar) {
@@ -174,6 +175,7 @@ TEST(FrameRange, OutsideTheRecordingNamesItsLength) {
 void expect_same(const Frame& a, const Frame& b) {
   EXPECT_EQ(a.index, b.index);
   EXPECT_EQ(a.stamp_s, b.stamp_s);
+  EXPECT_EQ(a.colour_after_depth_s, b.colour_after_depth_s);
   EXPECT_EQ(a.depth_m.pixels, b.depth_m.pixels);
   EXPECT_EQ(a.colour.pixels, b.colour.pixels);
   EXPECT_EQ(a.colour.width, b.colour.width);
