@@ -12,19 +12,21 @@
 namespace roomradar {
 namespace {
 
+enum Asked { kNothing, kToEnd, kEnds };
 // Set by a signal handler, taken by whichever thread reads the source.
-std::atomic<int> asked = 0;
+std::atomic<int> asked = kNothing;
 static_assert(std::atomic<int>::is_always_lock_free);
 
 /// Calls only what a signal handler may call.
 void on_interrupt(int signal) {
-  if (asked != 0) {
+  if (asked != kNothing) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
     return;
   }
-  asked = 1;
-  constexpr std::string_view kSaid = "\nroomradar: ends with this frame; Ctrl-C once more ends it at once\n";
+  asked = kToEnd;
+  constexpr std::string_view kSaid =
+      "\nroomradar: takes no more frames and ends with those it has; Ctrl-C once more ends it at once\n";
   static_cast<void>(::write(STDERR_FILENO, kSaid.data(), kSaid.size()) + 1);
 }
 
@@ -49,13 +51,16 @@ class EndedByInterrupt final : public FrameSource {
 }  // namespace
 
 Interrupt::Interrupt() {
-  asked = 0;
+  asked = kNothing;
   std::signal(SIGINT, on_interrupt);
 }
 
 Interrupt::~Interrupt() { std::signal(SIGINT, SIG_DFL); }
 
-bool Interrupt::take() { return asked.exchange(0) != 0; }
+bool Interrupt::take() {
+  int to_end = kToEnd;
+  return asked.compare_exchange_strong(to_end, kEnds);
+}
 
 std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source) {
   return std::make_unique<EndedByInterrupt>(std::move(source));

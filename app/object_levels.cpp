@@ -2,6 +2,7 @@
 #include "app/object_levels.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -16,13 +17,22 @@ namespace {
 constexpr std::size_t kFewTriangles = 1000;
 constexpr std::size_t kManyTriangles = 10'000;  // fewer are drawn as they are, within a millisecond
 constexpr float kFinestOfSize = 1.0F / 1024.0F;
-constexpr int kMostLevels = 8;           // the last lies off by a 32nd of the size
+constexpr int kMostLevels = 8;           // the last lies off by an eighth of the size
 constexpr float kSpacingOfSize = 0.02F;  // of the points at which deviations are measured
 constexpr float kWorthHaving = 0.75F;    // of the triangles of the level before
 
 Eigen::Vector3f area_normal(const Mesh& mesh, const Triangle& t) {
   const Eigen::Vector3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
   return (b - a).cross(c - a);
+}
+
+/// Every index names a vertex, and every vertex is somewhere.
+bool is_sound(const Mesh& mesh) {
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                     [](const Eigen::Vector3f& p) { return p.allFinite(); }) &&
+         std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+           return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) { return v < mesh.vertices.size(); });
+         });
 }
 
 /// Vertices at one place become one: some files have three for each triangle, and nothing hangs together.
@@ -80,7 +90,7 @@ void sharpen(Mesh& mesh) {
 
 std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
   std::vector<ObjectLevel> levels;
-  if (mesh.triangles.size() < kManyTriangles) return levels;
+  if (mesh.triangles.size() < kManyTriangles || !is_sound(mesh)) return levels;
   Eigen::AlignedBox3f box;
   for (const Triangle& t : mesh.triangles)
     for (const std::uint32_t vertex : t) box.extend(mesh.vertices[vertex]);

@@ -230,6 +230,7 @@ void Stepper::linger(double dt_s, bool is_balanced) {
   body_.lingered_s += dt_s;
   if (body_.lingered_s < config_.rest_after_s * (is_balanced ? 1.0 : kLongerUnbalanced)) return;
   body_.at_rest = true;
+  body_.lingered_s = 0.0;  // whoever sets it in motion again has not lingered
   body_.velocity_world_mps.setZero();
   body_.spin_world_rad_s.setZero();
 }
@@ -306,7 +307,7 @@ void require_valid(const PhysicsConfig& config) {
   require_not_negative("bounce_mps", config.bounce_mps);
   require_not_negative("friction", config.friction);
   require_not_negative("rolling", config.rolling);
-  require_not_negative("contact_margin_m", config.contact_margin_m);
+  require_positive("contact_margin_m", config.contact_margin_m);
   require_positive("max_step_s", config.max_step_s);
   require_positive("max_advance_s", config.max_advance_s);
   require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,

@@ -443,9 +443,11 @@ void Session::change_objects(const ScriptEvent& event) {
 
 void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   for (ScriptEvent& event : std::exchange(waiting_, {})) {
+    const VirtualObject& object = object_named(event.name);
+    const Eigen::Matrix3d R_world_object = event.R_world_object.value_or(object.body.T_world_object.linear());
     const std::optional<Support> support =
         find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
-                     object_named(event.name).footprint_radius_m);
+                     footprint_radius_m(object, R_world_object));
     if (support) event.position_world = support->point_world;
     apply(event);  // without a position it waits on
   }

@@ -28,12 +28,6 @@ VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& m
   body.mass = mass_properties(mesh, shape.touched.is_closed());
   const Eigen::AlignedBox3d box = shape.drawn.bounds();
   middle = box.center();
-  for (const Triangle& triangle : shape.drawn.triangles()) {
-    for (const std::uint32_t vertex : triangle) {
-      const Eigen::Vector3d p = shape.drawn.origin() + shape.drawn.vertices()[vertex].cast<double>();
-      footprint_radius_m = std::max(footprint_radius_m, p.head<2>().norm());
-    }
-  }
   for (const ObjectLevel& level : object_levels(mesh)) {
     levels.push_back({level.deviation_m, std::make_unique<GpuMesh>(context)});
     levels.back().mesh->upload(level.mesh, MeshUsage::kStatic);
@@ -61,6 +55,18 @@ double lowest_m(const VirtualObject& object) {
       lowest = std::min(lowest, z.dot(mesh.origin() + mesh.vertices()[vertex].cast<double>()));
   }
   return lowest;
+}
+
+double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {
+  const GpuMesh& mesh = object.shape.drawn;
+  double radius_m = 0.0;
+  for (const Triangle& triangle : mesh.triangles()) {
+    for (const std::uint32_t vertex : triangle) {
+      const Eigen::Vector3d p = R_world_object * (mesh.origin() + mesh.vertices()[vertex].cast<double>());
+      radius_m = std::max(radius_m, p.head<2>().norm());
+    }
+  }
+  return radius_m;
 }
 
 Mesh object_mesh(const std::string& name_or_path, double size_m) {

@@ -26,7 +26,6 @@ struct VirtualObject {
   bool began_in_unknown = false;                              ///< was put where nobody has seen what is there
   bool in_unknown = false;                                    ///< and has not come out of there since
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();           ///< of its bounding box, in its own frame
-  double footprint_radius_m = 0.0;                            ///< how far it reaches sideways from its origin
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< how it stood when it was last put somewhere
   /// While it is held by a user's hand: where its origin is wanted. Gravity does not move it then.
   std::optional<Eigen::Vector3d> carried_to_world;
@@ -41,6 +40,9 @@ struct VirtualObject {
 
 /// How far its lowest point is above its origin, as it is turned now, m.
 double lowest_m(const VirtualObject& object);
+
+/// How far it reaches sideways from its origin, turned like this, m.
+double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
 /// The coarsest mesh of the object that lies no farther than half a pixel off the full one, as the camera
 /// sees it at its nearest point.

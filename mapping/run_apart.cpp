@@ -2,16 +2,20 @@
 #include "mapping/run_apart.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <string_view>
+#include <utility>
 
 #include "mapping/types/error.hpp"
 
@@ -41,10 +45,18 @@ void write_all(int to, std::string_view bytes) {
   }
 }
 
-std::string read_all(int from) {
+/// Until the other end is closed; nothing if that takes longer than most_s.
+std::optional<std::string> read_all(int from, std::chrono::seconds most_s) {
+  const auto end = std::chrono::steady_clock::now() + most_s;
   std::string bytes;
   std::array<char, 1U << 16U> buffer;
   for (;;) {
+    const auto left_ms =
+        std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
+    pollfd ready{from, POLLIN, 0};
+    const int polled = left_ms > 0 ? ::poll(&ready, 1, static_cast<int>(left_ms)) : 0;
+    if (polled < 0 && errno == EINTR) continue;
+    if (polled <= 0) return std::nullopt;
     const ssize_t count = ::read(from, buffer.data(), buffer.size());
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return bytes;
@@ -98,7 +110,12 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
     be_child(work, ends[1], most_s, most_bytes);
   }
   ::close(ends[1]);
-  std::string answer = child > 0 ? read_all(ends[0]) : std::string{};
+  // One that waits for something takes no processor time; on a busy machine a second of that lasts longer.
+  constexpr unsigned kWallPerProcessor = 10;
+  std::optional<std::string> read =
+      child > 0 ? read_all(ends[0], std::chrono::seconds(kWallPerProcessor * most_s)) : std::string{};
+  if (!read) ::kill(child, SIGKILL);
+  std::string answer = std::move(read).value_or(std::string{});
   ::close(ends[0]);
   if (child < 0) throw Error(where + ": no process can be started to read it: " + std::strerror(errno));
   int status = 0;

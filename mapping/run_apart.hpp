@@ -9,7 +9,7 @@ namespace roomradar {
 /// nor by a loop without an end, nor by the memory that it takes. It sees this process's memory as it is now,
 /// and changes nothing in it. What it throws as Error is thrown here.
 /// @param where      for messages: what it works on
-/// @param most_s     processor time
+/// @param most_s     processor time; in all it may take ten times as long
 /// @param most_bytes of memory, beside what this process has
 /// @throws Error if the child did not come to its end, in words, or cannot be started
 std::string run_apart(const std::function<std::string()>& work, const std::string& where, unsigned most_s,

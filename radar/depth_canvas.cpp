@@ -89,8 +89,7 @@ void find_edges(std::size_t count, TriangleSetup& setup) {
       const bool is_left = side<-kLevel_px, is_right = side> kLevel_px;
       const bool is_level = !(is_left | is_right);
       const float slope = du / (is_level ? 1.0F : dv);
-      const float at_first = u - slope * v;
-      const float from = at_first - kWider_px, to = at_first + kWider_px;
+      const float from = u - kWider_px, to = u + kWider_px;
       setup.left[edge][i] = is_left ? from : -kNoBound_px;
       setup.left_slope[edge][i] = is_left ? slope : 0.0F;
       setup.right[edge][i] = is_right ? to : kNoBound_px;
@@ -110,6 +109,7 @@ void fill(const TriangleSetup& setup, std::size_t i, DepthCanvas& canvas) {
               left_slope2 = setup.left_slope[2][i];
   const float right_slope0 = setup.right_slope[0][i], right_slope1 = setup.right_slope[1][i],
               right_slope2 = setup.right_slope[2][i];
+  const float v0 = setup.v[0][i], v1 = setup.v[1][i], v2 = setup.v[2][i];
   const float q_first = setup.q_first[i], q_per_x = setup.q_per_x[i], q_per_y = setup.q_per_y[i];
   const float least_q = setup.least_q[i], most_q = setup.most_q[i];
   const auto columns = static_cast<float>(setup.columns[i]);
@@ -121,10 +121,10 @@ void fill(const TriangleSetup& setup, std::size_t i, DepthCanvas& canvas) {
     alignas(32) std::array<int, kLanes> begin, end;
     for (int lane = 0; lane < kLanes; ++lane) {
       const auto v = static_cast<float>(y + lane);
-      const float from =
-          std::max(std::max(left_slope0 * v + left0, left_slope1 * v + left1), left_slope2 * v + left2);
-      const float to =
-          std::min(std::min(right_slope0 * v + right0, right_slope1 * v + right1), right_slope2 * v + right2);
+      const float from = std::max(std::max(left_slope0 * (v - v0) + left0, left_slope1 * (v - v1) + left1),
+                                  left_slope2 * (v - v2) + left2);
+      const float to = std::min(std::min(right_slope0 * (v - v0) + right0, right_slope1 * (v - v1) + right1),
+                                right_slope2 * (v - v2) + right2);
       begin[lane] = first_from(std::min(std::max(from, 0.0F), columns));
       end[lane] = static_cast<int>(std::min(std::max(to + 1.0F, 0.0F), columns));
     }

@@ -42,7 +42,8 @@ struct TriangleSetup {
   alignas(32) Lane<float> area;
   alignas(32) Lane<int> first_x, first_y, columns, rows;  // of pixels that may be covered
   alignas(32) Lane<float> q_first, q_per_x, q_per_y, least_q, most_q;
-  // In row y pixels from max over left_slope * y + left to min over right_slope * y + right are covered.
+  // In row y the pixels from the greatest left_slope * (y - v) + left to the least right_slope * (y - v) +
+  // right are covered: from a corner of the edge, since the slope of one that is almost level is huge.
   alignas(32) std::array<Lane<float>, 3> left, left_slope, right, right_slope;
 };
 

@@ -467,6 +467,7 @@ FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& mot
         if (!(distance_m > 0.0) || cross(face_of(o), face_of(s))) return;
         free_s = 0.0;  // so near that rounding hides the plane between them
       }
+      if (!(distance_m > 0.0)) return;  // they touch: how they part is for contacts to say
       result.free_s = free_s;
       result.limit = {T_world_frame * (from + way), T_world_frame.linear() * (-way / distance_m), distance_m,
                       tree.kind};

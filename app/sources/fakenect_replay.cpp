@@ -73,11 +73,20 @@ FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
   links_ = make_temporary_folder();
   std::ofstream index(links_ / "INDEX.txt");
   for (const std::string& line : sound) {
-    fs::create_symlink(fs::absolute(folder / line), links_ / line);
+    std::error_code failed;
+    fs::create_symlink(fs::absolute(folder / line), links_ / line, failed);
+    if (failed && failed != std::errc::file_exists) {  // a list may name a file twice
+      fs::remove_all(links_, failed);
+      throw Error((links_ / line).string() + ": cannot be made; is the disk full?");
+    }
     index << line << '\n';
   }
   index.close();
-  if (!index) throw Error(links_.string() + ": cannot be written; is the disk full?");
+  if (!index) {
+    std::error_code ignored;
+    fs::remove_all(links_, ignored);
+    throw Error(links_.string() + ": cannot be written; is the disk full?");
+  }
   setenv(kPath, links_.c_str(), 1);
 }
 

@@ -69,7 +69,7 @@ class KinectFeed::Work {
     changed_.wait_for(lock, seconds(wait_s), [&] { return !ready_.empty() || ended_; });
     if (ready_.empty()) return ended_ ? Take::kEnd : Take::kNothing;
     std::swap(frame, ready_.front());
-    spare_.push_back(std::move(ready_.front()));
+    keep_memory(std::move(ready_.front()));
     ready_.pop_front();
     changed_.notify_all();
     return Take::kFrame;
@@ -94,6 +94,8 @@ class KinectFeed::Work {
     std::string serial;
     for (bool first = true;; first = false) {
       std::unique_ptr<KinectDevice> device;
+      // Before it is opened: the first images may come while it is.
+      if (!first) clock_.restart(last_stamp_s_ + std::max(kFrame_s, seconds_since(last_stamp_at_)));
       try {
         device = opener_({config_.number, serial, config_.depth, listener()});
       } catch (const Error& error) {
@@ -105,10 +107,7 @@ class KinectFeed::Work {
         if (stopped_within(config_.retry_s)) return;
         continue;
       }
-      if (first)
-        announce(*device);
-      else
-        clock_.restart(last_stamp_s_ + std::max(kFrame_s, seconds_since(last_stamp_at_)));
+      if (first) announce(*device);
       serial = device->serial();
       device_ = device.get();
       const Outcome outcome = serve(*device);
@@ -289,7 +288,7 @@ class KinectFeed::Work {
     std::unique_lock lock(mutex_);
     const bool is_full = !config_.is_replay && ready_.size() >= config_.most_waiting;
     if (is_full) {
-      spare_.push_back(std::move(ready_.front()));
+      keep_memory(std::move(ready_.front()));
       ready_.pop_front();
     }
     ready_.push_back(std::move(frame));
@@ -297,6 +296,11 @@ class KinectFeed::Work {
     lock.unlock();
     if (is_full && config_.most_waiting > 1 && !std::exchange(has_said_full_, true))
       config_.say(config_.name + ": sends frames faster than they are used; some are dropped from now on");
+  }
+
+  /// A fault has none worth keeping.
+  void keep_memory(KinectFrame frame) {
+    if (frame.depth.capacity() > 0) spare_.push_back(std::move(frame));
   }
 
   /// With the memory of one that is not needed any more.

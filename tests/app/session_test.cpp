@@ -247,7 +247,9 @@ TEST(VirtualObject, FootprintReachesToACorner) {
   plate.vertices = {{-0.3F, -0.4F, 0.1F}, {0.3F, -0.4F, 0.1F}, {0.3F, 0.4F, 0.1F}};
   plate.triangles = {{0, 1, 2}};
   const VirtualObject object(context, "plate", plate);
-  EXPECT_NEAR(object.footprint_radius_m, 0.5, 1e-6);
+  EXPECT_NEAR(footprint_radius_m(object, Eigen::Matrix3d::Identity()), 0.5, 1e-6);
+  const Eigen::AngleAxisd on_edge(M_PI / 2.0, Eigen::Vector3d::UnitX());
+  EXPECT_NEAR(footprint_radius_m(object, on_edge.toRotationMatrix()), std::hypot(0.3, 0.1), 1e-6);
   EXPECT_NEAR(lowest_m(object), 0.1, 1e-6);
 }
 

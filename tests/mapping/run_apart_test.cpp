@@ -2,6 +2,7 @@
 #include "mapping/run_apart.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -16,6 +17,16 @@ namespace {
 constexpr std::size_t kBytes = std::size_t{256} << 20U;
 
 std::string apart(const std::function<std::string()>& work) { return run_apart(work, "file.obj", 1, kBytes); }
+
+TEST(RunApart, WorkThatWaitsForEverIsEnded) {
+  EXPECT_THROW((void)run_apart(
+                   [] {
+                     pause();  // takes no processor time
+                     return std::string();
+                   },
+                   "file.obj", 0, kBytes),
+               Error);
+}
 
 TEST(RunApart, GivesTheAnswerWhateverItsLength) {
   EXPECT_EQ(apart([] { return std::string(); }), "");

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "radar/depth_canvas.hpp"
 #include "radar/depth_pass.hpp"
 #include "tests/radar/shapes.hpp"
 
@@ -104,6 +105,30 @@ TEST_F(DepthRasterTest, NeighboursLeaveNoGap) {
       T_world_camera.translation() = Eigen::Vector3d(0.0137 * k, -0.0091 * k, 0.003 * k);
       const DepthImage depth_m = draw(by_processor, mesh, T_world_camera);
       EXPECT_EQ(std::count(depth_m.pixels.begin(), depth_m.pixels.end(), 0.0F), 0) << cells << " " << k;
+    }
+  }
+}
+
+TEST(DepthCanvas, AnEdgeThatIsAlmostLevelLeavesNoGap) {
+  // Two triangles with one edge between them, far longer than the picture is wide, that hardly crosses a row.
+  constexpr int kWidth = 640, kHeight = 8, kRow = 4;
+  TriangleSetup setup;
+  DepthCanvas canvas;
+  for (const float reach : {20.0F, 700.0F, 2000.0F}) {
+    for (const float rise : {0.0006F, 0.003F, 0.04F, 0.3F}) {
+      for (const float past : {-0.4F, -0.1F, 0.0F, 0.2F}) {
+        const float left = -reach, right = kWidth + reach;
+        const float at_left = kRow + (past - 0.5F) * rise, at_right = at_left + rise;
+        ProjectedVertices vertices;
+        vertices.u_px = {left, right, 320.0F, 320.0F};
+        vertices.v_px = {at_left, at_right, kRow - 3000.0F, kRow + 3000.0F};
+        vertices.inverse_depth_per_m = {1.0F, 1.0F, 1.0F, 1.0F};
+        const std::vector<PieceTriangle> triangles = {{0, 1, 2}, {1, 0, 3}};
+        canvas.clear(kWidth, kHeight);
+        draw_triangles(vertices, triangles, false, setup, canvas);
+        EXPECT_EQ(std::count(canvas.row(kRow), canvas.row(kRow) + kWidth, 0.0F), 0)
+            << reach << " " << rise << " " << past;
+      }
     }
   }
 }
