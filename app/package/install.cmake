@@ -46,7 +46,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME roomradar)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # Mesa's EGL and its software renderer, for machines without a GPU; the Kinect's udev rules come with its library.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libegl-mesa0, libgl1-mesa-dri")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libfreenect-bin")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "libfreenect-bin, fonts-dejavu-core")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
   "Keeps a scanned room as an octree on disk with a mesh, and lets virtual objects rest on, slide along and be stopped by its\n surfaces, also by those that the camera cannot see now.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libroomradar-dev)

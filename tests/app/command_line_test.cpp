@@ -211,7 +211,7 @@ TEST_F(CommandLine, RunChangesNothingOfTheMap) {
   const auto before = state();
   ASSERT_GT(before.size(), 4U);
   const Outcome ran =
-      roomradar("run 'sim:table?frames=30&width=160&moving=hand&crate=comes' --adopt 0.3 --map " + map() +
+      roomradar("run 'sim:table?frames=60&width=160&moving=hand&crate=comes' --adopt 0.5 --map " + map() +
                 " --unknown solid");
   EXPECT_EQ(ran.status, 0) << ran.out;
   EXPECT_TRUE(state() == before);

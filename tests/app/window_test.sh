@@ -31,8 +31,7 @@ shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$
 
 "$program" prescan 'sim:table?frames=40&width=160' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 || fail prescan
 
-exec 3> >(cat > "$work/display")
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp > /dev/null 2>&1 &
+Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp 3> "$work/display" > /dev/null 2>&1 &
 for _ in $(seq 100); do [[ -s $work/display ]] && break; sleep 0.1; done
 DISPLAY=:$(cat "$work/display")
 export DISPLAY
