@@ -272,7 +272,9 @@ int run_frames(const RunCommand& command, PlayLink* link) {
 
 int run(const RunCommand& command) {
   if (!command.window) return run_frames(command, nullptr);
-  return run_in_window("roomradar - " + command.source,
+  std::vector<std::string> meshes;
+  if (command.object != "teapot") meshes.push_back(command.object);
+  return run_in_window("roomradar - " + command.source, meshes,
                        [&](PlayLink& link) { return run_frames(command, &link); });
 }
 

@@ -149,8 +149,10 @@ constexpr std::array<std::array<const char*, 2>, 20> kHelp = {
 /// All that is seen.
 class PlayUi {
  public:
-  PlayUi(PlayLink& link, const look::Fonts& fonts) : link_(link), fonts_(fonts), picture_(link) {
+  PlayUi(PlayLink& link, const look::Fonts& fonts, const std::vector<std::string>& meshes)
+      : link_(link), fonts_(fonts), picture_(link) {
     settings_.meshes = {"teapot"};
+    settings_.meshes.insert(settings_.meshes.end(), meshes.begin(), meshes.end());
   }
 
   /// Takes what is new; whether there was anything.
@@ -468,9 +470,9 @@ void PlayUi::press(int key, int modifiers) {
 
 /// Draws when something has happened, and some frames more, since Dear ImGui answers a frame late; else
 /// seldom.
-void show(GlfwWindow& window, PlayLink& link) {
+void show(GlfwWindow& window, PlayLink& link, const std::vector<std::string>& meshes) {
   const ImGuiOfWindow imgui(window.get());
-  PlayUi ui(link, imgui.fonts);
+  PlayUi ui(link, imgui.fonts, meshes);
   constexpr double kLeastFrame_s = 1.0 / 60.0, kIdle_s = 0.25;
   while (glfwWindowShouldClose(window.get()) == GLFW_FALSE && !ui.wants_to_quit()) {
     glfwWaitEventsTimeout(kIdle_s);
@@ -500,7 +502,8 @@ void show(GlfwWindow& window, PlayLink& link) {
 
 }  // namespace
 
-int run_in_window(const std::string& title, const std::function<int(PlayLink&)>& work) {
+int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
+                  const std::function<int(PlayLink&)>& work) {
   GlfwWindow window(title);
   PlayLink link([] { glfwPostEmptyEvent(); });
   int status = 0;
@@ -515,7 +518,7 @@ int run_in_window(const std::string& title, const std::function<int(PlayLink&)>&
     link.finish();
   });
   try {
-    show(window, link);
+    show(window, link, meshes);
   } catch (...) {
     link.close();
     session.join();

@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "app/window/play_link.hpp"
 
@@ -10,11 +11,13 @@ namespace roomradar {
 /// Opens a window, runs `work` on a thread of its own, and shows what it publishes until the user closes the
 /// window or the work is over and the window is closed. Must be called on the main thread.
 ///
-/// @param title  of the window
+/// @param title   of the window
+/// @param meshes  that can be added beside the built-in teapot: files that read_mesh reads
 /// @return what `work` returned; what it throws is thrown here
 /// @throws Error saying what to do where this build has no window, there is no display, or the display gives
 /// no
 ///         OpenGL 3.3
-int run_in_window(const std::string& title, const std::function<int(PlayLink&)>& work);
+int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
+                  const std::function<int(PlayLink&)>& work);
 
 }  // namespace roomradar

@@ -4,7 +4,8 @@
 
 namespace roomradar {
 
-int run_in_window(const std::string& /*title*/, const std::function<int(PlayLink&)>& /*work*/) {
+int run_in_window(const std::string& /*title*/, const std::vector<std::string>& /*meshes*/,
+                  const std::function<int(PlayLink&)>& /*work*/) {
   throw Error(
       "--window: this roomradar was built without it; install libglfw3-dev and libimgui-dev and configure "
       "again, or write the pictures with --video FILE");
