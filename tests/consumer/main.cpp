@@ -1,4 +1,4 @@
-// main.cpp: how far may a cube fall onto a floor? And, given a saved map, onto the room's surface below a
+// main.cpp: how far may a plate fall onto a floor? And, given a saved map, onto what is below a point in it.
 // point.
 #include <cstdio>
 #include <exception>
@@ -37,8 +37,15 @@ int main(int argc, char** argv) {
     if (argc < 2) return 0;
     const roomradar::SavedMap map = roomradar::load_map(argv[1]);
     floor.build_by_place(map.mesh);
-    std::printf("map of %zu triangles, falls %.3f m\n", map.mesh.triangles.size(),
-                fall(plate, floor, {0.0, 0.0, 2.0}).travel_m);
+    if (map.mesh.vertices.empty()) return 0;
+    const Eigen::Vector3d above_a_vertex =
+        map.mesh.origin + map.mesh.vertices.front().cast<double>() + Eigen::Vector3d(0.0, 0.0, 0.5);
+    const roomradar::Contact contact = fall(plate, floor, above_a_vertex);
+    std::printf("map of %zu triangles: ", map.mesh.triangles.size());
+    if (contact.status == roomradar::ContactStatus::kContact)
+      std::printf("falls %.3f m\n", contact.travel_m);
+    else
+      std::printf("nothing is in the way, or the plate stands in it\n");
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "consumer: %s\n", error.what());
