@@ -8,6 +8,8 @@
 #include <numbers>
 #include <span>
 
+#include "mapping/types/validity.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -92,11 +94,6 @@ void add_patch(const Patch& patch, float y_m, float clearance_m, float cell_m, s
 
 SurfacePoints spread_points(const Mesh& mesh) {
   SurfacePoints spread;
-  const auto is_usable = [&](const Triangle& triangle) {
-    return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t index) {
-      return index < mesh.vertices.size() && mesh.vertices[index].allFinite();
-    });
-  };
   const auto corner = [&](std::uint32_t index) -> Eigen::Vector3f {
     return mesh.origin.cast<float>() + mesh.vertices[index];
   };
@@ -106,7 +103,7 @@ SurfacePoints spread_points(const Mesh& mesh) {
   };
   double total_m2 = 0.0;
   for (const Triangle& triangle : mesh.triangles)
-    if (is_usable(triangle)) total_m2 += area_m2(triangle);
+    if (is_usable(mesh, triangle)) total_m2 += area_m2(triangle);
   if (!(total_m2 > 0.0)) return spread;
 
   // Every kPoints-th part of the area in the order of the triangles, at places of an even sequence within
@@ -115,7 +112,7 @@ SurfacePoints spread_points(const Mesh& mesh) {
   spread.p_object_m.reserve(kPoints + 1);
   double owed = 0.5, u = 0.5, v = 0.5;
   for (const Triangle& triangle : mesh.triangles) {
-    if (!is_usable(triangle)) continue;
+    if (!is_usable(mesh, triangle)) continue;
     const Eigen::Vector3f a = corner(triangle[0]), b = corner(triangle[1]), c = corner(triangle[2]);
     for (owed += kPoints * area_m2(triangle) / total_m2; owed >= 1.0; owed -= 1.0) {
       u = std::fmod(u + kStepU, 1.0);

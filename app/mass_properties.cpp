@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "mapping/types/validity.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -49,22 +51,17 @@ MassProperties properties_of(const Moments& moments, const Vec3& from) {
 }  // namespace
 
 MassProperties mass_properties(const Mesh& mesh, bool is_closed) {
-  const auto is_used = [&](const Triangle& t) {
-    return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
-      return v < mesh.vertices.size() && mesh.vertices[v].allFinite();
-    });
-  };
   // About the middle of the used vertices, so that nothing is lost far from the mesh's origin.
   Eigen::AlignedBox3f box;
   for (const Triangle& t : mesh.triangles) {
-    if (!is_used(t)) continue;
+    if (!is_usable(mesh, t)) continue;
     for (const std::uint32_t v : t) box.extend(mesh.vertices[v]);
   }
   if (box.isEmpty()) return {};
   const Vec3 middle = box.center().cast<double>();
   Moments solid, shell, points;
   for (const Triangle& t : mesh.triangles) {
-    if (!is_used(t)) continue;
+    if (!is_usable(mesh, t)) continue;
     const auto at = [&](std::size_t i) -> Vec3 { return mesh.vertices[t[i]].cast<double>() - middle; };
     const Vec3 a = at(0), b = at(1), c = at(2);
     solid.add<4>({Vec3::Zero(), a, b, c}, a.dot(b.cross(c)) / 6.0);
@@ -78,7 +75,7 @@ MassProperties mass_properties(const Mesh& mesh, bool is_closed) {
   MassProperties result = properties_of(has_volume ? solid : has_area ? shell : points, from);
   result.radius_m = 0.0;
   for (const Triangle& t : mesh.triangles) {
-    if (!is_used(t)) continue;
+    if (!is_usable(mesh, t)) continue;
     for (const std::uint32_t v : t) {
       const Vec3 p = mesh.origin + mesh.vertices[v].cast<double>();
       result.radius_m = std::max(result.radius_m, (p - result.centre_object).norm());

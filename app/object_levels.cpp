@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "mapping/mesh_simplify.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -30,9 +31,8 @@ Eigen::Vector3f area_normal(const Mesh& mesh, const Triangle& t) {
 bool is_sound(const Mesh& mesh) {
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                      [](const Eigen::Vector3f& p) { return p.allFinite(); }) &&
-         std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
-           return std::all_of(t.begin(), t.end(), [&](std::uint32_t v) { return v < mesh.vertices.size(); });
-         });
+         std::all_of(mesh.triangles.begin(), mesh.triangles.end(),
+                     [&](const Triangle& t) { return is_usable(mesh, t); });
 }
 
 /// Vertices at one place become one: some files have three for each triangle, and nothing hangs together.

@@ -20,8 +20,7 @@ using Vec3 = Eigen::Vector3d;
 
 constexpr double kShortest_m = 1e-13;  // less than this is no motion
 constexpr double kGrazing = 0.05;  // cosine below which a margin is not measured along the motion any more
-constexpr double kSupportCosine = 0.5;  // a surface within 60 degrees of level holds an object up
-constexpr double kDoubtful_m = 0.003;   // deeper overlap along gravity: the way out may be sideways
+constexpr double kDoubtful_m = 0.003;  // deeper overlap along gravity: the way out may be sideways
 
 bool is_finite(const Body& body) {
   return body.T_world_object.matrix().allFinite() && body.velocity_world_mps.allFinite() &&
@@ -78,7 +77,6 @@ class Stepper {
   bool slide(double dt_s);
   Contact ask(const Vec3& direction, double distance_m);
   static Way overlap_in(const Contact& contact, const Vec3& direction);
-  void note(Touched touched);
   void hold();
   void collide(const Contact& contact, Vec3& remaining);
   void linger(double dt_s, bool is_balanced);
@@ -108,17 +106,10 @@ void Stepper::hold() {
   body_.spin_world_rad_s.setZero();
 }
 
-void Stepper::note(Touched touched) {
-  report_.touched_static |= touched == Touched::kStatic;
-  report_.touched_dynamic |= touched == Touched::kDynamic;
-  report_.touched_object |= touched == Touched::kObject;
-}
-
 void Stepper::wake() {
   if (!body_.at_rest) return;
   report_.woke = true;
   body_.at_rest = false;
-  body_.lingered_s = 0.0;
 }
 
 Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) {
@@ -151,7 +142,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   report_.deepest_overlap_m = std::max(report_.deepest_overlap_m, way.depth_m);
   if (way.contact.touched == Touched::kStatic)
     report_.deepest_static_overlap_m = std::max(report_.deepest_static_overlap_m, way.depth_m);
-  note(way.contact.touched);
+  note_touched(way.contact.touched, report_);
   if (way.depth_m <= (body_.at_rest ? config_.wake_overlap_m : config_.overlap_allowed_m)) return;
 
   wake();
@@ -211,9 +202,7 @@ void Stepper::collide(const Contact& contact, Vec3& remaining) {
     break;
   }
   if (met_count_ < 2) met_normals_[static_cast<std::size_t>(met_count_++)] = normal;
-  ++report_.contacts;
-  ++report_.contacts_by_kind[static_cast<std::size_t>(contact.touched)];
-  note(contact.touched);
+  note_contact(contact.touched, report_);
 }
 
 /// Counts time on a support, from where the body first lingered; there for long enough, it is at rest. What
@@ -243,7 +232,7 @@ void Stepper::move(double dt_s) {
   }
   if (piece.is_held_up) {
     body_.rests_on = piece.rests_on;
-    note(piece.rests_on);
+    note_touched(piece.rests_on, report_);
     if (!push_) linger(dt_s, piece.is_balanced);
   } else {
     body_.rests_on = Touched::kNothing;

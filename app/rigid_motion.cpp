@@ -10,9 +10,8 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr double kSupportCosine = 0.5;  // a surface within 60 degrees of level holds a body up
-constexpr double kTouchingBand = 0.5;   // of the margin: so much farther away than it is still a contact
-constexpr double kKept = 0.5;           // of the margin: what approaches is stopped there
+constexpr double kTouchingBand = 0.5;  // of the margin: so much farther away than it is still a contact
+constexpr double kKept = 0.5;          // of the margin: what approaches is stopped there
 constexpr double kNoTime_s = 1e-12;
 
 /// Columns at right angles again, after any number of turns.
@@ -125,12 +124,7 @@ void Piece::bounce() {
   }
   for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
     if (!(scratch_.contacts[i].impulse_mps > 0.0)) continue;
-    const Touched kind = scratch_.kinds[i];
-    ++report_.contacts;
-    ++report_.contacts_by_kind[static_cast<std::size_t>(kind)];
-    report_.touched_static |= kind == Touched::kStatic;
-    report_.touched_dynamic |= kind == Touched::kDynamic;
-    report_.touched_object |= kind == Touched::kObject;
+    note_contact(scratch_.kinds[i], report_);
   }
 }
 
@@ -247,6 +241,18 @@ Eigen::Vector3d centre_world(const Body& body) { return body.T_world_object * bo
 Eigen::Matrix3d inertia_world_m2(const Body& body) {
   const Eigen::Matrix3d R = body.T_world_object.linear();
   return R * body.mass.inertia_m2 * R.transpose();
+}
+
+void note_touched(Touched touched, StepReport& report) {
+  report.touched_static |= touched == Touched::kStatic;
+  report.touched_dynamic |= touched == Touched::kDynamic;
+  report.touched_object |= touched == Touched::kObject;
+}
+
+void note_contact(Touched touched, StepReport& report) {
+  ++report.contacts;
+  ++report.contacts_by_kind[static_cast<std::size_t>(touched)];
+  note_touched(touched, report);
 }
 
 RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,

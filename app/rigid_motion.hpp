@@ -20,6 +20,13 @@ constexpr bool is_moving_surface(Touched kind) {
   return kind == Touched::kDynamic || kind == Touched::kInferredBack;
 }
 
+inline constexpr double kSupportCosine = 0.5;  ///< a surface within 60 degrees of level holds a body up
+
+/// Says in the report what was touched.
+void note_touched(Touched touched, StepReport& report);
+/// The same, and counts it as a surface that was met.
+void note_contact(Touched touched, StepReport& report);
+
 struct [[nodiscard]] RigidPiece {
   /// A surface crosses the body that does not push it out: the rest of the piece was not moved.
   bool crosses = false;

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numeric>
 
+#include "mapping/types/validity.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -299,10 +301,7 @@ void TriangleTree::take(const Mesh& mesh) {
   revision_ = next_revision();
   Bounds all;
   for (const Triangle& t : mesh.triangles) {
-    const bool is_usable = std::all_of(t.begin(), t.end(), [&](std::uint32_t v) {
-      return v < vertices_.size() && vertices_[v].allFinite();
-    });
-    if (!is_usable) continue;
+    if (!is_usable(mesh, t)) continue;
     triangles_.push_back(t);
     all.extend(bounds_of(t, vertices_));
   }

@@ -36,6 +36,28 @@ std::string fault_of(const fs::path& file, std::uintmax_t pixel_bytes) {
   return {};
 }
 
+/// A new folder with links to these files of `folder`, and the list of them.
+fs::path folder_of_links(const fs::path& folder, const std::vector<std::string>& files) {
+  const fs::path links = make_temporary_folder();
+  try {
+    std::ofstream index(links / "INDEX.txt");
+    for (const std::string& file : files) {
+      std::error_code failed;
+      fs::create_symlink(fs::absolute(folder / file), links / file, failed);
+      if (failed && failed != std::errc::file_exists)  // a list may name a file twice
+        throw Error((links / file).string() + ": cannot be made; is the disk full?");
+      index << file << '\n';
+    }
+    index.close();
+    if (!index) throw Error(links.string() + ": cannot be written; is the disk full?");
+    return links;
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(links, ignored);
+    throw;
+  }
+}
+
 }  // namespace
 
 std::optional<fs::path> replayed_folder() {
@@ -70,23 +92,7 @@ FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
     throw Error(folder.string() + ": holds no whole depth image");
   if (all_sound) return;
 
-  links_ = make_temporary_folder();
-  std::ofstream index(links_ / "INDEX.txt");
-  for (const std::string& line : sound) {
-    std::error_code failed;
-    fs::create_symlink(fs::absolute(folder / line), links_ / line, failed);
-    if (failed && failed != std::errc::file_exists) {  // a list may name a file twice
-      fs::remove_all(links_, failed);
-      throw Error((links_ / line).string() + ": cannot be made; is the disk full?");
-    }
-    index << line << '\n';
-  }
-  index.close();
-  if (!index) {
-    std::error_code ignored;
-    fs::remove_all(links_, ignored);
-    throw Error(links_.string() + ": cannot be written; is the disk full?");
-  }
+  links_ = folder_of_links(folder, sound);
   setenv(kPath, links_.c_str(), 1);
 }
 

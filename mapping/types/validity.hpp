@@ -1,9 +1,11 @@
-// validity.hpp: whether a camera can be one, and whether a frame's images fit its cameras; as values, without
-// exceptions, for the path of a frame.
+// validity.hpp: whether a camera can be one, whether a frame's images fit its cameras, and whether a triangle
+// has its corners; as values, without exceptions, for the path of a frame.
 #pragma once
+#include <algorithm>
 #include <string_view>
 
 #include "mapping/types/frame.hpp"
+#include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
@@ -19,5 +21,12 @@ namespace roomradar {
 [[nodiscard]] std::string_view depth_fault_of(const Frame& frame);
 /// The same of both images. Where there is no colour image its camera is not looked at.
 [[nodiscard]] std::string_view fault_of(const Frame& frame);
+
+/// Whether all of its corners are vertices of the mesh that are finite.
+[[nodiscard]] inline bool is_usable(const Mesh& mesh, const Triangle& triangle) {
+  return std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t vertex) {
+    return vertex < mesh.vertices.size() && mesh.vertices[vertex].allFinite();
+  });
+}
 
 }  // namespace roomradar

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -15,6 +14,7 @@
 #include "dynamic/change_tracker.hpp"
 #include "dynamic/foreground.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/bench/dynamic_bench_foreground.hpp"
 #include "tests/bench/dynamic_bench_mesh.hpp"
@@ -138,13 +138,7 @@ int run(int argc, char** argv) {
     measure_foreground(rows);
   }
   for (const auto& row : rows) std::cout << row.dump() << "\n";
-  if (!file) return 0;
-  std::ofstream out(file);
-  out << rows.dump(1) << "\n";
-  if (!out.flush()) {
-    std::cerr << file << ": cannot be written\n";
-    return 1;
-  }
+  write_rows(file ? file : "", rows);
   return 0;
 }
 
@@ -152,10 +146,5 @@ int run(int argc, char** argv) {
 }  // namespace roomradar::test
 
 int main(int argc, char** argv) {
-  try {
-    return roomradar::test::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::cerr << error.what() << "\n";
-    return 1;
-  }
+  return roomradar::test::run_or_say("dynamic_bench", [&] { return roomradar::test::run(argc, argv); });
 }

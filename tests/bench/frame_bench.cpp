@@ -14,9 +14,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -29,6 +27,7 @@
 #include "app/sources/frame_range.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/types/error.hpp"
+#include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/bench/frame_bench_pipe.hpp"
 #include "tests/bench/radar_bench_shapes.hpp"
@@ -330,13 +329,7 @@ int run(int argc, char** argv) {
                 scene.name.c_str(), rows.back()["median_ratio"].get<double>(),
                 rows.back()["cpu_ratio"].get<double>());
   }
-  if (settings.json.empty()) return 0;
-  std::ofstream out(settings.json);
-  out << rows.dump(1) << "\n";
-  if (!out.flush()) {
-    std::fprintf(stderr, "%s: cannot be written\n", settings.json.c_str());
-    return 1;
-  }
+  test::write_rows(settings.json, rows);
   return 0;
 }
 
@@ -344,10 +337,5 @@ int run(int argc, char** argv) {
 }  // namespace roomradar
 
 int main(int argc, char** argv) {
-  try {
-    return roomradar::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  return roomradar::test::run_or_say("frame_bench", [&] { return roomradar::run(argc, argv); });
 }

@@ -4,13 +4,13 @@
 // usage: frame_bench_reader scan SOURCE [A:B] FOLDER     saves the map of the source's frames A to B
 //        frame_bench_reader frames SOURCE A:B            writes them to stdout, as frame_bench_pipe.hpp says
 #include <cstdio>
-#include <exception>
 #include <optional>
 #include <string>
 
 #include "app/open_source.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/prescan.hpp"
+#include "tests/bench/bench_program.hpp"
 #include "tests/bench/frame_bench_pipe.hpp"
 
 namespace roomradar {
@@ -42,10 +42,5 @@ int run(int argc, char** argv) {
 }  // namespace roomradar
 
 int main(int argc, char** argv) {
-  try {
-    return roomradar::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "frame_bench_reader: %s\n", error.what());
-    return 1;
-  }
+  return roomradar::test::run_or_say("frame_bench_reader", [&] { return roomradar::run(argc, argv); });
 }

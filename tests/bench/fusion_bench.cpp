@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -26,6 +25,7 @@
 #include "app/sources/folder_source.hpp"
 #include "mapping/static_map.hpp"
 #include "mapping/types/error.hpp"
+#include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 
 namespace roomradar {
@@ -201,12 +201,7 @@ int run(int argc, char** argv) {
   nlohmann::json rows = nlohmann::json::array();
   std::printf("%s, one core; compiler %s; %s\n", processor().c_str(), __VERSION__, ROOMRADAR_FLAGS);
   for (const double resolution_m : settings.resolutions_m) bench(settings, resolution_m, rows);
-  if (!settings.json.empty()) {
-    std::ofstream file(settings.json);
-    file << rows.dump(2) << "\n";
-    file.flush();
-    if (!file) throw Error(settings.json + ": cannot be written");
-  }
+  test::write_rows(settings.json, rows);
   return 0;
 }
 
@@ -214,10 +209,5 @@ int run(int argc, char** argv) {
 }  // namespace roomradar
 
 int main(int argc, char** argv) {
-  try {
-    return roomradar::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "fusion_bench: %s\n", error.what());
-    return 1;
-  }
+  return roomradar::test::run_or_say("fusion_bench", [&] { return roomradar::run(argc, argv); });
 }

@@ -14,8 +14,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <exception>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -29,6 +27,7 @@
 #include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/error.hpp"
+#include "tests/bench/bench_program.hpp"
 
 namespace roomradar {
 namespace {
@@ -310,7 +309,7 @@ int run(int argc, char** argv) {
     if (settings.cases.empty() ||
         std::find(settings.cases.begin(), settings.cases.end(), one.name) != settings.cases.end())
       rows.push_back(bench(one, settings));
-  if (!settings.json.empty()) std::ofstream(settings.json) << rows.dump(1) << '\n';
+  test::write_rows(settings.json, rows);
   return 0;
 }
 
@@ -318,10 +317,5 @@ int run(int argc, char** argv) {
 }  // namespace roomradar
 
 int main(int argc, char** argv) {
-  try {
-    return roomradar::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "ghost_bench: %s\n", error.what());
-    return 1;
-  }
+  return roomradar::test::run_or_say("ghost_bench", [&] { return roomradar::run(argc, argv); });
 }

@@ -12,8 +12,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <unordered_map>
@@ -24,6 +22,7 @@
 #include "app/sim/simulated_source.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/cell_code.hpp"
+#include "tests/bench/bench_program.hpp"
 
 namespace roomradar {
 namespace {
@@ -202,7 +201,7 @@ nlohmann::json judge(const Cell& cell, double resolution_m) {
 
 int main(int argc, char** argv) {
   using roomradar::Cell;
-  try {
+  return roomradar::test::run_or_say("map_bench", [&] {
     double resolution_m = 0.01;
     std::string json;
     std::vector<Cell> cells;
@@ -228,10 +227,7 @@ int main(int argc, char** argv) {
       std::printf("%s\n", rows.back().dump().c_str());
       std::fflush(stdout);
     }
-    if (!json.empty()) std::ofstream(json) << rows.dump(1) << '\n';
+    roomradar::test::write_rows(json, rows);
     return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "map_bench: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -16,8 +16,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <exception>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -34,6 +32,7 @@
 #include "bench_times.hpp"
 #include "mapping/types/error.hpp"
 #include "physics_bench_scenes.hpp"
+#include "tests/bench/bench_program.hpp"
 
 namespace roomradar::bench {
 namespace {
@@ -359,10 +358,7 @@ int run(int argc, char** argv) {
   if (options.wants("time")) measure_time(rows);
   if (options.wants("rest")) measure_rest(rows);
   if (options.wants("throws")) measure_throws(options.throws, rows);
-  if (options.json.empty()) return 0;
-  std::ofstream file(options.json);
-  file << rows.dump(2) << "\n";
-  if (!file) throw Error(options.json + ": cannot be written");
+  test::write_rows(options.json, rows);
   return 0;
 }
 
@@ -370,10 +366,5 @@ int run(int argc, char** argv) {
 }  // namespace roomradar::bench
 
 int main(int argc, char** argv) {
-  try {
-    return roomradar::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "physics_bench: %s\n", error.what());
-    return 1;
-  }
+  return roomradar::test::run_or_say("physics_bench", [&] { return roomradar::bench::run(argc, argv); });
 }

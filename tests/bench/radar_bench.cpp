@@ -16,6 +16,7 @@
 #include "radar/exact_travel.hpp"
 #include "radar_bench_objects.hpp"
 #include "radar_bench_rows.hpp"
+#include "tests/bench/bench_program.hpp"
 
 namespace roomradar::bench {
 namespace {
@@ -279,10 +280,5 @@ int run(int argc, char** argv) {
 }  // namespace roomradar::bench
 
 int main(int argc, char** argv) {
-  try {
-    return roomradar::bench::run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "radar_bench: %s\n", error.what());
-    return 1;
-  }
+  return roomradar::test::run_or_say("radar_bench", [&] { return roomradar::bench::run(argc, argv); });
 }

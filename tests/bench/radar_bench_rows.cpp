@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "mapping/types/error.hpp"
+#include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 
 namespace roomradar::bench {
@@ -99,9 +99,7 @@ void write_json(const std::string& path, const std::vector<Row>& rows) {
                     {"wrong_bounds",
                      r.gives_bounds ? nlohmann::ordered_json(r.wrong_bounds) : nlohmann::ordered_json()}});
   }
-  std::ofstream file(path);
-  file << list.dump(1) << "\n";
-  if (!file.flush()) throw Error(path + ": cannot be written");
+  test::write_rows(path, list);
 }
 
 }  // namespace roomradar::bench

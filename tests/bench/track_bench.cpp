@@ -13,8 +13,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -25,6 +23,7 @@
 #include "mapping/odometry.hpp"
 #include "mapping/odometry_snapshot.hpp"
 #include "mapping/trajectory.hpp"
+#include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 
 namespace roomradar {
@@ -205,7 +204,7 @@ Settings parse(int argc, char** argv) {
 }  // namespace roomradar
 
 int main(int argc, char** argv) {
-  try {
+  return roomradar::test::run_or_say("track_bench", [&] {
     const roomradar::Settings settings = roomradar::parse(argc, argv);
     if (settings.sources.empty()) {
       std::fprintf(stderr, "usage: track_bench [--frames N] [--places N] [--json FILE] SOURCE...\n");
@@ -218,10 +217,7 @@ int main(int argc, char** argv) {
       std::printf("%s\n", rows.back().dump().c_str());
       std::fflush(stdout);
     }
-    if (!settings.json.empty()) std::ofstream(settings.json) << rows.dump(1) << '\n';
+    roomradar::test::write_rows(settings.json, rows);
     return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "track_bench: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -13,9 +13,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <exception>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -27,6 +25,7 @@
 #include "app/sources/folder_source.hpp"
 #include "app/sources/recording_writer.hpp"
 #include "bench_times.hpp"
+#include "tests/bench/bench_program.hpp"
 #include "where_bench_rooms.hpp"
 #include "where_bench_tracking.hpp"
 
@@ -185,7 +184,7 @@ nlohmann::json bench(const Settings& settings) {
 }  // namespace roomradar
 
 int main(int argc, char** argv) {
-  try {
+  return roomradar::test::run_or_say("where_bench", [&] {
     const roomradar::Settings settings = roomradar::parse(argc, argv);
     if (settings.maps.empty()) {
       std::fprintf(
@@ -194,10 +193,7 @@ int main(int argc, char** argv) {
       return 2;
     }
     const nlohmann::json rows = roomradar::bench(settings);
-    if (!settings.json.empty()) std::ofstream(settings.json) << rows.dump(1) << '\n';
+    roomradar::test::write_rows(settings.json, rows);
     return 0;
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "where_bench: %s\n", error.what());
-    return 1;
-  }
+  });
 }

@@ -12,14 +12,8 @@ namespace {
 
 constexpr Intrinsics kCamera{320, 240, 292.5, 292.5, 159.5, 119.5};
 
-test::Scene room() {
-  using namespace test;
-  return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), plane({0, 1, 0}, 2.5)),
-                    nearest_of(plane({1, 0, 0}, -1.8), sphere({0.5, 1.8, 0.4}, 0.4)));
-}
-
 Frame painted(const Eigen::Isometry3d& T_world_camera) {
-  Frame frame = test::exact_frame(room(), kCamera, T_world_camera);
+  Frame frame = test::exact_frame(test::corner_with_ball(), kCamera, T_world_camera);
   test::paint(frame, T_world_camera);
   test::add_depth_noise(frame, 7);
   return frame;
@@ -40,7 +34,7 @@ TEST(Patches, LieOnTheSurfaceAndFaceTheViewer) {
   ASSERT_LE(patches.size(), 300U);
   for (const SurfacePatch& patch : patches) {
     const Eigen::Vector3d ray = kEye.linear() * (patch.point / patch.point.z()).cast<double>();
-    EXPECT_NEAR(static_cast<double>(patch.point.z()), room()(kEye.translation(), ray), 0.1);
+    EXPECT_NEAR(static_cast<double>(patch.point.z()), test::corner_with_ball()(kEye.translation(), ray), 0.1);
     EXPECT_LT(patch.normal.dot(patch.point), 0.0F);
     EXPECT_NEAR(patch.normal.norm(), 1.0F, 1e-4F);
     EXPECT_NEAR(patch.along.norm(), 1.0F, 1e-4F);
@@ -61,7 +55,7 @@ TEST(Patches, OfAnotherRoomAreNotFound) {
   const auto other = [](const Eigen::Vector3d& p) {
     return test::cube_grey(p + Eigen::Vector3d(31.0, 17.0, 5.0));
   };
-  Frame frame = test::exact_frame(room(), kCamera, kAside);
+  Frame frame = test::exact_frame(test::corner_with_ball(), kCamera, kAside);
   test::paint_with(other, frame, kAside);
   EXPECT_TRUE(propose_poses(describe_patches(frame, 400), known_patches(place_at(kEye)), 4, 6).empty());
 }

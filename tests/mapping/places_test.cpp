@@ -20,13 +20,7 @@ namespace {
 
 constexpr Intrinsics kCamera{320, 240, 292.5, 292.5, 159.5, 119.5};
 
-test::Scene room() {
-  using namespace test;
-  return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), plane({0, 1, 0}, 2.5)),
-                    nearest_of(plane({1, 0, 0}, -1.8), sphere({0.5, 1.8, 0.4}, 0.4)));
-}
-
-Frame painted(const Eigen::Isometry3d& T_world_camera, const test::Scene& scene = room()) {
+Frame painted(const Eigen::Isometry3d& T_world_camera, const test::Scene& scene = test::corner_with_ball()) {
   Frame frame = test::exact_frame(scene, kCamera, T_world_camera);
   test::paint(frame, T_world_camera);
   test::add_depth_noise(frame, 7);
@@ -79,7 +73,7 @@ TEST(DescribePlace, FeaturePointsLieOnTheSurface) {
   ASSERT_EQ(place.descriptors.size(), place.points_camera.size());
   for (const Eigen::Vector3f& p : place.points_camera) {
     const Eigen::Vector3d direction = T.linear() * (p / p.z()).cast<double>();
-    EXPECT_NEAR(static_cast<double>(p.z()), room()(T.translation(), direction), 0.1);
+    EXPECT_NEAR(static_cast<double>(p.z()), test::corner_with_ball()(T.translation(), direction), 0.1);
   }
   EXPECT_EQ(place.preview_camera.width_px, 160);
   EXPECT_NEAR(place.preview_depth_mm.at(80, 60) * 1e-3, static_cast<double>(painted(T).depth_m.at(160, 120)),

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -110,26 +111,26 @@ TEST_F(DepthRasterTest, NeighboursLeaveNoGap) {
 }
 
 TEST(DepthCanvas, AnEdgeThatIsAlmostLevelLeavesNoGap) {
-  // Two triangles with one edge between them, far longer than the picture is wide, that hardly crosses a row.
-  constexpr int kWidth = 640, kHeight = 8, kRow = 4;
-  TriangleSetup setup;
+  // Two triangles with one edge between them, longer than the picture is wide, that hardly crosses a row far
+  // from where the triangles begin.
+  constexpr int kWidth = 640, kHeight = 480;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> part(0.0F, 1.0F);
+  const auto setup = std::make_unique<TriangleSetup>();
   DepthCanvas canvas;
-  for (const float reach : {20.0F, 700.0F, 2000.0F}) {
-    for (const float rise : {0.0006F, 0.003F, 0.04F, 0.3F}) {
-      for (const float past : {-0.4F, -0.1F, 0.0F, 0.2F}) {
-        const float left = -reach, right = kWidth + reach;
-        const float at_left = kRow + (past - 0.5F) * rise, at_right = at_left + rise;
-        ProjectedVertices vertices;
-        vertices.u_px = {left, right, 320.0F, 320.0F};
-        vertices.v_px = {at_left, at_right, kRow - 3000.0F, kRow + 3000.0F};
-        vertices.inverse_depth_per_m = {1.0F, 1.0F, 1.0F, 1.0F};
-        const std::vector<PieceTriangle> triangles = {{0, 1, 2}, {1, 0, 3}};
-        canvas.clear(kWidth, kHeight);
-        draw_triangles(vertices, triangles, false, setup, canvas);
-        EXPECT_EQ(std::count(canvas.row(kRow), canvas.row(kRow) + kWidth, 0.0F), 0)
-            << reach << " " << rise << " " << past;
-      }
-    }
+  for (int i = 0; i < 500; ++i) {
+    const float rise = std::pow(10.0F, -4.2F + 3.5F * part(random));
+    const auto row = 1 + static_cast<int>(470.0F * part(random));
+    const float middle = static_cast<float>(row) + 0.9F * rise * (2.0F * part(random) - 1.0F);
+    ProjectedVertices vertices;
+    vertices.u_px = {-10.0F - 1000.0F * part(random), 650.0F + 1000.0F * part(random), 320.0F, 320.0F};
+    vertices.v_px = {middle - rise, middle + rise, -2000.0F, 2480.0F};
+    vertices.inverse_depth_per_m = {1.0F, 1.0F, 1.0F, 1.0F};
+    const std::vector<PieceTriangle> triangles = {{0, 1, 2}, {0, 1, 3}};
+    canvas.clear(kWidth, kHeight);
+    draw_triangles(vertices, triangles, false, *setup, canvas);
+    ASSERT_EQ(std::count(canvas.row(row), canvas.row(row) + kWidth, 0.0F), 0)
+        << i << " " << row << " " << rise;
   }
 }
 

@@ -51,6 +51,12 @@ inline Scene nearest_of(Scene a, Scene b) {
   };
 }
 
+/// The corner of a room with a ball in it: floor at z = 0, walls at y = 2.5 and x = -1.8.
+inline Scene corner_with_ball() {
+  return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), plane({0, 1, 0}, 2.5)),
+                    nearest_of(plane({1, 0, 0}, -1.8), sphere({0.5, 1.8, 0.4}, 0.4)));
+}
+
 /// A camera at `eye_world` that looks at `target_world`, image's down roughly along -up_world.
 inline Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world,
                                     const Eigen::Vector3d& up_world = Eigen::Vector3d::UnitZ()) {

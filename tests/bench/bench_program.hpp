@@ -1,0 +1,32 @@
+// bench_program.hpp: what every benchmark does at its end: write its rows, and say what went wrong.
+#pragma once
+#include <cstdio>
+#include <exception>
+#include <fstream>
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar::test {
+
+/// The file of --json; an empty path: none was asked for. Throws Error if it cannot be written.
+template <typename Json>
+void write_rows(const std::string& path, const Json& rows) {
+  if (path.empty()) return;
+  std::ofstream file(path);
+  file << rows.dump(1) << "\n";
+  if (!file.flush()) throw Error(path + ": cannot be written");
+}
+
+/// The exit status of `run`, or 1 with a sentence where it throws.
+template <typename Run>
+int run_or_say(const char* program, const Run& run) {
+  try {
+    return run();
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", program, error.what());
+    return 1;
+  }
+}
+
+}  // namespace roomradar::test
