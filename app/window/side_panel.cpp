@@ -55,13 +55,7 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
     ImGui::EndCombo();
   }
   ImGui::SameLine();
-  if (look::button("Add", "A", false, {128.0F, 0.0F})) {
-    Wish wish;
-    wish.kind = WishKind::kNew;
-    wish.event.mesh = settings.meshes[settings.mesh];
-    if (settings.new_size_m >= 0.001F) wish.event.size_m = static_cast<double>(settings.new_size_m);
-    link.ask(wish);
-  }
+  if (look::button("Add", "A", false, {128.0F, 0.0F})) link.ask(new_object_wish(settings));
   ImGui::PushItemWidth(-1.0F);
   ImGui::SliderFloat("##size", &settings.new_size_m, 0.0F, 0.6F,
                      settings.new_size_m < 0.001F ? "new: its own size" : "new: %.2f m long");
@@ -123,6 +117,14 @@ void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
 }
 
 }  // namespace
+
+Wish new_object_wish(const PlaySettings& settings) {
+  Wish wish;
+  wish.kind = WishKind::kNew;
+  wish.event.mesh = settings.meshes[settings.mesh];
+  if (settings.new_size_m >= 0.001F) wish.event.size_m = static_cast<double>(settings.new_size_m);
+  return wish;
+}
 
 Wish surfaces_wish(SurfacePolicy surfaces) {
   Wish wish = wish_of(Action::kSurfaces);

@@ -22,6 +22,8 @@ struct PlaySettings {
 void draw_side_panel(const Area& area, const Snapshot& shown, PlayLink& link, PlaySettings& settings,
                      const look::Fonts& fonts);
 
+/// One more of the mesh and size that the settings say.
+Wish new_object_wish(const PlaySettings& settings);
 /// The events that change a policy, for keys and panels alike.
 Wish surfaces_wish(SurfacePolicy surfaces);
 Wish unknown_wish(bool is_solid);

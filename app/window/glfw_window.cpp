@@ -1,0 +1,68 @@
+// glfw_window.cpp
+#include "app/window/glfw_window.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include <cstdlib>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kWidth_px = 1280, kHeight_px = 800;
+
+std::string last_glfw_error() {
+  const char* what = nullptr;
+  glfwGetError(&what);
+  return what != nullptr ? what : "no reason was given";
+}
+
+}  // namespace
+
+GlfwWindow::GlfwWindow(const std::string& title) {
+  if (glfwInit() != GLFW_TRUE) {
+    const std::string fault = last_glfw_error();
+    const char* display = std::getenv("DISPLAY");
+    throw Error("--window: there is no display to open it on (" + fault +
+                (display == nullptr ? "; DISPLAY is not set" : std::string("; DISPLAY is ") + display) +
+                "). Over ssh connect with ssh -X, or leave --window out and write what it would show with "
+                "--video FILE.mp4");
+  }
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+  // By EGL where that works, as the radar: one driver in the process; else by the window system's own way.
+  for (const int way : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
+    glfwWindowHint(GLFW_CONTEXT_CREATION_API, way);
+    window_ = glfwCreateWindow(kWidth_px, kHeight_px, title.c_str(), nullptr, nullptr);
+    if (window_ != nullptr) break;
+  }
+  if (window_ == nullptr) {
+    const std::string fault = last_glfw_error();
+    glfwTerminate();
+    throw Error("--window: the display gives no window with OpenGL 3.3 (" + fault +
+                "); leave --window out and write what it would show with --video FILE.mp4");
+  }
+  glfwSetWindowSizeLimits(window_, 900, 600, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
+    if (action != GLFW_RELEASE)
+      static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->keys_.push_back({key, modifiers});
+  });
+  glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+    auto& files = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->files_;
+    files.insert(files.end(), paths, paths + count);
+  });
+}
+
+GlfwWindow::~GlfwWindow() {
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+}  // namespace roomradar
