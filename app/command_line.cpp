@@ -29,8 +29,6 @@ const std::map<std::string, SurfacePolicy> kSurfaces = {{"holes", SurfacePolicy:
 const std::map<std::string, bool> kUnknownIsSolid = {{"free", false}, {"solid", true}};
 const std::map<std::string, AtEnd> kAtEnd = {
     {"end", AtEnd::kEnd}, {"stay", AtEnd::kStay}, {"loop", AtEnd::kLoop}};
-const std::map<std::string, RadarMode> kRadarModes = {{"exact", RadarMode::kExact},
-                                                      {"sampled", RadarMode::kSampled}};
 const std::map<std::string, RecordingFormat> kFormats = {{"tum", RecordingFormat::kTum},
                                                          {"7scenes", RecordingFormat::kSevenScenes},
                                                          {"fakenect", RecordingFormat::kFakenect}};
@@ -77,6 +75,27 @@ void add_choice(CLI::App& app, const std::string& name, Value& value,
       ->type_name(type);
 }
 
+/// One option a field of the quality. What is given goes to `fixed`, and from there into the quality once it
+/// is known what else the command was given.
+template <typename Quality>
+void add_quality_options(CLI::App& app, const Quality& defaults, FieldWords& fixed) {
+  visit_fields(defaults, [&](const QualityField& field, const auto& /*value*/) {
+    app.add_option_function<std::string>(
+           field.option,
+           [&fixed, field](const std::string& word) {
+             try {
+               Quality scratch;
+               set_field(scratch, field.name, word);
+             } catch (const Error& error) {
+               throw CLI::ValidationError(std::string(field.option) + " " + word, error.what());
+             }
+             fixed.emplace_back(field.name, word);
+           },
+           field.help)
+        ->type_name(field.unit);
+  });
+}
+
 /// CLI11's own Range would let "nan" pass.
 CLI::Validator within(double low, double high, const std::string& unit) {
   return CLI::Validator(
@@ -111,9 +130,6 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
   sub->add_option("--map", command.map, "folder to save the map in; an older map there is replaced")
       ->required()
       ->type_name("DIR");
-  sub->add_option("--resolution", command.resolution_m, "edge of the smallest cells, metres (0.01)")
-      ->check(within(0.001, 1.0, "metres"))
-      ->type_name("M");
   add_choice(*sub, "--poses", command.poses, kPoses,
              "find the camera's poses (tracked), or take the recording's own");
   add_frames_option(*sub, command.frames);
@@ -134,8 +150,12 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
                   "is saved as a whole map, and the exit status is 1")
       ->check(within(1.0, 1e7, "megabytes"))
       ->type_name("MB");
+  add_quality_options(*sub, command.quality, command.fixed);
   add_report_option(*sub, command.report);
-  sub->callback([&] { work = [&command] { return run(command); }; });
+  sub->callback([&] {
+    set_fields(command.quality, command.fixed);
+    work = [&command] { return run(command); };
+  });
 }
 
 /// A recorded session brings its own settings; what is given on the command line goes before them.
@@ -147,8 +167,7 @@ void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
   if (!is_given("--script")) command.script = recorded.script;
   if (!is_given("--surfaces")) command.surfaces = recorded.surfaces;
   if (!is_given("--unknown")) command.unknown_is_solid = recorded.unknown_is_solid;
-  if (!is_given("--radar")) command.radar.mode = recorded.radar.mode;
-  if (!is_given("--radar-px")) command.radar.resolution_px = recorded.radar.resolution_px;
+  command.quality = recorded.quality;
   if (!is_given("--adopt")) command.adopt_after_s = recorded.adopt_after_s;
   if (!is_given("--at-end")) command.at_end = recorded.at_end;
 }
@@ -177,13 +196,6 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   add_choice(*sub, "--unknown", command.unknown_is_solid, kUnknownIsSolid,
              "space that the prescan has not seen lets objects through (free) or stops them (solid;\n"
              "with --surfaces map)");
-  add_choice(*sub, "--radar", command.radar.mode, kRadarModes,
-             "how contacts are found: to the last digit, or between bounds a pixel apart (exact)");
-  sub->add_option("--radar-px", command.radar.resolution_px,
-                  "pixels along the longer side of the object's outline (64); the exact radar's answers do\n"
-                  "not depend on it")
-      ->check(CLI::Range(1, 4096))
-      ->type_name("N");
   sub->add_option("--adopt", command.adopt_after_s,
                   "what came and stayed, or was gone, for so many seconds while it was seen becomes part of\n"
                   "the room (of this run's own; the saved map stays as it is)")
@@ -209,10 +221,12 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   sub->add_option("--pictures-every", command.pictures_every, "one picture every N frames (10)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
+  add_quality_options(*sub, command.quality, command.fixed);
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {
     if (command.window && sub->count("--at-end") == 0) command.at_end = AtEnd::kStay;
     if (is_session_folder(command.source)) take_recorded_settings(command, *sub);
+    set_fields(command.quality, command.fixed);
     if (command.map.empty()) throw CLI::RequiredError("--map");
     if (command.unknown_is_solid && command.surfaces != SurfacePolicy::kMap)
       throw CLI::ValidationError(

@@ -5,19 +5,20 @@
 #include <string>
 
 #include "app/calibration/board_views.hpp"
+#include "app/quality.hpp"
 #include "app/sources/frame_range.hpp"
 #include "app/sources/playback_source.hpp"
 #include "app/sources/recording_writer.hpp"
 #include "dynamic/surface_policy.hpp"
 #include "mapping/prescan.hpp"
-#include "radar/cyber_radar.hpp"
 
 namespace roomradar {
 
 struct PrescanCommand {
   std::string source;
   std::string map;
-  double resolution_m = 0.01;
+  ScanQuality quality;
+  FieldWords fixed;  ///< what of it was asked for by name
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
   std::string calibration;          ///< file of the cameras and their errors; empty: what the source says
@@ -38,7 +39,8 @@ struct RunCommand {
   std::string script;             ///< events file; empty: the object is dropped over a level surface in view
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = false;  ///< kMap only: objects do not enter what the scan has not seen
-  RadarConfig radar;
+  RunQuality quality;
+  FieldWords fixed;                     ///< what of it was asked for by name; no preset changes that
   std::optional<double> adopt_after_s;  ///< none: only what the script asks for, if it does
   AtEnd at_end = AtEnd::kEnd;           ///< what follows the source's last frame
   bool window = false;

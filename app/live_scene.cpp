@@ -2,6 +2,7 @@
 #include "app/live_scene.hpp"
 
 #include <array>
+#include <utility>
 
 namespace roomradar {
 namespace {
@@ -37,6 +38,17 @@ void LiveScene::set_surfaces(SurfacePolicy surfaces) {
   config_.surfaces = surfaces;
   moved_world_.inferred_world = {};  // backs are inferred with the map only
   inferred_.build_in_order(moved_world_.inferred_world);
+}
+
+void LiveScene::expect_size(const Intrinsics& camera) {
+  if (moved_mask_.empty()) return;
+  if (moved_mask_.width == camera.width_px && moved_mask_.height == camera.height_px) return;
+  const MaskImage before = std::exchange(moved_mask_, MaskImage(camera.width_px, camera.height_px));
+  for (int y = 0; y < moved_mask_.height; ++y) {
+    const std::uint8_t* from = before.row(y * before.height / moved_mask_.height);
+    for (int x = 0; x < moved_mask_.width; ++x)
+      moved_mask_.at(x, y) = from[x * before.width / moved_mask_.width];
+  }
 }
 
 ForegroundCounts LiveScene::find_moved(const Frame& frame) {

@@ -39,12 +39,20 @@ class LiveScene {
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
   std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
+  /// From the next frame on. The rules must hold.
+  void set_fineness(const ForegroundConfig& foreground, const MovedSurfaceConfig& moved) {
+    config_.foreground = foreground;
+    config_.moved = moved;
+  }
   /// From the next frame on something else can be touched.
   void set_surfaces(SurfacePolicy surfaces);
   /// Null: space that nobody has seen is free.
   void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
   /// The room's shape is another by now.
   void room_changed() { expected_camera_ = {}; }
+  /// What moved in the frame before as an image of this camera has it: where its size is another, its nearest
+  /// pixels.
+  void expect_size(const Intrinsics& camera);
   /// Labels the frame's pixels against the expected depth, and by what the frame before showed.
   ForegroundCounts find_moved(const Frame& frame);
   /// kMap: meshes the pixels that moved, as fine as they are in the given regions, and infers their back;

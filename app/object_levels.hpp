@@ -21,9 +21,9 @@ struct ObjectLevel {
 /// the thing) the face's own.
 std::vector<ObjectLevel> object_levels(const Mesh& mesh);
 
-/// Whether a level lies off by no more than half of what a pixel shows of it.
-inline bool is_fine_enough(float deviation_m, double pixel_m) {
-  return static_cast<double>(deviation_m) <= 0.5 * pixel_m;
+/// Whether a level lies off by no more than so much of what a pixel shows of it.
+inline bool is_fine_enough(float deviation_m, double pixel_m, double error_px = 0.5) {
+  return static_cast<double>(deviation_m) <= error_px * pixel_m;
 }
 
 }  // namespace roomradar

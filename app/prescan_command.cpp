@@ -6,10 +6,12 @@
 #include <cstdio>
 #include <memory>
 
+#include "app/apply_quality.hpp"
 #include "app/commands.hpp"
 #include "app/held_out.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
+#include "app/quality_json.hpp"
 #include "app/report.hpp"
 #include "app/unfinished_scan.hpp"
 #include "mapping/map_folder.hpp"
@@ -164,15 +166,15 @@ int run(const PrescanCommand& command) {
   Report report;
   report.command = "prescan";
   report.source = command.source;
-  report.settings = {
-      {"map", command.map}, {"resolution_m", command.resolution_m}, {"poses", to_string(command.poses)}};
+  report.settings = {{"map", command.map}, {"poses", to_string(command.poses)}};
+  report.settings.update(to_json(command.quality));
   if (command.hold_out > 0) report.settings["hold_out"] = command.hold_out;
   if (command.max_memory_mb > 0.0) report.settings["max_memory_mb"] = command.max_memory_mb;
   if (!command.calibration.empty()) report.settings["calibration"] = command.calibration;
   if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
 
   PrescanConfig config;
-  config.resolution_m = command.resolution_m;
+  apply(command.quality, config);
   config.poses = command.poses;
   config.hold_out = command.hold_out;
   config.max_memory_bytes = static_cast<std::size_t>(1e6 * command.max_memory_mb);

@@ -7,7 +7,9 @@
 #include <string>
 #include <utility>
 
+#include "app/apply_quality.hpp"
 #include "app/placement.hpp"
+#include "app/reduced_depth.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/validity.hpp"
 #include "radar/sweep.hpp"
@@ -57,6 +59,7 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
       drawer_(context_) {
   require_valid(config.physics);
   require_valid(config.picture);
+  locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config.tracking_px;
   room_.set(map.mesh, MeshUsage::kStatic);
   if (!config.adopt) return;
   if (octree == nullptr) throw Error("adopt: the session was given no octree to change");
@@ -107,6 +110,15 @@ void Session::set_radar(const RadarConfig& config) {
   config_.radar = config;
 }
 
+void Session::set_quality(const RunQuality& quality) {
+  require_valid(quality);
+  const RadarConfig radar = config_.radar;
+  roomradar::apply(quality, config_);
+  if (!(config_.radar == radar)) radar_ = CyberRadar(config_.radar);
+  scene_.set_fineness(config_.scene.foreground, config_.scene.moved);
+  locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config_.tracking_px;
+}
+
 FrameResult Session::step(const Frame& frame, StageTimes& times) {
   if (const std::string_view fault = fault_of(frame); !fault.empty()) {
     FrameResult bad;
@@ -120,18 +132,19 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
   return result;
 }
 
-FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
+FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   FrameResult result;
   const auto handed_over = std::chrono::steady_clock::now();
-  const double dt_s = has_last_stamp_ ? std::max(0.0, frame.stamp_s - last_stamp_s_) : 0.0;
-  last_stamp_s_ = frame.stamp_s;
+  const double dt_s = has_last_stamp_ ? std::max(0.0, whole.stamp_s - last_stamp_s_) : 0.0;
+  last_stamp_s_ = whole.stamp_s;
   has_last_stamp_ = true;
 
+  const Frame& frame = times.timed("reduce", [&]() -> const Frame& { return with_depth_reduced(whole); });
   if (living_map_ && living_map_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
   result.tracking = tracking.status;
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
-    if (config_.make_picture) show_camera_alone(frame);
+    if (config_.make_picture) show_camera_alone(whole);
     T_world_before_.reset();
     return result;
   }
@@ -148,14 +161,31 @@ FrameResult Session::pass_through(const Frame& frame, StageTimes& times) {
   release_waiting(frame, T_world_camera);
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
   times.add_ms("contact", ms_since(handed_over));
-  if (config_.make_picture) times.timed("compose", [&] { compose_picture(frame, T_world_camera, dt_s); });
+  if (config_.make_picture && is_turn(0, config_.picture_turns))
+    times.timed("compose", [&] { compose_picture(whole, T_world_camera, dt_s); });
   T_world_before_ = T_world_camera;
+  ++frames_;
 
   result.status = FrameStatus::kDone;
   result.T_world_camera = T_world_camera;
   result.dynamic_triangles = scene_.moved_triangles();
   result.inferred_triangles = scene_.inferred_triangles();
   return result;
+}
+
+const Frame& Session::with_depth_reduced(const Frame& frame) {
+  const int stride = usable_stride(frame.depth_camera, config_.depth_stride);
+  if (stride == 1) return frame;
+  reduced_.index = frame.index;
+  reduced_.stamp_s = frame.stamp_s;
+  reduced_.colour = frame.colour;
+  reduced_.colour_camera = frame.colour_camera;
+  reduced_.colour_after_depth_s = frame.colour_after_depth_s;
+  reduced_.T_colour_depth = frame.T_colour_depth;
+  reduced_.T_world_camera = frame.T_world_camera;
+  reduced_.down_camera = frame.down_camera;
+  reduce_depth(frame, stride, reduced_);
+  return reduced_;
 }
 
 Tracking Session::locate_camera(const Frame& frame) {
@@ -170,6 +200,7 @@ Tracking Session::locate_camera(const Frame& frame) {
     scene_.render_expected(frame.depth_camera, T_world_camera);
     return scene_.expected_depth_m();
   };
+  scene_.expect_size(frame.depth_camera);
   return locate(locator_, frame, map_.places, scene_.moved_mask(), expected_depth);
 }
 
@@ -218,6 +249,7 @@ bool Session::is_in_unknown(const VirtualObject& object) const {
 void Session::find_fine_regions() {
   constexpr double kAbout_m = 0.02;  // an object's way in a frame, at 0.6 m/s
   fine_regions_.clear();
+  if (!config_.fine_mesh) return;
   for (const auto& object : objects_) {
     if (object->in_room)
       fine_regions_.push_back({object->body.T_world_object * object->middle,
@@ -227,26 +259,30 @@ void Session::find_fine_regions() {
 
 void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) {
   double radar_ms = 0.0;
-  for (const auto& object : objects_) {
+  for (std::size_t number = 0; number < objects_.size(); ++number) {
+    VirtualObject* const object = objects_[number].get();
     if (!object->in_room) continue;
+    object->waited_s += dt_s;
+    if (!object->carried_to_world && !is_turn(number, config_.object_turns)) continue;
+    const double waited_s = std::exchange(object->waited_s, 0.0);
     object->in_unknown = object->in_unknown && is_in_unknown(*object);
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
     if (config_.scene.surfaces == SurfacePolicy::kMap)
       push = push_directions({&scene_.moved_world().seen_world, &scene_.moved_world().inferred_world},
                              object->body.T_world_object * object->middle, kNearbyReach_m);
-    std::vector<SceneTree> scene = scene_without(object.get());
+    std::vector<SceneTree> scene = scene_without(object);
     const auto is_back = [](const SceneTree& surface) { return surface.kind == Touched::kInferredBack; };
     const auto back = std::find_if(scene.begin(), scene.end(), is_back);
     if (back != scene.end()) {
       const RadarScene of_back{{&*back, 1}, {}};
       const BodyProbe probe = probe_of(radar_, near_field_, object->shape.touched, of_back, &radar_ms);
-      if (is_swallowed(object->body, dt_s, probe.travel, config_.physics, push.span())) scene.erase(back);
+      if (is_swallowed(object->body, waited_s, probe.travel, config_.physics, push.span())) scene.erase(back);
     }
     const RadarScene radar_scene{scene, {}};
     const BodyProbe probe = probe_of(radar_, near_field_, object->shape.touched, radar_scene, &radar_ms);
-    if (object->carried_to_world) set_in_hand(*object, dt_s);
+    if (object->carried_to_world) set_in_hand(*object, waited_s);
     const StepReport moved =
-        advance(object->body, dt_s, probe,
+        advance(object->body, waited_s, probe,
                 object->carried_to_world ? in_hand(config_.physics) : config_.physics, push.span());
     result.contacts += moved.contacts;
     for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
@@ -298,6 +334,7 @@ void Session::show_camera_alone(const Frame& frame) {
 }
 
 void Session::renew_a_shadow() {
+  if (!is_turn(0, config_.shadow_turns)) return;
   constexpr double kTurned_rad = 0.05;
   VirtualObject* most_turned = nullptr;
   double turned_rad = kTurned_rad;
@@ -317,14 +354,16 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   shown_view_ = view_of(frame, T_world_camera, dt_s);
   const auto& [camera, T_world_view] = *shown_view_;
 
-  renew_a_shadow();
+  const bool has_shadows = config_.picture.shadow_strength > 0.0F;
+  if (has_shadows) renew_a_shadow();
   std::vector<DrawnObject> drawn;
   std::vector<ShadowCaster> casters;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
-    drawn.push_back({.instance = {&drawn_mesh(*object, camera, T_world_view), object->body.T_world_object},
+    drawn.push_back({.instance = {&drawn_mesh(*object, camera, T_world_view, config_.object_error_px),
+                                  object->body.T_world_object},
                      .is_closed = object->shape.touched.is_closed()});
-    casters.push_back({&object->shadow, object->body.T_world_object});
+    if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
   }
   drawer_.draw(drawn, camera, T_world_view, {}, layer_);
 
@@ -404,6 +443,7 @@ void Session::change_objects(const ScriptEvent& event) {
     object.body.spin_world_rad_s = event.spin_world_rad_s;
     object.body.at_rest = false;
     object.in_room = true;
+    object.waited_s = 0.0;
     object.in_unknown = object.began_in_unknown = is_in_unknown(object);
   };
   // Whatever is said of an object now takes the place of a drop that it waits for.

@@ -14,6 +14,7 @@
 #include "app/living_map.hpp"
 #include "app/locator.hpp"
 #include "app/physics.hpp"
+#include "app/quality.hpp"
 #include "app/script.hpp"
 #include "app/virtual_object.hpp"
 #include "mapping/map_folder.hpp"
@@ -32,7 +33,15 @@ struct SessionConfig {
   PhysicsConfig physics;
   ComposeConfig picture;
   std::optional<AdoptConfig> adopt;  ///< none: the room stays as it was saved
-  bool make_picture = true;          ///< false: no drawing, only what moves the objects
+  /// What can be traded for time; RunQuality says it for the user.
+  int depth_stride = 1;          ///< 1, 2 or 4: depth images are reduced by this (reduce_depth)
+  int tracking_px = 160;         ///< widest image that the camera is located by
+  bool fine_mesh = true;         ///< what moved is meshed as finely as it was seen about the objects
+  int object_turns = 1;          ///< objects are moved in every so many-th frame, in turns
+  double object_error_px = 0.5;  ///< how far an object's drawn mesh may lie off the file's
+  int shadow_turns = 1;          ///< frames from one shadow made anew to the next
+  int picture_turns = 1;         ///< frames from one picture to the next
+  bool make_picture = true;      ///< false: no drawing, only what moves the objects
   /// The exact radar looks after each frame how deep objects stand, along gravity, in the room and in one
   /// another.
   bool measure_penetration = false;
@@ -77,6 +86,8 @@ class Session {
   void set_surfaces(SurfacePolicy surfaces);
   /// From the next frame on. Throws Error if the config is out of its rules.
   void set_radar(const RadarConfig& config);
+  /// From the next frame on. Throws Error if it is out of its rules.
+  void set_quality(const RunQuality& quality);
 
   /// One frame, from sensor to picture. Stages timed: locate expected foreground changes mesh radar physics
   /// compose frame, and contact: from the frame handed over to where its contacts have moved the objects.
@@ -135,6 +146,8 @@ class Session {
 
   std::vector<std::unique_ptr<VirtualObject>> objects_;
   std::vector<FineRegion> fine_regions_;
+  Frame reduced_;                     ///< the frame, where its depth is reduced
+  std::int64_t frames_ = 0;           ///< that were located
   std::vector<ScriptEvent> waiting_;  ///< drops that have found no surface yet
   double last_stamp_s_ = 0.0;
   bool has_last_stamp_ = false;
@@ -150,6 +163,13 @@ class Session {
 
   void renew_room();
   FrameResult pass_through(const Frame& frame, StageTimes& times);
+  /// The frame, with its depth reduced if that is wanted.
+  const Frame& with_depth_reduced(const Frame& frame);
+  /// Whether that which is done in every so many-th frame is due in this one; `number` tells apart those that
+  /// share the turns.
+  [[nodiscard]] bool is_turn(std::size_t number, int turns) const {
+    return (frames_ + static_cast<std::int64_t>(number)) % turns == 0;
+  }
   Tracking locate_camera(const Frame& frame);
   void turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg);
   /// Balls about the objects, in which what moved is meshed as finely as it was seen.

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/quality_json.hpp"
 #include "app/sources/spooled_source.hpp"
 #include "mapping/types/error.hpp"
 
@@ -25,7 +26,7 @@ constexpr const char* kFrames = "frames";
 constexpr const char* kMeshes = "meshes";
 constexpr const char* kResults = "results.txt";
 constexpr const char* kFormat = "roomradar session";
-constexpr int kFormatVersion = 1;
+constexpr int kFormatVersion = 2;
 constexpr std::uintmax_t kMaxSettingsBytes = 1U << 20U;
 
 /// Fowler, Noll and Vo's hash FNV-1a, over words of 8 bytes.
@@ -115,8 +116,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
                          {"poses", to_string(command.poses)},
                          {"surfaces", to_string(command.surfaces)},
                          {"unknown_is_solid", command.unknown_is_solid},
-                         {"radar", to_string(command.radar.mode)},
-                         {"radar_px", command.radar.resolution_px},
+                         {"quality", to_json(command.quality)},
                          {"at_end", to_string(command.at_end)}};
   if (command.adopt_after_s) json["adopt_s"] = *command.adopt_after_s;
   std::ofstream settings(folder_ / kSettings);
@@ -176,9 +176,7 @@ RunCommand read_session(const fs::path& folder) {
         json, "surfaces",
         {SurfacePolicy::kMap, SurfacePolicy::kBorder, SurfacePolicy::kSkirt, SurfacePolicy::kHoles}, folder);
     command.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
-    command.radar.mode = choice_of(json, "radar", {RadarMode::kExact, RadarMode::kSampled}, folder);
-    command.radar.resolution_px = json.at("radar_px").get<int>();
-    require_valid(command.radar);
+    command.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
     command.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
     if (json.contains("adopt_s")) command.adopt_after_s = json.at("adopt_s").get<double>();
   } catch (const nlohmann::json::exception& fault) {

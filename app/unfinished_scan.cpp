@@ -89,7 +89,9 @@ ScanStart start_scan(const PrescanCommand& command) {
   if (command.checkpoint_every_s > 0.0) {
     std::map<std::string, std::string> identity{
         {"source", live ? command.source : start.source->name()},
-        {"resolution", std::to_string(command.resolution_m)},
+        {"resolution", std::to_string(command.quality.resolution_m)},
+        {"tracking-px", std::to_string(command.quality.tracking_px)},
+        {"fuse-every", std::to_string(command.quality.fuse_every)},
         {"poses", std::string(to_string(command.poses))},
         {"frames", command.frames
                        ? std::to_string(command.frames->first) + ":" + std::to_string(command.frames->last)

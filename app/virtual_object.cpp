@@ -35,14 +35,14 @@ VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& m
 }
 
 const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
-                          const Eigen::Isometry3d& T_world_camera) {
+                          const Eigen::Isometry3d& T_world_camera, double error_px) {
   const Eigen::Vector3d middle_camera =
       T_world_camera.inverse() * (object.body.T_world_object * object.middle);
   const double nearest_m = middle_camera.z() - 0.5 * object.shape.drawn.bounds().sizes().norm();
   const double pixel_m = nearest_m / std::max(camera.fx_px, camera.fy_px);
   const GpuMesh* mesh = &object.shape.drawn;
   for (const DrawnLevel& level : object.levels)
-    if (is_fine_enough(level.deviation_m, pixel_m)) mesh = level.mesh.get();
+    if (is_fine_enough(level.deviation_m, pixel_m, error_px)) mesh = level.mesh.get();
   return *mesh;
 }
 

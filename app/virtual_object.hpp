@@ -29,6 +29,7 @@ struct VirtualObject {
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< how it stood when it was last put somewhere
   /// While it is held by a user's hand: where its origin is wanted. Gravity does not move it then.
   std::optional<Eigen::Vector3d> carried_to_world;
+  double waited_s = 0.0;  ///< since it was moved last
   Shape shape;
   SurfacePoints surface;           ///< what its shadow is made of
   ContactShadow shadow;            ///< as it stood when this was made last
@@ -44,10 +45,10 @@ double lowest_m(const VirtualObject& object);
 /// How far it reaches sideways from its origin, turned like this, m.
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
-/// The coarsest mesh of the object that lies no farther than half a pixel off the full one, as the camera
-/// sees it at its nearest point.
+/// The coarsest mesh of the object that lies no farther than error_px off the full one, as the camera sees it
+/// at its nearest point.
 const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
-                          const Eigen::Isometry3d& T_world_camera);
+                          const Eigen::Isometry3d& T_world_camera, double error_px = 0.5);
 
 /// The mesh that a user names: `teapot`, the built-in one, 0.15 m high, or a file that read_mesh reads.
 /// Scaled so that its longest side is size_m, if that is > 0. Throws Error naming the file and the fault.

@@ -202,6 +202,7 @@ bool fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass
     pass.frames_read = second_pass.frames_read;
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end() || is_held_out(frame.index, work.config.hold_out)) continue;
+    if (frame.index % work.config.fuse_every != 0) continue;
     const Clock::time_point start = Clock::now();
     const FuseStatus fused = pass.octree.fuse(frame, pose->second);
     const double fuse_ms = ms_since(start);
@@ -228,6 +229,7 @@ MapInfo describe_map(const Work& work, const FusingPass& pass,
   info.up_source = to_string(pass.found.up.source);
   info.settings = {{"resolution_m", std::to_string(work.config.resolution_m)},
                    {"poses", std::string(to_string(work.config.poses))}};
+  if (work.config.fuse_every > 1) info.settings["fuse_every"] = std::to_string(work.config.fuse_every);
   if (work.config.hold_out > 0) info.settings["hold_out"] = std::to_string(work.config.hold_out);
   if (work.config.poses == PoseOrigin::kRecorded) {
     info.T_world_recorded = pass.T_world_found;

@@ -31,6 +31,7 @@ struct PrescanConfig {
   double resolution_m = 0.01;  ///< edge of the octree's smallest cells
   PoseOrigin poses = PoseOrigin::kTracked;
   OdometryConfig odometry;
+  int fuse_every = 1;         ///< of the tracked frames every so many-th, by its index, goes into the map
   std::int64_t hold_out = 0;  ///< N > 0: frames that is_held_out names are tracked, but not fused
   bool remove_ghosts = true;  ///< take out of the map what moved on during the scan
   GhostConfig ghosts;

@@ -29,6 +29,7 @@ struct RadarConfig {
   /// triangles has 24 at most), and Contact::pixel_m. Exact mode takes as many pixels as is fastest; its
   /// answer does not depend on them.
   int resolution_px = 64;
+  friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };
 /// @throws Error naming the field, its value and the rule
 void require_valid(const RadarConfig& config);

@@ -1,0 +1,152 @@
+// opened_run.cpp: opens what a run needs, in the order in which faults are to be told.
+#include "app/opened_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "app/apply_quality.hpp"
+#include "app/open_source.hpp"
+#include "app/quality_json.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kVideoFramesPerS = 30.0;
+
+nlohmann::json settings_of(const RunCommand& command) {
+  nlohmann::json settings = {{"map", command.map},
+                             {"poses", to_string(command.poses)},
+                             {"object", command.object},
+                             {"script", command.script},
+                             {"surfaces", to_string(command.surfaces)},
+                             {"unknown", command.unknown_is_solid ? "solid" : "free"},
+                             {"at_end", to_string(command.at_end)},
+                             {"window", command.window},
+                             {"record_session", command.record_session},
+                             {"save_map", command.save_map}};
+  settings.update(to_json(command.quality));
+  if (command.adopt_after_s) settings["adopt_s"] = *command.adopt_after_s;
+  if (!command.calibration.empty()) settings["calibration"] = command.calibration;
+  if (command.frames) settings["frames"] = {command.frames->first, command.frames->last};
+  return settings;
+}
+
+/// Without a script, the object falls onto the best level surface that the camera sees.
+Script drop_over_view(const std::string& object) {
+  ScriptEvent add;
+  add.frame = 0;
+  add.action = Action::kAdd;
+  add.name = "object";
+  add.mesh = object;
+  ScriptEvent drop;
+  drop.frame = 0;
+  drop.action = Action::kDrop;
+  drop.name = add.name;
+  return {{add, drop}};
+}
+
+bool has(const Script& script, Action action) {
+  return std::any_of(script.events.begin(), script.events.end(),
+                     [action](const ScriptEvent& event) { return event.action == action; });
+}
+
+void require_can_save_map(const RunCommand& command, const Script& script) {
+  if (command.save_map.empty()) return;
+  if (!command.adopt_after_s && !has(script, Action::kAdopt))
+    throw Error("--save-map " + command.save_map +
+                ": nothing would change in the map; add --adopt SECONDS, or an adopt event to the script");
+  require_can_become_map(command.save_map);
+}
+
+/// The frames, recorded on their way or compared with what was recorded of them.
+void open_frames(OpenedRun& run) {
+  const RunCommand& command = run.command;
+  std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
+  run.is_live = !opened->frame_count();
+  if (!command.record_session.empty()) {
+    run.recorder.emplace(command.record_session, command, run.map.info);
+    opened = run.recorder->recorded(std::move(opened));
+  }
+  if (is_session_folder(command.source)) {
+    run.check.emplace(command.source);
+    if (const std::string fault = map_difference(command.source, run.map.info); !fault.empty())
+      std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
+  }
+  // A session that was cut off has no event that ends it.
+  const bool just_ends = run.check && !has(run.script, Action::kQuit);
+  auto played = std::make_unique<PlaybackSource>(std::move(opened), just_ends ? AtEnd::kEnd : command.at_end);
+  run.playback = played.get();
+  run.interrupt.emplace();
+  run.source = ended_by_interrupt(std::move(played));
+}
+
+SessionConfig config_of(const OpenedRun& run, bool has_window) {
+  const RunCommand& command = run.command;
+  SessionConfig config;
+  config.poses = command.poses;
+  config.scene.surfaces = command.surfaces;
+  apply(command.quality, config);
+  config.make_picture = has_window || !command.video.empty() || !command.pictures.empty();
+  config.measure_penetration = !command.report.empty();
+  if (command.adopt_after_s || has(run.script, Action::kAdopt)) {
+    config.adopt.emplace();
+    config.adopt->after_s = command.adopt_after_s;
+    config.adopt->wait = !run.is_live || run.recorder;  // a device does not wait, unless it is to be repeated
+  }
+  return config;
+}
+
+void make_unknown_solid(Session& session, StageTimes& times) {
+  const auto start = std::chrono::steady_clock::now();
+  session.make_unknown_solid(times);
+  std::fprintf(stderr, "unknown space: %zu triangles round it, made in %.1f s with %.0f MB\n",
+               session.unknown().mesh_world.triangles.size(), ms_since(start) / 1e3,
+               static_cast<double>(session.unknown().memory_bytes) / 1e6);
+}
+
+void open_session(OpenedRun& run, bool has_window) {
+  run.session = std::make_unique<Session>(run.map, config_of(run, has_window), &run.map.octree);
+  run.report.renderer = run.session->renderer();
+  std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
+  if (run.command.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
+  // Objects are loaded now, so that a wrong mesh is said before the first frame and not when its turn comes.
+  for (const ScriptEvent& event : run.script.events)
+    if (event.action == Action::kAdd) run.session->apply(event);
+}
+
+void open_outputs(OpenedRun& run) {
+  const RunCommand& command = run.command;
+  if (!command.video.empty()) run.video = std::make_unique<VideoWriter>(command.video, kVideoFramesPerS);
+  if (command.pictures.empty()) return;
+  std::error_code failed;
+  std::filesystem::create_directories(command.pictures, failed);
+  if (failed) throw Error(command.pictures + ": the folder cannot be made: " + failed.message());
+}
+
+}  // namespace
+
+std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
+  auto opened = std::make_unique<OpenedRun>(command);
+  OpenedRun& run = *opened;
+  run.report.command = "run";
+  run.report.source = command.source;
+  run.report.settings = settings_of(command);
+  require_writable(command.report);
+  run.script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
+  require_can_save_map(command, run.script);
+  run.map = load_map(command.map);
+  open_frames(run);
+  open_session(run, link != nullptr);
+  open_outputs(run);
+  if (link != nullptr)
+    run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, command.object,
+                     run.is_live);
+  return opened;
+}
+
+}  // namespace roomradar

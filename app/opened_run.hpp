@@ -1,0 +1,45 @@
+// opened_run.hpp: all that a run has open from its first frame to its last.
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "app/commands.hpp"
+#include "app/interrupt.hpp"
+#include "app/report.hpp"
+#include "app/run_results.hpp"
+#include "app/script.hpp"
+#include "app/session.hpp"
+#include "app/session_folder.hpp"
+#include "app/sources/playback_source.hpp"
+#include "app/video_writer.hpp"
+#include "app/window/play_host.hpp"
+#include "mapping/map_folder.hpp"
+
+namespace roomradar {
+
+struct OpenedRun {
+  explicit OpenedRun(const RunCommand& of) : command(of) {}
+
+  const RunCommand& command;
+  Report report;
+  Script script;
+  SavedMap map;
+  bool is_live = false;
+  std::optional<SessionRecorder> recorder;  ///< --record-session
+  std::optional<ReplayCheck> check;         ///< the source is a session that was recorded
+  std::optional<Interrupt> interrupt;
+  std::unique_ptr<FrameSource> source;  ///< ends by Ctrl-C too
+  PlaybackSource* playback = nullptr;   ///< within it
+  std::unique_ptr<Session> session;     ///< with the script's objects loaded
+  std::unique_ptr<VideoWriter> video;   ///< --video
+  std::optional<PlayHost> host;         ///< the window's
+  RunTotals totals;
+  bool was_quit = false;  ///< by an event, before the source's end
+};
+
+/// Opens what the command names, reads the map, makes the session. Throws Error where one of them cannot be,
+/// before anything of it is played.
+/// @param link  to the window; null: there is none
+std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link);
+
+}  // namespace roomradar

@@ -1,0 +1,168 @@
+// run_loop.cpp: before each frame what is due, then the frame, then what it came to.
+#include "app/run_loop.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/picture_file.hpp"
+#include "app/progress.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+void control(PlaybackSource& source, CameraPlay camera) {
+  switch (camera) {
+    case CameraPlay::kHold:
+    case CameraPlay::kGo:
+      source.hold(camera == CameraPlay::kHold);
+      break;
+    case CameraPlay::kRewind:
+      if (!source.rewind()) throw Error(source.name() + ": a live device cannot go back to its first frame");
+      break;
+    case CameraPlay::kLoop:
+    case CameraPlay::kStay:
+      source.set_at_end(camera == CameraPlay::kLoop ? AtEnd::kLoop : AtEnd::kStay);
+      break;
+  }
+}
+
+/// The composed picture, and what moved as the depth camera saw it.
+void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& folder,
+                    std::int64_t frame_index) {
+  char number[24];
+  std::snprintf(number, sizeof number, "%06lld", static_cast<long long>(frame_index));
+  if (!session.picture().empty()) write_png(session.picture(), folder / (std::string(number) + ".png"));
+  if (result.status == FrameStatus::kDone)
+    write_png(session.scene().moved_mask(), folder / (std::string(number) + ".moved.png"));
+}
+
+class RunLoop {
+ public:
+  explicit RunLoop(OpenedRun& run) : run_(run), progress_("running", run.source->frame_count()) {}
+
+  /// The next frame of the source into frame_, and whether there is one to be played.
+  enum class Next { kFrame, kSkipped, kEnd };
+  Next read();
+  void perform_due();
+  void step();
+
+  void play() {
+    for (; !run_.was_quit; ++run_frame_) {
+      const Next next = read();
+      if (next == Next::kEnd) break;
+      if (next == Next::kSkipped) continue;
+      perform_due();
+      if (!run_.was_quit) step();
+    }
+    if (run_.recorder && !run_.was_quit) run_.recorder->write(ScriptEvent{}, run_frame_);  // it says to quit
+  }
+
+ private:
+  OpenedRun& run_;
+  Progress progress_;
+  Frame frame_;
+  std::size_t next_event_ = 0;
+  std::int64_t run_frame_ = 0;
+  double run_time_s_ = 0.0;
+
+  void perform(const ScriptEvent& event, bool is_from_script);
+  void perform_users(const std::vector<ScriptEvent>& events);
+  void count_skipped(const std::string& fault);
+  void keep(const FrameResult& result);
+};
+
+RunLoop::Next RunLoop::read() {
+  RunTotals& totals = run_.totals;
+  ReadResult read;
+  do {  // what a live source waits for it says itself
+    read = run_.report.times.timed("read", [&] { return run_.source->next(frame_); });
+  } while (read.waiting && !(run_.host && run_.host->is_closed()));
+  if (read.status == ReadStatus::kEnd || read.waiting) return Next::kEnd;
+  ++totals.read;
+  if (read.status == ReadStatus::kSkipped) {
+    count_skipped(read.fault);
+    return Next::kSkipped;
+  }
+  if (totals.read - totals.skipped == 1) totals.first_stamp_s = frame_.stamp_s;
+  totals.count_dropped(frame_.index);
+  run_time_s_ = frame_.stamp_s - totals.first_stamp_s;
+  return Next::kFrame;
+}
+
+void RunLoop::perform_due() {
+  if (run_.host && !run_.host->wait_turn(frame_))
+    perform(ScriptEvent{}, /*is_from_script=*/false);  // it says to quit
+  const std::vector<ScriptEvent>& events = run_.script.events;
+  for (;
+       !run_.was_quit && next_event_ < events.size() && is_due(events[next_event_], run_frame_, run_time_s_);
+       ++next_event_)
+    perform(events[next_event_], /*is_from_script=*/true);
+  if (run_.host && !run_.was_quit) perform_users(run_.host->take_events());
+}
+
+void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
+  if (event.action == Action::kQuit) run_.was_quit = true;
+  if (event.action == Action::kCamera) control(*run_.playback, event.camera);
+  if (event.action != Action::kAdd || !is_from_script) run_.session->apply(event);
+  if (run_.recorder) run_.recorder->write(event, run_frame_);
+}
+
+void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {
+  for (const ScriptEvent& event : events) {
+    try {
+      perform(event, /*is_from_script=*/false);
+    } catch (const Error& fault) {
+      run_.host->complain(fault.what());
+      break;  // those that follow are about what this one should have made
+    }
+  }
+}
+
+void RunLoop::step() {
+  const FrameResult result = run_.session->step(frame_, run_.report.times);
+  if (result.status == FrameStatus::kBadFrame) {
+    count_skipped(run_.command.source + ": frame " + std::to_string(frame_.index) + ": " +
+                  std::string(result.fault) + "; it is passed over");
+    return;
+  }
+  run_.totals.add(result);
+  const bool is_located = result.status == FrameStatus::kDone;
+  const std::string news = run_.totals.lost.add(frame_.index, is_located);
+  if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
+  if (run_.host) run_.host->show(run_frame_, run_time_s_, frame_, result);
+  keep(result);
+  progress_.step(is_located ? "located" : "not located");
+}
+
+void RunLoop::count_skipped(const std::string& fault) {
+  ++run_.totals.skipped;
+  run_.totals.last_fault = fault;
+}
+
+void RunLoop::keep(const FrameResult& result) {
+  const Session& session = *run_.session;
+  if (run_.recorder || run_.check) {
+    const FrameFingerprint fingerprint = fingerprint_of(run_frame_, session);
+    if (run_.recorder) run_.recorder->write(fingerprint);
+    if (run_.check) run_.check->compare(fingerprint);
+  }
+  if (run_.video) run_.video->write(session.picture());
+  if (!run_.command.pictures.empty() && run_frame_ % run_.command.pictures_every == 0)
+    write_pictures(session, result, run_.command.pictures, frame_.index);
+}
+
+}  // namespace
+
+void play_to_end(OpenedRun& run) {
+  RunLoop(run).play();
+  if (run.video) run.video->close();
+  run.session->finish_adopting();
+  if (run.totals.read == run.totals.skipped)
+    throw Error(run.command.source + ": there is not one readable frame" +
+                (run.totals.last_fault.empty() ? "" : "; the last fault: " + run.totals.last_fault));
+}
+
+}  // namespace roomradar

@@ -1,0 +1,12 @@
+// run_loop.hpp: plays an opened run, frame by frame, to its end.
+#pragma once
+#include "app/opened_run.hpp"
+
+namespace roomradar {
+
+/// Until the source ends, an event says quit, the window is closed, or Ctrl-C. Throws Error if there was not
+/// one readable frame, or an event of the script cannot be; what a user of the window asks for and cannot be
+/// is said there.
+void play_to_end(OpenedRun& run);
+
+}  // namespace roomradar
