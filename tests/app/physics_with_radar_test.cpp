@@ -8,7 +8,7 @@
 #include "app/physics.hpp"
 #include "app/teapot.hpp"
 #include "radar/cyber_radar.hpp"
-#include "radar/exact_travel.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar {
 namespace {

@@ -13,10 +13,10 @@
 #include <memory>
 
 #include "mapping/types/error.hpp"
-#include "radar/exact_travel.hpp"
 #include "radar_bench_objects.hpp"
 #include "radar_bench_rows.hpp"
 #include "tests/bench/bench_program.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar::bench {
 namespace {

@@ -9,11 +9,11 @@
 #include <tuple>
 #include <utility>
 
-#include "radar/exact_travel.hpp"
 #include "radar/gl_radar.hpp"
 #include "radar/gpu_mesh.hpp"
 #include "radar/scene_boxes.hpp"
 #include "tests/bench/bench_times.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "radar/exact_travel.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar::bench {
 namespace {

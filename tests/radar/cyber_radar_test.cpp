@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "mapping/types/error.hpp"
-#include "radar/exact_travel.hpp"
 #include "tests/radar/judged_scene.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar {
 namespace {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "radar/exact_travel.hpp"
 #include "radar/gl_radar.hpp"
 #include "tests/radar/judged_scene.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar {
 namespace {

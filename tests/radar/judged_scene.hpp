@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "radar/cyber_radar.hpp"
-#include "radar/exact_travel.hpp"
 #include "radar/radar_scene.hpp"
 #include "radar/triangle_tree.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar {
 

@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "radar/exact_clearance.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/exact_clearance.hpp"
 
 namespace roomradar {
 namespace {

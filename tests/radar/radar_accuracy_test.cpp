@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "radar/exact_travel.hpp"
 #include "radar/gl_radar.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar {
 namespace {

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "radar/cyber_radar.hpp"
-#include "radar/exact_clearance.hpp"
 #include "tests/radar/judged_scene.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/exact_clearance.hpp"
 
 namespace roomradar {
 namespace {

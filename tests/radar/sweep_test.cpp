@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "radar/exact_clearance.hpp"
 #include "tests/radar/judged_scene.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/exact_clearance.hpp"
 
 namespace roomradar {
 namespace {

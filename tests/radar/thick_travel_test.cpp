@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "radar/exact_clearance.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/exact_clearance.hpp"
 
 namespace roomradar {
 namespace {

@@ -1,14 +1,14 @@
 // exact_clearance_test.cpp: the judge of poses on distances worked out by hand, and against the judge of
 // travel.
-#include "radar/exact_clearance.hpp"
+#include "tests/support/exact_clearance.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "radar/exact_travel.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/exact_travel.hpp"
 
 namespace roomradar {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mapping/types/mesh.hpp"
-#include "radar/exact_gap.hpp"
+#include "tests/support/exact_gap.hpp"
 
 namespace roomradar {
 

@@ -1,5 +1,5 @@
 // exact_travel.cpp: gaps between projected triangles, which are least where corners or edges cross.
-#include "radar/exact_travel.hpp"
+#include "tests/support/exact_travel.hpp"
 
 #include <algorithm>
 #include <array>

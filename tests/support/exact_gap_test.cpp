@@ -1,6 +1,6 @@
 // exact_gap_test.cpp: the judge of a pair of triangles against hand figures and against a hull of
 // differences.
-#include "radar/exact_gap.hpp"
+#include "tests/support/exact_gap.hpp"
 
 #include <gtest/gtest.h>
 

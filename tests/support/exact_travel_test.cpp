@@ -1,5 +1,5 @@
 // exact_travel_test.cpp: the judge itself, on contacts that can be worked out by hand.
-#include "radar/exact_travel.hpp"
+#include "tests/support/exact_travel.hpp"
 
 #include <gtest/gtest.h>
 

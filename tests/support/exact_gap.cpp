@@ -1,5 +1,5 @@
 // exact_gap.cpp: the corners of the patch that two projected triangles share, one kind after the other.
-#include "radar/exact_gap.hpp"
+#include "tests/support/exact_gap.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // exact_clearance.cpp: corners against faces, edges against edges, and solid angles, all pairs.
-#include "radar/exact_clearance.hpp"
+#include "tests/support/exact_clearance.hpp"
 
 #include <algorithm>
 #include <array>
