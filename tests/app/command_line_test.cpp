@@ -236,6 +236,32 @@ TEST_F(CommandLine, RunFindsItselfAndDropsTheTeapotOnTheTable) {
   EXPECT_TRUE(fs::exists(folder_ / "pictures" / "000000.png"));
 }
 
+TEST_F(CommandLine, ARecordingWithoutColourRunsAsOneWithColourDoes) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  std::map<std::string, nlohmann::json> reports;
+  for (const std::string colour : {"registered", "none"}) {
+    const fs::path recording = folder_ / ("colour_" + colour), report_path = folder_ / (colour + ".json");
+    const Outcome recorded =
+        roomradar("record 'sim:table?frames=45&width=160&path=view&moving=hand&colour=" + colour + "' " +
+                  recording.string());
+    ASSERT_EQ(recorded.status, 0) << recorded.out;
+    const Outcome ran =
+        roomradar("run " + recording.string() + " --poses recorded --map " + map() + " --report " +
+                  report_path.string() + " --pictures " + (folder_ / "colours").string());
+    ASSERT_EQ(ran.status, 0) << ran.out;
+    EXPECT_TRUE(fs::exists(folder_ / "colours" / "000000.png"));
+    fs::remove_all(folder_ / "colours");
+    reports[colour] = nlohmann::json::parse(read_text(report_path));
+  }
+  const auto& with = reports["registered"];
+  const auto& without = reports["none"];
+  EXPECT_EQ(without["frames_located"], 45);
+  EXPECT_GT(without["moved_fraction_mean"], 0.001);
+  for (const char* key : {"moved_fraction_mean", "dynamic_triangles_mean", "inferred_triangles_mean"})
+    EXPECT_EQ(without[key], with[key]) << key;
+  EXPECT_EQ(without["objects"][0]["position_m"], with["objects"][0]["position_m"]);
+}
+
 TEST_F(CommandLine, TheSampledRadarHoldsTheTeapotTooBySafeBounds) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const fs::path report_path = folder_ / "sampled.json";

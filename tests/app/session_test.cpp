@@ -76,6 +76,32 @@ TEST(Session, OneFrameWithoutColourKeepsTheLastPicture) {
   }
 }
 
+TEST(Session, WhatMovedNeedsNoColour) {
+  const SavedMap map = floor_map();
+  for (const bool has_colour : {false, true}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    Frame frame = depth_only(0, kAtTheFloor);
+    static_cast<void>(session.step(frame, times));
+    frame.depth_m = session.scene().expected_depth_m();
+    for (int y = 40; y < 80; ++y)
+      for (int x = 50; x < 100; ++x) frame.depth_m.at(x, y) = 0.8F;
+    if (has_colour) {
+      frame.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
+      frame.colour.resize(320, 240, {10, 200, 30});
+    }
+    FrameResult result;
+    for (frame.index = 1; frame.index < 4; ++frame.index) {
+      frame.stamp_s = static_cast<double>(frame.index) / 30.0;
+      result = session.step(frame, times);
+    }
+    EXPECT_EQ(result.status, FrameStatus::kDone);
+    EXPECT_EQ(result.foreground.moved, 40U * 50U) << has_colour;
+    EXPECT_GT(result.dynamic_triangles, 0U) << has_colour;
+    EXPECT_EQ(session.picture().width, has_colour ? 320 : 160);
+  }
+}
+
 TEST(Session, ObjectsAreDrawnFromWhereTheCameraWasWhenTheColourWasTaken) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
