@@ -75,6 +75,7 @@ void find_regions(const DepthImage& depth_m, const std::vector<std::uint8_t>& ev
         sums.strong += (evidence[pixel] & bits.strong) != 0;
         sums.doubtful += (evidence[pixel] & (bits.doubtful | bits.strong)) == bits.doubtful;
         sums.before += (evidence[pixel] & bits.before) != 0;
+        sums.core += (evidence[pixel] & bits.core) != 0;
         sums.depth2_m2 += depth[pixel] * depth[pixel];
         ++pixel;
         ++x;
@@ -103,6 +104,7 @@ void find_regions(const DepthImage& depth_m, const std::vector<std::uint8_t>& ev
     all.strong += part.strong;
     all.doubtful += part.doubtful;
     all.before += part.before;
+    all.core += part.core;
     all.depth2_m2 += part.depth2_m2;
   }
 }

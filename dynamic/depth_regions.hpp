@@ -23,12 +23,13 @@ struct DepthRegion {
   std::uint32_t strong = 0;    ///< pixels with the strong bit
   std::uint32_t doubtful = 0;  ///< pixels with the doubtful bit and without the strong one
   std::uint32_t before = 0;    ///< pixels with the before bit
+  std::uint32_t core = 0;      ///< pixels with the core bit
   float depth2_m2 = 0.0F;  ///< sum of squared depths: times 1 / (fx fy) the area, as if it faced the camera
 };
 
 /// Which bits of a pixel mean what to the search.
 struct RegionBits {
-  std::uint8_t weak = 0, strong = 0, doubtful = 0, before = 0;
+  std::uint8_t weak = 0, strong = 0, doubtful = 0, before = 0, core = 0;
 };
 
 /// runs[i].region is an index into regions, which has an entry a run; only those are used that a run names.

@@ -16,8 +16,14 @@ constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kDoubtMoved = 4, kWeakR
 // In a hole of the model, beside kWeakMoved; there nothing is revealed.
 constexpr std::uint8_t kInHole = kDoubtRevealed;
 
+// Of what is revealed, beside its own bits: it goes on farther around than an edge may be off.
+constexpr std::uint8_t kRevealedCore = kDoubtMoved;
+
 struct Union {
   std::uint8_t operator()(std::uint8_t a, std::uint8_t b) const { return static_cast<std::uint8_t>(a | b); }
+};
+struct Fewer {
+  std::uint8_t operator()(std::uint8_t a, std::uint8_t b) const { return b < a ? b : a; }
 };
 
 // The bounds of a row of blocks, one value a pixel.
@@ -165,6 +171,59 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
   }
 }
 
+// Whether nearly all that is known of a block is farther than the model.
+bool is_revealed(const DepthImage& depth_m, const DepthImage& expected_m, int column, int row,
+                 const ForegroundState& state) {
+  int known = 0, revealed = 0;
+  for (int y = row * kBlock_px; y < std::min((row + 1) * kBlock_px, depth_m.height); ++y) {
+    for (int x = column * kBlock_px; x < std::min((column + 1) * kBlock_px, depth_m.width); ++x) {
+      const std::size_t i = depth_m.index(x, y);
+      const bool is_known = (depth_m.pixels[i] > 0.0F) & (expected_m.pixels[i] > 0.0F);
+      const std::uint8_t bits = kWeakRevealed | kStrongRevealed | kDoubtRevealed;
+      known += is_known;
+      revealed += is_known & ((state.evidence[i] & bits) != 0);
+    }
+  }
+  return known > 0 && 4 * revealed >= 3 * known;
+}
+
+// An edge of the model that stands off by an error shows what is behind it in a strip as wide as that error;
+// what was taken away was wider. Marks the blocks in the middle of revealed ones that reach as far to all
+// sides as half an edge's error.
+void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m, ForegroundState& state) {
+  const BlockGrid grid = state.bounds.grid;
+  std::vector<std::uint8_t>& within = state.revealed_for;  // blocks to all sides, itself included
+  within.assign(grid.size(), 0);
+  bool any = false;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t i = grid.at(column, row);
+      if ((state.block_evidence[i] & (kStrongRevealed | kDoubtRevealed)) == 0) continue;
+      within[i] = is_revealed(depth_m, expected_m, column, row, state) ? 1 : 0;
+      any = any || within[i] != 0;
+    }
+  }
+  if (!any) return;
+  constexpr int kMostReach = 3;
+  std::vector<std::uint8_t>& level = state.near_strong;
+  level = within;
+  for (int reach = 1; reach <= kMostReach; ++reach) {
+    spread(grid, level, 1, Fewer{}, state.along_rows, level);
+    for (std::size_t i = 0; i < level.size(); ++i)
+      within[i] = static_cast<std::uint8_t>(within[i] + level[i]);
+  }
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t i = grid.at(column, row);
+      if (within[i] <= (state.bounds.reach[i] + 1) / 2) continue;
+      for (int y = row * kBlock_px; y < std::min((row + 1) * kBlock_px, depth_m.height); ++y) {
+        for (int x = column * kBlock_px; x < std::min((column + 1) * kBlock_px, depth_m.width); ++x)
+          state.evidence[depth_m.index(x, y)] |= kRevealedCore;
+      }
+    }
+  }
+}
+
 // Drops weak evidence that is far from strong.
 void drop_far_weak(const DepthImage& depth_m, int reach_px, ForegroundState& state) {
   const BlockGrid grid = state.bounds.grid;
@@ -207,6 +266,7 @@ Belief belief_in(const DepthRegion& region, const Difference& difference, const 
   const auto judged = static_cast<float>(region.pixels - region.doubtful);
   const bool was = 2 * region.before >= region.pixels;
   const float part = was ? 0.5F : 1.0F;
+  if (difference.bits.core != 0 && region.core == 0) return Belief::kNone;
   if (region.strong == 0 || strong < part * difference.min_strong_of_all * pixels ||
       strong < part * config.min_strong_fraction * judged)
     return Belief::kNone;
@@ -272,16 +332,17 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
   find_bounds(expected_depth_m, camera, config, state.fit.misfit_per_m, state.bounds);
   recall(state.memory, depth_m, camera, T_world_camera, state.before);
   weigh_pixels(depth_m, expected_depth_m, config, state, labels);
+  mark_revealed_cores(depth_m, expected_depth_m, state);
   drop_far_weak(depth_m, config.weak_reach_px, state);
 
   state.memory.grid = state.bounds.grid;
   state.memory.blocks.assign(state.bounds.grid.size(), 0);
-  const Difference moved{{kWeakMoved, kStrongMoved, kInHole, kMovedBefore},
+  const Difference moved{{kWeakMoved, kStrongMoved, kInHole, kMovedBefore, 0},
                          kBlockMoved,
                          kBlockMaybeMoved,
                          config.min_strong_of_all,
                          PixelLabel::kMoved};
-  const Difference revealed{{kWeakRevealed, kStrongRevealed, kDoubtRevealed, kRevealedBefore},
+  const Difference revealed{{kWeakRevealed, kStrongRevealed, kDoubtRevealed, kRevealedBefore, kRevealedCore},
                             kBlockRevealed,
                             kBlockMaybeRevealed,
                             config.min_strong_of_all_revealed,

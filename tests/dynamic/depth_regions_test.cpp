@@ -13,7 +13,7 @@
 namespace roomradar {
 namespace {
 
-constexpr RegionBits kBits{1, 2, 4, 8};
+constexpr RegionBits kBits{1, 2, 4, 8, 16};
 
 bool hang_together(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence, std::size_t a,
                    std::size_t b, double focal_px) {
@@ -59,7 +59,7 @@ TEST(DepthRegions, AreThoseOfAFloodFill) {
     const auto holes = 1 + random() % 5;
     for (std::size_t i = 0; i < evidence.size(); ++i) {
       depth_m.pixels[i] = 1.0F + 0.05F * static_cast<float>(random() % 4);
-      evidence[i] = static_cast<std::uint8_t>(random() % holes == 0 && holes > 1 ? 0 : random() % 16);
+      evidence[i] = static_cast<std::uint8_t>(random() % holes == 0 && holes > 1 ? 0 : random() % 32);
     }
     DepthRegions found;
     find_regions(depth_m, evidence, kBits, camera, found);
@@ -85,6 +85,7 @@ TEST(DepthRegions, AreThoseOfAFloodFill) {
       sum.strong += (evidence[i] & 2) != 0;
       sum.doubtful += (evidence[i] & 6) == 4;
       sum.before += (evidence[i] & 8) != 0;
+      sum.core += (evidence[i] & 16) != 0;
       sum.depth2_m2 += depth_m.pixels[i] * depth_m.pixels[i];
     }
     for (const auto& [id, sum] : sums) {
@@ -93,6 +94,7 @@ TEST(DepthRegions, AreThoseOfAFloodFill) {
       EXPECT_EQ(region.strong, sum.strong);
       EXPECT_EQ(region.doubtful, sum.doubtful);
       EXPECT_EQ(region.before, sum.before);
+      EXPECT_EQ(region.core, sum.core);
       EXPECT_NEAR(region.depth2_m2, sum.depth2_m2, 1e-4F * sum.depth2_m2);
     }
   }

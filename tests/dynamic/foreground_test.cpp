@@ -101,6 +101,28 @@ TEST(Foreground, WhatWasTakenAwayIsRevealedNotMoved) {
   EXPECT_EQ(marked.moved_mask.at(330, 230), 0);
 }
 
+TEST(Foreground, WhatIsTakenAwayIsWiderThanWhatAMisplacedEdgeUncovers) {
+  // A chair's back before a niche in a wall. In the model it stands higher than it does, and hides the niche.
+  for (const float z : {1.0F, 1.7F, 2.5F}) {
+    const auto px = [&](float metres) { return static_cast<int>(std::lround(metres * 585.0F / z)); };
+    const ForegroundConfig config;
+    const int off_px = px(1.2F * (config.edge_error_m + config.edge_error_rad * z));
+    const int wide_px = px(0.15F);
+    DepthImage live_m = flat(1.3F * z), expected_m = flat(1.3F * z);
+    fill_rectangle(live_m, 250, 330 - off_px, 350, 330, 1.6F * z);
+    fill_rectangle(live_m, 200, 330, 400, 480, z);
+    fill_rectangle(expected_m, 200, 330 - off_px, 400, 480, z);
+    DepthImage gone_m = expected_m;
+    fill_rectangle(gone_m, 440, 100, 440 + wide_px, 100 + wide_px, z);
+    add_noise(live_m, 9);
+    EXPECT_EQ(mark(live_m, expected_m, {}, kKinect, 2).counts.revealed, 0U) << z;
+    const Marked marked = mark(live_m, gone_m, {}, kKinect, 2);
+    EXPECT_NEAR(static_cast<double>(marked.counts.revealed), wide_px * wide_px, 2.0 * wide_px) << z;
+    EXPECT_EQ(marked.labels.at(440 + wide_px / 2, 100 + wide_px / 2), PixelLabel::kRevealed) << z;
+    EXPECT_EQ(marked.counts.moved, 0U) << z;
+  }
+}
+
 TEST(Foreground, UnmeasuredPixelsAreNotKnown) {
   DepthImage live_m = flat(1.0F);
   fill_rectangle(live_m, 200, 150, 320, 260, 0.8F);
