@@ -114,8 +114,11 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   Search search(query, direction_in_object(query));
   if (!search.origin_world.allFinite()) return {};
   if (!scene_.place(scene, query.own_tree, search.R_frame_world, search.origin_world)) return {};
-  build_front(search.object);  // M
-  look(search);                // R, L
+  const bool is_kept = front_.holds(search.object);
+  front_.turn(search.object);
+  scene_.enter(volume_ahead(search));
+  build_front(search.object, is_kept);  // M
+  look(search);                         // R, L
   if (search.leaves_something && search.met_a_back && !search.overlaps && !search.is_cut_short) leave(search);
   if (search.is_thick) return thick_contact_of(search);
   return search.overlaps ? overlap_of(search) : contact_of(search);
@@ -130,21 +133,42 @@ Eigen::Vector3d CyberRadar::direction_in_object(const RadarQuery& query) {
   return u_mesh_;
 }
 
+/// What the object sweeps on its way, in its frame.
+Eigen::AlignedBox3d CyberRadar::volume_ahead(const Search& search) const {
+  Eigen::AlignedBox3d volume = front_.bounds();
+  volume.min().z() -= search.object.touching_m;
+  volume.max().z() += search.query.distance_m + search.equally_m();
+  return volume;
+}
+
+SceneBound CyberRadar::bound_of(const Search& search) const {
+  return {&front_, static_cast<float>(volume_ahead(search).min().z())};
+}
+
 /// Coarse for a direction that may never come again, fine where it is seen to stay: then nearly all of the
 /// scene is ruled out by M's pixels, whatever the object's triangles are. The exact answer does not depend on
 /// how fine M is.
-void CyberRadar::build_front(const TurnedTree& object) {
-  constexpr int kFresh_px = 24, kFewFresh_px = 64, kKept_px = 256, kSeenToStay = 3;
+void CyberRadar::build_front(const TurnedTree& object, bool is_kept) {
+  constexpr int kFewFresh_px = 64, kKept_px = 384, kSeenToStay = 3;
   constexpr std::size_t kFewTriangles = 500;  // their M costs little
   const int kept_px = config_.mode == RadarMode::kExact ? kKept_px : config_.resolution_px;
-  if (front_.holds(object)) {
-    ++front_uses_;
+  if (is_kept) {
+    front_uses_ = std::min(front_uses_ + 1, kSeenToStay);
     if (front_uses_ == kSeenToStay) front_.build(object, kept_px);
   } else {
     front_uses_ = 1;
     const bool has_few = object.tree->triangle_count() < kFewTriangles;
-    front_.build(object, std::min(has_few ? kFewFresh_px : kFresh_px, kept_px));
+    front_.build(object, std::min(has_few ? kFewFresh_px : fresh_px(), kept_px));
   }
+}
+
+/// The more scene there is to rule out, the finer an M pays: its time goes with its pixels, and what it
+/// leaves to settle falls with them.
+int CyberRadar::fresh_px() const {
+  constexpr int kLeast_px = 8, kMost_px = 40, kOverTrees_px = 24;
+  if (scene_.has_trees()) return kOverTrees_px;
+  const double px = 2.5 * std::sqrt(std::sqrt(static_cast<double>(scene_.cell_count())));
+  return std::clamp(static_cast<int>(px), kLeast_px, kMost_px);
 }
 
 /// Nothing farther than this is looked at.
@@ -156,16 +180,13 @@ double CyberRadar::limit_m(const Search& search) const {
 /// Settles what has the least bound until nothing can be nearer, or enough is known.
 void CyberRadar::look(Search& search) {
   const double distance_m = search.query.distance_m;
-  Eigen::AlignedBox3d volume = front_.bounds();
-  volume.min().z() -= search.object.touching_m;
-  volume.max().z() += distance_m + search.equally_m();
-  const SceneBound bound{&front_, static_cast<float>(volume.min().z())};
+  const SceneBound bound = bound_of(search);
   const bool may_stop_early = config_.mode == RadarMode::kSampled && !search.collects_backs;
   int settled_count = 0;
   columns_.work = 0;
   patch_.clear();
   heap_.clear();
-  scene_.begin(volume, bound, static_cast<float>(limit_m(search)), heap_);
+  scene_.begin(bound, static_cast<float>(limit_m(search)), heap_);
   std::make_heap(heap_.begin(), heap_.end(), is_farther);
   while (!heap_.empty() && !search.overlaps && heap_.front().low_m < limit_m(search)) {
     const bool is_enough = may_stop_early && settled_count >= kSampledSettles &&
@@ -177,7 +198,7 @@ void CyberRadar::look(Search& search) {
       cut_short(search);
       continue;
     }
-    if (item.kind != SceneItem::Kind::kTriangle && item.kind != SceneItem::Kind::kBounded) {
+    if (!item.is_triangle()) {
       found_.clear();
       scene_.expand(item, bound, static_cast<float>(limit_m(search)), found_);
       for (const SceneItem& part : found_) push(heap_, part);

@@ -26,7 +26,7 @@ struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
   /// Pixels along the longer side of the object's outline, 1 to 4096: how wide the bounds of sampled mode
   /// are once a direction has come three times in the object's own frame (before, M of an object of many
-  /// triangles has 24 at most), and Contact::pixel_m. Exact mode takes as many pixels as is fastest; its
+  /// triangles has 40 at most), and Contact::pixel_m. Exact mode takes as many pixels as is fastest; its
   /// answer does not depend on them.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
@@ -88,8 +88,8 @@ bool is_valid(const RadarQuery& query);
 /// (the bar of a handle behind a hand that is in the handle): no contact until the last of it has been
 /// passed.
 ///
-/// One-sided surfaces (is_one_sided()) are met from their outside only: what of them faces along the motion is
-/// left, wherever it is.
+/// One-sided surfaces (is_one_sided()) are met from their outside only: what of them faces along the motion
+/// is left, wherever it is.
 ///
 /// Contact point: of all places that are equally near (a face that lands flat) the one nearest to their
 /// middle.
@@ -139,7 +139,10 @@ class CyberRadar {
 
   struct Search;
   Eigen::Vector3d direction_in_object(const RadarQuery& query);
-  void build_front(const TurnedTree& object);
+  void build_front(const TurnedTree& object, bool is_kept);
+  [[nodiscard]] int fresh_px() const;
+  [[nodiscard]] Eigen::AlignedBox3d volume_ahead(const Search& search) const;
+  [[nodiscard]] SceneBound bound_of(const Search& search) const;
   void look(Search& search);
   void settle(Search& search, const SceneItem& item, const FrameTriangle& s);
   void cut_short(Search& search);

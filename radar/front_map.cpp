@@ -1,6 +1,7 @@
 // front_map.cpp: enter boxes and planes from the front to the back, then the greatest of four and four.
 #include "radar/front_map.hpp"
 
+#include <algorithm>
 #include <bit>
 
 #include "radar/pixel_grid.hpp"
@@ -10,12 +11,40 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kRounding = 16.0F * std::numeric_limits<float>::epsilon();
+constexpr int kLanes = 8;  // pixels that are looked at side by side
 
 /// The pixel that holds a place, the nearest one where none does.
 int to_pixel(float at_px, float last) {
   const float above = at_px > 0.0F ? at_px : 0.0F;
   return static_cast<int>(above < last ? above : last);
 }
+
+/// Eight boxes of a node: the pixels that they touch, first to last, and how high they reach.
+struct PixelBoxes {
+  alignas(32) std::array<float, TreeNode::kWidth> top;
+  alignas(32) std::array<int, TreeNode::kWidth> x0, x1, y0, y1;
+};
+
+/// How boxes of a tree lie over a grid of pixels.
+struct PixelPlaces {
+  Eigen::Matrix3f R_frame_mesh;
+  float x0_m, y0_m, per_m, last_x, last_y, slack_m;
+
+  /// A function of its own, without branches, so that compilers make it eight at a time.
+  [[gnu::noinline]] void of(const TreeNode& node, PixelBoxes& boxes) const {
+    LinearOverBoxes x, y, z;
+    linear_over_boxes(node, R_frame_mesh.row(0), x);
+    linear_over_boxes(node, R_frame_mesh.row(1), y);
+    linear_over_boxes(node, R_frame_mesh.row(2), z);
+    for (std::size_t i = 0; i < TreeNode::kWidth; ++i) {
+      boxes.top[i] = z.value[i] + z.reach[i] + slack_m;
+      boxes.x0[i] = to_pixel((x.value[i] - x.reach[i] - slack_m - x0_m) * per_m, last_x);
+      boxes.x1[i] = to_pixel((x.value[i] + x.reach[i] + slack_m - x0_m) * per_m, last_x);
+      boxes.y0[i] = to_pixel((y.value[i] - y.reach[i] - slack_m - y0_m) * per_m, last_y);
+      boxes.y1[i] = to_pixel((y.value[i] + y.reach[i] + slack_m - y0_m) * per_m, last_y);
+    }
+  }
+};
 
 /// a x + b y + c <= 0 at the middle of a pixel that a triangle may touch.
 struct Line {
@@ -97,15 +126,20 @@ bool FrontMap::holds(const TurnedTree& object) const {
          margin_m_ == object.margin_m;
 }
 
-void FrontMap::build(const TurnedTree& object, int resolution_px) {
-  if (holds(object) && resolution_px_ == resolution_px) return;
+void FrontMap::turn(const TurnedTree& object) {
+  if (holds(object)) return;
   revision_ = object.tree->revision();
   R_frame_mesh_ = object.R_frame_mesh;
   margin_m_ = object.margin_m;
-  resolution_px_ = resolution_px;
-
+  resolution_px_ = 0;
   constexpr double kTolerance = 5e-3;  // of the size: many vertices are nearly as far out
   bounds_ = turned_bounds(object, kTolerance * object.tree->half_size().cast<double>().sum(), pending_);
+}
+
+void FrontMap::build(const TurnedTree& object, int resolution_px) {
+  turn(object);
+  if (resolution_px_ == resolution_px) return;
+  resolution_px_ = resolution_px;
   const Eigen::Vector3d size_m = bounds_.sizes();
   const PixelGrid grid = fit_pixels(size_m.x(), size_m.y(), resolution_px);
   pixel_m_ = grid.pixel_m;
@@ -120,48 +154,50 @@ void FrontMap::build(const TurnedTree& object, int resolution_px) {
     count += static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
     if (w == 1 && h == 1) break;
   }
-  heights_.assign(count, -kInfinity);
+  heights_.assign(count + kLanes, -kInfinity);  // room to read on past the last pixel
 
+  enter_tree(object);
+  build_levels();
+}
+
+/// From the front to the back: what is higher hides the rest.
+void FrontMap::enter_tree(const TurnedTree& object) {
   const TriangleTree& tree = *object.tree;
-  const Eigen::Matrix3f R = object.R_frame_mesh.cast<float>();
-  const Eigen::Vector3f x_axis = R.row(0), y_axis = R.row(1), z_axis = R.row(2);
-  const float slack_m =
-      kRounding * tree.half_size().sum() + static_cast<float>(object.margin_m) * (1.0F + kRounding);
-  const auto last_x = static_cast<float>(width - 1), last_y = static_cast<float>(height - 1);
+  const PixelPlaces places{
+      object.R_frame_mesh.cast<float>(),
+      x0_,
+      y0_,
+      per_m_,
+      static_cast<float>(levels_[0].width - 1),
+      static_cast<float>(levels_[0].height - 1),
+      kRounding * tree.half_size().sum() + static_cast<float>(object.margin_m) * (1.0F + kRounding)};
+  PixelBoxes boxes;
   pending_.clear();
   pending_.push_back({-kInfinity, 0, 0});
   while (!pending_.empty()) {
     const TreeNode& node = tree.nodes()[pending_.back().first];
     pending_.pop_back();
-    LinearOverBoxes x, y, z;
-    linear_over_boxes(node, x_axis, x);
-    linear_over_boxes(node, y_axis, y);
-    linear_over_boxes(node, z_axis, z);
-    alignas(32) std::array<float, TreeNode::kWidth> top;
-    alignas(32) std::array<int, TreeNode::kWidth> px0, px1, py0, py1;
-    for (std::size_t i = 0; i < TreeNode::kWidth; ++i) {
-      top[i] = z.value[i] + z.reach[i] + slack_m;
-      px0[i] = to_pixel((x.value[i] - x.reach[i] - slack_m - x0_) * per_m_, last_x);
-      px1[i] = to_pixel((x.value[i] + x.reach[i] + slack_m - x0_) * per_m_, last_x);
-      py0[i] = to_pixel((y.value[i] - y.reach[i] - slack_m - y0_) * per_m_, last_y);
-      py1[i] = to_pixel((y.value[i] + y.reach[i] + slack_m - y0_) * per_m_, last_y);
-    }
+    places.of(node, boxes);
     const std::size_t first_new = pending_.size();
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      if (px1[i] - px0[i] <= 1 && py1[i] - py0[i] <= 1) {
-        enter_box(px0[i], px1[i], py0[i], py1[i], top[i]);
-      } else if (is_under(px0[i], px1[i], py0[i], py1[i], top[i])) {
+      const int x0 = boxes.x0[i], x1 = boxes.x1[i], y0 = boxes.y0[i], y1 = boxes.y1[i];
+      if (x1 - x0 <= 1 && y1 - y0 <= 1) {
+        enter_box(x0, x1, y0, y1, boxes.top[i]);
+      } else if (is_under(x0, x1, y0, y1, boxes.top[i])) {
         continue;
       } else if (node.count[i] > 0) {
         for (std::uint32_t t = node.first[i]; t < node.first[i] + node.count[i]; ++t)
           enter_triangle(object, t);
       } else {
-        pending_.push_back({-top[i], node.first[i], 0});
+        pending_.push_back({-boxes.top[i], node.first[i], 0});
       }
     }
-    put_nearest_last(pending_, first_new);  // the highest: what it covers hides the rest
+    put_nearest_last(pending_, first_new);
   }
+}
 
+/// Each level is the greatest of two by two of the one below.
+void FrontMap::build_levels() {
   for (std::size_t level = 1; level < levels_.size(); ++level) {
     const Level& fine = levels_[level - 1];
     const Level& coarse = levels_[level];
@@ -290,9 +326,9 @@ float FrontMap::least_gap_under(const FrameTriangle& scene) const {
   if (!(fx1 >= -0.01F && fy1 >= -0.01F && fx0 <= last_x + 1.01F && fy0 <= last_y + 1.01F)) return kInfinity;
   int px0 = to_pixel(fx0, last_x), px1 = to_pixel(fx1, last_x);
   int py0 = to_pixel(fy0, last_y), py1 = to_pixel(fy1, last_y);
-  constexpr unsigned kMostSide = 8;
+  constexpr unsigned kMostSide = 2 * kLanes - 1;
   const auto side = static_cast<unsigned>(std::max(px1 - px0, py1 - py0));
-  const int level = std::max(static_cast<int>(std::bit_width(side / kMostSide)), 0);
+  const int level = static_cast<int>(std::bit_width(side / (kMostSide + 1)));
   px0 >>= level, px1 >>= level, py0 >>= level, py1 >>= level;
   const Level& l = levels_[static_cast<std::size_t>(level)];
   const auto pixel = static_cast<float>(pixel_m_) * static_cast<float>(1 << level);
@@ -309,17 +345,24 @@ float FrontMap::least_gap_under(const FrameTriangle& scene) const {
           kRounding * (1.0F + slope) * (size_m + pixel);
   }
   const auto lines = outlines_of(c, half_px + kRounding * size_m);
-  float least = kInfinity;
+  const float low_z = low.z() - slack_m, x_of_0 = x0_ + 0.5F * pixel;
+  alignas(32) std::array<float, kLanes> least;
+  least.fill(kInfinity);
   for (int py = py0; py <= py1; ++py) {
     const float y = y0_ + (static_cast<float>(py) + 0.5F) * pixel;
     const float* row = &heights_[l.first + static_cast<std::size_t>(py) * static_cast<std::size_t>(l.width)];
-    for (int px = px0; px <= px1; ++px) {
-      const float x = x0_ + (static_cast<float>(px) + 0.5F) * pixel;
-      if (outside_by(lines, x, y) > 0.0F) continue;
-      least = std::min(least, std::max(low.z() - slack_m, at0 + gx * x + gy * y) - row[px]);
+    for (int px = px0; px <= px1; px += kLanes) {
+      // Without branches, so that compilers make it eight at a time; what is past px1 counts as outside.
+      for (int i = 0; i < kLanes; ++i) {
+        const float x = x_of_0 + static_cast<float>(px + i) * pixel;
+        const float gap = std::max(low_z, at0 + gx * x + gy * y) - row[px + i];
+        const float outside = std::max(outside_by(lines, x, y), static_cast<float>(px + i - px1));
+        const float inside_gap = outside > 0.0F ? kInfinity : gap;
+        least[static_cast<std::size_t>(i)] = std::min(least[static_cast<std::size_t>(i)], inside_gap);
+      }
     }
   }
-  return least;
+  return *std::min_element(least.begin(), least.end());
 }
 
 }  // namespace roomradar

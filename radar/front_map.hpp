@@ -16,7 +16,10 @@ namespace roomradar {
 /// its height); and what is passed over is not higher than what every one of its pixels holds already.
 class FrontMap {
  public:
-  /// Does nothing if the tree, the turn, the margin and the size are those of the last time.
+  /// Finds bounds(), which may say how many pixels are worth it; the map is to be built after this. Does
+  /// nothing if the tree, the turn and the margin are those of the last time.
+  void turn(const TurnedTree& object);
+  /// Does nothing if the size, too, is that of the last time.
   void build(const TurnedTree& object, int resolution_px);
 
   /// Whether this is the map of this tree, turned so, with this margin, at whatever size.
@@ -34,6 +37,7 @@ class FrontMap {
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
   /// Longer side across the motion, m.
   [[nodiscard]] double side_m() const { return pixel_m_ * resolution_px_; }
+  [[nodiscard]] double pixel_m() const { return pixel_m_; }
 
  private:
   struct Level {
@@ -52,6 +56,8 @@ class FrontMap {
   std::vector<float> heights_;
   std::vector<PendingNode> pending_;
 
+  void enter_tree(const TurnedTree& object);
+  void build_levels();
   void enter_box(int x0, int x1, int y0, int y1, float height);
   void enter_triangle(const TurnedTree& object, std::uint32_t triangle);
   [[nodiscard]] bool is_under(int x0, int x1, int y0, int y1, float height) const;

@@ -82,7 +82,8 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
     const double touching_m = object.touching_m;
     const auto limit = [&] { return static_cast<float>(std::min(free_m, before_m) + touching_m); };
     scratch.items.clear();
-    scene.begin(volume, bound, limit(), scratch.items);
+    scene.enter(volume);
+    scene.begin(bound, limit(), scratch.items);
     // What may reach back farthest first: it rules out most of the rest.
     const auto is_farther = [](const SceneItem& a, const SceneItem& b) { return a.low_m > b.low_m; };
     std::make_heap(scratch.items.begin(), scratch.items.end(), is_farther);
@@ -96,7 +97,7 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
         result.is_all = false;
         return result;
       }
-      if (item.kind != SceneItem::Kind::kTriangle) {
+      if (!item.is_triangle()) {
         const std::size_t before = scratch.items.size();
         scene.expand(item, bound, limit(), scratch.items);
         for (std::size_t i = before; i < scratch.items.size(); ++i) {

@@ -79,11 +79,12 @@ void visit_scene(SceneInFrame& scene, const FrontMap& front, const Eigen::Aligne
   const SceneBound bound{&front, static_cast<float>(volume.min().z())};
   constexpr float kNoLimit = std::numeric_limits<float>::infinity();
   std::vector<SceneItem> items;
-  scene.begin(volume, bound, kNoLimit, items);
+  scene.enter(volume);
+  scene.begin(bound, kNoLimit, items);
   while (!items.empty()) {
     const SceneItem item = items.back();
     items.pop_back();
-    if (item.kind == SceneItem::Kind::kTriangle) {
+    if (item.is_triangle()) {
       const FrameTriangle triangle = scene.triangle(item);
       if (triangle.normal.z() <= kEdgeOn || !is_one_sided(scene.kind(item))) draw(triangle);
     } else {

@@ -55,8 +55,7 @@ void SceneInFrame::begin_tree(const SceneTree& s, const Eigen::AlignedBox3d& vol
   trees_.push_back({&s, R_frame_world_ * s.instance.T_world_mesh.linear(), t, slack_m});
 }
 
-void SceneInFrame::begin(const Eigen::AlignedBox3d& volume, const SceneBound& bound, float limit_m,
-                         std::vector<SceneItem>& items) {
+void SceneInFrame::enter(const Eigen::AlignedBox3d& volume) {
   trees_.clear();
   const auto begin_at = [&](std::size_t i) {
     if (i != own_tree_ && has_surface(scene_.trees[i])) begin_tree(scene_.trees[i], volume);
@@ -68,21 +67,32 @@ void SceneInFrame::begin(const Eigen::AlignedBox3d& volume, const SceneBound& bo
   } else {
     for (std::size_t i = 0; i < scene_.trees.size(); ++i) begin_at(i);
   }
+  views_.clear();
+  for (const SceneDepth& s : scene_.depths) {
+    DepthView view;
+    if (has_surface(s) && place_depth(s, R_frame_world_, origin_world_, volume, view)) views_.push_back(view);
+  }
+}
+
+std::size_t SceneInFrame::cell_count() const {
+  std::size_t count = 0;
+  for (const DepthView& v : views_) count += static_cast<std::size_t>(v.i1 - v.i0) * (v.j1 - v.j0);
+  return count;
+}
+
+void SceneInFrame::begin(const SceneBound& bound, float limit_m, std::vector<SceneItem>& items) {
   for (std::uint32_t i = 0; i < trees_.size(); ++i) {
     expand({-std::numeric_limits<float>::infinity(), SceneItem::Kind::kNode, i, 0, 0}, bound, limit_m, items);
   }
   blocks_.clear();
-  views_.clear();
-  for (const SceneDepth& s : scene_.depths) {
-    if (!has_surface(s)) continue;
-    const auto source = static_cast<std::uint32_t>(trees_.size() + views_.size());
-    DepthView& view = views_.emplace_back();
+  for (std::size_t v = 0; v < views_.size(); ++v) {
     const std::size_t first = blocks_.size();
-    if (place_depth(s, R_frame_world_, origin_world_, volume, view)) append_blocks(view, scratch_, blocks_);
+    append_blocks(views_[v], scratch_, blocks_);
     for (std::size_t b = first; b < blocks_.size(); ++b) {
       const float low_m = bound.low_m(blocks_[b].box);
       if (!(low_m < limit_m)) continue;
-      items.push_back({low_m, SceneItem::Kind::kBlock, source, static_cast<std::uint32_t>(b), 0});
+      items.push_back({low_m, SceneItem::Kind::kBlock, static_cast<std::uint32_t>(trees_.size() + v),
+                       static_cast<std::uint32_t>(b), 0});
     }
   }
 }
@@ -98,7 +108,10 @@ void SceneInFrame::expand(const SceneItem& item, const SceneBound& bound, float 
   const auto put = [&](const FrameBox& box, SceneItem::Kind kind, std::uint32_t first, std::uint32_t count) {
     if (box.z0 - most_m >= limit_m) return;
     const float low_m = std::max(bound.low_m(box), item.low_m);
-    if (low_m < limit_m) items.push_back({low_m, kind, item.source, first, count});
+    if (!(low_m < limit_m)) return;
+    // Within a pixel its plane says hardly more than its box.
+    const bool is_bounded = kind == SceneItem::Kind::kTriangle && bound.is_within_a_pixel(box);
+    items.push_back({low_m, is_bounded ? SceneItem::Kind::kBounded : kind, item.source, first, count});
   };
   if (item.kind == SceneItem::Kind::kBlock) {
     triangles_.clear();

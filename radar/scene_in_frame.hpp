@@ -17,12 +17,14 @@ struct SceneItem {
     kLeaf,      ///< `count` triangles of a tree
     kBlock,     ///< of a depth image
     kTriangle,  ///< one, of a tree or a depth image; low_m is its box's
-    kBounded    ///< one whose low_m is its plane's, pixel by pixel
+    kBounded    ///< one whose low_m is its plane's, pixel by pixel, or would be no more by that
   };
   float low_m;  ///< no way to contact is shorter
   Kind kind;
   std::uint32_t source;  ///< trees first, then depth images
   std::uint32_t first, count;
+
+  [[nodiscard]] bool is_triangle() const { return kind == Kind::kTriangle || kind == Kind::kBounded; }
 };
 
 /// How near a box of the scene can be: its least height less the greatest of the object under it. Nothing
@@ -36,6 +38,9 @@ struct SceneBound {
   }
   /// The same for a triangle, finer: its plane instead of its box.
   [[nodiscard]] float low_m(const FrameTriangle& triangle) const { return front->least_gap_under(triangle); }
+  [[nodiscard]] bool is_within_a_pixel(const FrameBox& box) const {
+    return std::max(box.x1 - box.x0, box.y1 - box.y0) < static_cast<float>(front->pixel_m());
+  }
 };
 
 class SceneInFrame {
@@ -45,10 +50,14 @@ class SceneInFrame {
   /// @return false if a pose is not finite or a camera cannot be one; then nothing is placed
   bool place(const RadarScene& scene, std::size_t own_tree, const Eigen::Matrix3d& R_frame_world,
              const Eigen::Vector3d& origin_world);
+  /// Finds what reaches the volume: trees, and the part of each depth image that projects into it.
+  void enter(const Eigen::AlignedBox3d& volume);
+  /// Cells of the depth images' grids that may be in the volume.
+  [[nodiscard]] std::size_t cell_count() const;
+  [[nodiscard]] bool has_trees() const { return !trees_.empty(); }
   /// Appends what can be nearer than limit_m in the volume, whole trees and blocks; items from before are not
-  /// to be used any more. Before expand().
-  void begin(const Eigen::AlignedBox3d& volume, const SceneBound& bound, float limit_m,
-             std::vector<SceneItem>& items);
+  /// to be used any more. After enter(), before expand().
+  void begin(const SceneBound& bound, float limit_m, std::vector<SceneItem>& items);
   /// Appends those parts of an item (not a triangle) that can be nearer than limit_m.
   void expand(const SceneItem& item, const SceneBound& bound, float limit_m, std::vector<SceneItem>& items);
 
