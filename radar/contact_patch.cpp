@@ -1,4 +1,4 @@
-// contact_patch.cpp: sort each piece's corners around it, weigh, and take the nearest point.
+// contact_patch.cpp: sort each piece's corners around it, weigh them, find the nearest point.
 #include "radar/contact_patch.hpp"
 
 #include <algorithm>
@@ -54,14 +54,50 @@ Eigen::Vector3d nearest_in(const PatchPiece& piece, const Eigen::Vector2d& p) {
 
 }  // namespace
 
+void ContactPatch::Sums::add(PatchPiece& piece) {
+  sort_around(piece);
+  const Eigen::Vector3d mean = mean_of(piece);
+  double longest = 0.0;
+  for (std::size_t i = 0; i < piece.count; ++i) {
+    const Eigen::Vector3d a = piece.corners[i], b = piece.corners[(i + 1) % piece.count];
+    const double area = 0.5 * cross2(a - mean, b - mean);
+    areas.add((a + b + mean).head<2>() / 3.0, std::max(area, 0.0));
+    longest = std::max(longest, (b - a).head<2>().norm());
+  }
+  lengths.add(mean.head<2>(), longest);
+  points.add(mean.head<2>(), 1.0);
+}
+
+void ContactPatch::clear() {
+  pieces_.clear();
+  forget_sums();
+}
+
+void ContactPatch::forget_sums() {
+  sums_ = {};
+  summed_count_ = 0;
+}
+
+void ContactPatch::leave_out_what_is_farther(double limit_m) {
+  std::erase_if(pieces_, [&](const PatchPiece& p) { return p.travel_m > limit_m; });
+  if (summed_m_ > limit_m) forget_sums();
+}
+
+void ContactPatch::sum_up(double best_m) {
+  for (PatchPiece& piece : pieces_) sums_.add(piece);
+  summed_m_ = best_m;
+  summed_count_ += pieces_.size();
+  pieces_.clear();
+}
+
 void ContactPatch::add(const TriangleGap& gap, double travel_m, double equally_m, const FrameTriangle& scene,
                        Touched kind, double best_m) {
-  const auto leave_out_what_is_farther = [&] {
-    if (!is_full()) return;
-    std::erase_if(pieces_, [&](const PatchPiece& p) { return p.travel_m > best_m + equally_m; });
-  };
-  leave_out_what_is_farther();
-  if (is_full()) return;
+  if (is_full()) leave_out_what_is_farther(best_m + equally_m);
+  if (is_full() && !pieces_.empty()) return;
+  if (pieces_.size() == kCapacity) {
+    leave_out_what_is_farther(best_m + equally_m);
+    if (pieces_.size() == kCapacity) sum_up(best_m);
+  }
   PatchPiece& piece = pieces_.emplace_back();
   piece.travel_m = travel_m;
   piece.normal = scene.normal;
@@ -72,48 +108,31 @@ void ContactPatch::add(const TriangleGap& gap, double travel_m, double equally_m
     if (i != gap.lowest && p.gap > travel_m + equally_m) continue;
     piece.corners[piece.count++] = {p.x, p.y, p.scene_z};
   }
-  leave_out_what_is_farther();
 }
 
-PatchPoint ContactPatch::middle(double best_m, double equally_m) {
-  struct Sum {
-    double weight = 0.0;
-    Eigen::Vector2d moment = Eigen::Vector2d::Zero();
-    void add(const Eigen::Vector2d& p, double w) {
-      weight += w;
-      moment += w * p;
-    }
-  };
-  std::erase_if(pieces_, [&](const PatchPiece& p) { return p.travel_m > best_m + equally_m; });
-  if (pieces_.size() == 1 && pieces_[0].count == 1) {
-    return {pieces_[0].corners[0], pieces_[0].normal, pieces_[0].kind};
-  }
-  Sum areas, lengths, points;
-  for (PatchPiece& piece : pieces_) {
-    sort_around(piece);
-    const Eigen::Vector3d mean = mean_of(piece);
-    double longest = 0.0;
-    for (std::size_t i = 0; i < piece.count; ++i) {
-      const Eigen::Vector3d a = piece.corners[i], b = piece.corners[(i + 1) % piece.count];
-      const double area = 0.5 * cross2(a - mean, b - mean);
-      areas.add((a + b + mean).head<2>() / 3.0, std::max(area, 0.0));
-      longest = std::max(longest, (b - a).head<2>().norm());
-    }
-    lengths.add(mean.head<2>(), longest);
-    points.add(mean.head<2>(), 1.0);
-  }
+Eigen::Vector2d ContactPatch::middle(double best_m, double equally_m) {
+  leave_out_what_is_farther(best_m + equally_m);
+  if (has_all() && pieces_.size() == 1 && pieces_[0].count == 1) return pieces_[0].corners[0].head<2>();
+  Sums sums = sums_;
+  for (PatchPiece& piece : pieces_) sums.add(piece);
   // Lines have no area and points no length, but for rounding.
   constexpr double kThin_m = 1e-9;
-  const Sum& sum = areas.weight > kThin_m * lengths.weight && areas.weight > 0.0 ? areas
-                   : lengths.weight > kThin_m                                    ? lengths
-                                                                                 : points;
-  const Eigen::Vector2d middle = sum.moment / sum.weight;
+  const PlaceSum& sum = sums.areas.weight > kThin_m * sums.lengths.weight && sums.areas.weight > 0.0
+                            ? sums.areas
+                        : sums.lengths.weight > kThin_m ? sums.lengths
+                                                        : sums.points;
+  return sum.moment / sum.weight;
+}
+
+PatchPoint ContactPatch::nearest(const Eigen::Vector2d& place, double best_m, double equally_m) {
+  leave_out_what_is_farther(best_m + equally_m);
   const PatchPiece* best = nullptr;
   Eigen::Vector3d best_point = Eigen::Vector3d::Zero();
   double best_m2 = std::numeric_limits<double>::infinity();
-  for (const PatchPiece& piece : pieces_) {
-    const Eigen::Vector3d q = nearest_in(piece, middle);
-    const double m2 = (q.head<2>() - middle).squaredNorm();
+  for (PatchPiece& piece : pieces_) {
+    sort_around(piece);
+    const Eigen::Vector3d q = nearest_in(piece, place);
+    const double m2 = (q.head<2>() - place).squaredNorm();
     // Of pieces that are equally near (a shared edge) the one that opposes the motion most.
     const bool is_nearer = best == nullptr || m2 < best_m2 - 1e-15;
     if (!is_nearer && !(m2 < best_m2 + 1e-15 && piece.normal.z() < best->normal.z())) continue;

@@ -352,14 +352,37 @@ Contact CyberRadar::overlap_of(const Search& search) {
   return contact;
 }
 
-Contact CyberRadar::contact_of(const Search& search) {
+Contact CyberRadar::contact_of(Search& search) {
   Contact contact = nothing_found(search);
   contact.lower_m = std::min({search.best_m, least_unsettled_m(search), search.query.distance_m});
   if (!(search.best_m <= search.query.distance_m)) return contact;
   contact.status = ContactStatus::kContact;
   contact.travel_m = contact.upper_m = search.best_m;
-  touch(search, patch_.middle(search.best_m, search.equally_m()), contact);
+  const Eigen::Vector2d middle = patch_.middle(search.best_m, search.equally_m());
+  if (!patch_.has_all()) look_over(search, middle);
+  touch(search, patch_.nearest(middle, search.best_m, search.equally_m()), contact);
   return contact;
+}
+
+/// Finds the piece that holds this place again, where there were more of them than are at hand.
+void CyberRadar::look_over(Search& search, const Eigen::Vector2d& place) {
+  const SceneBound bound = bound_of(search);
+  const auto limit = static_cast<float>(search.best_m + search.equally_m());
+  patch_.forget_sums();
+  heap_.clear();
+  scene_.begin(bound, limit, heap_);
+  while (!heap_.empty()) {
+    const SceneItem item = heap_.back();
+    heap_.pop_back();
+    if (!item.is_triangle()) {
+      scene_.expand(item, bound, limit, heap_);
+      continue;
+    }
+    const FrameTriangle triangle = scene_.triangle(item);
+    Eigen::AlignedBox2d outline;
+    for (const Eigen::Vector3d& corner : triangle.corners) outline.extend(corner.head<2>());
+    if (outline.contains(place)) settle(search, item, triangle);
+  }
 }
 
 }  // namespace roomradar

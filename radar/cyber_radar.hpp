@@ -91,8 +91,8 @@ bool is_valid(const RadarQuery& query);
 /// One-sided surfaces (is_one_sided()) are met from their outside only: what of them faces along the motion
 /// is left, wherever it is.
 ///
-/// Contact point: of all places that are equally near (a face that lands flat) the one nearest to their
-/// middle.
+/// Contact point: of all places that are equally near (a face that lands flat; ContactPatch::kMostPieces
+/// pairs of triangles are counted) the one nearest to their middle.
 ///
 /// No GL. Not thread safe: one radar a thread; trees and images may be shared.
 class CyberRadar {
@@ -145,6 +145,7 @@ class CyberRadar {
   [[nodiscard]] SceneBound bound_of(const Search& search) const;
   void look(Search& search);
   void settle(Search& search, const SceneItem& item, const FrameTriangle& s);
+  void look_over(Search& search, const Eigen::Vector2d& place);
   void cut_short(Search& search);
   void leave(Search& search);
   [[nodiscard]] double limit_m(const Search& search) const;
@@ -152,7 +153,7 @@ class CyberRadar {
   [[nodiscard]] Contact nothing_found(const Search& search) const;
   [[nodiscard]] Contact thick_contact_of(const Search& search) const;
   [[nodiscard]] Contact overlap_of(const Search& search);
-  [[nodiscard]] Contact contact_of(const Search& search);
+  [[nodiscard]] Contact contact_of(Search& search);
   static void touch(const Search& search, const PatchPoint& at, Contact& contact);
 };
 

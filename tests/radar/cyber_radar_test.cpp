@@ -95,6 +95,32 @@ TEST(CyberRadar, ABoxAboveAFloorTravelsItsClearance) {
   EXPECT_NEAR(contact.pixel_m, 0.3 / 64, 1e-6);
 }
 
+TEST(CyberRadar, AFlatLandingOnThousandsOfTrianglesIsReportedInTheMiddleOfThemAll) {
+  CyberRadar radar;
+  const TriangleTree fine = tree_of(bumpy_floor(260, 1.0F, 0.0F, 1));  // cells of 8 mm
+  const TriangleTree box = tree_of(shapes::box({0.2F, 0.3F, 0.1F}));   // over 1,900 of its triangles
+  const Contact contact = ask(radar, box, at({0.113, 0.207, 0.5}), kDown, 1.0, fine);
+  ASSERT_EQ(contact.status, ContactStatus::kContact);
+  EXPECT_NEAR(contact.travel_m, 0.45, kExact_m);
+  EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.113, 0.207, 0.0)).norm(), 0.0, kExact_m);
+  // Upside down on its rim: the middle is in no piece; the point is on the rim all the same.
+  const TriangleTree cup = tree_of(shapes::cup(0.2F, 0.1F, 0.03F, 60));
+  const Eigen::Isometry3d T =
+      at({0.1, 0.2, 0.5}) * Eigen::Isometry3d(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
+  const Contact on_rim = ask(radar, cup, T, kDown, 1.0, fine);
+  ASSERT_EQ(on_rim.status, ContactStatus::kContact);
+  EXPECT_NEAR(on_rim.travel_m, 0.4, kExact_m);
+  EXPECT_NEAR(on_rim.point_world.z(), 0.0, kExact_m);
+  const double radius_m = (on_rim.point_world.head<2>() - Eigen::Vector2d(0.1, 0.2)).norm();
+  EXPECT_GE(radius_m, 0.169);
+  EXPECT_LE(radius_m, 0.2001);
+  // More than are counted: somewhere on the face.
+  const TriangleTree slab = tree_of(shapes::box({1.0F, 1.0F, 0.1F}));
+  const Contact under_slab = ask(radar, slab, at({0.0, 0.0, 0.5}), kDown, 1.0, fine);
+  ASSERT_EQ(under_slab.status, ContactStatus::kContact);
+  EXPECT_LE(under_slab.point_world.head<2>().lpNorm<Eigen::Infinity>(), 0.5 + kExact_m);
+}
+
 TEST(CyberRadar, BeyondTheDistanceThereIsNoTarget) {
   CyberRadar radar;
   const TriangleTree object = tree_of(shapes::box({0.2F, 0.3F, 0.4F})),
