@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <string>
 
@@ -90,6 +91,28 @@ TEST(GlContext, WithoutEglDriversTheMessageSaysWhatToInstall) {
           const std::string message = error.what();
           const bool says_all = message.find("EGL offers no device") != std::string::npos &&
                                 message.find("libgl1-mesa-dri") != std::string::npos;
+          status = says_all ? 0 : 2;
+        }
+        std::_Exit(status);
+      },
+      testing::ExitedWithCode(0), "");
+}
+
+TEST(GlContext, ADriverThatGivesLessThanAskedIsNamedWithWhatItGives) {
+  // Mesa is told to offer an older OpenGL; in a process of its own, since it reads that once.
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
+        int status = 1;
+        try {
+          const GlContext context(RendererChoice::kSoftware);
+        } catch (const Error& error) {
+          const std::string message = error.what();
+          const bool says_all =
+              message.find("gives no OpenGL 4.5 core context, only 3.3") != std::string::npos &&
+              message.find("libgl1-mesa-dri") != std::string::npos;
+          if (!says_all) std::fprintf(stderr, "%s\n", error.what());
           status = says_all ? 0 : 2;
         }
         std::_Exit(status);

@@ -165,6 +165,33 @@ inline Mesh bumpy_ground(int cells) {
   return mesh;
 }
 
+constexpr double kThorn_m = 0.03125;
+
+/// Flat ground at height 0, 2 m across, 2 * cells^2 triangles; of its middle vertex a thorn stands out.
+inline Mesh thorny_grid(int cells) {
+  Mesh mesh;
+  const float cell_m = 2.0F / static_cast<float>(cells);
+  const auto row = static_cast<std::size_t>(cells) + 1;
+  mesh.vertices.reserve(row * row);
+  for (int j = 0; j <= cells; ++j) {
+    for (int i = 0; i <= cells; ++i) {
+      mesh.vertices.emplace_back(static_cast<float>(i) * cell_m - 1.0F, static_cast<float>(j) * cell_m - 1.0F,
+                                 0.0F);
+    }
+  }
+  mesh.vertices[row * static_cast<std::size_t>(cells / 2) + static_cast<std::size_t>(cells / 2)].z() =
+      static_cast<float>(kThorn_m);
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(j * (cells + 1) + i); };
+  mesh.triangles.reserve(2 * static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells));
+  for (int j = 0; j < cells; ++j) {
+    for (int i = 0; i < cells; ++i) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  return mesh;
+}
+
 /// Uniform in (-1, 1)^3.
 inline Eigen::Vector3d random_point(std::mt19937& random) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
