@@ -14,8 +14,6 @@ namespace roomradar {
 namespace {
 
 constexpr int kPoints = 8000;
-// Along the longer side: a cell of a 25 cm teapot is 1.5 cm, a shadow is soft.
-constexpr int kUndersideCells = 16;
 constexpr float kSpread = 1.0F;  // the table reaches this many longer sides past the footprint and below it
 // A noisy surface may stand this much above the object's lowest point.
 constexpr float kAboveBottom_m = 0.04F;
@@ -126,8 +124,9 @@ SurfacePoints spread_points(const Mesh& mesh) {
 }
 
 void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_world_object,
-                         ContactShadow& shadow) {
+                         ContactShadow& shadow, int cells_across) {
   shadow.R_world_object = R_world_object;
+  shadow.cells_across = cells_across;
   shadow.columns = shadow.rows = 0;
   shadow.clearances_m.clear();
   shadow.covered.clear();
@@ -143,7 +142,7 @@ void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_w
   const auto cells = [&](float side_m) {
     return static_cast<int>(std::ceil((side_m + 2.0F * spread_m) / shadow.cell_m)) + 1;
   };
-  shadow.cell_m = longer_side_m / kUndersideCells;
+  shadow.cell_m = longer_side_m / static_cast<float>(cells_across);
   // Cells begin where the object does: half a cell off they would make it larger.
   shadow.x0_m = bounds.min().x() - spread_m + 0.5F * shadow.cell_m;
   shadow.y0_m = bounds.min().y() - spread_m + 0.5F * shadow.cell_m;

@@ -160,6 +160,19 @@ TEST(ContactShadow, IsDarkestInContactAndFadesSidewaysAndDownwards) {
   EXPECT_EQ(sky_taken(shadow, {0, 0, -5.0F}), 0.0F);
 }
 
+TEST(ContactShadow, WithFewerCellsIsNearlyTheSame) {
+  const SurfacePoints points = spread_points(plate(0.1F, 0.0F));
+  ContactShadow fine, coarse;
+  make_contact_shadow(points, Eigen::Matrix3d::Identity(), fine);
+  make_contact_shadow(points, Eigen::Matrix3d::Identity(), coarse, 8);
+  EXPECT_LT(4 * coarse.covered.size(), 2 * fine.covered.size());
+  for (const float clearance_m : {0.02F, 0.05F, 0.1F})
+    for (float x_m = -0.2F; x_m <= 0.2F; x_m += 0.01F) {
+      const Eigen::Vector3f p_m(x_m, 0.03F, -clearance_m);
+      EXPECT_NEAR(sky_taken(coarse, p_m), sky_taken(fine, p_m), 0.05F) << x_m << " " << clearance_m;
+    }
+}
+
 TEST(ContactShadow, OfAPlateOnEdgeIsASliver) {
   const ContactShadow flat = shadow_of(plate(0.1F, 0.0F));
   const ContactShadow on_edge =
