@@ -3,11 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <type_traits>
 
 #include "app/commands.hpp"
 #include "app/manual_page.hpp"
+#include "app/presets.hpp"
 #include "app/session_folder.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/version.hpp"
@@ -96,6 +99,31 @@ void add_quality_options(CLI::App& app, const Quality& defaults, FieldWords& fix
   });
 }
 
+void add_preset_options(CLI::App& app, std::string& preset, std::string& presets) {
+  app.add_option(
+         "--preset", preset,
+         "settings that were measured: fast, balanced or accurate; what is given by its own option goes\n"
+         "before them")
+      ->type_name("NAME");
+  app.add_option("--presets", presets, "file of presets, as `roomradar trade` writes it (the program's own)")
+      ->type_name("FILE");
+}
+
+/// The preset's, if one is named, and then what was given by its own option.
+template <typename Command>
+void settle_quality(Command& command) {
+  if (!command.preset.empty()) {
+    const std::filesystem::path path = presets_file(command.presets);
+    const Presets presets = read_presets(path);
+    const Preset& preset = preset_named(presets, command.preset, path.string());
+    if constexpr (std::is_same_v<decltype(command.quality), ScanQuality>)
+      command.quality = preset.scan;
+    else
+      command.quality = preset.run;
+  }
+  set_fields(command.quality, command.fixed);
+}
+
 /// CLI11's own Range would let "nan" pass.
 CLI::Validator within(double low, double high, const std::string& unit) {
   return CLI::Validator(
@@ -150,10 +178,11 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
                   "is saved as a whole map, and the exit status is 1")
       ->check(within(1.0, 1e7, "megabytes"))
       ->type_name("MB");
+  add_preset_options(*sub, command.preset, command.presets);
   add_quality_options(*sub, command.quality, command.fixed);
   add_report_option(*sub, command.report);
   sub->callback([&] {
-    set_fields(command.quality, command.fixed);
+    settle_quality(command);
     work = [&command] { return run(command); };
   });
 }
@@ -221,12 +250,19 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   sub->add_option("--pictures-every", command.pictures_every, "one picture every N frames (10)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
+  sub->add_option(
+         "--budget-ms", command.budget_ms,
+         "hold the time of a frame: where more is to do than fits, what costs least accuracy is given\n"
+         "up, and it is said what")
+      ->check(within(1.0, 10000.0, "milliseconds"))
+      ->type_name("MS");
+  add_preset_options(*sub, command.preset, command.presets);
   add_quality_options(*sub, command.quality, command.fixed);
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {
     if (command.window && sub->count("--at-end") == 0) command.at_end = AtEnd::kStay;
     if (is_session_folder(command.source)) take_recorded_settings(command, *sub);
-    set_fields(command.quality, command.fixed);
+    settle_quality(command);
     if (command.map.empty()) throw CLI::RequiredError("--map");
     if (command.unknown_is_solid && command.surfaces != SurfacePolicy::kMap)
       throw CLI::ValidationError(

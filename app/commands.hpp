@@ -18,7 +18,9 @@ struct PrescanCommand {
   std::string source;
   std::string map;
   ScanQuality quality;
-  FieldWords fixed;  ///< what of it was asked for by name
+  FieldWords fixed;     ///< what of it was asked for by name; no preset changes that
+  std::string preset;   ///< name; empty: none
+  std::string presets;  ///< file; empty: the program's own
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
   std::string calibration;          ///< file of the cameras and their errors; empty: what the source says
@@ -40,7 +42,10 @@ struct RunCommand {
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = false;  ///< kMap only: objects do not enter what the scan has not seen
   RunQuality quality;
-  FieldWords fixed;                     ///< what of it was asked for by name; no preset changes that
+  FieldWords fixed;     ///< what of it was asked for by name; no preset and no budget changes that
+  std::string preset;   ///< name; empty: none
+  std::string presets;  ///< file; empty: the program's own
+  std::optional<double> budget_ms;      ///< of a frame
   std::optional<double> adopt_after_s;  ///< none: only what the script asks for, if it does
   AtEnd at_end = AtEnd::kEnd;           ///< what follows the source's last frame
   bool window = false;

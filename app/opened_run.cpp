@@ -30,6 +30,8 @@ nlohmann::json settings_of(const RunCommand& command) {
                              {"record_session", command.record_session},
                              {"save_map", command.save_map}};
   settings.update(to_json(command.quality));
+  if (!command.preset.empty()) settings["preset"] = command.preset;
+  if (command.budget_ms) settings["budget_ms"] = *command.budget_ms;
   if (command.adopt_after_s) settings["adopt_s"] = *command.adopt_after_s;
   if (!command.calibration.empty()) settings["calibration"] = command.calibration;
   if (command.frames) settings["frames"] = {command.frames->first, command.frames->last};
@@ -85,14 +87,34 @@ void open_frames(OpenedRun& run) {
   run.source = ended_by_interrupt(std::move(played));
 }
 
+void open_budget(OpenedRun& run, bool has_picture) {
+  const RunCommand& command = run.command;
+  if (!command.budget_ms) return;
+  const std::filesystem::path path = presets_file(command.presets);
+  std::vector<FrontStep> front = front_for(read_presets(path), command.quality, command.fixed);
+  if (front.size() < 2)
+    std::fprintf(stderr,
+                 "roomradar: %s has nothing faster than what is asked for: --budget-ms changes nothing\n",
+                 path.c_str());
+  run.budget = std::make_unique<RunBudget>(std::move(front), *command.budget_ms, has_picture);
+}
+
+bool makes_picture(const RunCommand& command, bool has_window) {
+  return has_window || !command.video.empty() || !command.pictures.empty();
+}
+
 SessionConfig config_of(const OpenedRun& run, bool has_window) {
   const RunCommand& command = run.command;
   SessionConfig config;
   config.poses = command.poses;
   config.scene.surfaces = command.surfaces;
   apply(command.quality, config);
-  config.make_picture = has_window || !command.video.empty() || !command.pictures.empty();
+  config.make_picture = makes_picture(command, has_window);
   config.measure_penetration = !command.report.empty();
+  if (run.budget)
+    config.watch = [budget = run.budget.get()](FramePart part, const FrameLoad& load) {
+      return budget->before(part, load);
+    };
   if (command.adopt_after_s || has(run.script, Action::kAdopt)) {
     config.adopt.emplace();
     config.adopt->after_s = command.adopt_after_s;
@@ -141,6 +163,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   require_can_save_map(command, run.script);
   run.map = load_map(command.map);
   open_frames(run);
+  open_budget(run, makes_picture(command, link != nullptr));
   open_session(run, link != nullptr);
   open_outputs(run);
   if (link != nullptr)

@@ -6,6 +6,7 @@
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/report.hpp"
+#include "app/run_budget.hpp"
 #include "app/run_results.hpp"
 #include "app/script.hpp"
 #include "app/session.hpp"
@@ -30,6 +31,7 @@ struct OpenedRun {
   std::optional<Interrupt> interrupt;
   std::unique_ptr<FrameSource> source;  ///< ends by Ctrl-C too
   PlaybackSource* playback = nullptr;   ///< within it
+  std::unique_ptr<RunBudget> budget;    ///< --budget-ms
   std::unique_ptr<Session> session;     ///< with the script's objects loaded
   std::unique_ptr<VideoWriter> video;   ///< --video
   std::optional<PlayHost> host;         ///< the window's

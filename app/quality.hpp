@@ -114,11 +114,13 @@ void visit_fields(Quality& quality, Visit&& visit) {
       quality.soft_edges);
   visit(QualityField{"shadows", "--shadows", "on|off", "objects darken what is below them (on)"},
         quality.shadows);
-  visit(QualityField{"shadow_turns", "--shadow-turns", "N", "one shadow is made anew every Nth frame (1)", 1,
+  visit(QualityField{"shadow_turns", "--shadow-turns", "N",
+                     "every Nth frame the shadow of one object that has come to rest is made in full (1)", 1,
                      1000},
         quality.shadow_turns);
   visit(QualityField{"picture_turns", "--picture-turns", "N",
-                     "a picture is made of every Nth frame, and shown until the next one is (1)", 1, 16},
+                     "a picture is made of every Nth frame, and objects move in the others (1: both in all)",
+                     1, 16},
         quality.picture_turns);
 }
 

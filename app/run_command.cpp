@@ -38,6 +38,7 @@ int finish(OpenedRun& run) {
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped;
   run.report.results = results_of(totals, *run.session);
+  if (run.budget) run.report.results["budget"] = run.budget->report();
   if (run.check) run.report.results["replay"] = report_replay(*run.check);
   write_report(run.report, command.report);
   print_summary(totals, *run.session);

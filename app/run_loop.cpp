@@ -70,6 +70,7 @@ class RunLoop {
 
   void perform(const ScriptEvent& event, bool is_from_script);
   void perform_users(const std::vector<ScriptEvent>& events);
+  void end_budget();
   void count_skipped(const std::string& fault);
   void keep(const FrameResult& result);
 };
@@ -128,6 +129,7 @@ void RunLoop::step() {
                   std::string(result.fault) + "; it is passed over");
     return;
   }
+  end_budget();
   run_.totals.add(result);
   const bool is_located = result.status == FrameStatus::kDone;
   const std::string news = run_.totals.lost.add(frame_.index, is_located);
@@ -135,6 +137,16 @@ void RunLoop::step() {
   if (run_.host) run_.host->show(run_frame_, run_time_s_, frame_, result);
   keep(result);
   progress_.step(is_located ? "located" : "not located");
+}
+
+/// What the frame was made with is recorded, so that a replay makes it so without a clock.
+void RunLoop::end_budget() {
+  if (!run_.budget) return;
+  for (const ScriptEvent& event : run_.budget->end_frame())
+    if (run_.recorder) run_.recorder->write(event, run_frame_);
+  const std::string news = run_.budget->news();
+  if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
+  if (run_.host) run_.host->say_given_up(run_.budget->given_up());
 }
 
 void RunLoop::count_skipped(const std::string& fault) {

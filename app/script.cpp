@@ -28,7 +28,7 @@ struct Word {
   std::string_view word;
   Value value;
 };
-constexpr std::array<Word<Action>, 14> kActions = {{{"add", Action::kAdd},
+constexpr std::array<Word<Action>, 15> kActions = {{{"add", Action::kAdd},
                                                     {"place", Action::kPlace},
                                                     {"drop", Action::kDrop},
                                                     {"throw", Action::kThrow},
@@ -39,6 +39,7 @@ constexpr std::array<Word<Action>, 14> kActions = {{{"add", Action::kAdd},
                                                     {"surfaces", Action::kSurfaces},
                                                     {"unknown", Action::kUnknown},
                                                     {"radar", Action::kRadar},
+                                                    {"quality", Action::kQuality},
                                                     {"camera", Action::kCamera},
                                                     {"adopt", Action::kAdopt},
                                                     {"quit", Action::kQuit}}};
@@ -49,6 +50,10 @@ constexpr std::array<Word<SurfacePolicy>, 4> kSurfaces = {{{"holes", SurfacePoli
 constexpr std::array<Word<bool>, 2> kUnknown = {{{"free", false}, {"solid", true}}};
 constexpr std::array<Word<RadarMode>, 2> kRadarModes = {
     {{"exact", RadarMode::kExact}, {"sampled", RadarMode::kSampled}}};
+constexpr std::array<Word<FramePart>, 4> kFramePartWords = {{{"locate", FramePart::kLocate},
+                                                             {"mesh", FramePart::kMesh},
+                                                             {"physics", FramePart::kPhysics},
+                                                             {"compose", FramePart::kCompose}}};
 constexpr std::array<Word<CameraPlay>, 5> kCameraPlays = {{{"hold", CameraPlay::kHold},
                                                            {"go", CameraPlay::kGo},
                                                            {"rewind", CameraPlay::kRewind},
@@ -161,6 +166,19 @@ void read_turned(LineReader& line, ScriptEvent& event) {
                              .toRotationMatrix();
 }
 
+void read_quality(LineReader& line, ScriptEvent& event) {
+  if (line.take_if("from")) event.from = line.choice("a part of the frame", kFramePartWords);
+  while (!line.done()) {
+    const std::string_view name = line.word("a setting's name");
+    const std::string_view word = line.word("a setting's value");
+    try {
+      set_field(event.quality, name, word);
+    } catch (const Error& fault) {
+      line.fail(fault.what());
+    }
+  }
+}
+
 void read_when(LineReader& line, ScriptEvent& event) {
   const std::string_view when = line.word("'frame' or 'time'");
   if (when == "frame") {
@@ -178,6 +196,7 @@ bool has_object(Action action) {
     case Action::kSurfaces:
     case Action::kUnknown:
     case Action::kRadar:
+    case Action::kQuality:
     case Action::kCamera:
     case Action::kAdopt:
     case Action::kQuit:
@@ -233,6 +252,9 @@ void read_action(LineReader& line, ScriptEvent& event) {
     case Action::kRadar:
       event.radar.mode = line.choice("the radar's mode", kRadarModes);
       event.radar.resolution_px = static_cast<int>(line.whole_number("pixels, 1..4096", 1.0, 4096.0));
+      break;
+    case Action::kQuality:
+      read_quality(line, event);
       break;
     case Action::kCamera:
       event.camera = line.choice("what the camera does", kCameraPlays);
@@ -348,6 +370,10 @@ std::string to_line(const ScriptEvent& event) {
     case Action::kRadar:
       line.append(" ").append(word_of(kRadarModes, event.radar.mode));
       line += " " + std::to_string(event.radar.resolution_px);
+      break;
+    case Action::kQuality:
+      if (event.from != FramePart::kLocate) line.append(" from ").append(to_string(event.from));
+      for (const auto& [name, word] : words_of(event.quality)) line += " " + name + " " + word;
       break;
     case Action::kCamera:
       line.append(" ").append(word_of(kCameraPlays, event.camera));

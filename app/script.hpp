@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "app/frame_load.hpp"
+#include "app/quality.hpp"
 #include "dynamic/surface_policy.hpp"
 #include "radar/cyber_radar.hpp"
 
@@ -25,6 +27,7 @@ enum class Action {
   kSurfaces,  ///< from now on this can be touched
   kUnknown,   ///< from now on space that nobody has seen is free, or solid
   kRadar,     ///< from now on contacts are found so
+  kQuality,   ///< from now on so much is traded for time
   kCamera,    ///< how the source goes on from this frame
   kAdopt,     ///< what stands still now in view, or has gone, becomes part of the room
   kQuit,      ///< end the run before this frame
@@ -60,6 +63,8 @@ struct ScriptEvent {
   SurfacePolicy surfaces = SurfacePolicy::kMap;              ///< kSurfaces
   bool unknown_is_solid = false;                             ///< kUnknown
   RadarConfig radar;                                         ///< kRadar
+  RunQuality quality;                                        ///< kQuality
+  FramePart from = FramePart::kLocate;                       ///< kQuality: of the frame it is due in
   CameraPlay camera = CameraPlay::kGo;                       ///< kCamera
 };
 
@@ -85,8 +90,10 @@ struct Script {
 ///     frame 200  surfaces skirt                   holes, skirt, border or map
 ///     frame 210  unknown solid                    or free
 ///     frame 220  radar sampled 64                 exact or sampled; pixels
-///     frame 230  camera hold                      this frame stays; go, rewind, loop, stay
-///     frame 300  quit
+///     frame 225  quality depth_stride 2 shadows off       what is not named is as usual; see quality.hpp
+///     frame 226  quality from physics object_turns 4      from that part of the frame on: mesh, physics,
+///     compose frame 230  camera hold                      this frame stays; go, rewind, loop, stay frame 300
+///     quit
 ///
 /// place, drop and throw may end with `turned YAW PITCH ROLL`: degrees about z, then y, then x, each of them
 /// the axes as they were turned before. Without it an object stands as it stood last, upright at first.

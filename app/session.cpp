@@ -127,6 +127,8 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
     return bad;
   }
   FrameResult result = times.timed("frame", [&] { return pass_through(frame, times); });
+  if (config_.watch) static_cast<void>(config_.watch(FramePart::kDone, load()));
+  due_quality_ = {};  // of parts that were not come to
   if (config_.measure_penetration && result.status == FrameStatus::kDone)
     result.deepest_penetration_m = penetration_m();
   return result;
@@ -139,6 +141,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   last_stamp_s_ = whole.stamp_s;
   has_last_stamp_ = true;
 
+  begin(FramePart::kLocate);
   const Frame& frame = times.timed("reduce", [&]() -> const Frame& { return with_depth_reduced(whole); });
   if (living_map_ && living_map_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
@@ -156,11 +159,16 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
     times.timed("changes", [&] {  // what came to stay, what is gone?
       living_map_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
     });
+  moved_fraction_ =
+      static_cast<double>(result.foreground.moved) / static_cast<double>(frame.depth_m.pixels.size());
+  begin(FramePart::kMesh);
   find_fine_regions();
   times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera, fine_regions_); });
   release_waiting(frame, T_world_camera);
+  begin(FramePart::kPhysics);
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
   times.add_ms("contact", ms_since(handed_over));
+  begin(FramePart::kCompose);
   if (config_.make_picture && is_turn(0, config_.picture_turns))
     times.timed("compose", [&] { compose_picture(whole, T_world_camera, dt_s); });
   T_world_before_ = T_world_camera;
@@ -171,6 +179,28 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   result.dynamic_triangles = scene_.moved_triangles();
   result.inferred_triangles = scene_.inferred_triangles();
   return result;
+}
+
+void Session::begin(FramePart part) {
+  if (auto& due = due_quality_[index_of(part)]; due) set_quality(*std::exchange(due, std::nullopt));
+  if (!config_.watch) return;
+  if (const std::optional<RunQuality> quality = config_.watch(part, load())) set_quality(*quality);
+}
+
+FrameLoad Session::load() const {
+  FrameLoad load{.moved_fraction = moved_fraction_};
+  for (const auto& object : objects_)
+    if (object->in_room) ++(object->body.at_rest ? load.resting : load.moving);
+  return load;
+}
+
+bool Session::is_turn_to_move(std::size_t number) const {
+  const std::int64_t pictures = config_.make_picture ? config_.picture_turns : 1;
+  if (pictures == 1) return is_turn(number, config_.object_turns);
+  // Pictures are made in the others: no frame has both to do.
+  const std::int64_t frame = frames_ % pictures;
+  const std::int64_t of_these = frames_ / pictures * (pictures - 1) + frame - 1;
+  return frame > 0 && (of_these + static_cast<std::int64_t>(number)) % config_.object_turns == 0;
 }
 
 const Frame& Session::with_depth_reduced(const Frame& frame) {
@@ -263,7 +293,7 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
     VirtualObject* const object = objects_[number].get();
     if (!object->in_room) continue;
     object->waited_s += dt_s;
-    if (!object->carried_to_world && !is_turn(number, config_.object_turns)) continue;
+    if (!object->carried_to_world && !is_turn_to_move(number)) continue;
     const double waited_s = std::exchange(object->waited_s, 0.0);
     object->in_unknown = object->in_unknown && is_in_unknown(*object);
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
@@ -334,20 +364,26 @@ void Session::show_camera_alone(const Frame& frame) {
 }
 
 void Session::renew_a_shadow() {
-  if (!is_turn(0, config_.shadow_turns)) return;
   constexpr double kTurned_rad = 0.05;
+  constexpr int kFine = 16, kCoarse = 8;  // 3 ms and 0.2 ms
+  const bool may_be_fine = is_turn(0, config_.shadow_turns);
   VirtualObject* most_turned = nullptr;
+  VirtualObject* coarse_at_rest = nullptr;
   double turned_rad = kTurned_rad;
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
     const Eigen::AngleAxisd turn(object->shadow.R_world_object.transpose() *
                                  object->body.T_world_object.linear());
+    if (object->body.at_rest && object->shadow.cells_across < kFine) coarse_at_rest = object.get();
     if (!(turn.angle() > turned_rad)) continue;
     turned_rad = turn.angle();
     most_turned = object.get();
   }
-  if (most_turned != nullptr)
-    make_contact_shadow(most_turned->surface, most_turned->body.T_world_object.linear(), most_turned->shadow);
+  const bool is_fine = most_turned == nullptr && coarse_at_rest != nullptr && may_be_fine;
+  VirtualObject* const renewed = is_fine ? coarse_at_rest : most_turned;
+  if (renewed != nullptr)
+    make_contact_shadow(renewed->surface, renewed->body.T_world_object.linear(), renewed->shadow,
+                        is_fine ? kFine : kCoarse);
 }
 
 void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
@@ -414,6 +450,10 @@ void Session::apply(const ScriptEvent& event) {
     }
     case Action::kRadar:
       set_radar(event.radar);
+      break;
+    case Action::kQuality:
+      require_valid(event.quality);
+      due_quality_[index_of(event.from)] = event.quality;
       break;
     case Action::kAdopt:
       if (!living_map_) throw Error("script: adopt: this session does not watch for changes");

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "app/compose.hpp"
 #include "app/draw.hpp"
+#include "app/frame_load.hpp"
 #include "app/live_scene.hpp"
 #include "app/living_map.hpp"
 #include "app/locator.hpp"
@@ -39,9 +41,12 @@ struct SessionConfig {
   bool fine_mesh = true;         ///< what moved is meshed as finely as it was seen about the objects
   int object_turns = 1;          ///< objects are moved in every so many-th frame, in turns
   double object_error_px = 0.5;  ///< how far an object's drawn mesh may lie off the file's
-  int shadow_turns = 1;          ///< frames from one shadow made anew to the next
-  int picture_turns = 1;         ///< frames from one picture to the next
-  bool make_picture = true;      ///< false: no drawing, only what moves the objects
+  int shadow_turns = 1;          ///< frames from one shadow made anew in full to the next
+  int picture_turns = 1;     ///< frames from one picture to the next; more than 1: objects move in the others
+  bool make_picture = true;  ///< false: no drawing, only what moves the objects
+  /// Called before each part of a frame, and after it; what it returns is the quality from that part on.
+  /// Null: nobody asks.
+  std::function<std::optional<RunQuality>(FramePart, const FrameLoad&)> watch;
   /// The exact radar looks after each frame how deep objects stand, along gravity, in the room and in one
   /// another.
   bool measure_penetration = false;
@@ -86,7 +91,7 @@ class Session {
   void set_surfaces(SurfacePolicy surfaces);
   /// From the next frame on. Throws Error if the config is out of its rules.
   void set_radar(const RadarConfig& config);
-  /// From the next frame on. Throws Error if it is out of its rules.
+  /// From now on; a depth stride from the next frame on. Throws Error if it is out of its rules.
   void set_quality(const RunQuality& quality);
 
   /// One frame, from sensor to picture. Stages timed: locate expected foreground changes mesh radar physics
@@ -146,7 +151,9 @@ class Session {
 
   std::vector<std::unique_ptr<VirtualObject>> objects_;
   std::vector<FineRegion> fine_regions_;
-  Frame reduced_;                     ///< the frame, where its depth is reduced
+  std::array<std::optional<RunQuality>, kFrameParts> due_quality_;  ///< of the next frame's parts
+  Frame reduced_;                                                   ///< the frame, where its depth is reduced
+  double moved_fraction_ = 0.0;
   std::int64_t frames_ = 0;           ///< that were located
   std::vector<ScriptEvent> waiting_;  ///< drops that have found no surface yet
   double last_stamp_s_ = 0.0;
@@ -163,6 +170,11 @@ class Session {
 
   void renew_room();
   FrameResult pass_through(const Frame& frame, StageTimes& times);
+  /// Of the objects in the room, whether this one is moved in this frame.
+  [[nodiscard]] bool is_turn_to_move(std::size_t number) const;
+  /// A part of the frame begins: what is due in it, and what is watched for.
+  void begin(FramePart part);
+  [[nodiscard]] FrameLoad load() const;
   /// The frame, with its depth reduced if that is wanted.
   const Frame& with_depth_reduced(const Frame& frame);
   /// Whether that which is done in every so many-th frame is due in this one; `number` tells apart those that
@@ -184,7 +196,8 @@ class Session {
   ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
   /// The picture of a frame whose place is not known.
   void show_camera_alone(const Frame& frame);
-  /// Makes the shadow of the object that has turned most since its own was made anew: one a frame.
+  /// Makes one shadow anew: coarsely that of the object that has turned most since its own was made, or where
+  /// none has, in full that of one that has come to rest.
   void renew_a_shadow();
   void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
   VirtualObject& object_named(const std::string& name);

@@ -35,6 +35,7 @@ void PlayHost::publish() {
   filled_.is_held = source_.is_held();
   filled_.is_repeating = source_.is_repeating();
   filled_.at_end = source_.at_end();
+  filled_.given_up = given_up_;
   maker_.fill(session_, result_, times_, link_.wanted(), filled_);
   link_.publish(filled_);
 }

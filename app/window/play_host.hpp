@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/script.hpp"
@@ -32,6 +33,8 @@ class PlayHost {
   [[nodiscard]] bool is_closed() const { return link_.is_closed(); }
   /// What the user did since the last frame.
   std::vector<ScriptEvent> take_events();
+  /// What the budget gives up now; empty: nothing.
+  void say_given_up(std::string given_up) { given_up_ = std::move(given_up); }
   /// An event of the user's could not be applied.
   void complain(const std::string& fault) { link_.say(fault); }
   void show(std::int64_t run_frame, double run_time_s, const Frame& frame, const FrameResult& result);
@@ -49,6 +52,7 @@ class PlayHost {
   std::int64_t source_frame_ = 0;
   double run_time_s_ = 0.0;
   FrameResult result_;
+  std::string given_up_;
 
   void publish();
 };

@@ -90,6 +90,7 @@ struct Snapshot {
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = false;
   RadarConfig radar;
+  std::string given_up;  ///< for --budget-ms; empty: nothing
   bool is_held = false;
   bool is_repeating = false;  ///< the source is held or at its end
   AtEnd at_end = AtEnd::kEnd;

@@ -113,6 +113,7 @@ void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
   row("triangles of it", "%zu + %zu behind", result.dynamic_triangles, result.inferred_triangles);
   row("room triangles", "%zu drawn", result.static_triangles_drawn);
   row("contacts", "%d", result.contacts);
+  if (!shown.given_up.empty()) ImGui::TextWrapped("to keep the budget: %s", shown.given_up.c_str());
   ImGui::PopFont();
 }
 

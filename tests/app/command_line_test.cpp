@@ -115,7 +115,9 @@ frame 15 unknown solid
 frame 17 camera hold
 frame 21 camera go
 frame 22 radar sampled 32
+frame 23 quality depth_stride 2 object_turns 2
 frame 24 camera rewind
+frame 30 quality from physics shadows off picture_turns 2
 frame 44 quit
 )";
 
@@ -138,6 +140,19 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   EXPECT_EQ(report["replay"], (nlohmann::json{{"same", 44}, {"different", 0}, {"recorded", 44}}));
   EXPECT_EQ(report["settings"]["unknown"], "free");
   EXPECT_EQ(read_text(folder_ / "played" / "000010.png"), read_text(folder_ / "replayed" / "000010.png"));
+
+  // Also where a clock had a say: a budget that cannot be held takes all that the front has.
+  const fs::path hurried = folder_ / "hurried", hurried_report = folder_ / "hurried.json";
+  const Outcome in_hurry = roomradar("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
+                                     " --poses recorded --budget-ms 1 --record-session " + hurried.string() +
+                                     pictures("hurried") + " --report " + hurried_report.string());
+  ASSERT_EQ(in_hurry.status, 0) << in_hurry.out;
+  EXPECT_NE(in_hurry.out.find("budget 1 ms: with "), std::string::npos) << in_hurry.out;
+  const nlohmann::json budget = nlohmann::json::parse(read_text(hurried_report))["budget"];
+  EXPECT_EQ(budget["frames"], 15);
+  EXPECT_EQ(budget["settings"].back()["step"], budget["steps"].get<int>() - 1);
+  const Outcome again = roomradar("run " + hurried.string() + pictures("again"));
+  EXPECT_NE(again.out.find("replay: 15 of 15 frames the same as recorded"), std::string::npos) << again.out;
 
   // It can fail: dropped from higher up the pot is elsewhere, and that is told.
   std::ofstream(script) << "frame 0 add pot teapot\nframe 0 drop pot view height 0.4\nframe 44 quit\n";

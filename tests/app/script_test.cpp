@@ -39,12 +39,14 @@ frame 252  surfaces border
 frame 253  unknown solid
 frame 254  radar sampled 48
 frame 255  camera hold
+frame 256  quality depth_stride 2 mesh_sigmas 0.1 radar sampled shadows off
+frame 257  quality from physics object_turns 4
 frame 300  quit
 )";
 
 TEST(Script, ReadsEachAction) {
   const Script script = parse_script(kWhole, "events.txt");
-  ASSERT_EQ(script.events.size(), 15U);
+  ASSERT_EQ(script.events.size(), 17U);
   const auto& add = script.events[0];
   EXPECT_EQ(add.action, Action::kAdd);
   EXPECT_EQ(add.line, 2);
@@ -77,15 +79,22 @@ TEST(Script, ReadsEachAction) {
   EXPECT_EQ(script.events[12].radar.resolution_px, 48);
   EXPECT_EQ(script.events[13].action, Action::kCamera);
   EXPECT_EQ(script.events[13].camera, CameraPlay::kHold);
-  EXPECT_EQ(script.events[14].action, Action::kQuit);
+  EXPECT_EQ(
+      script.events[14].quality,
+      (RunQuality{.depth_stride = 2, .mesh_sigmas = 0.1, .radar = RadarMode::kSampled, .shadows = false}));
+  EXPECT_EQ(script.events[14].from, FramePart::kLocate);
+  EXPECT_EQ(script.events[15].quality, (RunQuality{.object_turns = 4}));
+  EXPECT_EQ(script.events[15].from, FramePart::kPhysics);
+  EXPECT_EQ(script.events[16].action, Action::kQuit);
   EXPECT_EQ(script.events[14].line, 17);
 }
 
 TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
-  Script script = parse_script(
-      std::string(kWhole) + "frame 301 throw pot 0 0 1 velocity 1 0 0 spin 0 6.1 0 turned 10 20.3 -30\n"
-                            "frame 302 drop pot view height 0.1 turned 1 2 3\n",
-      "events.txt");
+  Script script =
+      parse_script(std::string(kWhole) +
+                       "frame 301 throw pot 0 0 1 velocity 1 0 0 spin 0 6.1 0 turned 10 20.3 -30\n"
+                       "frame 302 drop pot view height 0.1 turned 1 2 3\n",
+                   "events.txt");
   // Numbers that no short decimal fraction holds.
   script.events[3].position_world = Eigen::Vector3d(1.0 / 3.0, -1e-17, 0.1 + 0.2);
   script.events[4].velocity_world_mps = Eigen::Vector3d(std::sqrt(2.0), -0.0, 1e-9);
@@ -121,6 +130,8 @@ TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
     EXPECT_EQ(a.unknown_is_solid, b.unknown_is_solid);
     EXPECT_EQ(a.radar.mode, b.radar.mode);
     EXPECT_EQ(a.radar.resolution_px, b.radar.resolution_px);
+    EXPECT_EQ(a.quality, b.quality);
+    EXPECT_EQ(a.from, b.from);
     EXPECT_EQ(a.camera, b.camera);
   }
 }
@@ -170,6 +181,10 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 unknown", "the line ends"},
       {"frame 1 radar exact 0", "'0' is out of range"},
       {"frame 1 radar exact 1.5", "whole number"},
+      {"frame 1 quality depth_stride 3", "depth_stride = 3: must be 1|2|4"},
+      {"frame 1 quality depth_stride", "the line ends"},
+      {"frame 1 quality speed 3", "there is nothing called \"speed\" to set"},
+      {"frame 1 quality from nowhere", "unknown word 'nowhere'"},
       {"frame 1 camera jump", "hold, go, rewind, loop or stay"},
   };
   for (const auto& fault : faults) {

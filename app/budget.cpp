@@ -1,0 +1,165 @@
+// budget.cpp: foresees the parts of a frame by what they took lately, and picks a setting that has time.
+#include "app/budget.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace roomradar {
+namespace {
+
+constexpr double kMostSpread = 2.0;
+constexpr double kQuantile = 0.95, kQuantileStep = 0.02;
+constexpr std::int64_t kLongAgo = -1'000'000;
+constexpr double kNotMade = 0.02;
+constexpr double kMostStrain = 1.5, kStrainKept = 0.9;  // two frames of some ten that were cut on their way
+
+double part_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
+  return state.scales[part] * state.front[step].ratios[part] * usual_ms(static_cast<FramePart>(part), load);
+}
+
+/// What is left of a frame from a part on.
+double rest_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
+  std::array<double, kFrameParts> ms{};
+  for (; part < kFrameParts; ++part) ms[part] = part_ms(state, step, part, load);
+  double& physics_ms = ms[index_of(FramePart::kPhysics)];
+  double& compose_ms = ms[index_of(FramePart::kCompose)];
+  if (state.front[step].alternates) (physics_ms < compose_ms ? physics_ms : compose_ms) = 0.0;
+  return state.spread * std::accumulate(ms.begin(), ms.end(), 0.0);
+}
+
+/// The most accurate step from one on in which the rest of the frame has time; where none has, the one that
+/// takes least.
+std::size_t step_in_time(const BudgetState& state, const BudgetConfig& config, std::size_t from,
+                         std::size_t first_part, const FrameLoad& load, double elapsed_ms) {
+  std::size_t best = from;
+  double best_ms = elapsed_ms + rest_ms(state, from, first_part, load);
+  for (std::size_t step = from + 1; step < state.front.size(); ++step) {
+    const double ms = elapsed_ms + rest_ms(state, step, first_part, load);
+    if (ms < best_ms) {
+      best = step;
+      best_ms = ms;
+    }
+    if (ms <= config.down_to * config.budget_ms) break;
+  }
+  return best;
+}
+
+/// Whether the step before the settled one would have had time for so long that it is to be tried.
+bool is_calm(BudgetState& state, const BudgetConfig& config, const FrameLoad& load) {
+  const bool has_time =
+      state.settled > 0 && rest_ms(state, state.settled - 1, 0, load) < config.back_below * config.budget_ms;
+  state.calm_frames = has_time ? state.calm_frames + 1 : 0;
+  return state.calm_frames >= state.patience_frames;
+}
+
+/// The step that the frames to come begin with.
+void settle(BudgetState& state, const BudgetConfig& config, const FrameLoad& load) {
+  const std::size_t before = state.settled;
+  if (rest_ms(state, before, 0, load) > config.budget_ms) {
+    state.settled = step_in_time(state, config, before, 0, load, 0.0);
+  } else if (state.strain > kMostStrain) {  // foreseen it has time, and then it has not
+    state.settled = std::min(before + 1, state.front.size() - 1);
+  } else if (is_calm(state, config, load)) {
+    std::size_t with_time = before - 1;
+    while (with_time > 0 && rest_ms(state, with_time - 1, 0, load) < config.back_below * config.budget_ms)
+      --with_time;
+    state.settled -= (before - with_time + 1) / 2;  // half of the way: what is foreseen may be wrong
+    state.calm_frames = 0;
+    state.went_back_at = state.frame;
+  }
+  if (state.settled > before) {
+    state.calm_frames = 0;
+    state.strain = 0.0;
+    if (state.frame - state.went_back_at < config.regret_frames) {
+      state.patience_frames = std::min(2 * state.patience_frames, config.most_patience_frames);
+      state.went_back_at = kLongAgo;  // regretted once
+    }
+  }
+  if (state.frame - state.went_back_at == 2 * config.regret_frames)
+    state.patience_frames = std::max(state.patience_frames / 2, config.patience_frames);
+  state.strain *= kStrainKept;
+}
+
+double median_of(std::array<double, 3> values) {
+  std::sort(values.begin(), values.end());
+  return values[1];
+}
+
+}  // namespace
+
+double usual_ms(FramePart part, const FrameLoad& load) {
+  // Measured at 640 x 480 with teapots: a fifth of the image moved costs 2 ms more than nothing; an object
+  // that moves some 0.2 ms, one that rests 0.05; each drawn 0.1 ms.
+  switch (part) {
+    case FramePart::kLocate:
+      return 6.0;
+    case FramePart::kMesh:
+      return 0.3 + 10.0 * load.moved_fraction;
+    case FramePart::kPhysics:
+      return 0.1 + 0.2 * load.moving + 0.05 * load.resting;
+    case FramePart::kCompose:
+      return 2.0 + 0.1 * (load.moving + load.resting);
+    case FramePart::kDone:
+      break;
+  }
+  return 0.0;
+}
+
+BudgetState start_budget(std::vector<BudgetStep> front, const BudgetConfig& config, std::size_t step) {
+  BudgetState state;
+  state.front = std::move(front);
+  state.settled = state.step = step;
+  state.patience_frames = config.patience_frames;
+  return state;
+}
+
+double foreseen_ms(const BudgetState& state, std::size_t step, const FrameLoad& load) {
+  return rest_ms(state, step, 0, load);
+}
+
+std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config, FramePart part,
+                                  const FrameLoad& load, double elapsed_ms) {
+  const std::size_t before = state.step, first = index_of(part);
+  if (part == FramePart::kLocate) {
+    settle(state, config, load);
+    state.step = state.settled;
+  } else if (elapsed_ms + rest_ms(state, state.step, first, load) > config.budget_ms) {
+    state.step = step_in_time(state, config, state.step, first, load, elapsed_ms);
+    state.calm_frames = 0;
+    if (state.step != before) state.strain += 1.0;
+  }
+  state.steps[first] = state.step;
+  state.foreseen_ms[first] = part_ms(state, state.step, first, load);
+  state.load = load;
+  state.begun = first + 1;
+  return state.step == before ? std::nullopt : std::optional(state.step);
+}
+
+void learn(BudgetState& state, const BudgetConfig& config, const std::array<double, kFrameParts>& parts_ms) {
+  double took_ms = 0.0, foreseen = 0.0;
+  for (std::size_t part = 0; part < state.begun; ++part) {
+    if (!(parts_ms[part] > kNotMade * state.foreseen_ms[part]) || !(state.foreseen_ms[part] > 0.0)) continue;
+    took_ms += parts_ms[part];
+    foreseen += state.foreseen_ms[part];
+    // What moved is meshed from the depth image that the frame began with.
+    const bool is_mixed = part == index_of(FramePart::kMesh) && state.steps[part] != state.steps[0];
+    if (is_mixed) continue;
+    const double at_one_ms = state.foreseen_ms[part] / state.scales[part];
+    std::array<double, 3>& lately = state.lately[part];
+    lately = {parts_ms[part] / at_one_ms, lately[0] > 0.0 ? lately[0] : parts_ms[part] / at_one_ms,
+              lately[0] > 0.0 ? lately[1] : parts_ms[part] / at_one_ms};
+    const double scale = median_of(lately);  // one accident is none
+    state.scales[part] +=
+        (scale > state.scales[part] ? config.attack : config.decay) * (scale - state.scales[part]);
+  }
+  if (foreseen > 0.0) {
+    const bool is_above = took_ms > state.spread * foreseen;
+    state.spread += kQuantileStep * (is_above ? kQuantile : kQuantile - 1.0);
+    state.spread = std::clamp(state.spread, 1.0, kMostSpread);
+  }
+  state.begun = 0;
+  ++state.frame;
+}
+
+}  // namespace roomradar
