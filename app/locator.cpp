@@ -1,8 +1,10 @@
 // locator.cpp: alignment with the static model, and a search of the whole map when that fails.
 #include "app/locator.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "app/evidence.hpp"
@@ -37,8 +39,8 @@ bool is_bend_not_motion(const Tracking& tracking, const Eigen::Isometry3d& T_wor
 
 /// Aligns the live view with the model as seen from T_world_view, from the guess on; once more from where
 /// that led if it is far from the view, for then the model showed other surfaces than the camera sees.
-Tracking align_with_model(Locator& locator, const Intrinsics& camera, Eigen::Isometry3d T_world_view,
-                          const Eigen::Isometry3d& T_world_camera_guess,
+Tracking align_with_model(Locator& locator, const AlignConfig& config, const Intrinsics& camera,
+                          Eigen::Isometry3d T_world_view, const Eigen::Isometry3d& T_world_camera_guess,
                           const ExpectedDepth& expected_depth) {
   constexpr double kFarOff_m = 0.05, kFarOff_rad = 0.05;
   Tracking tracking;
@@ -46,7 +48,7 @@ Tracking align_with_model(Locator& locator, const Intrinsics& camera, Eigen::Iso
   for (int round = 0; round < 2; ++round) {
     make_pyramid(expected_depth(T_world_view), camera, locator.expected_view, locator.expected_pyramid);
     make_reference(locator.expected_pyramid, T_world_view, locator.expected_view, locator.expected);
-    tracking = align(locator.live, locator.expected, tracking.T_world_camera, locator.align);
+    tracking = align(locator.live, locator.expected, tracking.T_world_camera, config);
     if (!is_located(tracking) || is_near(T_world_view, tracking.T_world_camera, kFarOff_m, kFarOff_rad))
       break;
     T_world_view = tracking.T_world_camera;
@@ -54,70 +56,188 @@ Tracking align_with_model(Locator& locator, const Intrinsics& camera, Eigen::Iso
   return tracking;
 }
 
-/// A pose that was found by searching, and what speaks for it.
-struct Finding {
-  Tracking tracking;
-  int agreeing = 0;  ///< patches
-  Evidence evidence;
-};
+/// How well the model's depth explains the frame's, of what it has an answer to: from 1, all of it, down.
+double fit_of(const Evidence& evidence) { return evidence.alike_part() - 2.0 * evidence.farther_part(); }
 
-/// Whether a pose is certain enough by itself. Where boards or tiles repeat, some thirty patches can agree on
-/// a wrong one; so few are believed only where the depth fixes the pose in all directions, and next to
-/// nothing of the model is seen through.
-bool is_certain(const Finding& finding) {
-  constexpr int kMany = 45;
+/// The same by depth and by look: from 2 down.
+double support_of(const Finding& finding) {
+  constexpr double kEnough = 0.4;  // of the depth, that the model must have an answer to
+  constexpr int kFew = 12;         // patches, of which no part can be told
   const Evidence& evidence = finding.evidence;
-  if (!is_located(finding.tracking)) return false;
-  if (finding.agreeing >= kMany)
-    return evidence.both > 0.2 * evidence.valid && evidence.alike_part() > 0.3 &&
-           evidence.farther_part() < 0.12;
-  return finding.tracking && evidence.both > 0.5 * evidence.valid && evidence.alike_part() > 0.9 &&
-         evidence.farther < 0.01 * evidence.alike;
+  const double covered = std::min(1.0, evidence.both / (kEnough * std::max(evidence.valid, 1)));
+  return covered * fit_of(evidence) +
+         static_cast<double>(finding.look.alike.size()) / std::max(finding.look.compared, kFew);
+}
+
+/// The standard deviation of the camera's position in the direction in which it is greatest, of what the
+/// depth and the patches fix; infinite if that is not all.
+double uncertainty_m(const Tracking& tracking) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(tracking.information);
+  if (!(solver.eigenvalues()(0) > 1e-3)) return std::numeric_limits<double>::infinity();
+  const Eigen::Matrix3d covariance_m2 = tracking.information.inverse().topLeftCorner<3, 3>();
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance_m2).eigenvalues()(2));
+}
+
+/// Whether enough patches lie where ones like them are known. Where boards or tiles repeat, some twenty do in
+/// a wrong place, so where the depth leaves a direction to them there must be more.
+bool is_proven_by_look(const Finding& finding) {
+  constexpr std::size_t kMany = 15, kManyAlone = 40;
+  constexpr double kMinAlike = 0.35;
+  return finding.look.alike.size() >= (finding.tracking ? kMany : kManyAlone) &&
+         finding.look.alike_part() > kMinAlike;
+}
+
+/// Whether a pose is certain enough by itself: many patches lie where ones like them are known, and the depth
+/// does not speak against it; or the depth alone fixes it, next to nothing of the model is seen through, and
+/// the patches do not speak against it.
+bool is_certain(const Finding& finding) {
+  constexpr double kMostUncertain_m = 0.015;  // three and more of it are 5 cm
+  constexpr double kContradicted = 0.2;       // of the patches
+  constexpr int kFew = 12;                    // patches, which contradict nothing
+  const Evidence& evidence = finding.evidence;
+  const PatchProof& look = finding.look;
+  if (!is_located(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
+      evidence.both < 0.2 * evidence.valid)
+    return false;
+  if (is_proven_by_look(finding)) return fit_of(evidence) > 0.4 && evidence.farther_part() < 0.12;
+  if (!finding.tracking || evidence.both < 0.5 * evidence.valid || evidence.farther_part() > 0.03)
+    return false;
+  if (look.compared < kFew) return evidence.alike_part() > 0.9;
+  return look.alike_part() > kContradicted && evidence.alike_part() > (look.alike.size() > kFew ? 0.7 : 0.9);
 }
 
 /// Whether another pose explains the frame about as well, so that nobody can say which is the right one.
 bool is_rivalled(const Finding& best, const std::vector<Finding>& findings) {
   constexpr double kSame_m = 0.1, kSame_rad = 0.1;
+  constexpr double kClear = 0.08;
   return std::any_of(findings.begin(), findings.end(), [&](const Finding& other) {
-    if (is_near(best.tracking.T_world_camera, other.tracking.T_world_camera, kSame_m, kSame_rad))
-      return false;
-    return 2 * other.agreeing > 3 * best.agreeing ||
-           (is_located(other.tracking) && 3 * other.agreeing > 2 * best.agreeing &&
-            other.evidence.score() > best.evidence.score() - 0.05);
+    return !is_near(best.tracking.T_world_camera, other.tracking.T_world_camera, kSame_m, kSame_rad) &&
+           is_located(other.tracking) && support_of(other) > support_of(best) - kClear;
   });
 }
 
-/// Looks for the camera in all of the map.
+/// Moves an aligned pose so that patches come to lie on those they look like, as far as the depth leaves that
+/// open: the least squares of both.
+void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPair>& pairs,
+          Tracking& tracking) {
+  constexpr double kIndependent = 0.25;  // patches of several sizes share a corner, neighbours their depth
+  constexpr double kFarthest = 0.3;      // m and rad; what goes farther is not fixed by the pairs either
+  Eigen::Matrix<double, 6, 6> H = by_depth;
+  Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+  for (const PointPair& pair : pairs) {
+    Eigen::Matrix<double, 3, 6> J;  // of a point in the camera, to the camera's twist
+    J.leftCols<3>().setIdentity();
+    for (int k = 0; k < 3; ++k) J.col(3 + k) = Eigen::Vector3d::Unit(k).cross(pair.b);
+    const Eigen::Vector3d gap = tracking.T_world_camera.inverse() * pair.a - pair.b;
+    const double weight = kIndependent * 9.0 / (pair.gate_m * pair.gate_m);  // a gate is three deviations
+    H += weight * J.transpose() * J;
+    g += weight * J.transpose() * gap;
+  }
+  const Eigen::Matrix<double, 6, 1> twist = H.ldlt().solve(g);
+  if (!(twist.norm() < kFarthest)) return;
+  tracking.T_world_camera = tracking.T_world_camera * exp_twist(twist);
+  tracking.information = H;
+}
+
+/// Whether the camera could stand 6 cm farther along a direction that `information` leaves open, or turn
+/// about as much, and the model would explain its depth as well.
+bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double fit,
+            const Eigen::Matrix<double, 6, 6>& information, const ExpectedDepth& expected_depth) {
+  constexpr double kSlide_m = 0.06, kDistance_m = 2.0;  // of what turns past the camera
+  constexpr double kMinLoss = 0.015;                    // of the fit: outlines shift by a few pixels
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(information);
+  for (int i = 0; i < 6 && solver.eigenvalues()(i) < 1e-3; ++i) {
+    const Eigen::Matrix<double, 6, 1> direction = solver.eigenvectors().col(i);
+    const double reach = direction.head<3>().norm() + kDistance_m * direction.tail<3>().norm();
+    for (const double way : {-kSlide_m / reach, kSlide_m / reach}) {
+      const Eigen::Isometry3d T_aside = T_world_camera * exp_twist(way * direction);
+      if (fit_of(evidence_of(frame.depth_m, expected_depth(T_aside))) > fit - kMinLoss) return true;
+    }
+  }
+  return false;
+}
+
+/// Tries a pose: aligned with the model, and where that leaves a direction open, moved by what patches say.
+Finding tried(Locator& locator, const Frame& frame, const std::vector<SurfacePatch>& seen,
+              const Eigen::Isometry3d& T_world_guess, const ExpectedDepth& expected_depth) {
+  constexpr std::size_t kEnough = 10;
+  constexpr int kPulls = 3;
+  constexpr double kGoodFit = 0.6;
+  Finding finding;
+  const auto align_from = [&](const Eigen::Isometry3d& T_world_camera, const AlignConfig& config) {
+    finding.tracking =
+        align_with_model(locator, config, frame.depth_camera, T_world_camera, T_world_camera, expected_depth);
+    const Eigen::Isometry3d& T_found = finding.tracking.T_world_camera;
+    const Eigen::Matrix<double, 6, 6> by_depth = finding.tracking.information;
+    finding.look = prove_with_patches(seen, locator.known, T_found);
+    for (int round = 0; round < kPulls && finding.tracking.status == TrackStatus::kDegenerate &&
+                        finding.look.alike.size() >= kEnough;
+         ++round) {
+      pull(by_depth, finding.look.alike, finding.tracking);
+      finding.look = prove_with_patches(seen, locator.known, T_found);
+    }
+  };
+  const std::size_t alike_before = prove_with_patches(seen, locator.known, T_world_guess).alike.size();
+  align_from(T_world_guess, locator.align);
+  if (alike_before >= kEnough && 3 * finding.look.alike.size() < 2 * alike_before)
+    align_from(T_world_guess, locator.strict_align);
+  finding.evidence = evidence_of(frame.depth_m, expected_depth(finding.tracking.T_world_camera));
+  if (!is_proven_by_look(finding) && finding.tracking && fit_of(finding.evidence) > kGoodFit) {
+    // The depth alone must fix it.
+    const Eigen::Isometry3d& T_found = finding.tracking.T_world_camera;
+    const Tracking strict =
+        align_with_model(locator, locator.strict_align, frame.depth_camera, T_found, T_found, expected_depth);
+    if (!strict && slides(frame, T_found, fit_of(finding.evidence), strict.information, expected_depth)) {
+      finding.tracking.status = TrackStatus::kDegenerate;
+      finding.tracking.information = strict.information;
+    }
+  }
+  finding.uncertainty_m = uncertainty_m(finding.tracking);
+  return finding;
+}
+
+/// Looks for the camera in all of the map: where patches lead, and, if that is not certain, where the depth's
+/// shape fits; without gravity and colour only where remembered views are like the frame.
 Tracking search(Locator& locator, const Frame& frame, const Places& places,
                 const ExpectedDepth& expected_depth) {
-  constexpr std::size_t kTried = 4;
+  constexpr std::size_t kByLook = 4, kByShape = 8;
   constexpr int kMinAgreeing = 8;
+  std::vector<Finding>& findings = locator.findings;
+  findings.clear();
+  locator.search_end = SearchEnd::kNoCandidate;
+  const auto judge = [&] {
+    const auto best =
+        std::max_element(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+          return is_located(a.tracking) != is_located(b.tracking) ? is_located(b.tracking)
+                                                                  : support_of(a) < support_of(b);
+        });
+    if (best == findings.end()) return Tracking{};
+    locator.search_end = !is_certain(*best)             ? SearchEnd::kNotCertain
+                         : is_rivalled(*best, findings) ? SearchEnd::kRivalled
+                                                        : SearchEnd::kFound;
+    return locator.search_end == SearchEnd::kFound ? best->tracking : Tracking{};
+  };
   if (locator.known.empty()) locator.known = known_patches(places);
-  std::vector<PoseCandidate> candidates;
-  if (frame.colour.empty() || locator.known.empty()) {
-    const Relocalisation found = relocalise(frame, places, locator.relocalise);
-    if (found) candidates.push_back({found.T_world_camera, 0});
-  } else {
-    const std::vector<SurfacePatch> seen = describe_patches(frame, locator.relocalise.place.patches);
-    candidates = propose_poses(seen, locator.known, kTried, kMinAgreeing);
+  const std::vector<SurfacePatch> seen = describe_patches(frame, locator.relocalise.place.patches);
+  const std::vector<PoseCandidate> by_look = propose_poses(seen, locator.known, kByLook, kMinAgreeing);
+  for (const PoseCandidate& candidate : by_look)
+    if (4 * candidate.agreeing >= by_look.front().agreeing)
+      findings.push_back(tried(locator, frame, seen, candidate.T_world_camera, expected_depth));
+  if (!frame.down_camera && (frame.colour.empty() || locator.known.empty())) {
+    const Relocalisation by_preview = relocalise(frame, places, locator.relocalise);
+    if (by_preview)
+      findings.push_back(tried(locator, frame, seen, by_preview.T_world_camera, expected_depth));
   }
-  std::vector<Finding> findings;
-  for (const PoseCandidate& candidate : candidates) {
-    if (4 * candidate.agreeing < candidates.front().agreeing) break;
-    Finding& finding = findings.emplace_back();
-    finding.agreeing = candidate.agreeing;
-    finding.tracking = align_with_model(locator, frame.depth_camera, candidate.T_world_camera,
-                                        candidate.T_world_camera, expected_depth);
-    finding.evidence = evidence_of(frame.depth_m, expected_depth(finding.tracking.T_world_camera));
+  Tracking found = judge();
+  if (!is_located(found) && frame.down_camera) {
+    if (locator.known_shape.empty()) locator.known_shape = known_shape(places);
+    for (const ShapeCandidate& candidate : propose_by_shape(
+             frame.depth_m, frame.depth_camera, *frame.down_camera, locator.known_shape, kByShape))
+      findings.push_back(tried(locator, frame, seen, candidate.T_world_camera, expected_depth));
+    found = judge();
   }
-  const auto best =
-      std::max_element(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
-        return is_located(a.tracking) != is_located(b.tracking) ? is_located(b.tracking)
-                                                                : a.evidence.score() < b.evidence.score();
-      });
-  if (best == findings.end() || !is_certain(*best) || is_rivalled(*best, findings)) return {};
-  expected_depth(best->tracking.T_world_camera);
-  return best->tracking;
+  if (is_located(found)) expected_depth(found.T_world_camera);
+  return found;
 }
 
 /// From the last pose and motion.
@@ -127,7 +247,7 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
   const Eigen::Isometry3d& T_world_last = *locator.T_world_camera;
   const Eigen::Isometry3d T_world_predicted = T_world_last * locator.T_last_now;
   Tracking tracking = align_with_model(
-      locator, frame.depth_camera,
+      locator, locator.align, frame.depth_camera,
       is_near(T_world_last, T_world_predicted, kNear_m, kNear_rad) ? T_world_last : T_world_predicted,
       T_world_predicted, expected_depth);
   if (is_located(tracking) &&
@@ -143,8 +263,8 @@ Tracking resume(Locator& locator, const Frame& frame, const ExpectedDepth& expec
   constexpr int kLongest_frames = 30;
   constexpr double kMinAlike = 0.7, kMaxFarther = 0.08;
   if (!locator.T_world_lost || ++locator.lost_frames > kLongest_frames) return {};
-  const Tracking tracking = align_with_model(locator, frame.depth_camera, *locator.T_world_lost,
-                                             *locator.T_world_lost, expected_depth);
+  const Tracking tracking = align_with_model(locator, locator.align, frame.depth_camera,
+                                             *locator.T_world_lost, *locator.T_world_lost, expected_depth);
   const Evidence evidence = evidence_of(frame.depth_m, expected_depth(tracking.T_world_camera));
   const bool holds = is_located(tracking) && 2 * evidence.both > evidence.valid &&
                      evidence.alike_part() > kMinAlike && evidence.farther_part() < kMaxFarther;
@@ -173,6 +293,20 @@ void doubt(Locator& locator, const Frame& frame, const Places& places, const Exp
 }
 
 }  // namespace
+
+std::string_view to_string(SearchEnd end) {
+  switch (end) {
+    case SearchEnd::kFound:
+      return "found";
+    case SearchEnd::kNoCandidate:
+      return "no candidate";
+    case SearchEnd::kNotCertain:
+      return "not certain";
+    case SearchEnd::kRivalled:
+      return "rivalled";
+  }
+  return "unknown";
+}
 
 Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
                 const ExpectedDepth& expected_depth) {

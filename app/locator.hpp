@@ -3,10 +3,14 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <optional>
+#include <string_view>
+#include <vector>
 
+#include "app/evidence.hpp"
 #include "mapping/align.hpp"
 #include "mapping/patch_matching.hpp"
 #include "mapping/places.hpp"
+#include "mapping/shape_search.hpp"
 #include "mapping/view.hpp"
 
 namespace roomradar {
@@ -14,11 +18,31 @@ namespace roomradar {
 /// The depth that the room's static model shows at a pose, of the live depth image's size.
 using ExpectedDepth = std::function<const DepthImage&(const Eigen::Isometry3d& T_world_camera)>;
 
+/// A pose that a search of the map tried, and what speaks for it.
+struct Finding {
+  Tracking tracking;
+  double uncertainty_m = 0.0;  ///< of the position, one standard deviation, as far as depth and patches say
+  PatchProof look;
+  Evidence evidence;
+};
+
+/// How a search of the map ended.
+enum class SearchEnd {
+  kFound,
+  kNoCandidate,  ///< neither look nor shape leads anywhere
+  kNotCertain,   ///< the best pose does not explain the frame well enough, or leaves a direction open
+  kRivalled,     ///< another pose explains it about as well
+};
+std::string_view to_string(SearchEnd end);
+
 /// What is remembered from frame to frame, and buffers that are reused.
 struct Locator {
   ViewConfig live_view{.finest_width_px = 160};  ///< twice as fine is 3 ms slower and no nearer to the truth
   ViewConfig expected_view{.finest_width_px = 160, .noisy = false};  ///< rendered depth needs no smoothing
   AlignConfig align;
+  /// Where the depth alone has to fix a pose, or patches speak against what it fixed: the bumps of a mesh are
+  /// not to pass for what fixes a direction.
+  AlignConfig strict_align{.min_constraint = 0.01F};
   RelocaliseConfig relocalise;
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< of the last frame; nothing while lost
   /// Motion from the frame before to the last one.
@@ -29,7 +53,11 @@ struct Locator {
   std::optional<Eigen::Isometry3d> T_world_lost;
   int lost_frames = 0;
 
-  KnownPatches known;  ///< of the places; made when they are first asked for
+  std::vector<Finding> findings;  ///< of the last search
+  SearchEnd search_end = SearchEnd::kNoCandidate;
+
+  KnownPatches known;      ///< of the places; made when they are first asked for
+  KnownShape known_shape;  ///< likewise
   ViewPyramid live_pyramid, expected_pyramid;
   LiveView live;
   ReferenceView expected;
@@ -37,8 +65,9 @@ struct Locator {
 
 /// Finds the frame's camera: by alignment with the expected depth at the pose predicted from the last motion,
 /// or, when that fails, when the depth has spoken against it for three frames, or when nothing is known, by
-/// what it sees of the map's patches, or where there is no colour of its places, and alignment from there. A
-/// pose found anew must be borne out by the depth, and no other pose may explain the frame about as well.
+/// what it sees of the map's patches, by the shape of its depth where gravity is known, or where there is
+/// neither colour nor gravity by the map's places. A pose found anew must be fixed in all directions and
+/// borne out by depth and patches, and no other pose may explain the frame about as well.
 ///
 /// @param moved_mask  of the frame before: pixels at 255 moved and are left out; empty, or of the depth's
 /// size

@@ -9,7 +9,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "mapping/place_matching.hpp"
 #include "mapping/types/depth_noise.hpp"
 
 namespace roomradar {
@@ -136,10 +135,33 @@ int seen_in(const std::vector<std::size_t>& chosen, std::span<const Alike> alike
   return count;
 }
 
-std::uint64_t cell_key(const Eigen::Vector3i& cell, int size) {
+constexpr float kCell_m = 0.05F;
+
+Eigen::Vector3i cell_of(const Eigen::Vector3f& point_world) {
+  return (point_world / kCell_m).array().floor().cast<int>();
+}
+
+std::uint64_t cell_key(const Eigen::Vector3i& cell) {
   const auto part = [](int x) { return static_cast<std::uint64_t>(x) & 0xfffffU; };
-  return part(cell.x()) << 40U | part(cell.y()) << 20U | part(cell.z()) |
-         static_cast<std::uint64_t>(size) << 60U;
+  return part(cell.x()) << 40U | part(cell.y()) << 20U | part(cell.z());
+}
+
+/// Calls visit(patch) for the known patches in the cells within half a cell of a point.
+template <typename Visit>
+void visit_near(const KnownPatches::OfSize& known, const Eigen::Vector3f& point_world, const Visit& visit) {
+  const Eigen::Vector3i low = cell_of(point_world - Eigen::Vector3f::Constant(0.5F * kCell_m));
+  for (int k = 0; k < 8; ++k) {
+    const auto [first, last] =
+        known.by_cell.equal_range(cell_key(low + Eigen::Vector3i(k & 1, k >> 1 & 1, k >> 2)));
+    for (auto entry = first; entry != last; ++entry) visit(known.patches[entry->second]);
+  }
+}
+
+SurfacePatch moved_by(const Eigen::Isometry3f& T_world_camera, SurfacePatch patch) {
+  patch.point = T_world_camera * patch.point;
+  patch.normal = T_world_camera.linear() * patch.normal;
+  patch.along = T_world_camera.linear() * patch.along;
+  return patch;
 }
 
 bool is_same_pose(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -155,30 +177,56 @@ bool KnownPatches::empty() const {
 
 KnownPatches known_patches(const Places& places) {
   constexpr int kSameLook_bits = 40;
-  constexpr double kCell_m = 0.02;
+  constexpr float kSame_m = 0.02F;
   KnownPatches known;
-  std::unordered_multimap<std::uint64_t, std::size_t> near_by;  // by size and cell
   for (const Place& place : places.keyframes) {
     const Eigen::Isometry3f T_world_camera = place.T_world_camera.cast<float>();
-    for (SurfacePatch patch : place.patches) {
-      patch.point = T_world_camera * patch.point;
-      patch.normal = T_world_camera.linear() * patch.normal;
-      patch.along = T_world_camera.linear() * patch.along;
+    for (const SurfacePatch& in_camera : place.patches) {
+      const SurfacePatch patch = moved_by(T_world_camera, in_camera);
       // Views overlap; what several saw alike is kept once.
       KnownPatches::OfSize& of_size = known.by_size[patch.size];
-      const Eigen::Vector3i cell = (patch.point.cast<double>() / kCell_m).array().floor().cast<int>();
-      const std::uint64_t key = cell_key(cell, patch.size);
-      const auto [first, last] = near_by.equal_range(key);
-      if (std::any_of(first, last, [&](const auto& entry) {
-            return distance_bits(of_size.patches[entry.second].bits, patch.bits) <= kSameLook_bits;
-          }))
-        continue;
-      near_by.emplace(key, of_size.patches.size());
+      bool is_known = false;
+      visit_near(of_size, patch.point, [&](const SurfacePatch& other) {
+        is_known = is_known || ((other.point - patch.point).squaredNorm() < kSame_m * kSame_m &&
+                                distance_bits(other.bits, patch.bits) <= kSameLook_bits);
+      });
+      if (is_known) continue;
+      of_size.by_cell.emplace(cell_key(cell_of(patch.point)),
+                              static_cast<std::uint32_t>(of_size.patches.size()));
       of_size.patches.push_back(patch);
       of_size.first_bits.push_back(first_bits(patch.bits));
     }
   }
   return known;
+}
+
+PatchProof prove_with_patches(std::span<const SurfacePatch> seen, const KnownPatches& known,
+                              const Eigen::Isometry3d& T_world_camera) {
+  constexpr float kReach_m = 0.03F;
+  constexpr float kMinCosine = 0.8F;  // between normals, and between the ways to the brighter side
+  constexpr int kAlike_bits = 80;     // of 256, of two that lie in one place
+  PatchProof proof;
+  for (const SurfacePatch& in_camera : seen) {
+    const SurfacePatch patch = moved_by(T_world_camera.cast<float>(), in_camera);
+    const SurfacePatch* most_alike = nullptr;
+    int least_bits = kAlike_bits;
+    bool is_compared = false;
+    visit_near(known.by_size[patch.size], patch.point, [&](const SurfacePatch& other) {
+      if ((other.point - patch.point).squaredNorm() > kReach_m * kReach_m ||
+          other.normal.dot(patch.normal) < kMinCosine)
+        return;
+      is_compared = true;
+      const int bits = distance_bits(other.bits, patch.bits);
+      if (bits >= least_bits || other.along.dot(patch.along) < kMinCosine) return;
+      most_alike = &other;
+      least_bits = bits;
+    });
+    proof.compared += is_compared;
+    if (most_alike != nullptr)
+      proof.alike.push_back(
+          {most_alike->point.cast<double>(), in_camera.point.cast<double>(), gate_m(in_camera)});
+  }
+  return proof;
 }
 
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const KnownPatches& known,

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "mapping/patches.hpp"
+#include "mapping/place_matching.hpp"
 #include "mapping/places.hpp"
 
 namespace roomradar {
@@ -17,6 +19,8 @@ struct KnownPatches {
   struct OfSize {
     std::vector<std::uint64_t> first_bits;  ///< of each patch's descriptor, close together in memory
     std::vector<SurfacePatch> patches;
+    std::unordered_multimap<std::uint64_t, std::uint32_t>
+        by_cell;  ///< positions of patches by where they are
   };
   std::array<OfSize, kPatchSizes> by_size;
   [[nodiscard]] bool empty() const;
@@ -33,5 +37,17 @@ struct PoseCandidate {
 /// of points say exactly. Deterministic.
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const KnownPatches& known,
                                          std::size_t most, int min_agreeing);
+
+/// What a frame's patches say of a pose: of those that would lie on known ones, how many look like one of
+/// them.
+struct PatchProof {
+  int compared = 0;
+  std::vector<PointPair> alike;  ///< the known one's point in the world, the seen one's in the camera
+  [[nodiscard]] double alike_part() const {
+    return compared > 0 ? static_cast<double>(alike.size()) / compared : 0.0;
+  }
+};
+PatchProof prove_with_patches(std::span<const SurfacePatch> seen, const KnownPatches& known,
+                              const Eigen::Isometry3d& T_world_camera);
 
 }  // namespace roomradar

@@ -151,6 +151,30 @@ TEST(Locator, DoesNotChooseBetweenTwoPlacesThatLookTheSame) {
   EXPECT_LT(error_m(found, truth), 0.02);
 }
 
+TEST(Locator, FindsAViewWithoutColourByItsShape) {
+  Mapped mapped(room());
+  const Eigen::Isometry3d truth = test::looking_at({0.8, 0.9, 0.7}, {-1.5, 0.9, 0.5}, {0.1, 0.1, 0.9});
+  Frame frame = mapped.seen_from(truth);
+  frame.colour = {};
+  frame.down_camera = truth.linear().transpose() * -Eigen::Vector3d::UnitZ();
+  const Tracking found = mapped.find(frame);
+  ASSERT_TRUE(is_located(found));
+  EXPECT_LT(error_m(found, truth), 0.02);
+  EXPECT_EQ(mapped.locator.search_end, SearchEnd::kFound);
+}
+
+TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
+  using namespace test;
+  const Scene walls = nearest_of(nearest_of(plane({0, 1, 0}, 2.5), plane({0, 1, 0}, -2.5)),
+                                 nearest_of(plane({1, 0, 0}, 2.0), plane({1, 0, 0}, -2.0)));
+  Mapped bare(nearest_of(plane({0, 0, 1}, 0.0), walls), [](const Eigen::Vector3d&) { return 120; });
+  const Eigen::Isometry3d truth = looking_at({0.3, 0.4, 1.2}, {0.3, 2.5, 0.4});
+  Frame frame = bare.seen_from(truth);
+  frame.down_camera = truth.linear().transpose() * -Eigen::Vector3d::UnitZ();
+  EXPECT_FALSE(is_located(bare.find(frame)));
+  EXPECT_NE(bare.locator.search_end, SearchEnd::kFound);
+}
+
 TEST(Evidence, CountsWhatFitsAndWhatIsSeenThrough) {
   DepthImage live(40, 40, 2.0F), expected(40, 40, 2.0F);
   EXPECT_EQ(evidence_of(live, expected).alike_part(), 1.0);

@@ -4,7 +4,7 @@
 //        maps are scanned once and kept in FOLDER; WORD: part of a row's name
 //
 // found      frames for which a pose is given; right: within 5 cm and 5 degrees of the truth; wrong: the
-//            other found ones
+//            other found ones; failed: why the others were not, and the poses tried
 // ms         of a frame that is looked for anew; thread: the time the processor worked for it
 // Kitchen: frames 400 to 499 in the map of 0 to 399, its recorded poses taken for the truth. Rooms: random
 // views in simulated rooms, see where_bench_rooms.hpp. Settings are those of `run`; changing them breaks
@@ -38,6 +38,25 @@ struct Settings {
   std::string only, json, pictures;
 };
 
+/// The poses that a search went through, how far off they are, and what spoke for each.
+nlohmann::json tried(const Locator& locator, const Eigen::Isometry3d& truth) {
+  nlohmann::json poses = nlohmann::json::array();
+  for (const Finding& finding : locator.findings) {
+    const Eigen::Isometry3d gap = truth.inverse() * finding.tracking.T_world_camera;
+    poses.push_back(
+        {{"status", to_string(finding.tracking.status)},
+         {"m", gap.translation().norm()},
+         {"deg", Eigen::AngleAxisd(gap.linear()).angle() * 180.0 / std::numbers::pi},
+         {"patches_compared", finding.look.compared},
+         {"patches_alike", finding.look.alike.size()},
+         {"depth_both", static_cast<double>(finding.evidence.both) / std::max(finding.evidence.valid, 1)},
+         {"depth_alike", finding.evidence.alike_part()},
+         {"depth_farther", finding.evidence.farther_part()},
+         {"uncertainty_m", std::min(finding.uncertainty_m, 1e3)}});
+  }
+  return poses;
+}
+
 /// Looks for each frame of the source anew.
 nlohmann::json find_all(const std::string& name, FrameSource& source, MappedRoom& mapped,
                         const Settings& settings) {
@@ -67,7 +86,12 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, MappedRoom
     found += is_found, right += is_right;
     if (is_found) errors_mm.push_back(1e3 * error_m);
     if (is_right) continue;
-    failed.push_back({{"frame", frame.index}, {"found", is_found}, {"m", error_m}, {"deg", error_deg}});
+    failed.push_back({{"frame", frame.index},
+                      {"found", is_found},
+                      {"m", error_m},
+                      {"deg", error_deg},
+                      {"why", to_string(locator.search_end)},
+                      {"tried", tried(locator, truth)}});
     if (settings.pictures.empty()) continue;
     std::filesystem::create_directories(settings.pictures);
     write_png(frame.colour,

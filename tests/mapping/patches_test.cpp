@@ -60,6 +60,22 @@ TEST(Patches, OfAnotherRoomAreNotFound) {
   EXPECT_TRUE(propose_poses(describe_patches(frame, 400), known_patches(place_at(kEye)), 4, 6).empty());
 }
 
+TEST(Patches, SpeakForTheTruePoseAndAgainstOthers) {
+  const KnownPatches known = known_patches(place_at(kEye));
+  const std::vector<SurfacePatch> seen = describe_patches(painted(kAside), 400);
+  const PatchProof right = prove_with_patches(seen, known, kAside);
+  EXPECT_GT(right.alike.size(), 30U);
+  EXPECT_GT(right.alike_part(), 0.35);
+  for (const PointPair& pair : right.alike) EXPECT_LT((kAside * pair.b - pair.a).norm(), 0.03);
+  Eigen::Isometry3d along_the_wall = kAside;
+  along_the_wall.pretranslate(Eigen::Vector3d(0.12, 0.0, 0.0));
+  const PatchProof wrong = prove_with_patches(seen, known, along_the_wall);
+  EXPECT_GT(wrong.compared, 30);
+  EXPECT_LT(wrong.alike_part(), 0.1);
+  EXPECT_EQ(prove_with_patches({}, known, kAside).compared, 0);
+  EXPECT_EQ(prove_with_patches(seen, {}, kAside).alike_part(), 0.0);
+}
+
 TEST(Patches, NeedColourAndDepth) {
   Frame blind = painted(kEye);
   blind.colour = {};
