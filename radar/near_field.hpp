@@ -3,12 +3,12 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include "radar/contact.hpp"
 #include "radar/radar_scene.hpp"
 #include "radar/sweep.hpp"
+#include "radar/tree_pairs.hpp"
 
 namespace roomradar {
 
@@ -60,21 +60,8 @@ class NearField {
   static constexpr std::size_t kMostPoints = 24;
 
  private:
-  struct Box {
-    Eigen::Vector3f centre, half;
-    std::uint32_t first, count;  // as in TreeNode; count 0: an inner node
-  };
-  struct Pair {
-    Box object, scene;
-    float key;  // of what is looked at first
-  };
-  struct Course;
-  std::vector<Pair> pending_;
+  std::vector<PendingPair> pending_;
   std::vector<NearPoint> found_;
-
-  template <typename Key, typename Leaf>
-  void visit(const TriangleTree& object, const TriangleTree& scene, const Eigen::Isometry3d& T_scene_object,
-             const Key& key, const Leaf& leaf);
 };
 
 }  // namespace roomradar

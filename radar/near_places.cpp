@@ -1,0 +1,146 @@
+// near_places.cpp: corners over faces, edges across edges, and the outermost of what they give.
+#include "radar/near_places.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool is_over(const Vec3& p, const Face& t) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (t.inward[i].dot(p - t.corners[i]) < 0.0) return false;
+  }
+  return true;
+}
+
+bool pierces(const Vec3& a, const Vec3& b, const Face& t) {
+  const double from = t.normal.dot(a - t.corners[0]), to = t.normal.dot(b - t.corners[0]);
+  if (from * to > 0.0 || from == to) return false;
+  return is_over(a + (b - a) * (from / (from - to)), t);
+}
+
+}  // namespace
+
+Face face_of(const FrameTriangle& t) {
+  Face face{t, {}, {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    face.edge[i] = t.corners[(i + 1) % 3] - t.corners[i];
+    face.inward[i] = t.normal.cross(face.edge[i]);
+  }
+  return face;
+}
+
+bool cross(const Face& a, const Face& b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (pierces(a.corners[i], a.corners[(i + 1) % 3], b) || pierces(b.corners[i], b.corners[(i + 1) % 3], a))
+      return true;
+  }
+  return false;
+}
+
+void PairPlaces::add(const Vec3& on_scene, const Vec3& way, double gap_m) const {
+  if (!(gap_m > 0.0 && gap_m <= reach_m)) return;
+  found.push_back({T_world_frame * on_scene, T_world_frame.linear() * way / gap_m, gap_m, kind});
+}
+
+bool PairPlaces::look(const Face& o, const Face& s) const {
+  std::array<double, 3> over_scene,
+      over_object;  // heights of the corners of the one above the other's plane
+  double s_low = kInfinity, s_high = -kInfinity, o_low = kInfinity, o_high = -kInfinity;
+  for (std::size_t k = 0; k < 3; ++k) {
+    over_scene[k] = s.normal.dot(o.corners[k] - s.corners[0]);
+    over_object[k] = o.normal.dot(s.corners[k] - o.corners[0]);
+    s_low = std::min(s_low, over_scene[k]), s_high = std::max(s_high, over_scene[k]);
+    o_low = std::min(o_low, over_object[k]), o_high = std::max(o_high, over_object[k]);
+  }
+  if (s_low > reach_m || s_high < -reach_m || o_low > reach_m || o_high < -reach_m) return false;
+  if (scene_is_one_sided && s_low < 0.0) return false;
+  if (object_is_closed && o_high < 0.0) return false;
+  if (s_low < 0.0 && s_high > 0.0 && o_low < 0.0 && o_high > 0.0 && cross(o, s)) return true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double h = over_scene[k], g = over_object[k];
+    if (std::abs(h) <= reach_m && is_over(o.corners[k], s))
+      add(o.corners[k] - h * s.normal, h * s.normal, std::abs(h));
+    if (std::abs(g) <= reach_m && !(object_is_closed && g < 0.0) && is_over(s.corners[k], o))
+      add(s.corners[k], -g * o.normal, std::abs(g));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    // Seen along the scene's normal, all of the scene's triangle may lie on one side of the edge.
+    const Vec3 across = o.edge[i].cross(s.normal);
+    const Range side = range_along(across, s.corners);
+    const double at = across.dot(o.corners[i]), reach = reach_m * across.norm();
+    if (side.low > at + reach || side.high < at - reach) continue;
+    for (std::size_t j = 0; j < 3; ++j) look_at_edges(o, i, s, j);
+  }
+  return false;
+}
+
+/// Two edges that pass each other: the shortest way between them stands on both.
+void PairPlaces::look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const {
+  const Vec3& a = o.corners[i];
+  const Vec3& b = s.corners[j];
+  const Vec3 &u = o.edge[i], &v = s.edge[j], w = a - b;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double across = uu * vv - uv * uv;
+  if (!(across > 1e-6 * uu * vv)) return;  // parallel: their ends say it
+  const double along_u = (uv * vw - uw * vv) / across, along_v = (uu * vw - uv * uw) / across;
+  if (!(along_u > 0.0 && along_u < 1.0 && along_v > 0.0 && along_v < 1.0)) return;
+  const Vec3 on_scene = b + along_v * v;
+  const Vec3 way = a + along_u * u - on_scene;
+  const double gap_m = way.norm();
+  if (!(gap_m <= reach_m)) return;
+  // The way leaves a closed object inwards: another of its faces is nearer.
+  if (object_is_closed && way.dot(o.normal) > 1e-9 * gap_m) return;
+  add(on_scene, way, gap_m);
+}
+
+void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kept) {
+  constexpr double kOutPerGap = 20.0;  // 1 mm farther away is worth 2 cm farther out
+  constexpr double kSameNormal = 0.9;
+  constexpr std::size_t kMostNormals = 4, kDirections = 8;
+  kept.clear();
+  for (std::size_t cluster = 0; cluster < kMostNormals && !all.empty(); ++cluster) {
+    const auto nearest = std::min_element(
+        all.begin(), all.end(), [](const NearPoint& a, const NearPoint& b) { return a.gap_m < b.gap_m; });
+    const NearPoint seed = *nearest;
+    const Vec3 x = seed.normal_world.unitOrthogonal(), y = seed.normal_world.cross(x);
+    std::array<double, kDirections> most;
+    std::array<const NearPoint*, kDirections> outermost{};
+    most.fill(-kInfinity);
+    const auto is_of_cluster = [&](const NearPoint& p) {
+      return p.normal_world.dot(seed.normal_world) > kSameNormal;
+    };
+    for (const NearPoint& p : all) {
+      if (!is_of_cluster(p)) continue;
+      const Vec3 offset = p.point_world - seed.point_world;
+      const double u = x.dot(offset), v = y.dot(offset), behind = kOutPerGap * (p.gap_m - seed.gap_m);
+      constexpr double kDiagonal = 0.70710678118654752;
+      const std::array<double, kDirections> out = {
+          u, -u, v, -v, kDiagonal * (u + v), -kDiagonal * (u + v), kDiagonal * (u - v), kDiagonal * (v - u)};
+      for (std::size_t i = 0; i < kDirections; ++i) {
+        if (out[i] - behind > most[i]) {
+          most[i] = out[i] - behind;
+          outermost[i] = &p;
+        }
+      }
+    }
+    const std::size_t first = kept.size();
+    kept.push_back(seed);
+    for (const NearPoint* p : outermost) {
+      const bool is_new =
+          p != nullptr && std::none_of(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(),
+                                       [&](const NearPoint& other) {
+                                         return (other.point_world - p->point_world).squaredNorm() < 1e-10;
+                                       });
+      if (is_new && kept.size() < NearField::kMostPoints) kept.push_back(*p);
+    }
+    if (kept.size() >= NearField::kMostPoints) return;
+    std::erase_if(all, is_of_cluster);
+  }
+}
+
+}  // namespace roomradar

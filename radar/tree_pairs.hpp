@@ -1,0 +1,121 @@
+// tree_pairs.hpp: two trees side by side: which boxes, and at last which triangles, may have to do with each
+// other?
+#pragma once
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "radar/radar_scene.hpp"
+#include "radar/triangle_gap.hpp"
+#include "radar/triangle_tree.hpp"
+
+namespace roomradar {
+
+/// A box of a tree, turned where the other tree is.
+struct PairBox {
+  Eigen::Vector3f centre, half;
+  std::uint32_t first, count;  ///< as in TreeNode; count 0: an inner node
+};
+struct PendingPair {
+  PairBox object, scene;
+  float key;  ///< of what is looked at first
+};
+
+inline constexpr std::size_t kLeafTriangles = 4;  // no leaf of a TriangleTree has more
+
+inline bool is_usable(const TreeInstance& instance) {
+  return instance.tree != nullptr && !instance.tree->empty() && instance.T_world_mesh.matrix().allFinite();
+}
+
+/// An object's tree where it stands beside one of the scene's. Frame: the scene's mesh, about its tree's
+/// centre.
+struct TreePair {
+  const TriangleTree& object;
+  const TriangleTree& scene;
+  Eigen::Isometry3d T_world_frame;
+  Eigen::Isometry3d T_frame_object;  ///< from the object's mesh, about its tree's centre
+
+  TreePair(const TreeInstance& o, const TreeInstance& s)
+      : object(*o.tree),
+        scene(*s.tree),
+        T_world_frame(s.T_world_mesh * Eigen::Translation3d(scene.origin() + scene.centre())),
+        T_frame_object(T_world_frame.inverse() * o.T_world_mesh *
+                       Eigen::Translation3d(object.origin() + object.centre())) {}
+
+  [[nodiscard]] FrameTriangle object_triangle(std::uint32_t i) const {
+    FrameTriangle t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3f& vertex = object.vertices()[object.triangles()[i][k]];
+      t.corners[k] = T_frame_object * Eigen::Vector3d(vertex.cast<double>() - object.centre());
+    }
+    set_normal(t);
+    return t;
+  }
+  [[nodiscard]] FrameTriangle scene_triangle(std::uint32_t i) const {
+    FrameTriangle t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      t.corners[k] = scene.vertices()[scene.triangles()[i][k]].cast<double>() - scene.centre();
+    }
+    set_normal(t);
+    return t;
+  }
+};
+
+/// Whether a leaf's triangles may tell more of the other tree's box than their own box does.
+inline bool are_large_against(const PairBox& leaf, const PairBox& other) {
+  return leaf.count > 0 && leaf.half.maxCoeff() > 2.0F * other.half.maxCoeff();
+}
+
+/// Goes through all pairs of leaves that key(object box, scene box) gives a finite number for, and boxes with
+/// the least first.
+template <typename Key, typename Leaf>
+void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
+  const TriangleTree& object = trees.object;
+  const TriangleTree& scene = trees.scene;
+  // Boxes hold what is in them with the rounding of a float turn and shift counted in.
+  const Eigen::Matrix3f R = trees.T_frame_object.linear().cast<float>();
+  const Eigen::Matrix3f R_abs = R.cwiseAbs();
+  const Eigen::Vector3f t = trees.T_frame_object.translation().cast<float>();
+  const float slack_m = 16.0F * std::numeric_limits<float>::epsilon() *
+                        (t.lpNorm<Eigen::Infinity>() + object.half_size().norm() + scene.half_size().norm());
+  const auto push = [&](const PairBox& o, const PairBox& s) {
+    const float k = key(o, s);
+    if (k < std::numeric_limits<float>::infinity()) pending.push_back({o, s, k});
+  };
+  pending.clear();
+  const Eigen::Vector3f slack = Eigen::Vector3f::Constant(slack_m);
+  push({t, R_abs * object.half_size() + slack, 0, 0},
+       {Eigen::Vector3f::Zero(), scene.half_size() + slack, 0, 0});
+  while (!pending.empty()) {
+    const PendingPair pair = pending.back();
+    pending.pop_back();
+    if (!(key(pair.object, pair.scene) < std::numeric_limits<float>::infinity())) continue;
+    if (pair.object.count > 0 && pair.scene.count > 0) {
+      leaf(pair.object, pair.scene);
+      continue;
+    }
+    const bool opens_object =
+        pair.scene.count > 0 ||
+        (pair.object.count == 0 && pair.object.half.maxCoeff() > pair.scene.half.maxCoeff());
+    const std::size_t first_new = pending.size();
+    const TreeNode& node = opens_object ? object.nodes()[pair.object.first] : scene.nodes()[pair.scene.first];
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      PairBox box{{node.centre_x[i], node.centre_y[i], node.centre_z[i]},
+                  {node.half_x[i], node.half_y[i], node.half_z[i]},
+                  node.first[i],
+                  node.count[i]};
+      if (opens_object) {
+        box.centre = R * box.centre + t;
+        box.half = R_abs * box.half;
+      }
+      box.half += slack;
+      opens_object ? push(box, pair.scene) : push(pair.object, box);
+    }
+    std::sort(pending.begin() + static_cast<std::ptrdiff_t>(first_new), pending.end(),
+              [](const PendingPair& a, const PendingPair& b) { return a.key > b.key; });
+  }
+}
+
+}  // namespace roomradar
