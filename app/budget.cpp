@@ -108,6 +108,7 @@ double usual_ms(FramePart part, const FrameLoad& load) {
 
 BudgetState start_budget(std::vector<BudgetStep> front, const BudgetConfig& config, std::size_t step) {
   BudgetState state;
+  for (std::array<double, 3>& lately : state.lately) lately.fill(1.0);
   state.front = std::move(front);
   state.settled = state.step = step;
   state.patience_frames = config.patience_frames;
@@ -147,8 +148,7 @@ void learn(BudgetState& state, const BudgetConfig& config, const std::array<doub
     if (is_mixed) continue;
     const double at_one_ms = state.foreseen_ms[part] / state.scales[part];
     std::array<double, 3>& lately = state.lately[part];
-    lately = {parts_ms[part] / at_one_ms, lately[0] > 0.0 ? lately[0] : parts_ms[part] / at_one_ms,
-              lately[0] > 0.0 ? lately[1] : parts_ms[part] / at_one_ms};
+    lately = {parts_ms[part] / at_one_ms, lately[0], lately[1]};
     const double scale = median_of(lately);  // one accident is none
     state.scales[part] +=
         (scale > state.scales[part] ? config.attack : config.decay) * (scale - state.scales[part]);

@@ -25,7 +25,7 @@ struct BudgetConfig {
   int most_patience_frames = 480;  ///< and where that turned out too early, twice as many, up to so many
   int regret_frames = 60;          ///< going back again within so many frames means that it was too early
   double attack = 0.7;             ///< part by which an estimate follows what took longer than expected
-  double decay = 0.1;              ///< and what took less
+  double decay = 0.2;              ///< and what took less
 };
 
 /// What is remembered from frame to frame; times in ms.

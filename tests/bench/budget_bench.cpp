@@ -109,9 +109,9 @@ std::int64_t most_crowded(const Eigen::Isometry3d& T_world_camera) {
 }
 
 Views make_views() {
-  // The person's way is along x at y = 1.75; from 0.9 m before it a body is a third of the image.
+  // The person's way is along x at y = 1.75; from 0.9 m beside it a body is a third of the image.
   const auto pose = [](double sway) {
-    return test::looking_at({0.45 + 0.02 * sway, 0.75, 1.35 + 0.01 * sway}, {0.45, 1.75, 0.85});
+    return test::looking_at({-0.9 + 0.02 * sway, 0.9, 1.4 + 0.01 * sway}, {0.4, 1.6, 0.7});
   };
   SimulatedSource calm(parse_sim_spec("sim:table?seed=7&frames=2000&path=view"));
   SimulatedSource crowded(parse_sim_spec("sim:table?seed=7&frames=2000&path=view&moving=person&pace=slow"));
