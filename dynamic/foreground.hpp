@@ -33,7 +33,7 @@ struct ForegroundState {
   std::vector<std::uint8_t> near_strong;  // evidence bits to keep, a block
   std::vector<std::uint8_t> block_evidence, along_rows;
   std::vector<std::uint8_t> revealed_for;  // of a block, see mark_revealed_cores
-  std::vector<float> weak_m, strong_m;  // one value a pixel of a row
+  std::vector<float> weak_m, strong_m;     // one value a pixel of a row
   std::vector<float> nearest_m, farthest_m, around_hole_m;
   std::vector<std::uint8_t> keep, row_bits;
   std::vector<std::uint8_t> evidence;  // bits a pixel, see foreground.cpp
