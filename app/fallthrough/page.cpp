@@ -22,7 +22,9 @@ constexpr char kStyle[] =
     "caption{text-align:left;font-weight:600;padding:.3em 0}.t{font:600 14px sans-serif}"
     ".n{font:12px sans-serif;fill:#444}.e{text-anchor:end}.m{text-anchor:middle}.g{stroke:#ddd}"
     "figure{display:inline-block;margin:.5em;width:560px;vertical-align:top}figcaption{font-size:13px}"
-    "img{max-width:100%}.cells{display:inline-table;margin-right:2em;vertical-align:top}";
+    "img{max-width:100%}.cells{display:inline-table;margin-right:2em;vertical-align:top}"
+    ".cells th,.cells td{min-width:3.3em;text-align:center;font-variant-numeric:tabular-nums}"
+    ".cells tr>th:first-child{text-align:left;font-weight:400}";
 
 constexpr const char* kColours[] = {"#8a8a8a", "#c98a1b", "#b04ab0", "#2367c9", "#1a9850"};
 static_assert(std::size(kColours) == kPolicyCount);
@@ -100,7 +102,7 @@ std::string outcome_cells(const std::vector<ScenarioRow>& rows, const std::strin
 }
 
 std::string speed_of(const ScenarioRow& row) {
-  if (row.speed_m_s < 1.0) return "under 1 m/s";
+  if (row.speed_m_s < 1.0) return "0 to 1 m/s";
   return row.speed_m_s < 3.0 ? "1 to 3 m/s" : "3 to 10 m/s";
 }
 

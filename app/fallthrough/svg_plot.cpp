@@ -64,8 +64,12 @@ std::string percent_plot(const std::string& title, const std::string& x_name, do
   svg += format("<text x=\"%.1f\" y=\"%.1f\" class=\"n m\">", kLeft + 0.5 * kWide, kTop + kHigh + 32.0) +
          escaped(x_name) + "</text>";
   double legend_y = kTop + 12.0;
+  bool is_dashed = false;
   for (const PlotLine& line : lines) {
-    svg += "<polyline fill=\"none\" stroke-width=\"2\" stroke=\"" + line.colour + "\" points=\"";
+    is_dashed = !is_dashed;  // every second one: what lies under it shows
+    svg += "<polyline fill=\"none\" stroke-width=\"2\"";
+    if (is_dashed) svg += " stroke-dasharray=\"7 7\"";
+    svg += " stroke=\"" + line.colour + "\" points=\"";
     for (const auto& [x, percent] : line.points) svg += format("%.1f,%.1f ", at_x(x), at_y(percent));
     svg += "\"/>" + format("<rect x=\"456\" y=\"%.1f\" width=\"14\" height=\"4\" fill=\"", legend_y - 6.0) +
            line.colour + "\"/>" + format("<text x=\"476\" y=\"%.1f\" class=\"n\">", legend_y) +
