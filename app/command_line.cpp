@@ -257,6 +257,9 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
       ->check(within(1.0, 10000.0, "milliseconds"))
       ->type_name("MS");
   add_preset_options(*sub, command.preset, command.presets);
+  sub->add_option("--frames-csv", command.frames_csv,
+                  "write one line a frame: how much of room and depth was needed, and why")
+      ->type_name("FILE");
   add_quality_options(*sub, command.quality, command.fixed);
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {

@@ -54,6 +54,7 @@ struct RunCommand {
   std::string video;
   std::string pictures;  ///< folder for composed frames as PNG
   std::int64_t pictures_every = 10;
+  std::string frames_csv;  ///< file with a line a frame: how much of room and depth it needed, and why
   std::string report;
 };
 

@@ -29,6 +29,8 @@ std::size_t LiveScene::render_expected(const Intrinsics& camera, const Eigen::Is
     return expected_triangles_;
   const MeshInstance room{&room_.drawn, Eigen::Isometry3d::Identity()};
   expected_triangles_ = depth_pass_.render({&room, 1}, camera, T_world_camera, expected_depth_m_);
+  ++room_drawn_.views;
+  room_drawn_.triangles += expected_triangles_;
   expected_camera_ = camera;
   T_world_expected_ = T_world_camera;
   return expected_triangles_;

@@ -68,6 +68,14 @@ class LiveScene {
   void render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                        const PixelRect& rect, DepthImage& depth_m);
 
+  /// Views of the room that render_expected() had to draw so far, and its triangles in them.
+  struct RoomDrawn {
+    std::size_t views = 0, triangles = 0;
+  };
+  [[nodiscard]] RoomDrawn room_drawn() const { return room_drawn_; }
+  /// Of the last frame's mesh of what moved, by kinds and by the regions it was given; kMap only.
+  [[nodiscard]] const MovedCells& moved_cells() const { return moved_scratch_.cells; }
+
   [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
   [[nodiscard]] const LabelImage& labels() const { return labels_; }
   [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
@@ -87,6 +95,7 @@ class LiveScene {
   Intrinsics expected_camera_;   ///< of no size: nothing was rendered yet
   Eigen::Isometry3d T_world_expected_ = Eigen::Isometry3d::Identity();
   std::size_t expected_triangles_ = 0;
+  RoomDrawn room_drawn_;
 
   ForegroundState foreground_;
   LabelImage labels_;

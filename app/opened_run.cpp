@@ -159,6 +159,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   run.report.source = command.source;
   run.report.settings = settings_of(command);
   require_writable(command.report);
+  require_writable(command.frames_csv);
   run.script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
   require_can_save_map(command, run.script);
   run.map = load_map(command.map);
@@ -166,6 +167,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   open_budget(run, makes_picture(command, link != nullptr));
   open_session(run, link != nullptr);
   open_outputs(run);
+  if (!command.frames_csv.empty()) run.frames_csv.emplace(command.frames_csv);
   if (link != nullptr)
     run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, command.object,
                      run.is_live);

@@ -29,12 +29,13 @@ struct OpenedRun {
   std::optional<SessionRecorder> recorder;  ///< --record-session
   std::optional<ReplayCheck> check;         ///< the source is a session that was recorded
   std::optional<Interrupt> interrupt;
-  std::unique_ptr<FrameSource> source;  ///< ends by Ctrl-C too
-  PlaybackSource* playback = nullptr;   ///< within it
-  std::unique_ptr<RunBudget> budget;    ///< --budget-ms
-  std::unique_ptr<Session> session;     ///< with the script's objects loaded
-  std::unique_ptr<VideoWriter> video;   ///< --video
-  std::optional<PlayHost> host;         ///< the window's
+  std::unique_ptr<FrameSource> source;     ///< ends by Ctrl-C too
+  PlaybackSource* playback = nullptr;      ///< within it
+  std::unique_ptr<RunBudget> budget;       ///< --budget-ms
+  std::unique_ptr<Session> session;        ///< with the script's objects loaded
+  std::unique_ptr<VideoWriter> video;      ///< --video
+  std::optional<FrameUseFile> frames_csv;  ///< --frames-csv
+  std::optional<PlayHost> host;            ///< the window's
   RunTotals totals;
   bool was_quit = false;  ///< by an event, before the source's end
 };

@@ -130,7 +130,7 @@ void RunLoop::step() {
     return;
   }
   end_budget();
-  run_.totals.add(result);
+  run_.totals.add(result, *run_.session);
   const bool is_located = result.status == FrameStatus::kDone;
   const std::string news = run_.totals.lost.add(frame_.index, is_located);
   if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
@@ -162,6 +162,8 @@ void RunLoop::keep(const FrameResult& result) {
     if (run_.check) run_.check->compare(fingerprint);
   }
   if (run_.video) run_.video->write(session.picture());
+  if (run_.frames_csv && result.status == FrameStatus::kDone)
+    run_.frames_csv->write(frame_.index, result.use, session.objects());
   if (!run_.command.pictures.empty() && run_frame_ % run_.command.pictures_every == 0)
     write_pictures(session, result, run_.command.pictures, frame_.index);
 }
@@ -171,6 +173,7 @@ void RunLoop::keep(const FrameResult& result) {
 void play_to_end(OpenedRun& run) {
   RunLoop(run).play();
   if (run.video) run.video->close();
+  if (run.frames_csv) run.frames_csv->close();
   run.session->finish_adopting();
   if (run.totals.read == run.totals.skipped)
     throw Error(run.command.source + ": there is not one readable frame" +

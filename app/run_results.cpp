@@ -62,6 +62,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"unknown_triangles", session.unknown().mesh_world.triangles.size()},
       {"unknown_mb", static_cast<double>(session.unknown().memory_bytes) / 1e6},
       {"deepest_penetration_m", totals.deepest_penetration_m},
+      {"needed", to_json(totals.use)},
       {"objects", objects},
       {"adopted", adopted},
   };
@@ -74,6 +75,7 @@ void print_summary(const RunTotals& totals, const Session& session) {
       "located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
       static_cast<long long>(totals.located), static_cast<long long>(totals.read),
       100.0 * totals.per_frame(totals.moved_fraction), totals.per_frame(totals.dynamic_triangles));
+  print_use(totals.use);
   for (const AdoptedChange& change : session.adopted()) {
     const Eigen::Vector3d p = change.box_world.center(), size = change.box_world.sizes();
     std::printf("adopted at %.1f s: what %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",

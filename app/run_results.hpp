@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/lost_spans.hpp"
+#include "app/run_use.hpp"
 #include "app/session.hpp"
 
 namespace roomradar {
@@ -24,6 +25,7 @@ struct RunTotals {
   LostSpans lost;
   std::int64_t dropped = 0;  // by a live source, for newer ones
   std::optional<std::int64_t> first_index;
+  RunUse use;
 
   /// Every frame that was read before, and those that were dropped, have a lower index.
   void count_dropped(std::int64_t index) {
@@ -31,9 +33,10 @@ struct RunTotals {
     dropped = std::max(dropped, index - *first_index - (read - 1));
   }
 
-  void add(const FrameResult& frame) {
+  void add(const FrameResult& frame, const Session& session) {
     if (frame.status != FrameStatus::kDone) return;
     ++located;
+    use.add(frame.use, session.objects());
     if (frame.tracking == TrackStatus::kDegenerate) ++degenerate;
     contacts += frame.contacts;
     for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)

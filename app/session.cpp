@@ -137,6 +137,8 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
 FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   FrameResult result;
   const auto handed_over = std::chrono::steady_clock::now();
+  const LiveScene::RoomDrawn drawn_before = scene_.room_drawn();
+  const std::uint64_t asked_before = radar_.static_triangles_asked();
   const double dt_s = has_last_stamp_ ? std::max(0.0, whole.stamp_s - last_stamp_s_) : 0.0;
   last_stamp_s_ = whole.stamp_s;
   has_last_stamp_ = true;
@@ -164,6 +166,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   begin(FramePart::kMesh);
   find_fine_regions();
   times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera, fine_regions_); });
+  count_fine_cells();
   release_waiting(frame, T_world_camera);
   begin(FramePart::kPhysics);
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
@@ -178,6 +181,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   result.T_world_camera = T_world_camera;
   result.dynamic_triangles = scene_.moved_triangles();
   result.inferred_triangles = scene_.inferred_triangles();
+  result.use = use_of(result.foreground, drawn_before, asked_before);
   return result;
 }
 
@@ -285,6 +289,32 @@ void Session::find_fine_regions() {
       fine_regions_.push_back({object->body.T_world_object * object->middle,
                                0.5 * object->shape.drawn.bounds().sizes().norm() + kAbout_m});
   }
+}
+
+void Session::count_fine_cells() {
+  const std::vector<std::uint32_t>& of_region = scene_.moved_cells().fine_of_region;
+  const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
+  std::size_t region = 0;  // those in the room have one each, in this order
+  for (const auto& object : objects_) {
+    const bool has_region = has_map && object->in_room && region < of_region.size();
+    object->fine_cells = has_region ? of_region[region++] : 0;
+  }
+}
+
+FrameUse Session::use_of(const ForegroundCounts& foreground, const LiveScene::RoomDrawn& drawn,
+                         std::uint64_t asked) {
+  const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
+  FrameUse use;
+  use.room_triangles = room_.touched.triangle_count();
+  use.views_drawn = scene_.room_drawn().views - drawn.views;
+  if (use.views_drawn > 0)
+    use.room_drawn = (scene_.room_drawn().triangles - drawn.triangles) / use.views_drawn;
+  use.room_asked = static_cast<std::size_t>(radar_.static_triangles_asked() - asked);
+  use.valid_px = foreground.valid;
+  use.meshed_px = has_map ? foreground.moved : foreground.valid;
+  use.mesh_triangles = scene_.moved_triangles();
+  if (has_map) use.cells = scene_.moved_cells().counts;
+  return use;
 }
 
 void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) {

@@ -12,6 +12,7 @@
 #include "app/compose.hpp"
 #include "app/draw.hpp"
 #include "app/frame_load.hpp"
+#include "app/frame_use.hpp"
 #include "app/live_scene.hpp"
 #include "app/living_map.hpp"
 #include "app/locator.hpp"
@@ -70,6 +71,7 @@ struct FrameResult {
   int contacts = 0;
   std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by what was touched
   double deepest_penetration_m = 0.0;                 ///< >= 0, where it is measured
+  FrameUse use;                                       ///< only if done
 };
 
 /// Everything a run keeps from frame to frame. The saved map is only read. Not thread safe; GL on the thread
@@ -186,6 +188,10 @@ class Session {
   void turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg);
   /// Balls about the objects, in which what moved is meshed as finely as it was seen.
   void find_fine_regions();
+  /// Sets fine_cells of all objects.
+  void count_fine_cells();
+  /// What the frame needed, where nothing was drawn and asked before `drawn` and `asked`.
+  FrameUse use_of(const ForegroundCounts& foreground, const LiveScene::RoomDrawn& drawn, std::uint64_t asked);
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   void move_objects(double dt_s, StageTimes& times, FrameResult& result);
   [[nodiscard]] bool is_in_unknown(const VirtualObject& object) const;

@@ -29,7 +29,8 @@ struct VirtualObject {
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< how it stood when it was last put somewhere
   /// While it is held by a user's hand: where its origin is wanted. Gravity does not move it then.
   std::optional<Eigen::Vector3d> carried_to_world;
-  double waited_s = 0.0;  ///< since it was moved last
+  double waited_s = 0.0;       ///< since it was moved last
+  std::size_t fine_cells = 0;  ///< of the last frame's mesh of what moved: as fine as the image for its sake
   Shape shape;
   SurfacePoints surface;           ///< what its shadow is made of
   ContactShadow shadow;            ///< as it stood when this was made last

@@ -154,6 +154,9 @@ class CellSorter {
           for (int i = column; i < column + kSquareCells; ++i) {
             const CellKind kind = cells_.kinds[cell(i, j)];
             has_flat = has_flat || kind == CellKind::kFlat;
+            cells_.counts.flat += kind == CellKind::kFlat ? 1 : 0;
+            cells_.counts.cut += kind == CellKind::kCut ? 1 : 0;
+            cells_.counts.full += kind == CellKind::kFull ? 1 : 0;
             if (kind == CellKind::kCut) cut(i, j);
             if (kind == CellKind::kFull) fill(i, j);
           }
@@ -183,7 +186,10 @@ class CellSorter {
     const std::array<std::size_t, 4> at = corners(column, row);
     const bool is_flat = in == kWholeCell && (lattice_.is_flat[at[0]] & lattice_.is_flat[at[1]] &
                                               lattice_.is_flat[at[2]] & lattice_.is_flat[at[3]]) != 0;
-    if (!fine_.empty() && is_fine(in, column, row)) return CellKind::kFull;
+    if (const FineBall* ball = fine_.empty() ? nullptr : fine_ball(in, column, row)) {
+      ++cells_.fine_of_region[ball->region];
+      return CellKind::kFull;
+    }
     if (is_flat) return CellKind::kFlat;
     CellValues values;
     const auto [least, most] = read(in, column, row, values);
@@ -241,17 +247,19 @@ class CellSorter {
     return is_followed(part, values, arc, rules_.most_sigmas * inverse_depth_sigma(most, slope * slope));
   }
 
-  [[nodiscard]] bool is_fine(CellBits in, int column, int row) const {
+  /// Null: none reaches the cell.
+  [[nodiscard]] const FineBall* fine_ball(CellBits in, int column, int row) const {
     const int k = std::countr_zero(in);
     const CellPixel p{static_cast<std::int8_t>(k % 5), static_cast<std::int8_t>(k / 5)};
     const float z = 1.0F / pixels_.inverse_depth[pixel(column, row, p)];
     const Eigen::Vector3f at =
         back_project(camera_, column * kCell_px + p.x, row * kCell_px + p.y, z).cast<float>();
     const float reach = z * 1.5F * kCell_px / static_cast<float>(std::min(camera_.fx_px, camera_.fy_px));
-    return std::any_of(fine_.begin(), fine_.end(), [&](const FineBall& ball) {
+    const auto found = std::find_if(fine_.begin(), fine_.end(), [&](const FineBall& ball) {
       const float within = ball.radius_m + reach;
       return (at - ball.centre_camera).squaredNorm() <= within * within;
     });
+    return found == fine_.end() ? nullptr : &*found;
   }
 
   /// Bits of the sides beyond which a full cell lies: left, bottom, right, top.
@@ -329,7 +337,8 @@ class CellSorter {
 }  // namespace
 
 void make_cells(const MovedPixels& pixels, const MovedLattice& lattice, const Intrinsics& camera,
-                std::span<const FineBall> fine, const CellRules& rules, MovedCells& cells) {
+                std::span<const FineBall> fine, std::size_t regions, const CellRules& rules,
+                MovedCells& cells) {
   const auto count =
       static_cast<std::size_t>(lattice.columns - 1) * static_cast<std::size_t>(lattice.rows - 1);
   cells.kinds.assign(count, CellKind::kEmpty);
@@ -337,6 +346,8 @@ void make_cells(const MovedPixels& pixels, const MovedLattice& lattice, const In
   cells.parts.resize(count);
   cells.must_be_vertex.assign(lattice.inverse_depth.size(), 0);
   cells.is_full_corner.assign(lattice.inverse_depth.size(), 0);
+  cells.counts = {};
+  cells.fine_of_region.assign(regions, 0);
   cells.triangles.clear();
   cells.triangles.reserve(2 * static_cast<std::size_t>(pixels.smooth.width) *
                           static_cast<std::size_t>(pixels.smooth.height));

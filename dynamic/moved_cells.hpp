@@ -25,6 +25,12 @@ enum class CellKind : std::uint8_t {
 struct FineBall {
   Eigen::Vector3f centre_camera;
   float radius_m;
+  std::size_t region;  ///< what it was asked for by
+};
+
+/// How many cells are of a kind.
+struct CellCounts {
+  std::size_t flat = 0, cut = 0, full = 0;
 };
 
 /// Vertices are pixels, as places in the image. Counter-clockwise as the camera sees them.
@@ -36,9 +42,11 @@ struct MovedCells {
   std::vector<std::array<CellBits, 4>> parts;  ///< of cut cells: the pixels of each surface
   std::vector<std::uint8_t> must_be_vertex;    ///< one a lattice point: all corners of cut and full cells
   std::vector<std::uint8_t> is_full_corner;    ///< one a lattice point: corner of a full cell
-  std::vector<PixelTriangle> triangles;        ///< of cut and full cells, square by square
-  std::vector<std::uint8_t> has_flat;          ///< one a square: it holds flat cells
-  std::vector<std::uint32_t> first_triangle;   ///< of each square, row by row, and one past the last
+  CellCounts counts;
+  std::vector<std::uint32_t> fine_of_region;  ///< full cells by the first region that asks for it
+  std::vector<PixelTriangle> triangles;       ///< of cut and full cells, square by square
+  std::vector<std::uint8_t> has_flat;         ///< one a square: it holds flat cells
+  std::vector<std::uint32_t> first_triangle;  ///< of each square, row by row, and one past the last
 };
 
 struct CellRules {
@@ -47,7 +55,9 @@ struct CellRules {
 };
 
 /// Sorts the cells and makes the triangles of those that are cut or full.
+/// @param regions  more than the region of any ball
 void make_cells(const MovedPixels& pixels, const MovedLattice& lattice, const Intrinsics& camera,
-                std::span<const FineBall> fine, const CellRules& rules, MovedCells& cells);
+                std::span<const FineBall> fine, std::size_t regions, const CellRules& rules,
+                MovedCells& cells);
 
 }  // namespace roomradar

@@ -304,17 +304,18 @@ void mesh_moved(const DepthImage& depth_m, const MaskImage& moved_mask, const De
 
   scratch.fine.clear();
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  for (const FineRegion& region : regions) {
-    const Eigen::Vector3d centre = T_camera_world * region.centre_world;
-    if (centre.allFinite() && std::isfinite(region.radius_m))
-      scratch.fine.push_back({centre.cast<float>(), static_cast<float>(region.radius_m)});
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    const Eigen::Vector3d centre = T_camera_world * regions[i].centre_world;
+    if (centre.allFinite() && std::isfinite(regions[i].radius_m))
+      scratch.fine.push_back({centre.cast<float>(), static_cast<float>(regions[i].radius_m), i});
   }
 
   take_moved_pixels(depth_m, moved_mask, scratch.pixels);
   make_lattice(scratch.pixels, camera, config.flat_sigmas, scratch.lattice);
   const CellRules cell_rules{JumpRule(config.jump_sigmas, config.jump_incidence_deg, 1.0F, camera),
                              config.cut_sigmas};
-  make_cells(scratch.pixels, scratch.lattice, camera, scratch.fine, cell_rules, scratch.cells);
+  make_cells(scratch.pixels, scratch.lattice, camera, scratch.fine, regions.size(), cell_rules,
+             scratch.cells);
 
   scratch.values = scratch.lattice.inverse_depth;
   scratch.tolerances = scratch.lattice.sigma;

@@ -206,6 +206,7 @@ void CyberRadar::look(Search& search) {
     }
     const FrameTriangle triangle = scene_.triangle(item);
     if (item.kind == SceneItem::Kind::kTriangle) {
+      static_triangles_asked_ += scene_.kind(item) == Touched::kStatic ? 1 : 0;
       item.kind = SceneItem::Kind::kBounded;
       item.low_m = std::max(item.low_m, bound.low_m(triangle));
       if (!(item.low_m < limit_m(search))) continue;

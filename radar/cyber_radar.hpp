@@ -109,6 +109,8 @@ class CyberRadar {
   Contact query(const RadarQuery& query, const RadarScene& scene);
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }
+  /// Triangles of Touched::kStatic that were looked at one by one so far, by all queries.
+  [[nodiscard]] std::uint64_t static_triangles_asked() const { return static_triangles_asked_; }
 
   static constexpr int kSampledSettles = 48;
   /// What an object that is sunk in a very fine mesh, or holds one in its hollow, may cost before it is left
@@ -126,6 +128,7 @@ class CyberRadar {
   };
   RadarConfig config_;
   FrontMap front_;
+  std::uint64_t static_triangles_asked_ = 0;
   int front_uses_ = 0;  // of front_ as it is turned now
   SceneInFrame scene_;
   ContactPatch patch_;
