@@ -1,12 +1,12 @@
 // picture_file.cpp: images to PNG files, encoded in memory and then written whole.
 #include "app/picture_file.hpp"
 
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 namespace {
@@ -15,11 +15,10 @@ void write_encoded(const cv::Mat& image, const std::filesystem::path& path) {
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 3}))
     throw Error(path.string() + ": the picture cannot be encoded as PNG");
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  if (!file) throw Error(path.string() + ": cannot be made; does its folder exist, and may it be written?");
-  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw Error(path.string() + ": cannot be written whole; is the disk full?");
+  WholeFile file(path);
+  file.stream().write(reinterpret_cast<const char*>(bytes.data()),
+                      static_cast<std::streamsize>(bytes.size()));
+  file.put_in_place();
 }
 
 template <typename Pixel>

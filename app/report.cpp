@@ -4,11 +4,10 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <fstream>
-
 #include "mapping/map_folder.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/version.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 
@@ -57,12 +56,10 @@ void require_writable(const std::filesystem::path& path) {
 
 void write_report(const Report& report, const std::filesystem::path& path) {
   if (path.empty()) return;
-  std::ofstream file(path);
+  WholeFile file(path);
   // A file's name need not be UTF-8, which JSON has to be.
-  file << to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-  file.flush();
-  if (!file)
-    throw Error(path.string() + ": the report cannot be written; does its folder exist, and is there room?");
+  file.stream() << to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+  file.put_in_place();
 }
 
 }  // namespace roomradar

@@ -22,6 +22,7 @@
 #include "mapping/run_apart.hpp"
 #include "mapping/types/byte_archive.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 namespace {
@@ -317,11 +318,9 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
   const Format& format = format_of(path);
   require_writable(mesh, path);
   const std::string bytes = format.assimp_id ? assimp_bytes(mesh, format, path) : ply_bytes(mesh);
-  std::ofstream file(path, std::ios::binary);
-  if (!file) fail(path, "cannot be created; does its folder exist, and may you write there?");
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.flush();
-  if (!file) fail(path, "cannot be written; is the disk full?");
+  WholeFile file(path);
+  file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.put_in_place();
 }
 
 }  // namespace roomradar

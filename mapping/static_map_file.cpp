@@ -15,6 +15,7 @@
 #include "mapping/static_map.hpp"
 #include "mapping/static_map_octree.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 namespace {
@@ -30,12 +31,10 @@ constexpr std::size_t kMaxHeaderLines = 100;
 // stream.
 template <typename Write>
 void write_stream(const std::filesystem::path& path, const Write& write) {
-  std::ofstream file(path, std::ios::binary);
-  if (!file) fail(path, "cannot be created; does its folder exist, and may you write there?");
-  file.precision(17);
-  write(file);
-  file.flush();
-  if (!file) fail(path, "cannot be written; is the disk full?");
+  WholeFile file(path);
+  file.stream().precision(17);
+  write(file.stream());
+  file.put_in_place();
 }
 
 // Writes nodes in the form of OctoMap's writeNodesRecurs: each node, the mask of its children, these in turn.

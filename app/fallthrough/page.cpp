@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
 #include <map>
 
 #include "app/fallthrough/svg_plot.hpp"
 #include "mapping/coverage_picture.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 namespace {
@@ -111,7 +110,8 @@ std::string speed_of(const ScenarioRow& row) {
 void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
                 const std::vector<FailurePicture>& pictures, const std::filesystem::path& path) {
   if (path.empty()) return;
-  std::ofstream file(path, std::ios::trunc);
+  WholeFile whole(path);
+  std::ostream& file = whole.stream();
   file << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Fall-through</title><style>"
        << kStyle << "</style><h1>Do virtual objects fall through hidden surfaces?</h1><p>" << escaped(about)
        << "</p><p>An object moves straight onto a surface that the camera cannot see now, but saw in the "
@@ -139,9 +139,7 @@ void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
     file << "<figure><img alt=\"\" src=\"data:image/png;base64," << base64(encode_png(picture.picture))
          << "\"><figcaption>" << escaped(picture.caption) << "</figcaption></figure>\n";
   file << "</html>\n";
-  file.close();
-  if (!file)
-    throw Error(path.string() + ": cannot be written whole; does its folder exist, is the disk full?");
+  whole.put_in_place();
 }
 
 }  // namespace roomradar

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 
@@ -101,7 +100,8 @@ nlohmann::json failures_of(const std::vector<ScenarioRow>& rows) {
 
 void write_csv(const std::vector<ScenarioRow>& rows, const std::filesystem::path& path) {
   if (path.empty()) return;
-  std::ofstream file(path, std::ios::trunc);
+  WholeFile whole(path);
+  std::ostream& file = whole.stream();
   file << "scenario,room,occluder,occluder_moves,shape,motion,speed_m_s,true_travel_m,surfaces,outcome,"
           "travelled_m,error_m,rested_on,frame_ms\n";
   char numbers[120];
@@ -119,9 +119,7 @@ void write_csv(const std::vector<ScenarioRow>& rows, const std::filesystem::path
       std::snprintf(numbers, sizeof numbers, "%.2f", trial.frame_ms);
       file << numbers << '\n';
     }
-  file.close();
-  if (!file)
-    throw Error(path.string() + ": cannot be written whole; does its folder exist, is the disk full?");
+  whole.put_in_place();
 }
 
 }  // namespace roomradar

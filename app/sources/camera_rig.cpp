@@ -14,6 +14,7 @@
 #include "app/sources/camera_rig_json.hpp"
 #include "app/sources/parse_numbers.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 namespace {
@@ -129,10 +130,9 @@ Json json_of(const CameraRig& rig) {
 }
 
 void write_json(const Json& root, const std::filesystem::path& path) {
-  std::ofstream file(path);
-  file << root.dump(2) << '\n';
-  file.close();
-  if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
+  WholeFile file(path);
+  file.stream() << root.dump(2) << '\n';
+  file.put_in_place();
 }
 
 CameraRig read_camera_file(const std::filesystem::path& path) {
