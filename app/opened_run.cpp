@@ -65,6 +65,14 @@ void require_can_save_map(const RunCommand& command, const Script& script) {
   require_can_become_map(command.save_map);
 }
 
+void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
+  if (info.up_source != to_string(UpSource::kNone)) return;
+  std::fprintf(stderr,
+               "roomradar: %s: which way is up was not known when the room was scanned; objects fall the way "
+               "that was down for its first camera\n",
+               folder.c_str());
+}
+
 /// The frames, recorded on their way or compared with what was recorded of them.
 void open_frames(OpenedRun& run) {
   const RunCommand& command = run.command;
@@ -163,6 +171,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   run.script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
   require_can_save_map(command, run.script);
   run.map = load_map(command.map);
+  say_if_up_is_not_known(run.map.info, command.map);
   open_frames(run);
   open_budget(run, makes_picture(command, link != nullptr));
   open_session(run, link != nullptr);

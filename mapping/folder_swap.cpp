@@ -2,6 +2,7 @@
 #include "mapping/folder_swap.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -94,6 +95,18 @@ void PartialFolder::put_in_place() {
     fs::remove_all(aside, ignored);
   }
   sync_to_disk(parent_of(target_));
+}
+
+std::string swap_mark_of(const fs::path& folder) {
+  struct stat facts {};
+  if (::stat(folder.c_str(), &facts) != 0) return {};
+  return std::to_string(facts.st_dev) + " " + std::to_string(facts.st_ino) + " " +
+         std::to_string(facts.st_ctim.tv_sec) + " " + std::to_string(facts.st_ctim.tv_nsec);
+}
+
+void fail_as_never_still(const fs::path& folder) {
+  throw Error(folder.string() +
+              ": is replaced by another process again and again; read it when that is done");
 }
 
 }  // namespace roomradar

@@ -1,6 +1,8 @@
 // folder_swap.hpp: a folder that appears whole or not at all.
 #pragma once
+#include <exception>
 #include <filesystem>
+#include <string>
 
 namespace roomradar {
 
@@ -28,5 +30,28 @@ class PartialFolder {
   std::filesystem::path target_;
   std::filesystem::path partial_;
 };
+
+/// Which folder has a name now: another one after it was put in place anew. Empty if there is none.
+std::string swap_mark_of(const std::filesystem::path& folder);
+
+/// Throws Error: the folder is put in place anew faster than it can be read.
+[[noreturn]] void fail_as_never_still(const std::filesystem::path& folder);
+
+/// What read() gives of a folder that another process may replace meanwhile: all of it of one and the same
+/// folder. What read() throws counts only if the folder was not replaced.
+template <typename Read>
+auto read_of_one(const std::filesystem::path& folder, const Read& read) {
+  constexpr int kAttempts = 100;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    const std::string before = swap_mark_of(folder);
+    try {
+      auto result = read();
+      if (swap_mark_of(folder) == before) return result;
+    } catch (const std::exception&) {
+      if (swap_mark_of(folder) == before) throw;
+    }
+  }
+  fail_as_never_still(folder);
+}
 
 }  // namespace roomradar

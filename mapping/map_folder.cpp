@@ -17,6 +17,7 @@
 #include "mapping/sha256.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/version.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 namespace {
@@ -184,7 +185,9 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   partial.put_in_place();
 }
 
-MapInfo load_map_info(const fs::path& folder) {
+namespace {
+
+MapInfo read_info(const fs::path& folder) {
   std::error_code fault;
   if (!fs::is_directory(folder, fault))
     fail(folder, "there is no such map folder; make one with `roomradar prescan`");
@@ -200,8 +203,8 @@ MapInfo load_map_info(const fs::path& folder) {
   return info;
 }
 
-SavedMap load_map(const fs::path& folder) {
-  MapInfo info = load_map_info(folder);
+SavedMap read_map(const fs::path& folder) {
+  MapInfo info = read_info(folder);
   for (const auto& [name, file] : info.files)
     if (const auto fault = fault_of(folder / name, file))
       throw Error(*fault + "; take the map from a backup or scan the room again");
@@ -214,7 +217,7 @@ SavedMap load_map(const fs::path& folder) {
                                                          : std::vector<std::uint8_t>{}};
 }
 
-std::vector<std::string> verify_map(const fs::path& folder) {
+std::vector<std::string> faults_of(const fs::path& folder) {
   std::vector<std::string> faults;
   const auto attempt = [&](const std::function<void()>& work) {
     try {
@@ -224,7 +227,7 @@ std::vector<std::string> verify_map(const fs::path& folder) {
     }
   };
   std::optional<MapInfo> info;
-  attempt([&] { info = load_map_info(folder); });
+  attempt([&] { info = read_info(folder); });
   if (!info) return faults;
   for (const auto& [name, file] : info->files) {
     const fs::path part = name;
@@ -242,6 +245,20 @@ std::vector<std::string> verify_map(const fs::path& folder) {
   return faults;
 }
 
+}  // namespace
+
+MapInfo load_map_info(const fs::path& folder) {
+  return read_of_one(folder, [&] { return read_info(folder); });
+}
+
+SavedMap load_map(const fs::path& folder) {
+  return read_of_one(folder, [&] { return read_map(folder); });
+}
+
+std::vector<std::string> verify_map(const fs::path& folder) {
+  return read_of_one(folder, [&] { return faults_of(folder); });
+}
+
 void export_map(const fs::path& folder, const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -256,9 +273,10 @@ void export_map(const fs::path& folder, const fs::path& path) {
   const char* part = extension == ".ot" ? kOctree : extension == ".bt" ? kPlainOctree : kMesh;
   if (const auto fault = fault_of(folder / part, info.files.at(part))) throw Error(*fault);
   if (!octree) return write_mesh(read_mesh(folder / part), path);
-  std::error_code fault;
-  fs::copy_file(folder / part, path, fs::copy_options::overwrite_existing, fault);
-  if (fault) fail(path, "cannot be written: " + fault.message());
+  std::ifstream in(folder / part, std::ios::binary);
+  WholeFile out(path);
+  if (!(out.stream() << in.rdbuf())) fail(path, "cannot be written; is the disk full?");
+  out.put_in_place();
 }
 
 std::string describe(const MapInfo& info) {
