@@ -14,11 +14,6 @@ constexpr double kTouchingBand = 0.5;  // of the margin: so much farther away th
 constexpr double kKept = 0.5;          // of the margin: what approaches is stopped there
 constexpr double kNoTime_s = 1e-12;
 
-/// Columns at right angles again, after any number of turns.
-void make_orthonormal(Eigen::Isometry3d& T) {
-  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
-}
-
 void limit(Vec3& v, double most) {
   const double size = v.norm();
   if (size > most) v *= most / size;
@@ -235,6 +230,10 @@ RigidPiece Piece::run() {
 }
 
 }  // namespace
+
+void make_orthonormal(Eigen::Isometry3d& T) {
+  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
+}
 
 Eigen::Vector3d centre_world(const Body& body) { return body.T_world_object * body.mass.centre_object; }
 

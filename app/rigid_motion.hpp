@@ -48,6 +48,9 @@ struct RigidScratch {
 RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
                         const std::optional<Push>& push, RigidScratch& scratch, StepReport& report);
 
+/// Columns of unit length at right angles again, after any number of turns.
+void make_orthonormal(Eigen::Isometry3d& T);
+
 /// Centre of mass, in the world.
 Eigen::Vector3d centre_world(const Body& body);
 /// About the centre, along the world's axes.

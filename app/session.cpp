@@ -10,6 +10,7 @@
 #include "app/apply_quality.hpp"
 #include "app/placement.hpp"
 #include "app/reduced_depth.hpp"
+#include "app/rigid_motion.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/validity.hpp"
 #include "radar/sweep.hpp"
@@ -462,6 +463,7 @@ void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg)
       sweep(radar_, {&object.shape.touched, object.body.T_world_object}, motion, 1.0, {scene, {}});
   if (free.status == SweepStatus::kInvalidInput || free.status == SweepStatus::kNoAnswer) return;
   object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
+  make_orthonormal(object.body.T_world_object);
   object.body.at_rest = false;
 }
 

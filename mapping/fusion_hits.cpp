@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "mapping/fusion.hpp"
+#include "mapping/fusion_view.hpp"
 #include "mapping/types/morton.hpp"
 
 namespace roomradar {
@@ -65,7 +66,7 @@ int end_voxels(const RowOfRays& rays, int axis, const float* depth_m, const floa
     const float voxels = (per_x * ray_x[x] + at_zero) * within_range_m + within;
     const int truncated = static_cast<int>(voxels);
     const int key = truncated - (static_cast<float>(truncated) > voxels) + camera_key;
-    const int hits = -static_cast<int>((z > 0.0F) & (z <= max_range_m));  // all bits or none
+    const int hits = -static_cast<int>((z >= kLeastDepth_m) & (z <= max_range_m));  // all bits or none
     out_of_reach |= hits & key & ~0xFFFF;
     keys[x] = (hits & key) | (~hits & kNoKey);
   }
@@ -112,7 +113,7 @@ HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_came
                        const FusionConfig& config, FusionScratch& scratch) {
   const Intrinsics& camera = frame.depth_camera;
   const DepthImage& depth_m = frame.depth_m;
-  const auto is_measured = [](float z) { return z > 0.0F; };
+  const auto is_measured = [](float z) { return z >= kLeastDepth_m; };
   if (std::none_of(depth_m.pixels.begin(), depth_m.pixels.end(), is_measured)) return HitStatus::kNone;
   const Eigen::Matrix3f R_voxels = (T_world_camera.linear() / resolution_m).cast<float>();
   const Eigen::Vector3d camera_voxels = T_world_camera.translation() / resolution_m;

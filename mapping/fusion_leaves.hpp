@@ -65,7 +65,7 @@ class LeafUpdate {
     const auto seen = (Float8(kNearest_m) < p_camera.z) & (Float8(0.0F) <= u) & (u < camera_.width) &
                       (Float8(0.0F) <= v) & (v < camera_.height);
     const Float8 depth_m = Float8::gather(frame_.depth_m.pixels.data(), v * camera_.width + u, seen);
-    const auto measured = Float8(0.0F) < depth_m;
+    const auto measured = Float8(kLeastDepth_m) <= depth_m;
     const Float8 distance_m = depth_m - p_camera.z;
     const Float8 sigma_m = sigma_of(depth_m);
     const auto free = measured & (p_camera.z < min(depth_m, config_.max_range_m));

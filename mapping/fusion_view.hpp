@@ -12,6 +12,9 @@
 
 namespace roomradar {
 
+/// No depth camera measures anything as near; a pixel that says so is taken for one that measured nothing.
+inline constexpr float kLeastDepth_m = 0.05F;
+
 inline constexpr float kNearest_m = 0.01F;  // nothing is projected from nearer to the camera's plane
 
 /// A pinhole camera in float.

@@ -1,0 +1,24 @@
+// extremes_row.hpp: a line of the table of extremes, as the README has it.
+#pragma once
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace roomradar::test {
+
+/// What one case came to, beside what it had to.
+inline void print_row(const std::string& what, const std::string& expected, const std::string& measured) {
+  std::printf("| %s | %s | %s |\n", what.c_str(), expected.c_str(), measured.c_str());
+  std::fflush(stdout);
+}
+
+inline std::string text(const char* format, double value) {
+  char line[80];
+  std::snprintf(line, sizeof line, format, value);
+  return line;
+}
+
+/// Whether there is time for what takes minutes (ROOMRADAR_LONG_TESTS).
+inline bool is_long_test() { return std::getenv("ROOMRADAR_LONG_TESTS") != nullptr; }
+
+}  // namespace roomradar::test
