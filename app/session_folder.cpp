@@ -4,7 +4,6 @@
 #include <array>
 #include <cinttypes>
 #include <cstdio>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <sstream>
@@ -19,6 +18,7 @@ namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;  // as qualities have it: what is nested deeply must not be copied
 
 constexpr const char* kSettings = "session.json";
 constexpr const char* kEvents = "events.txt";
@@ -29,47 +29,39 @@ constexpr const char* kFormat = "roomradar session";
 constexpr int kFormatVersion = 2;
 constexpr std::uintmax_t kMaxSettingsBytes = 1U << 20U;
 
-/// Fowler, Noll and Vo's hash FNV-1a, over words of 8 bytes.
-class Fingerprint {
- public:
-  void add(const void* data, std::size_t size_bytes) {
-    const char* bytes = static_cast<const char*>(data);
-    for (std::size_t at = 0; at < size_bytes; at += sizeof(std::uint64_t)) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, bytes + at, std::min(sizeof word, size_bytes - at));
-      value_ = (value_ ^ word) * 1099511628211ULL;
-      value_ ^= value_ >> 29U;  // words' high bits would never come down by the product alone
-    }
-  }
-  [[nodiscard]] std::uint64_t value() const { return value_; }
-
- private:
-  std::uint64_t value_ = 14695981039346656037ULL;
-};
-
 std::string checksum_of(const MapInfo& map) {
   const auto found = map.files.find("octree.ot");
   return found == map.files.end() ? "" : found->second.sha256;
 }
 
-nlohmann::json read_settings(const fs::path& folder) {
+Json read_settings(const fs::path& folder) {
   const fs::path path = folder / kSettings;
   std::error_code fault;
   const std::uintmax_t bytes = fs::file_size(path, fault);
   if (fault) throw Error(path.string() + ": there is no recorded session: " + fault.message());
   if (bytes > kMaxSettingsBytes) throw Error(path.string() + ": is longer than 1 MiB; that is no session's");
   std::ifstream file(path);
-  nlohmann::json json = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || json.value("format", "") != kFormat)
+  Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
     throw Error(path.string() + ": is not the settings of a recorded session, or is damaged");
-  if (json.value("format_version", 0) != kFormatVersion)
-    throw Error(path.string() + ": is of format version " + std::to_string(json.value("format_version", 0)) +
-                "; this program reads version " + std::to_string(kFormatVersion));
+  if (!json.contains("format_version") || json["format_version"] != kFormatVersion)
+    throw Error(path.string() + ": is of another format version than " + std::to_string(kFormatVersion) +
+                ", which this program reads");
   return json;
 }
 
+/// Seconds of --adopt; Error if they are none.
+double adopt_seconds(const Json& value, const fs::path& folder) {
+  constexpr double kMost_s = 86400.0;
+  const double seconds = value.is_number() ? value.get<double>() : -1.0;
+  if (!(seconds > 0.0 && seconds <= kMost_s))
+    throw Error((folder / kSettings).string() + ": adopt_s = " + std::to_string(seconds) +
+                ": must be seconds, up to a day");
+  return seconds;
+}
+
 template <typename Value>
-Value choice_of(const nlohmann::json& json, const char* key, std::initializer_list<Value> values,
+Value choice_of(const Json& json, const char* key, std::initializer_list<Value> values,
                 const fs::path& folder) {
   const auto word = json.at(key).get<std::string>();
   for (const Value value : values)
@@ -83,23 +75,6 @@ void require_written(const std::ofstream& file, const fs::path& path) {
 
 }  // namespace
 
-FrameFingerprint fingerprint_of(std::int64_t run_frame, const Session& session) {
-  Fingerprint objects;
-  for (const auto& object : session.objects()) {
-    if (!object->in_room) continue;  // a replay loads all at its start, whenever they were added
-    objects.add(object->body.name.data(), object->body.name.size());
-    const Eigen::Matrix<double, 3, 4> pose = object->body.T_world_object.matrix().topRows<3>();
-    objects.add(pose.data(), sizeof(double) * 12);
-  }
-  FrameFingerprint result{run_frame, objects.value(), 0};
-  if (!session.picture().empty()) {
-    Fingerprint picture;
-    picture.add(session.picture().pixels.data(), session.picture().pixels.size() * sizeof(Rgb));
-    result.picture = picture.value();
-  }
-  return result;
-}
-
 SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map)
     : folder_(std::move(folder)) {
   std::error_code fault;
@@ -108,19 +83,19 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
   if (!fs::is_empty(folder_, fault) || fault)
     throw Error(folder_.string() +
                 ": is not empty; a session is recorded to a folder of its own, name a new one");
-  nlohmann::json json = {{"format", kFormat},
-                         {"format_version", kFormatVersion},
-                         {"source", command.source},
-                         {"map", fs::absolute(command.map).lexically_normal().string()},
-                         {"map_sha256", checksum_of(map)},
-                         {"poses", to_string(command.poses)},
-                         {"surfaces", to_string(command.surfaces)},
-                         {"unknown_is_solid", command.unknown_is_solid},
-                         {"quality", to_json(command.quality)},
-                         {"at_end", to_string(command.at_end)}};
+  Json json = {{"format", kFormat},
+               {"format_version", kFormatVersion},
+               {"source", command.source},
+               {"map", fs::absolute(command.map).lexically_normal().string()},
+               {"map_sha256", checksum_of(map)},
+               {"poses", to_string(command.poses)},
+               {"surfaces", to_string(command.surfaces)},
+               {"unknown_is_solid", command.unknown_is_solid},
+               {"quality", to_json(command.quality)},
+               {"at_end", to_string(command.at_end)}};
   if (command.adopt_after_s) json["adopt_s"] = *command.adopt_after_s;
   std::ofstream settings(folder_ / kSettings);
-  settings << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n' << std::flush;
+  settings << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
   require_written(settings, folder_ / kSettings);
   events_.open(folder_ / kEvents);
   events_ << "# events of " << command.source << ", as they were applied\n" << std::flush;
@@ -165,7 +140,7 @@ bool is_session_folder(const fs::path& folder) {
 }
 
 RunCommand read_session(const fs::path& folder) {
-  const nlohmann::json json = read_settings(folder);
+  const Json json = read_settings(folder);
   RunCommand command;
   command.source = folder.string();
   command.script = (folder / kEvents).string();
@@ -178,8 +153,8 @@ RunCommand read_session(const fs::path& folder) {
     command.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
     command.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
     command.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
-    if (json.contains("adopt_s")) command.adopt_after_s = json.at("adopt_s").get<double>();
-  } catch (const nlohmann::json::exception& fault) {
+    if (json.contains("adopt_s")) command.adopt_after_s = adopt_seconds(json["adopt_s"], folder);
+  } catch (const Json::exception& fault) {
     throw Error((folder / kSettings).string() + ": is damaged: " + fault.what());
   }
   return command;
@@ -190,8 +165,9 @@ std::unique_ptr<FrameSource> open_session_frames(const fs::path& folder) {
 }
 
 std::string map_difference(const fs::path& folder, const MapInfo& map) {
-  const std::string recorded = read_settings(folder).value("map_sha256", "");
-  if (recorded.empty() || recorded == checksum_of(map)) return {};
+  const Json settings = read_settings(folder);
+  const auto recorded = settings.find("map_sha256");
+  if (recorded == settings.end() || *recorded == "" || *recorded == checksum_of(map)) return {};
   return folder.string() + ": was recorded in a map that was another one than this; results will differ";
 }
 

@@ -15,18 +15,11 @@
 
 #include "app/commands.hpp"
 #include "app/script.hpp"
-#include "app/session.hpp"
+#include "app/session_fingerprint.hpp"
+#include "mapping/map_folder.hpp"
 #include "mapping/types/frame_source.hpp"
 
 namespace roomradar {
-
-/// What a frame came to.
-struct FrameFingerprint {
-  std::int64_t run_frame = 0;
-  std::uint64_t objects = 0;  ///< names and poses, to the last bit, of those in the room
-  std::uint64_t picture = 0;  ///< 0: none was made
-};
-FrameFingerprint fingerprint_of(std::int64_t run_frame, const Session& session);
 
 /// Writes a session while it is played. What is written is whole lines at any moment, so that a run that was
 /// killed replays to where it came.
