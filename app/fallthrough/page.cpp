@@ -7,7 +7,7 @@
 #include <limits>
 #include <map>
 
-#include "app/fallthrough/svg_plot.hpp"
+#include "app/svg_plot.hpp"
 #include "mapping/coverage_picture.hpp"
 #include "mapping/types/whole_file.hpp"
 

@@ -14,128 +14,29 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "app/report.hpp"
-#include "app/sim/room.hpp"
 #include "app/sim/simulated_source.hpp"
+#include "app/sim/surface_score.hpp"
 #include "mapping/prescan.hpp"
-#include "mapping/types/cell_code.hpp"
 #include "tests/bench/bench_program.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr double kCovered_m = 0.02;
 constexpr double kSpacing_m = 0.005;  // of the points spread over the mesh
-constexpr float kFarthest_m = 5.0F;   // FusionConfig::max_range_m
-constexpr int kStride_px = 4;
-constexpr int kFramesSeen = 3;
 
 struct Cell {
   std::string poses;
   std::string source;
 };
 
-Eigen::Vector3i cell_of(const Eigen::Vector3d& p) { return (p / kCovered_m).array().floor().cast<int>(); }
-
-/// Points of the true surface, one a 2 cm cell, that enough frames measured. Room frame.
 std::vector<Eigen::Vector3d> seen_surface(SimulatedSource& source) {
-  struct Seen {
-    Eigen::Vector3d point;
-    std::int64_t last_frame = -1;
-    int frames = 0;
-  };
-  std::unordered_map<std::uint64_t, Seen> cells;
+  SeenSurface seen;
   source.rewind();
-  Frame frame;
-  while (source.next(frame).status == ReadStatus::kFrame) {
-    const SimTruth& truth = source.truth();
-    for (int y = 0; y < frame.depth_m.height; y += kStride_px) {
-      for (int x = 0; x < frame.depth_m.width; x += kStride_px) {
-        const float measured = frame.depth_m.at(x, y);
-        const double z = truth.depth_m.at(x, y);
-        if (!(measured > 0.0F && measured <= kFarthest_m && z > 0.0) || truth.moved.at(x, y) != 0) continue;
-        const Intrinsics& camera = frame.depth_camera;
-        const Eigen::Vector3d p_camera((x - camera.cx_px) / camera.fx_px * z,
-                                       (y - camera.cy_px) / camera.fy_px * z, z);
-        const Eigen::Vector3d p_room = truth.T_world_camera * p_camera;
-        Seen& seen = cells.try_emplace(cell_code(cell_of(p_room)), Seen{p_room}).first->second;
-        if (seen.last_frame == frame.index) continue;
-        seen.last_frame = frame.index;
-        ++seen.frames;
-      }
-    }
-  }
-  std::vector<Eigen::Vector3d> points;
-  for (const auto& [key, seen] : cells) {
-    if (seen.frames >= kFramesSeen) points.push_back(seen.point);
-  }
-  return points;
-}
-
-/// Points on a lattice of each triangle, no more than kSpacing_m apart, each with the area it stands for.
-struct SurfacePoints {
-  std::vector<Eigen::Vector3d> points;
-  std::vector<double> areas_m2;
-};
-
-SurfacePoints spread_points(const Mesh& mesh, const Eigen::Isometry3d& T_room_map) {
-  SurfacePoints spread;
-  for (const Triangle& triangle : mesh.triangles) {
-    const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
-      return T_room_map * (mesh.origin + mesh.vertices[triangle[i]].cast<double>());
-    };
-    const Eigen::Vector3d a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
-    const double longest_m = std::max({ab.norm(), ac.norm(), (ac - ab).norm()});
-    const int parts = std::max(1, static_cast<int>(std::ceil(longest_m / kSpacing_m)));
-    const double area_m2 = 0.5 * ab.cross(ac).norm();
-    const double step = 1.0 / parts;
-    const auto add = [&](double u, double v) {
-      spread.points.push_back(a + u * ab + v * ac);
-      spread.areas_m2.push_back(area_m2 / (parts * parts));
-    };
-    for (int i = 0; i < parts; ++i) {
-      for (int j = 0; i + j < parts; ++j) {
-        add((i + 1.0 / 3.0) * step, (j + 1.0 / 3.0) * step);
-        if (i + j + 1 < parts) add((i + 2.0 / 3.0) * step, (j + 2.0 / 3.0) * step);
-      }
-    }
-  }
-  return spread;
-}
-
-/// The size that `part` of the total weight lies under.
-double weighted_quantile(std::vector<std::pair<double, double>> size_and_weight, double part) {
-  std::sort(size_and_weight.begin(), size_and_weight.end());
-  double total = 0.0;
-  for (const auto& [size, weight] : size_and_weight) total += weight;
-  double sum = 0.0;
-  for (const auto& [size, weight] : size_and_weight) {
-    sum += weight;
-    if (sum >= part * total) return size;
-  }
-  return 0.0;
-}
-
-/// Part of `points` that have one of `spread` within kCovered_m.
-double covered_part(const std::vector<Eigen::Vector3d>& points, const SurfacePoints& spread) {
-  std::unordered_multimap<std::uint64_t, std::size_t> near;
-  for (std::size_t i = 0; i < spread.points.size(); ++i)
-    near.emplace(cell_code(cell_of(spread.points[i])), i);
-  std::size_t covered = 0;
-  for (const Eigen::Vector3d& point : points) {
-    bool found = false;
-    for (int n = 0; n < kCellsRound && !found; ++n) {
-      const auto [begin, end] = near.equal_range(cell_code(cell_of(point) + cell_round(n)));
-      found = std::any_of(begin, end, [&](const auto& entry) {
-        return (spread.points[entry.second] - point).squaredNorm() <= kCovered_m * kCovered_m;
-      });
-    }
-    covered += found ? 1 : 0;
-  }
-  return points.empty() ? 0.0 : static_cast<double>(covered) / static_cast<double>(points.size());
+  for (Frame frame; source.next(frame).status == ReadStatus::kFrame;) seen.add(frame, source.truth());
+  return seen.points();
 }
 
 /// Where the camera truly was in the frames of the trajectory's first and last pose.
@@ -161,17 +62,9 @@ nlohmann::json judge(const Cell& cell, double resolution_m) {
   const double prescan_peak_mb = peak_rss_mb();
 
   const Eigen::Isometry3d T_room_map = scanned.map.info.T_world_recorded.inverse();
-  const SurfacePoints spread = spread_points(scanned.map.mesh, T_room_map);
-  std::vector<std::pair<double, double>> distances;
-  double area_m2 = 0.0, precise_m2 = 0.0;
-  for (std::size_t i = 0; i < spread.points.size(); ++i) {
-    const double distance_m = std::abs(signed_distance_m(source.room(), spread.points[i]));
-    distances.emplace_back(distance_m, spread.areas_m2[i]);
-    area_m2 += spread.areas_m2[i];
-    if (distance_m <= kCovered_m) precise_m2 += spread.areas_m2[i];
-  }
-  const double precision = area_m2 > 0.0 ? precise_m2 / area_m2 : 0.0;
-  const double cover = covered_part(seen_surface(source), spread);
+  const SurfaceScore score =
+      score_surface(scanned.map.mesh, T_room_map, source.room(), seen_surface(source), kSpacing_m);
+  const double both = score.precision + score.cover;
   const std::map<std::string, StageSummary> stages = times.summaries();
   const MapCounts octree = scanned.map.octree.counts();
   nlohmann::json row = {
@@ -180,11 +73,11 @@ nlohmann::json judge(const Cell& cell, double resolution_m) {
       {"resolution_m", resolution_m},
       {"frames", scanned.counts.frames_read},
       {"frames_fused", scanned.counts.frames_fused},
-      {"error_median_m", weighted_quantile(distances, 0.5)},
-      {"error_p95_m", weighted_quantile(distances, 0.95)},
-      {"cover", cover},
-      {"precision", precision},
-      {"f_score", precision + cover > 0 ? 2 * precision * cover / (precision + cover) : 0.0},
+      {"error_median_m", score.error_median_m},
+      {"error_p95_m", score.error_p95_m},
+      {"cover", score.cover},
+      {"precision", score.precision},
+      {"f_score", both > 0 ? 2 * score.precision * score.cover / both : 0.0},
       {"end_gap_m", end_gap_m(scanned.map.trajectory, true_ends(scanned.map.trajectory, source))},
       {"triangles", scanned.map.mesh.triangles.size()},
       {"octree_bytes", octree.memory_bytes},

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "app/published_objects.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
@@ -27,10 +28,6 @@ struct Sensor {
   Mesh mesh;
 };
 
-/// Closed, centred, 12 triangles.
-Mesh box_mesh(const Eigen::Vector3f& size_m);
-/// Closed, 25 cm across: 2 * around * across triangles.
-Mesh bumpy_torus(int around, int across);
 /// A drinking cup with thick walls, open above: 8 cm wide, 10 cm high.
 Mesh cup_mesh();
 /// Seat, back and four legs, each a closed box: 45 cm wide, 90 cm high.

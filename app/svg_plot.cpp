@@ -1,5 +1,5 @@
 // svg_plot.cpp: axes, lines and cells, written number by number.
-#include "app/fallthrough/svg_plot.hpp"
+#include "app/svg_plot.hpp"
 
 #include <algorithm>
 #include <cmath>
