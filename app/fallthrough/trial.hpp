@@ -52,9 +52,24 @@ struct TrialStep {
 };
 using WatchTrial = std::function<void(const TrialStep& step)>;
 
+/// How the surfaces of a trial are made.
+struct TrialSurfaces {
+  SurfacePolicy policy = SurfacePolicy::kMap;  ///< of the scene
+  int depth_stride = 1;                        ///< 1, 2 or 4: depth images are reduced by this first
+  bool fine_mesh = false;                      ///< about the object every pixel that moved is a vertex
+};
+
+/// Makes the scene's surfaces those of one frame of the scenario, as tracking believes that it was taken
+/// from; frame 0 as if the camera had stood so before. Gives what that took, ms.
+double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
+                  std::span<const FineRegion> about_objects, LiveScene& scene);
+
 /// Frame by frame: the policy's surfaces from what the camera shows, and the object as far as the radar lets
 /// it, until something stops it or it has passed the scenario's limit. The camera's pose is what tracking
 /// believes.
+Trial run_trial(PreparedScenario& prepared, LiveScene& scene, const TrialSurfaces& surfaces,
+                CyberRadar& radar, const WatchTrial& watch = {});
+/// The same with the room's scene of one of kFallthroughPolicies.
 Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
                 const WatchTrial& watch = {});
 
