@@ -150,6 +150,7 @@ struct Arguments {
   RecordCommand record;
   CalibrateCommand calibrate;
   FallthroughCommand fallthrough;
+  TradeCommand trade;
 };
 
 void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& work) {
@@ -409,6 +410,43 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
   sub->callback([&] { work = [&command] { return run(command); }; });
 }
 
+void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work) {
+  CLI::App* sub = app.add_subcommand(
+      "trade",
+      "measure what accuracy costs: settings of prescan and run, drawn at random, in simulated rooms with\n"
+      "known truth and in recordings, each between two measurements of the default");
+  sub->add_option("SOURCE", command.recordings,
+                  "folders with recordings that have poses, beside the simulated rooms");
+  sub->add_option("--rooms", command.rooms, "simulated rooms, with commas between them (table,random?seed=2)")
+      ->delimiter(',')
+      ->type_name("LIST");
+  sub->add_option("--only", command.only, "of prescan and run")->check(CLI::IsMember({"prescan", "run"}));
+  sub->add_option("--settings", command.settings, "how many of each are tried beside the default (30)")
+      ->check(CLI::Range(1, 10'000))
+      ->type_name("N");
+  sub->add_option("--repeats", command.repeats, "how often each is measured in each scene (2)")
+      ->check(CLI::Range(1, 1000))
+      ->type_name("N");
+  sub->add_option("--seed", command.seed, "of what is drawn, and of its order (1)")->type_name("N");
+  sub->add_option(
+         "--time", command.time,
+         "settings are compared by the time that passes (wall), or on a machine that has other work\n"
+         "by what all threads compute (cpu)")
+      ->check(CLI::IsMember({"wall", "cpu"}));
+  sub->add_flag("--quick", command.quick, "few frames of small images: to look at, not to choose by");
+  sub->add_flag("--table1", command.table1,
+                "only the published radar's three rows beside those of this machine");
+  sub->add_option("--csv", command.csv,
+                  "write one line a measurement as soon as it is made, and one a setting at the end")
+      ->type_name("FILE");
+  sub->add_option("--html", command.html, "write one page with the fronts as plots, and tables")
+      ->type_name("FILE");
+  sub->add_option("--presets", command.presets, "write fast, balanced, accurate and the front, for --preset")
+      ->type_name("FILE");
+  add_report_option(*sub, command.report);
+  sub->callback([&] { work = [&command] { return run(command); }; });
+}
+
 }  // namespace
 
 ParsedCommand parse_command_line(int argc, const char* const* argv) {
@@ -432,6 +470,7 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
   doctor->callback([&] { work = [] { return run(DoctorCommand{}); }; });
   add_simulate(app, arguments->simulate, work);
   add_fallthrough(app, arguments->fallthrough, work);
+  add_trade(app, arguments->trade, work);
   app.add_flag_callback("--manual",
                         [&app] {
                           std::fputs(manual_page(app).c_str(), stdout);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/calibration/board_views.hpp"
 #include "app/quality.hpp"
@@ -133,6 +134,22 @@ struct FallthroughCommand {
   std::string report;
 };
 
+struct TradeCommand {
+  std::vector<std::string> recordings;  ///< folders with poses, beside the rooms
+  std::vector<std::string> rooms = {"table", "random?seed=2"};  ///< as `sim:` has them
+  std::string only;           ///< prescan or run; empty: both
+  std::size_t settings = 30;  ///< of each, beside the default
+  int repeats = 2;
+  std::uint64_t seed = 1;
+  std::string time = "wall";  ///< what settings are compared by: wall or cpu
+  bool quick = false;
+  bool table1 = false;  ///< the published radar's table beside ours, and nothing else
+  std::string csv;
+  std::string html;
+  std::string presets;
+  std::string report;
+};
+
 /// Each does the whole work of its command, prints results on stdout and progress on stderr, and throws Error
 /// where the work fails. The return value is the exit status: 0, or 1 where the work was done and its answer
 /// is bad news.
@@ -148,5 +165,6 @@ int run(const RecordCommand& command);
 int run(const CalibrateCommand& command);
 int run(const DoctorCommand& command);
 int run(const FallthroughCommand& command);
+int run(const TradeCommand& command);
 
 }  // namespace roomradar

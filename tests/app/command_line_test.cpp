@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -334,6 +335,27 @@ TEST_F(CommandLine, SavingAMapThatCannotChangeIsRefused) {
   expect_fault(roomradar(run + " --adopt 1 --surfaces holes"), 1, "--surfaces map");
   expect_fault(roomradar(run + " --adopt 0"), 2, "86400");
   expect_fault(roomradar(run + " --adopt nan"), 2, "86400");
+}
+
+TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
+  const auto path = [](const char* name) { return (folder_ / name).string(); };
+  const Outcome traded =
+      roomradar("trade --quick --only prescan --rooms wall --settings 2 --repeats 1 --csv " +
+                path("trade.csv") + " --html " + path("trade.html") + " --report " + path("trade.json"));
+  ASSERT_EQ(traded.status, 0) << traded.out;
+  EXPECT_NE(traded.out.find("default"), std::string::npos) << traded.out;
+  const std::string csv = read_text(path("trade.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 + 3) << csv;
+  EXPECT_NE(read_text(path("trade.html")).find("<svg"), std::string::npos);
+  const nlohmann::json report = nlohmann::json::parse(read_text(path("trade.json")));
+  EXPECT_EQ(report["command"], "trade");
+  EXPECT_EQ(report["prescan"]["measurements"], 3);
+  expect_fault(roomradar("trade --rooms attic --settings 2 --quick"), 1, "table");
+  expect_fault(roomradar("trade --html " + path("none/trade.html")), 1, "none/trade.html");
+  expect_fault(roomradar("trade --quick --only prescan " + path("none")), 1, "none");
+  expect_fault(roomradar("trade --settings 0"), 2, "--settings");
+  expect_fault(roomradar("trade --repeats x"), 2, "--repeats");
+  expect_fault(roomradar("trade --only both"), 2, "prescan");
 }
 
 TEST_F(CommandLine, WrongUsageIsStatusTwo) {

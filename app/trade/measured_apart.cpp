@@ -1,0 +1,44 @@
+// measured_apart.cpp: figures through the pipe as they lie in memory.
+#include "app/trade/measured_apart.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "app/report.hpp"
+#include "mapping/run_apart.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+
+Readings measured_apart(const std::string& what, const std::function<Readings()>& work) {
+  constexpr unsigned kMost_s = 3600;  // of processor time: hours are not a measurement
+  constexpr std::size_t kMost_bytes = std::size_t{1} << 38U;  // addresses, of which GL drivers take many
+  const auto bytes_of_figures = [&] {
+    const Readings figures = work();
+    std::string bytes(figures.size() * sizeof(double), '\0');
+    std::memcpy(bytes.data(), figures.data(), bytes.size());
+    return bytes;
+  };
+  const std::string bytes = run_apart(bytes_of_figures, what, kMost_s, kMost_bytes);
+  Readings figures(bytes.size() / sizeof(double));
+  std::memcpy(figures.data(), bytes.data(), figures.size() * sizeof(double));
+  return figures;
+}
+
+double process_cpu_ms() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto ms = [](const timeval& t) {
+    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
+  };
+  return ms(usage.ru_utime) + ms(usage.ru_stime);
+}
+
+double peak_growth_mb(std::size_t start_bytes) {
+  constexpr double kMiB = 1024.0 * 1024.0;
+  return std::max(0.0, peak_rss_mb() * kMiB - static_cast<double>(start_bytes)) / 1e6;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,51 @@
+// picture_judge.hpp: how far a composed picture is from the one that the truth would give.
+#pragma once
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "app/compose.hpp"
+#include "app/draw.hpp"
+#include "app/virtual_object.hpp"
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+/// Where an object was when a picture was made of it.
+struct ShownObject {
+  std::size_t object = 0;  ///< among the judge's
+  Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
+};
+
+/// A picture and what it ought to show.
+struct JudgedPicture {
+  ColourImage picture;
+  std::vector<ShownObject> objects;
+};
+
+/// Composes pictures from exact depth, exact poses, objects' full meshes and fresh shadows. GL on the thread
+/// that made it.
+class PictureJudge {
+ public:
+  /// Throws Error as VirtualObject does.
+  PictureJudge(const std::vector<Mesh>& objects);
+
+  /// Sum of the colours' differences (0 to 1, mean of the channels) over the whole picture, for each pixel in
+  /// which the right picture is not the camera's own; 0 where it is so everywhere. The colour camera must be
+  /// the depth camera.
+  /// @param frame           with colour
+  /// @param true_depth_m    of its size
+  /// @param T_world_camera  true, in the objects' world
+  double error_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
+                  const Eigen::Isometry3d& T_world_camera);
+
+ private:
+  GlContext context_;
+  ObjectDrawer drawer_;
+  std::vector<std::unique_ptr<VirtualObject>> objects_;
+  ObjectLayer layer_;
+  Occlusion occlusion_;
+  ColourImage right_;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,69 @@
+// sweep.cpp: default, setting, default, setting, default.
+#include "app/trade/sweep.hpp"
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "app/sim/counter_random.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+std::vector<std::size_t> order_of(std::size_t count, CounterRandom& random) {
+  std::vector<std::size_t> order(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto j = static_cast<std::size_t>(random.uniform() * static_cast<double>(i + 1));
+    order[i] = order[j];
+    order[j] = i;
+  }
+  return order;
+}
+
+}  // namespace
+
+std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch) {
+  const auto is_stopped = [&] { return watch.is_stopped && watch.is_stopped(); };
+  std::vector<SweepRow> rows;
+  const Setting usual = usual_setting(work.knobs);
+  for (std::size_t scene = 0; scene < work.scenes.size(); ++scene) {
+    if (is_stopped()) return rows;
+    const Measure measure = work.open(scene);
+    /// Nothing where the sweep was stopped meanwhile: Ctrl-C ends a measurement's process, too.
+    const auto measure_default = [&]() -> std::optional<Readings> {
+      if (is_stopped()) return std::nullopt;
+      try {
+        return measure(usual);
+      } catch (const Error&) {
+        if (!is_stopped()) throw;
+        return std::nullopt;
+      }
+    };
+    for (int repeat = 0; repeat < plan.repeats; ++repeat) {
+      CounterRandom random(plan.seed, static_cast<std::uint64_t>(repeat) + 1000 * scene);
+      std::optional<Readings> before = measure_default();
+      for (const std::size_t setting : order_of(plan.settings.size(), random)) {
+        if (!before) return rows;
+        SweepRow row{.setting = setting, .scene = scene, .repeat = repeat};
+        try {
+          row.figures = measure(plan.settings[setting]);
+        } catch (const Error& error) {
+          row.fault = error.what();
+          row.figures.assign(work.figures.size(), std::numeric_limits<double>::quiet_NaN());
+        }
+        std::optional<Readings> after = measure_default();
+        if (!after) return rows;
+        for (std::size_t i = 0; i < row.figures.size(); ++i)
+          row.ratios.push_back(row.figures[i] / (0.5 * ((*before)[i] + (*after)[i])));
+        row.default_before = std::exchange(*before, *after);
+        row.default_after = std::move(*after);
+        if (watch.on_row) watch.on_row(row);
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,18 @@
+// trade_frames.hpp: the frames on which settings are measured.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "app/sim/sim_options.hpp"
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+/// The Kinect's depth camera with images of another width, 4:3.
+Intrinsics kinect_of_width(int width_px);
+
+/// Up to `count` frames of a folder from index `first` on. Throws Error if it cannot be read, there are fewer
+/// than 30, or they come without poses: nothing could be said of errors then.
+std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t first, std::int64_t count);
+
+}  // namespace roomradar

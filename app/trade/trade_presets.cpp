@@ -1,0 +1,92 @@
+// trade_presets.cpp: settings of sweeps to qualities.
+#include "app/trade/trade_presets.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "app/trade/prescan_work.hpp"
+#include "app/trade/run_work.hpp"
+
+namespace roomradar {
+namespace {
+
+const TradeResult* result_of(const std::vector<TradeResult>& results, const std::string& work) {
+  const auto found = std::find_if(results.begin(), results.end(),
+                                  [&](const TradeResult& result) { return result.work.name == work; });
+  return found == results.end() ? nullptr : &*found;
+}
+
+/// What is not known is left out.
+void add_figures(const TradeResult& result, std::size_t setting, const std::string& before,
+                 Figures& figures) {
+  const SettingSummary& summary = result.summaries[setting];
+  const auto add = [&](const std::string& name, double value) {
+    if (std::isfinite(value)) figures[before + name] = value;
+  };
+  add("time_ratio", summary.time_ratio);
+  add("loss", loss_of(result.work, summary, result.summaries[result.usual]));
+  for (std::size_t i = 0; i < result.work.figures.size(); ++i)
+    add(result.work.figures[i].name, summary.figures[i]);
+}
+
+/// The part's stages, each weighed by what it takes of the default's frame.
+double part_ratio(const TradeResult& result, std::size_t setting, const std::vector<std::string>& stages) {
+  constexpr double kLeast = 0.01;
+  double sum = 0.0, whole = 0.0;
+  for (const std::string& stage : stages) {
+    const std::size_t figure = place_of(result.work, stage + "_ms");
+    const double usual_ms = result.summaries[result.usual].figures[figure];
+    const double ratio = result.summaries[setting].ratios[figure];
+    if (!std::isfinite(usual_ms) || !std::isfinite(ratio)) continue;
+    sum += usual_ms * ratio;
+    whole += usual_ms;
+  }
+  return whole > 0.0 ? std::max(kLeast, sum / whole) : 1.0;
+}
+
+FrontStep step_of(const TradeResult& run, std::size_t setting) {
+  FrontStep step;
+  step.run = run_setting_of(run.settings[setting]).quality;
+  const auto set = [&](FramePart part, const std::vector<std::string>& stages) {
+    step.part_ratios[index_of(part)] = part_ratio(run, setting, stages);
+  };
+  set(FramePart::kLocate, {"reduce", "locate", "expected", "foreground"});
+  set(FramePart::kMesh, {"mesh"});
+  set(FramePart::kPhysics, {"physics"});
+  set(FramePart::kCompose, {"compose"});
+  add_figures(run, setting, "", step.figures);
+  return step;
+}
+
+}  // namespace
+
+Presets chosen_presets(const std::vector<TradeResult>& results,
+                       const std::map<std::string, std::string>& made_by) {
+  using Choice = std::optional<std::size_t> PresetChoice::*;
+  constexpr std::array kNames{std::pair<const char*, Choice>{"fast", &PresetChoice::fast},
+                              std::pair<const char*, Choice>{"balanced", &PresetChoice::balanced},
+                              std::pair<const char*, Choice>{"accurate", &PresetChoice::accurate}};
+  Presets presets;
+  presets.made_by = made_by;
+  const TradeResult* scan = result_of(results, "prescan");
+  const TradeResult* run = result_of(results, "run");
+  for (const auto& [name, chosen] : kNames) {
+    Preset& preset = presets.presets[name];
+    if (scan != nullptr && scan->choice.*chosen) {
+      preset.scan = scan_quality_of(scan->settings[*(scan->choice.*chosen)]);
+      add_figures(*scan, *(scan->choice.*chosen), "scan_", preset.figures);
+    }
+    if (run != nullptr && run->choice.*chosen) {
+      preset.run = run_setting_of(run->settings[*(run->choice.*chosen)]).quality;
+      add_figures(*run, *(run->choice.*chosen), "run_", preset.figures);
+    }
+  }
+  if (run != nullptr)
+    for (auto setting = run->choice.front.rbegin(); setting != run->choice.front.rend(); ++setting)
+      presets.front.push_back(step_of(*run, *setting));
+  return presets;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,151 @@
+// trade_command.cpp: roomradar trade: what accuracy costs, measured.
+#include <cstdio>
+
+#include "app/commands.hpp"
+#include "app/interrupt.hpp"
+#include "app/progress.hpp"
+#include "app/report.hpp"
+#include "app/trade/draw_settings.hpp"
+#include "app/trade/machine.hpp"
+#include "app/trade/prescan_work.hpp"
+#include "app/trade/run_work.hpp"
+#include "app/trade/table1.hpp"
+#include "app/trade/trade_csv.hpp"
+#include "app/trade/trade_page.hpp"
+#include "app/trade/trade_presets.hpp"
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+namespace {
+
+std::vector<TradeWork> works_of(const TradeCommand& command) {
+  const TradeScale scale = command.quick ? kQuickScale : TradeScale{};
+  std::vector<TradeWork> works;
+  if (command.only != "run") works.push_back(prescan_work(command.rooms, command.recordings, scale));
+  if (command.only != "prescan") works.push_back(run_work(command.rooms, command.recordings, scale));
+  for (TradeWork& work : works)
+    if (command.time == "cpu") work.time = place_of(work, "cpu_ms");
+  return works;
+}
+
+/// Ctrl-C once is remembered: what is measured so far is the result.
+class Stop {
+ public:
+  bool asked() { return was_asked_ = was_asked_ || Interrupt::take(); }
+
+ private:
+  Interrupt interrupt_;
+  bool was_asked_ = false;
+};
+
+TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& stop, TradeCsv& csv) {
+  TradeResult result{.work = work};
+  result.settings = draw_settings(work.knobs, command.settings, command.seed);
+  result.settings.insert(result.settings.begin(), usual_setting(work.knobs));
+  result.usual = 0;
+  const auto rows = result.settings.size() * work.scenes.size() * static_cast<std::size_t>(command.repeats);
+  Progress progress(work.name, static_cast<std::int64_t>(rows));
+  SweepWatch watch;
+  watch.is_stopped = [&] { return stop.asked(); };
+  watch.on_row = [&](const SweepRow& row) {
+    csv.write(work, result.settings, row);
+    char note[64];
+    std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
+    progress.step(row.fault.empty() ? note : row.fault);
+  };
+  result.rows = sweep(work, {result.settings, command.repeats, command.seed}, watch);
+  result.summaries = summarise(work, result.settings, result.rows);
+  result.choice = choose_presets(work, result.summaries, result.usual);
+  csv.write(work, result.summaries, result.usual, result.choice);
+  return result;
+}
+
+/// What a preset is, in a line.
+void print_preset(const TradeResult& result, std::size_t setting) {
+  const SettingSummary& summary = result.summaries[setting];
+  std::printf("%-8s %-22s time x %5.2f (%.2f to %.2f), loss %5.2f: %s\n", result.work.name.c_str(),
+              names_of(setting, result.usual, result.choice, "=").c_str(), summary.time_ratio,
+              summary.least_ratio, summary.most_ratio,
+              loss_of(result.work, summary, result.summaries[result.usual]),
+              describe(result.work.knobs, summary.setting).c_str());
+}
+
+void print_presets(const TradeResult& result) {
+  for (std::size_t i = 0; i < result.summaries.size(); ++i)
+    if (!names_of(i, result.usual, result.choice, "").empty()) print_preset(result, i);
+}
+
+nlohmann::json to_json(const TradeResult& result) {
+  nlohmann::json settings = nlohmann::json::array();
+  for (std::size_t i = 0; i < result.summaries.size(); ++i) {
+    const SettingSummary& summary = result.summaries[i];
+    nlohmann::json row = {{"setting", describe(result.work.knobs, summary.setting)},
+                          {"names", names_of(i, result.usual, result.choice, " ")},
+                          {"measurements", summary.rows},
+                          {"time_ratio", summary.time_ratio},
+                          {"loss", loss_of(result.work, summary, result.summaries[result.usual])}};
+    for (std::size_t f = 0; f < result.work.figures.size(); ++f)
+      row[result.work.figures[f].name] = summary.figures[f];
+    settings.push_back(std::move(row));
+  }
+  return {{"measurements", result.rows.size()}, {"settings", settings}, {"front", result.choice.front}};
+}
+
+int print_table1(const TradeCommand& command, Report report) {
+  const Table1 table = measure_table1(command.rooms.front(), command.quick ? kQuickScale : TradeScale{});
+  report.renderer = table.renderer;
+  report.results["table1"] = to_json(table);
+  std::fputs(text_of(table).c_str(), stdout);
+  write_report(report, command.report);
+  return 0;
+}
+
+}  // namespace
+
+int run(const TradeCommand& command) {
+  for (const std::string& path : {command.csv, command.html, command.presets, command.report})
+    require_writable(path);
+  Report report;
+  report.command = "trade";
+  report.source = "simulated rooms";
+  for (const std::string& recording : command.recordings) report.source += "; " + recording;
+  report.settings = {{"rooms", command.rooms}, {"settings", command.settings}, {"repeats", command.repeats},
+                     {"seed", command.seed},   {"time", command.time},         {"quick", command.quick},
+                     {"only", command.only}};
+  if (command.table1) return print_table1(command, std::move(report));
+  const Machine machine = this_machine();
+  report.renderer = machine.renderer;
+  const std::vector<TradeWork> works = works_of(command);
+  TradeCsv csv(command.csv, works);
+  Stop stop;
+  std::vector<TradeResult> results;
+  for (const TradeWork& work : works) {
+    if (stop.asked()) break;
+    results.push_back(report.times.timed(work.name, [&] { return traded(work, command, stop, csv); }));
+    if (results.back().rows.empty()) results.pop_back();
+  }
+  if (results.empty()) throw Error("trade: stopped by Ctrl-C before anything was measured");
+  for (const TradeResult& result : results) {
+    print_presets(result);
+    report.results[result.work.name] = to_json(result);
+  }
+  write_trade_page(
+      results,
+      {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
+           machine.system,
+       "seed " + std::to_string(command.seed) + ", " + std::to_string(command.repeats) +
+           " repeats in each scene" + (command.quick ? ", quick: few frames of small images" : "")},
+      command.html);
+  if (!command.presets.empty())
+    write_presets(chosen_presets(results, {{"processor", machine.processor},
+                                           {"renderer", machine.renderer},
+                                           {"system", machine.system},
+                                           {"seed", std::to_string(command.seed)},
+                                           {"compared_by", command.time},
+                                           {"scale", command.quick ? "quick" : "full"}}),
+                  command.presets);
+  write_report(report, command.report);
+  return 0;
+}
+
+}  // namespace roomradar

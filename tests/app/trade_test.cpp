@@ -1,0 +1,376 @@
+// What trade draws, compares, chooses and writes, on numbers that are known.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "app/sim/counter_random.hpp"
+#include "app/trade/choose_presets.hpp"
+#include "app/trade/draw_settings.hpp"
+#include "app/trade/front.hpp"
+#include "app/trade/prescan_work.hpp"
+#include "app/trade/run_work.hpp"
+#include "app/trade/sweep.hpp"
+#include "app/trade/trade_csv.hpp"
+#include "app/trade/trade_page.hpp"
+#include "mapping/types/error.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+const std::vector<Knob> kKnobs{
+    {"fine", {"4", "2", "1"}, 2}, {"how", {"fast", "slow"}, 1}, {"many", {"1", "9"}, 0, true}};
+
+TEST(Front, HoldsWhatNothingBeatsInBothAndOnlyThat) {
+  CounterRandom random(7, 0);
+  std::vector<CostAndError> points;
+  for (int i = 0; i < 200; ++i)  // coarse numbers, so that many are alike
+    points.push_back({std::floor(10.0 * random.uniform()), std::floor(10.0 * random.uniform())});
+  const std::vector<std::size_t> front = front_of(points);
+  std::set<std::size_t> on(front.begin(), front.end());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool is_beaten =
+        std::any_of(points.begin(), points.end(), [&](const auto& p) { return dominates(p, points[i]); });
+    const bool has_twin_on = std::any_of(front.begin(), front.end(), [&](std::size_t j) {
+      return points[j].cost == points[i].cost && points[j].error == points[i].error;
+    });
+    EXPECT_EQ(has_twin_on, !is_beaten) << i;
+    if (on.count(i) > 0) {
+      EXPECT_FALSE(is_beaten) << i;
+    }
+  }
+  for (std::size_t k = 1; k < front.size(); ++k) {
+    EXPECT_LT(points[front[k - 1]].cost, points[front[k]].cost);
+    EXPECT_GT(points[front[k - 1]].error, points[front[k]].error);
+  }
+}
+
+TEST(Front, LeavesOutWhatIsNotFiniteAndOfNothingIsEmpty) {
+  EXPECT_TRUE(front_of({}).empty());
+  EXPECT_TRUE(front_of({{kNone, 0.0}, {0.0, kNone}, {1.0, std::numeric_limits<double>::infinity()}}).empty());
+  EXPECT_EQ(front_of({{kNone, 0.0}, {2.0, 2.0}, {2.0, 2.0}}), std::vector<std::size_t>{1});
+  EXPECT_FALSE(dominates({1.0, 1.0}, {1.0, 1.0}));
+}
+
+TEST(DrawSettings, GivesEachWordAndNoSettingTwiceAndTheSameForTheSameSeed) {
+  for (const std::vector<Knob>& knobs : {scan_knobs(), run_knobs()}) {
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+      const std::vector<Setting> settings = draw_settings(knobs, 24, seed);
+      ASSERT_EQ(settings.size(), 24U);
+      EXPECT_EQ(draw_settings(knobs, 24, seed), settings);
+      EXPECT_NE(draw_settings(knobs, 24, seed + 10), settings);
+      EXPECT_EQ(std::set<Setting>(settings.begin(), settings.end()).size(), settings.size());
+      EXPECT_EQ(std::count(settings.begin(), settings.end(), usual_setting(knobs)), 0);
+      for (std::size_t k = 0; k < knobs.size(); ++k) {
+        if (knobs[k].is_load) continue;
+        for (std::size_t word = 0; word < knobs[k].words.size(); ++word)
+          EXPECT_TRUE(
+              std::any_of(settings.begin(), settings.end(), [&](const Setting& s) { return s[k] == word; }))
+              << knobs[k].name << " " << knobs[k].words[word];
+      }
+    }
+  }
+}
+
+TEST(DrawSettings, TurnsOneKnobAloneInUpToHalfAndALoadNeverWithOthers) {
+  const std::vector<Setting> settings = draw_settings(kKnobs, 8, 1);
+  const Setting usual = usual_setting(kKnobs);
+  int single = 0;
+  for (const Setting& setting : settings) {
+    int turned = 0;
+    for (std::size_t k = 0; k < usual.size(); ++k) turned += setting[k] != usual[k] ? 1 : 0;
+    single += turned == 1 ? 1 : 0;
+    if (!has_usual_load(kKnobs, setting)) {
+      EXPECT_EQ(turned, 1);
+    }
+  }
+  EXPECT_GE(single, 4);
+}
+
+TEST(DrawSettings, GivesFewerWhereThereAreNotSoManyToBeFound) {
+  const std::vector<Setting> settings = draw_settings(kKnobs, 1000, 1);
+  EXPECT_EQ(settings.size(), 6U);  // 3 x 2, less the usual one, and the load
+  EXPECT_TRUE(draw_settings({}, 5, 1).empty());
+}
+
+TEST(Knobs, WordsMakeAQualityAndTheUsualOnesTheDefault) {
+  EXPECT_EQ(scan_quality_of(usual_setting(scan_knobs())), ScanQuality{});
+  EXPECT_EQ(run_setting_of(usual_setting(run_knobs())).quality, RunQuality{});
+  for (const std::vector<Knob>& knobs : {scan_knobs(), run_knobs()}) {
+    const bool is_scan = knobs.front().name == scan_knobs().front().name;
+    for (std::size_t k = 0; k < knobs.size(); ++k)
+      for (std::size_t word = 0; word < knobs[k].words.size(); ++word) {
+        Setting setting = usual_setting(knobs);
+        setting[k] = word;
+        if (is_scan)
+          require_valid(scan_quality_of(setting));
+        else
+          require_valid(run_setting_of(setting).quality);
+      }
+  }
+  EXPECT_EQ(describe(kKnobs, {2, 1, 0}), "default");
+  EXPECT_EQ(describe(kKnobs, {0, 1, 1}), "fine 4, many 9");
+}
+
+/// Time: 10 ms for the usual setting, half of it for each step that `fine` is turned, on a machine that
+/// becomes slower with each measurement; error: the more, the faster.
+struct Machine {
+  double slower = 1.0;  // from one measurement to the next
+  int asked = 0;
+  std::vector<std::string> order;
+
+  TradeWork work(std::vector<std::string> scenes = {"a", "b"}) {
+    TradeWork work{.name = "work", .knobs = kKnobs, .scenes = std::move(scenes)};
+    work.figures = {{"time_ms", "time, ms", 1.0, FigureKind::kTime},
+                    {"error_m", "error, mm", 1e3, FigureKind::kError, 0.0001},
+                    {"cells", "cells"}};
+    work.open = [this](std::size_t scene) -> Measure {
+      return [this, scene](const Setting& setting) -> Readings {
+        order.push_back(describe(kKnobs, setting));
+        const double busy = std::pow(slower, asked++);
+        const double steps = 2.0 - static_cast<double>(setting[0]);
+        if (setting[1] == 0) throw Error("cannot be done");
+        return {10.0 * busy * std::pow(0.5, steps),
+                0.001 * (1.0 + steps) * (1.0 + static_cast<double>(scene)), scene == 0 ? 5.0 : kNone};
+      };
+    };
+    return work;
+  }
+};
+
+TEST(Sweep, RatiosAreFlatThoughTheMachineSlowsDownTwofold) {
+  Machine machine;
+  const TradeWork work = machine.work();
+  const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}, {0, 1, 0}};
+  machine.slower = std::pow(2.0, 1.0 / (2.0 * 2.0 * 7.0));  // over all of the sweep's measurements
+  const std::vector<SweepRow> rows = sweep(work, {settings, 2, 1});
+  ASSERT_EQ(rows.size(), 12U);
+  EXPECT_GT(rows.back().default_after.front(), 1.9 * rows.front().default_before.front())
+      << "it did slow down";
+  const std::vector<SettingSummary> summaries = summarise(work, settings, rows);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(summaries[i].time_ratio, std::pow(0.5, static_cast<double>(i)), 0.001);
+    EXPECT_NEAR(summaries[i].most_ratio / summaries[i].least_ratio, 1.0, 0.002);
+    EXPECT_EQ(summaries[i].rows, 4);
+    EXPECT_TRUE(summaries[i].is_complete);
+    EXPECT_NEAR(summaries[i].figures[1], 0.0015 * (1.0 + static_cast<double>(i)), 1e-9);
+    EXPECT_EQ(summaries[i].figures[2], 5.0) << "of the scenes that know it";
+  }
+}
+
+TEST(Sweep, MeasuresTheDefaultBetweenAnyTwoAndEachRepeatInAnOrderOfItsOwn) {
+  Machine machine;
+  const TradeWork work = machine.work({"a"});
+  const std::vector<Setting> settings{{1, 1, 0}, {0, 1, 0}, {2, 1, 1}, {1, 1, 1}, {0, 1, 1}};
+  (void)sweep(work, {settings, 2, 3});
+  ASSERT_EQ(machine.order.size(), 22U);
+  std::vector<std::string> first, second;
+  for (std::size_t i = 0; i < 22; ++i) {
+    if (i % 11 % 2 == 0) {
+      EXPECT_EQ(machine.order[i], "default");
+    } else {
+      (i < 11 ? first : second).push_back(machine.order[i]);
+    }
+  }
+  EXPECT_NE(first, second);
+  std::sort(first.begin(), first.end());
+  std::sort(second.begin(), second.end());
+  EXPECT_EQ(first, second);
+}
+
+TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) {
+  Machine machine;
+  const TradeWork work = machine.work();
+  const std::vector<Setting> settings{{2, 1, 0}, {2, 0, 0}, {1, 1, 0}};
+  const std::vector<SweepRow> rows = sweep(work, {settings, 1, 1});
+  ASSERT_EQ(rows.size(), 6U);
+  EXPECT_EQ(std::count_if(rows.begin(), rows.end(),
+                          [](const SweepRow& row) { return row.fault == "cannot be done"; }),
+            2);
+  const std::vector<SettingSummary> summaries = summarise(work, settings, rows);
+  EXPECT_EQ(summaries[1].rows, 0);
+  EXPECT_FALSE(summaries[1].is_complete);
+  EXPECT_TRUE(std::isnan(summaries[1].time_ratio));
+
+  std::size_t told = 0;
+  const std::vector<SweepRow> some =
+      sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 2; }});
+  EXPECT_EQ(some.size(), 2U);
+  Machine broken;
+  TradeWork impossible = broken.work();
+  impossible.knobs[1].usual = 0;
+  EXPECT_THROW((void)sweep(impossible, {settings, 1, 1}), Error);
+}
+
+TEST(Summaries, OfASceneThatOthersWereMeasuredInTooAreNotComplete) {
+  Machine machine;
+  const TradeWork work = machine.work();
+  const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}};
+  std::vector<SweepRow> rows = sweep(work, {settings, 1, 1});
+  std::erase_if(rows, [](const SweepRow& row) { return row.scene == 1 && row.setting == 1; });
+  const std::vector<SettingSummary> summaries = summarise(work, settings, rows);
+  EXPECT_TRUE(summaries[0].is_complete);
+  EXPECT_FALSE(summaries[1].is_complete);
+}
+
+SettingSummary summary_of(const Setting& setting, double time_ratio, double error_m) {
+  return {setting, 1, time_ratio, time_ratio, time_ratio, {}, {time_ratio, error_m, 0.0}, true};
+}
+
+TEST(Presets, AreTheFastestTheBestWithinReasonAndTheLeastProduct) {
+  Machine machine;
+  const TradeWork work = machine.work();
+  const std::vector<SettingSummary> summaries{
+      summary_of({2, 1, 0}, 1.0, 0.0019),   // the default
+      summary_of({1, 1, 0}, 0.5, 0.0023),   // balanced: 0.6
+      summary_of({0, 1, 0}, 0.45, 0.0028),  // fast, 1.45
+      summary_of({0, 1, 0}, 0.3, 0.0058),   // nearly 3 times the default's error: on the front, but no preset
+      summary_of({0, 1, 0}, 0.1, 0.0099),   // too bad for the front
+      summary_of({2, 1, 0}, 2.9, 0.0009),   // accurate
+      summary_of({2, 1, 0}, 5.0, 0.0004),   // too slow
+      summary_of({2, 1, 0}, 3.0, 0.0010),   // beaten
+      summary_of({2, 1, 1}, 0.1, 0.0001)};  // another load
+  const PresetChoice choice = choose_presets(work, summaries, 0);
+  EXPECT_EQ(choice.front, (std::vector<std::size_t>{3, 2, 1, 0, 5, 6}));
+  EXPECT_EQ(choice.fast, 2U);
+  EXPECT_EQ(choice.balanced, 1U);
+  EXPECT_EQ(choice.accurate, 5U);
+  EXPECT_EQ(loss_of(work, summaries[0], summaries[0]), 1.0);
+  EXPECT_NEAR(loss_of(work, summaries[1], summaries[0]), 1.2, 1e-12);
+  EXPECT_EQ(names_of(0, 0, choice, " "), "default");
+  EXPECT_EQ(names_of(2, 2, choice, " "), "default fast");
+}
+
+TEST(Presets, OfAnErrorThatNobodyKnowsAreNone) {
+  Machine machine;
+  const TradeWork work = machine.work();
+  const PresetChoice choice = choose_presets(work, {summary_of({2, 1, 0}, 1.0, kNone)}, 0);
+  EXPECT_TRUE(choice.front.empty());
+  EXPECT_FALSE(choice.fast || choice.balanced || choice.accurate);
+}
+
+TEST(TradeFiles, CsvFieldsAreQuotedWhereTheyMustBe) {
+  EXPECT_EQ(csv_field("plain"), "plain");
+  EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
+  EXPECT_EQ(csv_field("a \"b\""), "\"a \"\"b\"\"\"");
+  EXPECT_EQ(csv_field("a\nb"), "\"a\nb\"");
+}
+
+TEST(TradeFiles, CsvHasAllColumnsInEachLineAndThePageNeedsNothingElse) {
+  const test::TemporaryFolder folder;
+  Machine machine;
+  TradeResult result{.work = machine.work({"a <scene>, \"b\""}),
+                     .settings = {{2, 1, 0}, {1, 1, 0}, {2, 0, 0}, {2, 1, 1}}};
+  result.rows = sweep(result.work, {result.settings, 2, 1});
+  result.summaries = summarise(result.work, result.settings, result.rows);
+  result.choice = choose_presets(result.work, result.summaries, 0);
+  {
+    TradeCsv csv(folder.path() / "rows.csv", {result.work});
+    for (const SweepRow& row : result.rows) csv.write(result.work, result.settings, row);
+    csv.write(result.work, result.summaries, 0, result.choice);
+  }
+  const std::string csv = text_of(folder.path() / "rows.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 8 + 4);
+  std::istringstream lines(csv);
+  for (std::string line; std::getline(lines, line);) {
+    bool is_quoted = false;
+    int columns = 1;
+    for (const char letter : line) {
+      is_quoted = is_quoted != (letter == '"');
+      columns += letter == ',' && !is_quoted ? 1 : 0;
+    }
+    EXPECT_EQ(columns, 13 + 3 + 3) << line;
+  }
+  EXPECT_NE(csv.find("\"a <scene>, \"\"b\"\"\""), std::string::npos);
+  EXPECT_EQ(csv.find("nan"), std::string::npos);
+
+  write_trade_page({result}, {"a <machine>"}, folder.path() / "page.html");
+  const std::string page = text_of(folder.path() / "page.html");
+  EXPECT_NE(page.find("a &lt;machine&gt;"), std::string::npos);
+  EXPECT_NE(page.find("a &lt;scene&gt;, &quot;b&quot;"), std::string::npos);
+  EXPECT_EQ(page.find("<scene>"), std::string::npos);
+  EXPECT_EQ(page.find("://"), std::string::npos) << "no network";
+  EXPECT_EQ(page.find("nan"), std::string::npos);
+  EXPECT_NE(page.find("prefers-color-scheme"), std::string::npos);
+  std::size_t dots = 0;  // two plots of the two settings that could be done at the usual load
+  for (std::size_t at = 0; (at = page.find("<g><title>", at)) != std::string::npos; ++at) ++dots;
+  EXPECT_EQ(dots, 4U);
+  EXPECT_THROW(write_trade_page({result}, {}, folder.path() / "none" / "page.html"), Error);
+  EXPECT_THROW(TradeCsv(folder.path() / "none" / "rows.csv", {result.work}), Error);
+}
+
+// Small images and few frames: that figures are there and of the right size, not what they are.
+constexpr TradeScale kTiny{.scan_px = 160,
+                           .scan_frames = 20,
+                           .scan_rate_hz = 15.0,
+                           .map_frames = 40,
+                           .run_px = 160,
+                           .run_frames = 22,
+                           .scenarios = 4};
+
+/// A work's figures by name, all of them finite.
+std::map<std::string, double> figures_of(const TradeWork& work, const Readings& readings) {
+  std::map<std::string, double> figures;
+  for (std::size_t i = 0; i < work.figures.size(); ++i) {
+    EXPECT_TRUE(std::isfinite(readings[i])) << work.figures[i].name;
+    figures[work.figures[i].name] = readings[i];
+  }
+  return figures;
+}
+
+TEST(TradeWorks, AScanIsMeasuredAgainstTheRoomAndACoarserOneIsSmaller) {
+  const TradeWork work = prescan_work({"table"}, {}, kTiny);
+  Setting setting = usual_setting(work.knobs);
+  const Measure measure = work.open(0);
+  setting[0] = 2;  // 2 cm
+  auto fine = figures_of(work, measure(setting));
+  setting[0] = 0;  // 4 cm
+  auto coarse = figures_of(work, measure(setting));
+  EXPECT_GT(fine["surface_error_median_m"], 0.0003);
+  EXPECT_LT(fine["surface_error_median_m"], 0.05);
+  EXPECT_LT(fine["trajectory_error_m"], 0.05);
+  EXPECT_EQ(fine["frames_lost"], 0.0);
+  EXPECT_GT(fine["octree_mb"], 2.0 * coarse["octree_mb"]);
+  EXPECT_GT(fine["triangles"], 2.0 * coarse["triangles"]);
+  EXPECT_GT(fine["memory_mb"], fine["octree_mb"]);
+}
+
+TEST(TradeWorks, ARunIsMeasuredAgainstTheRoomWhatMovesInItAndTheRightPicture) {
+  const TradeWork work = run_work({"table"}, {}, kTiny);
+  auto figures = figures_of(work, work.open(0)(usual_setting(work.knobs)));
+  EXPECT_LT(figures["pose_error_m"], 0.03);
+  EXPECT_EQ(figures["not_located"], 0.0);
+  EXPECT_EQ(figures["passed_through"], 0.0);
+  EXPECT_LT(figures["contact_error_median_m"], 0.03);
+  EXPECT_GT(figures["moved_error_median_m"], 0.0);
+  EXPECT_LT(figures["moved_error_median_m"], 0.03);
+  EXPECT_GT(figures["picture_error"], 0.0);
+  EXPECT_LT(figures["picture_error"], 0.2);
+  EXPECT_EQ(figures["object_age_ms"], 0.0);
+  EXPECT_LE(figures["radar_ms"], figures["frame_ms"]);
+}
+
+TEST(TradeWorks, ASourceWithoutPosesIsRefusedBeforeAnythingIsMeasured) {
+  const test::TemporaryFolder folder;
+  const TradeWork work = prescan_work({}, {folder.path().string()}, kTiny);
+  EXPECT_THROW((void)work.open(0), Error);
+  EXPECT_THROW((void)prescan_work({"attic"}, {}, kTiny).open(0), Error);
+}
+
+}  // namespace
+}  // namespace roomradar
