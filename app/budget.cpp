@@ -89,8 +89,8 @@ double median_of(std::array<double, 3> values) {
 }  // namespace
 
 double usual_ms(FramePart part, const FrameLoad& load) {
-  // Measured at 640 x 480 with teapots: a fifth of the image moved costs 2 ms more than nothing; an object
-  // that moves some 0.2 ms, one that rests 0.05; each drawn 0.1 ms.
+  // Estimates for 640 x 480 and teapots: a fifth of the image moved costs 2 ms more than nothing; an object
+  // that moves 0.2 ms, one that rests 0.05; each drawn 0.1 ms.
   switch (part) {
     case FramePart::kLocate:
       return 6.0;

@@ -1,6 +1,7 @@
 // sweep.cpp: default, setting, default, setting, default.
 #include "app/trade/sweep.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -11,13 +12,16 @@
 namespace roomradar {
 namespace {
 
-std::vector<std::size_t> order_of(std::size_t count, CounterRandom& random) {
-  std::vector<std::size_t> order(count);
-  for (std::size_t i = 0; i < count; ++i) {
+/// At random, but the default before all others: what is stopped early can still be compared with it.
+std::vector<std::size_t> order_of(const std::vector<Setting>& settings, const Setting& usual,
+                                  CounterRandom& random) {
+  std::vector<std::size_t> order(settings.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
     const auto j = static_cast<std::size_t>(random.uniform() * static_cast<double>(i + 1));
     order[i] = order[j];
     order[j] = i;
   }
+  std::partition(order.begin(), order.end(), [&](std::size_t i) { return settings[i] == usual; });
   return order;
 }
 
@@ -43,7 +47,7 @@ std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const 
     for (int repeat = 0; repeat < plan.repeats; ++repeat) {
       CounterRandom random(plan.seed, static_cast<std::uint64_t>(repeat) + 1000 * scene);
       std::optional<Readings> before = measure_default();
-      for (const std::size_t setting : order_of(plan.settings.size(), random)) {
+      for (const std::size_t setting : order_of(plan.settings, usual, random)) {
         if (!before) return rows;
         SweepRow row{.setting = setting, .scene = scene, .repeat = repeat};
         try {

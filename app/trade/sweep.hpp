@@ -33,11 +33,11 @@ struct SweepWatch {
   std::function<bool()> is_stopped;                 ///< asked before each measurement; may be empty
 };
 
-/// Scene by scene, and in a scene repeat by repeat, all settings in an order of their own. Between any two
-/// the default is measured, and each setting is compared with the one before and the one after it: a machine
-/// that becomes slower, or has other work for a while, slows all three. Where a setting cannot be done its
-/// row says why and the sweep goes on; a default that cannot is an Error. When it is stopped, what is done is
-/// given.
+/// Scene by scene, and in a scene repeat by repeat, all settings in an order of their own, the default's own
+/// row first. Between any two the default is measured, and each setting is compared with the one before and
+/// the one after it: a machine that becomes slower, or has other work for a while, slows all three. Where a
+/// setting cannot be done its row says why and the sweep goes on; a default that cannot is an Error. When it
+/// is stopped, what is done is given.
 std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch = {});
 
 }  // namespace roomradar

@@ -193,6 +193,17 @@ TEST(Sweep, MeasuresTheDefaultBetweenAnyTwoAndEachRepeatInAnOrderOfItsOwn) {
   EXPECT_EQ(first, second);
 }
 
+TEST(Sweep, TheDefaultsOwnRowIsTheFirstSoThatACutOffSweepCanBeCompared) {
+  Machine machine;
+  const TradeWork work = machine.work({"a"});
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    const std::vector<SweepRow> rows = sweep(work, {{{0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, 2, seed});
+    ASSERT_EQ(rows.size(), 6U);
+    EXPECT_EQ(rows[0].setting, 2U);
+    EXPECT_EQ(rows[3].setting, 2U);
+  }
+}
+
 TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) {
   Machine machine;
   const TradeWork work = machine.work();
