@@ -44,9 +44,11 @@ Json read_settings(const fs::path& folder) {
   Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
     throw Error(path.string() + ": is not the settings of a recorded session, or is damaged");
-  if (!json.contains("format_version") || json["format_version"] != kFormatVersion)
-    throw Error(path.string() + ": is of another format version than " + std::to_string(kFormatVersion) +
-                ", which this program reads");
+  if (!json.contains("format_version") || !json["format_version"].is_number_integer())
+    throw Error(path.string() + ": does not say its format version; is it damaged?");
+  if (json["format_version"] != kFormatVersion)
+    throw Error(path.string() + ": is of format version " + json["format_version"].dump() +
+                ", and this program reads version " + std::to_string(kFormatVersion));
   return json;
 }
 

@@ -5,18 +5,27 @@
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
+#include "app/sim/sim_options.hpp"
 #include "app/trade/draw_settings.hpp"
 #include "app/trade/machine.hpp"
 #include "app/trade/prescan_work.hpp"
 #include "app/trade/run_work.hpp"
 #include "app/trade/table1.hpp"
 #include "app/trade/trade_csv.hpp"
+#include "app/trade/trade_frames.hpp"
 #include "app/trade/trade_page.hpp"
 #include "app/trade/trade_presets.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
+
+/// A scene that cannot be measured in is said now, and not when the sweep comes to it.
+void require_scenes(const TradeCommand& command) {
+  for (const std::string& room : command.rooms) (void)parse_sim_spec("sim:" + room);
+  for (const std::string& recording : command.recordings)
+    (void)frames_of_recording(recording, 0, 2 * kFewestTradeFrames);
+}
 
 std::vector<TradeWork> works_of(const TradeCommand& command) {
   const TradeScale scale = command.quick ? kQuickScale : TradeScale{};
@@ -112,6 +121,7 @@ int run(const TradeCommand& command) {
   report.settings = {{"rooms", command.rooms}, {"settings", command.settings}, {"repeats", command.repeats},
                      {"seed", command.seed},   {"time", command.time},         {"quick", command.quick},
                      {"only", command.only}};
+  require_scenes(command);
   if (command.table1) return print_table1(command, std::move(report));
   const Machine machine = this_machine();
   report.renderer = machine.renderer;

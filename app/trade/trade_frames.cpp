@@ -16,7 +16,6 @@ Intrinsics kinect_of_width(int width_px) {
 }
 
 std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t first, std::int64_t count) {
-  constexpr std::size_t kLeast = 30;
   const std::unique_ptr<FrameSource> source = open_source(folder, FrameRange{first, first + count - 1});
   std::vector<Frame> frames;
   Frame frame;
@@ -24,11 +23,11 @@ std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t f
     if (read.status == ReadStatus::kFrame) frames.push_back(frame);
   const bool has_poses =
       std::all_of(frames.begin(), frames.end(), [](const Frame& f) { return f.T_world_camera.has_value(); });
-  if (frames.size() < kLeast || !has_poses)
+  if (frames.size() < kFewestTradeFrames || !has_poses)
     throw Error(folder + ": frames " + std::to_string(first) + " to " + std::to_string(first + count - 1) +
-                (has_poses
-                     ? ": are " + std::to_string(frames.size()) + " readable ones; at least 30 are needed"
-                     : ": have no poses, so there is no truth to measure errors by"));
+                (has_poses ? ": are " + std::to_string(frames.size()) + " readable ones; at least " +
+                                 std::to_string(kFewestTradeFrames) + " are needed"
+                           : ": have no poses, so there is no truth to measure errors by"));
   return frames;
 }
 

@@ -1,5 +1,7 @@
 // trade_frames.hpp: the frames on which settings are measured.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,8 +13,10 @@ namespace roomradar {
 /// The Kinect's depth camera with images of another width, 4:3.
 Intrinsics kinect_of_width(int width_px);
 
+inline constexpr std::size_t kFewestTradeFrames = 30;
+
 /// Up to `count` frames of a folder from index `first` on. Throws Error if it cannot be read, there are fewer
-/// than 30, or they come without poses: nothing could be said of errors then.
+/// than kFewestTradeFrames, or they come without poses: nothing could be said of errors then.
 std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t first, std::int64_t count);
 
 }  // namespace roomradar

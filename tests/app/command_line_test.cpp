@@ -183,7 +183,7 @@ TEST_F(CommandLine, ASessionThatWasCutOffReplaysToWhereItCame) {
   EXPECT_NE(replayed.out.find("replay: 11 of 11 frames the same"), std::string::npos) << replayed.out;
 
   std::ofstream(session / "session.json") << "{ \"format\": \"roomradar session\", \"format_version\": 9 }";
-  expect_fault(roomradar("run " + session.string()), 1, "version 9");
+  expect_fault(roomradar("run " + session.string()), 1, "version 9,");
   std::ofstream(session / "session.json") << "{ \"format\": \"roomr";
   expect_fault(roomradar("run " + session.string()), 1, "session.json: is not the settings");
   fs::remove(session / "session.json");
