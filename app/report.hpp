@@ -40,5 +40,7 @@ void write_report(const Report& report, const std::filesystem::path& path);
 
 /// Largest resident memory of this process so far, in MiB.
 double peak_rss_mb();
+/// What all threads of this process have computed so far.
+double process_cpu_ms();
 
 }  // namespace roomradar

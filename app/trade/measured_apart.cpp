@@ -1,8 +1,6 @@
 // measured_apart.cpp: figures through the pipe as they lie in memory.
 #include "app/trade/measured_apart.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstring>
 
@@ -25,15 +23,6 @@ Readings measured_apart(const std::string& what, const std::function<Readings()>
   Readings figures(bytes.size() / sizeof(double));
   std::memcpy(figures.data(), bytes.data(), figures.size() * sizeof(double));
   return figures;
-}
-
-double process_cpu_ms() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto ms = [](const timeval& t) {
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
-  };
-  return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
 double peak_growth_mb(std::size_t start_bytes) {

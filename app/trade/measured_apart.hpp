@@ -16,7 +16,4 @@ Readings measured_apart(const std::string& what, const std::function<Readings()>
 /// How much more memory (10^6 bytes) this process has held at its peak than it held at `start_bytes`.
 double peak_growth_mb(std::size_t start_bytes);
 
-/// What all threads of this process have computed so far, ms.
-double process_cpu_ms();
-
 }  // namespace roomradar

@@ -5,6 +5,7 @@
 
 #include "app/apply_quality.hpp"
 #include "app/fallthrough/totals.hpp"
+#include "app/report.hpp"
 #include "app/session.hpp"
 #include "app/trade/measured_apart.hpp"
 #include "mapping/memory_use.hpp"

@@ -12,16 +12,7 @@ namespace {
 
 constexpr Intrinsics kCamera{320, 240, 292.5, 292.5, 159.5, 119.5};
 
-/// 4 x 5 m with a ball and two boxes.
-test::Scene room() {
-  using namespace test;
-  const Scene walls = nearest_of(nearest_of(plane({0, 1, 0}, 2.5), plane({0, 1, 0}, -2.5)),
-                                 nearest_of(plane({1, 0, 0}, 2.0), plane({1, 0, 0}, -2.0)));
-  const Scene things = nearest_of(box({Eigen::Vector3d(-1.9, 1.2, 0.0), Eigen::Vector3d(-1.0, 2.4, 0.8)}),
-                                  box({Eigen::Vector3d(1.1, -2.4, 0.0), Eigen::Vector3d(1.9, -1.0, 1.3)}));
-  return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), walls),
-                    nearest_of(things, sphere({0.9, 1.8, 0.4}, 0.4)));
-}
+test::Scene room() { return test::nearest_of(test::plane({0, 0, 1}, 0.0), test::walls_and_things()); }
 
 /// The same turned by half a circle about the z axis fits onto itself, walls, things and paint.
 test::Scene twin_room() {

@@ -9,8 +9,6 @@
 // (frame-bench-maps). An object is dropped over what is in view every 25 frames. The first 10 frames are not
 // counted. Reference: drawing the whole map's depth with OpenGL at the frames' poses, before and after each
 // row. Scenes, seeds and frames are fixed: changing them breaks comparison with old numbers.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -22,11 +20,13 @@
 #include <utility>
 #include <vector>
 
+#include "app/report.hpp"
 #include "app/session.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "app/sources/frame_range.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/stage_times.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/bench/frame_bench_pipe.hpp"
@@ -123,15 +123,6 @@ std::vector<Frame> frames_of(const Scene& scene) {
   for (Frame frame; bench::read_frame(pipe, frame);) frames.push_back(frame);
   if (pclose(pipe) != 0) throw Error(scene.run + ": cannot be read");
   return frames;
-}
-
-double process_cpu_ms() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto ms = [](const timeval& t) {
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
-  };
-  return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
 /// Wall-clock microseconds that OpenGL takes for 1,000 triangles of the whole map, as the frames see it.

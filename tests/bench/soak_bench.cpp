@@ -7,8 +7,6 @@
 // what is in view every 10 s, one thrown every 15 s, one lies where it fell. A row for each tenth of the
 // time: processor time a frame (of all threads), resident memory, and how right the frames still are. Scene,
 // seeds and events are fixed; changing them breaks comparison with old numbers.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report.hpp"
 #include "app/session.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "app/virtual_object.hpp"
@@ -41,15 +40,6 @@ struct Settings {
   std::filesystem::path map = "soak-bench-map";
   std::string json;
 };
-
-double process_cpu_ms() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto ms = [](const timeval& t) {
-    return 1e3 * static_cast<double>(t.tv_sec) + 1e-3 * static_cast<double>(t.tv_usec);
-  };
-  return ms(usage.ru_utime) + ms(usage.ru_stime);
-}
 
 SavedMap map_at(const std::filesystem::path& folder) {
   if (!std::filesystem::exists(folder / "map.json")) {

@@ -14,15 +14,10 @@ namespace {
 
 constexpr Intrinsics kCamera{160, 120, 146.25, 146.25, 79.5, 59.5};
 
-/// 4 x 5 m and 2.5 m high, with a ball and two boxes.
+/// 2.5 m high.
 test::Scene room() {
   using namespace test;
-  const Scene walls = nearest_of(nearest_of(plane({0, 1, 0}, 2.5), plane({0, 1, 0}, -2.5)),
-                                 nearest_of(plane({1, 0, 0}, 2.0), plane({1, 0, 0}, -2.0)));
-  const Scene things = nearest_of(box({Eigen::Vector3d(-1.9, 1.2, 0.0), Eigen::Vector3d(-1.0, 2.4, 0.8)}),
-                                  box({Eigen::Vector3d(1.1, -2.4, 0.0), Eigen::Vector3d(1.9, -1.0, 1.3)}));
-  const Scene level = nearest_of(plane({0, 0, 1}, 0.0), plane({0, 0, 1}, 2.5));
-  return nearest_of(nearest_of(level, walls), nearest_of(things, sphere({0.9, 1.8, 0.4}, 0.4)));
+  return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), plane({0, 0, 1}, 2.5)), walls_and_things());
 }
 
 Frame seen_from(const Eigen::Isometry3d& T_world_camera) {

@@ -71,22 +71,6 @@ TEST_F(GlExtremes, FacesParallelAndPerpendicularToTheDirection) {
 }
 
 TEST_F(GlExtremes, DegenerateDuplicateAndNaNTrianglesChangeNothing) {
-  const auto spoilt = [](Mesh mesh) {
-    const std::size_t count = mesh.triangles.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Triangle t = mesh.triangles[i];
-      mesh.triangles.push_back(t);                          // duplicate
-      mesh.triangles.push_back({t[0], t[0], t[1]});         // a line
-      mesh.triangles.push_back({t[2], t[2], t[2]});         // a point
-      mesh.triangles.push_back({t[0], t[1], 4000000000U});  // no such vertex
-    }
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    mesh.vertices.insert(mesh.vertices.end(), {{nan, 0, 0}, {0, 0, -inf}});
-    mesh.triangles.push_back({first, 0, 1});
-    mesh.triangles.push_back({0, first + 1, 2});
-    return mesh;
-  };
   std::mt19937 random(3);
   const Mesh torus = shapes::torus(20, 12, 0.2F, 0.05F, 0.02F), ground = shapes::bumpy_ground(20);
   for (int i = 0; i < 10; ++i) {
@@ -94,13 +78,13 @@ TEST_F(GlExtremes, DegenerateDuplicateAndNaNTrianglesChangeNothing) {
     T.pretranslate(Eigen::Vector3d(0, 0, 0.5));
     const Eigen::Vector3d direction = kDown + 0.5 * shapes::random_point(random);
     const Contact clean = ask(torus, T, direction, 1.0, ground);
-    const Contact got = ask(spoilt(torus), T, direction, 1.0, spoilt(ground));
+    const Contact got = ask(shapes::spoilt(torus), T, direction, 1.0, shapes::spoilt(ground));
     EXPECT_EQ(got.status, clean.status);
     EXPECT_NEAR(got.travel_m, clean.travel_m, 1e-6);
     EXPECT_NEAR(got.upper_m, clean.upper_m, 1e-6);
     JudgedScene judged;
     judged.add(ground);
-    expect_holds(spoilt(torus), T, direction, 1.0, spoilt(ground),
+    expect_holds(shapes::spoilt(torus), T, direction, 1.0, shapes::spoilt(ground),
                  judged.travel_m(JudgedMesh(torus, T), direction, 1.0));
   }
 }

@@ -241,23 +241,6 @@ TEST(RadarExtremes, FacesParallelAndPerpendicularToTheDirection) {
 }
 
 TEST(RadarExtremes, DegenerateDuplicateAndNaNTrianglesChangeNothing) {
-  const auto spoil = [](Mesh mesh) {
-    const std::size_t count = mesh.triangles.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const Triangle t = mesh.triangles[i];
-      mesh.triangles.push_back(t);                          // duplicate
-      mesh.triangles.push_back({t[0], t[0], t[1]});         // a line
-      mesh.triangles.push_back({t[2], t[2], t[2]});         // a point
-      mesh.triangles.push_back({t[0], t[1], 4000000000U});  // no such vertex
-    }
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
-    mesh.vertices.insert(mesh.vertices.end(), {{nan, 0, 0}, {0, 0, -inf}, {nan, nan, nan}});
-    mesh.triangles.push_back({first, 0, 1});
-    mesh.triangles.push_back({0, first + 1, 2});
-    mesh.triangles.push_back({first + 2, first + 2, 2});
-    return mesh;
-  };
   Radars radars;
   std::mt19937 random(3);
   const Mesh torus = shapes::torus(20, 12, 0.2F, 0.05F, 0.02F), ground = shapes::bumpy_ground(20);
@@ -266,7 +249,8 @@ TEST(RadarExtremes, DegenerateDuplicateAndNaNTrianglesChangeNothing) {
     T.pretranslate(Eigen::Vector3d(0, 0, 0.5));
     const Eigen::Vector3d direction = kDown + 0.5 * shapes::random_point(random);
     const auto truth_m = scene_of(ground).travel_m(JudgedMesh(torus, T), direction, 1.0);
-    radars.expect(JudgedMesh(spoil(torus), T), direction, 1.0, scene_of(spoil(ground)), truth_m, 1e-9);
+    radars.expect(JudgedMesh(shapes::spoilt(torus), T), direction, 1.0, scene_of(shapes::spoilt(ground)),
+                  truth_m, 1e-9);
   }
 }
 

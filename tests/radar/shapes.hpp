@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <span>
@@ -204,6 +205,25 @@ inline Eigen::Quaterniond random_rotation(std::mt19937& random) {
   std::normal_distribution<double> normal;
   const double w = normal(random), x = normal(random), y = normal(random), z = normal(random);
   return Eigen::Quaterniond(w, x, y, z).normalized();
+}
+
+/// The same surface with triangles twice, without area, of vertices that are not there or not finite.
+inline Mesh spoilt(Mesh mesh) {
+  const std::size_t count = mesh.triangles.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Triangle t = mesh.triangles[i];
+    mesh.triangles.push_back(t);                          // duplicate
+    mesh.triangles.push_back({t[0], t[0], t[1]});         // a line
+    mesh.triangles.push_back({t[2], t[2], t[2]});         // a point
+    mesh.triangles.push_back({t[0], t[1], 4000000000U});  // no such vertex
+  }
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+  mesh.vertices.insert(mesh.vertices.end(), {{nan, 0, 0}, {0, 0, -inf}, {nan, nan, nan}});
+  mesh.triangles.push_back({first, 0, 1});
+  mesh.triangles.push_back({0, first + 1, 2});
+  mesh.triangles.push_back({first + 2, first + 2, 2});
+  return mesh;
 }
 
 }  // namespace roomradar::shapes

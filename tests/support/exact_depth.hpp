@@ -87,4 +87,13 @@ inline Frame exact_frame(const Scene& scene, const Intrinsics& camera,
   return frame;
 }
 
+/// Walls of 4 x 5 m, a ball and two boxes, without floor and ceiling.
+inline Scene walls_and_things() {
+  const Scene walls = nearest_of(nearest_of(plane({0, 1, 0}, 2.5), plane({0, 1, 0}, -2.5)),
+                                 nearest_of(plane({1, 0, 0}, 2.0), plane({1, 0, 0}, -2.0)));
+  const Scene boxes = nearest_of(box({Eigen::Vector3d(-1.9, 1.2, 0.0), Eigen::Vector3d(-1.0, 2.4, 0.8)}),
+                                 box({Eigen::Vector3d(1.1, -2.4, 0.0), Eigen::Vector3d(1.9, -1.0, 1.3)}));
+  return nearest_of(walls, nearest_of(boxes, sphere({0.9, 1.8, 0.4}, 0.4)));
+}
+
 }  // namespace roomradar::test
