@@ -16,7 +16,7 @@ namespace roomradar {
 struct NearPoint {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();   ///< on the scene
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from there to the object
-  double gap_m = 0.0;                                      ///< > 0
+  double gap_m = 0.0;                                      ///< >= 0; 0: they touch
   Touched kind = Touched::kNothing;
 };
 

@@ -9,12 +9,27 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kTouching_m = 1e-12;  // nearer than this, rounding says on which side
 
 bool is_over(const Vec3& p, const Face& t) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (t.inward[i].dot(p - t.corners[i]) < 0.0) return false;
   }
   return true;
+}
+
+/// Farther from all edges than a touch.
+bool is_inside(const Vec3& p, const Face& t) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (t.inward[i].dot(p - t.corners[i]) <= kTouching_m * t.inward[i].norm()) return false;
+  }
+  return true;
+}
+
+/// +1 or -1; 0 of less than a touch.
+double side_of(double height_m) {
+  if (std::abs(height_m) <= kTouching_m) return 0.0;
+  return height_m > 0.0 ? 1.0 : -1.0;
 }
 
 bool pierces(const Vec3& a, const Vec3& b, const Face& t) {
@@ -42,31 +57,52 @@ bool cross(const Face& a, const Face& b) {
   return false;
 }
 
-void PairPlaces::add(const Vec3& on_scene, const Vec3& way, double gap_m) const {
-  if (!(gap_m > 0.0 && gap_m <= reach_m)) return;
-  found.push_back({T_world_frame * on_scene, T_world_frame.linear() * way / gap_m, gap_m, kind});
+void PairPlaces::add(const Vec3& on_scene, const Vec3& normal, double gap_m) const {
+  if (normal.isZero() || !(gap_m <= reach_m)) return;
+  found.push_back({T_world_frame * on_scene, T_world_frame.linear() * normal, gap_m, kind});
+}
+
+Vec3 PairPlaces::off_scene(double height_m, const Face& o, const Face& s, const Range& heights) const {
+  double side = side_of(height_m);
+  // It touches: the object is where the rest of its triangle is. One that lies in the plane faces the scene.
+  if (side == 0.0) side = side_of(heights.low + heights.high);
+  if (side == 0.0 && object_is_closed) side = -side_of(o.normal.dot(s.normal));
+  if (side == 0.0 && scene_is_one_sided) side = 1.0;
+  return side * s.normal;
+}
+
+Vec3 PairPlaces::off_object(double height_m, const Vec3& corner, const Face& o, const Range& heights) const {
+  double side = side_of(height_m);
+  if (side == 0.0) {
+    if (!is_inside(corner, o)) return Vec3::Zero();  // what passes along an edge is not held by the face
+    side = object_is_closed ? 1.0 : side_of(heights.low + heights.high);
+  }
+  return -side * o.normal;
 }
 
 bool PairPlaces::look(const Face& o, const Face& s) const {
   std::array<double, 3> over_scene,
       over_object;  // heights of the corners of the one above the other's plane
-  double s_low = kInfinity, s_high = -kInfinity, o_low = kInfinity, o_high = -kInfinity;
+  Range of_object, of_scene;
   for (std::size_t k = 0; k < 3; ++k) {
     over_scene[k] = s.normal.dot(o.corners[k] - s.corners[0]);
     over_object[k] = o.normal.dot(s.corners[k] - o.corners[0]);
-    s_low = std::min(s_low, over_scene[k]), s_high = std::max(s_high, over_scene[k]);
-    o_low = std::min(o_low, over_object[k]), o_high = std::max(o_high, over_object[k]);
+    of_object.include(over_scene[k]);
+    of_scene.include(over_object[k]);
   }
-  if (s_low > reach_m || s_high < -reach_m || o_low > reach_m || o_high < -reach_m) return false;
-  if (scene_is_one_sided && s_low < 0.0) return false;
-  if (object_is_closed && o_high < 0.0) return false;
-  if (s_low < 0.0 && s_high > 0.0 && o_low < 0.0 && o_high > 0.0 && cross(o, s)) return true;
+  if (of_object.low > reach_m || of_object.high < -reach_m || of_scene.low > reach_m ||
+      of_scene.high < -reach_m)
+    return false;
+  if (scene_is_one_sided && of_object.low < -kTouching_m) return false;
+  if (object_is_closed && of_scene.high < -kTouching_m) return false;
+  if (of_object.low < 0.0 && of_object.high > 0.0 && of_scene.low < 0.0 && of_scene.high > 0.0 && cross(o, s))
+    return true;
   for (std::size_t k = 0; k < 3; ++k) {
     const double h = over_scene[k], g = over_object[k];
     if (std::abs(h) <= reach_m && is_over(o.corners[k], s))
-      add(o.corners[k] - h * s.normal, h * s.normal, std::abs(h));
-    if (std::abs(g) <= reach_m && !(object_is_closed && g < 0.0) && is_over(s.corners[k], o))
-      add(s.corners[k], -g * o.normal, std::abs(g));
+      add(o.corners[k] - h * s.normal, off_scene(h, o, s, of_object), std::abs(h));
+    if (std::abs(g) <= reach_m && !(object_is_closed && g < -kTouching_m) && is_over(s.corners[k], o))
+      add(s.corners[k], off_object(g, s.corners[k], o, of_scene), std::abs(g));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     // Seen along the scene's normal, all of the scene's triangle may lie on one side of the edge.
@@ -93,9 +129,13 @@ void PairPlaces::look_at_edges(const Face& o, std::size_t i, const Face& s, std:
   const Vec3 way = a + along_u * u - on_scene;
   const double gap_m = way.norm();
   if (!(gap_m <= reach_m)) return;
+  if (gap_m <= kTouching_m) {  // across both, towards the rest of the object's triangle
+    const Vec3 normal = u.cross(v).normalized();
+    return add(on_scene, side_of(normal.dot(o.corners[(i + 2) % 3] - a)) * normal, gap_m);
+  }
   // The way leaves a closed object inwards: another of its faces is nearer.
   if (object_is_closed && way.dot(o.normal) > 1e-9 * gap_m) return;
-  add(on_scene, way, gap_m);
+  add(on_scene, way / gap_m, gap_m);
 }
 
 void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kept) {

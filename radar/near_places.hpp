@@ -21,14 +21,15 @@ bool cross(const Face& a, const Face& b);
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+
+  void include(double at) {
+    low = std::min(low, at);
+    high = std::max(high, at);
+  }
 };
 inline Range range_along(const Eigen::Vector3d& direction, const std::array<Eigen::Vector3d, 3>& corners) {
   Range range;
-  for (const Eigen::Vector3d& corner : corners) {
-    const double at = direction.dot(corner);
-    range.low = std::min(range.low, at);
-    range.high = std::max(range.high, at);
-  }
+  for (const Eigen::Vector3d& corner : corners) range.include(direction.dot(corner));
   return range;
 }
 
@@ -45,7 +46,17 @@ struct PairPlaces {
   bool look(const Face& o, const Face& s) const;
 
  private:
-  void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& way, double gap_m) const;
+  /// Nothing without a normal.
+  void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m) const;
+  /// The scene's normal on the side of an object's corner that is so high above it; zero where none can be
+  /// told.
+  /// @param heights  of all corners of the object's triangle
+  [[nodiscard]] Eigen::Vector3d off_scene(double height_m, const Face& o, const Face& s,
+                                          const Range& heights) const;
+  /// The object's normal from a scene's corner that is so high above it, to the object; zero likewise.
+  /// @param heights  of all corners of the scene's triangle
+  [[nodiscard]] Eigen::Vector3d off_object(double height_m, const Eigen::Vector3d& corner, const Face& o,
+                                           const Range& heights) const;
   void look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const;
 };
 

@@ -428,5 +428,22 @@ TEST(RigidBody, AThinSheetIsNotPassedByTurning) {
   }
 }
 
+TEST(RigidBody, SetExactlyOnAFaceItStaysThereAndIsLiftedToItsMargin) {
+  for (const bool is_turned : {false, true}) {
+    Stage stage(shapes::box({0.1F, 0.1F, 0.1F}));
+    stage.add(shapes::floor(1.0F, 0.0F));
+    const double half_m = static_cast<double>(0.5F * 0.1F);
+    Body body = stage.body_at({0.0, 0.0, half_m});
+    if (is_turned) body.T_world_object.rotate(Eigen::AngleAxisd(0.4, Vec3::UnitZ()));
+    for (int frame = 0; frame < 15; ++frame) {
+      (void)stage.step(body);
+      EXPECT_GE(body.T_world_object.translation().z() - half_m, 0.0) << frame;
+    }
+    EXPECT_NEAR(body.T_world_object.translation().z() - half_m, 0.001, 0.0002);
+    EXPECT_LT(body.T_world_object.translation().head<2>().norm(), 1e-6);
+    EXPECT_TRUE(body.at_rest);
+  }
+}
+
 }  // namespace
 }  // namespace roomradar

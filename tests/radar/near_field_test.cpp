@@ -62,6 +62,53 @@ TEST(NearField, ABoxOverAFloorIsNearAtItsFourCorners) {
   EXPECT_TRUE(points.empty());
 }
 
+/// A level sheet of cells x cells squares over [-1, 1]^2 at z = 0.
+Mesh grid(std::uint32_t cells) {
+  Mesh mesh;
+  for (std::uint32_t j = 0; j <= cells; ++j)
+    for (std::uint32_t i = 0; i <= cells; ++i)
+      mesh.vertices.emplace_back(2.0F * static_cast<float>(i) / static_cast<float>(cells) - 1.0F,
+                                 2.0F * static_cast<float>(j) / static_cast<float>(cells) - 1.0F, 0.0F);
+  for (std::uint32_t j = 0; j < cells; ++j) {
+    for (std::uint32_t i = 0; i < cells; ++i) {
+      const std::uint32_t a = j * (cells + 1) + i;
+      mesh.triangles.push_back({a, a + 1, a + cells + 1});
+      mesh.triangles.push_back({a + 1, a + cells + 2, a + cells + 1});
+    }
+  }
+  return mesh;
+}
+
+TEST(NearField, WhatTouchesExactlyIsNearAndKnowsItsSide) {
+  std::vector<NearPoint> points;
+  // On a floor and under a ceiling, of two faces and of many: some of these have corners below its edges.
+  for (const Mesh& sheet : {shapes::floor(2.0F, 0.0F), grid(32)}) {
+    Pair pair(shapes::box({0.25F, 0.5F, 0.125F}), sheet);
+    for (const double side : {1.0, -1.0}) {
+      EXPECT_EQ(pair.near(at(0.125, 0, side * 0.0625), 0.002, points), 0U);
+      ASSERT_GE(points.size(), 4U);
+      double widest_m = 0.0;
+      for (const NearPoint& p : points) {
+        EXPECT_EQ(p.gap_m, 0.0);
+        EXPECT_EQ(p.normal_world.z(), side) << p.normal_world.transpose();
+        widest_m = std::max(widest_m, (p.point_world - points.front().point_world).norm());
+      }
+      EXPECT_GT(widest_m, 0.5);
+    }
+  }
+}
+
+TEST(NearField, RoundingDoesNotTurnTheNormalOfWhatTouches) {
+  Pair pair(shapes::box({0.25F, 0.5F, 0.125F}), shapes::floor(2.0F, 0.0F));
+  Eigen::Isometry3d T = at(0, 0, 0.0625);
+  T.rotate(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+  T.translation().z() = std::nextafter(0.0625, 1.0);
+  std::vector<NearPoint> points;
+  EXPECT_EQ(pair.near(T, 0.002, points), 0U);
+  ASSERT_GE(points.size(), 4U);
+  for (const NearPoint& p : points) EXPECT_EQ(p.normal_world.z(), 1.0);
+}
+
 TEST(NearField, AnEdgeAcrossAnEdgeIsNearWhereTheyPass) {
   // A box turned so that an edge of it lies over the edge of another, at right angles.
   Mesh ridge = shapes::box({4, 0.2F, 0.2F});
