@@ -9,6 +9,7 @@
 
 #include "app/quality_json.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 namespace {
@@ -141,9 +142,9 @@ void write_presets(const Presets& presets, const fs::path& path) {
       ratios[std::string(to_string(static_cast<FramePart>(part)))] = step.part_ratios[part];
     json["front"].push_back({{"run", to_json(step.run)}, {"part_ratios", ratios}, {"figures", step.figures}});
   }
-  std::ofstream file(path);
-  file << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
-  if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
+  WholeFile file(path);
+  file.stream() << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  file.put_in_place();
 }
 
 fs::path presets_file(const std::string& given) {

@@ -306,7 +306,7 @@ Mesh read_mesh(const std::filesystem::path& path) {
         transfer(writer, mesh);
         return writer.bytes();
       },
-      path.string(), most_s, most_bytes);
+      path.string() + ": cannot be read; is it damaged?", most_s, most_bytes);
   ByteReader reader(answer, path.string());
   Mesh mesh;
   transfer(reader, mesh);

@@ -99,16 +99,17 @@ std::size_t taken_bytes() {
 
 }  // namespace
 
-std::string run_apart(const std::function<std::string()>& work, const std::string& where, unsigned most_s,
+std::string run_apart(const std::function<std::string()>& work, const std::string& complaint, unsigned most_s,
                       std::size_t most_bytes) {
+  const auto fail = [&](const std::string& reason) { throw Error(complaint + " (" + reason + ")"); };
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw Error(where + ": no pipe can be made: " + std::strerror(errno));
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) fail(std::string("no pipe can be made: ") + std::strerror(errno));
   const pid_t child = ::fork();
   if (child == 0) {
     ::close(ends[0]);
     be_child(work, ends[1], most_s, most_bytes);
   }
+  const int fork_fault = errno;
   ::close(ends[1]);
   // One that waits for something takes no processor time; on a busy machine a second of that lasts longer.
   constexpr unsigned kWallPerProcessor = 10;
@@ -117,17 +118,17 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
   if (!read) ::kill(child, SIGKILL);
   std::string answer = std::move(read).value_or(std::string{});
   ::close(ends[0]);
-  if (child < 0) throw Error(where + ": no process can be started to read it: " + std::strerror(errno));
+  if (child < 0) fail(std::string("no process can be started: ") + std::strerror(fork_fault));
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (WIFSIGNALED(status)) {
-    const bool took_long = WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL;
-    throw Error(where + (took_long ? ": takes too long or too much memory to read; is it damaged?"
-                                   : ": cannot be read: what reads it crashed over it; is it damaged?"));
+    const int signal = WTERMSIG(status);
+    const bool took_long = signal == SIGXCPU || signal == SIGKILL;  // so ends one without memory, too
+    fail(took_long ? "it takes more than " + std::to_string(most_s) + " s, or too much memory"
+                   : std::string("crashed: ") + strsignal(signal));
   }
-  if (status != 0 || answer.empty())
-    throw Error(where + ": cannot be read with the memory that is allowed for it; is it damaged?");
+  if (status != 0 || answer.empty()) fail("it takes more memory than is allowed for it");
   const bool is_answer = answer.front() == kAnswer;
   answer.erase(0, 1);
   if (!is_answer) throw Error(answer);

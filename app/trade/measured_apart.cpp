@@ -19,7 +19,8 @@ Readings measured_apart(const std::string& what, const std::function<Readings()>
     std::memcpy(bytes.data(), figures.data(), bytes.size());
     return bytes;
   };
-  const std::string bytes = run_apart(bytes_of_figures, what, kMost_s, kMost_bytes);
+  const std::string bytes =
+      run_apart(bytes_of_figures, what + ": could not be measured", kMost_s, kMost_bytes);
   Readings figures(bytes.size() / sizeof(double));
   std::memcpy(figures.data(), bytes.data(), figures.size() * sizeof(double));
   return figures;

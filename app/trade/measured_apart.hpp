@@ -10,7 +10,7 @@ namespace roomradar {
 /// What `work` returns, computed in a child of this process, which must not have a GL context (nor threads
 /// that the work needs): the child makes its own. What it throws as Error is thrown here; if it crashes that
 /// is an Error, too.
-/// @param what  for messages
+/// @param what  for messages: "run in table"
 Readings measured_apart(const std::string& what, const std::function<Readings()>& work);
 
 /// How much more memory (10^6 bytes) this process has held at its peak than it held at `start_bytes`.

@@ -101,10 +101,7 @@ ContactFacts touch_true_surfaces(const RunScene& scene, const RunQuality& qualit
   std::vector<double> errors_m;
   int passed = 0, false_stops = 0;
   for (const auto& prepared : scene.scenarios) {
-    const Trial trial = run_trial(
-        *prepared, live,
-        {.policy = SurfacePolicy::kMap, .depth_stride = config.depth_stride, .fine_mesh = config.fine_mesh},
-        radar);
+    const Trial trial = run_trial(*prepared, live, how, radar);
     passed += trial.verdict.outcome == Outcome::kPassedThrough ? 1 : 0;
     false_stops += trial.verdict.outcome == Outcome::kStoppedFalse ? 1 : 0;
     if (trial.rested_on != Touched::kNothing) errors_m.push_back(std::abs(trial.verdict.error_m));

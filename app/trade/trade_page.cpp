@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 
 #include "app/svg_plot.hpp"
 #include "app/trade/front.hpp"
 #include "app/trade/front_plot.hpp"
 #include "app/trade/trade_csv.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
 namespace {
@@ -188,10 +187,11 @@ std::string section_of(const TradeResult& result) {
   for (const std::string& scene : result.work.scenes) scenes += (scenes.empty() ? "" : ", ") + scene;
   return "<h2>" + escaped(result.work.name) + "</h2><p class=\"about\">" + std::to_string(shown) +
          " settings on the plots, " + std::to_string(result.rows.size()) +
-         " measurements in: " + escaped(scenes) + "</p>\n<h3>Presets</h3>" + table_of(result, presets) +
-         "<h3>Fronts</h3>" + plots_of(result) + "<h3>The front of all errors together</h3>" +
-         table_of(result, choice.front) + "<h3>One knob at a time</h3>" +
-         table_of(result, single_turns_of(result));
+         " measurements in: " + escaped(scenes) +
+         "<br>Time compared: " + escaped(result.work.figures[result.work.time].title) +
+         "</p>\n<h3>Presets</h3>" + table_of(result, presets) + "<h3>Fronts</h3>" + plots_of(result) +
+         "<h3>The front of all errors together</h3>" + table_of(result, choice.front) +
+         "<h3>One knob at a time</h3>" + table_of(result, single_turns_of(result));
 }
 
 }  // namespace
@@ -199,7 +199,8 @@ std::string section_of(const TradeResult& result) {
 void write_trade_page(const std::vector<TradeResult>& results, const std::vector<std::string>& about,
                       const std::filesystem::path& path) {
   if (path.empty()) return;
-  std::ofstream file(path, std::ios::trunc);
+  WholeFile whole(path);
+  std::ostream& file = whole.stream();
   file << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
           "content=\"width=device-width\"><title>roomradar: time against accuracy</title><style>"
        << kStyle << "</style>\n<h1>What accuracy costs</h1>\n<p class=\"about\">";
@@ -227,9 +228,7 @@ void write_trade_page(const std::vector<TradeResult>& results, const std::vector
          "default's.</p>\n";
   for (const TradeResult& result : results) file << section_of(result);
   file << "</html>\n";
-  file.close();
-  if (!file)
-    throw Error(path.string() + ": cannot be written whole; does its folder exist, is the disk full?");
+  whole.put_in_place();
 }
 
 }  // namespace roomradar

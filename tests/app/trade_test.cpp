@@ -315,6 +315,7 @@ TEST(TradeFiles, CsvHasAllColumnsInEachLineAndThePageNeedsNothingElse) {
   EXPECT_NE(page.find("a &lt;machine&gt;"), std::string::npos);
   EXPECT_NE(page.find("a &lt;scene&gt;, &quot;b&quot;"), std::string::npos);
   EXPECT_EQ(page.find("<scene>"), std::string::npos);
+  EXPECT_NE(page.find("Time compared: " + result.work.figures[result.work.time].title), std::string::npos);
   EXPECT_EQ(page.find("://"), std::string::npos) << "no network";
   EXPECT_EQ(page.find("nan"), std::string::npos);
   EXPECT_NE(page.find("prefers-color-scheme"), std::string::npos);
