@@ -15,8 +15,8 @@
 namespace roomradar {
 namespace {
 
-constexpr std::size_t kFewTriangles = 1000;
-constexpr std::size_t kManyTriangles = 10'000;  // fewer are drawn as they are, within a millisecond
+constexpr std::size_t kFewTriangles = 100;
+constexpr std::size_t kManyTriangles = 1000;  // fewer are drawn as they are, within a tenth of a millisecond
 constexpr float kFinestOfSize = 1.0F / 1024.0F;
 constexpr int kMostLevels = 8;           // the last lies off by an eighth of the size
 constexpr float kSpacingOfSize = 0.02F;  // of the points at which deviations are measured

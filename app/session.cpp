@@ -261,7 +261,7 @@ std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const
   std::vector<SceneTree> scene = scene_.surfaces();
   for (const auto& other : objects_) {
     if (other.get() != object && other->in_room)
-      scene.push_back({{&other->shape.touched, other->body.T_world_object}, Touched::kObject});
+      scene.push_back({{&other->model->shape.touched, other->body.T_world_object}, Touched::kObject});
   }
   return scene;
 }
@@ -269,7 +269,7 @@ std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const
 bool Session::is_in_unknown(const VirtualObject& object) const {
   if (!unknown_is_solid_) return false;
   const Eigen::Isometry3d& T_world_object = object.body.T_world_object;
-  const GpuMesh& mesh = object.shape.drawn;
+  const GpuMesh& mesh = object.model->shape.drawn;
   const auto corner = [&](std::uint32_t vertex) -> Eigen::Vector3d {
     return T_world_object * (mesh.origin() + mesh.vertices()[vertex].cast<double>());
   };
@@ -287,8 +287,8 @@ void Session::find_fine_regions() {
   if (!config_.fine_mesh) return;
   for (const auto& object : objects_) {
     if (object->in_room)
-      fine_regions_.push_back({object->body.T_world_object * object->middle,
-                               0.5 * object->shape.drawn.bounds().sizes().norm() + kAbout_m});
+      fine_regions_.push_back({object->body.T_world_object * object->model->middle,
+                               0.5 * object->model->shape.drawn.bounds().sizes().norm() + kAbout_m});
   }
 }
 
@@ -330,17 +330,18 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
     if (config_.scene.surfaces == SurfacePolicy::kMap)
       push = push_directions({&scene_.moved_world().seen_world, &scene_.moved_world().inferred_world},
-                             object->body.T_world_object * object->middle, kNearbyReach_m);
+                             object->body.T_world_object * object->model->middle, kNearbyReach_m);
     std::vector<SceneTree> scene = scene_without(object);
     const auto is_back = [](const SceneTree& surface) { return surface.kind == Touched::kInferredBack; };
     const auto back = std::find_if(scene.begin(), scene.end(), is_back);
     if (back != scene.end()) {
       const RadarScene of_back{{&*back, 1}, {}};
-      const BodyProbe probe = probe_of(radar_, near_field_, object->shape.touched, of_back, &radar_ms);
+      const BodyProbe probe = probe_of(radar_, near_field_, object->model->shape.touched, of_back, &radar_ms);
       if (is_swallowed(object->body, waited_s, probe.travel, config_.physics, push.span())) scene.erase(back);
     }
     const RadarScene radar_scene{scene, {}};
-    const BodyProbe probe = probe_of(radar_, near_field_, object->shape.touched, radar_scene, &radar_ms);
+    const BodyProbe probe =
+        probe_of(radar_, near_field_, object->model->shape.touched, radar_scene, &radar_ms);
     if (object->carried_to_world) set_in_hand(*object, waited_s);
     const StepReport moved =
         advance(object->body, waited_s, probe,
@@ -362,9 +363,10 @@ double Session::penetration_m() {
       std::erase_if(still, [](const SceneTree& surface) {
         return surface.kind != Touched::kStatic && surface.kind != Touched::kObject;
       });
-    const Contact below = exact_radar_.query(
-        {{&object->shape.touched, object->body.T_world_object}, config_.physics.gravity_world_mps2, 0.01},
-        {still, {}});
+    const Contact below = exact_radar_.query({{&object->model->shape.touched, object->body.T_world_object},
+                                              config_.physics.gravity_world_mps2,
+                                              0.01},
+                                             {still, {}});
     if (below.status == ContactStatus::kOverlap) deepest_m = std::max(deepest_m, -below.travel_m);
   }
   return deepest_m;
@@ -413,7 +415,7 @@ void Session::renew_a_shadow() {
   const bool is_fine = most_turned == nullptr && coarse_at_rest != nullptr && may_be_fine;
   VirtualObject* const renewed = is_fine ? coarse_at_rest : most_turned;
   if (renewed != nullptr)
-    make_contact_shadow(renewed->surface, renewed->body.T_world_object.linear(), renewed->shadow,
+    make_contact_shadow(renewed->model->surface, renewed->body.T_world_object.linear(), renewed->shadow,
                         is_fine ? kFine : kCoarse);
 }
 
@@ -429,7 +431,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
     if (!object->in_room) continue;
     drawn.push_back({.instance = {&drawn_mesh(*object, camera, T_world_view, config_.object_error_px),
                                   object->body.T_world_object},
-                     .is_closed = object->shape.touched.is_closed()});
+                     .is_closed = object->model->shape.touched.is_closed()});
     if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
   }
   drawer_.draw(drawn, camera, T_world_view, {}, layer_);
@@ -451,16 +453,20 @@ VirtualObject& Session::object_named(const std::string& name) {
 }
 
 void Session::add_object(const std::string& name, const Mesh& mesh) {
-  objects_.push_back(std::make_unique<VirtualObject>(context_, name, mesh));
+  const auto same = std::find_if(objects_.begin(), objects_.end(),
+                                 [&](const auto& object) { return is_model_of(*object->model, mesh); });
+  objects_.push_back(std::make_unique<VirtualObject>(
+      name,
+      same == objects_.end() ? std::make_shared<const ObjectModel>(context_, name, mesh) : (*same)->model));
 }
 
 void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg) {
   RigidMotion motion;
   motion.angular_rad_s = turn_world_deg * (std::numbers::pi / 180.0);
-  motion.centre_object = object.middle;
+  motion.centre_object = object.model->middle;
   const std::vector<SceneTree> scene = scene_without(&object);
   const SweepResult free =
-      sweep(radar_, {&object.shape.touched, object.body.T_world_object}, motion, 1.0, {scene, {}});
+      sweep(radar_, {&object.model->shape.touched, object.body.T_world_object}, motion, 1.0, {scene, {}});
   if (free.status == SweepStatus::kInvalidInput || free.status == SweepStatus::kNoAnswer) return;
   object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
   make_orthonormal(object.body.T_world_object);

@@ -1,4 +1,4 @@
-// virtual_object.cpp: makes virtual objects from meshes.
+// virtual_object.cpp: makes virtual objects of models, and says how they are seen and how far they reach.
 #include "app/virtual_object.hpp"
 
 #include <algorithm>
@@ -19,35 +19,27 @@ constexpr double kTeapotHeight_m = 0.15;
 
 }  // namespace
 
-VirtualObject::VirtualObject(GlContext& context, std::string name, const Mesh& mesh)
-    : shape(context), surface(spread_points(mesh)) {
-  make_contact_shadow(surface, body.T_world_object.linear(), shadow);
+VirtualObject::VirtualObject(std::string name, std::shared_ptr<const ObjectModel> its_model)
+    : model(std::move(its_model)) {
   body.name = std::move(name);
-  shape.set(mesh, MeshUsage::kStatic);
-  if (shape.touched.empty()) throw Error(body.name + ": has no triangles; a virtual object is a surface");
-  body.mass = mass_properties(mesh, shape.touched.is_closed());
-  const Eigen::AlignedBox3d box = shape.drawn.bounds();
-  middle = box.center();
-  for (const ObjectLevel& level : object_levels(mesh)) {
-    levels.push_back({level.deviation_m, std::make_unique<GpuMesh>(context)});
-    levels.back().mesh->upload(level.mesh, MeshUsage::kStatic);
-  }
+  body.mass = model->mass;
+  make_contact_shadow(model->surface, body.T_world_object.linear(), shadow);
 }
 
 const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
                           const Eigen::Isometry3d& T_world_camera, double error_px) {
   const Eigen::Vector3d middle_camera =
-      T_world_camera.inverse() * (object.body.T_world_object * object.middle);
-  const double nearest_m = middle_camera.z() - 0.5 * object.shape.drawn.bounds().sizes().norm();
+      T_world_camera.inverse() * (object.body.T_world_object * object.model->middle);
+  const double nearest_m = middle_camera.z() - 0.5 * object.model->shape.drawn.bounds().sizes().norm();
   const double pixel_m = nearest_m / std::max(camera.fx_px, camera.fy_px);
-  const GpuMesh* mesh = &object.shape.drawn;
-  for (const DrawnLevel& level : object.levels)
+  const GpuMesh* mesh = &object.model->shape.drawn;
+  for (const DrawnLevel& level : object.model->levels)
     if (is_fine_enough(level.deviation_m, pixel_m, error_px)) mesh = level.mesh.get();
   return *mesh;
 }
 
 double lowest_m(const VirtualObject& object) {
-  const GpuMesh& mesh = object.shape.drawn;
+  const GpuMesh& mesh = object.model->shape.drawn;
   const Eigen::Vector3d z = object.body.T_world_object.linear().row(2);
   double lowest = std::numeric_limits<double>::infinity();
   for (const Triangle& triangle : mesh.triangles()) {
@@ -58,7 +50,7 @@ double lowest_m(const VirtualObject& object) {
 }
 
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {
-  const GpuMesh& mesh = object.shape.drawn;
+  const GpuMesh& mesh = object.model->shape.drawn;
   double radius_m = 0.0;
   for (const Triangle& triangle : mesh.triangles()) {
     for (const std::uint32_t vertex : triangle) {

@@ -4,40 +4,29 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "app/contact_shadow.hpp"
+#include "app/object_model.hpp"
 #include "app/physics.hpp"
-#include "app/shape.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
-
-/// A coarser mesh of an object, for the picture.
-struct DrawnLevel {
-  float deviation_m = 0.0F;  ///< how far it lies off the full one, at most
-  std::unique_ptr<GpuMesh> mesh;
-};
 
 struct VirtualObject {
   Body body;  ///< its name and pose
   bool in_room = false;
   bool began_in_unknown = false;                              ///< was put where nobody has seen what is there
   bool in_unknown = false;                                    ///< and has not come out of there since
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();           ///< of its bounding box, in its own frame
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< how it stood when it was last put somewhere
   /// While it is held by a user's hand: where its origin is wanted. Gravity does not move it then.
   std::optional<Eigen::Vector3d> carried_to_world;
   double waited_s = 0.0;       ///< since it was moved last
   std::size_t fine_cells = 0;  ///< of the last frame's mesh of what moved: as fine as the image for its sake
-  Shape shape;
-  SurfacePoints surface;           ///< what its shadow is made of
-  ContactShadow shadow;            ///< as it stood when this was made last
-  std::vector<DrawnLevel> levels;  ///< finest first
+  std::shared_ptr<const ObjectModel> model;  ///< not null
+  ContactShadow shadow;                      ///< as it stood when this was made last
 
-  /// Throws Error if the mesh cannot be a virtual object (no triangles, vertices that are not finite).
-  VirtualObject(GlContext& context, std::string name, const Mesh& mesh);
+  VirtualObject(std::string name, std::shared_ptr<const ObjectModel> its_model);
 };
 
 /// How far its lowest point is above its origin, as it is turned now, m.

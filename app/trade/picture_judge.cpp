@@ -14,7 +14,8 @@ double difference(Rgb a, Rgb b) {
 
 PictureJudge::PictureJudge(const std::vector<Mesh>& objects) : drawer_(context_) {
   for (const Mesh& mesh : objects)
-    objects_.push_back(std::make_unique<VirtualObject>(context_, "judged", mesh));
+    objects_.push_back(std::make_unique<VirtualObject>(
+        "judged", std::make_shared<const ObjectModel>(context_, "judged", mesh)));
 }
 
 double PictureJudge::error_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
@@ -23,9 +24,9 @@ double PictureJudge::error_of(const JudgedPicture& judged, const Frame& frame, c
   std::vector<ShadowCaster> casters;
   for (const ShownObject& shown : judged.objects) {
     VirtualObject& object = *objects_[shown.object];
-    make_contact_shadow(object.surface, shown.T_world_object.linear(), object.shadow);
-    drawn.push_back({.instance = {&object.shape.drawn, shown.T_world_object},
-                     .is_closed = object.shape.touched.is_closed()});
+    make_contact_shadow(object.model->surface, shown.T_world_object.linear(), object.shadow);
+    drawn.push_back({.instance = {&object.model->shape.drawn, shown.T_world_object},
+                     .is_closed = object.model->shape.touched.is_closed()});
     casters.push_back({&object.shadow, shown.T_world_object});
   }
   drawer_.draw(drawn, frame.colour_camera, T_world_camera, {}, layer_);

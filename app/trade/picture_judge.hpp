@@ -27,7 +27,7 @@ struct JudgedPicture {
 /// that made it.
 class PictureJudge {
  public:
-  /// Throws Error as VirtualObject does.
+  /// Throws Error as ObjectModel does.
   PictureJudge(const std::vector<Mesh>& objects);
 
   /// Sum of the colours' differences (0 to 1, mean of the channels) over the whole picture, for each pixel in

@@ -43,7 +43,7 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel) {
   }
   for (const auto& object : session.objects()) {
     if (!object->in_room) continue;
-    const auto hit = surface_hit({&object->shape.touched, object->body.T_world_object}, ray, reach_m);
+    const auto hit = surface_hit({&object->model->shape.touched, object->body.T_world_object}, ray, reach_m);
     if (!hit) continue;
     pointed.object = hit;
     pointed.name = object->body.name;
@@ -156,7 +156,7 @@ void Player::throw_chosen(const Wish& wish, const Session& session, std::vector<
                               wish.pixel.x(), wish.pixel.y());
   ScriptEvent event = event_of(Action::kThrow, chosen_);
   event.position_world = ray.origin_world + kThrownFrom_m * ray.direction_world -
-                         object->body.T_world_object.linear() * object->middle;
+                         object->body.T_world_object.linear() * object->model->middle;
   event.velocity_world_mps = std::min(wish.speed_mps, kFastest_mps) * ray.direction_world;
   events.push_back(event);
 }

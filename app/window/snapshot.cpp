@@ -35,10 +35,10 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
   shown.objects.clear();
   for (const auto& object : session.objects()) {
     auto& mesh = object_meshes_[object.get()];
-    if (!mesh) mesh = std::make_shared<const Mesh>(mesh_of(object->shape.touched));
+    if (!mesh) mesh = std::make_shared<const Mesh>(mesh_of(object->model->shape.touched));
     shown.objects.push_back({object->body.name, mesh, object->body.T_world_object,
-                             object->shape.drawn.bounds(), object->body.velocity_world_mps, object->in_room,
-                             object->body.at_rest, object->carried_to_world.has_value(),
+                             object->model->shape.drawn.bounds(), object->body.velocity_world_mps,
+                             object->in_room, object->body.at_rest, object->carried_to_world.has_value(),
                              object->body.rests_on});
   }
   shown.surfaces = session.config().scene.surfaces;
@@ -68,7 +68,7 @@ void SnapshotMaker::fill_radar(const Session& session, const std::string& chosen
   shown.direction_world =
       moves ? velocity.normalized() : session.config().physics.gravity_world_mps2.normalized();
   const RadarQuery query{
-      {&object.shape.touched, object.body.T_world_object}, shown.direction_world, kLooksAhead_m};
+      {&object.model->shape.touched, object.body.T_world_object}, shown.direction_world, kLooksAhead_m};
   const std::vector<SceneTree> scene = session.scene_without(&object);
   shown.contact = radar_.query(query, {scene, {}});
   shown.pictures = radar_pictures(query, {scene, {}}, session.config().radar.resolution_px);

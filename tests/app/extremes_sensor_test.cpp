@@ -118,7 +118,7 @@ Outcome scan_and_run(const SimOptions& options, const Alter& alter) {
   outcome.at_rest = pot.in_room && pot.body.at_rest;
   outcome.fell_m = began_m - height_m();
   double gap_m = 1.0;
-  const GpuMesh& shape = pot.shape.drawn;
+  const GpuMesh& shape = pot.model->shape.drawn;
   for (const Eigen::Vector3f& vertex : shape.vertices())
     gap_m = std::min(gap_m,
                      signed_distance_m(simulated.room(), T_room_map * pot.body.T_world_object *

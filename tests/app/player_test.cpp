@@ -58,7 +58,7 @@ class Playing : public ::testing::Test {
   [[nodiscard]] const VirtualObject& pot() const { return *session_.objects().front(); }
   [[nodiscard]] Vec3 position() const { return pot().body.T_world_object.translation(); }
   /// Where the pot is seen.
-  [[nodiscard]] Vec3 middle() const { return pot().body.T_world_object * pot().middle; }
+  [[nodiscard]] Vec3 middle() const { return pot().body.T_world_object * pot().model->middle; }
 
   static SessionConfig config() {
     SessionConfig config;

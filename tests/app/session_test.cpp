@@ -163,6 +163,44 @@ SavedMap half_floor_map() {
   return map;
 }
 
+/// A pot falls on each of the places.
+void drop_pots(Session& session, const std::vector<Eigen::Vector3d>& over_world) {
+  for (std::size_t i = 0; i < over_world.size(); ++i) {
+    ScriptEvent drop = event(Action::kAdd);
+    drop.name = "pot" + std::to_string(i);
+    drop.size_m = 0.08;
+    session.apply(drop);
+    drop.action = Action::kDrop;
+    drop.position_world = over_world[i];
+    drop.height_m = 0.3;
+    session.apply(drop);
+  }
+}
+
+TEST(Session, ManyPotsThatFallTogetherStayOnAMappedFloorAndOnlyAHoleLetsThemThrough) {
+  const SavedMap map = half_floor_map();
+  for (const bool is_solid : {false, true}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    if (is_solid) session.make_unknown_solid(times);
+    std::vector<Eigen::Vector3d> places;
+    for (int i = 0; i < 12; ++i) places.emplace_back(-0.6 + 0.1 * (i % 6), 0.1 * (i / 6), 0.0);
+    for (int i = 0; i < 3; ++i) places.emplace_back(0.3 + 0.2 * i, 0.0, 0.0);  // where no floor is mapped
+    drop_pots(session, places);
+    for (std::int64_t i = 0; i < 30; ++i) {
+      Frame frame = depth_only(i, kAtTheSky);
+      frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+      static_cast<void>(session.step(frame, times));
+    }
+    for (const auto& pot : session.objects()) {
+      const Eigen::Vector3d middle_world = pot->body.T_world_object * pot->model->middle;
+      const bool has_floor = middle_world.x() < 0.0 || is_solid;
+      EXPECT_EQ(middle_world.z() > 0.0, has_floor) << pot->body.name << " at " << middle_world.transpose();
+      EXPECT_EQ(pot->model, session.objects().front()->model);
+    }
+  }
+}
+
 struct Thrown {
   const VirtualObject& pot;
   int unknown_contacts = 0;
@@ -272,7 +310,7 @@ TEST(VirtualObject, FootprintReachesToACorner) {
   Mesh plate;
   plate.vertices = {{-0.3F, -0.4F, 0.1F}, {0.3F, -0.4F, 0.1F}, {0.3F, 0.4F, 0.1F}};
   plate.triangles = {{0, 1, 2}};
-  const VirtualObject object(context, "plate", plate);
+  const VirtualObject object("plate", std::make_shared<const ObjectModel>(context, "plate", plate));
   EXPECT_NEAR(footprint_radius_m(object, Eigen::Matrix3d::Identity()), 0.5, 1e-6);
   const Eigen::AngleAxisd on_edge(M_PI / 2.0, Eigen::Vector3d::UnitX());
   EXPECT_NEAR(footprint_radius_m(object, on_edge.toRotationMatrix()), std::hypot(0.3, 0.1), 1e-6);
@@ -281,7 +319,7 @@ TEST(VirtualObject, FootprintReachesToACorner) {
 
 TEST(VirtualObject, MeshWithoutTrianglesIsRefused) {
   GlContext context;
-  EXPECT_THROW(VirtualObject(context, "nothing", Mesh{}), Error);
+  EXPECT_THROW(ObjectModel(context, "nothing", Mesh{}), Error);
 }
 
 }  // namespace

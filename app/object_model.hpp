@@ -1,0 +1,41 @@
+// object_model.hpp: what virtual objects of one mesh share: a shape to touch and to draw, a mass, a shadow's
+// points.
+#pragma once
+#include <Eigen/Geometry>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/contact_shadow.hpp"
+#include "app/mass_properties.hpp"
+#include "app/shape.hpp"
+#include "mapping/types/mesh.hpp"
+#include "radar/gl_context.hpp"
+
+namespace roomradar {
+
+/// A coarser mesh of an object, for the picture.
+struct DrawnLevel {
+  float deviation_m = 0.0F;  ///< how far it lies off the full one, at most
+  std::unique_ptr<GpuMesh> mesh;
+};
+
+/// Made once for a mesh and then only read, by any number of objects.
+struct ObjectModel {
+  Mesh mesh;  ///< that it was made from
+  Shape shape;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of its bounding box, in the mesh's frame
+  MassProperties mass;
+  SurfacePoints surface;           ///< what its shadow is made of
+  std::vector<DrawnLevel> levels;  ///< finest first
+
+  /// Takes some tenths of a second for the levels of a mesh of many triangles.
+  /// @param name  of the first object of this model, for messages
+  /// Throws Error if the mesh cannot be a virtual object (no triangles, vertices that are not finite).
+  ObjectModel(GlContext& context, const std::string& name, Mesh mesh_object);
+};
+
+/// Whether it was made from a mesh that is the same in every number.
+bool is_model_of(const ObjectModel& model, const Mesh& mesh);
+
+}  // namespace roomradar
