@@ -179,8 +179,12 @@ FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& mot
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
   result.free_s = duration_s;
+  // No point of the object goes farther, and what is farther than twice keep_m may come as near as that.
+  const double way_m =
+      duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_of(object, motion));
   for (const SceneTree& tree : scene.trees) {
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
+    if (are_farther_apart(object, tree.instance, way_m + 2.0 * keep_m)) continue;
     const TreePair trees(object, tree.instance);
     TreeFreedom freedom{trees, tree.kind, course_of(object, motion, keep_m, trees), result};
     visit_pairs(

@@ -57,6 +57,7 @@ Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, doubl
   if (!is_usable(object) || !(reach_m > 0.0)) return crossed;
   for (const SceneTree& tree : scene.trees) {
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
+    if (are_farther_apart(object, tree.instance, reach_m)) continue;
     const std::size_t found_before = found_.size();
     const TreePair trees(object, tree.instance);
     const PairPlaces places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),

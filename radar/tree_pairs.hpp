@@ -29,6 +29,19 @@ inline bool is_usable(const TreeInstance& instance) {
   return instance.tree != nullptr && !instance.tree->empty() && instance.T_world_mesh.matrix().allFinite();
 }
 
+/// Whether the balls about two trees' boxes are farther apart than this: so are the trees.
+inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other, double than_m) {
+  constexpr double kRounding = 1.0 + 1e-5;  // of the boxes' float sizes
+  const auto middle_world = [](const TreeInstance& instance) -> Eigen::Vector3d {
+    return instance.T_world_mesh * (instance.tree->origin() + instance.tree->centre());
+  };
+  const auto radius_m = [](const TreeInstance& instance) {
+    return kRounding * instance.tree->half_size().cast<double>().norm();
+  };
+  const double reached_m = radius_m(one) + radius_m(other) + than_m;
+  return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
+}
+
 /// An object's tree where it stands beside one of the scene's. Frame: the scene's mesh, about its tree's
 /// centre.
 struct TreePair {

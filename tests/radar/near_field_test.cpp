@@ -225,6 +225,26 @@ TEST(NearField, ATipOverAnEdgeIsFreeForAWholePiece) {
   EXPECT_GT(pair.free_time(T, motion, 1.0 / 60.0, 5e-4).free_s, 0.9 / 60.0);
 }
 
+TEST(NearField, RodsEndToEndAreNearAndAreMetFromFarAway) {
+  const Mesh rod = shapes::box({1.0F, 0.01F, 0.01F});
+  Pair pair(rod, rod);
+  std::vector<NearPoint> points;
+  EXPECT_EQ(pair.near(at(1.001, 0, 0), 0.002, points), 0U);
+  EXPECT_FALSE(points.empty());
+  EXPECT_EQ(pair.near(at(1.003, 0, 0), 0.002, points), 0U);
+  EXPECT_TRUE(points.empty());
+
+  RigidMotion flight;
+  flight.linear_m_s = Vec3(-10.0, 0.0, 0.0);
+  const double met_s = pair.free_time(at(3, 0, 0), flight, 1.0, 0.001).free_s;
+  EXPECT_GT(met_s, 0.15);
+  EXPECT_LT(met_s, 0.2);
+  RigidMotion round;  // half a turn brings it to where the other is
+  round.centre_object = Vec3(-1.5, 0.0, 0.0);
+  round.angular_rad_s = Vec3(0.0, 0.0, std::numbers::pi);
+  EXPECT_LT(pair.free_time(at(3, 0, 0), round, 1.0, 0.001).free_s, 1.0);
+}
+
 TEST(NearField, NothingIsFreeForEverAndNonsenseIsRefused) {
   Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), Mesh{});
   std::vector<NearPoint> points;
