@@ -1,7 +1,10 @@
 // where_bench.cpp: how well a camera is found in a saved map, and followed in it.
 //
-// usage: where_bench --maps FOLDER [--views N] [--only WORD] [--pictures FOLDER] [--json FILE]
-//        maps are scanned once and kept in FOLDER; WORD: part of a row's name
+// usage: where_bench --maps FOLDER [--views N] [--view-seed N] [--random FROM,TO] [--only WORD]
+//                    [--pictures FOLDER] [--json FILE]
+//        maps are scanned once and kept in FOLDER; WORD: part of a row's name; --random: the random rooms of
+//        these seeds instead of the four rooms, --view-seed: other views, for what was chosen on the usual
+//        ones
 //
 // found      frames for which a pose is given; right: within 5 cm and 5 degrees of the truth; wrong: the
 //            other found ones; failed: why the others were not, and the poses tried
@@ -11,13 +14,16 @@
 // comparison with old numbers.
 #include <algorithm>
 #include <chrono>
+#include <cinttypes>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "app/open_source.hpp"
 #include "app/picture_file.hpp"
@@ -32,9 +38,17 @@
 namespace roomradar {
 namespace {
 
+struct RoomSeed {
+  std::string name, kind;
+  std::uint64_t seed;
+};
+
 struct Settings {
   std::filesystem::path maps;
   std::size_t views = 50;
+  std::uint64_t view_seed = 1;
+  std::vector<RoomSeed> rooms{
+      {"table", "table", 1}, {"shelf", "shelf", 1}, {"random2", "random", 2}, {"random3", "random", 3}};
   std::string only, json, pictures;
 };
 
@@ -117,7 +131,8 @@ std::unique_ptr<FrameSource> free_views(const SimOptions& scan, const SavedMap& 
                                         const std::vector<MoverKind>& movers, bool bare,
                                         const std::string& name, const Settings& settings) {
   const std::filesystem::path folder =
-      settings.maps / ("views-" + name + "-" + std::to_string(settings.views));
+      settings.maps / ("views-" + name + "-" + std::to_string(settings.views) +
+                       (settings.view_seed == 1 ? "" : "-of-seed-" + std::to_string(settings.view_seed)));
   if (!std::filesystem::exists(folder / "groundtruth.txt")) {
     SimOptions options = scan;
     options.movers = movers;
@@ -125,8 +140,8 @@ std::unique_ptr<FrameSource> free_views(const SimOptions& scan, const SavedMap& 
     RecordingWriter writer(folder, RecordingFormat::kTum);
     Frame frame;
     std::int64_t index = 0;
-    for (const Eigen::Isometry3d& T_room_camera :
-         draw_free_views(source.room(), map, poses_of(scan), settings.views, 1, {.bare = bare})) {
+    for (const Eigen::Isometry3d& T_room_camera : draw_free_views(
+             source.room(), map, poses_of(scan), settings.views, settings.view_seed, {.bare = bare})) {
       source.look(5 * index++, T_room_camera, frame);
       writer.write(frame);
     }
@@ -135,12 +150,25 @@ std::unique_ptr<FrameSource> free_views(const SimOptions& scan, const SavedMap& 
   return open_folder(folder);
 }
 
+/// Of "4,7" the random rooms of seeds 4 to 7.
+std::vector<RoomSeed> random_rooms(const std::string& from_to) {
+  std::uint64_t from = 0, to = 0;
+  if (std::sscanf(from_to.c_str(), "%" SCNu64 ",%" SCNu64, &from, &to) != 2 || from > to)
+    throw std::runtime_error("--random " + from_to + ": two seeds, FROM,TO, are needed");
+  std::vector<RoomSeed> rooms;
+  for (std::uint64_t seed = from; seed <= to; ++seed)
+    rooms.push_back({"random" + std::to_string(seed), "random", seed});
+  return rooms;
+}
+
 Settings parse(int argc, char** argv) {
   Settings settings;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string word = argv[i], value = argv[i + 1];
     if (word == "--maps") settings.maps = value;
     if (word == "--views") settings.views = static_cast<std::size_t>(std::atoll(value.c_str()));
+    if (word == "--view-seed") settings.view_seed = static_cast<std::uint64_t>(std::atoll(value.c_str()));
+    if (word == "--random") settings.rooms = random_rooms(value);
     if (word == "--only") settings.only = value;
     if (word == "--pictures") settings.pictures = value;
     if (word == "--json") settings.json = value;
@@ -162,12 +190,7 @@ nlohmann::json bench(const Settings& settings) {
         map_of(*open_source(kitchen, FrameRange{0, 399}), PoseOrigin::kRecorded, settings.maps / "kitchen"));
     return find_all("kitchen", *open_source(kitchen, FrameRange{400, 499}), mapped, settings);
   });
-  struct Room {
-    std::string name, kind;
-    std::uint64_t seed;
-  };
-  for (const Room& room : {Room{"table", "table", 1}, Room{"shelf", "shelf", 1}, Room{"random2", "random", 2},
-                           Room{"random3", "random", 3}}) {
+  for (const RoomSeed& room : settings.rooms) {
     const SimOptions scan = scan_of(room.kind, room.seed);
     const auto scan_map = [&] {
       SimulatedSource source(scan);
@@ -213,7 +236,8 @@ int main(int argc, char** argv) {
     if (settings.maps.empty()) {
       std::fprintf(
           stderr,
-          "usage: where_bench --maps FOLDER [--views N] [--only WORD] [--pictures FOLDER] [--json FILE]\n");
+          "usage: where_bench --maps FOLDER [--views N] [--view-seed N] [--random FROM,TO] [--only WORD]\n"
+          "                   [--pictures FOLDER] [--json FILE]\n");
       return 2;
     }
     const nlohmann::json rows = roomradar::bench(settings);
