@@ -62,7 +62,10 @@ class KinectSource final : public FrameSource {
         rig_(rig_of(options.kinect_depth, feed_.constants(), recording, options)) {}
 
   ReadResult next(Frame& frame) override {
-    switch (feed_.take(raw_, silence_s_)) {
+    const Clock::time_point asked_at = Clock::now();
+    const KinectFeed::Take taken = feed_.take(raw_, silence_s_);
+    waited_s_ += std::chrono::duration<double>(Clock::now() - asked_at).count();
+    switch (taken) {
       case KinectFeed::Take::kFrame:
         break;
       case KinectFeed::Take::kEnd:
@@ -72,7 +75,7 @@ class KinectSource final : public FrameSource {
     }
     if (!raw_.fault.empty()) return passed_over();
     bad_in_a_row_ = 0;
-    last_frame_ = Clock::now();
+    waited_s_ = 0.0;
     fill(frame);
     return {ReadStatus::kFrame, {}};
   }
@@ -86,11 +89,10 @@ class KinectSource final : public FrameSource {
   static constexpr int kBadFramesInARow = 10;
 
   ReadResult waited() {
-    const double silent_s = std::chrono::duration<double>(Clock::now() - last_frame_).count();
     char text[64];
-    std::snprintf(text, sizeof text, ": no depth image for %.1f s", silent_s);
+    std::snprintf(text, sizeof text, ": no depth image for %.1f s", waited_s_);
     if (is_replay_) return {ReadStatus::kSkipped, name_ + text + ": the recording has a gap", true};
-    if (silent_s > timeout_s_)
+    if (waited_s_ > timeout_s_)
       throw Error(name_ + text + "; check its cable and power supply, then begin again");
     return {ReadStatus::kSkipped, name_ + text + "; it is waited for", true};
   }
@@ -131,7 +133,7 @@ class KinectSource final : public FrameSource {
   const CameraRig rig_;
   KinectFrame raw_;
   int bad_in_a_row_ = 0;
-  Clock::time_point last_frame_ = Clock::now();
+  double waited_s_ = 0.0;  // in next(), for the frame to come: a reader that pauses waits for none
 };
 
 }  // namespace

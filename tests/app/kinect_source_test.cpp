@@ -241,6 +241,18 @@ TEST(KinectSource, OneThatStaysAwayIsGivenUp) {
   EXPECT_TRUE(contains(error, "cable")) << error;
 }
 
+TEST(KinectSource, OneThatIsAwayIsNotGivenUpBecauseItsReaderPaused) {
+  const auto script = std::make_shared<Script>();
+  script->openings = {images(1)};
+  SourceOptions options;
+  options.device_timeout_s = 0.4;
+  const auto source = open_scripted(script, options);
+  read_frames(*source, 1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(450));
+  Frame frame;
+  EXPECT_TRUE(source->next(frame).waiting);
+}
+
 TEST(KinectSource, OneThatSendsNoColourIsStartedAnewOnceThenGoesOnWithout) {
   const auto script = std::make_shared<Script>();
   std::vector<Act> depth_only;
