@@ -12,6 +12,7 @@
 namespace roomradar {
 namespace {
 
+constexpr int kFewPatches = 12;  // of which no part can be told, and which contradict nothing
 constexpr int kLiveStep_px = 1;  // all pixels of the finest level: a still camera's pose shakes the less
 
 bool is_located(const Tracking& tracking) {
@@ -62,11 +63,10 @@ double fit_of(const Evidence& evidence) { return evidence.alike_part() - 2.0 * e
 /// The same by depth and by look: from 2 down.
 double support_of(const Finding& finding) {
   constexpr double kEnough = 0.4;  // of the depth, that the model must have an answer to
-  constexpr int kFew = 12;         // patches, of which no part can be told
   const Evidence& evidence = finding.evidence;
   const double covered = std::min(1.0, evidence.both / (kEnough * std::max(evidence.valid, 1)));
   return covered * fit_of(evidence) +
-         static_cast<double>(finding.look.alike.size()) / std::max(finding.look.compared, kFew);
+         static_cast<double>(finding.look.alike.size()) / std::max(finding.look.compared, kFewPatches);
 }
 
 /// The standard deviation of the camera's position in the direction in which it is greatest, of what the
@@ -79,12 +79,16 @@ double uncertainty_m(const Tracking& tracking) {
 }
 
 /// Whether enough patches lie where ones like them are known. Where boards or tiles repeat, some twenty do in
-/// a wrong place, so where the depth leaves a direction to them there must be more.
+/// a wrong place, so where the depth leaves a direction to them there must be more, or next to nothing may
+/// speak against the pose.
 bool is_proven_by_look(const Finding& finding) {
-  constexpr std::size_t kMany = 15, kManyAlone = 40;
+  constexpr std::size_t kMany = 15, kManyAlone = 40, kManyUndisputed = 25;
   constexpr double kMinAlike = 0.35;
-  return finding.look.alike.size() >= (finding.tracking ? kMany : kManyAlone) &&
-         finding.look.alike_part() > kMinAlike;
+  constexpr double kUndisputed = 0.75, kUndisputedFit = 0.9;  // wrong poses have the one or the other
+  const PatchProof& look = finding.look;
+  const bool is_undisputed = look.alike_part() > kUndisputed && fit_of(finding.evidence) > kUndisputedFit;
+  const std::size_t enough = finding.tracking ? kMany : is_undisputed ? kManyUndisputed : kManyAlone;
+  return look.alike.size() >= enough && look.alike_part() > kMinAlike;
 }
 
 /// Whether a pose is certain enough by itself: many patches lie where ones like them are known, and the depth
@@ -93,7 +97,6 @@ bool is_proven_by_look(const Finding& finding) {
 bool is_certain(const Finding& finding) {
   constexpr double kMostUncertain_m = 0.015;  // three and more of it are 5 cm
   constexpr double kContradicted = 0.2;       // of the patches
-  constexpr int kFew = 12;                    // patches, which contradict nothing
   const Evidence& evidence = finding.evidence;
   const PatchProof& look = finding.look;
   if (!is_located(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
@@ -102,17 +105,21 @@ bool is_certain(const Finding& finding) {
   if (is_proven_by_look(finding)) return fit_of(evidence) > 0.4 && evidence.farther_part() < 0.12;
   if (!finding.tracking || evidence.both < 0.5 * evidence.valid || evidence.farther_part() > 0.03)
     return false;
-  if (look.compared < kFew) return evidence.alike_part() > 0.9;
-  return look.alike_part() > kContradicted && evidence.alike_part() > (look.alike.size() > kFew ? 0.7 : 0.9);
+  if (look.compared < kFewPatches) return evidence.alike_part() > 0.9;
+  return look.alike_part() > kContradicted &&
+         evidence.alike_part() > (look.alike.size() > kFewPatches ? 0.7 : 0.9);
 }
 
-/// Whether another pose explains the frame about as well, so that nobody can say which is the right one.
+/// Whether another pose explains the frame about as well, so that nobody can say which is the right one: of
+/// few patches a good part may be alike in one place and not in its twin by chance.
 bool is_rivalled(const Finding& best, const std::vector<Finding>& findings) {
   constexpr double kSame_m = 0.1, kSame_rad = 0.1;
-  constexpr double kClear = 0.08;
+  constexpr double kClear = 0.08, kChance = 0.8;  // two deviations of a part of one patch
   return std::any_of(findings.begin(), findings.end(), [&](const Finding& other) {
+    const int compared = std::min(best.look.compared, other.look.compared);
+    const double chance = compared >= kFewPatches ? kChance / std::sqrt(compared) : 0.0;
     return !is_near(best.tracking.T_world_camera, other.tracking.T_world_camera, kSame_m, kSame_rad) &&
-           is_located(other.tracking) && support_of(other) > support_of(best) - kClear;
+           is_located(other.tracking) && support_of(other) > support_of(best) - kClear - chance;
   });
 }
 
@@ -157,9 +164,10 @@ bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double 
   return false;
 }
 
-/// Tries a pose: aligned with the model, and where that leaves a direction open, moved by what patches say.
+/// Tries a pose: aligned with the model, and where that leaves a direction open, moved by what patches say:
+/// the pairs that proposed it, then those that lie near each other.
 Finding tried(Locator& locator, const Frame& frame, const std::vector<SurfacePatch>& seen,
-              const Eigen::Isometry3d& T_world_guess, const ExpectedDepth& expected_depth) {
+              const PoseCandidate& guess, const ExpectedDepth& expected_depth) {
   constexpr std::size_t kEnough = 10;
   constexpr int kPulls = 3;
   constexpr double kGoodFit = 0.6;
@@ -170,6 +178,11 @@ Finding tried(Locator& locator, const Frame& frame, const std::vector<SurfacePat
     const Eigen::Isometry3d& T_found = finding.tracking.T_world_camera;
     const Eigen::Matrix<double, 6, 6> by_depth = finding.tracking.information;
     finding.look = prove_with_patches(seen, locator.known, T_found);
+    if (finding.tracking.status == TrackStatus::kDegenerate &&
+        finding.look.alike.size() < guess.pairs.size()) {
+      pull(by_depth, guess.pairs, finding.tracking);
+      finding.look = prove_with_patches(seen, locator.known, T_found);
+    }
     for (int round = 0; round < kPulls && finding.tracking.status == TrackStatus::kDegenerate &&
                         finding.look.alike.size() >= kEnough;
          ++round) {
@@ -177,10 +190,10 @@ Finding tried(Locator& locator, const Frame& frame, const std::vector<SurfacePat
       finding.look = prove_with_patches(seen, locator.known, T_found);
     }
   };
-  const std::size_t alike_before = prove_with_patches(seen, locator.known, T_world_guess).alike.size();
-  align_from(T_world_guess, locator.align);
+  const std::size_t alike_before = prove_with_patches(seen, locator.known, guess.T_world_camera).alike.size();
+  align_from(guess.T_world_camera, locator.align);
   if (alike_before >= kEnough && 3 * finding.look.alike.size() < 2 * alike_before)
-    align_from(T_world_guess, locator.strict_align);
+    align_from(guess.T_world_camera, locator.strict_align);
   finding.evidence = evidence_of(frame.depth_m, expected_depth(finding.tracking.T_world_camera));
   if (!is_proven_by_look(finding) && finding.tracking && fit_of(finding.evidence) > kGoodFit) {
     // The depth alone must fix it.
@@ -222,18 +235,18 @@ Tracking search(Locator& locator, const Frame& frame, const Places& places,
   const std::vector<PoseCandidate> by_look = propose_poses(seen, locator.known, kByLook, kMinAgreeing);
   for (const PoseCandidate& candidate : by_look)
     if (4 * candidate.agreeing >= by_look.front().agreeing)
-      findings.push_back(tried(locator, frame, seen, candidate.T_world_camera, expected_depth));
+      findings.push_back(tried(locator, frame, seen, candidate, expected_depth));
   if (!frame.down_camera && (frame.colour.empty() || locator.known.empty())) {
     const Relocalisation by_preview = relocalise(frame, places, locator.relocalise);
     if (by_preview)
-      findings.push_back(tried(locator, frame, seen, by_preview.T_world_camera, expected_depth));
+      findings.push_back(tried(locator, frame, seen, {by_preview.T_world_camera, 0, {}}, expected_depth));
   }
   Tracking found = judge();
   if (!is_located(found) && frame.down_camera) {
     if (locator.known_shape.empty()) locator.known_shape = known_shape(places);
     for (const ShapeCandidate& candidate : propose_by_shape(
              frame.depth_m, frame.depth_camera, *frame.down_camera, locator.known_shape, kByShape))
-      findings.push_back(tried(locator, frame, seen, candidate.T_world_camera, expected_depth));
+      findings.push_back(tried(locator, frame, seen, {candidate.T_world_camera, 0, {}}, expected_depth));
     found = judge();
   }
   if (is_located(found)) expected_depth(found.T_world_camera);

@@ -279,13 +279,15 @@ std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, con
                        gate_m(*alike[i].seen)});
     const PlaceMatch match = motion_of(pairs, 200);
     if (match.inliers < min_agreeing) continue;
+    std::erase_if(
+        pairs, [&](const PointPair& pair) { return (match.T_a_b * pair.b - pair.a).norm() > pair.gate_m; });
     const auto same = std::find_if(candidates.begin(), candidates.end(), [&](const PoseCandidate& candidate) {
       return is_same_pose(candidate.T_world_camera, match.T_a_b);
     });
     if (same == candidates.end())
-      candidates.push_back({match.T_a_b, match.inliers});
+      candidates.push_back({match.T_a_b, match.inliers, std::move(pairs)});
     else if (match.inliers > same->agreeing)
-      *same = {match.T_a_b, match.inliers};
+      *same = {match.T_a_b, match.inliers, std::move(pairs)};
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const PoseCandidate& a, const PoseCandidate& b) { return a.agreeing > b.agreeing; });

@@ -29,7 +29,8 @@ KnownPatches known_patches(const Places& places);
 
 struct PoseCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  int agreeing = 0;  ///< patches of the frame that lie where known ones do that look alike
+  int agreeing = 0;              ///< patches of the frame that lie where known ones do that look alike
+  std::vector<PointPair> pairs;  ///< of these, as in PatchProof::alike
 };
 
 /// Poses that at least `min_agreeing` patches agree on, the best first, none twice. Each pair of patches that

@@ -154,11 +154,47 @@ TEST(Locator, FindsAViewWithoutColourByItsShape) {
   EXPECT_EQ(mapped.locator.search_end, SearchEnd::kFound);
 }
 
-TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
+test::Scene bare_walls() {
   using namespace test;
   const Scene walls = nearest_of(nearest_of(plane({0, 1, 0}, 2.5), plane({0, 1, 0}, -2.5)),
                                  nearest_of(plane({1, 0, 0}, 2.0), plane({1, 0, 0}, -2.0)));
-  Mapped bare(nearest_of(plane({0, 0, 1}, 0.0), walls), [](const Eigen::Vector3d&) { return 120; });
+  return nearest_of(plane({0, 0, 1}, 0.0), walls);
+}
+
+/// A wall with a painted square on it; of one of 24 cm a view has some thirty patches.
+Grey poster_of(double width_m) {
+  return [half_m = 0.5 * width_m](const Eigen::Vector3d& p) {
+    const bool is_on_it = p.y() > 2.4 && std::abs(p.x() - 0.4) < half_m && std::abs(p.z() - 0.8) < half_m;
+    return is_on_it ? test::cube_grey(p) : std::uint8_t{120};
+  };
+}
+
+TEST(Locator, OneSmallPosterSaysWhereAlongABareWallItIs) {
+  const Mapped mapped(bare_walls(), poster_of(0.24));
+  for (const double aim : {0.3, 0.0}) {
+    const Eigen::Isometry3d truth = test::looking_at({0.3, 0.4, 1.2}, {aim, 2.5, 0.4});
+    Mapped fresh = mapped;
+    const Tracking found = fresh.find(fresh.seen_from(truth));
+    ASSERT_TRUE(is_located(found)) << aim;
+    EXPECT_LT(error_m(found, truth), 0.02) << aim;
+    EXPECT_LT(fresh.locator.findings.front().look.alike.size(), 40U) << aim;
+  }
+}
+
+TEST(Locator, OneOfTwoEqualPostersDoesNotSayWhereItIs) {
+  for (const double width_m : {0.24, 0.3}) {
+    Mapped mapped(bare_walls(), [poster = poster_of(width_m)](const Eigen::Vector3d& p) {
+      return poster(p.y() > 0.0 ? p : Eigen::Vector3d(-p.x(), -p.y(), p.z()));
+    });
+    const Frame frame = mapped.seen_from(test::looking_at({0.3, 0.4, 1.2}, {0.3, 2.5, 0.4}));
+    EXPECT_FALSE(is_located(mapped.find(frame))) << width_m;
+    EXPECT_EQ(mapped.locator.search_end, SearchEnd::kRivalled) << width_m;
+  }
+}
+
+TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
+  using namespace test;
+  Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
   const Eigen::Isometry3d truth = looking_at({0.3, 0.4, 1.2}, {0.3, 2.5, 0.4});
   Frame frame = bare.seen_from(truth);
   frame.down_camera = truth.linear().transpose() * -Eigen::Vector3d::UnitZ();
