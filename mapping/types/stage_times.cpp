@@ -41,7 +41,7 @@ std::map<std::string, StageSummary> StageTimes::summaries() const {
   std::map<std::string, StageSummary> result;
   for (const auto& [stage, samples] : stages_) {
     const auto min_ms = static_cast<double>(samples.min_ms), max_ms = static_cast<double>(samples.max_ms);
-    const auto rank_ms = [&](double fraction) {
+    const auto rank_ms = [&, &samples = samples](double fraction) {
       const auto rank = static_cast<std::size_t>(std::ceil(fraction * static_cast<double>(samples.count)));
       std::size_t bin = 0;
       for (std::size_t below = samples.histogram[0]; below < rank; below += samples.histogram[bin]) ++bin;
