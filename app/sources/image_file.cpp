@@ -24,9 +24,11 @@ constexpr std::uintmax_t kLargestFile_bytes = std::uintmax_t{1} << 30;
 Bytes read_bytes(const std::filesystem::path& path) {
   std::error_code fault;
   const std::uintmax_t size = std::filesystem::file_size(path, fault);
-  if (fault)
-    throw Error(path.string() + ": " +
-                (std::filesystem::exists(path) ? "cannot be read: " + fault.message() : "is missing"));
+  if (fault) {
+    const bool is_missing =
+        fault == std::errc::no_such_file_or_directory || fault == std::errc::not_a_directory;
+    throw Error(path.string() + ": " + (is_missing ? "is missing" : "cannot be read: " + fault.message()));
+  }
   if (size > kLargestFile_bytes)
     throw Error(path.string() + ": has " + std::to_string(size) + " bytes, too many for an image");
   Bytes bytes(static_cast<std::size_t>(size));
@@ -116,13 +118,14 @@ void read_colour_file(const std::filesystem::path& path, ColourImage& colour) {
   const std::string name = path.string();
   const Bytes bytes = read_bytes(path);
   const ImageHeader header = read_image_header(bytes, name);
-  colour.resize(header.width_px, header.height_px);
   if (header.kind == ImageKind::kPpm && header.bits == 8) {
+    colour.resize(header.width_px, header.height_px);
     std::memcpy(colour.pixels.data(), bytes.data() + header.pixels_at, colour.pixels.size() * sizeof(Rgb));
     return;
   }
   const cv::Mat image =
       decode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, CV_8UC3, header, name);
+  colour.resize(header.width_px, header.height_px);
   cv::Mat red_first = view_of(colour);
   cv::cvtColor(image, red_first, cv::COLOR_BGR2RGB);
 }

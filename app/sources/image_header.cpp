@@ -38,18 +38,31 @@ int checked_size(std::int64_t size, const std::string& name) {
 [[noreturn]] void fail_cut_short(const std::string& name, std::size_t bytes) {
   throw Error(name + ": is cut short (" + std::to_string(bytes) + " bytes are there)");
 }
+/// The header, or Error if no file of so many bytes can hold its pixels. Deflate packs 1,032 bytes into one
+/// at the most; JPEG, whose blocks take two bits each, gets no further.
+ImageHeader require_room(const ImageHeader& header, int bits_per_pixel, std::size_t file_bytes,
+                         const std::string& name) {
+  constexpr std::int64_t kMostPacked = 1032;
+  const auto pixel_bytes = std::int64_t{header.width_px} * header.height_px * bits_per_pixel / 8;
+  if (pixel_bytes / kMostPacked > static_cast<std::int64_t>(file_bytes))
+    throw Error(name + ": is cut short or damaged: " + std::to_string(file_bytes) + " bytes cannot hold " +
+                to_string(header));
+  return header;
+}
 
 ImageHeader read_png(Bytes bytes, const std::string& name) {
   constexpr std::size_t kHeaderBytes = 33;
   if (bytes.size() < kHeaderBytes || !ends_near_end(bytes, kPngEnd)) fail_cut_short(name, bytes.size());
   const int colour_type = bytes[25];
   const int channels = colour_type == 0 ? 1 : colour_type == 4 ? 2 : colour_type == 6 ? 4 : 3;
-  return {ImageKind::kPng,
-          checked_size(big_endian32(bytes, 16), name),
-          checked_size(big_endian32(bytes, 20), name),
-          channels,
-          bytes[24],
-          0};
+  const ImageHeader header{ImageKind::kPng,
+                           checked_size(big_endian32(bytes, 16), name),
+                           checked_size(big_endian32(bytes, 20), name),
+                           channels,
+                           bytes[24],
+                           0};
+  const bool is_palette = colour_type == 3;
+  return require_room(header, header.bits * (is_palette ? 1 : channels), bytes.size(), name);
 }
 
 ImageHeader read_jpeg(Bytes bytes, const std::string& name) {
@@ -61,12 +74,13 @@ ImageHeader read_jpeg(Bytes bytes, const std::string& name) {
     if (kind == 0xff) {
       ++at;  // padding
     } else if (kind >= 0xc0 && kind <= 0xcf && kind != 0xc4 && kind != 0xc8 && kind != 0xcc) {
-      return {ImageKind::kJpeg,
-              checked_size(big_endian16(bytes, at + 7), name),
-              checked_size(big_endian16(bytes, at + 5), name),
-              bytes[at + 9],
-              bytes[at + 4],
-              0};
+      const ImageHeader header{ImageKind::kJpeg,
+                               checked_size(big_endian16(bytes, at + 7), name),
+                               checked_size(big_endian16(bytes, at + 5), name),
+                               bytes[at + 9],
+                               bytes[at + 4],
+                               0};
+      return require_room(header, 8, bytes.size(), name);
     } else {
       at += 2 + static_cast<std::size_t>(big_endian16(bytes, at + 2));
     }

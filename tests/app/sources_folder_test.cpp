@@ -319,6 +319,25 @@ TEST(BadFrame, HeaderThatPromisesTooMuchTakesNoMemory) {
   EXPECT_TRUE(contains(fault, "2147483647")) << fault;
 }
 
+TEST(BadFrame, SizeThatTheFileCannotHoldTakesNoMemory) {
+  // 16,384 x 16,384 pixels, written behind a mark in the file.
+  const auto fault_with_size = [](const char* kind, const std::string& mark, std::string_view size) {
+    return skipped_after([&](const fs::path& f) {
+      fs::remove(name_of(f, 3, "color.png"));
+      cv::imwrite(name_of(f, 3, kind), cv::Mat(12, 16, CV_8UC3, cv::Scalar(1, 2, 3)));
+      std::fstream file(name_of(f, 3, kind), std::ios::in | std::ios::out | std::ios::binary);
+      const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+      ASSERT_NE(bytes.find(mark), std::string::npos);
+      file.seekp(static_cast<std::streamoff>(bytes.find(mark) + mark.size()));
+      file.write(size.data(), static_cast<std::streamsize>(size.size()));
+    });
+  };
+  const std::string png = fault_with_size("color.png", "IHDR", {"\0\0\x40\0\0\0\x40\0", 8});
+  EXPECT_TRUE(contains(png, "cannot hold 16384 x 16384")) << png;
+  const std::string jpeg = fault_with_size("color.jpg", {"\xff\xc0\0\x11\x08", 5}, {"\x40\0\x40\0", 4});
+  EXPECT_TRUE(contains(jpeg, "cannot hold 16384 x 16384")) << jpeg;
+}
+
 TEST(BadFrame, TenInARowEndTheRecording) {
   const TemporaryFolder folder;
   write_recording(folder.path(), RecordingFormat::kSevenScenes, 14);
