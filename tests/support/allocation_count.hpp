@@ -9,12 +9,20 @@ namespace roomradar::test {
 
 inline std::atomic<std::size_t> allocations{0};
 
-inline void* counted_allocation(std::size_t size, std::size_t alignment) {
+/// Null where there is no memory.
+inline void* counted_or_null(std::size_t size, std::size_t alignment) noexcept {
   ++allocations;
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
-  if (void* memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded)) return memory;
+  return std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
+}
+
+inline void* counted_allocation(std::size_t size, std::size_t alignment) {
+  if (void* memory = counted_or_null(size, alignment)) return memory;
   throw std::bad_alloc();
 }
+
+/// Not inlined: where delete is and new is not, gcc takes one for the other's mismatch.
+[[gnu::noinline]] inline void give_back(void* memory) noexcept { std::free(memory); }
 
 }  // namespace roomradar::test
 
@@ -30,11 +38,28 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
 void* operator new[](std::size_t size, std::align_val_t alignment) {
   return roomradar::test::counted_allocation(size, static_cast<std::size_t>(alignment));
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+// Those that do not throw, too: a sanitizer's own would be given back by the wrong delete.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  return roomradar::test::counted_or_null(size, alignof(std::max_align_t));
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+  return roomradar::test::counted_or_null(size, alignof(std::max_align_t));
+}
+void* operator new(std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return roomradar::test::counted_or_null(size, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t size, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return roomradar::test::counted_or_null(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { roomradar::test::give_back(memory); }
+void operator delete[](void* memory) noexcept { roomradar::test::give_back(memory); }
+void operator delete(void* memory, std::size_t) noexcept { roomradar::test::give_back(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { roomradar::test::give_back(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { roomradar::test::give_back(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { roomradar::test::give_back(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  roomradar::test::give_back(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  roomradar::test::give_back(memory);
+}
