@@ -197,7 +197,8 @@ class FloorJudge {
     return object.body.T_world_object * object.model->middle;
   }
   [[nodiscard]] bool is_below(const VirtualObject& object) const {
-    return (T_room_map_ * middle_world(object)).z() < 0.0;
+    constexpr double kFallen_m = 0.05;  // solid unknown space begins some cells under the floor about it
+    return (T_room_map_ * middle_world(object)).z() < -kFallen_m;
   }
 
   Eigen::Isometry3d T_room_map_;
