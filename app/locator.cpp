@@ -12,7 +12,8 @@
 namespace roomradar {
 namespace {
 
-constexpr int kFewPatches = 12;  // of which no part can be told, and which contradict nothing
+constexpr int kFewPatches = 12;        // of which no part can be told, and which contradict nothing
+constexpr double kContradicted = 0.2;  // of more patches: with no larger part of them alike a pose is wrong
 constexpr int kLiveStep_px = 1;  // all pixels of the finest level: a still camera's pose shakes the less
 
 bool is_located(const Tracking& tracking) {
@@ -96,7 +97,6 @@ bool is_proven_by_look(const Finding& finding) {
 /// the patches do not speak against it.
 bool is_certain(const Finding& finding) {
   constexpr double kMostUncertain_m = 0.015;  // three and more of it are 5 cm
-  constexpr double kContradicted = 0.2;       // of the patches
   const Evidence& evidence = finding.evidence;
   const PatchProof& look = finding.look;
   if (!is_located(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
@@ -271,8 +271,19 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
   return tracking;
 }
 
-/// Where the camera was lost some frames ago it may still be: a hand was before the lens.
-Tracking resume(Locator& locator, const Frame& frame, const ExpectedDepth& expected_depth) {
+/// Whether what the frame shows is not what is known to be there.
+bool is_contradicted_by_look(Locator& locator, const Frame& frame, const Places& places,
+                             const Eigen::Isometry3d& T_world_camera) {
+  if (locator.known.empty()) locator.known = known_patches(places);
+  const PatchProof look = prove_with_patches(describe_patches(frame, locator.relocalise.place.patches),
+                                             locator.known, T_world_camera);
+  return look.compared >= kFewPatches && look.alike_part() <= kContradicted;
+}
+
+/// Where the camera was lost some frames ago it may still be: a hand was before the lens. Before a wall the
+/// depth would say so too where it was moved along.
+Tracking resume(Locator& locator, const Frame& frame, const Places& places,
+                const ExpectedDepth& expected_depth) {
   constexpr int kLongest_frames = 30;
   constexpr double kMinAlike = 0.7, kMaxFarther = 0.08;
   if (!locator.T_world_lost || ++locator.lost_frames > kLongest_frames) return {};
@@ -281,7 +292,10 @@ Tracking resume(Locator& locator, const Frame& frame, const ExpectedDepth& expec
   const Evidence evidence = evidence_of(frame.depth_m, expected_depth(tracking.T_world_camera));
   const bool holds = is_located(tracking) && 2 * evidence.both > evidence.valid &&
                      evidence.alike_part() > kMinAlike && evidence.farther_part() < kMaxFarther;
-  return holds ? tracking : Tracking{};
+  const bool is_open = tracking.status == TrackStatus::kDegenerate;
+  if (!holds || (is_open && is_contradicted_by_look(locator, frame, places, tracking.T_world_camera)))
+    return {};
+  return tracking;
 }
 
 /// What was followed into a place that the depth speaks against for some frames is searched for; what is not
@@ -339,7 +353,7 @@ Tracking locate(Locator& locator, const Frame& frame, const Places& places, cons
   if (!is_located(tracking)) {
     make_live(locator.live_pyramid, locator.live, {},
               kLiveStep_px);  // the mask belonged to a pose that no longer holds
-    tracking = resume(locator, frame, expected_depth);
+    tracking = resume(locator, frame, places, expected_depth);
     if (!is_located(tracking)) tracking = search(locator, frame, places, expected_depth);
   }
 

@@ -192,6 +192,21 @@ TEST(Locator, OneOfTwoEqualPostersDoesNotSayWhereItIs) {
   }
 }
 
+TEST(Locator, IsNotTakenToBeWhereItWasWhenCarriedAlongAWallWithTheLensCovered) {
+  const auto before_wall = [](double x) { return test::looking_at({x, 0.4, 1.2}, {x, 2.5, 0.4}); };
+  for (const double carried_m : {0.0, 0.6}) {
+    Mapped mapped(bare_walls());
+    const Eigen::Isometry3d from = before_wall(0.3), to = before_wall(0.3 - carried_m);
+    for (int i = 0; i < 3; ++i) ASSERT_LT(error_m(mapped.find(mapped.seen_from(from)), from), 0.02);
+    Frame dark = mapped.seen_from(from);
+    dark.depth_m.resize(kCamera.width_px, kCamera.height_px);
+    EXPECT_FALSE(is_located(mapped.find(dark)));
+    const Tracking found = mapped.find(mapped.seen_from(to));
+    ASSERT_TRUE(is_located(found)) << carried_m;
+    EXPECT_LT(error_m(found, to), 0.02) << carried_m;
+  }
+}
+
 TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
   using namespace test;
   Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
