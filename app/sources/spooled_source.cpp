@@ -1,7 +1,7 @@
 // spooled_source.cpp: images in files, everything else in memory and, where it is kept, in a list beside
 // them.
 //
-// list.bin: "RRSPOOL2", the source's name, then for each frame the bytes of its entry with their number (u32)
+// list.bin: "RRSPOOL1", the source's name, then for each frame the bytes of its entry with their number (u32)
 // before them; 0 for the end of the source.
 #include "app/sources/spooled_source.hpp"
 
