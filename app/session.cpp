@@ -453,11 +453,7 @@ VirtualObject& Session::object_named(const std::string& name) {
 }
 
 void Session::add_object(const std::string& name, const Mesh& mesh) {
-  const auto same = std::find_if(objects_.begin(), objects_.end(),
-                                 [&](const auto& object) { return is_model_of(*object->model, mesh); });
-  objects_.push_back(std::make_unique<VirtualObject>(
-      name,
-      same == objects_.end() ? std::make_shared<const ObjectModel>(context_, name, mesh) : (*same)->model));
+  objects_.push_back(object_of(context_, name, mesh, objects_));
 }
 
 void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg) {

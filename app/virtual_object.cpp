@@ -26,6 +26,14 @@ VirtualObject::VirtualObject(std::string name, std::shared_ptr<const ObjectModel
   make_contact_shadow(model->surface, body.T_world_object.linear(), shadow);
 }
 
+std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
+                                         std::span<const std::unique_ptr<VirtualObject>> others) {
+  const auto same = std::find_if(others.begin(), others.end(),
+                                 [&](const auto& other) { return is_model_of(*other->model, mesh); });
+  return std::make_unique<VirtualObject>(
+      name, same == others.end() ? std::make_shared<const ObjectModel>(context, name, mesh) : (*same)->model);
+}
+
 const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
                           const Eigen::Isometry3d& T_world_camera, double error_px) {
   const Eigen::Vector3d middle_camera =

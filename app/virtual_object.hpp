@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "app/contact_shadow.hpp"
@@ -28,6 +29,11 @@ struct VirtualObject {
 
   VirtualObject(std::string name, std::shared_ptr<const ObjectModel> its_model);
 };
+
+/// An object of this mesh, with the model of one of the others where that was made from the same mesh. Throws
+/// Error as ObjectModel does.
+std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
+                                         std::span<const std::unique_ptr<VirtualObject>> others);
 
 /// How far its lowest point is above its origin, as it is turned now, m.
 double lowest_m(const VirtualObject& object);

@@ -13,9 +13,7 @@ double difference(Rgb a, Rgb b) {
 }  // namespace
 
 PictureJudge::PictureJudge(const std::vector<Mesh>& objects) : drawer_(context_) {
-  for (const Mesh& mesh : objects)
-    objects_.push_back(std::make_unique<VirtualObject>(
-        "judged", std::make_shared<const ObjectModel>(context_, "judged", mesh)));
+  for (const Mesh& mesh : objects) objects_.push_back(object_of(context_, "judged", mesh, objects_));
 }
 
 double PictureJudge::error_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
