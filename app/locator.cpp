@@ -271,17 +271,17 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
   return tracking;
 }
 
-/// Whether what the frame shows is not what is known to be there.
-bool is_contradicted_by_look(Locator& locator, const Frame& frame, const Places& places,
-                             const Eigen::Isometry3d& T_world_camera) {
+/// Whether the frame shows patches enough where patches are known, and what is known to be there.
+bool is_borne_out_by_look(Locator& locator, const Frame& frame, const Places& places,
+                          const Eigen::Isometry3d& T_world_camera) {
   if (locator.known.empty()) locator.known = known_patches(places);
   const PatchProof look = prove_with_patches(describe_patches(frame, locator.relocalise.place.patches),
                                              locator.known, T_world_camera);
-  return look.compared >= kFewPatches && look.alike_part() <= kContradicted;
+  return look.compared >= kFewPatches && look.alike_part() > kContradicted;
 }
 
 /// Where the camera was lost some frames ago it may still be: a hand was before the lens. Before a wall the
-/// depth would say so too where it was moved along.
+/// depth would say so too where it was moved along, so there the look has to.
 Tracking resume(Locator& locator, const Frame& frame, const Places& places,
                 const ExpectedDepth& expected_depth) {
   constexpr int kLongest_frames = 30;
@@ -293,7 +293,7 @@ Tracking resume(Locator& locator, const Frame& frame, const Places& places,
   const bool holds = is_located(tracking) && 2 * evidence.both > evidence.valid &&
                      evidence.alike_part() > kMinAlike && evidence.farther_part() < kMaxFarther;
   const bool is_open = tracking.status == TrackStatus::kDegenerate;
-  if (!holds || (is_open && is_contradicted_by_look(locator, frame, places, tracking.T_world_camera)))
+  if (!holds || (is_open && !is_borne_out_by_look(locator, frame, places, tracking.T_world_camera)))
     return {};
   return tracking;
 }

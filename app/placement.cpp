@@ -16,11 +16,11 @@ namespace {
 constexpr float kUnseen = -std::numeric_limits<float>::infinity();
 
 /// What is seen from above: the height of the topmost surface in each cell of a level grid about what is
-/// seen; no cells where nothing is.
+/// seen, with `margin` more cells, unseen ones, on each side; no cells where nothing is.
 class HeightGrid {
  public:
   HeightGrid(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-             const PlacementConfig& config)
+             const PlacementConfig& config, int margin)
       : cell_m_(config.cell_m), origin_world_(T_world_camera.translation()) {
     struct Seen {
       int i, j;  // of the cell: 0 below the camera, until the grid is laid
@@ -53,7 +53,7 @@ class HeightGrid {
     if (points.empty()) return;
 
     // A square about what is seen.
-    half_ = (seen.sizes().maxCoeff() + 1) / 2;
+    half_ = (seen.sizes().maxCoeff() + 1) / 2 + margin;
     size_ = 2 * half_ + 1;
     const Eigen::Vector2i middle = seen.min() + seen.sizes() / 2;
     origin_world_.head<2>() += cell_m_ * middle.cast<double>();
@@ -84,8 +84,9 @@ class HeightGrid {
   [[nodiscard]] std::size_t index(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
   }
-  /// Above the camera's height (m), usually negative; kUnseen where nothing is.
-  [[nodiscard]] float top_m(int i, int j) const { return is_inside(i, j) ? top_m_[index(i, j)] : kUnseen; }
+  /// Above the camera's height (m), usually negative; kUnseen where nothing is. Row by row: where something
+  /// is seen, cells up to the margin away can be reached from here.
+  [[nodiscard]] const float* top_m(int i, int j) const { return &top_m_[index(i, j)]; }
   [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {
     return origin_world_ + Eigen::Vector3d((i - half_) * cell_m_, (j - half_) * cell_m_, height_m);
   }
@@ -98,17 +99,37 @@ class HeightGrid {
   std::vector<float> top_m_;
 };
 
-struct Offset {
-  int i, j;
+/// The cells of a grid that an object covers, from its middle.
+struct FootprintCells {
+  struct Cell {
+    std::ptrdiff_t away;  // in the grid
+    double x_m, y_m;
+    float most_rise_m;  // against the middle, of a surface on which the object can stand
+  };
+  std::vector<Cell> cells;  // from the rim inwards: there an edge shows first
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();  // sums of 1, x, y by 1, x, y
 };
 
-std::vector<Offset> disc(double radius_cells) {
-  std::vector<Offset> offsets;
+double steepest_of(const PlacementConfig& config) {
+  return std::tan(config.max_tilt_deg * std::numbers::pi / 180.0);
+}
+
+FootprintCells cells_under(double radius_cells, int grid_size, const PlacementConfig& config) {
+  FootprintCells footprint;
   const int reach = static_cast<int>(std::floor(radius_cells));
-  for (int j = -reach; j <= reach; ++j)
-    for (int i = -reach; i <= reach; ++i)
-      if (i * i + j * j <= radius_cells * radius_cells) offsets.push_back({i, j});
-  return offsets;
+  for (int j = -reach; j <= reach; ++j) {
+    for (int i = -reach; i <= reach; ++i) {
+      if (i * i + j * j > radius_cells * radius_cells) continue;
+      const Eigen::Vector3d row(1.0, i * config.cell_m, j * config.cell_m);
+      footprint.moments += row * row.transpose();
+      footprint.cells.push_back({static_cast<std::ptrdiff_t>(j) * grid_size + i, row.y(), row.z(),
+                                 static_cast<float>(2.0 * config.flatness_m +
+                                                    steepest_of(config) * row.tail<2>().norm())});
+    }
+  }
+  std::stable_sort(footprint.cells.begin(), footprint.cells.end(),
+                   [](const auto& a, const auto& b) { return a.most_rise_m > b.most_rise_m; });
+  return footprint;
 }
 
 struct Footprint {
@@ -118,40 +139,42 @@ struct Footprint {
 };
 
 /// Fits z = a + b x + c y to the tops under the footprint, and tells whether an object can stand there.
-Footprint footprint_at(const HeightGrid& grid, int i, int j, const std::vector<Offset>& offsets,
-                       const PlacementConfig& config) {
-  const float middle_m = grid.top_m(i, j);
+/// @param top_m  of the middle, in a grid whose margin is as wide as the footprint reaches
+Footprint footprint_at(const float* top_m, const FootprintCells& footprint, const PlacementConfig& config) {
+  const float middle_m = *top_m;
   if (middle_m == kUnseen) return {};
-  const double most_rise = std::tan(config.max_tilt_deg * std::numbers::pi / 180.0);
-  Eigen::Matrix3d normal_matrix = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right_side = Eigen::Vector3d::Zero();
-  int seen = 0;
-  for (const Offset& offset : offsets) {
-    const float top_m = grid.top_m(i + offset.i, j + offset.j);
-    if (top_m == kUnseen) continue;
-    const double rise_m = top_m - middle_m;
-    const double away_m = std::hypot(offset.i, offset.j) * config.cell_m;
-    if (std::abs(rise_m) > 2.0 * config.flatness_m + most_rise * away_m)
-      return {};  // an edge: no need to fit
-    const Eigen::Vector3d row(1.0, offset.i * config.cell_m, offset.j * config.cell_m);
-    normal_matrix += row * row.transpose();
-    right_side += row * rise_m;
-    ++seen;
+  const auto all = static_cast<double>(footprint.cells.size());
+  const int most_unseen = static_cast<int>(std::min((1.0 - config.min_seen) * all, all - 3.0));
+  if (most_unseen < 0) return {};  // too few cells for a plane
+  Eigen::Matrix3d moments = footprint.moments;
+  double rises_m = 0.0, x_rises_m2 = 0.0, y_rises_m2 = 0.0;
+  int unseen = 0;
+  for (const FootprintCells::Cell& cell : footprint.cells) {
+    const float cell_top_m = top_m[cell.away];
+    if (cell_top_m == kUnseen) {
+      if (++unseen > most_unseen) return {};
+      const Eigen::Vector3d row(1.0, cell.x_m, cell.y_m);
+      moments -= row * row.transpose();
+      continue;
+    }
+    const float rise_m = cell_top_m - middle_m;
+    if (std::abs(rise_m) > cell.most_rise_m) return {};  // an edge: no need to fit
+    rises_m += rise_m;
+    x_rises_m2 += cell.x_m * rise_m;
+    y_rises_m2 += cell.y_m * rise_m;
   }
-  if (seen < 3 || seen < config.min_seen * static_cast<double>(offsets.size())) return {};
-  const Eigen::Vector3d plane = normal_matrix.ldlt().solve(right_side);
-  if (!plane.allFinite() || plane.tail<2>().norm() > most_rise) return {};
+  const Eigen::Vector3d plane = moments.ldlt().solve(Eigen::Vector3d(rises_m, x_rises_m2, y_rises_m2));
+  if (!plane.allFinite() || plane.tail<2>().norm() > steepest_of(config)) return {};
 
   double squares_m2 = 0.0;
-  for (const Offset& offset : offsets) {
-    const float top_m = grid.top_m(i + offset.i, j + offset.j);
-    if (top_m == kUnseen) continue;
-    const double off_m = top_m - middle_m -
-                         plane.dot(Eigen::Vector3d(1.0, offset.i * config.cell_m, offset.j * config.cell_m));
+  for (const FootprintCells::Cell& cell : footprint.cells) {
+    const float cell_top_m = top_m[cell.away];
+    if (cell_top_m == kUnseen) continue;
+    const double off_m = cell_top_m - middle_m - plane[0] - plane[1] * cell.x_m - plane[2] * cell.y_m;
     if (std::abs(off_m) > config.flatness_m) return {};
     squares_m2 += off_m * off_m;
   }
-  return {true, middle_m + plane[0], std::sqrt(squares_m2 / seen)};
+  return {true, middle_m + plane[0], std::sqrt(squares_m2 / (all - unseen))};
 }
 
 /// Distance (cells, chamfer 1 and sqrt 2) of each place to the nearest one that is none.
@@ -180,16 +203,20 @@ std::vector<float> distance_inside(const std::vector<char>& is_place, int size) 
   return distance;
 }
 
-std::size_t connected_places(std::vector<char> is_place, const HeightGrid& grid, Offset start) {
-  std::vector<Offset> open{start};
+struct Place {
+  int i, j;
+};
+
+std::size_t connected_places(std::vector<char> is_place, const HeightGrid& grid, Place start) {
+  std::vector<Place> open{start};
   is_place[grid.index(start.i, start.j)] = 0;
   std::size_t count = 0;
   while (!open.empty()) {
-    const Offset place = open.back();
+    const Place place = open.back();
     open.pop_back();
     ++count;
-    for (const Offset step : {Offset{1, 0}, Offset{-1, 0}, Offset{0, 1}, Offset{0, -1}}) {
-      const Offset next{place.i + step.i, place.j + step.j};
+    for (const Place step : {Place{1, 0}, Place{-1, 0}, Place{0, 1}, Place{0, -1}}) {
+      const Place next{place.i + step.i, place.j + step.j};
       if (!grid.is_inside(next.i, next.j) || !is_place[grid.index(next.i, next.j)]) continue;
       is_place[grid.index(next.i, next.j)] = 0;
       open.push_back(next);
@@ -235,24 +262,25 @@ std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics&
     return std::nullopt;
   if (!T_world_camera.matrix().allFinite()) return std::nullopt;
 
-  const HeightGrid grid(depth_m, camera, T_world_camera, config);
-  const std::vector<Offset> offsets = disc((footprint_radius_m + config.room_to_spare_m) / config.cell_m);
+  const double radius_cells = (footprint_radius_m + config.room_to_spare_m) / config.cell_m;
+  const HeightGrid grid(depth_m, camera, T_world_camera, config, static_cast<int>(radius_cells));
+  const FootprintCells footprint = cells_under(radius_cells, grid.size(), config);
   std::vector<char> is_place(static_cast<std::size_t>(grid.size()) * static_cast<std::size_t>(grid.size()),
                              0);
   for (int j = 0; j < grid.size(); ++j)
     for (int i = 0; i < grid.size(); ++i)
-      is_place[grid.index(i, j)] = footprint_at(grid, i, j, offsets, config).is_level;
+      is_place[grid.index(i, j)] = footprint_at(grid.top_m(i, j), footprint, config).is_level;
 
   const std::vector<float> inside_cells = distance_inside(is_place, grid.size());
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   constexpr double kAmple_m = 0.15;      // more room than this is no better
   constexpr double kFloorIsWorth = 0.2;  // as a place for things, against a table
   double best_worth = 0.0;
-  Offset best{0, 0};
+  Place best{0, 0};
   for (int j = 0; j < grid.size(); ++j) {
     for (int i = 0; i < grid.size(); ++i) {
       if (!is_place[grid.index(i, j)]) continue;
-      const double height_m = grid.top_m(i, j);
+      const double height_m = *grid.top_m(i, j);
       const double room = std::min(inside_cells[grid.index(i, j)] * config.cell_m / kAmple_m, 1.0);
       const double worth = centrality(T_camera_world * grid.point_world(i, j, height_m), camera) *
                            (0.2 + 0.8 * room) *
@@ -265,10 +293,10 @@ std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics&
   }
   if (best_worth <= 0.0) return std::nullopt;
 
-  const Footprint footprint = footprint_at(grid, best.i, best.j, offsets, config);
+  const Footprint found = footprint_at(grid.top_m(best.i, best.j), footprint, config);
   Support support;
-  support.point_world = grid.point_world(best.i, best.j, footprint.height_m);
-  support.spread_m = footprint.spread_m;
+  support.point_world = grid.point_world(best.i, best.j, found.height_m);
+  support.spread_m = found.spread_m;
   support.area_m2 =
       static_cast<double>(connected_places(is_place, grid, best)) * config.cell_m * config.cell_m;
   return support;

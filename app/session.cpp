@@ -168,7 +168,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   find_fine_regions();
   times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera, fine_regions_); });
   count_fine_cells();
-  release_waiting(frame, T_world_camera);
+  if (!waiting_.empty()) times.timed("place", [&] { release_waiting(frame, T_world_camera); });
   begin(FramePart::kPhysics);
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
   times.add_ms("contact", ms_since(handed_over));

@@ -207,6 +207,17 @@ TEST(Locator, IsNotTakenToBeWhereItWasWhenCarriedAlongAWallWithTheLensCovered) {
   }
 }
 
+TEST(Locator, IsLostBeforeAWallWithoutMarksAfterTheLensWasCovered) {
+  const auto before_wall = [](double x) { return test::looking_at({x, 0.4, 1.2}, {x, 2.5, 0.4}); };
+  Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
+  bare.locator.T_world_camera = before_wall(0.3);
+  ASSERT_TRUE(is_located(bare.find(bare.seen_from(before_wall(0.3)))));
+  Frame dark = bare.seen_from(before_wall(0.3));
+  dark.depth_m.resize(kCamera.width_px, kCamera.height_px);
+  EXPECT_FALSE(is_located(bare.find(dark)));
+  EXPECT_FALSE(is_located(bare.find(bare.seen_from(before_wall(-0.3)))));
+}
+
 TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
   using namespace test;
   Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
