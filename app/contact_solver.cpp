@@ -1,4 +1,4 @@
-// contact_solver.cpp: projected Gauss-Seidel over the contacts of one body.
+// contact_solver.cpp: projected Gauss-Seidel over the contacts of one body with what stands and with others.
 #include "app/contact_solver.hpp"
 
 #include <Eigen/LU>
@@ -26,8 +26,15 @@ double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2) {
                 velocity.angular_rad_s.dot(inertia_m2 * velocity.angular_rad_s));
 }
 
+Eigen::Vector3d slip_at(const SolverContact& contact, const Velocity& velocity,
+                        std::span<const SolverOther> others) {
+  const Vec3 own = velocity_at(velocity, contact.arm_m);
+  if (contact.other >= others.size()) return own;
+  return own - velocity_at(others[contact.other].velocity, contact.other_arm_m);
+}
+
 void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& inertia_m2,
-                    const Rubbing& rubbing, Velocity& velocity) {
+                    const Rubbing& rubbing, Velocity& velocity, std::span<SolverOther> others) {
   contacts = contacts.first(std::min(contacts.size(), kMostContacts));
   if (contacts.empty()) return;
   const Eigen::Matrix3d inverse = inertia_m2.inverse();
@@ -38,7 +45,13 @@ void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& in
     contact.rub_mps.setZero();
     const auto mass_along = [&](const Vec3& direction) {
       const Vec3 lever = contact.arm_m.cross(direction);
-      return 1.0 / (1.0 + lever.dot(inverse * lever));
+      double yields = 1.0 + lever.dot(inverse * lever);
+      if (contact.other < others.size()) {
+        const SolverOther& other = others[contact.other];
+        const Vec3 other_lever = contact.other_arm_m.cross(direction);
+        yields += other.gives * (1.0 + other_lever.dot(other.inverse_inertia_m2 * other_lever));
+      }
+      return 1.0 / yields;
     };
     Effective& e = effective[i];
     e.x = contact.normal.unitOrthogonal();
@@ -50,6 +63,11 @@ void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& in
   const auto apply = [&](const SolverContact& contact, const Vec3& impulse) {
     velocity.linear_mps += impulse;
     velocity.angular_rad_s += inverse * contact.arm_m.cross(impulse);
+    if (contact.other >= others.size()) return;
+    SolverOther& other = others[contact.other];
+    other.velocity.linear_mps -= other.gives * impulse;
+    other.velocity.angular_rad_s -=
+        other.gives * other.inverse_inertia_m2 * contact.other_arm_m.cross(impulse);
   };
   Vec3 held_back = Vec3::Zero();  // angular impulse of rolling
   for (int round = 0; round < kMostRounds; ++round) {
@@ -67,13 +85,13 @@ void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& in
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       SolverContact& contact = contacts[i];
       const Effective& e = effective[i];
-      const double enters_mps = contact.leaves_mps - velocity_at(velocity, contact.arm_m).dot(contact.normal);
+      const double enters_mps = contact.leaves_mps - slip_at(contact, velocity, others).dot(contact.normal);
       const double impulse = std::max(contact.impulse_mps + e.normal * enters_mps, 0.0);
       const double more = impulse - contact.impulse_mps;
       contact.impulse_mps = impulse;
       apply(contact, more * contact.normal);
 
-      const Vec3 slip = velocity_at(velocity, contact.arm_m);
+      const Vec3 slip = slip_at(contact, velocity, others);
       Vec3 rub = contact.rub_mps - e.along_x * slip.dot(e.x) * e.x - e.along_y * slip.dot(e.y) * e.y;
       const double most = rubbing.friction * contact.impulse_mps;
       const double size = rub.norm();

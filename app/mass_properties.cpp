@@ -73,6 +73,8 @@ MassProperties mass_properties(const Mesh& mesh, bool is_closed) {
   const bool has_volume = is_closed && solid.mass > 1e-12 * size_m * size_m * size_m;
   const bool has_area = shell.mass > 1e-12 * size_m * size_m;
   MassProperties result = properties_of(has_volume ? solid : has_area ? shell : points, from);
+  constexpr double kDensity_kg_m3 = 1000.0, kShell_kg_m2 = 5.0, kLeast_kg = 1e-3;
+  result.mass_kg = std::max(has_volume ? kDensity_kg_m3 * solid.mass : kShell_kg_m2 * shell.mass, kLeast_kg);
   result.radius_m = 0.0;
   for (const Triangle& t : mesh.triangles) {
     if (!is_usable(mesh, t)) continue;

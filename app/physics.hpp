@@ -64,6 +64,12 @@ void require_valid(const PhysicsConfig& config);
 using TravelQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
                                           const Eigen::Vector3d& direction_world, double distance_m)>;
 
+/// A body that is one of the scene's trees.
+struct OtherBody {
+  Body* body = nullptr;  ///< null: the tree is none
+  double gives = 0.0;    ///< as SolverOther::gives; 0: a hand holds it
+};
+
 /// What a body asks of the radar as it moves: its own mesh against the frame's scene.
 struct BodyProbe {
   TravelQuery travel;
@@ -74,6 +80,8 @@ struct BodyProbe {
   std::function<FreeTime(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
                          double duration_s, double keep_m, Kinds left_out)>
       free_time;
+  /// Of the scene's first trees; what has none here stands still.
+  std::span<const OtherBody> others = {};
 };
 /// Of an object's tree. All that is given must stay while the probe is used.
 /// @param spent_ms  in which the time of all answers is summed up; may be null
@@ -108,6 +116,10 @@ struct [[nodiscard]] StepReport {
 /// With the mean of the velocities before and after, it goes on for as long as that is free (free_time); what
 /// is left of the piece begins anew from there. So nothing is tunnelled through, moving or turning, however
 /// large the step is. Between contacts the path is a parabola and the angular momentum stays.
+///
+/// Of probe.others, what is met gets the impulse that the body loses: its velocity is changed, and with that
+/// it goes on, from rest too, when it is advanced itself. One at rest that is met at less than 5 cm/s stays,
+/// or whatever settles on it would keep it awake; weight alone does not tip it either.
 ///
 /// A body that a surface came into is first moved out of it, along gravity by a shift, sideways with the
 /// speed that a hand has that came so far in dt_s, at the place that is deepest: it slides, turns or tips.

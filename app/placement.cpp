@@ -106,7 +106,7 @@ struct FootprintCells {
     double x_m, y_m;
     float most_rise_m;  // against the middle, of a surface on which the object can stand
   };
-  std::vector<Cell> cells;  // from the rim inwards: there an edge shows first
+  std::vector<Cell> cells;                            // from the rim inwards: there an edge shows first
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();  // sums of 1, x, y by 1, x, y
 };
 
@@ -122,9 +122,9 @@ FootprintCells cells_under(double radius_cells, int grid_size, const PlacementCo
       if (i * i + j * j > radius_cells * radius_cells) continue;
       const Eigen::Vector3d row(1.0, i * config.cell_m, j * config.cell_m);
       footprint.moments += row * row.transpose();
-      footprint.cells.push_back({static_cast<std::ptrdiff_t>(j) * grid_size + i, row.y(), row.z(),
-                                 static_cast<float>(2.0 * config.flatness_m +
-                                                    steepest_of(config) * row.tail<2>().norm())});
+      footprint.cells.push_back(
+          {static_cast<std::ptrdiff_t>(j) * grid_size + i, row.y(), row.z(),
+           static_cast<float>(2.0 * config.flatness_m + steepest_of(config) * row.tail<2>().norm())});
     }
   }
   std::stable_sort(footprint.cells.begin(), footprint.cells.end(),

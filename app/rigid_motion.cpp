@@ -13,11 +13,14 @@ using Vec3 = Eigen::Vector3d;
 constexpr double kTouchingBand = 0.5;  // of the margin: so much farther away than it is still a contact
 constexpr double kKept = 0.5;          // of the margin: what approaches is stopped there
 constexpr double kNoTime_s = 1e-12;
+constexpr double kNudge_mps = 0.05;  // what is slower does not wake a body that it meets
 
 void limit(Vec3& v, double most) {
   const double size = v.norm();
   if (size > most) v *= most / size;
 }
+
+Velocity velocity_of(const Body& body) { return {body.velocity_world_mps, body.spin_world_rad_s}; }
 
 /// One piece: the body, what it touches now, and what is left of the time.
 class Piece {
@@ -31,7 +34,7 @@ class Piece {
         push_(push),
         scratch_(scratch),
         report_(report),
-        velocity_{body.velocity_world_mps, body.spin_world_rad_s},
+        velocity_(velocity_of(body)),
         resting_{config.friction, config.rolling} {
     const double g = config.gravity_world_mps2.norm();
     if (g > 0.0) up_ = -config.gravity_world_mps2 / g;
@@ -42,8 +45,13 @@ class Piece {
 
  private:
   bool find_contacts();
+  void set_room(double dt_s);
+  std::size_t other_on(const NearPoint& p);
   void bounce();
+  void let_sleepers_lie();
+  [[nodiscard]] double energy_of_all() const;
   [[nodiscard]] Velocity held_up_after(Velocity velocity, double dt_s);
+  [[nodiscard]] Velocity mean_with(const Velocity& after);
   [[nodiscard]] Velocity lift_back(double dt_s);
   void see_support(RigidPiece& piece);
   void go(const Velocity& after);
@@ -80,26 +88,69 @@ bool Piece::find_contacts() {
   }
   scratch_.contacts.clear();
   scratch_.kinds.clear();
+  scratch_.others.clear();
+  scratch_.bodies.clear();
   for (const NearPoint& p : scratch_.near) {
-    scratch_.contacts.push_back({p.point_world + p.gap_m * p.normal_world - centre_, p.normal_world});
+    SolverContact& contact = scratch_.contacts.emplace_back();
+    contact.arm_m = p.point_world + p.gap_m * p.normal_world - centre_;
+    contact.normal = p.normal_world;
+    contact.other = other_on(p);
+    if (contact.other != kNoOther)
+      contact.other_arm_m = p.point_world - centre_world(*scratch_.bodies[contact.other]);
     scratch_.kinds.push_back(p.kind);
   }
   if (push_) {
-    scratch_.contacts.push_back({push_->point_world - centre_, push_->normal_world});
+    SolverContact& contact = scratch_.contacts.emplace_back();
+    contact.arm_m = push_->point_world - centre_;
+    contact.normal = push_->normal_world;
     scratch_.kinds.push_back(push_->touched);
   }
   return true;
 }
 
+/// The body that is touched there, among those that are.
+std::size_t Piece::other_on(const NearPoint& p) {
+  if (p.tree >= probe_.others.size() || probe_.others[p.tree].body == nullptr) return kNoOther;
+  const auto& [body, gives] = probe_.others[p.tree];
+  const auto known = std::find(scratch_.bodies.begin(), scratch_.bodies.end(), body);
+  if (known != scratch_.bodies.end()) return static_cast<std::size_t>(known - scratch_.bodies.begin());
+  scratch_.bodies.push_back(body);
+  scratch_.others.push_back({velocity_of(*body), inertia_world_m2(*body).inverse(), gives});
+  return scratch_.bodies.size() - 1;
+}
+
+/// Of the body and what it touches, for each kilogram of the body.
+double Piece::energy_of_all() const {
+  double sum = energy(velocity_, inertia_);
+  for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
+    const SolverOther& other = scratch_.others[i];
+    if (other.gives > 0.0) sum += energy(other.velocity, inertia_world_m2(*scratch_.bodies[i])) / other.gives;
+  }
+  return sum;
+}
+
+/// What rests and is met too gently stays where it is.
+void Piece::let_sleepers_lie() {
+  for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
+    if (!scratch_.bodies[i]->at_rest || !scratch_.others[i].velocity.linear_mps.isZero()) continue;
+    const bool is_woken =
+        std::any_of(scratch_.contacts.begin(), scratch_.contacts.end(), [&](const SolverContact& contact) {
+          return contact.other == i &&
+                 -velocity_at(velocity_, contact.arm_m).dot(contact.normal) > kNudge_mps;
+        });
+    if (!is_woken) scratch_.others[i].gives = 0.0;
+  }
+}
+
 /// Turns back what enters a contact before the time is over: what is fast with restitution.
 void Piece::bounce() {
   bool enters = false, is_fast = false;
+  let_sleepers_lie();
+  set_room(left_s_);
   for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
     SolverContact& contact = scratch_.contacts[i];
     const bool is_push = i >= scratch_.near.size();
-    const double room_m = is_push ? 0.0 : scratch_.near[i].gap_m - config_.contact_margin_m;
-    const double closing_mps = -velocity_at(velocity_, contact.arm_m).dot(contact.normal);
-    contact.leaves_mps = is_push ? push_->speed_mps : -std::max(room_m, 0.0) / left_s_;
+    const double closing_mps = -slip_at(contact, velocity_, scratch_.others).dot(contact.normal);
     if (!(closing_mps > -contact.leaves_mps + 1e-9)) continue;
     enters = true;
     if (is_push || !(closing_mps > config_.bounce_mps)) continue;
@@ -107,15 +158,22 @@ void Piece::bounce() {
     contact.leaves_mps = config_.restitution * closing_mps;
   }
   if (!enters) return;
-  const double before = energy(velocity_, inertia_);
+  constexpr double kSame = 1.0 + 1e-9;
+  const double before = energy_of_all();
   const Velocity entering = velocity_;
   const Rubbing rubbing{config_.friction, 0.0};
-  solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_);
-  if (is_fast && !push_ && energy(velocity_, inertia_) > before) {
+  solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_, scratch_.others);
+  if (is_fast && !push_ && energy_of_all() > kSame * before) {
     // Several contacts with friction may gain by Newton's restitution: then there is none.
     velocity_ = entering;
+    for (std::size_t i = 0; i < scratch_.others.size(); ++i)
+      scratch_.others[i].velocity = velocity_of(*scratch_.bodies[i]);
     for (SolverContact& contact : scratch_.contacts) contact.leaves_mps = std::min(contact.leaves_mps, 0.0);
-    solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_);
+    solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_, scratch_.others);
+  }
+  for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
+    scratch_.bodies[i]->velocity_world_mps = scratch_.others[i].velocity.linear_mps;
+    scratch_.bodies[i]->spin_world_rad_s = scratch_.others[i].velocity.angular_rad_s;
   }
   for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
     if (!(scratch_.contacts[i].impulse_mps > 0.0)) continue;
@@ -123,15 +181,21 @@ void Piece::bounce() {
   }
 }
 
-/// The velocity after dt_s of gravity on these contacts.
-Velocity Piece::held_up_after(Velocity velocity, double dt_s) {
-  velocity.linear_mps += config_.gravity_world_mps2 * dt_s;
+/// Lets contacts be entered as fast as their gaps have room for, in dt_s.
+void Piece::set_room(double dt_s) {
   for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
     const bool is_push = i >= scratch_.near.size();
     const double room_m = is_push ? 0.0 : scratch_.near[i].gap_m - config_.contact_margin_m;
     scratch_.contacts[i].leaves_mps = is_push ? push_->speed_mps : -std::max(room_m, 0.0) / dt_s;
   }
-  solve_contacts(scratch_.contacts, inertia_, resting_, velocity);
+}
+
+/// The velocity after dt_s of gravity on these contacts; what is touched goes on as it goes.
+Velocity Piece::held_up_after(Velocity velocity, double dt_s) {
+  velocity.linear_mps += config_.gravity_world_mps2 * dt_s;
+  set_room(dt_s);
+  for (SolverOther& other : scratch_.others) other.gives = 0.0;
+  solve_contacts(scratch_.contacts, inertia_, resting_, velocity, scratch_.others);
   return velocity;
 }
 
@@ -163,12 +227,24 @@ void Piece::see_support(RigidPiece& piece) {
   }
 }
 
-/// On with the mean of the velocities before and after, as far as that is free.
+/// The mean of the velocities before and after, but not into other bodies: they stand until their turn comes,
+/// however they go.
+Velocity Piece::mean_with(const Velocity& after) {
+  Velocity mean{0.5 * (velocity_.linear_mps + after.linear_mps),
+                0.5 * (velocity_.angular_rad_s + after.angular_rad_s)};
+  if (scratch_.others.empty()) return mean;
+  set_room(left_s_);
+  solve_contacts(scratch_.contacts, inertia_, {}, mean);
+  return mean;
+}
+
+/// On with the mean of the velocities, as far as that is free.
 void Piece::go(const Velocity& after) {
+  const Velocity mean = mean_with(after);
   RigidMotion motion;
   motion.centre_object = body_.mass.centre_object;
-  motion.linear_m_s = 0.5 * (velocity_.linear_mps + after.linear_mps);
-  motion.angular_rad_s = 0.5 * (velocity_.angular_rad_s + after.angular_rad_s);
+  motion.linear_m_s = mean.linear_mps;
+  motion.angular_rad_s = mean.angular_rad_s;
   if (scratch_.contacts.empty()) {
     // What turns freely keeps its angular momentum, not its angular velocity: half-way that is another one.
     const Eigen::Isometry3d T_half = pose_after(body_.T_world_object, motion, 0.5 * left_s_);

@@ -41,6 +41,8 @@ struct RigidScratch {
   std::vector<NearPoint> near;
   std::vector<SolverContact> contacts;
   std::vector<Touched> kinds;
+  std::vector<SolverOther> others;  ///< bodies that are touched
+  std::vector<Body*> bodies;        ///< whose these are
 };
 
 /// Moves the body on by dt_s, as advance() says it for one piece of a step.

@@ -266,6 +266,20 @@ std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const
   return scene;
 }
 
+std::span<const OtherBody> Session::bodies_in(const std::vector<SceneTree>& scene,
+                                              const VirtualObject& object) {
+  constexpr double kOfAHand = 1e6;  // what a hand holds goes where the hand goes
+  others_.clear();
+  for (const auto& other : objects_) {
+    if (other.get() == &object || !other->in_room) continue;
+    const double gives =
+        object.carried_to_world ? kOfAHand : object.body.mass.mass_kg / other->body.mass.mass_kg;
+    others_.push_back({&other->body, other->carried_to_world ? 0.0 : gives});
+  }
+  others_.insert(others_.begin(), scene.size() - others_.size(), OtherBody{});  // objects come last
+  return others_;
+}
+
 bool Session::is_in_unknown(const VirtualObject& object) const {
   if (!unknown_is_solid_) return false;
   const Eigen::Isometry3d& T_world_object = object.body.T_world_object;
@@ -340,8 +354,8 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
       if (is_swallowed(object->body, waited_s, probe.travel, config_.physics, push.span())) scene.erase(back);
     }
     const RadarScene radar_scene{scene, {}};
-    const BodyProbe probe =
-        probe_of(radar_, near_field_, object->model->shape.touched, radar_scene, &radar_ms);
+    BodyProbe probe = probe_of(radar_, near_field_, object->model->shape.touched, radar_scene, &radar_ms);
+    probe.others = bodies_in(scene, *object);
     if (object->carried_to_world) set_in_hand(*object, waited_s);
     const StepReport moved =
         advance(object->body, waited_s, probe,

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -148,7 +149,8 @@ class Session {
   Locator locator_;
   CyberRadar radar_;
   NearField near_field_;
-  CyberRadar exact_radar_;  ///< measures penetration
+  std::vector<OtherBody> others_;  // of the scene of the object that is moved
+  CyberRadar exact_radar_;         ///< measures penetration
   ObjectDrawer drawer_;
 
   std::vector<std::unique_ptr<VirtualObject>> objects_;
@@ -193,6 +195,8 @@ class Session {
   /// What the frame needed, where nothing was drawn and asked before `drawn` and `asked`.
   FrameUse use_of(const ForegroundCounts& foreground, const LiveScene::RoomDrawn& drawn, std::uint64_t asked);
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
+  /// Which of the trees of scene_without() are bodies.
+  std::span<const OtherBody> bodies_in(const std::vector<SceneTree>& scene, const VirtualObject& object);
   void move_objects(double dt_s, StageTimes& times, FrameResult& result);
   [[nodiscard]] bool is_in_unknown(const VirtualObject& object) const;
   double penetration_m();

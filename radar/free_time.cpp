@@ -114,6 +114,7 @@ Course course_of(const TreeInstance& object, const RigidMotion& motion, double k
 struct TreeFreedom {
   const TreePair& trees;
   const Touched kind;
+  const std::uint32_t number;  // among the scene's
   const Course course;
   FreeTime result;
 
@@ -161,7 +162,7 @@ struct TreeFreedom {
     if (!(distance_m > 0.0)) return;  // they touch: how they part is for contacts to say
     result.free_s = free_s;
     result.limit = {trees.T_world_frame * (from + way), trees.T_world_frame.linear() * (-way / distance_m),
-                    distance_m, kind};
+                    distance_m, kind, number};
   }
 
   void look_at_leaves(const PairBox& o, const PairBox& s) {
@@ -182,11 +183,12 @@ FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& mot
   // No point of the object goes farther, and what is farther than twice keep_m may come as near as that.
   const double way_m =
       duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_of(object, motion));
-  for (const SceneTree& tree : scene.trees) {
+  for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
+    const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
     if (are_farther_apart(object, tree.instance, way_m + 2.0 * keep_m)) continue;
     const TreePair trees(object, tree.instance);
-    TreeFreedom freedom{trees, tree.kind, course_of(object, motion, keep_m, trees), result};
+    TreeFreedom freedom{trees, tree.kind, number, course_of(object, motion, keep_m, trees), result};
     visit_pairs(
         trees, pending_, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
         [&](const PairBox& o, const PairBox& s) { freedom.look_at_leaves(o, s); });

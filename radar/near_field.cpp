@@ -55,7 +55,8 @@ Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, doubl
   found_.clear();
   Kinds crossed = 0;
   if (!is_usable(object) || !(reach_m > 0.0)) return crossed;
-  for (const SceneTree& tree : scene.trees) {
+  for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
+    const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
     if (are_farther_apart(object, tree.instance, reach_m)) continue;
     const std::size_t found_before = found_.size();
@@ -72,6 +73,7 @@ Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, doubl
         [&](const PairBox& o, const PairBox& s) {
           crosses = look_at_leaves(trees, o, s, places) || crosses;
         });
+    for (std::size_t i = found_before; i < found_.size(); ++i) found_[i].tree = number;
     if (!crosses) continue;
     crossed |= bit_of(tree.kind);
     found_.resize(found_before);

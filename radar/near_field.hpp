@@ -18,6 +18,7 @@ struct NearPoint {
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from there to the object
   double gap_m = 0.0;                                      ///< >= 0; 0: they touch
   Touched kind = Touched::kNothing;
+  std::uint32_t tree = 0;  ///< on which of the scene's trees
 };
 
 /// Some kinds of surfaces, a bit each.

@@ -201,6 +201,43 @@ TEST(Session, ManyPotsThatFallTogetherStayOnAMappedFloorAndOnlyAHoleLetsThemThro
   }
 }
 
+/// Some frames in which nothing is seen.
+void go_on(Session& session, std::int64_t first, std::int64_t frames) {
+  StageTimes times;
+  for (std::int64_t i = first; i < first + frames; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    static_cast<void>(session.step(frame, times));
+  }
+}
+
+TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
+  const SavedMap map = half_floor_map();
+  for (const Action how : {Action::kThrow, Action::kCarry}) {
+    Session session(map, by_recorded_poses());
+    drop_pots(session, {{-1.0, 0.0, 0.0}, {-1.4, 0.0, 0.0}});
+    go_on(session, 0, 45);
+    const Body& shoved = session.objects().front()->body;
+    ASSERT_TRUE(shoved.at_rest);
+    const Eigen::Vector3d stood = shoved.T_world_object.translation();
+    ScriptEvent shove = event(how);
+    shove.name = "pot1";
+    for (int frame = 0; frame < 30; ++frame) {
+      const double x = how == Action::kThrow ? -1.3 : -1.4 + 0.02 * frame;
+      shove.position_world = Eigen::Vector3d(x, 0.0, 0.01);
+      shove.velocity_world_mps = Eigen::Vector3d(2.0, 0.0, 0.0);
+      if (frame == 0 || how == Action::kCarry) session.apply(shove);
+      go_on(session, 45 + frame, 1);
+    }
+    EXPECT_GT(shoved.T_world_object.translation().x() - stood.x(), 0.02)
+        << (how == Action::kThrow ? "thrown" : "carried");
+    EXPECT_LT(std::abs(shoved.T_world_object.translation().y()), 0.2)
+        << (how == Action::kThrow ? "thrown" : "carried");
+    EXPECT_GT(shoved.T_world_object.translation().z(), -0.05)
+        << (how == Action::kThrow ? "thrown" : "carried");
+  }
+}
+
 struct Thrown {
   const VirtualObject& pot;
   int unknown_contacts = 0;
