@@ -1,19 +1,15 @@
-// session.cpp: the path of one frame, top to bottom, and the steps it is made of.
+// session.cpp: the path of one frame, top to bottom, and the steps it is made of. What is asked of a session is
+// in session_events.cpp, what it shows in session_picture.cpp.
 #include "app/session.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "app/apply_quality.hpp"
-#include "app/placement.hpp"
 #include "app/reduced_depth.hpp"
-#include "app/rigid_motion.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/validity.hpp"
-#include "radar/sweep.hpp"
 
 namespace roomradar {
 namespace {
@@ -33,20 +29,6 @@ void set_in_hand(VirtualObject& object, double dt_s) {
   object.body.at_rest = false;
   object.body.spin_world_rad_s.setZero();
   object.body.velocity_world_mps = dt_s > 0.0 ? Eigen::Vector3d(way / dt_s) : Eigen::Vector3d::Zero();
-}
-
-/// A camera's pose after_s after it was at T_world_now, moving on as it moved for dt_s until then; no farther
-/// than that motion, either way. Without a time to go by it stands.
-Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eigen::Isometry3d& T_world_now,
-                              double dt_s, double after_s) {
-  if (!(dt_s > 0.0) || after_s == 0.0) return T_world_now;
-  const double part = std::clamp(after_s / dt_s, -1.0, 1.0);
-  const Eigen::Isometry3d T_before_now = T_world_before.inverse() * T_world_now;
-  const Eigen::AngleAxisd turn(T_before_now.linear());
-  Eigen::Isometry3d T_now_then = Eigen::Isometry3d::Identity();
-  T_now_then.linear() = Eigen::AngleAxisd(part * turn.angle(), turn.axis()).toRotationMatrix();
-  T_now_then.translation() = part * T_before_now.linear().transpose() * T_before_now.translation();
-  return T_world_now * T_now_then;
 }
 
 }  // namespace
@@ -384,201 +366,6 @@ double Session::penetration_m() {
     if (below.status == ContactStatus::kOverlap) deepest_m = std::max(deepest_m, -below.travel_m);
   }
   return deepest_m;
-}
-
-Session::ShownView Session::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                                    double dt_s) {
-  if (!frame.colour.empty()) {
-    const Eigen::Isometry3d T_world_then =
-        T_world_before_ ? pose_beside(*T_world_before_, T_world_camera, dt_s, frame.colour_after_depth_s)
-                        : T_world_camera;
-    colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
-    background_ = frame.colour;
-  }
-  if (colour_view_) return *colour_view_;
-  shade_depth(frame.depth_m, frame.depth_camera, background_);
-  return {frame.depth_camera, T_world_camera};
-}
-
-void Session::show_camera_alone(const Frame& frame) {
-  shown_view_.reset();
-  if (!frame.colour.empty())
-    picture_ = frame.colour;
-  else if (colour_view_)
-    picture_ = background_;
-  else
-    shade_depth(frame.depth_m, frame.depth_camera, picture_);
-}
-
-void Session::renew_a_shadow() {
-  constexpr double kTurned_rad = 0.05;
-  constexpr int kFine = 16, kCoarse = 8;  // 3 ms and 0.2 ms
-  const bool may_be_fine = is_turn(0, config_.shadow_turns);
-  VirtualObject* most_turned = nullptr;
-  VirtualObject* coarse_at_rest = nullptr;
-  double turned_rad = kTurned_rad;
-  for (const auto& object : objects_) {
-    if (!object->in_room) continue;
-    const Eigen::AngleAxisd turn(object->shadow.R_world_object.transpose() *
-                                 object->body.T_world_object.linear());
-    if (object->body.at_rest && object->shadow.cells_across < kFine) coarse_at_rest = object.get();
-    if (!(turn.angle() > turned_rad)) continue;
-    turned_rad = turn.angle();
-    most_turned = object.get();
-  }
-  const bool is_fine = most_turned == nullptr && coarse_at_rest != nullptr && may_be_fine;
-  VirtualObject* const renewed = is_fine ? coarse_at_rest : most_turned;
-  if (renewed != nullptr)
-    make_contact_shadow(renewed->model->surface, renewed->body.T_world_object.linear(), renewed->shadow,
-                        is_fine ? kFine : kCoarse);
-}
-
-void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
-  shown_view_ = view_of(frame, T_world_camera, dt_s);
-  const auto& [camera, T_world_view] = *shown_view_;
-
-  const bool has_shadows = config_.picture.shadow_strength > 0.0F;
-  if (has_shadows) renew_a_shadow();
-  std::vector<DrawnObject> drawn;
-  std::vector<ShadowCaster> casters;
-  for (const auto& object : objects_) {
-    if (!object->in_room) continue;
-    drawn.push_back({.instance = {&drawn_mesh(*object, camera, T_world_view, config_.object_error_px),
-                                  object->body.T_world_object},
-                     .is_closed = object->model->shape.touched.is_closed()});
-    if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
-  }
-  drawer_.draw(drawn, camera, T_world_view, {}, layer_);
-
-  real_depth_m_.resize(camera.width_px, camera.height_px);
-  const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
-  if (rect.width > 0 && rect.height > 0) {
-    scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);
-  }
-  compose(background_, camera, T_world_view, real_depth_m_, casters, layer_, config_.picture, occlusion_,
-          picture_);
-}
-
-VirtualObject& Session::object_named(const std::string& name) {
-  const auto found = std::find_if(objects_.begin(), objects_.end(),
-                                  [&](const auto& object) { return object->body.name == name; });
-  if (found == objects_.end()) throw Error("script: there is no object named " + name);
-  return **found;
-}
-
-void Session::add_object(const std::string& name, const Mesh& mesh) {
-  objects_.push_back(object_of(context_, name, mesh, objects_));
-}
-
-void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg) {
-  RigidMotion motion;
-  motion.angular_rad_s = turn_world_deg * (std::numbers::pi / 180.0);
-  motion.centre_object = object.model->middle;
-  const std::vector<SceneTree> scene = scene_without(&object);
-  const SweepResult free =
-      sweep(radar_, {&object.model->shape.touched, object.body.T_world_object}, motion, 1.0, {scene, {}});
-  if (free.status == SweepStatus::kInvalidInput || free.status == SweepStatus::kNoAnswer) return;
-  object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
-  make_orthonormal(object.body.T_world_object);
-  object.body.at_rest = false;
-}
-
-void Session::apply(const ScriptEvent& event) {
-  switch (event.action) {
-    case Action::kSurfaces:
-      set_surfaces(event.surfaces);
-      break;
-    case Action::kUnknown: {
-      StageTimes unreported;
-      if (event.unknown_is_solid)
-        make_unknown_solid(unreported);
-      else
-        make_unknown_free();
-      break;
-    }
-    case Action::kRadar:
-      set_radar(event.radar);
-      break;
-    case Action::kQuality:
-      require_valid(event.quality);
-      due_quality_[index_of(event.from)] = event.quality;
-      break;
-    case Action::kAdopt:
-      if (!living_map_) throw Error("script: adopt: this session does not watch for changes");
-      living_map_->ask();
-      break;
-    case Action::kCamera:  // the source's affair
-    case Action::kQuit:
-      break;
-    default:
-      change_objects(event);
-  }
-}
-
-void Session::change_objects(const ScriptEvent& event) {
-  if (event.action == Action::kAdd) {
-    const bool is_there = std::any_of(objects_.begin(), objects_.end(),
-                                      [&](const auto& object) { return object->body.name == event.name; });
-    if (is_there) throw Error("script: there is an object named " + event.name + " already");
-    add_object(event.name, object_mesh(event.mesh, event.size_m.value_or(0.0)));
-    return;
-  }
-  VirtualObject& object = object_named(event.name);
-  const auto put = [&](const Eigen::Vector3d& position_world) {
-    object.body.T_world_object.translation() = position_world;
-    object.R_world_put = object.body.T_world_object.linear();
-    object.body.velocity_world_mps = event.velocity_world_mps;
-    object.body.spin_world_rad_s = event.spin_world_rad_s;
-    object.body.at_rest = false;
-    object.in_room = true;
-    object.waited_s = 0.0;
-    object.in_unknown = object.began_in_unknown = is_in_unknown(object);
-  };
-  // Whatever is said of an object now takes the place of a drop that it waits for.
-  std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
-  if (event.R_world_object && event.position_world)
-    object.body.T_world_object.linear() = *event.R_world_object;
-  if (event.action != Action::kTurn) object.carried_to_world.reset();
-  switch (event.action) {
-    case Action::kPlace:
-    case Action::kThrow:
-      put(*event.position_world);
-      break;
-    case Action::kDrop:
-      if (event.position_world)
-        put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
-      else
-        waiting_.push_back(event);
-      break;
-    case Action::kCarry:
-      if (!object.in_room) put(*event.position_world);
-      object.carried_to_world = event.position_world;
-      break;
-    case Action::kRelease:
-      object.body.velocity_world_mps = event.velocity_world_mps;
-      object.R_world_put = object.body.T_world_object.linear();
-      break;
-    case Action::kTurn:
-      if (object.in_room) turn(object, event.turn_world_deg);
-      break;
-    case Action::kRemove:
-      object.in_room = false;
-      break;
-    default:
-      break;
-  }
-}
-
-void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  for (ScriptEvent& event : std::exchange(waiting_, {})) {
-    const VirtualObject& object = object_named(event.name);
-    const Eigen::Matrix3d R_world_object = event.R_world_object.value_or(object.body.T_world_object.linear());
-    const std::optional<Support> support =
-        find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
-                     footprint_radius_m(object, R_world_object));
-    if (support) event.position_world = support->point_world;
-    apply(event);  // without a position it waits on
-  }
 }
 
 }  // namespace roomradar

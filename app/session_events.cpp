@@ -1,0 +1,138 @@
+// session_events.cpp: what a script or a user asks of a session.
+#include <algorithm>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "app/placement.hpp"
+#include "app/rigid_motion.hpp"
+#include "app/session.hpp"
+#include "mapping/types/error.hpp"
+#include "radar/sweep.hpp"
+
+namespace roomradar {
+
+VirtualObject& Session::object_named(const std::string& name) {
+  const auto found = std::find_if(objects_.begin(), objects_.end(),
+                                  [&](const auto& object) { return object->body.name == name; });
+  if (found == objects_.end()) throw Error("script: there is no object named " + name);
+  return **found;
+}
+
+void Session::add_object(const std::string& name, const Mesh& mesh) {
+  objects_.push_back(object_of(context_, name, mesh, objects_));
+}
+
+void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg) {
+  RigidMotion motion;
+  motion.angular_rad_s = turn_world_deg * (std::numbers::pi / 180.0);
+  motion.centre_object = object.model->middle;
+  const std::vector<SceneTree> scene = scene_without(&object);
+  const SweepResult free =
+      sweep(radar_, {&object.model->shape.touched, object.body.T_world_object}, motion, 1.0, {scene, {}});
+  if (free.status == SweepStatus::kInvalidInput || free.status == SweepStatus::kNoAnswer) return;
+  object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
+  make_orthonormal(object.body.T_world_object);
+  object.body.at_rest = false;
+}
+
+void Session::apply(const ScriptEvent& event) {
+  switch (event.action) {
+    case Action::kSurfaces:
+      set_surfaces(event.surfaces);
+      break;
+    case Action::kUnknown: {
+      StageTimes unreported;
+      if (event.unknown_is_solid)
+        make_unknown_solid(unreported);
+      else
+        make_unknown_free();
+      break;
+    }
+    case Action::kRadar:
+      set_radar(event.radar);
+      break;
+    case Action::kQuality:
+      require_valid(event.quality);
+      due_quality_[index_of(event.from)] = event.quality;
+      break;
+    case Action::kAdopt:
+      if (!living_map_) throw Error("script: adopt: this session does not watch for changes");
+      living_map_->ask();
+      break;
+    case Action::kCamera:  // the source's affair
+    case Action::kQuit:
+      break;
+    default:
+      change_objects(event);
+  }
+}
+
+void Session::change_objects(const ScriptEvent& event) {
+  if (event.action == Action::kAdd) {
+    const bool is_there = std::any_of(objects_.begin(), objects_.end(),
+                                      [&](const auto& object) { return object->body.name == event.name; });
+    if (is_there) throw Error("script: there is an object named " + event.name + " already");
+    add_object(event.name, object_mesh(event.mesh, event.size_m.value_or(0.0)));
+    return;
+  }
+  VirtualObject& object = object_named(event.name);
+  const auto put = [&](const Eigen::Vector3d& position_world) {
+    object.body.T_world_object.translation() = position_world;
+    object.R_world_put = object.body.T_world_object.linear();
+    object.body.velocity_world_mps = event.velocity_world_mps;
+    object.body.spin_world_rad_s = event.spin_world_rad_s;
+    object.body.at_rest = false;
+    object.in_room = true;
+    object.waited_s = 0.0;
+    object.in_unknown = object.began_in_unknown = is_in_unknown(object);
+  };
+  // Whatever is said of an object now takes the place of a drop that it waits for.
+  std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
+  if (event.R_world_object && event.position_world)
+    object.body.T_world_object.linear() = *event.R_world_object;
+  if (event.action != Action::kTurn) object.carried_to_world.reset();
+  switch (event.action) {
+    case Action::kPlace:
+    case Action::kThrow:
+      put(*event.position_world);
+      break;
+    case Action::kDrop:
+      if (event.position_world)
+        put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
+      else
+        waiting_.push_back(event);
+      break;
+    case Action::kCarry:
+      if (!object.in_room) put(*event.position_world);
+      object.carried_to_world = event.position_world;
+      break;
+    case Action::kRelease:
+      object.body.velocity_world_mps = event.velocity_world_mps;
+      object.R_world_put = object.body.T_world_object.linear();
+      break;
+    case Action::kTurn:
+      if (object.in_room) turn(object, event.turn_world_deg);
+      break;
+    case Action::kRemove:
+      object.in_room = false;
+      break;
+    default:
+      break;
+  }
+}
+
+void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  for (ScriptEvent& event : std::exchange(waiting_, {})) {
+    const VirtualObject& object = object_named(event.name);
+    const Eigen::Matrix3d R_world_object = event.R_world_object.value_or(object.body.T_world_object.linear());
+    const std::optional<Support> support =
+        find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
+                     footprint_radius_m(object, R_world_object));
+    if (support) event.position_world = support->point_world;
+    apply(event);  // without a position it waits on
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,100 @@
+// session_picture.cpp: what a session shows: the camera's picture with the objects and their shadows in it.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <vector>
+
+#include "app/session.hpp"
+
+namespace roomradar {
+namespace {
+
+/// A camera's pose after_s after it was at T_world_now, moving on as it moved for dt_s until then; no farther
+/// than that motion, either way. Without a time to go by it stands.
+Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eigen::Isometry3d& T_world_now,
+                              double dt_s, double after_s) {
+  if (!(dt_s > 0.0) || after_s == 0.0) return T_world_now;
+  const double part = std::clamp(after_s / dt_s, -1.0, 1.0);
+  const Eigen::Isometry3d T_before_now = T_world_before.inverse() * T_world_now;
+  const Eigen::AngleAxisd turn(T_before_now.linear());
+  Eigen::Isometry3d T_now_then = Eigen::Isometry3d::Identity();
+  T_now_then.linear() = Eigen::AngleAxisd(part * turn.angle(), turn.axis()).toRotationMatrix();
+  T_now_then.translation() = part * T_before_now.linear().transpose() * T_before_now.translation();
+  return T_world_now * T_now_then;
+}
+
+}  // namespace
+
+Session::ShownView Session::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                                    double dt_s) {
+  if (!frame.colour.empty()) {
+    const Eigen::Isometry3d T_world_then =
+        T_world_before_ ? pose_beside(*T_world_before_, T_world_camera, dt_s, frame.colour_after_depth_s)
+                        : T_world_camera;
+    colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
+    background_ = frame.colour;
+  }
+  if (colour_view_) return *colour_view_;
+  shade_depth(frame.depth_m, frame.depth_camera, background_);
+  return {frame.depth_camera, T_world_camera};
+}
+
+void Session::show_camera_alone(const Frame& frame) {
+  shown_view_.reset();
+  if (!frame.colour.empty())
+    picture_ = frame.colour;
+  else if (colour_view_)
+    picture_ = background_;
+  else
+    shade_depth(frame.depth_m, frame.depth_camera, picture_);
+}
+
+void Session::renew_a_shadow() {
+  constexpr double kTurned_rad = 0.05;
+  constexpr int kFine = 16, kCoarse = 8;  // 3 ms and 0.2 ms
+  const bool may_be_fine = is_turn(0, config_.shadow_turns);
+  VirtualObject* most_turned = nullptr;
+  VirtualObject* coarse_at_rest = nullptr;
+  double turned_rad = kTurned_rad;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    const Eigen::AngleAxisd turn(object->shadow.R_world_object.transpose() *
+                                 object->body.T_world_object.linear());
+    if (object->body.at_rest && object->shadow.cells_across < kFine) coarse_at_rest = object.get();
+    if (!(turn.angle() > turned_rad)) continue;
+    turned_rad = turn.angle();
+    most_turned = object.get();
+  }
+  const bool is_fine = most_turned == nullptr && coarse_at_rest != nullptr && may_be_fine;
+  VirtualObject* const renewed = is_fine ? coarse_at_rest : most_turned;
+  if (renewed != nullptr)
+    make_contact_shadow(renewed->model->surface, renewed->body.T_world_object.linear(), renewed->shadow,
+                        is_fine ? kFine : kCoarse);
+}
+
+void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
+  shown_view_ = view_of(frame, T_world_camera, dt_s);
+  const auto& [camera, T_world_view] = *shown_view_;
+
+  const bool has_shadows = config_.picture.shadow_strength > 0.0F;
+  if (has_shadows) renew_a_shadow();
+  std::vector<DrawnObject> drawn;
+  std::vector<ShadowCaster> casters;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    drawn.push_back({.instance = {&drawn_mesh(*object, camera, T_world_view, config_.object_error_px),
+                                  object->body.T_world_object},
+                     .is_closed = object->model->shape.touched.is_closed()});
+    if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
+  }
+  drawer_.draw(drawn, camera, T_world_view, {}, layer_);
+
+  real_depth_m_.resize(camera.width_px, camera.height_px);
+  const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
+  if (rect.width > 0 && rect.height > 0) {
+    scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);
+  }
+  compose(background_, camera, T_world_view, real_depth_m_, casters, layer_, config_.picture, occlusion_,
+          picture_);
+}
+
+}  // namespace roomradar
