@@ -1,5 +1,5 @@
-// session.cpp: the path of one frame, top to bottom, and the steps it is made of. What is asked of a session is
-// in session_events.cpp, what it shows in session_picture.cpp.
+// session.cpp: the path of one frame, top to bottom, and the steps it is made of. What is asked of a session
+// is in session_events.cpp, what it shows in session_picture.cpp.
 #include "app/session.hpp"
 
 #include <algorithm>
