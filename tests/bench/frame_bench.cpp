@@ -1,18 +1,21 @@
 // frame_bench.cpp: whole frames of a session in a saved room: what each stage costs, how soon a contact is
 // known, and how right the frames are.
 //
-// usage: frame_bench [--scene NAME]... [--object TRIANGLES]... [--maps FOLDER] [--json FILE]
-// It links little, to run on another machine: copy it with the maps and the libraries that ldd names; the
-// scenes room and walk need no more there. Scenes: kitchen (frames 400-499 of the recording, in the map of
-// 0-399; left out, with a word, where the recording is not here), room (a simulated dining room with a hand,
-// the camera held still by a hand), walk (the same, walked round). Maps are made once and kept in FOLDER
-// (frame-bench-maps). An object is dropped over what is in view every 25 frames. The first 10 frames are not
-// counted. Reference: drawing the whole map's depth with OpenGL at the frames' poses, before and after each
-// row. Scenes, seeds and frames are fixed: changing them breaks comparison with old numbers.
+// usage: frame_bench [--scene NAME]... [--object TRIANGLES]... [--maps FOLDER] [--json FILE] [--slow MS]
+// --slow: says of each frame that takes longer where its time went. It links little, to run on another
+// machine: copy it with the maps and the libraries that ldd names; the scenes room and walk need no more
+// there. Scenes: kitchen (frames 400-499 of the recording, in the map of 0-399; left out, with a word, where
+// the recording is not here), room (a simulated dining room with a hand, the camera held still by a hand),
+// walk (the same, walked round). Maps are made once and kept in FOLDER (frame-bench-maps). An object is
+// dropped over what is in view every 25 frames. The first 10 frames are not counted. Reference: drawing the
+// whole map's depth with OpenGL at the frames' poses, before and after each row. Scenes, seeds and frames are
+// fixed: changing them breaks comparison with old numbers.
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -77,7 +80,25 @@ struct Settings {
   std::vector<std::size_t> objects;
   std::filesystem::path maps = "frame-bench-maps";
   std::string json;
+  double slow_ms = 0.0;  ///< 0: no frame is slow
 };
+
+/// The stages of a frame that took longer than slow_ms, those from 0.5 ms on.
+void say_if_slow(double slow_ms, std::int64_t frame, const StageTimes& times,
+                 std::map<std::string, std::size_t>& counts) {
+  std::string text;
+  bool is_slow = false;
+  times.visit_newest([&](const std::string& stage, std::size_t count, double newest_ms) {
+    if (std::exchange(counts[stage], count) == count) return;
+    is_slow |= stage == "frame" && newest_ms > slow_ms;
+    if (newest_ms < 0.5) return;
+    std::array<char, 64> part;
+    std::snprintf(part.data(), part.size(), " %s %.1f", stage.c_str(), newest_ms);
+    text += part.data();
+  });
+  if (is_slow && slow_ms > 0.0)
+    std::fprintf(stderr, "frame %lld:%s\n", static_cast<long long>(frame), text.c_str());
+}
 
 std::string range_text(const FrameRange& frames) {
   return std::to_string(frames.first) + ":" + std::to_string(frames.last);
@@ -154,7 +175,7 @@ nlohmann::json to_json(const StageSummary& summary) {
 double median(test::Times times) { return times.samples_ms.empty() ? 0.0 : times.percentile(0.5); }
 
 nlohmann::json bench(const Scene& scene, const SavedMap& map, const std::vector<Frame>& frames,
-                     const Mesh& object) {
+                     const Mesh& object, double slow_ms) {
   test::Times reference_us;
   measure_reference(map, frames, reference_us);
 
@@ -171,6 +192,7 @@ nlohmann::json bench(const Scene& scene, const SavedMap& map, const std::vector<
     renderer = session.renderer();
     session.add_object("object", object);
     int number = 0;
+    std::map<std::string, std::size_t> counts_so_far;
     for (const Frame& frame : frames) {
       if (number % kDropEvery == 0) {
         ScriptEvent drop;
@@ -183,6 +205,7 @@ nlohmann::json bench(const Scene& scene, const SavedMap& map, const std::vector<
       const double cpu_before_ms = process_cpu_ms();
       const FrameResult result = session.step(frame, counts ? times : warm_up);
       if (counts) cpu_ms.samples_ms.push_back(process_cpu_ms() - cpu_before_ms);
+      if (counts) say_if_slow(slow_ms, number - 1, times, counts_so_far);
       if (!counts || result.status != FrameStatus::kDone) continue;
       ++located;
       contacts += result.contacts;
@@ -270,6 +293,8 @@ std::optional<Settings> read_arguments(int argc, char** argv) {
       settings.maps = value;
     else if (key == "--json")
       settings.json = value;
+    else if (key == "--slow")
+      settings.slow_ms = std::atof(value.c_str());
     else
       return std::nullopt;
   }
@@ -287,7 +312,7 @@ int run(int argc, char** argv) {
     std::fprintf(
         stderr,
         "usage: frame_bench [--scene kitchen|room|walk]... [--object 12|6256|181412]... [--maps FOLDER] "
-        "[--json FILE]\n");
+        "[--json FILE] [--slow MS]\n");
     return 2;
   }
   const Settings& settings = *asked;
@@ -310,7 +335,7 @@ int run(int argc, char** argv) {
     std::vector<nlohmann::json> of_scene;
     for (const Mesh& object : objects) {
       if (!is_wanted(settings.objects, object.triangles.size())) continue;
-      of_scene.push_back(bench(scene, map, frames, object));
+      of_scene.push_back(bench(scene, map, frames, object, settings.slow_ms));
       print_row(of_scene.back());
       rows.push_back(of_scene.back());
     }
