@@ -76,6 +76,8 @@ class Stepper {
   /// Without turning, from surface to surface along the radar's directions; whether one held it up.
   bool slide(double dt_s);
   Contact ask(const Vec3& direction, double distance_m);
+  /// Whether what seems to be in the body only lies between its parts, as in a handle: it crosses none.
+  [[nodiscard]] bool is_in_a_hollow(const Way& way);
   static Way overlap_in(const Contact& contact, const Vec3& direction);
   void hold();
   void collide(const Contact& contact, Vec3& remaining);
@@ -86,7 +88,8 @@ class Stepper {
   const PhysicsConfig& config_;
   StepReport& report_;
   Vec3 down_ = Vec3::Zero();
-  Contact below_;  // along gravity, before any motion
+  Contact below_;                 // along gravity, before any motion
+  std::optional<Kinds> crossed_;  // by what, before any motion, once that was asked
   std::optional<Push> push_;
   RigidScratch scratch_;
   std::array<Vec3, 2> met_normals_;
@@ -117,10 +120,19 @@ Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) 
   return {std::max(-contact.travel_m, 0.0), direction, contact};
 }
 
+bool Stepper::is_in_a_hollow(const Way& way) {
+  constexpr double kTouching_m = 1e-6;
+  const Touched kind = way.contact.touched;
+  if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind)) return false;
+  if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, scratch_.near);
+  return (*crossed_ & bit_of(kind)) == 0;
+}
+
 void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world) {
   Way way;
   const auto consider = [&](const Way& other) {
-    if (other.depth_m > 0.0 && (way.depth_m <= 0.0 || other.depth_m < way.depth_m)) way = other;
+    if (!(other.depth_m > 0.0) || (way.depth_m > 0.0 && other.depth_m >= way.depth_m)) return;
+    if (!is_in_a_hollow(other)) way = other;
   };
   const auto look = [&](const Vec3& direction) {
     if (!failed()) consider(overlap_in(ask(direction, config_.contact_margin_m), direction));

@@ -363,7 +363,11 @@ double Session::penetration_m() {
                                               config_.physics.gravity_world_mps2,
                                               0.01},
                                              {still, {}});
-    if (below.status == ContactStatus::kOverlap) deepest_m = std::max(deepest_m, -below.travel_m);
+    if (below.status != ContactStatus::kOverlap) continue;
+    constexpr double kTouching_m = 1e-6;  // what crosses no part of it lies in a hollow, as in a handle
+    const Kinds crossed = near_field_.near({&object->model->shape.touched, object->body.T_world_object},
+                                           {still, {}}, kTouching_m, 0, near_points_);
+    if ((crossed & bit_of(below.touched)) != 0) deepest_m = std::max(deepest_m, -below.travel_m);
   }
   return deepest_m;
 }

@@ -149,6 +149,7 @@ class Session {
   Locator locator_;
   CyberRadar radar_;
   NearField near_field_;
+  std::vector<NearPoint> near_points_;
   std::vector<OtherBody> others_;  // of the scene of the object that is moved
   CyberRadar exact_radar_;         ///< measures penetration
   ObjectDrawer drawer_;

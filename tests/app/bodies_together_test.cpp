@@ -8,6 +8,7 @@
 
 #include "app/physics.hpp"
 #include "app/rigid_motion.hpp"
+#include "app/teapot.hpp"
 #include "radar/cyber_radar.hpp"
 #include "tests/radar/shapes.hpp"
 
@@ -195,6 +196,43 @@ TEST(BodiesTogether, OneStandsStillThatIsNotNamedAsABody) {
   pair.run(0.5, weightless(0.0));
   EXPECT_TRUE(pair.bodies[1].velocity_world_mps.isZero());
   EXPECT_LT(pair.bodies[0].velocity_world_mps.norm(), 1e-6);
+}
+
+Eigen::Isometry3d pose(const Vec3& position, const Eigen::Quaterniond& turn) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = turn.normalized().toRotationMatrix();
+  T.translation() = position;
+  return T;
+}
+
+TEST(BodiesTogether, AHandThatReachesIntoOneDoesNotPushItIntoAnotherThatLiesInItsHollow) {
+  const Mesh teapot = utah_teapot(10, 0.2 / 2.04), fist = box(0.06, 0.06, 0.06);
+  TriangleTree teapot_tree, fist_tree;
+  teapot_tree.build_by_place(teapot);
+  fist_tree.build_by_place(fist);
+  // The one leans upside down on the other; they touch, and cross nowhere.
+  const Eigen::Isometry3d T_world_lies =
+      pose({0.1470, -0.3587, 0.7609}, {0.98952, 0.00948, 0.13997, -0.03411});
+  const Eigen::Isometry3d T_world_leans =
+      pose({0.2384, -0.3216, 0.8928}, {0.10893, 0.92496, -0.26430, 0.25044});
+  const Vec3 to_hand = Vec3(0.96, 0.27, 0.0).normalized(), across(-to_hand.y(), to_hand.x(), 0.0);
+  const SceneTree lies{{&teapot_tree, T_world_lies}, Touched::kObject};
+  CyberRadar radar;
+  NearField field;
+  std::vector<NearPoint> points;
+  for (int place = 0; place < 36; ++place) {
+    Eigen::Isometry3d T_world_fist = Eigen::Isometry3d::Identity();
+    T_world_fist.translation() = T_world_leans.translation() + 0.03 * (place / 9) * to_hand +
+                                 0.05 * (place % 3 - 1) * across + Vec3(0.0, 0.0, 0.05 * (place / 3 % 3 - 1));
+    const std::vector<SceneTree> scene{{{&fist_tree, T_world_fist}, Touched::kDynamic}, lies};
+    const RadarScene radar_scene{scene, {}};
+    Body body;
+    body.mass = mass_properties(teapot, false);
+    body.T_world_object = T_world_leans;
+    (void)advance(body, kFrame_s, probe_of(radar, field, teapot_tree, radar_scene), {}, {&to_hand, 1});
+    const Kinds crossed = field.near({&teapot_tree, body.T_world_object}, {{&lies, 1}, {}}, 1e-6, 0, points);
+    EXPECT_EQ(crossed, 0U) << place;
+  }
 }
 
 }  // namespace
