@@ -24,6 +24,8 @@ struct DrawnLevel {
 struct ObjectModel {
   Mesh mesh;  ///< that it was made from
   Shape shape;
+  /// Vertices of triangles, each once, in the mesh's frame.
+  std::vector<Eigen::Vector3d> corners;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of its bounding box, in the mesh's frame
   MassProperties mass;
   SurfacePoints surface;           ///< what its shadow is made of

@@ -27,8 +27,12 @@ class HeightGrid {
       float height_m;
     };
     std::vector<Seen> points;
-    points.reserve(depth_m.pixels.size());
-    const int stride = std::max(camera.width_px / 400, 1);
+    // Of a row as many pixels as the farthest cells need; of a column more, for floors are seen at a slant.
+    constexpr double kOfCell = 0.75;
+    const double apart_px = kOfCell * cell_m_ * camera.fx_px / config.max_range_m;
+    const int across = static_cast<int>(std::clamp(apart_px, 1.0, static_cast<double>(camera.width_px)));
+    const int down = std::max(across / 2, 1);
+    points.reserve(depth_m.pixels.size() / static_cast<std::size_t>(across * down));
     const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
     const Eigen::Vector3f step = R.col(0) / static_cast<float>(camera.fx_px);
     const auto per_m = static_cast<float>(1.0 / cell_m_);
@@ -37,9 +41,9 @@ class HeightGrid {
     // A wide lens sees farther sideways.
     const int most = static_cast<int>(std::ceil(1.5 * config.max_range_m / cell_m_));
     Eigen::AlignedBox2i seen;
-    for (int y = 0; y < camera.height_px; y += stride) {
+    for (int y = 0; y < camera.height_px; y += down) {
       const Eigen::Vector3f row = R * back_project(camera, 0.0, y, 1.0).cast<float>();
-      for (int x = 0; x < camera.width_px; x += stride) {
+      for (int x = 0; x < camera.width_px; x += across) {
         const float z_m = depth_m.at(x, y);
         if (!(z_m >= nearest_m && z_m <= farthest_m)) continue;
         const Eigen::Vector3f p = z_m * (row + static_cast<float>(x) * step);

@@ -47,26 +47,18 @@ const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
 }
 
 double lowest_m(const VirtualObject& object) {
-  const GpuMesh& mesh = object.model->shape.drawn;
   const Eigen::Vector3d z = object.body.T_world_object.linear().row(2);
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Triangle& triangle : mesh.triangles()) {
-    for (const std::uint32_t vertex : triangle)
-      lowest = std::min(lowest, z.dot(mesh.origin() + mesh.vertices()[vertex].cast<double>()));
-  }
+  for (const Eigen::Vector3d& corner : object.model->corners) lowest = std::min(lowest, z.dot(corner));
   return lowest;
 }
 
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {
-  const GpuMesh& mesh = object.model->shape.drawn;
-  double radius_m = 0.0;
-  for (const Triangle& triangle : mesh.triangles()) {
-    for (const std::uint32_t vertex : triangle) {
-      const Eigen::Vector3d p = R_world_object * (mesh.origin() + mesh.vertices()[vertex].cast<double>());
-      radius_m = std::max(radius_m, p.head<2>().norm());
-    }
-  }
-  return radius_m;
+  const Eigen::Matrix<double, 2, 3> R_level_object = R_world_object.topRows<2>();
+  double squared_m2 = 0.0;
+  for (const Eigen::Vector3d& corner : object.model->corners)
+    squared_m2 = std::max(squared_m2, (R_level_object * corner).squaredNorm());
+  return std::sqrt(squared_m2);
 }
 
 Mesh object_mesh(const std::string& name_or_path, double size_m) {
