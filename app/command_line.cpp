@@ -413,8 +413,9 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
 void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand(
       "trade",
-      "measure what accuracy costs: settings of prescan and run, drawn at random, in simulated rooms with\n"
-      "known truth and in recordings, each between two measurements of the default");
+      "measure what accuracy costs: settings of prescan and run, drawn at random, then the turns that gave\n"
+      "most for least on top of each other, in simulated rooms with known truth and in recordings, each\n"
+      "between two measurements of the default");
   sub->add_option("SOURCE", command.recordings,
                   "folders with recordings that have poses, beside the simulated rooms");
   sub->add_option("--rooms", command.rooms, "simulated rooms, with commas between them (table,random?seed=2)")

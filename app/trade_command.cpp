@@ -7,6 +7,7 @@
 #include "app/report.hpp"
 #include "app/sim/sim_options.hpp"
 #include "app/trade/draw_settings.hpp"
+#include "app/trade/ladder.hpp"
 #include "app/trade/machine.hpp"
 #include "app/trade/prescan_work.hpp"
 #include "app/trade/run_work.hpp"
@@ -49,21 +50,31 @@ class Stop {
 
 TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& stop, TradeCsv& csv) {
   TradeResult result{.work = work};
-  result.settings = draw_settings(work.knobs, command.settings, command.seed);
-  result.settings.insert(result.settings.begin(), usual_setting(work.knobs));
   result.usual = 0;
-  const auto rows = result.settings.size() * work.scenes.size() * static_cast<std::size_t>(command.repeats);
+  const std::size_t on_ladder = command.settings / 3;
+  const auto rows = (1 + command.settings) * work.scenes.size() * static_cast<std::size_t>(command.repeats);
   Progress progress(work.name, static_cast<std::int64_t>(rows));
-  SweepWatch watch;
-  watch.is_stopped = [&] { return stop.asked(); };
-  watch.on_row = [&](const SweepRow& row) {
-    csv.write(work, result.settings, row);
-    char note[64];
-    std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
-    progress.step(row.fault.empty() ? note : row.fault);
+  const auto measure = [&](const std::vector<Setting>& settings) {
+    const std::size_t before = result.settings.size();
+    result.settings.insert(result.settings.end(), settings.begin(), settings.end());
+    SweepWatch watch;
+    watch.is_stopped = [&] { return stop.asked(); };
+    watch.on_row = [&](SweepRow row) {
+      row.setting += before;
+      csv.write(work, result.settings, row);
+      char note[64];
+      std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
+      progress.step(row.fault.empty() ? note : row.fault);
+      result.rows.push_back(std::move(row));
+    };
+    (void)sweep(work, {settings, command.repeats, command.seed}, watch);
+    result.summaries = summarise(work, result.settings, result.rows);
   };
-  result.rows = sweep(work, {result.settings, command.repeats, command.seed}, watch);
-  result.summaries = summarise(work, result.settings, result.rows);
+  std::vector<Setting> drawn = draw_settings(work.knobs, command.settings - on_ladder, command.seed);
+  drawn.insert(drawn.begin(), usual_setting(work.knobs));
+  measure(drawn);
+  const std::vector<Setting> ladder = ladder_settings(work, result.summaries, result.usual, on_ladder);
+  if (!ladder.empty() && !stop.asked()) measure(ladder);
   result.choice = choose_presets(work, result.summaries, result.usual);
   csv.write(work, result.summaries, result.usual, result.choice);
   return result;

@@ -57,6 +57,7 @@ PresetChoice choose_presets(const TradeWork& work, const std::vector<SettingSumm
   const auto product = [](const CostAndError& p) { return p.cost * p.error; };
   const auto error = [](const CostAndError& p) { return p.error; };
   for (const std::size_t i : choice.front) {
+    if (worst_loss_of(work, summaries[i], summaries[usual]) > kMostWorstLossOfPreset) continue;
     if (points[i].error <= kMostLossOfFast && is_better(choice.fast, i, cost)) choice.fast = i;
     if (is_better(choice.balanced, i, product)) choice.balanced = i;
     if (points[i].cost <= kMostTimeOfAccurate && is_better(choice.accurate, i, error)) choice.accurate = i;

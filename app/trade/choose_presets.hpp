@@ -22,11 +22,14 @@ struct PresetChoice {
   std::optional<std::size_t> fast, balanced, accurate;
 };
 
-inline constexpr double kMostWorstLoss = 3.0;  ///< on the front no error is more times the default's
+inline constexpr double kMostWorstLoss = 10.0;  ///< on the front no error is more times the default's
+inline constexpr double kMostWorstLossOfPreset = 3.0;
 inline constexpr double kMostLossOfFast = 1.5;
 inline constexpr double kMostTimeOfAccurate = 3.0;  ///< times the default's
 
-/// The front of time ratio against loss, of complete settings of the usual load; and of it
+/// The front of time ratio against loss, of complete settings of the usual load; and of it, where no error is
+/// more than kMostWorstLossOfPreset times the default's (what goes farther is for a budget that cannot be
+/// held otherwise),
 ///  fast      the least time with a loss of at most kMostLossOfFast,
 ///  balanced  the least product of time and loss,
 ///  accurate  the least loss that takes at most kMostTimeOfAccurate times the default.

@@ -7,7 +7,7 @@
 
 namespace roomradar {
 
-/// Up to `count` settings, no two alike and none the usual one, in random order. Up to half of them turn one
+/// Up to `count` settings, no two alike and none the usual one, in random order. Up to two thirds of them turn one
 /// knob alone (as many as there are such settings), which shows what each knob does; the others turn all of
 /// quality at once: each knob's words come about equally often, at random, but so that what is fast is mixed
 /// with what is fast rather than with what is slow, for only such mixtures can be on a front.

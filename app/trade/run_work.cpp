@@ -86,20 +86,23 @@ Readings measure(const RunScene& scene, const Setting& words) {
 }  // namespace
 
 std::vector<Knob> run_knobs() {
-  return {{"depth_stride", {"4", "2", "1"}, 2},
-          {"tracking_px", {"80", "160", "320"}, 1},
-          {"mesh_sigmas", {"3.2", "1.6", "0.8", "0.4"}, 2},
-          {"fine_mesh", {"off", "on"}, 1},
-          {"radar", {"sampled", "exact"}, 1},
-          {"radar_px", {"16", "32", "64", "128"}, 2},
-          {"object_turns", {"4", "2", "1"}, 2},
-          {"object_error_px", {"4", "2", "1", "0.5", "0.25"}, 3},
-          {"soft_edges", {"off", "on"}, 1},
-          {"shadows", {"off", "on"}, 1},
-          {"shadow_turns", {"8", "3", "1"}, 2},
-          {"picture_turns", {"2", "1"}, 1},
-          {"physics_step_s", {"0.03333333333333333", "0.016666666666666666", "0.008333333333333333"}, 1},
-          {"objects", {"1", "5", "20"}, 0, /*is_load=*/true}};
+  return {
+      {"depth_stride", {"4", "2", "1"}, 2},
+      {"tracking_px", {"80", "160", "320"}, 1},
+      {"mesh_sigmas", {"3.2", "1.6", "0.8", "0.4"}, 2},
+      {"fine_mesh", {"off", "on"}, 1},
+      {"radar", {"sampled", "exact"}, 1},
+      {"radar_px", {"16", "32", "64", "128"}, 2},
+      {"object_turns", {"8", "4", "2", "1"}, 3},
+      {"object_error_px", {"6", "3", "2", "1", "0.5", "0.25"}, 4},
+      {"soft_edges", {"off", "on"}, 1},
+      {"shadows", {"off", "on"}, 1},
+      {"shadow_turns", {"1000", "8", "3", "1"}, 3},
+      {"picture_turns", {"2", "1"}, 1},
+      {"physics_step_s",
+       {"0.15", "0.06666666666666667", "0.03333333333333333", "0.016666666666666666", "0.008333333333333333"},
+       3},
+      {"objects", {"1", "5", "20"}, 0, /*is_load=*/true}};
 }
 
 RunSetting run_setting_of(const Setting& levels) {
