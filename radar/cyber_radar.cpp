@@ -2,6 +2,7 @@
 #include "radar/cyber_radar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -26,6 +27,12 @@ SceneItem pop(std::vector<SceneItem>& heap) {
   const SceneItem item = heap.back();
   heap.pop_back();
   return item;
+}
+
+/// Of an M, as ColumnScratch::work: triangles smaller than a pixel are entered as one.
+std::uint64_t work_to_build(const TurnedTree& object, int px) {
+  const auto pixels = static_cast<std::uint64_t>(px) * static_cast<std::uint64_t>(px);
+  return std::min<std::uint64_t>(object.tree->triangle_count() / 2, pixels) + pixels / 50;
 }
 
 /// What the gap of two triangles cannot be less than, cheaply: by their heights, and by the object's corners
@@ -119,6 +126,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   scene_.enter(volume_ahead(search));
   build_front(search.object, is_kept);  // M
   look(search);                         // R, L
+  front_work_ += columns_.work;
   if (search.leaves_something && search.met_a_back && !search.overlaps && !search.is_cut_short) leave(search);
   if (search.is_thick) return thick_contact_of(search);
   return search.overlaps ? overlap_of(search) : contact_of(search);
@@ -145,21 +153,25 @@ SceneBound CyberRadar::bound_of(const Search& search) const {
   return {&front_, static_cast<float>(volume_ahead(search).min().z())};
 }
 
-/// Coarse for a direction that may never come again, fine where it is seen to stay: then nearly all of the
-/// scene is ruled out by M's pixels, whatever the object's triangles are. The exact answer does not depend on
-/// how fine M is.
+/// Coarse for a direction that may never come again, finer where it has stayed for so long that a finer M
+/// would have paid by now: with it nearly all of the scene is ruled out by M's pixels, whatever the object's
+/// triangles are. The exact answer does not depend on how fine M is.
 void CyberRadar::build_front(const TurnedTree& object, bool is_kept) {
-  constexpr int kFewFresh_px = 64, kKept_px = 384, kSeenToStay = 3;
+  constexpr int kFewFresh_px = 64;
+  constexpr std::array kKept_px{96, 192, 384};
   constexpr std::size_t kFewTriangles = 500;  // their M costs little
-  const int kept_px = config_.mode == RadarMode::kExact ? kKept_px : config_.resolution_px;
-  if (is_kept) {
-    front_uses_ = std::min(front_uses_ + 1, kSeenToStay);
-    if (front_uses_ == kSeenToStay) front_.build(object, kept_px);
-  } else {
-    front_uses_ = 1;
+  const bool is_exact = config_.mode == RadarMode::kExact;
+  const auto at_most_asked = [&](int px) { return is_exact ? px : std::min(px, config_.resolution_px); };
+  if (!is_kept) {
+    front_work_ = 0;
     const bool has_few = object.tree->triangle_count() < kFewTriangles;
-    front_.build(object, std::min(has_few ? kFewFresh_px : fresh_px(), kept_px));
+    front_.build(object, at_most_asked(has_few ? kFewFresh_px : fresh_px()));
+    return;
   }
+  int finest_px = 0;
+  for (const int px : kKept_px)
+    if (2 * front_work_ > work_to_build(object, at_most_asked(px))) finest_px = at_most_asked(px);
+  if (finest_px > 0) front_.build(object, finest_px);
 }
 
 /// The more scene there is to rule out, the finer an M pays: its time goes with its pixels, and what it

@@ -129,7 +129,7 @@ class CyberRadar {
   RadarConfig config_;
   FrontMap front_;
   std::uint64_t static_triangles_asked_ = 0;
-  int front_uses_ = 0;  // of front_ as it is turned now
+  std::uint64_t front_work_ = 0;  // of all queries with front_ as it is turned now, as ColumnScratch::work
   SceneInFrame scene_;
   ContactPatch patch_;
   OverlapScratch overlap_;

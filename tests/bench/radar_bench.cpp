@@ -140,6 +140,7 @@ void frame_table(const FrameScene& frame, const std::vector<Pose>& poses, GlCont
 
 /// A scene that is new and an object that has moved but not turned: does its polygon count still show?
 void steady_table(const FrameScene& frame, const std::vector<Pose>& poses, std::vector<Row>& rows) {
+  constexpr int kUntilSteady = 200;  // queries, until M is as fine as it becomes
   std::vector<Sensor> all = sensors();
   all.insert(all.begin() + 1, torus_sized_box());
   for (const int px : {64, 128, 256}) {
@@ -147,7 +148,7 @@ void steady_table(const FrameScene& frame, const std::vector<Pose>& poses, std::
     for (const RadarMode mode : {RadarMode::kExact, RadarMode::kSampled}) {
       for (const Sensor& sensor : all) {
         Row row = measure({radar_on_depth(frame, sensor.mesh, mode, px, kDistance_m)}, poses,
-                          exact_travels(sensor.mesh, poses, frame.mesh))
+                          exact_travels(sensor.mesh, poses, frame.mesh), kUntilSteady)
                       .front();
         row.table = "steady";
         row.method += ", " + sensor.name;

@@ -36,9 +36,9 @@ void add_errors(std::vector<double> error_m, Row& row) {
 }
 
 std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<Pose>& poses,
-                         const std::vector<std::optional<double>>& exact_m) {
+                         const std::vector<std::optional<double>>& exact_m, int warm_up) {
   using Clock = std::chrono::steady_clock;
-  constexpr int kWarmUp = 3, kRounds = 3;
+  constexpr int kRounds = 3;
   struct Samples {
     std::vector<double> wall_ms, cpu_ms, error_m;
   };
@@ -47,7 +47,7 @@ std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<P
   std::vector<Samples> samples(methods.size());
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t m = 0; m < methods.size(); ++m) {
-      for (int i = 0; i < kWarmUp; ++i)
+      for (int i = 0; i < warm_up; ++i)
         static_cast<void>(methods[m].query(poses[static_cast<std::size_t>(i) % poses.size()]));
       for (std::size_t i = 0; i < poses.size(); ++i) {
         const auto start = Clock::now();

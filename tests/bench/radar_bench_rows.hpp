@@ -34,7 +34,7 @@ void add_errors(std::vector<double> error_m, Row& row);
 /// same load. Answers are judged in the first round. Rows come in the methods' order; table, scene and sensor
 /// are the caller's.
 std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<Pose>& poses,
-                         const std::vector<std::optional<double>>& exact_m);
+                         const std::vector<std::optional<double>>& exact_m, int warm_up = 3);
 
 double quantile(std::vector<double> values, double q);
 
