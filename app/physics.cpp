@@ -123,7 +123,7 @@ Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) 
 bool Stepper::is_in_a_hollow(const Way& way) {
   constexpr double kTouching_m = 1e-6;
   const Touched kind = way.contact.touched;
-  if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind)) return false;
+  if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind)) return false;
   if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, scratch_.near);
   return (*crossed_ & bit_of(kind)) == 0;
 }
