@@ -37,6 +37,10 @@ class Pair {
       bodies[i].mass = mass_properties(*meshes[i], trees_[i].is_closed());
     }
   }
+  void put(const Vec3& first_world, const Vec3& second_world) {
+    bodies[0].T_world_object.translation() = first_world;
+    bodies[1].T_world_object.translation() = second_world;
+  }
   void add_floor() { floor_.build_by_place(shapes::floor(4.0F, 0.0F)); }
 
   void step(const PhysicsConfig& config) {
@@ -92,8 +96,7 @@ TEST(MassProperties, WeighASolidAsWaterAndAShellByItsArea) {
 
 TEST(BodiesTogether, EqualOnesSwapTheirVelocitiesWhereAllComesBack) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
-  pair.bodies[0].T_world_object.translation() = Vec3(-0.3, 0, 1);
-  pair.bodies[1].T_world_object.translation() = Vec3(0.3, 0, 1);
+  pair.put({-0.3, 0, 1}, {0.3, 0, 1});
   pair.bodies[0].velocity_world_mps = {2, 0, 0};
   pair.bodies[1].at_rest = true;
   pair.run(0.5, weightless(1.0));
@@ -107,8 +110,7 @@ TEST(BodiesTogether, AHeavyOneCarriesALightOneAlongAndALightOneHardlyMovesAHeavy
     Pair pair(box(0.2, 0.2, 0.2), box(0.1, 0.1, 0.1));  // 8 kg and 1 kg
     pair.weigh();
     const std::size_t moving = is_heavy_first ? 0 : 1;
-    pair.bodies[0].T_world_object.translation() = Vec3(-0.5, 0, 1);
-    pair.bodies[1].T_world_object.translation() = Vec3(0.3, 0, 1);
+    pair.put({-0.5, 0, 1}, {0.3, 0, 1});
     pair.bodies[moving].velocity_world_mps = {is_heavy_first ? 1.8 : -1.8, 0, 0};
     const Vec3 before = pair.momentum();
     pair.run(1.0, weightless(0.0));
@@ -124,8 +126,7 @@ TEST(BodiesTogether, KeepMomentumAndTheirTurningWhenTheyMeetOffCentre) {
   for (const double restitution : {0.0, 0.5, 1.0}) {
     Pair pair(box(0.2, 0.1, 0.1), box(0.1, 0.3, 0.1));
     pair.weigh();
-    pair.bodies[0].T_world_object.translation() = Vec3(-0.3, 0.1, 1);
-    pair.bodies[1].T_world_object.translation() = Vec3(0.3, 0, 1);
+    pair.put({-0.3, 0.1, 1}, {0.3, 0, 1});
     pair.bodies[0].velocity_world_mps = {3, 0, 0};
     pair.bodies[0].spin_world_rad_s = {0, 0, 2};
     const Vec3 before = pair.momentum(), turning_before = pair.spin_momentum();
@@ -142,8 +143,7 @@ TEST(BodiesTogether, KeepMomentumAndTheirTurningWhenTheyMeetOffCentre) {
 TEST(BodiesTogether, AThrownOneShovesARestingOneAlongTheFloorAndBothComeToRest) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
   pair.add_floor();
-  pair.bodies[0].T_world_object.translation() = Vec3(-0.4, 0, 0.06);
-  pair.bodies[1].T_world_object.translation() = Vec3(0, 0, 0.0511);
+  pair.put({-0.4, 0, 0.06}, {0, 0, 0.0511});
   pair.run(1.0, {});
   ASSERT_TRUE(pair.bodies[1].at_rest);
   const Vec3 stood = pair.bodies[1].T_world_object.translation();
@@ -163,8 +163,7 @@ TEST(BodiesTogether, AThrownOneShovesARestingOneAlongTheFloorAndBothComeToRest) 
 TEST(BodiesTogether, OneThatIsSetDownOnAnotherLetsItRest) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.2, 0.2, 0.1));
   pair.add_floor();
-  pair.bodies[1].T_world_object.translation() = Vec3(0, 0, 0.051);
-  pair.bodies[0].T_world_object.translation() = Vec3(0.02, 0, 0.152);
+  pair.put({0.02, 0, 0.152}, {0, 0, 0.051});
   pair.bodies[0].at_rest = false;
   pair.run(2.0, {});
   const Eigen::Isometry3d stood = pair.bodies[1].T_world_object;
@@ -178,8 +177,7 @@ TEST(BodiesTogether, OneThatIsSetDownOnAnotherLetsItRest) {
 TEST(BodiesTogether, OneInAHandGoesOnAndTakesTheOtherWithIt) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
   pair.gives = {1e6, 0.0};
-  pair.bodies[0].T_world_object.translation() = Vec3(-0.3, 0, 1);
-  pair.bodies[1].T_world_object.translation() = Vec3(0, 0, 1);
+  pair.put({-0.3, 0, 1}, {0, 0, 1});
   pair.bodies[0].velocity_world_mps = {0.5, 0, 0};
   pair.run(1.0, weightless(0.0));
   EXPECT_NEAR(pair.bodies[0].velocity_world_mps.x(), 0.5, 1e-3);
@@ -190,8 +188,7 @@ TEST(BodiesTogether, OneInAHandGoesOnAndTakesTheOtherWithIt) {
 TEST(BodiesTogether, OneStandsStillThatIsNotNamedAsABody) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
   pair.gives = {0.0, 0.0};
-  pair.bodies[0].T_world_object.translation() = Vec3(-0.3, 0, 1);
-  pair.bodies[1].T_world_object.translation() = Vec3(0.3, 0, 1);
+  pair.put({-0.3, 0, 1}, {0.3, 0, 1});
   pair.bodies[0].velocity_world_mps = {2, 0, 0};
   pair.run(0.5, weightless(0.0));
   EXPECT_TRUE(pair.bodies[1].velocity_world_mps.isZero());
