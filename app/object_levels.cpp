@@ -18,7 +18,12 @@ namespace {
 constexpr std::size_t kFewTriangles = 100;
 constexpr std::size_t kManyTriangles = 1000;  // fewer are drawn as they are, within a tenth of a millisecond
 constexpr float kFinestOfSize = 1.0F / 1024.0F;
-constexpr int kMostLevels = 8;           // the last lies off by an eighth of the size
+constexpr float kCoarsestOfSize = 1.0F / 8.0F;
+constexpr float kCoarser = 1.41421356F;  // how much farther off each level may lie than the one before
+constexpr float kBaseOfBound = 0.25F;    // so far off may lie what a level is made from, or it is the finest
+constexpr std::size_t kBlockTriangles = 6000;  // of a large mesh: two threads take turns at its blocks
+constexpr std::size_t kWholeTriangles =
+    30'000;                              // what is left is done in one, with no vertices kept on seams
 constexpr float kSpacingOfSize = 0.02F;  // of the points at which deviations are measured
 constexpr float kWorthHaving = 0.75F;    // of the triangles of the level before
 
@@ -86,6 +91,15 @@ void sharpen(Mesh& mesh) {
   }
 }
 
+/// What a level is made from: the coarsest that leaves most of the bound, but no large mesh twice.
+const ObjectLevel& base_of(float bound_m, const ObjectLevel& full, const std::vector<ObjectLevel>& levels) {
+  const bool is_large = full.mesh.triangles.size() > kWholeTriangles;
+  const ObjectLevel* base = is_large && !levels.empty() ? levels.data() : &full;
+  for (const ObjectLevel& level : levels)
+    if (level.deviation_m <= kBaseOfBound * bound_m) base = &level;
+  return *base;
+}
+
 }  // namespace
 
 std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
@@ -98,24 +112,27 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
   if (!(size_m > 0.0F) || !std::isfinite(size_m)) return levels;
 
   const bool has_normals = !mesh.normals.empty();
-  Mesh finer = mesh;
+  ObjectLevel full{mesh, 0.0F};
   if (!has_normals) {
-    weld(finer);
-    set_mean_normals(finer);
+    weld(full.mesh);
+    set_mean_normals(full.mesh);
   }
-  float bound_m = kFinestOfSize * size_m, off_m = 0.0F;
-  for (int level = 0; level < kMostLevels && finer.triangles.size() > kFewTriangles;
-       ++level, bound_m *= 2.0F) {
-    // This one may lie so far off the one before that all of them together stay within the bound.
-    SimplifiedMesh simple = simplified(finer, bound_m - off_m, kSpacingOfSize * size_m);
-    if (static_cast<float>(simple.mesh.triangles.size()) >
-        kWorthHaving * static_cast<float>(finer.triangles.size()))
+  std::size_t triangles = full.mesh.triangles.size();
+  for (float bound_m = kFinestOfSize * size_m;
+       bound_m <= kCoarsestOfSize * size_m && triangles > kFewTriangles; bound_m *= kCoarser) {
+    // This one may lie so far off the one it is made from that both together stay within the bound.
+    const ObjectLevel& finer = base_of(bound_m, full, levels);
+    SimplifiedMesh simple = simplified(finer.mesh, bound_m - finer.deviation_m, kSpacingOfSize * size_m,
+                                       levels.empty() ? kBlockTriangles : kWholeTriangles);
+    if (static_cast<float>(simple.mesh.triangles.size()) > kWorthHaving * static_cast<float>(triangles))
       continue;
-    finer = std::move(simple.mesh);
-    off_m += simple.deviation_m;
-    levels.push_back({finer, off_m});
-    if (!has_normals) sharpen(levels.back().mesh);
+    triangles = simple.mesh.triangles.size();
+    const float off_m = finer.deviation_m + simple.deviation_m;
+    while (!levels.empty() && levels.back().deviation_m >= off_m) levels.pop_back();  // fewer lie nearer
+    levels.push_back({std::move(simple.mesh), off_m});
   }
+  if (!has_normals)
+    for (ObjectLevel& level : levels) sharpen(level.mesh);
   return levels;
 }
 

@@ -15,7 +15,7 @@ struct ObjectLevel {
 };
 
 /// The levels between a mesh and about a hundred triangles, finest first; none for a mesh of less than 1,000.
-/// Each may lie twice as far off as the one before; the first a 1,024th of the mesh's size. They have
+/// Each may lie 1.4 times as far off as the one before; the first a 1,024th of the mesh's size. They have
 /// normals, so that they are lit as the full mesh is: the full mesh's where it has them; else the means of
 /// the faces round a vertex, and where a face is turned from that mean by more than 25 degrees (an edge of
 /// the thing) the face's own.

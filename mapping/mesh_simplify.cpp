@@ -22,8 +22,6 @@ namespace {
 // Vertices are held nearer than the bound, as the surface between them lies farther off here and there; with
 // more, repairs cost more triangles than this saves.
 constexpr float kOfBound = 0.6F;
-// Of a block: smaller ones fit the cache and are done again alone, larger ones have less seam to keep.
-constexpr std::size_t kMostTriangles = 6000;
 constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};  // of a triangle that is gone
 constexpr int kMostRounds = 10;
 constexpr float kTightening = 0.4F;
@@ -79,11 +77,11 @@ SimplifiedMesh simplified_block(const Mesh& mesh, std::vector<float> tolerance_m
 // that no other block uses.
 class BlockSimplifier {
  public:
-  BlockSimplifier(Mesh& mesh, float max_deviation_m, float spacing_m)
+  BlockSimplifier(Mesh& mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles)
       : mesh_(mesh),
         max_deviation_m_(max_deviation_m),
         spacing_m_(spacing_m),
-        blocks_(sort_into_blocks(mesh, kMostTriangles)),
+        blocks_(sort_into_blocks(mesh, block_triangles)),
         on_seam_(seam_vertices(mesh, blocks_)) {}
 
   /// The greatest deviation (m) in the blocks that this call did.
@@ -125,8 +123,8 @@ class BlockSimplifier {
 
 }  // namespace
 
-SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m) {
-  BlockSimplifier blocks(mesh, max_deviation_m, spacing_m);
+SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles) {
+  BlockSimplifier blocks(mesh, max_deviation_m, spacing_m, block_triangles);
   float deviation_m = 0.0F;
   if (blocks.has_many()) {
     auto second = std::async(std::launch::async, [&] { return blocks.work(); });
