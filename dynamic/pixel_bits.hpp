@@ -6,10 +6,10 @@
 
 namespace roomradar {
 
-/// height rows of width bits; around them is a margin of zeros that may be read: one row above, kBelow rows
+/// height rows of width bits; around them is a margin of zeros that may be read: kAbove rows above, kBelow
 /// below, 64 bits to each side.
 struct PixelBits {
-  static constexpr int kBelow = 8;
+  static constexpr int kAbove = 2, kBelow = 8;
   int width = 0, height = 0, words = 0;  ///< words of 64 bits that a row takes, without its margin
   std::vector<std::uint64_t> bits;
 
@@ -18,9 +18,10 @@ struct PixelBits {
     width = width_px;
     height = height_px;
     words = (width_px + 63) / 64;
-    bits.assign(static_cast<std::size_t>(words + 2) * static_cast<std::size_t>(height_px + 1 + kBelow), 0);
+    bits.assign(static_cast<std::size_t>(words + 2) * static_cast<std::size_t>(height_px + kAbove + kBelow),
+                0);
   }
-  /// y in -1 .. height + kBelow - 1; words -1 .. words of it may be read.
+  /// y in -kAbove .. height + kBelow - 1; words -1 .. words of it may be read.
   [[nodiscard]] const std::uint64_t* row(int y) const { return bits.data() + offset(y); }
   [[nodiscard]] std::uint64_t* row(int y) { return bits.data() + offset(y); }
   /// x in -64 .. 64 * words + 63.
@@ -42,7 +43,7 @@ struct PixelBits {
 
  private:
   [[nodiscard]] std::size_t offset(int y) const {
-    return static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(words + 2) + 1;
+    return static_cast<std::size_t>(y + kAbove) * static_cast<std::size_t>(words + 2) + 1;
   }
 };
 
