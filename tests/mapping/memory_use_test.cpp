@@ -13,6 +13,9 @@ TEST(MemoryUse, LargeBlocksGoBackAtOnceThoughSmallOnesBetweenThemStay) {
 #ifndef __GLIBC__
   GTEST_SKIP() << "only glibc can be asked for that";
 #endif
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer keeps what is freed for a while";
+#endif
   constexpr std::size_t kBlock = 3 << 20, kBlocks = 20, kSmall = 1000;
   keep_large_blocks_apart();
   { const std::vector<char> once(2 * kBlock, 1); }  // after this glibc would keep such blocks in its heap
