@@ -428,6 +428,10 @@ void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work)
   sub->add_option("--repeats", command.repeats, "how often each is measured in each scene (2)")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
+  sub->add_option("--objects", command.objects,
+                  "how many virtual objects a run has, where their number is not what is turned (1)")
+      ->check(CLI::IsMember({1, 5, 20}))
+      ->type_name("N");
   sub->add_option("--seed", command.seed, "of what is drawn, and of its order (1)")->type_name("N");
   sub->add_option(
          "--time", command.time,

@@ -135,13 +135,14 @@ struct FallthroughCommand {
 };
 
 struct TradeCommand {
-  std::vector<std::string> recordings;  ///< folders with poses, beside the rooms
+  std::vector<std::string> recordings;                          ///< folders with poses, beside the rooms
   std::vector<std::string> rooms = {"table", "random?seed=2"};  ///< as `sim:` has them
-  std::string only;           ///< prescan or run; empty: both
-  std::size_t settings = 30;  ///< of each, beside the default
+  std::string only;                                             ///< prescan or run; empty: both
+  std::size_t settings = 30;                                    ///< of each, beside the default
   int repeats = 2;
   std::uint64_t seed = 1;
   std::string time = "wall";  ///< what settings are compared by: wall or cpu
+  int objects = 1;            ///< virtual ones that a run has, where their number is not what is turned
   bool quick = false;
   bool table1 = false;  ///< the published radar's table beside ours, and nothing else
   std::string csv;

@@ -32,7 +32,8 @@ std::vector<TradeWork> works_of(const TradeCommand& command) {
   const TradeScale scale = command.quick ? kQuickScale : TradeScale{};
   std::vector<TradeWork> works;
   if (command.only != "run") works.push_back(prescan_work(command.rooms, command.recordings, scale));
-  if (command.only != "prescan") works.push_back(run_work(command.rooms, command.recordings, scale));
+  if (command.only != "prescan")
+    works.push_back(run_work(command.rooms, command.recordings, scale, command.objects));
   for (TradeWork& work : works)
     if (command.time == "cpu") work.time = place_of(work, "cpu_ms");
   return works;
@@ -131,7 +132,7 @@ int run(const TradeCommand& command) {
   for (const std::string& recording : command.recordings) report.source += "; " + recording;
   report.settings = {{"rooms", command.rooms}, {"settings", command.settings}, {"repeats", command.repeats},
                      {"seed", command.seed},   {"time", command.time},         {"quick", command.quick},
-                     {"only", command.only}};
+                     {"only", command.only},   {"objects", command.objects}};
   require_scenes(command);
   if (command.table1) return print_table1(command, std::move(report));
   const Machine machine = this_machine();
@@ -163,6 +164,7 @@ int run(const TradeCommand& command) {
                                            {"system", machine.system},
                                            {"seed", std::to_string(command.seed)},
                                            {"compared_by", command.time},
+                                           {"objects", std::to_string(command.objects)},
                                            {"scale", command.quick ? "quick" : "full"}}),
                   command.presets);
   write_report(report, command.report);

@@ -57,8 +57,11 @@ std::vector<Setting> draw_settings(const std::vector<Knob>& knobs, std::size_t c
   constexpr int kRounds = 20;  // of mixtures, until enough of them are new
   CounterRandom random(seed, 0);
   std::vector<Setting> settings = single_turns(knobs, random);
-  settings.resize(std::min(settings.size(), 2 * count / 3));
   const Setting usual = usual_setting(knobs);
+  std::stable_partition(settings.begin(), settings.end(), [&](const Setting& turn) {
+    return has_usual_load(knobs, turn) && turn < usual;  // towards what is faster
+  });
+  settings.resize(std::min(settings.size(), 2 * count / 3));
   const std::size_t wanted = count - settings.size();
   for (int round = 0; round < kRounds && settings.size() < count; ++round) {
     for (Setting& mixture : mixtures(knobs, wanted, random)) {

@@ -1,12 +1,14 @@
 // run_work.cpp: one run in a process of its own: its times, its memory, its errors.
 #include "app/trade/run_work.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <limits>
 
 #include "app/trade/measured_apart.hpp"
 #include "mapping/memory_use.hpp"
+#include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
@@ -85,8 +87,8 @@ Readings measure(const RunScene& scene, const Setting& words) {
 
 }  // namespace
 
-std::vector<Knob> run_knobs() {
-  return {
+std::vector<Knob> run_knobs(int objects) {
+  std::vector<Knob> knobs = {
       {"depth_stride", {"4", "2", "1"}, 2},
       {"tracking_px", {"80", "160", "320"}, 1},
       {"mesh_sigmas", {"3.2", "1.6", "0.8", "0.4"}, 2},
@@ -103,6 +105,12 @@ std::vector<Knob> run_knobs() {
        {"0.15", "0.06666666666666667", "0.03333333333333333", "0.016666666666666666", "0.008333333333333333"},
        3},
       {"objects", {"1", "5", "20"}, 0, /*is_load=*/true}};
+  Knob& load = knobs.back();
+  const auto usual = std::find(load.words.begin(), load.words.end(), std::to_string(objects));
+  if (usual == load.words.end())
+    throw Error("trade: objects = " + std::to_string(objects) + ": must be 1, 5 or 20");
+  load.usual = static_cast<std::size_t>(usual - load.words.begin());
+  return knobs;
 }
 
 RunSetting run_setting_of(const Setting& levels) {
@@ -119,8 +127,8 @@ RunSetting run_setting_of(const Setting& levels) {
 }
 
 TradeWork run_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
-                   const TradeScale& scale) {
-  TradeWork work{.name = "run", .knobs = run_knobs(), .figures = figures(), .scenes = rooms};
+                   const TradeScale& scale, int objects) {
+  TradeWork work{.name = "run", .knobs = run_knobs(objects), .figures = figures(), .scenes = rooms};
   work.scenes.insert(work.scenes.end(), recordings.begin(), recordings.end());
   work.open = [rooms, recordings, scale](std::size_t number) -> Measure {
     const std::shared_ptr<const RunScene> scene =

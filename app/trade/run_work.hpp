@@ -10,7 +10,8 @@
 namespace roomradar {
 
 /// The knobs of RunQuality, and the number of virtual objects, which is a load.
-std::vector<Knob> run_knobs();
+/// @param objects  how many of them are usual: 1, 5 or 20
+std::vector<Knob> run_knobs(int objects = 1);
 RunSetting run_setting_of(const Setting& setting);
 
 /// Scenes: rooms and recordings as for prescan_work(); each is mapped first, with the default quality and the
@@ -19,6 +20,6 @@ RunSetting run_setting_of(const Setting& setting);
 /// `roomradar fallthrough` does, against the exact solids. In a recording, whose latter half is not in its
 /// map, only times and poses are measured.
 TradeWork run_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
-                   const TradeScale& scale);
+                   const TradeScale& scale, int objects = 1);
 
 }  // namespace roomradar

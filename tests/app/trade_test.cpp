@@ -103,6 +103,23 @@ TEST(DrawSettings, TurnsOneKnobAloneInUpToTwoThirdsAndALoadNeverWithOthers) {
   EXPECT_GE(single, 4);
 }
 
+TEST(DrawSettings, SingleTurnsTowardsWhatIsFasterComeFirst) {
+  const std::vector<Knob> knobs = run_knobs(20);
+  const Setting usual = usual_setting(knobs);
+  std::size_t faster = 0, faster_drawn = 0;
+  for (const Knob& knob : knobs)
+    if (!knob.is_load) faster += knob.usual;
+  for (const Setting& setting : draw_settings(knobs, 3 * faster / 2, 1)) {
+    int turned = 0, towards_faster = 0;
+    for (std::size_t k = 0; k < knobs.size(); ++k) {
+      turned += setting[k] != usual[k] ? 1 : 0;
+      towards_faster += setting[k] < usual[k] && !knobs[k].is_load ? 1 : 0;
+    }
+    faster_drawn += turned == 1 && towards_faster == 1 ? 1 : 0;
+  }
+  EXPECT_GE(faster_drawn, faster);
+}
+
 TEST(DrawSettings, GivesFewerWhereThereAreNotSoManyToBeFound) {
   const std::vector<Setting> settings = draw_settings(kKnobs, 1000, 1);
   EXPECT_EQ(settings.size(), 6U);  // 3 x 2, less the usual one, and the load
@@ -112,6 +129,9 @@ TEST(DrawSettings, GivesFewerWhereThereAreNotSoManyToBeFound) {
 TEST(Knobs, WordsMakeAQualityAndTheUsualOnesTheDefault) {
   EXPECT_EQ(scan_quality_of(usual_setting(scan_knobs())), ScanQuality{});
   EXPECT_EQ(run_setting_of(usual_setting(run_knobs())).quality, RunQuality{});
+  EXPECT_EQ(run_setting_of(usual_setting(run_knobs())).objects, 1);
+  EXPECT_EQ(run_setting_of(usual_setting(run_knobs(20))).objects, 20);
+  EXPECT_THROW((void)run_knobs(2), Error);
   for (const std::vector<Knob>& knobs : {scan_knobs(), run_knobs()}) {
     const bool is_scan = knobs.front().name == scan_knobs().front().name;
     for (std::size_t k = 0; k < knobs.size(); ++k)
