@@ -97,12 +97,17 @@ bool is_proven_by_look(const Finding& finding) {
 /// the patches do not speak against it.
 bool is_certain(const Finding& finding) {
   constexpr double kMostUncertain_m = 0.015;  // three and more of it are 5 cm
+  // People stand before what is known, never behind it. Where the depth leaves a direction open, floorboards
+  // repeat along it, and it is for the few edges to say that the pose is wrong.
+  constexpr double kMostFarther = 0.12, kMostFartherOpen = 0.05;
   const Evidence& evidence = finding.evidence;
   const PatchProof& look = finding.look;
   if (!is_located(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
       evidence.both < 0.2 * evidence.valid)
     return false;
-  if (is_proven_by_look(finding)) return fit_of(evidence) > 0.4 && evidence.farther_part() < 0.12;
+  if (is_proven_by_look(finding))
+    return fit_of(evidence) > 0.4 &&
+           evidence.farther_part() < (finding.tracking ? kMostFarther : kMostFartherOpen);
   if (!finding.tracking || evidence.both < 0.5 * evidence.valid || evidence.farther_part() > 0.03)
     return false;
   if (look.compared < kFewPatches) return evidence.alike_part() > 0.9;
