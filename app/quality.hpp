@@ -25,7 +25,7 @@ struct RunQuality {
   int depth_stride = 1;
   int tracking_px = 160;
   double mesh_sigmas = 0.8;
-  bool fine_mesh = true;
+  bool fine_mesh = false;
   RadarMode radar = RadarMode::kExact;
   int radar_px = 64;
   double physics_step_s = 1.0 / 60.0;
@@ -83,9 +83,12 @@ void visit_fields(Quality& quality, Visit&& visit) {
           "sensor's noise (0.8)",
           0.1, 100.0},
       quality.mesh_sigmas);
-  visit(QualityField{"fine_mesh", "--fine-mesh", "on|off",
-                     "about virtual objects every pixel that moved is a vertex (on)"},
-        quality.fine_mesh);
+  visit(
+      QualityField{
+          "fine_mesh", "--fine-mesh", "on|off",
+          "about virtual objects every pixel that moved is a vertex, which helps where depth has less noise\n"
+          "than a Kinect's (off)"},
+      quality.fine_mesh);
   visit(QualityField{"radar", "--radar", "exact|sampled",
                      "how contacts are found: to the last digit, or between bounds a pixel apart (exact)"},
         quality.radar);

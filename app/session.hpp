@@ -40,7 +40,7 @@ struct SessionConfig {
   /// What can be traded for time; RunQuality says it for the user.
   int depth_stride = 1;          ///< 1, 2 or 4: depth images are reduced by this (reduce_depth)
   int tracking_px = 160;         ///< widest image that the camera is located by
-  bool fine_mesh = true;         ///< what moved is meshed as finely as it was seen about the objects
+  bool fine_mesh = false;        ///< what moved is meshed as finely as it was seen about the objects
   int object_turns = 1;          ///< objects are moved in every so many-th frame, in turns
   double object_error_px = 0.5;  ///< how far an object's drawn mesh may lie off the file's
   int shadow_turns = 1;          ///< frames from one shadow made anew in full to the next

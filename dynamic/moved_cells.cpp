@@ -126,10 +126,7 @@ class CellSorter {
           cells_.is_flat[cell(column, row)] = 1;
           continue;
         }
-        for (const std::size_t i : corners(column, row)) {
-          cells_.must_be_vertex[i] = 1;
-          if (kind == CellKind::kFull) cells_.is_full_corner[i] = 1;
-        }
+        for (const std::size_t i : corners(column, row)) cells_.must_be_vertex[i] = 1;
       }
     }
     // A flat cell beside a full one has all its pixels on that side.
@@ -345,7 +342,6 @@ void make_cells(const MovedPixels& pixels, const MovedLattice& lattice, const In
   cells.is_flat.assign(count, 0);
   cells.parts.resize(count);
   cells.must_be_vertex.assign(lattice.inverse_depth.size(), 0);
-  cells.is_full_corner.assign(lattice.inverse_depth.size(), 0);
   cells.counts = {};
   cells.fine_of_region.assign(regions, 0);
   cells.triangles.clear();

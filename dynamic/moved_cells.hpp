@@ -41,7 +41,6 @@ struct MovedCells {
   std::vector<std::uint8_t> is_flat;           ///< 1 where the kind is kFlat
   std::vector<std::array<CellBits, 4>> parts;  ///< of cut cells: the pixels of each surface
   std::vector<std::uint8_t> must_be_vertex;    ///< one a lattice point: all corners of cut and full cells
-  std::vector<std::uint8_t> is_full_corner;    ///< one a lattice point: corner of a full cell
   CellCounts counts;
   std::vector<std::uint32_t> fine_of_region;  ///< full cells by the first region that asks for it
   std::vector<PixelTriangle> triangles;       ///< of cut and full cells, square by square

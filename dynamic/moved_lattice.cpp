@@ -119,6 +119,13 @@ void average_neighbours(MovedLattice& lattice) {
 
 }  // namespace
 
+float smoothed_inverse_depth(const MovedPixels& pixels, int x, int y) {
+  const auto width = static_cast<std::ptrdiff_t>(pixels.smooth.width);
+  const float* middle = pixels.inverse_depth.data() + y * width + x;
+  return mean_of_pairs(middle, width, pixels.smooth.square(x - 2, y - 2), inverse_depth_sigma(*middle, 0.0F))
+      .mean;
+}
+
 float inverse_depth_sigma(float inverse_depth, float tangent2) {
   static const GrazingNoise grazing;
   const float z = 1.0F / inverse_depth;
@@ -147,7 +154,7 @@ void make_lattice(const MovedPixels& pixels, const Intrinsics& camera, float fla
         const int x = x0 + std::countr_zero(in);
         const float* middle = pixels.inverse_depth.data() + static_cast<std::size_t>(y) * width + x;
         const Ray ray{(static_cast<float>(x) - static_cast<float>(camera.cx_px)) / fx, v, fx, fy};
-        const CellBits window = y < 2 ? 0 : bits.square(x - 2, y - 2);
+        const CellBits window = bits.square(x - 2, y - 2);
         const std::size_t i = lattice.index(x / kCell_px, y / kCell_px);
         Plane plane{middle[0], 0.0F, 0.0F, 0.0F};
         if (window == kWholeCell) plane = fit(middle - 2 * width - 2, width);

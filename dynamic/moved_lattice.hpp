@@ -34,6 +34,10 @@ struct MovedLattice {
 /// Noise of inverse depth, 1/m, on a surface whose tangent of the angle between view ray and normal is given.
 float inverse_depth_sigma(float inverse_depth, float tangent2);
 
+/// A pixel that is in, averaged with those of the 5 x 5 about it that lie opposite each other and differ from
+/// a line by noise alone: outlines stay, bends are rounded off by less than the noise. 1/m.
+float smoothed_inverse_depth(const MovedPixels& pixels, int x, int y);
+
 /// @param flat_sigmas  five by five pixels that differ from a plane by this much (RMS) are flat
 void make_lattice(const MovedPixels& pixels, const Intrinsics& camera, float flat_sigmas,
                   MovedLattice& lattice);

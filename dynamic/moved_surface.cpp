@@ -50,8 +50,9 @@ class Assembler {
     find_needed_points(scratch_.values, scratch_.tolerances);
     const auto value = [&](std::uint32_t pixel) {
       const std::uint32_t x = pixel % width_, y = pixel / width_;
-      if ((x | y) % kCell_px != 0) return scratch_.pixels.inverse_depth[pixel];
-      return scratch_.values[lattice_point(x, y)];
+      if ((x | y) % kCell_px == 0) return scratch_.values[lattice_point(x, y)];
+      return scratch_.smoothed[pixel] =
+                 smoothed_inverse_depth(scratch_.pixels, static_cast<int>(x), static_cast<int>(y));
     };
     walk(seen_, value, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
       seen_.triangles.push_back({a, b, c});
@@ -78,8 +79,8 @@ class Assembler {
     const auto value = [&](std::uint32_t pixel) {
       const std::uint32_t x = pixel % width_, y = pixel / width_;
       if ((x | y) % kCell_px == 0) return scratch_.back.inverse_depth[lattice_point(x, y)];
-      return back_at(static_cast<int>(x), static_cast<int>(y), scratch_.pixels.inverse_depth[pixel],
-                     scratch_.lattice, expected_m_, back_rules_, scratch_.back);
+      return back_at(static_cast<int>(x), static_cast<int>(y), scratch_.smoothed[pixel], scratch_.lattice,
+                     expected_m_, back_rules_, scratch_.back);
     };
     walk(inferred_, value, [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
       inferred_.triangles.push_back({a, c, b});
@@ -255,6 +256,7 @@ void reserve(std::size_t pixels, bool with_back, MovedSurfaceScratch& scratch, M
   surface.seen_world.triangles.reserve(2 * pixels);
   if (scratch.vertex_of_pixel.size() != pixels) scratch.vertex_of_pixel.assign(pixels, kNone);
   scratch.pixel_of_vertex.reserve(pixels);
+  scratch.smoothed.resize(pixels);
   scratch.seen_pixels.reserve(pixels);
   if (!with_back) return;
   surface.inferred_world.vertices.reserve(2 * pixels);
@@ -320,15 +322,6 @@ void mesh_moved(const DepthImage& depth_m, const MaskImage& moved_mask, const De
   scratch.values = scratch.lattice.inverse_depth;
   scratch.tolerances = scratch.lattice.sigma;
   for (float& tolerance : scratch.tolerances) tolerance *= config.deviation_sigmas;
-  for (std::size_t i = 0; i < scratch.values.size(); ++i) {
-    if (scratch.cells.is_full_corner[i] == 0) continue;
-    const std::size_t column = i % static_cast<std::size_t>(scratch.lattice.columns);
-    const std::size_t row = i / static_cast<std::size_t>(scratch.lattice.columns);
-    if (scratch.values[i] > 0.0F)
-      scratch.values[i] = scratch.pixels.inverse_depth[depth_m.index(static_cast<int>(column) * kCell_px,
-                                                                     static_cast<int>(row) * kCell_px)];
-  }
-
   const Rays rays{static_cast<float>(1.0 / camera.fx_px), static_cast<float>(1.0 / camera.fy_px),
                   static_cast<float>(camera.cx_px), static_cast<float>(camera.cy_px),
                   T_world_camera.linear().cast<float>()};

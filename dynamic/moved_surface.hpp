@@ -57,6 +57,7 @@ struct MovedSurfaceScratch {
   std::vector<FineBall> fine;
   std::vector<float> values, tolerances;       // one a lattice point
   std::vector<std::uint8_t> needed;            // one a lattice point
+  std::vector<float> smoothed;                 // 1/m, of the seen mesh's vertices beside the lattice
   std::vector<std::uint32_t> vertex_of_pixel;  // kNoVertex between uses
   std::vector<std::uint32_t> pixel_of_vertex;  // of the mesh being made
   std::vector<std::uint32_t> seen_pixels;      // of the seen mesh's vertices
@@ -75,7 +76,8 @@ struct MovedSurfaceScratch {
 ///     and specks that are lost by that become slabs one pixel wide.
 ///  2. Every fourth pixel: inverse depth averaged over 5 x 5 pixels and then over flat neighbours, the noise
 ///  by
-///     depth and angle. Pixels that bend, or lie at an outline, are taken as they are.
+///     depth and angle. Pixels that bend, or lie at an outline, are averaged with those alone that lie
+///     opposite each other on one line but for noise; so are the vertices beside these points.
 ///  3. Cells of 4 x 4 pixels: flat; cut by outlines or jumps, where straight lines follow these to a pixel;
 ///  or
 ///     full, with every pixel a vertex: where neither will do, and in the regions.

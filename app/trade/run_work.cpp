@@ -92,7 +92,7 @@ std::vector<Knob> run_knobs(int objects) {
       {"depth_stride", {"4", "2", "1"}, 2},
       {"tracking_px", {"80", "160", "320"}, 1},
       {"mesh_sigmas", {"3.2", "1.6", "0.8", "0.4"}, 2},
-      {"fine_mesh", {"off", "on"}, 1},
+      {"fine_mesh", {"off", "on"}, 0},
       {"radar", {"sampled", "exact"}, 1},
       {"radar_px", {"16", "32", "64", "128"}, 2},
       {"object_turns", {"8", "4", "2", "1"}, 3},

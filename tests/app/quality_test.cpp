@@ -15,7 +15,7 @@ RunQuality coarse() {
   return {.depth_stride = 4,
           .tracking_px = 80,
           .mesh_sigmas = 1.0 / 3.0,
-          .fine_mesh = false,
+          .fine_mesh = true,
           .radar = RadarMode::kSampled,
           .radar_px = 24,
           .physics_step_s = 0.1,

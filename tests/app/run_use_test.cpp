@@ -55,6 +55,7 @@ class FrameUseInASession : public ::testing::Test {
     SessionConfig config;
     config.poses = PoseOrigin::kRecorded;
     config.make_picture = false;
+    config.fine_mesh = true;
     return config;
   }
   FrameUse step() {
