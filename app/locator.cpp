@@ -62,7 +62,7 @@ Tracking align_with_model(Locator& locator, const AlignConfig& config, const Int
 double fit_of(const Evidence& evidence) { return evidence.alike_part() - 2.0 * evidence.farther_part(); }
 
 /// The same by depth and by look: from 2 down.
-double support_of(const Finding& finding) {
+double support_of(const TriedPose& finding) {
   constexpr double kEnough = 0.4;  // of the depth, that the model must have an answer to
   const Evidence& evidence = finding.evidence;
   const double covered = std::min(1.0, evidence.both / (kEnough * std::max(evidence.valid, 1)));
@@ -82,7 +82,7 @@ double uncertainty_m(const Tracking& tracking) {
 /// Whether enough patches lie where ones like them are known. Where boards or tiles repeat, some twenty do in
 /// a wrong place, so where the depth leaves a direction to them there must be more, or next to nothing may
 /// speak against the pose.
-bool is_proven_by_look(const Finding& finding) {
+bool is_proven_by_look(const TriedPose& finding) {
   constexpr std::size_t kMany = 15, kManyAlone = 40, kManyUndisputed = 25;
   constexpr double kMinAlike = 0.35;
   constexpr double kUndisputed = 0.75, kUndisputedFit = 0.9;  // wrong poses have the one or the other
@@ -95,7 +95,7 @@ bool is_proven_by_look(const Finding& finding) {
 /// Whether a pose is certain enough by itself: many patches lie where ones like them are known, and the depth
 /// does not speak against it; or the depth alone fixes it, next to nothing of the model is seen through, and
 /// the patches do not speak against it.
-bool is_certain(const Finding& finding) {
+bool is_certain(const TriedPose& finding) {
   constexpr double kMostUncertain_m = 0.015;  // three and more of it are 5 cm
   // People stand before what is known, never behind it. Where the depth leaves a direction open, floorboards
   // repeat along it, and it is for the few edges to say that the pose is wrong.
@@ -117,10 +117,10 @@ bool is_certain(const Finding& finding) {
 
 /// Whether another pose explains the frame about as well, so that nobody can say which is the right one: of
 /// few patches a good part may be alike in one place and not in its twin by chance.
-bool is_rivalled(const Finding& best, const std::vector<Finding>& findings) {
+bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings) {
   constexpr double kSame_m = 0.1, kSame_rad = 0.1;
   constexpr double kClear = 0.08, kChance = 0.8;  // two deviations of a part of one patch
-  return std::any_of(findings.begin(), findings.end(), [&](const Finding& other) {
+  return std::any_of(findings.begin(), findings.end(), [&](const TriedPose& other) {
     const int compared = std::min(best.look.compared, other.look.compared);
     const double chance = compared >= kFewPatches ? kChance / std::sqrt(compared) : 0.0;
     return !is_near(best.tracking.T_world_camera, other.tracking.T_world_camera, kSame_m, kSame_rad) &&
@@ -171,12 +171,12 @@ bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double 
 
 /// Tries a pose: aligned with the model, and where that leaves a direction open, moved by what patches say:
 /// the pairs that proposed it, then those that lie near each other.
-Finding tried(Locator& locator, const Frame& frame, const std::vector<SurfacePatch>& seen,
-              const PoseCandidate& guess, const ExpectedDepth& expected_depth) {
+TriedPose tried(Locator& locator, const Frame& frame, const std::vector<SurfacePatch>& seen,
+                const PoseCandidate& guess, const ExpectedDepth& expected_depth) {
   constexpr std::size_t kEnough = 10;
   constexpr int kPulls = 3;
   constexpr double kGoodFit = 0.6;
-  Finding finding;
+  TriedPose finding;
   const auto align_from = [&](const Eigen::Isometry3d& T_world_camera, const AlignConfig& config) {
     finding.tracking =
         align_with_model(locator, config, frame.depth_camera, T_world_camera, T_world_camera, expected_depth);
@@ -220,12 +220,12 @@ Tracking search(Locator& locator, const Frame& frame, const Places& places,
                 const ExpectedDepth& expected_depth) {
   constexpr std::size_t kByLook = 4, kByShape = 8;
   constexpr int kMinAgreeing = 8;
-  std::vector<Finding>& findings = locator.findings;
+  std::vector<TriedPose>& findings = locator.findings;
   findings.clear();
   locator.search_end = SearchEnd::kNoCandidate;
   const auto judge = [&] {
     const auto best =
-        std::max_element(findings.begin(), findings.end(), [](const Finding& a, const Finding& b) {
+        std::max_element(findings.begin(), findings.end(), [](const TriedPose& a, const TriedPose& b) {
           return is_located(a.tracking) != is_located(b.tracking) ? is_located(b.tracking)
                                                                   : support_of(a) < support_of(b);
         });

@@ -19,7 +19,7 @@ namespace roomradar {
 using ExpectedDepth = std::function<const DepthImage&(const Eigen::Isometry3d& T_world_camera)>;
 
 /// A pose that a search of the map tried, and what speaks for it.
-struct Finding {
+struct TriedPose {
   Tracking tracking;
   double uncertainty_m = 0.0;  ///< of the position, one standard deviation, as far as depth and patches say
   PatchProof look;
@@ -53,7 +53,7 @@ struct Locator {
   std::optional<Eigen::Isometry3d> T_world_lost;
   int lost_frames = 0;
 
-  std::vector<Finding> findings;  ///< of the last search
+  std::vector<TriedPose> findings;  ///< of the last search
   SearchEnd search_end = SearchEnd::kNoCandidate;
 
   KnownPatches known;      ///< of the places; made when they are first asked for

@@ -20,7 +20,7 @@ double PictureJudge::error_of(const JudgedPicture& judged, const Frame& frame, c
                               const Eigen::Isometry3d& T_world_camera) {
   std::vector<DrawnObject> drawn;
   std::vector<ShadowCaster> casters;
-  for (const ShownObject& shown : judged.objects) {
+  for (const JudgedObject& shown : judged.objects) {
     VirtualObject& object = *objects_[shown.object];
     make_contact_shadow(object.model->surface, shown.T_world_object.linear(), object.shadow);
     drawn.push_back({.instance = {&object.model->shape.drawn, shown.T_world_object},

@@ -12,7 +12,7 @@
 namespace roomradar {
 
 /// Where an object was when a picture was made of it.
-struct ShownObject {
+struct JudgedObject {
   std::size_t object = 0;  ///< among the judge's
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
@@ -20,7 +20,7 @@ struct ShownObject {
 /// A picture and what it ought to show.
 struct JudgedPicture {
   ColourImage picture;
-  std::vector<ShownObject> objects;
+  std::vector<JudgedObject> objects;
 };
 
 /// Composes pictures from exact depth, exact poses, objects' full meshes and fresh shadows. GL on the thread

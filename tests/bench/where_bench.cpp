@@ -55,7 +55,7 @@ struct Settings {
 /// The poses that a search went through, how far off they are, and what spoke for each.
 nlohmann::json tried(const Locator& locator, const Eigen::Isometry3d& truth) {
   nlohmann::json poses = nlohmann::json::array();
-  for (const Finding& finding : locator.findings) {
+  for (const TriedPose& finding : locator.findings) {
     const Eigen::Isometry3d gap = truth.inverse() * finding.tracking.T_world_camera;
     poses.push_back(
         {{"status", to_string(finding.tracking.status)},
@@ -72,7 +72,7 @@ nlohmann::json tried(const Locator& locator, const Eigen::Isometry3d& truth) {
 }
 
 /// Looks for each frame of the source anew.
-nlohmann::json find_all(const std::string& name, FrameSource& source, MappedRoom& mapped,
+nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRoom& mapped,
                         const Settings& settings) {
   Frame frame;
   test::Times wall, thread;
@@ -186,7 +186,7 @@ nlohmann::json bench(const Settings& settings) {
   };
   const std::string kitchen = std::string(ROOMRADAR_DATA_DEFAULT) + "/kitchen";
   add("kitchen", [&] {
-    MappedRoom mapped(
+    SearchedRoom mapped(
         map_of(*open_source(kitchen, FrameRange{0, 399}), PoseOrigin::kRecorded, settings.maps / "kitchen"));
     return find_all("kitchen", *open_source(kitchen, FrameRange{400, 499}), mapped, settings);
   });
@@ -199,7 +199,7 @@ nlohmann::json bench(const Settings& settings) {
     for (const char* what : {"", "-people", "-bare"}) {
       const std::string name = room.name + what;
       add(name, [&] {
-        MappedRoom mapped(scan_map());
+        SearchedRoom mapped(scan_map());
         const std::vector<MoverKind> movers = std::string(what) == "-people"
                                                   ? std::vector{MoverKind::kPerson, MoverKind::kHand}
                                                   : std::vector<MoverKind>{};
@@ -210,7 +210,7 @@ nlohmann::json bench(const Settings& settings) {
     }
     const auto on_map = [&](const char* what, const auto& row) {
       add(room.name + what, [&] {
-        MappedRoom mapped(scan_map());
+        SearchedRoom mapped(scan_map());
         return row(room.name + what, scan, mapped, static_cast<std::int64_t>(settings.views));
       });
     };

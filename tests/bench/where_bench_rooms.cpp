@@ -52,7 +52,7 @@ Parts parts_of(const Room& room, const SavedMap& map, const SurfaceNear& mesh,
 
 }  // namespace
 
-Tracking MappedRoom::find(Locator& locator, const Frame& frame, const MaskImage& moved_mask) {
+Tracking SearchedRoom::find(Locator& locator, const Frame& frame, const MaskImage& moved_mask) {
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
     const double start_ms = test::thread_ms();
     scene.render_expected(frame.depth_camera, T_world_camera);

@@ -15,8 +15,8 @@
 namespace roomradar {
 
 /// A room as `run` has it.
-struct MappedRoom {
-  explicit MappedRoom(SavedMap saved) : map(std::move(saved)), room(context), scene(context, room, {}) {
+struct SearchedRoom {
+  explicit SearchedRoom(SavedMap saved) : map(std::move(saved)), room(context), scene(context, room, {}) {
     room.set(map.mesh, MeshUsage::kStatic);
   }
   /// Looks for the frame with what the locator remembers, what moved in the frame before left out.

@@ -45,7 +45,7 @@ int put_ball(const Vector3d& centre_camera, double radius_m, Frame& frame) {
 }
 
 /// One frame as `run` takes it: located, then what moved is marked for the next.
-Tracking step(MappedRoom& mapped, Locator& locator, const Frame& frame, test::Times& locate_ms) {
+Tracking step(SearchedRoom& mapped, Locator& locator, const Frame& frame, test::Times& locate_ms) {
   const double start_ms = test::thread_ms(), drawn_ms = mapped.drawing_ms;
   const Tracking tracking = mapped.find(locator, frame, mapped.scene.moved_mask());
   locate_ms.samples_ms.push_back(test::thread_ms() - start_ms - (mapped.drawing_ms - drawn_ms));
@@ -58,7 +58,7 @@ Tracking step(MappedRoom& mapped, Locator& locator, const Frame& frame, test::Ti
 
 }  // namespace
 
-nlohmann::json follow_behind_ball(const std::string& name, const SimOptions& scan, MappedRoom& mapped,
+nlohmann::json follow_behind_ball(const std::string& name, const SimOptions& scan, SearchedRoom& mapped,
                                   std::int64_t frames) {
   SimOptions options = scan;
   options.path = CameraPathKind::kView;
@@ -101,7 +101,7 @@ nlohmann::json follow_behind_ball(const std::string& name, const SimOptions& sca
           {"drawing_mean_ms", (mapped.drawing_ms - drawn_ms) / static_cast<double>(frames)}};
 }
 
-nlohmann::json stand_still(const std::string& name, const SimOptions& scan, MappedRoom& mapped,
+nlohmann::json stand_still(const std::string& name, const SimOptions& scan, SearchedRoom& mapped,
                            std::int64_t frames) {
   SimOptions options = scan;
   options.path = CameraPathKind::kView;
@@ -135,7 +135,7 @@ nlohmann::json stand_still(const std::string& name, const SimOptions& scan, Mapp
           {"thread_median_ms", locate_ms.percentile(0.5)}};
 }
 
-nlohmann::json carry_away(const std::string& name, const SimOptions& scan, MappedRoom& mapped,
+nlohmann::json carry_away(const std::string& name, const SimOptions& scan, SearchedRoom& mapped,
                           std::int64_t jumps) {
   constexpr int kStay_frames = 15, kBlack_frames = 2;
   SimulatedSource source(scan);

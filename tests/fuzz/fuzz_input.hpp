@@ -22,7 +22,7 @@ inline const std::filesystem::path& fuzz_folder() {
 inline void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
   if (!file) throw std::runtime_error(path.string() + ": cannot be written");
-  const std::size_t written = std::fwrite(bytes.data(), 1, bytes.size(), file);
+  const std::size_t written = bytes.empty() ? 0 : std::fwrite(bytes.data(), 1, bytes.size(), file);
   if (std::fclose(file) != 0 || written != bytes.size())
     throw std::runtime_error(path.string() + ": cannot be written");
 }
