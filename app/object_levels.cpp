@@ -21,7 +21,6 @@ constexpr float kFinestOfSize = 1.0F / 1024.0F;
 constexpr float kCoarsestOfSize = 1.0F / 8.0F;
 constexpr float kCoarser = 1.41421356F;  // how much farther off each level may lie than the one before
 constexpr float kBaseOfBound = 0.25F;    // so far off may lie what a level is made from, or it is the finest
-constexpr std::size_t kBlockTriangles = 6000;  // of a large mesh: two threads take turns at its blocks
 constexpr std::size_t kWholeTriangles =
     30'000;                              // what is left is done in one, with no vertices kept on seams
 constexpr float kSpacingOfSize = 0.02F;  // of the points at which deviations are measured

@@ -14,6 +14,8 @@ struct SimplifiedMesh {
   float deviation_m = 0.0F;
 };
 
+inline constexpr std::size_t kBlockTriangles = 6000;  ///< fit the cache
+
 /// Collapses edges, cheapest first by their quadric error, to where the planes round them meet best: flat
 /// parts become few large triangles, bent ones keep small ones. Every vertex of `mesh` stays within
 /// max_deviation_m (> 0) of the triangles that take its place, collapse by collapse. Then both surfaces are
@@ -26,6 +28,6 @@ struct SimplifiedMesh {
 /// Metrics, SIGGRAPH 1997; Klein, Liebich, Strasser, Mesh reduction with error control, IEEE Visualization
 /// 1996 (the bound).
 SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m,
-                          std::size_t block_triangles = 6000);
+                          std::size_t block_triangles = kBlockTriangles);
 
 }  // namespace roomradar
