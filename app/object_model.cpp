@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "app/object_levels.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -22,14 +21,23 @@ std::vector<Eigen::Vector3d> corners_of(const GpuMesh& mesh) {
 
 }  // namespace
 
-ObjectModel::ObjectModel(GlContext& context, const std::string& name, Mesh mesh_object)
-    : mesh(std::move(mesh_object)), shape(context), surface(spread_points(mesh)) {
-  shape.set(mesh, MeshUsage::kStatic);
-  if (shape.touched.empty()) throw Error(name + ": has no triangles; a virtual object is a surface");
+ObjectParts object_parts(const std::string& name, Mesh mesh) {
+  ObjectParts parts;
+  parts.mesh = std::move(mesh);
+  parts.touched.build_by_place(parts.mesh);
+  if (parts.touched.empty()) throw Error(name + ": has no triangles; a virtual object is a surface");
+  parts.mass = mass_properties(parts.mesh, parts.touched.is_closed());
+  parts.surface = spread_points(parts.mesh);
+  parts.levels = object_levels(parts.mesh);
+  return parts;
+}
+
+ObjectModel::ObjectModel(GlContext& context, ObjectParts parts)
+    : mesh(std::move(parts.mesh)), shape(context), mass(parts.mass), surface(std::move(parts.surface)) {
+  shape.set(mesh, std::move(parts.touched));
   corners = corners_of(shape.drawn);
-  mass = mass_properties(mesh, shape.touched.is_closed());
   middle = shape.drawn.bounds().center();
-  for (const ObjectLevel& level : object_levels(mesh)) {
+  for (const ObjectLevel& level : parts.levels) {
     levels.push_back({level.deviation_m, std::make_unique<GpuMesh>(context)});
     levels.back().mesh->upload(level.mesh, MeshUsage::kStatic);
   }

@@ -8,11 +8,27 @@
 
 #include "app/contact_shadow.hpp"
 #include "app/mass_properties.hpp"
+#include "app/object_levels.hpp"
 #include "app/shape.hpp"
 #include "mapping/types/mesh.hpp"
 #include "radar/gl_context.hpp"
+#include "radar/triangle_tree.hpp"
 
 namespace roomradar {
+
+/// Of a model what needs no renderer, to be made on any thread.
+struct ObjectParts {
+  Mesh mesh;
+  TriangleTree touched;  ///< built by place
+  MassProperties mass;
+  SurfacePoints surface;            ///< what its shadow is made of
+  std::vector<ObjectLevel> levels;  ///< finest first
+};
+
+/// Takes some tenths of a second for the levels of a mesh of many triangles.
+/// @param name  of the object, for messages
+/// Throws Error if the mesh has no triangles that could be touched.
+ObjectParts object_parts(const std::string& name, Mesh mesh);
 
 /// A coarser mesh of an object, for the picture.
 struct DrawnLevel {
@@ -31,10 +47,8 @@ struct ObjectModel {
   SurfacePoints surface;           ///< what its shadow is made of
   std::vector<DrawnLevel> levels;  ///< finest first
 
-  /// Takes some tenths of a second for the levels of a mesh of many triangles.
-  /// @param name  of the first object of this model, for messages
-  /// Throws Error if the mesh cannot be a virtual object (no triangles, vertices that are not finite).
-  ObjectModel(GlContext& context, const std::string& name, Mesh mesh_object);
+  /// Throws Error if the mesh cannot be drawn (triangles with vertices that are not finite or not there).
+  ObjectModel(GlContext& context, ObjectParts parts);
 };
 
 /// Whether it was made from a mesh that is the same in every number.

@@ -178,8 +178,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   open_outputs(run);
   if (!command.frames_csv.empty()) run.frames_csv.emplace(command.frames_csv);
   if (link != nullptr)
-    run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, command.object,
-                     run.is_live);
+    run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, run.is_live);
   return opened;
 }
 

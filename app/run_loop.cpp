@@ -107,7 +107,10 @@ void RunLoop::perform_due() {
 void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
   if (event.action == Action::kQuit) run_.was_quit = true;
   if (event.action == Action::kCamera) control(*run_.playback, event.camera);
-  if (event.action != Action::kAdd || !is_from_script) run_.session->apply(event);
+  if (event.action != Action::kAdd)
+    run_.session->apply(event);
+  else if (!is_from_script)  // a script's were added before the first frame
+    run_.session->add_object(event.name, run_.host->take_parts());
   if (run_.recorder) run_.recorder->write(event, run_frame_);
 }
 

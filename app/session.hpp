@@ -101,9 +101,11 @@ class Session {
   /// compose frame, and contact: from the frame handed over to where its contacts have moved the objects.
   FrameResult step(const Frame& frame, StageTimes& times);
 
-  /// Loads an object under a name that no other has; it is not in the room yet. Throws Error if the mesh
-  /// cannot be an object.
+  /// Adds an object that is not in the room yet. Throws Error if another has that name, or the mesh cannot be
+  /// an object.
   void add_object(const std::string& name, const Mesh& mesh);
+  /// The same of parts that were made ahead, beside the frames.
+  void add_object(const std::string& name, ObjectParts parts);
 
   /// Adds, places, drops, throws, turns, carries or removes an object, or changes a policy, before the frame
   /// it is due in. A drop over "a surface in view" that has none waits for a frame that shows one, or for the
@@ -212,6 +214,7 @@ class Session {
   void renew_a_shadow();
   void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
   VirtualObject& object_named(const std::string& name);
+  void require_new(const std::string& name) const;
   void change_objects(const ScriptEvent& event);
 };
 

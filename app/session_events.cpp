@@ -20,8 +20,20 @@ VirtualObject& Session::object_named(const std::string& name) {
   return **found;
 }
 
+void Session::require_new(const std::string& name) const {
+  const bool is_there = std::any_of(objects_.begin(), objects_.end(),
+                                    [&](const auto& object) { return object->body.name == name; });
+  if (is_there) throw Error("script: there is an object named " + name + " already");
+}
+
 void Session::add_object(const std::string& name, const Mesh& mesh) {
+  require_new(name);
   objects_.push_back(object_of(context_, name, mesh, objects_));
+}
+
+void Session::add_object(const std::string& name, ObjectParts parts) {
+  require_new(name);
+  objects_.push_back(object_of(context_, name, std::move(parts), objects_));
 }
 
 void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg) {
@@ -71,9 +83,6 @@ void Session::apply(const ScriptEvent& event) {
 
 void Session::change_objects(const ScriptEvent& event) {
   if (event.action == Action::kAdd) {
-    const bool is_there = std::any_of(objects_.begin(), objects_.end(),
-                                      [&](const auto& object) { return object->body.name == event.name; });
-    if (is_there) throw Error("script: there is an object named " + event.name + " already");
     add_object(event.name, object_mesh(event.mesh, event.size_m.value_or(0.0)));
     return;
   }

@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "app/object_levels.hpp"
 #include "app/teapot.hpp"
 #include "mapping/mesh_file.hpp"
 #include "mapping/types/error.hpp"
@@ -16,6 +15,14 @@ namespace {
 
 constexpr int kTeapotTessellation = 10;  // 6,320 triangles: round at arm's length
 constexpr double kTeapotHeight_m = 0.15;
+
+/// Null: none was made from this mesh.
+std::shared_ptr<const ObjectModel> model_among(std::span<const std::unique_ptr<VirtualObject>> objects,
+                                               const Mesh& mesh) {
+  const auto same = std::find_if(objects.begin(), objects.end(),
+                                 [&](const auto& object) { return is_model_of(*object->model, mesh); });
+  return same == objects.end() ? nullptr : (*same)->model;
+}
 
 }  // namespace
 
@@ -28,10 +35,16 @@ VirtualObject::VirtualObject(std::string name, std::shared_ptr<const ObjectModel
 
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
                                          std::span<const std::unique_ptr<VirtualObject>> others) {
-  const auto same = std::find_if(others.begin(), others.end(),
-                                 [&](const auto& other) { return is_model_of(*other->model, mesh); });
-  return std::make_unique<VirtualObject>(
-      name, same == others.end() ? std::make_shared<const ObjectModel>(context, name, mesh) : (*same)->model);
+  std::shared_ptr<const ObjectModel> model = model_among(others, mesh);
+  if (!model) model = std::make_shared<const ObjectModel>(context, object_parts(name, mesh));
+  return std::make_unique<VirtualObject>(name, std::move(model));
+}
+
+std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
+                                         std::span<const std::unique_ptr<VirtualObject>> others) {
+  std::shared_ptr<const ObjectModel> model = model_among(others, parts.mesh);
+  if (!model) model = std::make_shared<const ObjectModel>(context, std::move(parts));
+  return std::make_unique<VirtualObject>(name, std::move(model));
 }
 
 const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,

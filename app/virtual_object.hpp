@@ -31,8 +31,11 @@ struct VirtualObject {
 };
 
 /// An object of this mesh, with the model of one of the others where that was made from the same mesh. Throws
-/// Error as ObjectModel does.
+/// Error as object_parts() and ObjectModel do.
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, const Mesh& mesh,
+                                         std::span<const std::unique_ptr<VirtualObject>> others);
+/// The same where the parts of a model were made already; they are not used if there is one.
+std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
 /// How far its lowest point is above its origin, as it is turned now, m.

@@ -1,7 +1,23 @@
 // play_host.cpp: between two frames, and after each.
 #include "app/window/play_host.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+
+#include "mapping/types/error.hpp"
+
 namespace roomradar {
+namespace {
+
+constexpr int kSaidAfterFrames = 30;  // that an object is still awaited
+
+/// Throws Error naming the mesh file and the fault.
+ObjectParts parts_of(const ScriptEvent& add) {
+  return object_parts(add.mesh, object_mesh(add.mesh, add.size_m.value_or(0.0)));
+}
+
+}  // namespace
 
 bool PlayHost::wait_turn(const Frame& frame) {
   const bool in_time = !is_live_ || source_.is_repeating();
@@ -11,10 +27,33 @@ bool PlayHost::wait_turn(const Frame& frame) {
 }
 
 std::vector<ScriptEvent> PlayHost::take_events() {
-  const std::vector<Wish> wishes = link_.take_wishes();
+  std::vector<Wish> wishes = link_.take_wishes();
+  ready_new_objects(wishes);
   std::vector<ScriptEvent> events = player_.events_of(wishes, session_);
   if (!player_.complaint().empty()) link_.say(player_.complaint());
   return events;
+}
+
+void PlayHost::ready_new_objects(std::vector<Wish>& wishes) {
+  const auto is_new = [](const Wish& wish) { return wish.kind == WishKind::kNew; };
+  std::copy_if(wishes.begin(), wishes.end(), std::back_inserter(new_objects_), is_new);
+  std::erase_if(wishes, is_new);
+  if (readying_.valid() && readying_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    try {
+      parts_ = readying_.get();
+      wishes.push_back(new_objects_.front());
+    } catch (const Error& fault) {
+      link_.say(fault.what());
+    }
+    new_objects_.pop_front();
+  }
+  if (readying_.valid()) {
+    if (++frames_waited_ == kSaidAfterFrames)
+      link_.say("reading " + new_objects_.front().event.mesh + " ...");
+  } else if (!new_objects_.empty()) {
+    frames_waited_ = 0;
+    readying_ = std::async(std::launch::async, parts_of, new_objects_.front().event);
+  }
 }
 
 void PlayHost::show(std::int64_t run_frame, double run_time_s, const Frame& frame,

@@ -1,6 +1,8 @@
 // play_host.hpp: the session's side of a window: waits for the user's turn, gives events, shows results.
 #pragma once
 #include <cstdint>
+#include <deque>
+#include <future>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,20 +21,17 @@ class PlayHost {
  public:
   /// @param is_live  frames come when they come; nothing waits for their stamps
   PlayHost(PlayLink& link, const Session& session, const PlaybackSource& source, const StageTimes& times,
-           const Mesh& room, const std::string& object, bool is_live)
-      : link_(link),
-        session_(session),
-        source_(source),
-        times_(times),
-        is_live_(is_live),
-        player_(object),
-        maker_(room) {}
+           const Mesh& room, bool is_live)
+      : link_(link), session_(session), source_(source), times_(times), is_live_(is_live), maker_(room) {}
 
   /// Waits until the frame is due, or the user steps to it; false once the window was closed.
   bool wait_turn(const Frame& frame);
   [[nodiscard]] bool is_closed() const { return link_.is_closed(); }
-  /// What the user did since the last frame.
+  /// What the user did since the last frame. A new object comes once its mesh was read and made ready, which
+  /// happens beside the frames; one whose mesh cannot be an object is complained of. At most one add a frame.
   std::vector<ScriptEvent> take_events();
+  /// Of the object that the add among the events taken last is of.
+  ObjectParts take_parts() { return std::move(parts_); }
   /// What the budget gives up now; empty: nothing.
   void say_given_up(std::string given_up) { given_up_ = std::move(given_up); }
   /// An event of the user's could not be applied.
@@ -46,6 +45,10 @@ class PlayHost {
   const StageTimes& times_;
   bool is_live_;
   Player player_;
+  std::deque<Wish> new_objects_;  ///< to come; the first is being made ready
+  std::future<ObjectParts> readying_;
+  int frames_waited_ = 0;  ///< for it
+  ObjectParts parts_;
   SnapshotMaker maker_;
   Snapshot filled_;
   std::int64_t run_frame_ = -1;  ///< of the newest that was shown
@@ -54,6 +57,8 @@ class PlayHost {
   FrameResult result_;
   std::string given_up_;
 
+  /// Moves what adds an object out of the wishes, and those whose object is ready back in.
+  void ready_new_objects(std::vector<Wish>& wishes);
   void publish();
 };
 

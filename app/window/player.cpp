@@ -112,7 +112,7 @@ void Player::choose_if_none(const Session& session) {
 }
 
 void Player::add(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
-  std::string mesh = wish.event.mesh.empty() ? mesh_ : wish.event.mesh;
+  const std::string& mesh = wish.event.mesh;
   // A word of a script, and no other object's.
   std::string stem = mesh.substr(mesh.find_last_of('/') + 1);
   stem = stem.substr(0, stem.find('.'));
@@ -122,7 +122,7 @@ void Player::add(const Wish& wish, const Session& session, std::vector<ScriptEve
   std::string name = stem;
   for (int number = 2; find_object(session, name) != nullptr; ++number) name = stem + std::to_string(number);
   ScriptEvent event = event_of(Action::kAdd, name);
-  event.mesh = std::move(mesh);
+  event.mesh = mesh;
   event.size_m = wish.event.size_m;
   events.push_back(event);
   events.push_back(event_of(Action::kDrop, name));

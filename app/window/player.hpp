@@ -24,9 +24,6 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel);
 
 class Player {
  public:
-  /// @param object  the mesh that Wish::kReset and a first drop use while there is no object
-  explicit Player(std::string object) : mesh_(std::move(object)) {}
-
   /// The events, without their frame, in the order in which they are to be applied before the next frame.
   std::vector<ScriptEvent> events_of(std::span<const Wish> wishes, const Session& session);
 
@@ -42,7 +39,6 @@ class Player {
     Eigen::Vector3d origin_from_point = Eigen::Vector3d::Zero();  ///< world axes
     bool is_carried = false;
   };
-  std::string mesh_;
   std::string chosen_;
   std::optional<Grabbed> grabbed_;
   std::string complaint_;

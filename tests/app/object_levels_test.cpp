@@ -101,8 +101,8 @@ TEST(ObjectLevels, AMeshOfFewTrianglesHasNone) {
 
 TEST(ObjectLevels, TheDrawnMeshIsCoarserTheFartherTheObjectAndNeverOffByMoreThanHalfAPixel) {
   GlContext context;
-  VirtualObject object("torus", std::make_shared<const ObjectModel>(
-                                    context, "torus", shapes::torus(120, 50, 0.08F, 0.035F, 0.01F)));
+  const Mesh torus = shapes::torus(120, 50, 0.08F, 0.035F, 0.01F);
+  VirtualObject object("torus", std::make_shared<const ObjectModel>(context, object_parts("torus", torus)));
   const Intrinsics camera{640, 480, 585.0, 585.0, 320.0, 240.0};
   const double radius_m = 0.5 * object.model->shape.drawn.bounds().sizes().norm();
   std::size_t before = object.model->shape.drawn.triangle_count() + 1;

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
+#include "app/window/play_host.hpp"
 #include "app/window/play_link.hpp"
 #include "mapping/types/error.hpp"
 #include "tests/support/exact_depth.hpp"
@@ -55,6 +59,12 @@ class Playing : public ::testing::Test {
     wish.pixel = project(kCamera, kAtTheFloor.inverse() * p_world);
     return wish;
   }
+  static Wish new_teapot() {
+    Wish wish;
+    wish.kind = WishKind::kNew;
+    wish.event.mesh = "teapot";
+    return wish;
+  }
   [[nodiscard]] const VirtualObject& pot() const { return *session_.objects().front(); }
   [[nodiscard]] Vec3 position() const { return pot().body.T_world_object.translation(); }
   /// Where the pot is seen.
@@ -67,7 +77,7 @@ class Playing : public ::testing::Test {
   }
   SavedMap map_ = floor_map();
   Session session_{map_, config()};
-  Player player_{"teapot"};
+  Player player_;
   StageTimes times_;
   Frame frame_;
   FrameResult result_;
@@ -148,12 +158,12 @@ TEST_F(Playing, AThrownObjectFliesThroughThePixel) {
 }
 
 TEST_F(Playing, AnotherObjectHasANameOfItsOwnAndIsChosen) {
-  const auto events = play(wish(WishKind::kNew));
+  const auto events = play(new_teapot());
   ASSERT_EQ(events.size(), 2U);
   EXPECT_EQ(events[0].action, Action::kAdd);
   EXPECT_EQ(events[0].name, "teapot");
   EXPECT_EQ(player_.chosen(), "teapot");
-  EXPECT_EQ(play(wish(WishKind::kNew))[0].name, "teapot2");
+  EXPECT_EQ(play(new_teapot())[0].name, "teapot2");
   EXPECT_EQ(session_.objects().size(), 3U);
   const auto reset = play(wish(WishKind::kReset));
   EXPECT_EQ(reset.back().action, Action::kDrop);
@@ -185,6 +195,70 @@ TEST_F(Playing, PoliciesThatDoNotGoTogetherAreRefusedAndNothingChanges) {
   skirt.surfaces = SurfacePolicy::kHoles;
   EXPECT_THROW(session_.apply(skirt), Error);
   EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kMap);
+}
+
+/// A device that never has a frame.
+class NoFrames : public FrameSource {
+ public:
+  ReadResult next(Frame& /*frame*/) override { return {}; }
+  bool rewind() override { return false; }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return {}; }
+  [[nodiscard]] std::string name() const override { return "none"; }
+};
+
+class Hosted : public Playing {
+ protected:
+  /// The next events that come of what was asked for, or nothing within half a minute.
+  std::vector<ScriptEvent> awaited_events() {
+    for (int tries = 0; tries < 3000; ++tries) {
+      std::vector<ScriptEvent> events = host_.take_events();
+      said_ += link_.take_message();
+      if (!events.empty()) return events;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return {};
+  }
+  std::string said_;
+  PlayLink link_;
+  PlaybackSource source_{std::make_unique<NoFrames>(), AtEnd::kEnd};
+  PlayHost host_{link_, session_, source_, times_, map_.mesh, /*is_live=*/true};
+};
+
+TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
+  Wish wish = new_teapot();
+  wish.event.size_m = 0.25;  // no model of that size is there yet
+  link_.ask(wish);
+  EXPECT_TRUE(host_.take_events().empty());  // it takes longer than this
+  const std::vector<ScriptEvent> events = awaited_events();
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].action, Action::kAdd);
+  EXPECT_EQ(events[1].action, Action::kDrop);
+  session_.add_object(events[0].name, host_.take_parts());
+  const ObjectModel& model = *session_.objects().back()->model;
+  ScriptEvent waited_for = events[0];
+  waited_for.name = "another";
+  session_.apply(waited_for);
+  EXPECT_EQ(session_.objects().back()->model.get(), &model);  // of the same mesh, so it shares its model
+  const ObjectParts parts = object_parts("pot", object_mesh("teapot", 0.25));
+  ASSERT_EQ(model.levels.size(), parts.levels.size());
+  EXPECT_GT(parts.levels.size(), 0U);
+  EXPECT_EQ(model.mass.mass_kg, parts.mass.mass_kg);
+}
+
+TEST_F(Hosted, AMeshThatCannotBeReadIsSaidAndThoseAfterItCome) {
+  Wish broken = new_teapot();
+  broken.event.mesh = "/nowhere/chair.ply";
+  link_.ask(broken);
+  link_.ask(new_teapot());
+  link_.ask(new_teapot());
+  std::vector<ScriptEvent> events = awaited_events();
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].mesh, "teapot");
+  EXPECT_NE(said_.find("/nowhere/chair.ply"), std::string::npos);
+  session_.add_object(events[0].name, host_.take_parts());
+  events = awaited_events();
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].name, "teapot2");
 }
 
 TEST(PlayLink, APausedSessionWaitsForAStepOrTheEnd) {

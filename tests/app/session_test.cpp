@@ -347,17 +347,15 @@ TEST(VirtualObject, FootprintReachesToACorner) {
   Mesh plate;
   plate.vertices = {{-0.3F, -0.4F, 0.1F}, {0.3F, -0.4F, 0.1F}, {0.3F, 0.4F, 0.1F}};
   plate.triangles = {{0, 1, 2}};
-  const VirtualObject object("plate", std::make_shared<const ObjectModel>(context, "plate", plate));
+  const VirtualObject object("plate",
+                             std::make_shared<const ObjectModel>(context, object_parts("plate", plate)));
   EXPECT_NEAR(footprint_radius_m(object, Eigen::Matrix3d::Identity()), 0.5, 1e-6);
   const Eigen::AngleAxisd on_edge(M_PI / 2.0, Eigen::Vector3d::UnitX());
   EXPECT_NEAR(footprint_radius_m(object, on_edge.toRotationMatrix()), std::hypot(0.3, 0.1), 1e-6);
   EXPECT_NEAR(lowest_m(object), 0.1, 1e-6);
 }
 
-TEST(VirtualObject, MeshWithoutTrianglesIsRefused) {
-  GlContext context;
-  EXPECT_THROW(ObjectModel(context, "nothing", Mesh{}), Error);
-}
+TEST(VirtualObject, MeshWithoutTrianglesIsRefused) { EXPECT_THROW(object_parts("nothing", Mesh{}), Error); }
 
 }  // namespace
 }  // namespace roomradar
