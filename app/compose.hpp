@@ -37,7 +37,7 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
 /// @param T_world_camera   its pose
 /// @param real_depth_m     real surfaces as this camera sees them, of its size; 0 hides nothing
 /// @param casters          objects that cast a soft shadow on real surfaces
-/// @param layer            the objects as this camera sees them (ObjectDrawer::draw)
+/// @param layer            the objects as this camera sees them (ObjectDrawer)
 /// @param occlusion        what hides the objects; buffers that are reused
 /// @param picture          of the camera's size; may not be `background`
 /// @throws Error if sizes disagree, or the layer reaches past the picture

@@ -108,9 +108,9 @@ ObjectDrawer::~ObjectDrawer() {
   glDeleteProgram(state_->program);
 }
 
-void ObjectDrawer::draw(std::span<const DrawnObject> objects, const Intrinsics& camera,
-                        const Eigen::Isometry3d& T_world_camera, const Lighting& lighting,
-                        ObjectLayer& layer) {
+void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics& camera,
+                         const Eigen::Isometry3d& T_world_camera, const Lighting& lighting,
+                         ObjectLayer& layer) {
   PixelRect rect;
   for (const DrawnObject& object : objects)
     rect = united(rect, pixels_of(object.instance, camera, T_world_camera, kNear_m));
@@ -167,7 +167,13 @@ void ObjectDrawer::draw(std::span<const DrawnObject> objects, const Intrinsics& 
     object.is_closed ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
     mesh.draw(clip);
   }
+  glFlush();
+}
 
+void ObjectDrawer::finish(ObjectLayer& layer) {
+  const int width = layer.colour.width, height = layer.colour.height;
+  if (width == 0 || height == 0) return;
+  glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, layer.colour.pixels.data());
   glPixelStorei(GL_PACK_ALIGNMENT, 4);

@@ -31,12 +31,21 @@ class ObjectDrawer {
   ObjectDrawer& operator=(const ObjectDrawer&) = delete;
   ~ObjectDrawer();
 
-  /// Draws the objects into `layer`, whose rectangle is just large enough for them; an empty rectangle if
-  /// none is in view. 2 x 2 samples a pixel, or one where the rectangle has more than 80,000 pixels.
-  /// Near plane 0.05 m, no far end; the depth step is 6e-8 of the depth. Objects with a null mesh are left
-  /// out. Reuses the layer's allocations.
+  /// Begins to draw the objects into `layer`, whose rectangle is just large enough for them; an empty
+  /// rectangle if none is in view. 2 x 2 samples a pixel, or one where the rectangle has more than 80,000
+  /// pixels. Near plane 0.05 m, no far end; the depth step is 6e-8 of the depth. Objects with a null mesh are
+  /// left out. Rectangle and samples are set at once; colour and depth come with finish(), until when the
+  /// renderer goes on beside the caller. Reuses the layer's allocations.
+  void begin(std::span<const DrawnObject> objects, const Intrinsics& camera,
+             const Eigen::Isometry3d& T_world_camera, const Lighting& lighting, ObjectLayer& layer);
+  /// Colour and depth of what was begun last, with the same layer.
+  void finish(ObjectLayer& layer);
+  /// Both, with nothing beside.
   void draw(std::span<const DrawnObject> objects, const Intrinsics& camera,
-            const Eigen::Isometry3d& T_world_camera, const Lighting& lighting, ObjectLayer& layer);
+            const Eigen::Isometry3d& T_world_camera, const Lighting& lighting, ObjectLayer& layer) {
+    begin(objects, camera, T_world_camera, lighting, layer);
+    finish(layer);
+  }
 
  private:
   struct State;
