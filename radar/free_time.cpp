@@ -134,8 +134,10 @@ struct TreeFreedom {
       return kLongEnough;
     }
     if (are_large_against(s, o)) {
-      for (std::uint32_t i = s.first; i < s.first + s.count; ++i)
-        if (course.free_s(trees.scene_triangle(i), o) < result.free_s) return free_s;
+      for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
+        const FrameTriangle t = trees.scene_triangle(i);
+        if (course.free_s(t, o) < result.free_s && !(is_one_sided(kind) && is_behind(t, o))) return free_s;
+      }
       return kLongEnough;
     }
     return free_s;
@@ -189,9 +191,12 @@ FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& mot
     if (are_farther_apart(object, tree.instance, way_m + 2.0 * keep_m)) continue;
     const TreePair trees(object, tree.instance);
     TreeFreedom freedom{trees, tree.kind, number, course_of(object, motion, keep_m, trees), result};
-    visit_pairs(
+    visit_pairs<PairOrder::kLeastFirst>(
         trees, pending_, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
-        [&](const PairBox& o, const PairBox& s) { freedom.look_at_leaves(o, s); });
+        [&](const PairBox& o, const PairBox& s) {
+          freedom.look_at_leaves(o, s);
+          return false;
+        });
     result = freedom.result;
   }
   return result;

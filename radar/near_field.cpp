@@ -18,7 +18,8 @@ bool is_far_from(const FrameTriangle& t, const PairBox& box, double reach_m) {
 }
 
 /// Whether what is in two boxes may be within reach.
-bool may_be_near(const TreePair& trees, const PairBox& o, const PairBox& s, double reach_m) {
+bool may_be_near(const TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
+  const double reach_m = places.reach_m;
   const Eigen::Array3f apart = (o.centre - s.centre).array().abs() - o.half.array() - s.half.array();
   if (apart.maxCoeff() > static_cast<float>(reach_m)) return false;
   if (are_large_against(o, s)) {
@@ -27,8 +28,10 @@ bool may_be_near(const TreePair& trees, const PairBox& o, const PairBox& s, doub
     return false;
   }
   if (are_large_against(s, o)) {
-    for (std::uint32_t i = s.first; i < s.first + s.count; ++i)
-      if (!is_far_from(trees.scene_triangle(i), o, reach_m)) return true;
+    for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
+      const FrameTriangle t = trees.scene_triangle(i);
+      if (!is_far_from(t, o, reach_m) && !(places.scene_is_one_sided && is_behind(t, o))) return true;
+    }
     return false;
   }
   return true;
@@ -64,15 +67,12 @@ Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, doubl
     const PairPlaces places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),
                             tree.kind, trees.T_world_frame,      found_};
     bool crosses = false;
-    visit_pairs(
+    visit_pairs<PairOrder::kAny>(
         trees, pending_,
         [&](const PairBox& o, const PairBox& s) {
-          const bool matters = !crosses && may_be_near(trees, o, s, reach_m);
-          return matters ? 0.0F : std::numeric_limits<float>::infinity();
+          return may_be_near(trees, o, s, places) ? 0.0F : std::numeric_limits<float>::infinity();
         },
-        [&](const PairBox& o, const PairBox& s) {
-          crosses = look_at_leaves(trees, o, s, places) || crosses;
-        });
+        [&](const PairBox& o, const PairBox& s) { return crosses = look_at_leaves(trees, o, s, places); });
     for (std::size_t i = found_before; i < found_.size(); ++i) found_[i].tree = number;
     if (!crosses) continue;
     crossed |= bit_of(tree.kind);

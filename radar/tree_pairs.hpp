@@ -20,7 +20,13 @@ struct PairBox {
 };
 struct PendingPair {
   PairBox object, scene;
-  float key;  ///< of what is looked at first
+  float key;
+};
+/// Which pair of boxes is looked at next.
+enum class PairOrder {
+  kAny,         ///< the one found last: the fewest are pending
+  kLeastFirst,  ///< the one with the least key: where a leaf rules out all keys above some bound, this finds
+                ///< it before it opens boxes for nothing
 };
 
 inline constexpr std::size_t kLeafTriangles = 4;  // no leaf of a TriangleTree has more
@@ -81,9 +87,18 @@ inline bool are_large_against(const PairBox& leaf, const PairBox& other) {
   return leaf.count > 0 && leaf.half.maxCoeff() > 2.0F * other.half.maxCoeff();
 }
 
-/// Goes through all pairs of leaves that key(object box, scene box) gives a finite number for, and boxes with
-/// the least first.
-template <typename Key, typename Leaf>
+/// Whether all of a box is behind a triangle's plane.
+inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
+  constexpr double kTouching_m = 1e-9;
+  return t.normal.dot(box.centre.cast<double>() - t.corners[0]) +
+             t.normal.cwiseAbs().dot(box.half.cast<double>()) <
+         -kTouching_m;
+}
+
+/// Goes through all pairs of leaves that key(object box, scene box) gives a finite number for, until leaf()
+/// returns that it has seen enough. With PairOrder::kLeastFirst the key is asked again when it is a pair's
+/// turn.
+template <PairOrder order, typename Key, typename Leaf>
 void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
   const TriangleTree& object = trees.object;
   const TriangleTree& scene = trees.scene;
@@ -93,26 +108,31 @@ void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const
   const Eigen::Vector3f t = trees.T_frame_object.translation().cast<float>();
   const float slack_m = 16.0F * std::numeric_limits<float>::epsilon() *
                         (t.lpNorm<Eigen::Infinity>() + object.half_size().norm() + scene.half_size().norm());
+  const auto is_later = [](const PendingPair& a, const PendingPair& b) { return a.key > b.key; };
   const auto push = [&](const PairBox& o, const PairBox& s) {
     const float k = key(o, s);
-    if (k < std::numeric_limits<float>::infinity()) pending.push_back({o, s, k});
+    if (!(k < std::numeric_limits<float>::infinity())) return;
+    pending.push_back({o, s, k});
+    if constexpr (order == PairOrder::kLeastFirst) std::push_heap(pending.begin(), pending.end(), is_later);
   };
   pending.clear();
   const Eigen::Vector3f slack = Eigen::Vector3f::Constant(slack_m);
   push({t, R_abs * object.half_size() + slack, 0, 0},
        {Eigen::Vector3f::Zero(), scene.half_size() + slack, 0, 0});
   while (!pending.empty()) {
+    if constexpr (order == PairOrder::kLeastFirst) std::pop_heap(pending.begin(), pending.end(), is_later);
     const PendingPair pair = pending.back();
     pending.pop_back();
-    if (!(key(pair.object, pair.scene) < std::numeric_limits<float>::infinity())) continue;
+    if constexpr (order == PairOrder::kLeastFirst) {
+      if (!(key(pair.object, pair.scene) < std::numeric_limits<float>::infinity())) continue;
+    }
     if (pair.object.count > 0 && pair.scene.count > 0) {
-      leaf(pair.object, pair.scene);
+      if (leaf(pair.object, pair.scene)) return;
       continue;
     }
     const bool opens_object =
         pair.scene.count > 0 ||
         (pair.object.count == 0 && pair.object.half.maxCoeff() > pair.scene.half.maxCoeff());
-    const std::size_t first_new = pending.size();
     const TreeNode& node = opens_object ? object.nodes()[pair.object.first] : scene.nodes()[pair.scene.first];
     for (std::uint32_t i = 0; i < node.child_count; ++i) {
       PairBox box{{node.centre_x[i], node.centre_y[i], node.centre_z[i]},
@@ -126,8 +146,6 @@ void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const
       box.half += slack;
       opens_object ? push(box, pair.scene) : push(pair.object, box);
     }
-    std::sort(pending.begin() + static_cast<std::ptrdiff_t>(first_new), pending.end(),
-              [](const PendingPair& a, const PendingPair& b) { return a.key > b.key; });
   }
 }
 
