@@ -113,6 +113,9 @@ class Session {
   /// object, two of one name, a mesh that cannot be read, a policy that does not go with another.
   void apply(const ScriptEvent& event);
 
+  /// Where a thread has several sessions: before another one is used, or ends. Throws Error if the renderer
+  /// refuses.
+  void make_current() const { context_.make_current(); }
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_; }
   [[nodiscard]] const ColourImage& picture() const { return picture_; }
