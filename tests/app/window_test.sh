@@ -39,8 +39,9 @@ export DISPLAY
 "$program" run 'sim:table?frames=30&width=320&path=view&seed=2' --poses recorded --map "$work/map" --window --at-end loop \
   --record-session "$work/session" --report "$work/report.json" > "$work/log" 2>&1 &
 player=$!
-until_true xdotool search --name '^roomradar - ' > /dev/null
-xdotool windowfocus "$(xdotool search --name '^roomradar - ' | head -n 1)"
+# A window that is there but not yet shown cannot have the focus.
+has_focus() { xdotool windowfocus "$(xdotool search --onlyvisible --name '^roomradar - ' | head -n 1)" 2> /dev/null; }
+until_true has_focus
 until_true has_frames 3
 
 echo "== a click drops the object where it points"
