@@ -84,6 +84,19 @@ TEST_F(MeshFile, EachFormatKeepsVerticesAndTrianglesAndWhatElseItCan) {
   }
 }
 
+// assimp takes a newline at the start of the data for the end of the header.
+TEST_F(MeshFile, APlyIsReadWhateverByteItsFirstNumberBeginsWith) {
+  Mesh mesh = wavy_sheet(3);
+  for (std::uint32_t byte = 0; byte < 256; ++byte) {
+    const std::uint32_t bits = 0x3f8000U << 8U | byte;
+    std::memcpy(&mesh.vertices[0].x(), &bits, sizeof bits);
+    write_mesh(mesh, folder_.path() / "sheet.ply");
+    const Mesh read = read_mesh(folder_.path() / "sheet.ply");
+    ASSERT_EQ(read.vertices, mesh.vertices) << byte;
+    ASSERT_EQ(read.triangles, mesh.triangles) << byte;
+  }
+}
+
 TEST_F(MeshFile, StlKeepsTheTrianglesAndJoinsTheirCorners) {
   const Mesh mesh = wavy_sheet(20);
   write_mesh(mesh, folder_.path() / "sheet.stl");
