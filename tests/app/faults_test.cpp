@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "mapping/map_folder.hpp"
+#include "mapping/types/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar {
@@ -258,15 +259,23 @@ TEST_F(Faults, AMapIsReadWholeWhileAnotherProcessSavesItAnew) {
       save_map(at("map"), a);
     }
   }
-  int others = 0;
+  int others = 0, overtaken = 0;
   for (int i = 0; i < 200; ++i) {
-    const SavedMap read = load_map(at("map"));
-    const bool is_other = read.info.source == "another";
-    ASSERT_EQ(read.trajectory.size(), (is_other ? b : a).trajectory.size());
-    others += is_other ? 1 : 0;
+    try {
+      const SavedMap read = load_map(at("map"));
+      const bool is_other = read.info.source == "another";
+      EXPECT_EQ(read.trajectory.size(), (is_other ? b : a).trajectory.size());
+      others += is_other ? 1 : 0;
+    } catch (const Error& fault) {  // where reading takes longer than saving
+      EXPECT_NE(std::string(fault.what()).find("replaced by another process again and again"),
+                std::string::npos)
+          << fault.what();
+      ++overtaken;
+    }
   }
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
+  if (overtaken > 0) return;
   EXPECT_GT(others, 0);
   EXPECT_LT(others, 200);
 }
