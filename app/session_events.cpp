@@ -1,5 +1,6 @@
 // session_events.cpp: what a script or a user asks of a session.
 #include <algorithm>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -47,6 +48,40 @@ void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg)
   object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
   make_orthonormal(object.body.T_world_object);
   object.body.at_rest = false;
+}
+
+void Session::raise_over_others(VirtualObject& object) {
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const std::vector<SceneTree> scene = scene_without(&object);
+  const auto first_other = std::find_if(scene.begin(), scene.end(),
+                                        [](const SceneTree& tree) { return tree.kind == Touched::kObject; });
+  const RadarScene others{{first_other, scene.end()}, {}};  // objects come last
+  const RadarScene surfaces{{scene.begin(), first_other}, {}};
+  const double margin_m = config_.physics.contact_margin_m;
+  const auto travel_down = [&](const Eigen::Isometry3d& T_world_object, double distance_m,
+                               const RadarScene& into) {
+    return radar_.query({{&object.model->shape.touched, T_world_object}, -up, distance_m}, into);
+  };
+  Eigen::Isometry3d& T_world_object = object.body.T_world_object;
+  // What stands exactly where another does touches it all over, and overlaps nothing.
+  const Kinds touched =
+      near_field_.near({&object.model->shape.touched, T_world_object}, others, margin_m, 0, near_points_);
+  const bool is_free =
+      touched == 0 && travel_down(T_world_object, margin_m, others).status != ContactStatus::kOverlap;
+  if (is_free) return;
+
+  double top_m = -std::numeric_limits<double>::infinity();
+  for (const auto& other : objects_)
+    if (other.get() != &object && other->in_room)
+      top_m = std::max(top_m, other->body.T_world_object.translation().z() + highest_m(*other));
+  const double rise_m = top_m + margin_m - (T_world_object.translation().z() + lowest_m(object));
+  Eigen::Isometry3d T_world_raised = T_world_object;
+  T_world_raised.translation() += rise_m * up;
+  const Contact below = travel_down(T_world_raised, rise_m, others);
+  if (below.status != ContactStatus::kContact) return;
+  T_world_raised.translation() -= std::max(below.lower_m - margin_m, 0.0) * up;
+  if (travel_down(T_world_raised, margin_m, surfaces).status != ContactStatus::kOverlap)
+    T_world_object = T_world_raised;
 }
 
 void Session::apply(const ScriptEvent& event) {
@@ -108,10 +143,12 @@ void Session::change_objects(const ScriptEvent& event) {
       put(*event.position_world);
       break;
     case Action::kDrop:
-      if (event.position_world)
+      if (event.position_world) {
         put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
-      else
+        raise_over_others(object);
+      } else {
         waiting_.push_back(event);
+      }
       break;
     case Action::kCarry:
       if (!object.in_room) put(*event.position_world);

@@ -66,6 +66,13 @@ double lowest_m(const VirtualObject& object) {
   return lowest;
 }
 
+double highest_m(const VirtualObject& object) {
+  const Eigen::Vector3d z = object.body.T_world_object.linear().row(2);
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& corner : object.model->corners) highest = std::max(highest, z.dot(corner));
+  return highest;
+}
+
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {
   const Eigen::Matrix<double, 2, 3> R_level_object = R_world_object.topRows<2>();
   double squared_m2 = 0.0;

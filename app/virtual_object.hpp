@@ -38,8 +38,9 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
 std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& name, ObjectParts parts,
                                          std::span<const std::unique_ptr<VirtualObject>> others);
 
-/// How far its lowest point is above its origin, as it is turned now, m.
+/// How far its lowest and its highest point are above its origin, as it is turned now, m.
 double lowest_m(const VirtualObject& object);
+double highest_m(const VirtualObject& object);
 
 /// How far it reaches sideways from its origin, turned like this, m.
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);

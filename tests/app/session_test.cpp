@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "mapping/types/error.hpp"
+#include "tests/radar/shapes.hpp"
 #include "tests/support/exact_depth.hpp"
 
 namespace roomradar {
@@ -235,6 +236,51 @@ TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
         << (how == Action::kThrow ? "thrown" : "carried");
     EXPECT_GT(shoved.T_world_object.translation().z(), -0.05)
         << (how == Action::kThrow ? "thrown" : "carried");
+  }
+}
+
+TEST(Session, PotsDroppedIntoOnePlaceBeginOnTopOfOneAnotherAndComeToLieApart) {
+  const SavedMap map = half_floor_map();
+  SessionConfig config = by_recorded_poses();
+  config.measure_penetration = true;
+  Session session(map, config);
+  const Eigen::Vector3d place(-1.0, 0.0, 0.0);
+  drop_pots(session, {place, place, place + Eigen::Vector3d(0.0, 0.03, 0.0), place});
+  double below_m = 0.0;
+  for (const auto& pot : session.objects()) {
+    EXPECT_GT(pot->body.T_world_object.translation().z(), below_m) << pot->body.name;
+    below_m = pot->body.T_world_object.translation().z();
+  }
+  EXPECT_LT(below_m, 0.3 + 4 * 0.08);
+  StageTimes times;
+  for (std::int64_t i = 0; i < 90; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    EXPECT_LT(session.step(frame, times).deepest_penetration_m, 0.001) << "frame " << i;
+  }
+  for (const auto& pot : session.objects())
+    EXPECT_GT((pot->body.T_world_object * pot->model->middle).z(), 0.0) << pot->body.name;
+}
+
+TEST(Session, AChestDroppedAboutAPotBeginsOnTopOfItUnlessAShelfIsInTheWay) {
+  for (const bool has_shelf : {false, true}) {
+    SavedMap map = half_floor_map();
+    const std::vector<Eigen::Vector3f> floor = map.mesh.vertices;
+    for (const Eigen::Vector3f& corner : floor)
+      map.mesh.vertices.push_back(corner + Eigen::Vector3f(0.0F, 0.0F, 0.75F));
+    if (has_shelf) map.mesh.triangles.insert(map.mesh.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
+    Session session(map, by_recorded_poses());
+    drop_pots(session, {{-1.0, 0.0, 0.0}});  // begins 0.3 m above the floor
+    session.add_object("chest", shapes::box({0.4F, 0.4F, 0.5F}));
+    ScriptEvent drop = event(Action::kDrop);
+    drop.name = "chest";
+    drop.position_world = Eigen::Vector3d(-1.0, 0.0, 0.0);
+    drop.height_m = 0.2;
+    session.apply(drop);
+    const VirtualObject& pot = *session.objects().front();
+    const double chest_bottom_m = session.objects().back()->body.T_world_object.translation().z() - 0.25;
+    const double pot_top_m = pot.body.T_world_object.translation().z() + highest_m(pot);
+    EXPECT_NEAR(chest_bottom_m, has_shelf ? 0.2 : pot_top_m + PhysicsConfig{}.contact_margin_m, 1e-5);
   }
 }
 
