@@ -280,7 +280,8 @@ nlohmann::json ratio_row(const Scene& scene, const SavedMap& map, const std::vec
                          const Mesh& few, const Mesh& many) {
   struct Player {
     std::unique_ptr<Session> session;
-    test::Times frame_ms, cpu_ms;
+    StageTimes times;
+    test::Times cpu_ms;
   };
   std::array<Player, 2> players;
   for (std::size_t i = 0; i < players.size(); ++i) {
@@ -292,12 +293,10 @@ nlohmann::json ratio_row(const Scene& scene, const SavedMap& map, const std::vec
     for (Player& player : players) {
       player.session->make_current();
       drop_if_due(*player.session, number);
-      StageTimes times;
+      StageTimes warming_up;
       const double cpu_before_ms = process_cpu_ms();
-      (void)player.session->step(frame, times);
-      if (number < kWarmUpFrames) continue;
-      player.cpu_ms.samples_ms.push_back(process_cpu_ms() - cpu_before_ms);
-      player.frame_ms.samples_ms.push_back(times.summaries().at("frame").median_ms);
+      (void)player.session->step(frame, number < kWarmUpFrames ? warming_up : player.times);
+      if (number >= kWarmUpFrames) player.cpu_ms.samples_ms.push_back(process_cpu_ms() - cpu_before_ms);
     }
     ++number;
   }
@@ -305,10 +304,15 @@ nlohmann::json ratio_row(const Scene& scene, const SavedMap& map, const std::vec
     player.session->make_current();
     player.session.reset();
   }
+  const auto few_ms = players[0].times.summaries(), many_ms = players[1].times.summaries();
+  nlohmann::json more_ms = nlohmann::json::object();
+  for (const auto& [stage, summary] : many_ms)
+    if (few_ms.contains(stage)) more_ms[stage] = summary.median_ms - few_ms.at(stage).median_ms;
   return {{"scene", scene.name},
           {"work", "frame of most : fewest object triangles"},
-          {"median_ratio", median(players[1].frame_ms) / median(players[0].frame_ms)},
-          {"cpu_ratio", median(players[1].cpu_ms) / median(players[0].cpu_ms)}};
+          {"median_ratio", many_ms.at("frame").median_ms / few_ms.at("frame").median_ms},
+          {"cpu_ratio", median(players[1].cpu_ms) / median(players[0].cpu_ms)},
+          {"more_ms", more_ms}};
 }
 
 std::optional<Settings> read_arguments(int argc, char** argv) {
