@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Plays in the window by real keys and mouse events on a screen of its own, looks at what it did through the recorded
-# events, screenshots and the report, and replays the session without a window to the same results.
+# events, screenshots and the report, and replays the session without a window to the same results; then with a Kinect's
+# driver, fakenect in the place of the device.
 #
 # usage: window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
 set -euo pipefail
@@ -136,9 +137,35 @@ wait "$player" || status=$?
 [[ $status == 0 ]] || fail "exit status $status"
 has_event '^frame [0-9]+ quit$' || fail "the session does not say where it ended"
 grep -q '"object"' "$work/report.json" || fail "no object in the report"
-unset DISPLAY
-"$program" run "$work/session" --video "$work/again.avi" > "$work/log" 2>&1 || fail replay
-grep -E '^replay: ' "$work/log"
-read -r same recorded < <(sed -nE 's/^replay: ([0-9]+) of ([0-9]+) frames.*/\1 \2/p' "$work/log")
-[[ $same == "$recorded" && $recorded -gt 20 ]] || fail "the replay is not the same"
+
+# The session that was played, without a window: every frame comes out as it did.
+play_again() {
+  DISPLAY='' "$program" run "$work/session" --video "$work/again.avi" > "$work/log" 2>&1 || fail replay
+  grep -E '^replay: ' "$work/log"
+  read -r same recorded < <(sed -nE 's/^replay: ([0-9]+) of ([0-9]+) frames.*/\1 \2/p' "$work/log")
+  [[ $same == "$recorded" && $recorded -gt $1 ]] || fail "the replay is not the same"
+}
+play_again 20
+
+if command -v fakenect > /dev/null; then
+  echo "== a Kinect's driver, with fakenect in the device's place"
+  "$program" record 'sim:table?frames=15&path=view&seed=2' "$work/kinect" --format fakenect > "$work/log" 2>&1 || fail record
+  rm -r "$work/map" "$work/session"
+  "$program" prescan 'sim:table?frames=20&width=320&path=view&seed=2' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 ||
+    fail prescan
+  FAKENECT_LOOP=0 fakenect "$work/kinect" "$program" run kinect:0 --map "$work/map" --window \
+    --record-session "$work/session" > "$work/log" 2>&1 &
+  player=$!
+  until_true has_focus
+  until_true has_frames 3
+  xdotool mousemove 590 390 click 1  # on the table, beside the object
+  until_true has_event '^frame [0-9]+ drop object at '
+  settle
+  shot kinect
+  xdotool key ctrl+q
+  status=0
+  wait "$player" || status=$?
+  [[ $status == 0 ]] || fail "exit status $status with a Kinect"
+  play_again 5
+fi
 echo "passed"
