@@ -91,10 +91,11 @@ struct Script {
 ///     frame 210  unknown solid                    or free
 ///     frame 220  radar sampled 64                 exact or sampled; pixels
 ///     frame 225  quality depth_stride 2 shadows off       what is not named is as usual; see quality.hpp
-///     frame 226  quality from physics object_turns 4      from that part of the frame on: mesh, physics,
-///     compose frame 230  camera hold                      this frame stays; go, rewind, loop, stay frame 300
-///     quit
+///     frame 226  quality from physics object_turns 4      from that part of a frame on (mesh, compose)
+///     frame 230  camera hold                      this frame stays; go, rewind, loop, stay
+///     frame 300  quit
 ///
+/// What would begin inside another object begins on top of it, if the room is not in the way.
 /// place, drop and throw may end with `turned YAW PITCH ROLL`: degrees about z, then y, then x, each of them
 /// the axes as they were turned before. Without it an object stands as it stood last, upright at first.
 ///

@@ -194,7 +194,7 @@ class Session {
   }
   Tracking locate_camera(const Frame& frame);
   void turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg);
-  /// Puts what was begun inside other objects on top of them, where the room leaves space for it there.
+  /// Puts what would begin inside other objects on top of them, where the room leaves space for it there.
   void raise_over_others(VirtualObject& object);
   /// Balls about the objects, in which what moved is meshed as finely as it was seen.
   void find_fine_regions();

@@ -130,6 +130,7 @@ void Session::change_objects(const ScriptEvent& event) {
     object.body.at_rest = false;
     object.in_room = true;
     object.waited_s = 0.0;
+    raise_over_others(object);
     object.in_unknown = object.began_in_unknown = is_in_unknown(object);
   };
   // Whatever is said of an object now takes the place of a drop that it waits for.
@@ -143,12 +144,10 @@ void Session::change_objects(const ScriptEvent& event) {
       put(*event.position_world);
       break;
     case Action::kDrop:
-      if (event.position_world) {
+      if (event.position_world)
         put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
-        raise_over_others(object);
-      } else {
+      else
         waiting_.push_back(event);
-      }
       break;
     case Action::kCarry:
       if (!object.in_room) put(*event.position_world);

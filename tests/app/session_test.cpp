@@ -262,8 +262,9 @@ TEST(Session, PotsDroppedIntoOnePlaceBeginOnTopOfOneAnotherAndComeToLieApart) {
     EXPECT_GT((pot->body.T_world_object * pot->model->middle).z(), 0.0) << pot->body.name;
 }
 
-TEST(Session, AChestDroppedAboutAPotBeginsOnTopOfItUnlessAShelfIsInTheWay) {
-  for (const bool has_shelf : {false, true}) {
+TEST(Session, AChestPutAboutAPotBeginsOnTopOfItUnlessAShelfIsInTheWay) {
+  for (const auto& [how, has_shelf] : {std::pair{Action::kDrop, false}, std::pair{Action::kDrop, true},
+                                       std::pair{Action::kPlace, false}, std::pair{Action::kThrow, false}}) {
     SavedMap map = half_floor_map();
     const std::vector<Eigen::Vector3f> floor = map.mesh.vertices;
     for (const Eigen::Vector3f& corner : floor)
@@ -272,11 +273,11 @@ TEST(Session, AChestDroppedAboutAPotBeginsOnTopOfItUnlessAShelfIsInTheWay) {
     Session session(map, by_recorded_poses());
     drop_pots(session, {{-1.0, 0.0, 0.0}});  // begins 0.3 m above the floor
     session.add_object("chest", shapes::box({0.4F, 0.4F, 0.5F}));
-    ScriptEvent drop = event(Action::kDrop);
-    drop.name = "chest";
-    drop.position_world = Eigen::Vector3d(-1.0, 0.0, 0.0);
-    drop.height_m = 0.2;
-    session.apply(drop);
+    ScriptEvent put = event(how);
+    put.name = "chest";
+    put.position_world = Eigen::Vector3d(-1.0, 0.0, how == Action::kDrop ? 0.0 : 0.45);
+    put.height_m = 0.2;
+    session.apply(put);
     const VirtualObject& pot = *session.objects().front();
     const double chest_bottom_m = session.objects().back()->body.T_world_object.translation().z() - 0.25;
     const double pot_top_m = pot.body.T_world_object.translation().z() + highest_m(pot);
