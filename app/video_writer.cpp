@@ -1,6 +1,8 @@
 // video_writer.cpp: pictures to a video file through OpenCV, with the checks that OpenCV leaves out.
 #include "app/video_writer.hpp"
 
+#include <unistd.h>
+
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
@@ -24,10 +26,21 @@ std::vector<std::string> codecs_for(const std::string& extension) {
   return {};
 }
 
+/// What is written until the video is whole; its extension tells the encoder what it is to be.
+std::filesystem::path partial_of(const std::filesystem::path& target) {
+  std::error_code fault;
+  if (std::filesystem::exists(target, fault) && !std::filesystem::is_regular_file(target, fault))
+    return target;  // a pipe or a device
+  std::filesystem::path partial = target;
+  partial.replace_extension(".partial-" + std::to_string(::getpid()) + target.extension().string());
+  return partial;
+}
+
 }  // namespace
 
 struct VideoWriter::State {
-  std::filesystem::path path;
+  std::filesystem::path path;     // of the whole video
+  std::filesystem::path partial;  // what is written
   double frames_per_s = 30.0;
   std::vector<std::string> codecs;
   cv::VideoWriter writer;
@@ -41,7 +54,7 @@ struct VideoWriter::State {
     for (const std::string& codec : codecs) {
       const int fourcc = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
       const cv::Size size(width_px & ~1, height_px & ~1);
-      if (writer.open(path.string(), cv::CAP_FFMPEG, fourcc, frames_per_s, size)) return;
+      if (writer.open(partial.string(), cv::CAP_FFMPEG, fourcc, frames_per_s, size)) return;
     }
     throw Error(path.string() +
                 ": no video can be made here; may the folder be written, and is OpenCV built with FFmpeg?");
@@ -67,11 +80,19 @@ VideoWriter::VideoWriter(std::filesystem::path path, double frames_per_s)
     throw Error(path.string() + ": its folder does not exist; make it first");
   if (std::filesystem::is_directory(path, fault))
     throw Error(path.string() + ": is a folder, not a video file");
+  if (std::filesystem::is_symlink(path, fault) && std::filesystem::exists(path, fault))
+    path = std::filesystem::canonical(path, fault);
+  state_->partial = partial_of(path);
   state_->path = std::move(path);
   state_->frames_per_s = frames_per_s;
 }
 
-VideoWriter::~VideoWriter() = default;
+VideoWriter::~VideoWriter() {
+  try {
+    close();
+  } catch (const Error&) {  // what there is stays beside
+  }
+}
 
 std::int64_t VideoWriter::frames_written() const { return state_->frames_written; }
 
@@ -103,11 +124,18 @@ void VideoWriter::close() {
   s.writer.release();
   // OpenCV does not say when a write failed, so the file is asked: one that was cut short has no index, or
   // fewer frames.
-  cv::VideoCapture reader(s.path.string(), cv::CAP_FFMPEG);
+  cv::VideoCapture reader(s.partial.string(), cv::CAP_FFMPEG);
   const double frames_held = reader.isOpened() ? reader.get(cv::CAP_PROP_FRAME_COUNT) : 0.0;
   if (frames_held + 1.5 < static_cast<double>(s.frames_written))
-    throw Error(s.path.string() + ": holds " + std::to_string(static_cast<long>(std::max(frames_held, 0.0))) +
-                " of " + std::to_string(s.frames_written) + " frames; is the disk full?");
+    throw Error(s.path.string() + ": could be written with " +
+                std::to_string(static_cast<long>(std::max(frames_held, 0.0))) + " of " +
+                std::to_string(s.frames_written) + " frames only, see " + s.partial.string() +
+                "; is the disk full?");
+  std::error_code fault;
+  std::filesystem::rename(s.partial, s.path, fault);
+  if (fault)
+    throw Error(s.path.string() + ": cannot be written: " + fault.message() + "; the video is in " +
+                s.partial.string());
 }
 
 }  // namespace roomradar

@@ -9,7 +9,8 @@
 namespace roomradar {
 
 /// .mp4 (H.264 where there is an encoder, else MPEG-4), .avi (Motion JPEG), .mkv (MPEG-4). An odd last row or
-/// column is left out, for the encoders want even sizes.
+/// column is left out, for the encoders want even sizes. It is written beside (NAME.partial-PID.avi) and
+/// takes its place, and that of a video that was there, when it is finished.
 class VideoWriter {
  public:
   /// Throws Error for another extension, a folder that does not exist, or frames_per_s not in 1..240.
@@ -17,13 +18,14 @@ class VideoWriter {
   VideoWriter(std::filesystem::path path, double frames_per_s);
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
-  ~VideoWriter();  ///< finishes the file without complaint if close() was not called
+  ~VideoWriter();  ///< close() without complaint
 
   /// Throws Error if the file cannot be made, the disk is full, or the size is not that of the first picture.
   void write(const ColourImage& picture);
 
-  /// Finishes the file and reads it back: throws Error if it is missing or holds fewer frames than were
-  /// written (disk full). Nothing happens the second time, or if nothing was written.
+  /// Finishes the file, reads it back and puts it in its place. If it holds fewer frames than were written
+  /// (disk full) or cannot be put there, throws Error that says where it is instead. Nothing happens the
+  /// second time, or if nothing was written.
   void close();
 
   [[nodiscard]] std::int64_t frames_written() const;

@@ -88,6 +88,19 @@ TEST_F(Video, TheFirstPictureFixesTheSize) {
   EXPECT_THROW(writer.write(square_at(1, 160, 120)), Error);
 }
 
+TEST_F(Video, WhatWasThereStaysUntilTheNewOneIsWhole) {
+  const auto path = folder_ / "v.avi";
+  std::ofstream(path) << "a video that was there";
+  {
+    VideoWriter writer(path, 30.0);
+    for (int frame = 0; frame < 3; ++frame) writer.write(square_at(frame, 160, 120));
+    EXPECT_EQ(std::filesystem::file_size(path), 22U);
+  }  // ended by a fault elsewhere: what there is of the new one is whole as well
+  EXPECT_EQ(cv::VideoCapture(path.string()).get(cv::CAP_PROP_FRAME_COUNT), 3.0);
+  const std::filesystem::directory_iterator files(folder_);
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
 TEST_F(Video, NothingWrittenMakesNoFile) {
   VideoWriter writer(folder_ / "v.mp4", 30.0);
   writer.close();
@@ -129,8 +142,11 @@ TEST_F(Video, AFullDiskIsAnErrorAtTheLatestWhenItIsClosed) {
       }
       writer.close();
     };
+    std::ofstream(folder_ / name) << "a video that was there";
     EXPECT_TRUE(throws_on_a_full_disk(write_all, 100'000)) << name;
+    EXPECT_EQ(std::filesystem::file_size(folder_ / name), 22U) << name;
     EXPECT_FALSE(throws_on_a_full_disk(write_all, RLIM_INFINITY)) << name;
+    EXPECT_GT(std::filesystem::file_size(folder_ / name), 100'000U) << name;
   }
 }
 
