@@ -262,26 +262,64 @@ TEST(Session, PotsDroppedIntoOnePlaceBeginOnTopOfOneAnotherAndComeToLieApart) {
     EXPECT_GT((pot->body.T_world_object * pot->model->middle).z(), 0.0) << pot->body.name;
 }
 
-TEST(Session, AChestPutAboutAPotBeginsOnTopOfItUnlessAShelfIsInTheWay) {
-  for (const auto& [how, has_shelf] : {std::pair{Action::kDrop, false}, std::pair{Action::kDrop, true},
-                                       std::pair{Action::kPlace, false}, std::pair{Action::kThrow, false}}) {
-    SavedMap map = half_floor_map();
+/// How far the bottom of the second of two bodies is above the floor where it begins, in a room with a shelf
+/// at shelf_z_m, if that is given.
+struct Put {
+  Action how = Action::kPlace;
+  Eigen::Vector3d at_world{-1.0, 0.0, 0.3};
+};
+double begins_at_m(const std::pair<Mesh, Put>& first, const std::pair<Mesh, Put>& second,
+                   std::optional<float> shelf_z_m = {}, bool faces_down = false) {
+  SavedMap map = half_floor_map();
+  if (shelf_z_m) {
     const std::vector<Eigen::Vector3f> floor = map.mesh.vertices;
     for (const Eigen::Vector3f& corner : floor)
-      map.mesh.vertices.push_back(corner + Eigen::Vector3f(0.0F, 0.0F, 0.75F));
-    if (has_shelf) map.mesh.triangles.insert(map.mesh.triangles.end(), {{4, 5, 6}, {4, 6, 7}});
-    Session session(map, by_recorded_poses());
-    drop_pots(session, {{-1.0, 0.0, 0.0}});  // begins 0.3 m above the floor
-    session.add_object("chest", shapes::box({0.4F, 0.4F, 0.5F}));
-    ScriptEvent put = event(how);
-    put.name = "chest";
-    put.position_world = Eigen::Vector3d(-1.0, 0.0, how == Action::kDrop ? 0.0 : 0.45);
-    put.height_m = 0.2;
-    session.apply(put);
-    const VirtualObject& pot = *session.objects().front();
-    const double chest_bottom_m = session.objects().back()->body.T_world_object.translation().z() - 0.25;
-    const double pot_top_m = pot.body.T_world_object.translation().z() + highest_m(pot);
-    EXPECT_NEAR(chest_bottom_m, has_shelf ? 0.2 : pot_top_m + PhysicsConfig{}.contact_margin_m, 1e-5);
+      map.mesh.vertices.push_back(corner + Eigen::Vector3f(0.0F, 0.0F, *shelf_z_m));
+    map.mesh.triangles.push_back(faces_down ? Triangle{4, 6, 5} : Triangle{4, 5, 6});
+    map.mesh.triangles.push_back(faces_down ? Triangle{4, 7, 6} : Triangle{4, 6, 7});
+  }
+  Session session(map, by_recorded_poses());
+  for (const auto& [mesh, put] : {first, second}) {
+    ScriptEvent event;
+    event.action = put.how;
+    event.name = std::to_string(session.objects().size());
+    event.position_world = put.at_world;
+    session.add_object(event.name, mesh);
+    session.apply(event);
+  }
+  const VirtualObject& put = *session.objects().back();
+  return put.body.T_world_object.translation().z() + lowest_m(put);
+}
+
+TEST(Session, WhatIsPutIntoAnotherObjectBeginsOnTopOfItUnlessTheRoomIsInTheWay) {
+  const Mesh pot = object_mesh("teapot", 0.08), chest = shapes::box({0.4F, 0.4F, 0.5F});
+  const Mesh crate = shapes::box({0.2F, 0.2F, 0.2F});
+  const double on_chest_m = 0.55 + PhysicsConfig{}.contact_margin_m;
+  const std::pair chest_there{chest, Put{}};  // from 0.05 to 0.55 m above the floor
+  for (const Action how : {Action::kDrop, Action::kPlace, Action::kThrow}) {
+    const Eigen::Vector3d at(-1.0, 0.0, how == Action::kDrop ? 0.0 : 0.3);
+    EXPECT_NEAR(begins_at_m(chest_there, {pot, {how, at}}), on_chest_m, 2e-5) << "wholly inside";
+  }
+  EXPECT_NEAR(begins_at_m(chest_there, {chest, {}}), on_chest_m, 2e-5) << "where its like stands";
+  EXPECT_NEAR(begins_at_m(chest_there, {chest, {Action::kPlace, {-0.9, 0.0, 0.3}}}), on_chest_m, 2e-5);
+  EXPECT_NEAR(begins_at_m({crate, {}}, {chest, {Action::kPlace, {-1.0, 0.1, 0.3}}}),
+              0.4 + PhysicsConfig{}.contact_margin_m, 2e-5)
+      << "wholly about it";
+  const double pot_in_chest_m = begins_at_m({crate, {Action::kPlace, {1.0, 0.0, 0.3}}}, {pot, {}});
+  for (const bool faces_down : {false, true}) {
+    EXPECT_NEAR(begins_at_m(chest_there, {pot, {}}, 0.57F, faces_down), pot_in_chest_m, 1e-9) << faces_down;
+    EXPECT_NEAR(begins_at_m(chest_there, {pot, {}}, 0.7F, faces_down), on_chest_m, 2e-5) << faces_down;
+  }
+  EXPECT_NEAR(begins_at_m({crate, {}}, {pot, {}}, 0.41F), pot_in_chest_m, 1e-9) << "through a board";
+}
+
+TEST(Session, WhatIsPutFlushBesideAnotherObjectStaysThere) {
+  const Mesh crate = shapes::box({0.2F, 0.2F, 0.2F});
+  for (const Eigen::Vector3d& beside : {Eigen::Vector3d(0.2, 0.0, 0.0), Eigen::Vector3d(0.0, -0.2, 0.0),
+                                        Eigen::Vector3d(0.0, 0.0, 0.2), Eigen::Vector3d(0.2, 0.2, 0.0)}) {
+    const Eigen::Vector3d at = Eigen::Vector3d(-1.0, 0.0, 0.3) + beside;
+    EXPECT_NEAR(begins_at_m({crate, {}}, {crate, {Action::kPlace, at}}), at.z() - 0.1, 1e-6)
+        << beside.transpose();
   }
 }
 
