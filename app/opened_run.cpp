@@ -74,12 +74,12 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
 }
 
 /// The frames, recorded on their way or compared with what was recorded of them.
-void open_frames(OpenedRun& run) {
+void open_frames(OpenedRun& run, bool has_picture) {
   const RunCommand& command = run.command;
   std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
   run.is_live = !opened->frame_count();
   if (!command.record_session.empty()) {
-    run.recorder.emplace(command.record_session, command, run.map.info);
+    run.recorder.emplace(command.record_session, command, has_picture, run.map.info);
     opened = run.recorder->recorded(std::move(opened));
   }
   if (is_session_folder(command.source)) {
@@ -87,9 +87,9 @@ void open_frames(OpenedRun& run) {
     if (const std::string fault = map_difference(command.source, run.map.info); !fault.empty())
       std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   }
-  // A session that was cut off has no event that ends it.
-  const bool just_ends = run.check && !has(run.script, Action::kQuit);
-  auto played = std::make_unique<PlaybackSource>(std::move(opened), just_ends ? AtEnd::kEnd : command.at_end);
+  // A session that was cut off has no event that ends it: it goes as far as there are results.
+  if (run.check && !has(run.script, Action::kQuit)) run.last_frame = run.check->last_frame();
+  auto played = std::make_unique<PlaybackSource>(std::move(opened), command.at_end);
   run.playback = played.get();
   run.interrupt.emplace();
   run.source = ended_by_interrupt(std::move(played));
@@ -118,6 +118,7 @@ SessionConfig config_of(const OpenedRun& run, bool has_window) {
   config.scene.surfaces = command.surfaces;
   apply(command.quality, config);
   config.make_picture = makes_picture(command, has_window);
+  config.yields_to_pictures = command.had_picture;
   config.measure_penetration = !command.report.empty();
   if (run.budget)
     config.watch = [budget = run.budget.get()](FramePart part, const FrameLoad& load) {
@@ -145,8 +146,12 @@ void open_session(OpenedRun& run, bool has_window) {
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
   if (run.command.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   // Objects are loaded now, so that a wrong mesh is said before the first frame and not when its turn comes.
-  for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kAdd) run.session->apply(event);
+  // For the same reason they are recorded as added now: a user may ask for one before its turn.
+  for (const ScriptEvent& event : run.script.events) {
+    if (event.action != Action::kAdd) continue;
+    run.session->apply(event);
+    if (run.recorder) run.recorder->write(event, 0);
+  }
 }
 
 void open_outputs(OpenedRun& run) {
@@ -172,8 +177,9 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   require_can_save_map(command, run.script);
   run.map = load_map(command.map);
   say_if_up_is_not_known(run.map.info, command.map);
-  open_frames(run);
-  open_budget(run, makes_picture(command, link != nullptr));
+  const bool has_picture = makes_picture(command, link != nullptr);
+  open_frames(run, has_picture);
+  open_budget(run, has_picture);
   open_session(run, link != nullptr);
   open_outputs(run);
   if (!command.frames_csv.empty()) run.frames_csv.emplace(command.frames_csv);

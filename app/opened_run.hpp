@@ -28,6 +28,7 @@ struct OpenedRun {
   bool is_live = false;
   std::optional<SessionRecorder> recorder;  ///< --record-session
   std::optional<ReplayCheck> check;         ///< the source is a session that was recorded
+  std::optional<std::int64_t> last_frame;   ///< none: to the end of the source, or until an event says quit
   std::optional<Interrupt> interrupt;
   std::unique_ptr<FrameSource> source;     ///< ends by Ctrl-C too
   PlaybackSource* playback = nullptr;      ///< within it

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,7 @@ class RunLoop {
       const Next next = read();
       if (next == Next::kEnd) break;
       if (next == Next::kSkipped) continue;
+      if (run_.last_frame && run_frame_ > *run_.last_frame) break;
       perform_due();
       if (!run_.was_quit) step();
     }
@@ -107,20 +109,25 @@ void RunLoop::perform_due() {
 void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
   if (event.action == Action::kQuit) run_.was_quit = true;
   if (event.action == Action::kCamera) control(*run_.playback, event.camera);
+  if (event.action == Action::kRadar && run_.budget) run_.budget->keep(event.radar);
   if (event.action != Action::kAdd)
     run_.session->apply(event);
-  else if (!is_from_script)  // a script's were added before the first frame
+  else if (is_from_script)
+    return;  // it was added, and recorded, before the first frame
+  else
     run_.session->add_object(event.name, run_.host->take_parts());
   if (run_.recorder) run_.recorder->write(event, run_frame_);
 }
 
 void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {
+  std::set<std::string> not_made;
   for (const ScriptEvent& event : events) {
+    if (not_made.contains(event.name)) continue;
     try {
       perform(event, /*is_from_script=*/false);
     } catch (const Error& fault) {
       run_.host->complain(fault.what());
-      break;  // those that follow are about what this one should have made
+      if (event.action == Action::kAdd) not_made.insert(event.name);
     }
   }
 }

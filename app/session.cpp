@@ -182,7 +182,8 @@ FrameLoad Session::load() const {
 }
 
 bool Session::is_turn_to_move(std::size_t number) const {
-  const std::int64_t pictures = config_.make_picture ? config_.picture_turns : 1;
+  const bool yields = config_.yields_to_pictures.value_or(config_.make_picture);
+  const std::int64_t pictures = yields ? config_.picture_turns : 1;
   if (pictures == 1) return is_turn(number, config_.object_turns);
   // Pictures are made in the others: no frame has both to do.
   const std::int64_t frame = frames_ % pictures;

@@ -77,7 +77,8 @@ void require_written(const std::ofstream& file, const fs::path& path) {
 
 }  // namespace
 
-SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map)
+SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, bool has_picture,
+                                 const MapInfo& map)
     : folder_(std::move(folder)) {
   std::error_code fault;
   fs::create_directories(folder_, fault);
@@ -94,7 +95,8 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
                {"surfaces", to_string(command.surfaces)},
                {"unknown_is_solid", command.unknown_is_solid},
                {"quality", to_json(command.quality)},
-               {"at_end", to_string(command.at_end)}};
+               {"at_end", to_string(command.at_end)},
+               {"picture", command.had_picture.value_or(has_picture)}};
   if (command.adopt_after_s) json["adopt_s"] = *command.adopt_after_s;
   std::ofstream settings(folder_ / kSettings);
   settings << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
@@ -109,7 +111,8 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
 }
 
 std::unique_ptr<FrameSource> SessionRecorder::recorded(std::unique_ptr<FrameSource> source) const {
-  return SpooledSource::kept(std::move(source), folder_ / kFrames);
+  constexpr std::size_t kAhead = 2;  // a run shows the newest frame, also after a pause
+  return SpooledSource::kept(std::move(source), folder_ / kFrames, kAhead);
 }
 
 void SessionRecorder::write(ScriptEvent event, std::int64_t run_frame) {
@@ -155,6 +158,7 @@ RunCommand read_session(const fs::path& folder) {
     command.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
     command.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
     command.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
+    if (json.contains("picture")) command.had_picture = json["picture"].get<bool>();
     if (json.contains("adopt_s")) command.adopt_after_s = adopt_seconds(json["adopt_s"], folder);
   } catch (const Json::exception& fault) {
     throw Error((folder / kSettings).string() + ": is damaged: " + fault.what());

@@ -26,8 +26,10 @@ namespace roomradar {
 class SessionRecorder {
  public:
   /// Makes the folder, or takes an empty one. Throws Error if it holds anything, or cannot be written.
-  /// @param map  as it was loaded; its checksums tell later whether it is still the same
-  SessionRecorder(std::filesystem::path folder, const RunCommand& command, const MapInfo& map);
+  /// @param has_picture  whether pictures are made
+  /// @param map          as it was loaded; its checksums tell later whether it is still the same
+  SessionRecorder(std::filesystem::path folder, const RunCommand& command, bool has_picture,
+                  const MapInfo& map);
 
   /// The source, which from now on is recorded as it is read, and can be read again.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
@@ -65,6 +67,10 @@ class ReplayCheck {
   [[nodiscard]] std::int64_t different() const { return different_; }
   [[nodiscard]] std::int64_t recorded() const { return static_cast<std::int64_t>(recorded_.size()); }
   [[nodiscard]] std::int64_t first_different() const { return first_different_; }
+  /// Of the run's frames, that of the last result that was recorded; -1 if there is none.
+  [[nodiscard]] std::int64_t last_frame() const {
+    return recorded_.empty() ? -1 : recorded_.back().run_frame;
+  }
 
  private:
   std::vector<FrameFingerprint> recorded_;

@@ -154,6 +154,9 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   EXPECT_EQ(budget["settings"].back()["step"], budget["steps"].get<int>() - 1);
   const Outcome again = roomradar("run " + hurried.string() + pictures("again"));
   EXPECT_NE(again.out.find("replay: 15 of 15 frames the same as recorded"), std::string::npos) << again.out;
+  // Objects move in the same frames where no pictures are made.
+  const Outcome unseen = roomradar("run " + session.string());
+  EXPECT_NE(unseen.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos) << unseen.out;
 
   // It can fail: dropped from higher up the pot is elsewhere, and that is told.
   std::ofstream(script) << "frame 0 add pot teapot\nframe 0 drop pot view height 0.4\nframe 44 quit\n";
@@ -181,6 +184,21 @@ TEST_F(CommandLine, ASessionThatWasCutOffReplaysToWhereItCame) {
   const Outcome replayed = roomradar("run " + session.string());
   EXPECT_EQ(replayed.status, 0) << replayed.out;
   EXPECT_NE(replayed.out.find("replay: 11 of 11 frames the same"), std::string::npos) << replayed.out;
+
+  // Killed while the camera was held, and a frame past the end: it ends where the results do.
+  const fs::path held = folder_ / "cut-held", script = folder_ / "held.txt";
+  std::ofstream(script) << "frame 0 add pot teapot\nframe 8 camera hold\nframe 40 quit\n";
+  ASSERT_EQ(
+      roomradar("run 'sim:table?frames=12&width=160&path=view&seed=2' --poses recorded --at-end stay --map " +
+                map() + " --script " + script.string() + " --record-session " + held.string())
+          .status,
+      0);
+  std::string events = read_text(held / "events.txt");
+  events.resize(events.find("frame 40 quit"));
+  std::ofstream(held / "events.txt") << events;
+  const Outcome ended = roomradar("run " + held.string());
+  EXPECT_EQ(ended.status, 0) << ended.out;
+  EXPECT_NE(ended.out.find("replay: 40 of 40 frames the same"), std::string::npos) << ended.out;
 
   std::ofstream(session / "session.json") << "{ \"format\": \"roomradar session\", \"format_version\": 9 }";
   expect_fault(roomradar("run " + session.string()), 1, "version 9,");
