@@ -1,6 +1,7 @@
 // playback_source.cpp: hold, rewind and repeat.
 #include "app/sources/playback_source.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace roomradar {
@@ -22,16 +23,19 @@ ReadResult PlaybackSource::next(Frame& frame) {
     if (result.status == ReadStatus::kEnd && at_end_ != AtEnd::kEnd) return repeat(frame);
   }
   if (result.status != ReadStatus::kFrame) return result;
-  if (was_rewound_ && last_stamp_s_) stamp_offset_s_ = *last_stamp_s_ + kFrame_s - frame.stamp_s;
-  was_rewound_ = false;
+  if (last_stamp_s_ && (was_rewound_ || was_repeated_)) {
+    const double following_s = *last_stamp_s_ + kFrame_s - frame.stamp_s;
+    // A device's clock went on while a frame was held.
+    stamp_offset_s_ = was_rewound_ ? following_s : std::max(stamp_offset_s_, following_s);
+  }
+  was_rewound_ = was_repeated_ = false;
   frame.stamp_s += stamp_offset_s_;
   last_stamp_s_ = frame.stamp_s;
   return result;
 }
 
 ReadResult PlaybackSource::repeat(Frame& frame) {
-  is_repeating_ = true;
-  stamp_offset_s_ += kFrame_s;
+  is_repeating_ = was_repeated_ = true;
   frame.stamp_s = *last_stamp_s_ + kFrame_s;
   last_stamp_s_ = frame.stamp_s;
   return {ReadStatus::kFrame, {}};

@@ -22,8 +22,8 @@ constexpr std::string_view to_string(AtEnd at_end) {
 }
 
 /// Passes the frames of the source within on. A frame that is repeated, or follows a rewind, is 1/30 s later
-/// than the one before, so that time goes on for whoever moves objects by it; index and pose stay the
-/// source's.
+/// than the one before, so that time goes on for whoever moves objects by it, and so is what follows repeated
+/// frames, unless the source's own clock went on by more meanwhile; index and pose stay the source's.
 class PlaybackSource final : public FrameSource {
  public:
   PlaybackSource(std::unique_ptr<FrameSource> source, AtEnd at_end);
@@ -50,6 +50,7 @@ class PlaybackSource final : public FrameSource {
   bool is_repeating_ = false;
   std::optional<double> last_stamp_s_;  ///< as it was passed on
   bool was_rewound_ = false;            ///< the next frame's stamp does not follow on the last one's
+  bool was_repeated_ = false;           ///< the last frame was passed on once more
   double stamp_offset_s_ = 0.0;         ///< added to the source's own
 
   ReadResult repeat(Frame& frame);

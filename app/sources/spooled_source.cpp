@@ -101,11 +101,12 @@ SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, const fs::path
     : SpooledSource(std::move(source), make_temporary_folder(parent_folder), /*kept=*/false) {}
 
 std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> source,
-                                                   const fs::path& folder) {
+                                                   const fs::path& folder, std::size_t most_ahead) {
   std::error_code fault;
   fs::create_directories(folder, fault);
   if (fault) throw Error(folder.string() + ": the folder cannot be made: " + fault.message());
   std::unique_ptr<SpooledSource> spooled(new SpooledSource(std::move(source), folder, /*kept=*/true));
+  spooled->most_ahead_ = most_ahead;
   const fs::path path = folder / kList;
   if (fs::exists(path)) {
     Left left = read_list(folder);
@@ -161,6 +162,7 @@ void SpooledSource::stop_capture() {
     const std::lock_guard lock(mutex_);
     stop_ = true;
   }
+  changed_.notify_all();
   thread_.join();
   thread_ = {};
   stop_ = false;
@@ -176,13 +178,22 @@ SpooledSource::~SpooledSource() {
 void SpooledSource::capture() {
   Frame frame;
   try {
-    while (capture_one(frame)) {
+    while (wait_for_reader() && capture_one(frame)) {
     }
   } catch (...) {
     const std::lock_guard lock(mutex_);
     failure_ = std::current_exception();
   }
   changed_.notify_all();
+}
+
+/// False when nobody wants more.
+bool SpooledSource::wait_for_reader() {
+  std::unique_lock lock(mutex_);
+  // A reader that goes back in what there is needs no more for now.
+  changed_.wait(
+      lock, [&] { return stop_ || entries_.size() - std::min(position_, entries_.size()) < most_ahead_; });
+  return !stop_;
 }
 
 /// False at the end, or when nobody wants more.
@@ -231,9 +242,11 @@ ReadResult SpooledSource::next(Frame& frame) {
       return *std::exchange(waiting_, std::nullopt);
     }
   }
-  const Entry& entry = entries_[position_];
+  const std::size_t position = position_++;
+  const Entry& entry = entries_[position];
   lock.unlock();
-  return read_again(entry, position_++, frame);
+  changed_.notify_all();
+  return read_again(entry, position, frame);
 }
 
 ReadResult SpooledSource::read_again(const Entry& entry, std::size_t position, Frame& frame) const {

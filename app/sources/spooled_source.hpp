@@ -6,6 +6,7 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -31,10 +32,15 @@ class SpooledSource final : public FrameSource {
 
   /// Spools to `folder`, which stays. Frames that an earlier process left there come first, and those of the
   /// source follow as if they were one recording: with the next index, and stamps that go on.
-  /// @param source  may be null where has_end(folder)
+  /// @param source      may be null where has_end(folder)
+  /// @param most_ahead  the source is not read while so many frames wait to be: of a live one those in
+  /// between
+  ///                    are lost, as if there were no spool
   /// @throws Error if the folder cannot be made, or holds no spool
   static std::unique_ptr<SpooledSource> kept(std::unique_ptr<FrameSource> source,
-                                             const std::filesystem::path& folder);
+                                             const std::filesystem::path& folder,
+                                             std::size_t most_ahead = kEveryFrame);
+  static constexpr std::size_t kEveryFrame = std::numeric_limits<std::size_t>::max();
   /// Whether a spool is in the folder whose source had come to its end.
   static bool has_end(const std::filesystem::path& folder);
 
@@ -73,6 +79,7 @@ class SpooledSource final : public FrameSource {
   void append(Entry* entry);
   ReadResult read_again(const Entry& entry, std::size_t position, Frame& frame) const;
   void stop_capture();
+  bool wait_for_reader();
   // Of the thread that reads the source within.
   void capture();
   bool capture_one(Frame& frame);
@@ -84,10 +91,11 @@ class SpooledSource final : public FrameSource {
   std::ofstream list_;                          ///< only if kept
   std::int64_t index_offset_ = 0;               ///< added to the source's own, if others came before
   std::optional<double> stamp_offset_s_ = 0.0;  ///< none: to be found from the source's next frame
-  std::size_t position_ = 0;
+  std::size_t most_ahead_ = kEveryFrame;
 
   mutable std::mutex mutex_;  ///< of what follows
   std::condition_variable changed_;
+  std::size_t position_ = 0;
   std::deque<Entry> entries_;  ///< those that are there stay where they are
   bool at_end_ = false;
   bool stop_ = false;

@@ -332,6 +332,35 @@ TEST(SpooledSource, KeptGoesOnInALaterProcess) {
   EXPECT_EQ(read_all(*source).frames.size(), 5U);
 }
 
+TEST(SpooledSource, IsNotReadAheadByMoreThanAsked) {
+  struct Counted final : FrameSource {
+    explicit Counted(std::atomic<int>& frames) : read(frames) {}
+    ReadResult next(Frame& frame) override {
+      frame = test::some_frame(read++);
+      return {ReadStatus::kFrame, {}};
+    }
+    bool rewind() override { return false; }
+    [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
+    [[nodiscard]] std::string name() const override { return "counted"; }
+    std::atomic<int>& read;
+  };
+  const test::TemporaryFolder parent;
+  std::atomic<int> read = 0;
+  const auto source = SpooledSource::kept(std::make_unique<Counted>(read), parent.path() / "spool", 2);
+  Frame frame;
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
+    EXPECT_EQ(frame.index, test::some_frame(i).index);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it would have gone on by then
+    EXPECT_LE(read, i + 3);
+  }
+  ASSERT_TRUE(source->rewind());
+  for (int i = 0; i < 14; ++i) {
+    ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
+    EXPECT_EQ(frame.index, test::some_frame(i).index);
+  }
+}
+
 TEST(SpooledSource, AListThatIsNoneIsRefused) {
   const test::TemporaryFolder parent;
   std::ofstream(parent.path() / "list.bin") << "something else";
