@@ -62,6 +62,8 @@ bool Interrupt::take() {
   return asked.compare_exchange_strong(to_end, kEnds);
 }
 
+bool Interrupt::is_asked() { return asked == kToEnd; }
+
 std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source) {
   return std::make_unique<EndedByInterrupt>(std::move(source));
 }

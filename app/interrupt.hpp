@@ -17,6 +17,8 @@ class Interrupt {
 
   /// Whether Ctrl-C was pressed since it was last taken.
   static bool take();
+  /// Whether it was pressed and is not taken yet.
+  static bool is_asked();
 };
 
 /// A source that comes to its end when Ctrl-C is pressed while it is read.

@@ -30,11 +30,10 @@ void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Font
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     const ImVec2 mouse = ImGui::GetMousePos();
     const Eigen::Vector2d pixel((mouse.x - image.x) / scale - 0.5, (mouse.y - image.y) / scale - 0.5);
-    if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
-      pixel_ = pixel;
-      press_and_drag(pixel, drop_height_m);
-      turn(shown);
-    }
+    const bool is_here = ImGui::IsItemHovered() || ImGui::IsItemActive();
+    if (is_here) pixel_ = pixel;
+    if (is_here || is_down_) press_and_drag(pixel, drop_height_m);  // what is held may be let go elsewhere
+    if (is_here) turn(shown);
     mark_chosen(*draw, shown, image, scale, fonts);
     std::array<char, 96> text{};
     std::snprintf(text.data(), text.size(), "frame %lld   %.1f s", static_cast<long long>(shown.source_frame),
@@ -45,6 +44,18 @@ void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Font
                   text.data());
   }
   look::end_pane();
+}
+
+void PicturePane::leave() {
+  pixel_.reset();
+  if (!is_down_) return;
+  is_down_ = false;
+  Wish wish;
+  wish.kind = WishKind::kLetGo;
+  wish.was_dragged = true;
+  wish.pixel = lately_.back().pixel;
+  wish.nearer_m = nearer_m_;
+  link_.ask(wish);
 }
 
 void PicturePane::press_and_drag(const Eigen::Vector2d& pixel, double drop_height_m) {

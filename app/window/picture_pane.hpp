@@ -19,6 +19,8 @@ class PicturePane {
   /// A new snapshot has come.
   void upload(const Snapshot& shown) { texture_.upload(shown.picture); }
   void draw(const Area& area, const Snapshot& shown, const look::Fonts& fonts, double drop_height_m);
+  /// It is not drawn now: what the mouse held is let go.
+  void leave();
 
   /// Where the mouse is in the picture, pixels; nothing if it is elsewhere.
   [[nodiscard]] const std::optional<Eigen::Vector2d>& pixel() const { return pixel_; }

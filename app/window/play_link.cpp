@@ -2,6 +2,9 @@
 #include "app/window/play_link.hpp"
 
 #include <algorithm>
+#include <chrono>
+
+#include "app/interrupt.hpp"
 
 namespace roomradar {
 
@@ -74,6 +77,7 @@ bool PlayLink::is_over() const {
 
 bool PlayLink::wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh) {
   constexpr double kCatchUp_s = 0.2;  // what was missed by more is not made up for
+  constexpr std::chrono::milliseconds kLookUp{200};
   std::unique_lock lock(mutex_);
   while (!is_closed_) {
     if (wants_changed_) {
@@ -85,7 +89,8 @@ bool PlayLink::wait_turn(double stamp_s, bool in_time, const std::function<void(
     }
     if (is_paused_ && steps_ == 0) {
       last_turn_.reset();
-      changed_.wait(lock);
+      changed_.wait_for(lock, kLookUp);
+      if (Interrupt::is_asked()) break;  // nobody reads the source, which would say so
       continue;
     }
     const Clock::time_point now = Clock::now();

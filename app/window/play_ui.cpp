@@ -80,6 +80,8 @@ void PlayUi::draw(float width, float height) {
   } else {
     if (!layout.camera.empty())
       picture_.draw(layout.camera, shown_, fonts_, static_cast<double>(settings_.drop_height_m));
+    else
+      picture_.leave();
     if (!layout.models.empty()) models_.draw(layout.models, shown_, fonts_);
   }
   timing_.draw(layout.timing, fonts_);

@@ -58,9 +58,12 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
   if (look::button("Add", "A", false, {128.0F, 0.0F})) link.ask(new_object_wish(settings));
   ImGui::PushItemWidth(-1.0F);
   ImGui::SliderFloat("##size", &settings.new_size_m, 0.0F, 0.6F,
-                     settings.new_size_m < 0.001F ? "new: its own size" : "new: %.2f m long");
-  ImGui::SliderFloat("##height", &settings.drop_height_m, 0.0F, 1.0F, "drop from %.2f m");
-  ImGui::SliderFloat("##speed", &settings.throw_speed_mps, 0.5F, 10.0F, "throw at %.1f m/s");
+                     settings.new_size_m < 0.001F ? "new: its own size" : "new: %.2f m long",
+                     ImGuiSliderFlags_AlwaysClamp);  // typed numbers too
+  ImGui::SliderFloat("##height", &settings.drop_height_m, 0.0F, 1.0F, "drop from %.2f m",
+                     ImGuiSliderFlags_AlwaysClamp);
+  ImGui::SliderFloat("##speed", &settings.throw_speed_mps, 0.5F, 10.0F, "throw at %.1f m/s",
+                     ImGuiSliderFlags_AlwaysClamp);
   ImGui::PopItemWidth();
 }
 
@@ -88,7 +91,7 @@ void draw_policies(const Snapshot& shown, PlayLink& link, PlaySettings& settings
   }
   if (!ImGui::IsAnyItemActive()) settings.radar_px = radar.resolution_px;
   ImGui::SetNextItemWidth(-1.0F);
-  ImGui::SliderInt("##px", &settings.radar_px, 8, 256, "%d pixels");
+  ImGui::SliderInt("##px", &settings.radar_px, 8, 256, "%d pixels", ImGuiSliderFlags_AlwaysClamp);
   if (ImGui::IsItemDeactivatedAfterEdit()) {
     radar.resolution_px = settings.radar_px;
     link.ask(radar_wish(radar));

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <csignal>
 #include <thread>
 
+#include "app/interrupt.hpp"
 #include "app/window/play_host.hpp"
 #include "app/window/play_link.hpp"
 #include "mapping/types/error.hpp"
@@ -271,6 +273,15 @@ TEST(PlayLink, APausedSessionWaitsForAStepOrTheEnd) {
   EXPECT_EQ(refreshed, 1);
   link.close();
   EXPECT_FALSE(link.wait_turn(2.0, true, [] {}));
+}
+
+TEST(PlayLink, CtrlCEndsAPausedSession) {
+  const Interrupt interrupt;
+  PlayLink link;
+  link.set_paused(true);
+  std::raise(SIGINT);
+  EXPECT_FALSE(link.wait_turn(1.0, true, [] {}));
+  EXPECT_TRUE(Interrupt::take()) << "whoever reads the source is told, too";
 }
 
 TEST(PlayLink, OfManyDragsOnlyTheNewestCountsAndTheOrderOfTheRestStays) {
