@@ -76,16 +76,16 @@ void set_field_of(Quality& quality, std::string_view name, std::string_view word
 }
 
 template <typename Quality>
-FieldWords words_of_fields(const Quality& quality) {
-  std::vector<std::string> usual;
-  const Quality defaults;
-  visit_fields(defaults,
-               [&](const QualityField& /*field*/, const auto& value) { usual.push_back(word_of(value)); });
+FieldWords words_of_fields(const Quality& quality, const Quality& usual) {
+  std::vector<std::string> usual_words;
+  visit_fields(usual, [&](const QualityField& /*field*/, const auto& value) {
+    usual_words.push_back(word_of(value));
+  });
   FieldWords words;
   std::size_t i = 0;
   visit_fields(quality, [&](const QualityField& field, const auto& value) {
     std::string word = word_of(value);
-    if (word != usual[i++]) words.emplace_back(field.name, std::move(word));
+    if (word != usual_words[i++]) words.emplace_back(field.name, std::move(word));
   });
   return words;
 }
@@ -102,7 +102,11 @@ void set_field(RunQuality& quality, std::string_view name, std::string_view word
   set_field_of(quality, name, word);
 }
 
-FieldWords words_of(const ScanQuality& quality) { return words_of_fields(quality); }
-FieldWords words_of(const RunQuality& quality) { return words_of_fields(quality); }
+FieldWords words_of(const ScanQuality& quality, const ScanQuality& usual) {
+  return words_of_fields(quality, usual);
+}
+FieldWords words_of(const RunQuality& quality, const RunQuality& usual) {
+  return words_of_fields(quality, usual);
+}
 
 }  // namespace roomradar

@@ -145,9 +145,9 @@ void set_fields(Quality& quality, const FieldWords& words) {
   for (const auto& [name, word] : words) set_field(quality, name, word);
 }
 
-/// Names and words of the fields that are not the default's, in the order of visit_fields(). From a default
-/// set_field() makes the very same quality of them, to the last bit of its numbers.
-FieldWords words_of(const ScanQuality& quality);
-FieldWords words_of(const RunQuality& quality);
+/// Names and words of the fields that are not as usual, in the order of visit_fields(). From the usual
+/// quality set_field() makes the very same quality of them, to the last bit of its numbers.
+FieldWords words_of(const ScanQuality& quality, const ScanQuality& usual = {});
+FieldWords words_of(const RunQuality& quality, const RunQuality& usual = {});
 
 }  // namespace roomradar

@@ -20,18 +20,37 @@ std::vector<BudgetStep> steps_of(const std::vector<FrontStep>& front, bool has_p
   return steps;
 }
 
+/// What a frame of some load takes of the default's, about.
+double part_of_usual(const FrontStep& step) {
+  constexpr FrameLoad kSome{.moved_fraction = 0.1, .moving = 2, .resting = 2};
+  double ms = 0.0, default_ms = 0.0;
+  for (std::size_t part = 0; part < kFrameParts; ++part) {
+    const double part_ms = usual_ms(static_cast<FramePart>(part), kSome);
+    ms += step.part_ratios[part] * part_ms;
+    default_ms += part_ms;
+  }
+  return ms / default_ms;
+}
+
 }  // namespace
 
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed) {
   std::vector<FrontStep> front(1);
   front.front().run = most;
+  bool is_in_front = false;
   for (FrontStep step : presets.front) {
     set_fields(step.run, fixed);
-    if (step.run == most)
+    if (step.run == most) {
       front = {std::move(step)};  // what is more accurate than this is not asked for
-    else if (!(step.run == front.back().run))
+      is_in_front = true;
+    } else if (!(step.run == front.back().run)) {
       front.push_back(std::move(step));
+    }
   }
+  if (!is_in_front)  // what is slower is not asked for either
+    front.erase(std::remove_if(front.begin() + 1, front.end(),
+                               [](const FrontStep& step) { return !(part_of_usual(step) < 1.0); }),
+                front.end());
   return front;
 }
 
@@ -70,16 +89,23 @@ std::vector<ScriptEvent> RunBudget::end_frame() {
     parts_ms[part] = begun_ms_[part + 1] - begun_ms_[part];
   ++frames_;
   if (frame_ms > config_.budget_ms) ++frames_over_;
-  ++frames_at_[state_.step];
+  ++frames_at_[state_.steps[0]];
   learn(state_, config_, parts_ms);
   return std::exchange(changes_, {});
 }
 
 std::string RunBudget::given_up() const {
   std::string list;
-  for (const auto& [name, word] : words_of(front_[state_.step].run))
+  for (const auto& [name, word] : words_of(front_[state_.step].run, front_.front().run))
     list.append(list.empty() ? "" : ", ").append(name).append(" ").append(word);
   return list;
+}
+
+void RunBudget::keep(const RadarConfig& radar) {
+  for (FrontStep& step : front_) {
+    step.run.radar = radar.mode;
+    step.run.radar_px = radar.resolution_px;
+  }
 }
 
 std::string RunBudget::news() {

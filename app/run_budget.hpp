@@ -14,8 +14,9 @@
 
 namespace roomradar {
 
-/// The steps that a run may take: `most`, and of the presets' front what comes after that, or all if it is
-/// not in the front. What is fixed by name is so in all of them; neighbours that become alike are one.
+/// The steps that a run may take: `most`, and of the presets' front what comes after that, or all that is
+/// faster than the default if it is not in the front. What is fixed by name is so in all of them; neighbours
+/// that become alike are one.
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed);
 
 /// Of the wall clock.
@@ -35,7 +36,9 @@ class RunBudget {
   std::vector<ScriptEvent> end_frame();
   /// A sentence for the user, if something changed that was not said yet, once a second at most.
   std::string news();
-  /// What is given up now, "depth_stride 2, shadows off"; empty: nothing.
+  /// From now on every step has this radar: it was asked for.
+  void keep(const RadarConfig& radar);
+  /// What is given up now of what the run began with, "depth_stride 2, shadows off"; empty: nothing.
   [[nodiscard]] std::string given_up() const;
   /// Budget, frames over it, changes, and the frames that were begun with each setting.
   [[nodiscard]] nlohmann::json report() const;

@@ -202,6 +202,7 @@ TEST(RunBudget, TakesTheFrontFromWhatIsAskedForOnAndKeepsWhatIsFixed) {
     FrontStep& step = presets.front.emplace_back();
     step.run.depth_stride = stride;
     step.run.shadows = stride == 1;
+    step.part_ratios.fill(1.0 / stride);
   }
   EXPECT_EQ(front_for(presets, {}, {}).size(), 3U);
   EXPECT_EQ(front_for(presets, presets.front[1].run, {}).size(), 2U);
@@ -209,9 +210,45 @@ TEST(RunBudget, TakesTheFrontFromWhatIsAskedForOnAndKeepsWhatIsFixed) {
   const auto fixed = front_for(presets, with_shadows, {{"shadows", "on"}, {"depth_stride", "1"}});
   EXPECT_EQ(fixed.size(), 1U);
   RunQuality other{.tracking_px = 100};
+  FrontStep slower;
+  slower.run.tracking_px = 320;
+  slower.part_ratios.fill(1.8);
+  presets.front.insert(presets.front.begin(), slower);
   const auto all = front_for(presets, other, {});
-  ASSERT_EQ(all.size(), 4U);
+  ASSERT_EQ(all.size(), 3U) << "no slower one, nor the default, which is none";
   EXPECT_EQ(all.front().run, other);
+  EXPECT_EQ(all.back().run.depth_stride, 4);
+}
+
+TEST(RunBudget, ComesBackToWhatWasAskedForThoughTheFrontHasSlowerSettings) {
+  Presets presets;
+  for (const double ratio : {2.5, 1.8, 1.2, 0.9, 0.5}) {
+    FrontStep& step = presets.front.emplace_back();
+    step.run.object_error_px = 3.0 * ratio;
+    step.part_ratios.fill(ratio);
+  }
+  for (const double default_ms : {12.0, 18.0, 22.0}) {
+    double now_ms = 0.0;
+    RunBudget budget(front_for(presets, {}, {}), 33.0, /*has_picture=*/true, [&] { return now_ms; });
+    RunQuality quality;
+    for (int frame = 0; frame < 2000; ++frame) {
+      const bool has_load = frame >= 100 && frame < 160;
+      for (std::size_t part = 0; part <= kFrameParts; ++part) {
+        if (const auto changed = budget.before(static_cast<FramePart>(part), kCalm)) quality = *changed;
+        const double ratio = quality == RunQuality{} ? 1.0 : quality.object_error_px / 3.0;
+        if (part < kFrameParts)
+          now_ms += ratio * (has_load ? 60.0 : default_ms) * usual_ms(static_cast<FramePart>(part), kCalm) /
+                    (usual_ms(FramePart::kLocate, kCalm) + usual_ms(FramePart::kMesh, kCalm) +
+                     usual_ms(FramePart::kPhysics, kCalm) + usual_ms(FramePart::kCompose, kCalm));
+      }
+      budget.end_frame();
+      if (frame == 140) {
+        EXPECT_NE(budget.given_up(), "") << default_ms;
+      }
+    }
+    EXPECT_EQ(budget.given_up(), "") << default_ms;
+    EXPECT_EQ(quality, RunQuality{}) << default_ms;
+  }
 }
 
 TEST(RunBudget, SaysWhatItGaveUpAndRecordsItAsEvents) {
@@ -220,7 +257,11 @@ TEST(RunBudget, SaysWhatItGaveUpAndRecordsItAsEvents) {
   presets.front[1].run.depth_stride = 2;
   presets.front[1].part_ratios = {0.1, 0.1, 0.1, 0.1};
   double now_ms = 0.0;
-  RunBudget budget(front_for(presets, {}, {}), 20.0, /*has_picture=*/true, [&] { return now_ms; });
+  const RunQuality asked{.mesh_sigmas = 1.0};
+  for (FrontStep& step : presets.front) step.run.mesh_sigmas = asked.mesh_sigmas;
+  RunBudget budget(front_for(presets, asked, {}), 20.0, /*has_picture=*/true, [&] { return now_ms; });
+  EXPECT_EQ(budget.given_up(), "") << "what was asked for is not given up";
+  budget.keep({.mode = RadarMode::kSampled, .resolution_px = 32});
   std::vector<ScriptEvent> events;
   for (int frame = 0; frame < 60; ++frame) {
     for (std::size_t part = 0; part <= kFrameParts; ++part) {
@@ -232,6 +273,8 @@ TEST(RunBudget, SaysWhatItGaveUpAndRecordsItAsEvents) {
   ASSERT_FALSE(events.empty());
   EXPECT_EQ(events.front().action, Action::kQuality);
   EXPECT_EQ(events.front().quality.depth_stride, 2);
+  EXPECT_EQ(events.front().quality.radar, RadarMode::kSampled) << "the user's";
+  EXPECT_EQ(events.front().quality.radar_px, 32);
   EXPECT_EQ(budget.given_up(), "depth_stride 2");
   EXPECT_EQ(budget.news(), "budget 20 ms: with depth_stride 2");
   EXPECT_EQ(budget.news(), "") << "once";
