@@ -38,10 +38,11 @@ void require_object(const Json& json, std::initializer_list<std::string_view> ke
   }
 }
 
-/// The member, or an empty object where there is none.
-Json member(const Json& json, const char* key) {
+/// The member, or an empty object where there is none. Not a copy: that goes as deep as what it copies.
+const Json& member(const Json& json, const char* key) {
+  static const Json kEmpty = Json::object();
   const auto found = json.find(key);
-  return found == json.end() ? Json::object() : *found;
+  return found == json.end() ? kEmpty : *found;
 }
 
 double number_of(const Json& json, const std::string& where) {
@@ -109,7 +110,7 @@ Presets presets_of(std::string_view text, const std::string& where) {
                 ", which this program reads");
   require_object(json, {"format", "format_version", "made_by", "presets", "front"}, where);
   Presets presets;
-  const Json made_by = member(json, "made_by"), named = member(json, "presets");
+  const Json &made_by = member(json, "made_by"), &named = member(json, "presets");
   if (!made_by.is_object() || !named.is_object())
     throw Error(where + ": made_by and presets must be JSON objects");
   for (const auto& item : made_by.items()) {

@@ -99,7 +99,9 @@ Json parse_json_of_format(const std::filesystem::path& path, const char* format,
   Json root = Json::parse(read_json_text(path), nullptr, /*allow_exceptions=*/false);
   if (root.is_discarded()) throw Error(name + ": is not JSON; is it cut short?");
   const Json& said = json_field(root, "format", name);
-  if (said != format) throw Error(name + ": 'format' is " + said.dump() + "; must be \"" + format + "\"");
+  if (said != format)
+    throw Error(name + ": 'format' is " + (said.is_string() ? said.dump() : "no text") + "; must be \"" +
+                format + "\"");
   if (json_number(root, "version", name) != version)
     throw Error(name + ": is of version " + json_field(root, "version", name).dump() +
                 "; this program reads version " + std::to_string(version));

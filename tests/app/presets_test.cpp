@@ -64,6 +64,13 @@ TEST(Presets, WhatIsWrongIsNamed) {
   EXPECT_EQ(fault_of_text(begin + R"(, "front": {}})"), "p.json: front: is not a list, or longer than 1000");
   EXPECT_EQ(fault_of_text(begin + R"(, "made_by": {"machine": 2}})"),
             "p.json: made_by: machine: is not text");
+  const std::string deep =
+      std::string(400'000, '[') + std::string(400'000, ']');  // not to be copied, nor said
+  EXPECT_EQ(fault_of_text(begin + R"(, "made_by": {"machine": )" + deep + "}}"),
+            "p.json: made_by: machine: is not text");
+  EXPECT_EQ(fault_of_text(begin + R"(, "presets": {"fast": {"figures": {"a": )" + deep + "}}}}"),
+            "p.json: fast: figures: a: is not a number");
+  EXPECT_NE(fault_of_text(begin + R"(, "presets": {"fast": {"run": {"shadows": )" + deep + "}}}}"), "");
   EXPECT_TRUE(presets_of(begin + "}", "p.json").front.empty());
 }
 

@@ -565,6 +565,8 @@ TEST(Intrinsics, BrokenFilesAreNamed) {
   EXPECT_TRUE(contains(fails("camera.json", "{}"), "'format' is missing"));
   EXPECT_TRUE(contains(fails("camera.json", "[1, 2]"), "missing"));
   EXPECT_TRUE(contains(fails("camera.json", R"({"format": "roomradar camera", "version": 2})"), "version 2"));
+  const std::string deep = std::string(400'000, '[') + std::string(400'000, ']');
+  EXPECT_TRUE(contains(fails("camera.json", R"({"format": )" + deep + "}"), "'format' is no text"));
   EXPECT_TRUE(contains(fails("camera.json", head + R"({"width_px": 16})" + "}"), "'height_px' is missing"));
   EXPECT_TRUE(
       contains(fails("camera.json", head + R"({"width_px": "16"})" + "}"), "width_px is not a number"));
