@@ -9,13 +9,16 @@ namespace roomradar {
 namespace {
 
 /// A camera's pose after_s after it was at T_world_now, moving on as it moved for dt_s until then; no farther
-/// than that motion, either way. Without a time to go by it stands.
+/// than that motion, either way. Without a time to go by it stands, and so it does after a jump: the source
+/// went back, or the pose was found anew.
 Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eigen::Isometry3d& T_world_now,
                               double dt_s, double after_s) {
+  constexpr double kJump_m = 0.3, kJump_rad = 0.3;
   if (!(dt_s > 0.0) || after_s == 0.0) return T_world_now;
   const double part = std::clamp(after_s / dt_s, -1.0, 1.0);
   const Eigen::Isometry3d T_before_now = T_world_before.inverse() * T_world_now;
   const Eigen::AngleAxisd turn(T_before_now.linear());
+  if (!(T_before_now.translation().norm() < kJump_m && turn.angle() < kJump_rad)) return T_world_now;
   Eigen::Isometry3d T_now_then = Eigen::Isometry3d::Identity();
   T_now_then.linear() = Eigen::AngleAxisd(part * turn.angle(), turn.axis()).toRotationMatrix();
   T_now_then.translation() = part * T_before_now.linear().transpose() * T_before_now.translation();

@@ -157,6 +157,8 @@ SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_
     StaticMap finer(b.octree.resolution_m(), a.octree.config());
     add_map(a.octree, Eigen::Isometry3d::Identity(), finer);
     a.octree = std::move(finer);
+    if (const auto setting = b.info.settings.find("resolution_m"); setting != b.info.settings.end())
+      a.info.settings["resolution_m"] = setting->second;
   }
   add_map(b.octree, T_a_b, a.octree);
   a.mesh = extract_surface(a.octree, surface);

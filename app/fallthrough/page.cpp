@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "app/fallthrough/totals.hpp"
 #include "app/svg_plot.hpp"
 #include "mapping/coverage_picture.hpp"
 #include "mapping/types/whole_file.hpp"
@@ -51,11 +52,11 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const PolicyTotals& t = totals[i];
     std::snprintf(line, sizeof line,
-                  "<tr><td>%s</td><td>%d (%.1f %%)</td><td>%d (%.1f %%)</td><td>%.1f mm</td><td>%.1f mm</td>"
+                  "<tr><td>%s</td><td>%d (%.1f %%)</td><td>%d (%.1f %%)</td><td>%s</td><td>%s</td>"
                   "<td>%.1f ms</td><td>× %.2f</td></tr>\n",
                   std::string(kFallthroughPolicies[i].name).c_str(), t.passed, 100.0 * t.passed / count,
-                  t.false_stops, 100.0 * t.false_stops / count, 1e3 * t.contact_error_median_m,
-                  1e3 * t.contact_error_p95_m, t.frame_median_ms, t.cost_ratio);
+                  t.false_stops, 100.0 * t.false_stops / count, millimetres(t.contact_error_median_m).c_str(),
+                  millimetres(t.contact_error_p95_m).c_str(), t.frame_median_ms, t.cost_ratio);
     html += line;
   }
   return html + "</table>\n";

@@ -2,8 +2,10 @@
 #include "app/fallthrough/totals.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "mapping/types/whole_file.hpp"
 
@@ -24,11 +26,18 @@ ScenarioRow row_of(const Scenario& scenario, std::size_t room, const std::string
 }
 
 double percentile(std::vector<double> values, double part) {
-  if (values.empty()) return 0.0;
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto rank = static_cast<std::ptrdiff_t>(std::ceil(part * static_cast<double>(values.size()))) - 1;
   const auto at = values.begin() + std::clamp<std::ptrdiff_t>(rank, 0, std::ssize(values) - 1);
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+std::string millimetres(double metres) {
+  if (!std::isfinite(metres)) return "-";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f mm", 1e3 * metres);
+  return text.data();
 }
 
 std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>& rows) {
@@ -57,11 +66,11 @@ std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int s
       "surfaces       passed through     false stops   contact error, median and 95 %   frame, median\n";
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const PolicyTotals& t = totals[i];
-    std::snprintf(line, sizeof line,
-                  "%-11s %8d (%5.1f %%) %6d (%5.1f %%)  %10.1f mm %10.1f mm  %10.1f ms x %.2f\n",
+    std::snprintf(line, sizeof line, "%-11s %8d (%5.1f %%) %6d (%5.1f %%)  %13s %13s  %10.1f ms x %.2f\n",
                   std::string(kFallthroughPolicies[i].name).c_str(), t.passed, 100.0 * t.passed / scenarios,
-                  t.false_stops, 100.0 * t.false_stops / scenarios, 1e3 * t.contact_error_median_m,
-                  1e3 * t.contact_error_p95_m, t.frame_median_ms, t.cost_ratio);
+                  t.false_stops, 100.0 * t.false_stops / scenarios,
+                  millimetres(t.contact_error_median_m).c_str(), millimetres(t.contact_error_p95_m).c_str(),
+                  t.frame_median_ms, t.cost_ratio);
     table += line;
   }
   return table;

@@ -29,15 +29,18 @@ ScenarioRow row_of(const Scenario& scenario, std::size_t room, const std::string
 struct PolicyTotals {
   int passed = 0;
   int false_stops = 0;
-  double contact_error_median_m = 0.0;  ///< of those that something stopped, how far from the truth
+  double contact_error_median_m =
+      0.0;  ///< of those that something stopped, how far from the truth; NaN: none
   double contact_error_p95_m = 0.0;
   double frame_median_ms = 0.0;
   double cost_ratio = 0.0;  ///< median, scenario by scenario, of the frame's time to the first policy's
 };
 std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>& rows);
 
-/// Nearest rank, 0 <= part <= 1; 0 for no values.
+/// Nearest rank, 0 <= part <= 1; NaN for no values.
 double percentile(std::vector<double> values, double part);
+/// "3.2 mm"; "-" for what is not known.
+std::string millimetres(double metres);
 
 std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int scenarios);
 /// `policies` of the report, and `failures`: each trial that was not right.

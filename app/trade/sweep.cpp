@@ -25,6 +25,14 @@ std::vector<std::size_t> order_of(const std::vector<Setting>& settings, const Se
   return order;
 }
 
+/// What there is when the sweep is stopped in a scene: the scenes before it, all settings of which were
+/// measured; where there is none, what there is of this one.
+std::vector<SweepRow> stopped_in(std::size_t scene, std::vector<SweepRow> rows) {
+  if (!rows.empty() && rows.front().scene < scene)
+    std::erase_if(rows, [scene](const SweepRow& row) { return row.scene == scene; });
+  return rows;
+}
+
 }  // namespace
 
 std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch) {
@@ -48,7 +56,7 @@ std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const 
       CounterRandom random(plan.seed, static_cast<std::uint64_t>(repeat) + 1000 * scene);
       std::optional<Readings> before = measure_default();
       for (const std::size_t setting : order_of(plan.settings, usual, random)) {
-        if (!before) return rows;
+        if (!before) return stopped_in(scene, std::move(rows));
         SweepRow row{.setting = setting, .scene = scene, .repeat = repeat};
         try {
           row.figures = measure(plan.settings[setting]);
@@ -57,7 +65,7 @@ std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const 
           row.figures.assign(work.figures.size(), std::numeric_limits<double>::quiet_NaN());
         }
         std::optional<Readings> after = measure_default();
-        if (!after) return rows;
+        if (!after) return stopped_in(scene, std::move(rows));
         for (std::size_t i = 0; i < row.figures.size(); ++i)
           row.ratios.push_back(row.figures[i] / (0.5 * ((*before)[i] + (*after)[i])));
         row.default_before = std::exchange(*before, *after);

@@ -37,7 +37,7 @@ struct SweepWatch {
 /// row first. Between any two the default is measured, and each setting is compared with the one before and
 /// the one after it: a machine that becomes slower, or has other work for a while, slows all three. Where a
 /// setting cannot be done its row says why and the sweep goes on; a default that cannot is an Error. When it
-/// is stopped, what is done is given.
+/// is stopped, the scenes that were done are given, or what is done of the first.
 std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch = {});
 
 }  // namespace roomradar

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include "app/fallthrough/totals.hpp"
 #include "app/published_objects.hpp"
 #include "app/trade/run_facts.hpp"
 
@@ -64,12 +65,11 @@ std::string text_of(const Table1& table) {
   std::snprintf(line, sizeof line, "most polygons over fewest: %.2f published, %.2f here\n",
                 many.published_ms / few.published_ms, many.frame_median_ms / few.frame_median_ms);
   text += line;
-  std::snprintf(
-      line, sizeof line,
-      "contact error here: %.1f mm median, %.1f mm at 95 %%, %.0f %% through, of %d onto hidden surfaces "
-      "(none published)\n",
-      1e3 * table.contact_error_median_m, 1e3 * table.contact_error_p95_m, 1e2 * table.passed,
-      table.contacts);
+  std::snprintf(line, sizeof line,
+                "contact error here: %s median, %s at 95 %%, %.0f %% through, of %d onto hidden surfaces "
+                "(none published)\n",
+                millimetres(table.contact_error_median_m).c_str(),
+                millimetres(table.contact_error_p95_m).c_str(), 1e2 * table.passed, table.contacts);
   return text + line + "frames of " + table.scene + ", " + table.renderer + "\n";
 }
 

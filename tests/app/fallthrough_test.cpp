@@ -86,7 +86,9 @@ TEST(FallthroughTotals, CountOutcomesAndLeaveErrorsOfWhatNothingStoppedOut) {
   EXPECT_NEAR(totals[0].frame_median_ms, 4.0, 1e-12);
   EXPECT_NEAR(totals[1].cost_ratio, 3.0, 1e-12);
   EXPECT_EQ(failures_of(rows).size(), 2 * kPolicyCount);
-  EXPECT_EQ(percentile({}, 0.5), 0.0);
+  EXPECT_TRUE(std::isnan(percentile({}, 0.5)));
+  EXPECT_EQ(millimetres(percentile({}, 0.5)), "-");
+  EXPECT_EQ(millimetres(0.0123), "12.3 mm");
   EXPECT_EQ(percentile({3.0, 1.0, 2.0}, 1.0), 3.0);
 }
 

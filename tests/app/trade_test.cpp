@@ -243,6 +243,13 @@ TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) 
   const std::vector<SweepRow> some =
       sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 2; }});
   EXPECT_EQ(some.size(), 2U);
+  // A scene that was not finished does not take those that were from all settings but a few.
+  told = 0;
+  const std::vector<SweepRow> whole =
+      sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 4; }});
+  EXPECT_EQ(told, 4U);
+  EXPECT_EQ(whole.size(), 3U);
+  EXPECT_TRUE(summarise(work, settings, whole)[2].is_complete);
   Machine broken;
   TradeWork impossible = broken.work();
   impossible.knobs[1].usual = 0;

@@ -125,6 +125,17 @@ TEST_F(MapPairs, WithoutColourNothingIsRecognised) {
   EXPECT_EQ(register_maps(a(), SavedMap{}).status, RegistrationStatus::kNoOverlap);
 }
 
+TEST_F(MapPairs, MergedWithAFinerMapItSaysTheFinerResolution) {
+  SavedMap coarse;
+  coarse.octree = StaticMap(2.0 * kVoxel_m);
+  coarse.info.settings["resolution_m"] = std::to_string(coarse.octree.resolution_m());
+  SavedMap fine = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
+  fine.info.settings["resolution_m"] = std::to_string(fine.octree.resolution_m());
+  const SavedMap merged = merge_maps(std::move(coarse), fine, Isometry3d::Identity());
+  EXPECT_EQ(merged.octree.resolution_m(), fine.octree.resolution_m());
+  EXPECT_EQ(merged.info.settings.at("resolution_m"), fine.info.settings.at("resolution_m"));
+}
+
 TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
   const SavedMap merged = merge_maps(scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1), b(), kT_a_b);
   EXPECT_EQ(merged.places.keyframes.size(), a().places.keyframes.size() + b().places.keyframes.size());
