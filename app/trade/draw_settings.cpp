@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "app/sim/counter_random.hpp"
 
@@ -58,8 +59,15 @@ std::vector<Setting> draw_settings(const std::vector<Knob>& knobs, std::size_t c
   CounterRandom random(seed, 0);
   std::vector<Setting> settings = single_turns(knobs, random);
   const Setting usual = usual_setting(knobs);
-  std::stable_partition(settings.begin(), settings.end(), [&](const Setting& turn) {
-    return has_usual_load(knobs, turn) && turn < usual;  // towards what is faster
+  const auto is_later = [&](const Setting& turn) { return !has_usual_load(knobs, turn) || usual < turn; };
+  const auto words_away = [&](const Setting& turn) {
+    std::size_t away = 0;
+    for (std::size_t k = 0; k < turn.size(); ++k)
+      away += turn[k] < usual[k] ? usual[k] - turn[k] : turn[k] - usual[k];
+    return away;
+  };
+  std::stable_sort(settings.begin(), settings.end(), [&](const Setting& a, const Setting& b) {
+    return std::pair(is_later(a), words_away(a)) < std::pair(is_later(b), words_away(b));
   });
   settings.resize(std::min(settings.size(), 2 * count / 3));
   const std::size_t wanted = count - settings.size();

@@ -120,6 +120,21 @@ TEST(DrawSettings, SingleTurnsTowardsWhatIsFasterComeFirst) {
   EXPECT_GE(faster_drawn, faster);
 }
 
+TEST(DrawSettings, TheNextFasterWordOfEveryKnobComesBeforeAnyFartherOne) {
+  const std::vector<Knob> knobs = run_knobs(5);
+  std::size_t next_words = 0;
+  for (const Knob& knob : knobs) next_words += !knob.is_load && knob.usual > 0 ? 1 : 0;
+  for (std::uint64_t seed = 1; seed < 20; ++seed) {
+    const std::vector<Setting> settings = draw_settings(knobs, 3 * next_words / 2, seed);
+    for (std::size_t k = 0; k < knobs.size(); ++k) {
+      if (knobs[k].is_load || knobs[k].usual == 0) continue;
+      Setting turn = usual_setting(knobs);
+      --turn[k];
+      EXPECT_EQ(std::count(settings.begin(), settings.end(), turn), 1) << knobs[k].name << ", seed " << seed;
+    }
+  }
+}
+
 TEST(DrawSettings, GivesFewerWhereThereAreNotSoManyToBeFound) {
   const std::vector<Setting> settings = draw_settings(kKnobs, 1000, 1);
   EXPECT_EQ(settings.size(), 6U);  // 3 x 2, less the usual one, and the load
