@@ -100,8 +100,32 @@ has_carried() {
 }
 until_true has_carried
 until_true has_event ' release object velocity '
-xdotool key t
-until_true has_event ' throw object '
+releases() { grep -c ' release object ' "$work/session/events.txt"; }
+before=$(releases)
+has_let_go_outside() {  # over the side panel
+  xdotool mousemove 494 330
+  sleep 0.3
+  xdotool key p
+  sleep 0.3
+  xdotool mousemove 494 322 mousedown 1
+  sleep 0.3
+  xdotool mousemove_relative -- 30 -30
+  sleep 0.3
+  xdotool mousemove 1200 650
+  sleep 0.3
+  xdotool mouseup 1
+  sleep 0.3
+  [[ $(releases) -gt $before ]]
+}
+until_true has_let_go_outside
+has_thrown() {  # keys act where the mouse was in the last picture
+  xdotool mousemove 494 330
+  sleep 0.3
+  xdotool key t
+  sleep 0.3
+  has_event ' throw object '
+}
+until_true has_thrown
 settle
 xdotool key f
 until_true has_event ' camera go$'
