@@ -16,6 +16,10 @@ enum Asked { kNothing, kToEnd, kEnds };
 // Set by a signal handler, taken by whichever thread reads the source.
 std::atomic<int> asked = kNothing;
 static_assert(std::atomic<int>::is_always_lock_free);
+constexpr const char* kEndsWithWhatItHas =
+    "\nroomradar: takes no more frames and ends with those it has; Ctrl-C once more ends it at once\n";
+std::atomic<const char*> said = kEndsWithWhatItHas;
+static_assert(std::atomic<const char*>::is_always_lock_free);
 
 /// Calls only what a signal handler may call.
 void on_interrupt(int signal) {
@@ -25,9 +29,8 @@ void on_interrupt(int signal) {
     return;
   }
   asked = kToEnd;
-  constexpr std::string_view kSaid =
-      "\nroomradar: takes no more frames and ends with those it has; Ctrl-C once more ends it at once\n";
-  static_cast<void>(::write(STDERR_FILENO, kSaid.data(), kSaid.size()) + 1);
+  const std::string_view sentence(said);
+  static_cast<void>(::write(STDERR_FILENO, sentence.data(), sentence.size()) + 1);
 }
 
 class EndedByInterrupt final : public FrameSource {
@@ -52,10 +55,13 @@ class EndedByInterrupt final : public FrameSource {
 
 Interrupt::Interrupt() {
   asked = kNothing;
+  said = kEndsWithWhatItHas;
   std::signal(SIGINT, on_interrupt);
 }
 
 Interrupt::~Interrupt() { std::signal(SIGINT, SIG_DFL); }
+
+void Interrupt::say(const char* sentence) { said = sentence; }
 
 bool Interrupt::take() {
   int to_end = kToEnd;

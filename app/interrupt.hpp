@@ -15,6 +15,9 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
+  /// From now on Ctrl-C prints this, which stays and ends its line, instead of that the work takes no more
+  /// frames and ends with those it has.
+  static void say(const char* sentence);
   /// Whether Ctrl-C was pressed since it was last taken.
   static bool take();
   /// Whether it was pressed and is not taken yet.

@@ -64,7 +64,9 @@ nlohmann::json results_of(const PrescanResult& scanned) {
 }
 
 nlohmann::json to_json(const HeldOutScore& score) {
-  if (score.frames == 0) return {{"frames", 0}};  // so that no figure looks perfect
+  // So that no figure looks perfect of what could not be compared.
+  if (score.frames == 0) return {{"frames", 0}};
+  if (score.cover == 0.0) return {{"frames", score.frames}, {"pixels", score.pixels}, {"cover", 0.0}};
   return {{"frames", score.frames}, {"pixels", score.pixels}, {"median_m", score.median_m},
           {"bias_m", score.bias_m}, {"cover", score.cover},   {"outliers", score.outliers}};
 }
@@ -91,6 +93,9 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
     std::printf("no frame was held out: --hold-out %lld means frame %lld and every %lldth after it\n",
                 static_cast<long long>(command.hold_out), static_cast<long long>(command.hold_out / 2),
                 static_cast<long long>(command.hold_out));
+  else if (held_out && held_out->cover == 0.0)
+    std::printf("%lld frames held out: the mesh is nowhere in their view\n",
+                static_cast<long long>(held_out->frames));
   else if (held_out)
     std::printf("%lld frames held out: depth against the mesh %.1f mm median, %.2f %% covered\n",
                 static_cast<long long>(held_out->frames), 1e3 * held_out->median_m, 1e2 * held_out->cover);
@@ -142,6 +147,11 @@ void save(const PrescanCommand& command, const SavedMap& map, Checkpoints* check
   }
 }
 
+constexpr const char* kStops =
+    "\nroomradar: stops before the next frame, without a map; past the last frame it goes on to the map. "
+    "Ctrl-C "
+    "once more ends it at once\n";
+
 /// Throws Error that says how to go on.
 void stop(const std::string& map, Checkpoints* checkpoints) {
   const bool resumable = checkpoints && checkpoints->has_any();
@@ -191,7 +201,14 @@ int run(const PrescanCommand& command) {
   }
   const std::unique_ptr<FrameSource>& source = start.source;
   const Interrupt interrupt;
-  if (start.map) config.resolution_m = start.map->octree.resolution_m();
+  if (!start.is_live) Interrupt::say(kStops);
+  if (start.map) {
+    config.resolution_m = start.map->octree.resolution_m();
+    if (config.resolution_m != command.quality.resolution_m)
+      std::fprintf(stderr, "%s: is added to, and keeps its cells of %g m\n", command.map.c_str(),
+                   config.resolution_m);
+    report.settings["resolution_m"] = config.resolution_m;
+  }
   announce_memory(*source, config, report);
 
   std::unique_ptr<Progress> progress;
@@ -207,6 +224,7 @@ int run(const PrescanCommand& command) {
       // The ghosts' passes read what they need, and some of it twice.
       progress = std::make_unique<Progress>(stage, stage == "ghosts" ? std::nullopt : source->frame_count());
       stage_shown = stage;
+      if (stage != "track") Interrupt::say(kStops);
     }
     progress->step(note);
     const bool ends_by_itself = start.is_live && stage == "track";
@@ -216,30 +234,38 @@ int run(const PrescanCommand& command) {
       prescan(*source, config, report.times, show, {start.checkpoints.get(), std::move(start.map)});
   progress.reset();
   report.times.timed("save", [&] { save(command, scanned.map, start.checkpoints.get()); });
-  if (start.checkpoints) finish(*start.checkpoints);
 
   report.frames_read = scanned.counts.frames_read;
   report.frames_skipped = scanned.counts.frames_skipped;
   report.results.update(results_of(scanned));
   std::optional<HeldOutScore> held_out;
+  std::string not_scored;
   if (command.hold_out > 0) {
     // Of a map that was added to, the last poses are this scan's.
     const std::vector<TimedPose> poses(scanned.map.trajectory.end() - scanned.counts.frames_tracked,
                                        scanned.map.trajectory.end());
-    const HeldOutScore score = report.times.timed(
-        "held_out", [&] { return score_held_out(*source, scanned.map.mesh, poses, command.hold_out); });
-    report.results["held_out"] = to_json(score);
-    held_out = score;
+    try {
+      held_out = report.times.timed(
+          "held_out", [&] { return score_held_out(*source, scanned.map.mesh, poses, command.hold_out); });
+      report.results["held_out"] = to_json(*held_out);
+    } catch (const Error& error) {
+      not_scored = error.what();
+    }
   }
+  if (start.checkpoints) finish(*start.checkpoints);  // a live scan's frames go with them
   write_report(report, command.report);
   print_summary(command, scanned, held_out);
   print_holes(scanned.holes);
-  if (!scanned.counts.stopped_for_memory) return 0;
-  std::fprintf(
-      stderr,
-      "roomradar: %s: stopped by --max-memory %.0f: the map of the first %lld frames is saved and whole; "
-      "a coarser --resolution or more memory takes in the rest\n",
-      command.source.c_str(), command.max_memory_mb, static_cast<long long>(scanned.counts.frames_fused));
+  if (!not_scored.empty())
+    std::fprintf(stderr, "roomradar: %s: is saved; its held-out frames could not be compared with it: %s\n",
+                 command.map.c_str(), not_scored.c_str());
+  if (!scanned.counts.stopped_for_memory) return not_scored.empty() ? 0 : 1;
+  std::fprintf(stderr,
+               "roomradar: %s: stopped by --max-memory %.0f: the map of the %lld frames that were fused is "
+               "saved and whole; "
+               "a coarser --resolution or more memory takes in the rest\n",
+               command.source.c_str(), command.max_memory_mb,
+               static_cast<long long>(scanned.counts.frames_fused));
   return 1;
 }
 

@@ -2,6 +2,7 @@
 #include "app/unfinished_scan.hpp"
 
 #include <cstdio>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
@@ -24,13 +25,16 @@ fs::path unfinished_beside(const fs::path& map) {
   return map.parent_path() / (map.filename().string() + ".unfinished");
 }
 
+void require_no_live_scan(const fs::path& folder) {
+  if (!fs::exists(folder / kSpool)) return;
+  throw Error(folder.string() +
+              ": holds a live scan that was cut off; go on with it by --resume, or delete "
+              "the folder to begin anew");
+}
+
 /// A scan that was cut off, and is not to be resumed: what can be read again may go.
 void give_up_unfinished(const fs::path& folder) {
   if (!fs::exists(folder)) return;
-  if (fs::exists(folder / kSpool))
-    throw Error(folder.string() +
-                ": holds a live scan that was cut off; go on with it by --resume, or delete "
-                "the folder to begin anew");
   Checkpoints unfinished(folder, {}, 0.0);
   unfinished.ensure_folder();  // nobody else is at work on it
   std::fprintf(stderr, "%s: a scan that was cut off is given up; --resume would have gone on with it\n",
@@ -61,7 +65,7 @@ ScanStart start_scan(const PrescanCommand& command) {
   const fs::path folder = unfinished_beside(map);
   require_checkpoints_only(folder, kSpool);
   require_checkpoints_only(done_beside(folder), kSpool);
-  if (!command.resume) give_up_unfinished(folder);
+  if (!command.resume) require_no_live_scan(folder);
   const bool extend = is_to_extend(command.resume, folder, map);
   std::error_code ignored;
   fs::remove_all(done_beside(folder), ignored);
@@ -71,6 +75,7 @@ ScanStart start_scan(const PrescanCommand& command) {
   SourceOptions options;
   options.keep_all = true;
   if (!spooled) start.source = open_source(command.source, command.frames, command.calibration, options);
+  if (!command.resume) give_up_unfinished(folder);  // what follows it is there
   const bool live = spooled || !start.source->rewind();
   start.is_live = live && !spooled;
   if (start.is_live) start.source = ended_by_interrupt(std::move(start.source));
@@ -86,7 +91,10 @@ ScanStart start_scan(const PrescanCommand& command) {
     start.is_done = true;
     return start;
   }
-  if (command.checkpoint_every_s > 0.0) {
+  // What is to be resumed is in the checkpoints, whether or not there are to be more of them.
+  if (command.checkpoint_every_s > 0.0 || spooled || is_unfinished(folder)) {
+    const double every_s = command.checkpoint_every_s > 0.0 ? command.checkpoint_every_s
+                                                            : std::numeric_limits<double>::infinity();
     std::map<std::string, std::string> identity{
         {"source", live ? command.source : start.source->name()},
         {"resolution", std::to_string(command.quality.resolution_m)},
@@ -100,7 +108,7 @@ ScanStart start_scan(const PrescanCommand& command) {
         {"calibration", command.calibration.empty() ? "none" : sha256_of_file(command.calibration)},
         {"into", into}};
     if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
-    start.checkpoints = std::make_unique<Checkpoints>(folder, identity, command.checkpoint_every_s);
+    start.checkpoints = std::make_unique<Checkpoints>(folder, identity, every_s);
     start.checkpoints->ensure_folder();  // nobody else may begin this map, from now on
   }
   if (live && start.checkpoints) {

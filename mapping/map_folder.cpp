@@ -156,6 +156,10 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   require_replaceable(target);
   if (map.mesh.triangles.empty())
     fail(target, "not saved: the map has no surface; were there frames with depth and trusted poses?");
+  if (map.mesh.triangles.size() > kMaxMeshTriangles || map.mesh.vertices.size() > 3 * kMaxMeshTriangles)
+    fail(target, "not saved: its surface has " + std::to_string(map.mesh.triangles.size()) +
+                     " triangles, and " + std::to_string(kMaxMeshTriangles) +
+                     " is the most; take a larger --deviation, or a coarser --resolution.");
   PartialFolder partial(target);
 
   map.octree.write_ot(partial.path() / kOctree);
@@ -269,14 +273,20 @@ void export_map(const fs::path& folder, const fs::path& path) {
                    "\" is no format to export to; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
                    "the mesh");
   require_outside_maps(path);
-  const MapInfo info = load_map_info(folder);
   const char* part = extension == ".ot" ? kOctree : extension == ".bt" ? kPlainOctree : kMesh;
-  if (const auto fault = fault_of(folder / part, info.files.at(part))) throw Error(*fault);
-  if (!octree) return write_mesh(read_mesh(folder / part), path);
-  std::ifstream in(folder / part, std::ios::binary);
-  WholeFile out(path);
-  if (!(out.stream() << in.rdbuf())) fail(path, "cannot be written; is the disk full?");
-  out.put_in_place();
+  read_of_one(folder, [&] {
+    const MapInfo info = read_info(folder);
+    if (const auto fault = fault_of(folder / part, info.files.at(part))) throw Error(*fault);
+    if (!octree) {
+      write_mesh(read_mesh(folder / part), path);
+      return 0;
+    }
+    std::ifstream in(folder / part, std::ios::binary);
+    WholeFile out(path);
+    if (!(out.stream() << in.rdbuf())) fail(path, "cannot be written; is the disk full?");
+    out.put_in_place();
+    return 0;
+  });
 }
 
 std::string describe(const MapInfo& info) {

@@ -2,8 +2,12 @@
 #include "mapping/prescan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cstdio>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "mapping/checkpoints.hpp"
@@ -90,7 +94,8 @@ struct Work {
   StageTimes& times;
   const PrescanProgress& progress;
   Checkpoints* checkpoints = nullptr;
-  std::map<std::int64_t, double> track_ms;  // by frame index
+  std::map<std::int64_t, double> track_ms;    // by frame index
+  std::optional<FuseStatus> last_fused = {};  // what became of the last frame that was to be fused
 
   void show(const std::string& stage, const std::string& note) const {
     if (progress) progress(stage, note);
@@ -209,6 +214,7 @@ bool fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass
     work.times.add_ms("fuse", fuse_ms);
     if (const auto track_ms = work.track_ms.find(frame.index); track_ms != work.track_ms.end())
       work.times.add_ms("frame", track_ms->second + fuse_ms);
+    work.last_fused = fused;
     if (fused == FuseStatus::kFused)
       pass.fused.push_back({pass.frames_read - 1, frame.index, frame.depth_camera, pose->second});
     work.show(kFusingStage, std::string(to_string(fused)));
@@ -217,6 +223,18 @@ bool fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass
   }
   keep(work.checkpoints, kFusingStage, pass, work.times, /*between_frames=*/false);
   return has_room;
+}
+
+std::string why_none_fused(const Work& work, const StaticMap& octree) {
+  if (!work.last_fused) return "no frame was left to be fused: fuse_every and hold_out leave out all of them";
+  std::array<char, 160> reach{};
+  std::snprintf(
+      reach.data(), reach.size(),
+      "no frame could be fused: the poses are out of the octree's reach of %.0f m; take coarser cells, or "
+      "poses whose origin is in the room",
+      octree.reach_m());
+  if (work.last_fused == FuseStatus::kOutOfReach) return reach.data();
+  return "no frame could be fused; the depth images hold no usable measurement";
 }
 
 /// What the map says of itself, but for what save_map fills in.
@@ -267,8 +285,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
 
   // What was there?
   const bool all_fused = fuse(work, map.trajectory, pass);
-  if (pass.fused.empty())
-    throw Error(source.name() + ": no frame could be fused; the depth images hold no usable measurement");
+  if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(work, pass.octree));
 
   // What of that moved on?
   if (config.remove_ghosts && !pass.ghost_voxels) {

@@ -121,6 +121,16 @@ class KinectReplay : public ::testing::Test {
   std::vector<std::string> lines_, depth_files_;
 };
 
+TEST_F(KinectReplay, AScanOfADeviceCanHoldFramesOut) {
+  const Outcome outcome =
+      shell(fakenect(recording_) +
+            "'" ROOMRADAR_PROGRAM "' prescan kinect:0 --resolution 0.04 --hold-out 4 --map '" +
+            (copy_.path() / "map").string() + "'");
+  EXPECT_EQ(outcome.status, 0) << outcome.rest;
+  EXPECT_TRUE(contains(outcome.rest, "2 frames held out: depth against the mesh")) << outcome.rest;
+  EXPECT_FALSE(fs::exists(copy_.path() / "map.unfinished"));
+}
+
 TEST_F(KinectReplay, OneThatPausesIsWaitedForAndLosesNothing) {
   pause_before(4, 2.5);
   const Outcome outcome = replay(recording_);

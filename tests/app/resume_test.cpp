@@ -194,10 +194,30 @@ TEST_F(ResumeTest, CtrlCEndsItInWordsAndItGoesOnFromThere) {
   kill(child, SIGINT);
   EXPECT_EQ(status_of(child), 1);
   EXPECT_NE(said().find("--resume goes on"), std::string::npos) << said();
+  EXPECT_NE(said().find("stops before the next frame"), std::string::npos) << said();
   EXPECT_FALSE(fs::exists(map()));
   EXPECT_GT(newest(), 0);
   EXPECT_EQ(run(scan(map(), true)), 0) << said();
   EXPECT_EQ(run({"map", "verify", map()}), 0) << said();
+}
+
+TEST_F(ResumeTest, GoesOnThoughNoMoreCheckpointsAreWanted) {
+  ASSERT_TRUE(cut_off(false, [&] { return newest() > 0; }));
+  const auto resume = [&](const char* resolution_m) {
+    return run({"prescan", kSource, "--map", map(), "--resolution", resolution_m, "--checkpoint-every", "0",
+                "--resume"});
+  };
+  EXPECT_EQ(resume("0.05"), 1) << "it is looked at";
+  EXPECT_NE(said().find("resolution"), std::string::npos) << said();
+  ASSERT_EQ(resume("0.04"), 0) << said();
+  EXPECT_FALSE(fs::exists(unfinished()));
+  EXPECT_EQ(run({"map", "verify", map()}), 0) << said();
+}
+
+TEST_F(ResumeTest, ASourceThatIsNotThereGivesUpNothing) {
+  ASSERT_TRUE(cut_off(false, [&] { return newest() > 0; }));
+  EXPECT_EQ(run({"prescan", temporary_.path() / "no-such-folder", "--map", map()}), 1);
+  EXPECT_GT(newest(), 0) << "a slip of the pen takes no scan away";
 }
 
 TEST_F(ResumeTest, NothingToResumeIsSaid) {

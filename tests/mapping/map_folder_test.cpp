@@ -176,6 +176,17 @@ TEST_F(MapFolder, ParentFoldersAreMade) {
   EXPECT_TRUE(verify_map(folder_.path() / "a" / "b" / "c").empty());
 }
 
+TEST_F(MapFolder, AMapThatCouldNotBeReadAgainIsNotSavedAndTheOldOneStays) {
+  SavedMap large;
+  large.mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  large.mesh.triangles.assign(kMaxMeshTriangles + 1, Triangle{0, 1, 2});
+  const std::string fault = test::error_of([&] { save_map(map_, large); });
+  EXPECT_NE(fault.find("2000001 triangles"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("--deviation"), std::string::npos) << fault;
+  EXPECT_TRUE(verify_map(map_).empty());
+  EXPECT_EQ(load_map(map_).mesh.triangles.size(), room_.mesh.triangles.size());
+}
+
 TEST_F(MapFolder, AMapWithoutASurfaceIsNotSavedAndTheOldOneStays) {
   SavedMap empty;
   EXPECT_NE(error_of([&] { save_map(map_, empty); }).find("no surface"), std::string::npos);
