@@ -226,9 +226,9 @@ std::string_view to_string(ChangeKind kind) {
 
 void require_valid(const DiffConfig& config) {
   for (const auto& [name, value] :
-       {std::pair("clearance_m", config.clearance_m), std::pair("min_weight", config.min_weight),
-        std::pair("clearance_voxels", config.clearance_voxels), std::pair("min_area_m2", config.min_area_m2),
-        std::pair("min_size_m", config.min_size_m), std::pair("max_pose_error_m", config.max_pose_error_m),
+       {std::pair("clearance_m", config.clearance_m), std::pair("clearance_voxels", config.clearance_voxels),
+        std::pair("min_area_m2", config.min_area_m2), std::pair("min_size_m", config.min_size_m),
+        std::pair("max_pose_error_m", config.max_pose_error_m),
         std::pair("min_same_shape", config.min_same_shape)})
     if (!(value >= 0.0 && std::isfinite(value)))
       throw Error(std::string("diff.") + name + " = " + std::to_string(value) + ": must be finite and >= 0");

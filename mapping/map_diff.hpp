@@ -29,7 +29,6 @@ struct DiffConfig {
   /// rest of the thing, down to what it stands on, may be as near as a voxel.
   double clearance_m = 0.045;
   double clearance_voxels = 3.0;
-  double min_weight = 1.0;      ///< of such surface: one look from 1 m, or thirty from 3 m
   double min_area_m2 = 3.6e-3;  ///< of such surface in one thing: 6 x 6 cm
   double min_size_m = 0.05;     ///< greatest extent of such surface
   /// What the other map has in the same shape, but so far aside at most, was not moved: the poses were off.

@@ -146,6 +146,8 @@ Registration register_maps(const SavedMap& a, const SavedMap& b, const Registrat
   if (!there) return there;
   const Registration back =
       judge_registration(b.octree, sample_surface(a.mesh, config.points), there.T_a_b.inverse(), config);
+  // How little of a lies in b says nothing: b may be one corner of it.
+  if (back.status == RegistrationStatus::kNoOverlap) return there;
   there.agreement = std::min(there.agreement, back.agreement);
   there.status = back.status;
   return there;

@@ -96,6 +96,18 @@ TEST_F(MapPairs, AreRegisteredWithinAFifthOfAVoxel) {
   EXPECT_EQ(again.T_a_b.matrix(), found.T_a_b.matrix());
 }
 
+TEST_F(MapPairs, ASmallPartOfALargeMapIsRegistered) {
+  SavedMap hall = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
+  const auto first = static_cast<std::uint32_t>(hall.mesh.vertices.size());
+  for (const Eigen::Vector3f& corner :
+       {Eigen::Vector3f(0, 30, 0), Eigen::Vector3f(60, 30, 0), Eigen::Vector3f(0, 90, 0)})
+    hall.mesh.vertices.push_back(corner);
+  hall.mesh.triangles.push_back({first, first + 1, first + 2});  // where b saw nothing
+  const Registration found = register_maps(hall, b());
+  ASSERT_TRUE(found) << describe(found);
+  EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
+}
+
 TEST_F(MapPairs, AnotherRoomIsRefused) {
   // The same camera path, other walls, painted by other places.
   const Scene other = test::nearest_of(test::plane(Vector3d(0.3, 1.0, 0.0).normalized(), 1.6),
