@@ -85,7 +85,9 @@ int run(const CalibrateCommand& command) {
   require_valid(command.board);
   for (const std::string& path : {command.calibration, command.plot, command.report}) require_writable(path);
 
-  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames);
+  SourceOptions options;
+  options.as_recorded = true;  // not by a calibration that is there already
+  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames, {}, options);
   BoardViews views;
   {
     Progress progress("looking for the board", source->frame_count());

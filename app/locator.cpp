@@ -214,6 +214,9 @@ TriedPose tried(Locator& locator, const Frame& frame, const std::vector<SurfaceP
   return finding;
 }
 
+/// The pixels that moved as seen from a pose that no longer holds may be anything.
+void look_at_all(Locator& locator) { make_live(locator.live_pyramid, locator.live, {}, kLiveStep_px); }
+
 /// Looks for the camera in all of the map: where patches lead, and, if that is not certain, where the depth's
 /// shape fits; without gravity and colour only where remembered views are like the frame.
 Tracking search(Locator& locator, const Frame& frame, const Places& places,
@@ -304,7 +307,8 @@ Tracking resume(Locator& locator, const Frame& frame, const Places& places,
 }
 
 /// What was followed into a place that the depth speaks against for some frames is searched for; what is not
-/// found then is lost, unless a good part of the view still fits: things may have been taken away.
+/// found then is lost, unless a good part of the view still fits: things may have been taken away. From where
+/// it was to another place there was no motion.
 void doubt(Locator& locator, const Frame& frame, const Places& places, const ExpectedDepth& expected_depth,
            Tracking& tracking) {
   constexpr double kMinAlike = 0.3, kMaxFarther = 0.25, kHopeless = 0.3;
@@ -313,9 +317,17 @@ void doubt(Locator& locator, const Frame& frame, const Places& places, const Exp
   const bool is_doubtful = evidence.alike_part() < kMinAlike || evidence.farther_part() > kMaxFarther;
   locator.doubtful_frames = is_doubtful ? locator.doubtful_frames + 1 : 0;
   if (locator.doubtful_frames < kPatience_frames || --locator.sure_until > 0) return;
+  constexpr double kSame_m = 0.1, kSame_rad = 0.1;
+  look_at_all(locator);
   const Tracking found = search(locator, frame, places, expected_depth);
   if (is_located(found)) {
+    const bool is_elsewhere = !is_near(found.T_world_camera, tracking.T_world_camera, kSame_m, kSame_rad);
     tracking = found;
+    if (is_elsewhere) {
+      locator.T_world_camera.reset();
+      locator.doubtful_frames = locator.sure_until = 0;
+      return;
+    }
   } else if (evidence.alike_part() < kHopeless) {
     tracking = {};
     return;
@@ -356,8 +368,7 @@ Tracking locate(Locator& locator, const Frame& frame, const Places& places, cons
     }
   }
   if (!is_located(tracking)) {
-    make_live(locator.live_pyramid, locator.live, {},
-              kLiveStep_px);  // the mask belonged to a pose that no longer holds
+    look_at_all(locator);
     tracking = resume(locator, frame, places, expected_depth);
     if (!is_located(tracking)) tracking = search(locator, frame, places, expected_depth);
   }

@@ -59,7 +59,7 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
   const std::filesystem::path in_folder = std::filesystem::path(source) / "calibration.json";
   if (!calibration.empty())
     opened = calibrated(std::move(opened), read_calibration(calibration));
-  else if (std::filesystem::exists(in_folder))
+  else if (!options.as_recorded && std::filesystem::exists(in_folder))
     opened = calibrated(std::move(opened), read_calibration(in_folder));
   if (!frames) return opened;
   return limit_frames(std::move(opened), frames->first, frames->last);

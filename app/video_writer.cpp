@@ -107,13 +107,11 @@ void VideoWriter::write(const ColourImage& picture) {
     s.require_space();
     s.open();
   }
-  if (picture.width != s.width_px || picture.height != s.height_px)
-    throw Error(s.path.string() + ": picture " + std::to_string(s.frames_written) + " is " +
-                std::to_string(picture.width) + " x " + std::to_string(picture.height) + ", the first was " +
-                std::to_string(s.width_px) + " x " + std::to_string(s.height_px));
   if (s.frames_written % kFramesBetweenSpaceChecks == 0) s.require_space();
-  const cv::Mat rgb(picture.height, picture.width, CV_8UC3, const_cast<Rgb*>(picture.pixels.data()));
-  cv::cvtColor(rgb(cv::Rect(0, 0, picture.width & ~1, picture.height & ~1)), s.bgr, cv::COLOR_RGB2BGR);
+  cv::Mat rgb(picture.height, picture.width, CV_8UC3, const_cast<Rgb*>(picture.pixels.data()));
+  if (picture.width != s.width_px || picture.height != s.height_px)
+    cv::resize(rgb, rgb, cv::Size(s.width_px, s.height_px), 0.0, 0.0, cv::INTER_AREA);
+  cv::cvtColor(rgb(cv::Rect(0, 0, s.width_px & ~1, s.height_px & ~1)), s.bgr, cv::COLOR_RGB2BGR);
   s.writer.write(s.bgr);
   ++s.frames_written;
 }

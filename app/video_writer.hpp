@@ -20,7 +20,8 @@ class VideoWriter {
   VideoWriter& operator=(const VideoWriter&) = delete;
   ~VideoWriter();  ///< close() without complaint
 
-  /// Throws Error if the file cannot be made, the disk is full, or the size is not that of the first picture.
+  /// A picture of another size than the first (depth is shown until colour comes) is scaled to that. Throws
+  /// Error if the file cannot be made, or the disk is full.
   void write(const ColourImage& picture);
 
   /// Finishes the file, reads it back and puts it in its place. If it holds fewer frames than were written

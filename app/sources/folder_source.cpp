@@ -71,7 +71,8 @@ class FolderSource final : public FrameSource {
     if (position_ == index_.frames.size()) return {ReadStatus::kEnd, {}};
     const std::size_t position = position_++;
     try {
-      read(position, frame);
+      read(position, whole_);
+      std::swap(frame, whole_);  // one that cannot be read leaves it as it was
     } catch (const Error& fault) {
       if (++bad_in_a_row_ >= kBadFramesInARow)
         throw Error(name() + ": " + std::to_string(bad_in_a_row_) +
@@ -126,6 +127,7 @@ class FolderSource final : public FrameSource {
   CameraRig rig_;
   std::size_t position_ = 0;
   int bad_in_a_row_ = 0;
+  Frame whole_;  // scratch
 };
 
 }  // namespace

@@ -159,7 +159,11 @@ RecordingIndex index_tum(const fs::path& folder) {
   const auto rows = [&](const char* name, std::size_t count) {
     return fs::exists(folder / name) ? read_rows(folder / name, count) : std::vector<std::vector<double>>();
   };
-  const auto poses = rows("groundtruth.txt", 8);
+  auto poses = rows("groundtruth.txt", 8);
+  std::erase_if(poses, [](const auto& row) {  // some trackers write zeros where they are lost
+    const double norm = rotation_of(row).norm();
+    return !(norm > 0.9 && norm < 1.1);
+  });
   const auto accelerations = rows("accelerometer.txt", 4);
 
   RecordingIndex index{DepthEncoding::kTum, NominalRig::kTum, {}};

@@ -30,6 +30,8 @@ struct SourceOptions {
   /// What a live device sends is kept until it is fetched, as far as memory allows: for a scan, to which
   /// every frame is worth something. Else there is only ever the newest, for a picture of what is now.
   bool keep_all = false;
+  /// A calibration.json beside a recording is passed over: frames are as the device gave them.
+  bool as_recorded = false;
   /// A live device that sends no depth for as long, though it is started anew again and again, is given up.
   double device_timeout_s = 60.0;
   /// Is told what becomes of a live device while it is read, by a thread of its own.

@@ -96,6 +96,7 @@ TEST(Locator, IsMendedWithinFiveFramesWhenTheCameraIsCarriedAway) {
     if (i < 5 && (!is_located(found) || error_m(found, elsewhere(i)) > 0.02)) continue;
     ASSERT_TRUE(is_located(found)) << i;
     EXPECT_LT(error_m(found, elsewhere(i)), 0.02) << i;
+    EXPECT_LT(mapped.locator.T_last_now.translation().norm(), 0.1) << i << ": the way there was no motion";
   }
 }
 

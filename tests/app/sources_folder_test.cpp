@@ -418,6 +418,34 @@ TEST(Tum, BadLinesSkipTheirFrame) {
   }
 }
 
+TEST(Tum, APoseWithoutARotationIsNone) {
+  const TemporaryFolder folder;
+  write_recording(folder.path(), RecordingFormat::kTum);
+  const auto stamp = [](int i) { return std::to_string(some_frame(i).stamp_s); };
+  write_text(folder.path() / "groundtruth.txt",
+             stamp(0) + " 1 2 3 0 0 0 1\n" + stamp(1) + " 0 0 0 0 0 0 0\n" + stamp(2) + " 1 2 3 0 0 0 1\n");
+  const auto frames = read_all(*open_folder(folder.path())).frames;
+  ASSERT_GE(frames.size(), 3U);
+  EXPECT_TRUE(frames[0].T_world_camera);
+  // Between its neighbours, if they are near enough, and never at the origin.
+  EXPECT_TRUE(!frames[1].T_world_camera || frames[1].T_world_camera->translation().norm() > 1.0);
+  EXPECT_TRUE(frames[2].T_world_camera);
+}
+
+TEST(OpenFolder, AFrameThatCannotBeReadLeavesTheLastOneWhole) {
+  const TemporaryFolder folder;
+  write_recording(folder.path(), RecordingFormat::kTum);
+  const auto source = open_folder(folder.path());
+  Frame frame, before;
+  ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
+  before = frame;
+  for (const auto& image : fs::directory_iterator(folder.path() / "rgb")) fs::resize_file(image.path(), 20);
+  ASSERT_EQ(source->next(frame).status, ReadStatus::kSkipped);
+  EXPECT_EQ(frame.index, before.index);
+  EXPECT_EQ(frame.stamp_s, before.stamp_s);
+  EXPECT_EQ(frame.depth_m.pixels, before.depth_m.pixels);
+}
+
 TEST(Tum, BadColourLineSkipsTheFrameItWouldGoWith) {
   const TemporaryFolder folder;
   write_recording(folder.path(), RecordingFormat::kTum);
