@@ -192,6 +192,10 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
 void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
   const RunCommand recorded = read_session(command.source);
   const auto is_given = [&](const char* name) { return sub.count(name) > 0; };
+  if (is_given("--calibration"))
+    throw CLI::ValidationError("--calibration: a recorded session's frames are calibrated already");
+  if (is_given("--object"))
+    throw CLI::ValidationError("--object: a recorded session has its own objects; --script gives it others");
   if (!is_given("--map")) command.map = recorded.map;
   if (!is_given("--poses")) command.poses = recorded.poses;
   if (!is_given("--script")) command.script = recorded.script;
@@ -408,7 +412,23 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
   one->needs(video);
   video->needs(one);
   add_report_option(*sub, command.report);
-  sub->callback([&] { work = [&command] { return run(command); }; });
+  const std::vector<std::string> of_source{"--map",    "--reference", "--poses",
+                                           "--frames", "--cell",      "--picture"},
+      of_rooms{"--scenarios", "--seed", "--random-rooms", "--threads", "--maps",
+               "--csv",       "--html", "--scenario",     "--video"},
+      of_many{"--scenarios", "--threads", "--csv", "--html", "--report"};
+  sub->callback([&, sub, of_source, of_rooms, of_many] {
+    const auto refuse = [sub](const std::vector<std::string>& names, const char* why) {
+      for (const std::string& name : names)
+        if (sub->count(name) > 0) throw CLI::ValidationError(name + why);
+    };
+    if (command.source.empty())
+      refuse(of_source, ": is about a SOURCE, and none is given");
+    else
+      refuse(of_rooms, ": is about simulated rooms, and not about a SOURCE");
+    if (command.scenario) refuse(of_many, ": is not made of one --scenario alone");
+    work = [&command] { return run(command); };
+  });
 }
 
 void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work) {

@@ -261,7 +261,7 @@ std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics&
                                     const Eigen::Isometry3d& T_world_camera, double footprint_radius_m,
                                     const PlacementConfig& config) {
   require_valid(config);
-  if (!(footprint_radius_m > 0.0 && footprint_radius_m <= 1.0)) return std::nullopt;
+  if (!(footprint_radius_m > 0.0 && footprint_radius_m <= kMostFootprint_m)) return std::nullopt;
   if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px)
     return std::nullopt;
   if (!T_world_camera.matrix().allFinite()) return std::nullopt;

@@ -28,12 +28,14 @@ struct Support {
   double area_m2 = 0.0;   ///< of the connected places where the object's middle could stand as well
 };
 
+inline constexpr double kMostFootprint_m = 1.0;
+
 /// The best place for an object of the given footprint: level, flat, clear of what stands about, near the
 /// middle of the picture, rather a table than the floor, with room to spare. Nothing if there is none.
 ///
 /// @param depth_m         live or expected depth, of the camera's size
 /// @param T_world_camera  world with +z up
-/// @param footprint_radius_m  > 0 and <= 1 m; else nothing is found
+/// @param footprint_radius_m  > 0, at most kMostFootprint_m; else nothing is found
 /// Nothing is found either where the sizes disagree. Takes some 10 ms: for when an object is dropped, not for
 /// each frame.
 std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics& camera,

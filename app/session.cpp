@@ -89,6 +89,7 @@ void Session::set_surfaces(SurfacePolicy surfaces) {
 }
 
 void Session::set_radar(const RadarConfig& config) {
+  asked_of_former_ += radar_.static_triangles_asked();
   radar_ = CyberRadar(config);
   config_.radar = config;
 }
@@ -97,7 +98,7 @@ void Session::set_quality(const RunQuality& quality) {
   require_valid(quality);
   const RadarConfig radar = config_.radar;
   roomradar::apply(quality, config_);
-  if (!(config_.radar == radar)) radar_ = CyberRadar(config_.radar);
+  if (!(config_.radar == radar)) set_radar(config_.radar);
   scene_.set_fineness(config_.scene.foreground, config_.scene.moved);
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config_.tracking_px;
 }
@@ -121,7 +122,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   FrameResult result;
   const auto handed_over = std::chrono::steady_clock::now();
   const LiveScene::RoomDrawn drawn_before = scene_.room_drawn();
-  const std::uint64_t asked_before = radar_.static_triangles_asked();
+  const std::uint64_t asked_before = static_triangles_asked();
   const double dt_s = has_last_stamp_ ? std::max(0.0, whole.stamp_s - last_stamp_s_) : 0.0;
   last_stamp_s_ = whole.stamp_s;
   has_last_stamp_ = true;
@@ -307,7 +308,7 @@ FrameUse Session::use_of(const ForegroundCounts& foreground, const LiveScene::Ro
   use.views_drawn = scene_.room_drawn().views - drawn.views;
   if (use.views_drawn > 0)
     use.room_drawn = (scene_.room_drawn().triangles - drawn.triangles) / use.views_drawn;
-  use.room_asked = static_cast<std::size_t>(radar_.static_triangles_asked() - asked);
+  use.room_asked = static_cast<std::size_t>(static_triangles_asked() - asked);
   use.valid_px = foreground.valid;
   use.meshed_px = has_map ? foreground.moved : foreground.valid;
   use.mesh_triangles = scene_.moved_triangles();

@@ -156,6 +156,7 @@ class Session {
   std::unique_ptr<LivingMap> living_map_;  ///< null: the room stays as it is
   Locator locator_;
   CyberRadar radar_;
+  std::uint64_t asked_of_former_ = 0;  ///< of the room's triangles, by radars before this one
   NearField near_field_;
   std::vector<NearPoint> near_points_;
   std::vector<OtherBody> others_;  // of the scene of the object that is moved
@@ -194,6 +195,9 @@ class Session {
   /// share the turns.
   [[nodiscard]] bool is_turn(std::size_t number, int turns) const {
     return (frames_ + static_cast<std::int64_t>(number)) % turns == 0;
+  }
+  [[nodiscard]] std::uint64_t static_triangles_asked() const {
+    return asked_of_former_ + radar_.static_triangles_asked();
   }
   Tracking locate_camera(const Frame& frame);
   void turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg);

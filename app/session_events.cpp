@@ -1,5 +1,7 @@
 // session_events.cpp: what a script or a user asks of a session.
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -40,6 +42,20 @@ bool share_space(CyberRadar& radar, NearField& field, const TreeInstance& a, con
     return overlap(radar, field, shifted, b);
   };
   return overlap_shifted(shift_m) && overlap_shifted(-shift_m);
+}
+
+/// Throws Error if there is no place in view that could be large enough for it.
+void require_small_enough(const VirtualObject& object, const ScriptEvent& drop) {
+  const double reach_m =
+      footprint_radius_m(object, drop.R_world_object.value_or(object.body.T_world_object.linear()));
+  if (reach_m <= kMostFootprint_m) return;
+  std::array<char, 240> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      ": reaches %.3g m sideways from its origin, and only what reaches at most %.0f m is dropped in view. "
+      "Meshes are in metres: give it a size (add NAME FILE size 0.2) or a place (drop NAME at X Y Z)",
+      reach_m, kMostFootprint_m);
+  throw Error(object.body.name + text.data());
 }
 
 }  // namespace
@@ -174,6 +190,7 @@ void Session::change_objects(const ScriptEvent& event) {
       put(*event.position_world);
       break;
     case Action::kDrop:
+      if (!event.position_world) require_small_enough(object, event);
       if (event.position_world)
         put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
       else

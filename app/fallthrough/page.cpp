@@ -62,7 +62,8 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
   return html + "</table>\n";
 }
 
-/// How many of those that something stopped are no farther from the truth than x.
+/// How many came to rest no farther from the truth than x; what nothing stopped is as far off as it was
+/// followed.
 std::string error_plot(const std::vector<ScenarioRow>& rows) {
   std::vector<PlotLine> lines;
   for (std::size_t i = 0; i < kPolicyCount; ++i) {

@@ -158,6 +158,10 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   const Outcome unseen = roomradar("run " + session.string());
   EXPECT_NE(unseen.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos) << unseen.out;
 
+  // What it was recorded with is in it, and is not to be done twice.
+  expect_fault(roomradar("run " + session.string() + " --calibration c.json"), 2, "calibrated already");
+  expect_fault(roomradar("run " + session.string() + " --object teapot"), 2, "has its own objects");
+
   // It can fail: dropped from higher up the pot is elsewhere, and that is told.
   std::ofstream(script) << "frame 0 add pot teapot\nframe 0 drop pot view height 0.4\nframe 44 quit\n";
   const Outcome other = roomradar("run " + session.string() + " --script " + script.string());
@@ -397,6 +401,11 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   const std::string run = "run sim:table --map " + map();
   expect_fault(roomradar(run + " --radar roughly"), 2, "exact|sampled");
   expect_fault(roomradar(run + " --radar-px 0"), 2, "4096");
+  expect_fault(roomradar("fallthrough --map " + map()), 2, "--map: is about a SOURCE");
+  expect_fault(roomradar("fallthrough sim:table --map " + map() + " --csv " + (folder_ / "f.csv").string()),
+               2, "--csv: is about simulated rooms");
+  expect_fault(roomradar("fallthrough --scenario 1 --video v.avi --html " + (folder_ / "f.html").string()), 2,
+               "--html: is not made of one --scenario");
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
 
@@ -454,6 +463,26 @@ TEST_F(CommandLine, AMapIsNotJoinedWithItself) {
   expect_fault(roomradar("map merge " + map() + " " + map() + joined), 1, "the same map");
   expect_fault(roomradar("map merge " + map() + " " + broken_copy().string() + joined), 1, "the same map");
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, LeavingOutAllFramesIsSaid) {
+  expect_fault(
+      roomradar("prescan 'sim:table?frames=4&width=160' --frames 1:3 --fuse-every 200 --resolution 0.05 "
+                "--map " +
+                (folder_ / "left-out").string()),
+      1, "no frame was left to be fused");
+}
+
+TEST_F(CommandLine, CalibratingPassesOverACalibrationThatIsThere) {
+  const fs::path recording = folder_ / "board";
+  ASSERT_EQ(roomradar("record 'sim:table?frames=2&width=160' " + recording.string()).status, 0);
+  std::ofstream(recording / "calibration.json") << "{";
+  expect_fault(roomradar("record " + recording.string() + " " + (folder_ / "copy").string()), 1,
+               "calibration.json");
+  const Outcome calibrated = roomradar("calibrate " + recording.string() + " --square 0.06 --out " +
+                                       (folder_ / "new.json").string());
+  EXPECT_EQ(calibrated.status, 1);
+  EXPECT_EQ(calibrated.out.find("calibration.json"), std::string::npos) << calibrated.out;
 }
 
 TEST_F(CommandLine, HoldingOutNoFrameIsSaid) {

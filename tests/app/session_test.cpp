@@ -5,6 +5,7 @@
 
 #include "mapping/types/error.hpp"
 #include "tests/radar/shapes.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
 
 namespace roomradar {
@@ -327,6 +328,32 @@ TEST(Session, WhatIsPutFlushBesideAnotherObjectStaysThere) {
     const Eigen::Vector3d at = Eigen::Vector3d(-1.0, 0.0, 0.3) + beside;
     EXPECT_NEAR(begins_at_m({crate, {}}, {crate, {Action::kPlace, at}}), at.z() - 0.1, 1e-6)
         << beside.transpose();
+  }
+}
+
+TEST(Session, WhatIsTooLargeForAnyPlaceInViewIsRefusedInWords) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  session.add_object("pot", shapes::box({85.0F, 90.0F, 120.0F}));
+  const std::string fault = test::error_of([&] { session.apply(event(Action::kDrop)); });
+  EXPECT_NE(fault.find("pot: reaches 61.9 m sideways"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("Meshes are in metres"), std::string::npos) << fault;
+}
+
+TEST(Session, WhatTheRadarLookedAtIsCountedAcrossAChangeOfRadar) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  drop_pots(session, {{-1.0, 0.0, 0.0}});
+  go_on(session, 0, 20);
+  StageTimes times;
+  for (std::int64_t i = 20; i < 30; ++i) {
+    ScriptEvent change = event(Action::kQuality);
+    change.quality.radar = i % 2 == 0 ? RadarMode::kSampled : RadarMode::kExact;
+    change.from = FramePart::kPhysics;
+    session.apply(change);
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    EXPECT_LE(session.step(frame, times).use.room_asked, 1000U) << i;
   }
 }
 

@@ -101,7 +101,6 @@ has_carried() {
 until_true has_carried
 until_true has_event ' release object velocity '
 releases() { grep -c ' release object ' "$work/session/events.txt"; }
-before=$(releases)
 has_let_go_outside() {  # over the side panel
   xdotool mousemove 494 330
   sleep 0.3
@@ -112,9 +111,11 @@ has_let_go_outside() {  # over the side panel
   xdotool mousemove_relative -- 30 -30
   sleep 0.3
   xdotool mousemove 1200 650
-  sleep 0.3
+  sleep 0.5
+  local before
+  before=$(releases)
   xdotool mouseup 1
-  sleep 0.3
+  sleep 0.5
   [[ $(releases) -gt $before ]]
 }
 until_true has_let_go_outside
