@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -330,8 +331,13 @@ TEST_F(MapFolder, KilledAtAnyMomentOfSavingItIsTheOldMapOrTheNew) {
   SavedMap other = a_room();
   other.info.source = "another";
   other.trajectory.pop_back();
+  const auto start = std::chrono::steady_clock::now();
+  save_map(map_, other);
+  save_map(map_, room_);
+  const auto both_us =
+      std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - start);
   std::mt19937 random(5);
-  std::uniform_int_distribution<int> moment_us(0, 60'000);
+  std::uniform_int_distribution<int> moment_us(0, std::max(60'000, 2 * static_cast<int>(both_us.count())));
   int others = 0;
   for (int i = 0; i < kKills; ++i) {
     const pid_t child = fork();
