@@ -270,6 +270,8 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {
     if (command.window && sub->count("--at-end") == 0) command.at_end = AtEnd::kStay;
+    if (sub->count("--object") > 0 && sub->count("--script") > 0 && !command.window)
+      throw CLI::ValidationError("--object: --script says which objects there are; add it there");
     if (is_session_folder(command.source)) take_recorded_settings(command, *sub);
     settle_quality(command);
     if (command.map.empty()) throw CLI::RequiredError("--map");

@@ -400,6 +400,7 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar(prescan + " --poses guessed"), 2, "recorded|tracked");
   const std::string run = "run sim:table --map " + map();
   expect_fault(roomradar(run + " --radar roughly"), 2, "exact|sampled");
+  expect_fault(roomradar(run + " --object teapot --script s.txt"), 2, "--script says which objects");
   expect_fault(roomradar(run + " --radar-px 0"), 2, "4096");
   expect_fault(roomradar("fallthrough --map " + map()), 2, "--map: is about a SOURCE");
   expect_fault(roomradar("fallthrough sim:table --map " + map() + " --csv " + (folder_ / "f.csv").string()),
