@@ -62,7 +62,8 @@ int end_voxels(const RowOfRays& rays, int axis, const float* depth_m, const floa
   int out_of_reach = 0;
   for (int x = 0; x < width; ++x) {
     const float z = depth_m[x];
-    const float within_range_m = z < max_range_m ? z : max_range_m;
+    const float ahead_m = z > 0.0F ? z : 0.0F;  // -infinity and NaN are no numbers of voxels
+    const float within_range_m = ahead_m < max_range_m ? ahead_m : max_range_m;
     const float voxels = (per_x * ray_x[x] + at_zero) * within_range_m + within;
     const int truncated = static_cast<int>(voxels);
     const int key = truncated - (static_cast<float>(truncated) > voxels) + camera_key;
