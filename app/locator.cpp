@@ -115,15 +115,20 @@ bool is_certain(const TriedPose& finding) {
          evidence.alike_part() > (look.alike.size() > kFewPatches ? 0.7 : 0.9);
 }
 
+/// Poses so near each other are one place.
+bool is_same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  constexpr double kSame_m = 0.1, kSame_rad = 0.1;
+  return is_near(a, b, kSame_m, kSame_rad);
+}
+
 /// Whether another pose explains the frame about as well, so that nobody can say which is the right one: of
 /// few patches a good part may be alike in one place and not in its twin by chance.
 bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings) {
-  constexpr double kSame_m = 0.1, kSame_rad = 0.1;
   constexpr double kClear = 0.08, kChance = 0.8;  // two deviations of a part of one patch
   return std::any_of(findings.begin(), findings.end(), [&](const TriedPose& other) {
     const int compared = std::min(best.look.compared, other.look.compared);
     const double chance = compared >= kFewPatches ? kChance / std::sqrt(compared) : 0.0;
-    return !is_near(best.tracking.T_world_camera, other.tracking.T_world_camera, kSame_m, kSame_rad) &&
+    return !is_same_place(best.tracking.T_world_camera, other.tracking.T_world_camera) &&
            is_located(other.tracking) && support_of(other) > support_of(best) - kClear - chance;
   });
 }
@@ -317,11 +322,10 @@ void doubt(Locator& locator, const Frame& frame, const Places& places, const Exp
   const bool is_doubtful = evidence.alike_part() < kMinAlike || evidence.farther_part() > kMaxFarther;
   locator.doubtful_frames = is_doubtful ? locator.doubtful_frames + 1 : 0;
   if (locator.doubtful_frames < kPatience_frames || --locator.sure_until > 0) return;
-  constexpr double kSame_m = 0.1, kSame_rad = 0.1;
   look_at_all(locator);
   const Tracking found = search(locator, frame, places, expected_depth);
   if (is_located(found)) {
-    const bool is_elsewhere = !is_near(found.T_world_camera, tracking.T_world_camera, kSame_m, kSame_rad);
+    const bool is_elsewhere = !is_same_place(found.T_world_camera, tracking.T_world_camera);
     tracking = found;
     if (is_elsewhere) {
       locator.T_world_camera.reset();

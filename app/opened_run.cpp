@@ -111,13 +111,13 @@ bool makes_picture(const RunCommand& command, bool has_window) {
   return has_window || !command.video.empty() || !command.pictures.empty();
 }
 
-SessionConfig config_of(const OpenedRun& run, bool has_window) {
+SessionConfig config_of(const OpenedRun& run, bool has_picture) {
   const RunCommand& command = run.command;
   SessionConfig config;
   config.poses = command.poses;
   config.scene.surfaces = command.surfaces;
   apply(command.quality, config);
-  config.make_picture = makes_picture(command, has_window);
+  config.make_picture = has_picture;
   config.yields_to_pictures = command.had_picture;
   config.measure_penetration = !command.report.empty();
   if (run.budget)
@@ -140,8 +140,8 @@ void make_unknown_solid(Session& session, StageTimes& times) {
                static_cast<double>(session.unknown().memory_bytes) / 1e6);
 }
 
-void open_session(OpenedRun& run, bool has_window) {
-  run.session = std::make_unique<Session>(run.map, config_of(run, has_window), &run.map.octree);
+void open_session(OpenedRun& run, bool has_picture) {
+  run.session = std::make_unique<Session>(run.map, config_of(run, has_picture), &run.map.octree);
   run.report.renderer = run.session->renderer();
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
   if (run.command.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
@@ -180,7 +180,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   const bool has_picture = makes_picture(command, link != nullptr);
   open_frames(run, has_picture);
   open_budget(run, has_picture);
-  open_session(run, link != nullptr);
+  open_session(run, has_picture);
   open_outputs(run);
   if (!command.frames_csv.empty()) run.frames_csv.emplace(command.frames_csv);
   if (link != nullptr)

@@ -149,8 +149,7 @@ void save(const PrescanCommand& command, const SavedMap& map, Checkpoints* check
 
 constexpr const char* kStops =
     "\nroomradar: stops before the next frame, without a map; past the last frame it goes on to the map. "
-    "Ctrl-C "
-    "once more ends it at once\n";
+    "Ctrl-C once more ends it at once\n";
 
 /// Throws Error that says how to go on.
 void stop(const std::string& map, Checkpoints* checkpoints) {
@@ -262,8 +261,7 @@ int run(const PrescanCommand& command) {
   if (!scanned.counts.stopped_for_memory) return not_scored.empty() ? 0 : 1;
   std::fprintf(stderr,
                "roomradar: %s: stopped by --max-memory %.0f: the map of the %lld frames that were fused is "
-               "saved and whole; "
-               "a coarser --resolution or more memory takes in the rest\n",
+               "saved and whole; a coarser --resolution or more memory takes in the rest\n",
                command.source.c_str(), command.max_memory_mb,
                static_cast<long long>(scanned.counts.frames_fused));
   return 1;

@@ -51,11 +51,11 @@ class RunLoop {
   void step();
 
   void play() {
-    for (; !run_.was_quit; ++run_frame_) {
+    const auto is_past_end = [&] { return run_.last_frame && run_frame_ > *run_.last_frame; };
+    for (; !run_.was_quit && !is_past_end(); ++run_frame_) {
       const Next next = read();
       if (next == Next::kEnd) break;
       if (next == Next::kSkipped) continue;
-      if (run_.last_frame && run_frame_ > *run_.last_frame) break;
       perform_due();
       if (!run_.was_quit) step();
     }

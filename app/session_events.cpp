@@ -190,11 +190,12 @@ void Session::change_objects(const ScriptEvent& event) {
       put(*event.position_world);
       break;
     case Action::kDrop:
-      if (!event.position_world) require_small_enough(object, event);
-      if (event.position_world)
+      if (event.position_world) {
         put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
-      else
+      } else {
+        require_small_enough(object, event);
         waiting_.push_back(event);
+      }
       break;
     case Action::kCarry:
       if (!object.in_room) put(*event.position_world);
@@ -222,8 +223,12 @@ void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_wor
     const std::optional<Support> support =
         find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
                      footprint_radius_m(object, R_world_object));
-    if (support) event.position_world = support->point_world;
-    apply(event);  // without a position it waits on
+    if (!support) {
+      waiting_.push_back(event);
+      continue;
+    }
+    event.position_world = support->point_world;
+    apply(event);
   }
 }
 

@@ -60,15 +60,19 @@ TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& sto
     result.settings.insert(result.settings.end(), settings.begin(), settings.end());
     SweepWatch watch;
     watch.is_stopped = [&] { return stop.asked(); };
-    watch.on_row = [&](SweepRow row) {
+    const auto of_all = [before](SweepRow row) {  // named among all settings, not these alone
       row.setting += before;
+      return row;
+    };
+    watch.on_row = [&](const SweepRow& made) {
+      const SweepRow row = of_all(made);
       csv.write(work, result.settings, row);
       char note[64];
       std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
       progress.step(row.fault.empty() ? note : row.fault);
-      result.rows.push_back(std::move(row));
     };
-    (void)sweep(work, {settings, command.repeats, command.seed}, watch);
+    for (SweepRow& row : sweep(work, {settings, command.repeats, command.seed}, watch))
+      result.rows.push_back(of_all(std::move(row)));
     result.summaries = summarise(work, result.settings, result.rows);
   };
   std::vector<Setting> drawn = draw_settings(work.knobs, command.settings - on_ladder, command.seed);

@@ -59,18 +59,24 @@ const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
   return *mesh;
 }
 
+namespace {
+
+/// How far the object's farthest point along a direction of its own frame is from its origin.
+double farthest_m(const VirtualObject& object, const Eigen::Vector3d& direction_object) {
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& corner : object.model->corners)
+    farthest = std::max(farthest, direction_object.dot(corner));
+  return farthest;
+}
+
+}  // namespace
+
 double lowest_m(const VirtualObject& object) {
-  const Eigen::Vector3d z = object.body.T_world_object.linear().row(2);
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& corner : object.model->corners) lowest = std::min(lowest, z.dot(corner));
-  return lowest;
+  return -farthest_m(object, -object.body.T_world_object.linear().row(2));
 }
 
 double highest_m(const VirtualObject& object) {
-  const Eigen::Vector3d z = object.body.T_world_object.linear().row(2);
-  double highest = -std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& corner : object.model->corners) highest = std::max(highest, z.dot(corner));
-  return highest;
+  return farthest_m(object, object.body.T_world_object.linear().row(2));
 }
 
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {

@@ -227,14 +227,15 @@ bool fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass
 
 std::string why_none_fused(const Work& work, const StaticMap& octree) {
   if (!work.last_fused) return "no frame was left to be fused: fuse_every and hold_out leave out all of them";
+  if (work.last_fused != FuseStatus::kOutOfReach)
+    return "no frame could be fused; the depth images hold no usable measurement";
   std::array<char, 160> reach{};
   std::snprintf(
       reach.data(), reach.size(),
       "no frame could be fused: the poses are out of the octree's reach of %.0f m; take coarser cells, or "
       "poses whose origin is in the room",
       octree.reach_m());
-  if (work.last_fused == FuseStatus::kOutOfReach) return reach.data();
-  return "no frame could be fused; the depth images hold no usable measurement";
+  return reach.data();
 }
 
 /// What the map says of itself, but for what save_map fills in.

@@ -29,8 +29,8 @@ ScenarioRow row_of(const Scenario& scenario, std::size_t room, const std::string
 struct PolicyTotals {
   int passed = 0;
   int false_stops = 0;
-  double contact_error_median_m =
-      0.0;  ///< of those that something stopped, how far from the truth; NaN: none
+  /// Of those that something stopped, how far from the truth; NaN where nothing was stopped.
+  double contact_error_median_m = 0.0;
   double contact_error_p95_m = 0.0;
   double frame_median_ms = 0.0;
   double cost_ratio = 0.0;  ///< median, scenario by scenario, of the frame's time to the first policy's

@@ -33,9 +33,8 @@ class SpooledSource final : public FrameSource {
   /// Spools to `folder`, which stays. Frames that an earlier process left there come first, and those of the
   /// source follow as if they were one recording: with the next index, and stamps that go on.
   /// @param source      may be null where has_end(folder)
-  /// @param most_ahead  the source is not read while so many frames wait to be: of a live one those in
-  /// between
-  ///                    are lost, as if there were no spool
+  /// @param most_ahead  the source is not read while so many frames wait to be: of a live one, those in
+  ///                    between are lost, as if there were no spool
   /// @throws Error if the folder cannot be made, or holds no spool
   static std::unique_ptr<SpooledSource> kept(std::unique_ptr<FrameSource> source,
                                              const std::filesystem::path& folder,
