@@ -12,6 +12,7 @@ constexpr double kMostSpread = 2.0;
 constexpr double kQuantile = 0.95, kQuantileStep = 0.02;
 constexpr std::int64_t kLongAgo = -1'000'000;
 constexpr double kNotMade = 0.02;
+constexpr int kMostNotMade_frames = 16;                 // turns are no longer than that
 constexpr double kMostStrain = 1.5, kStrainKept = 0.9;  // two frames of some ten that were cut on their way
 
 double part_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
@@ -45,26 +46,39 @@ std::size_t step_in_time(const BudgetState& state, const BudgetConfig& config, s
   return best;
 }
 
-/// Whether the step before the settled one would have had time for so long that it is to be tried.
-bool is_calm(BudgetState& state, const BudgetConfig& config, const FrameLoad& load) {
-  const bool has_time =
-      state.settled > 0 && rest_ms(state, state.settled - 1, 0, load) < config.back_below * config.budget_ms;
-  state.calm_frames = has_time ? state.calm_frames + 1 : 0;
-  return state.calm_frames >= state.patience_frames;
+/// Whether a frame with this step leaves so much of the budget that it is worth going back to.
+bool has_time(const BudgetState& state, const BudgetConfig& config, std::size_t step, const FrameLoad& load) {
+  return rest_ms(state, step, 0, load) < config.back_below * config.budget_ms;
+}
+
+/// The most accurate of the steps before the settled one that would have time: perhaps not the next, for what
+/// one step gains in a part it may lose in another. The settled one if none has.
+std::size_t most_accurate_in_time(const BudgetState& state, const BudgetConfig& config,
+                                  const FrameLoad& load) {
+  std::size_t step = 0;
+  while (step < state.settled && !has_time(state, config, step, load)) ++step;
+  return step;
+}
+
+/// Half of the way back to it, or farther where the steps there have no time: what is foreseen may be wrong.
+std::size_t half_way_back(const BudgetState& state, const BudgetConfig& config, std::size_t with_time,
+                          const FrameLoad& load) {
+  std::size_t step = state.settled - (state.settled - with_time + 1) / 2;
+  while (step > with_time && !has_time(state, config, step, load)) --step;
+  return step;
 }
 
 /// The step that the frames to come begin with.
 void settle(BudgetState& state, const BudgetConfig& config, const FrameLoad& load) {
   const std::size_t before = state.settled;
+  const std::size_t with_time = most_accurate_in_time(state, config, load);
+  state.calm_frames = with_time < before ? state.calm_frames + 1 : 0;
   if (rest_ms(state, before, 0, load) > config.budget_ms) {
     state.settled = step_in_time(state, config, before, 0, load, 0.0);
   } else if (state.strain > kMostStrain) {  // foreseen it has time, and then it has not
     state.settled = std::min(before + 1, state.front.size() - 1);
-  } else if (is_calm(state, config, load)) {
-    std::size_t with_time = before - 1;
-    while (with_time > 0 && rest_ms(state, with_time - 1, 0, load) < config.back_below * config.budget_ms)
-      --with_time;
-    state.settled -= (before - with_time + 1) / 2;  // half of the way: what is foreseen may be wrong
+  } else if (state.calm_frames >= state.patience_frames) {
+    state.settled = half_way_back(state, config, with_time, load);
     state.calm_frames = 0;
     state.went_back_at = state.frame;
   }
@@ -140,7 +154,13 @@ std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config
 void learn(BudgetState& state, const BudgetConfig& config, const std::array<double, kFrameParts>& parts_ms) {
   double took_ms = 0.0, foreseen = 0.0;
   for (std::size_t part = 0; part < state.begun; ++part) {
-    if (!(parts_ms[part] > kNotMade * state.foreseen_ms[part]) || !(state.foreseen_ms[part] > 0.0)) continue;
+    if (!(state.foreseen_ms[part] > 0.0)) continue;
+    if (!(parts_ms[part] > kNotMade * state.foreseen_ms[part])) {
+      if (++state.not_made_frames[part] > kMostNotMade_frames && state.scales[part] > 1.0)
+        state.scales[part] += config.decay * (1.0 - state.scales[part]);
+      continue;
+    }
+    state.not_made_frames[part] = 0;
     took_ms += parts_ms[part];
     foreseen += state.foreseen_ms[part];
     // What moved is meshed from the depth image that the frame began with.

@@ -36,6 +36,7 @@ struct BudgetState {
   /// What each part takes at the first step, over what usual_ms() says.
   std::array<double, kFrameParts> scales{1.0, 1.0, 1.0, 1.0};
   std::array<std::array<double, 3>, kFrameParts> lately{};  ///< the same of the last three frames
+  std::array<int, kFrameParts> not_made_frames{};           ///< on end, in which a part took next to nothing
   /// What 95 of 100 frames stay below, over what was foreseen.
   double spread = 1.15;
 
@@ -69,7 +70,7 @@ std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config
                                   const FrameLoad& load, double elapsed_ms);
 
 /// After a frame: learns from the times of its parts. One that took next to none of what was foreseen was not
-/// made, and says nothing.
+/// made, and says nothing; if it goes on so, what was foreseen is too much, and is forgotten.
 void learn(BudgetState& state, const BudgetConfig& config, const std::array<double, kFrameParts>& parts_ms);
 
 /// What a whole frame of this load is expected to take at a step, at the most in 95 of 100.

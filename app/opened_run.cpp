@@ -98,6 +98,10 @@ void open_frames(OpenedRun& run, bool has_picture) {
 void open_budget(OpenedRun& run, bool has_picture) {
   const RunCommand& command = run.command;
   if (!command.budget_ms) return;
+  if (has(run.script, Action::kQuality))
+    throw Error(
+        "--budget-ms: the script, or the recorded session, has quality events of its own, and each "
+        "would undo the other; leave out one of them");
   const std::filesystem::path path = presets_file(command.presets);
   std::vector<FrontStep> front = front_for(read_presets(path), command.quality, command.fixed);
   if (front.size() < 2)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "app/quality_json.hpp"
@@ -18,6 +19,41 @@ std::vector<BudgetStep> steps_of(const std::vector<FrontStep>& front, bool has_p
     if (!has_picture) steps.back().ratios[index_of(FramePart::kCompose)] = 0.0;
   }
   return steps;
+}
+
+/// Whether a part is made alike with both.
+bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
+  const auto of_mesh = [](const RunQuality& q) {
+    return std::tie(q.depth_stride, q.mesh_sigmas, q.fine_mesh);
+  };
+  const auto of_physics = [](const RunQuality& q) {
+    return std::tie(q.radar, q.radar_px, q.object_turns, q.physics_step_s);
+  };
+  const auto of_compose = [](const RunQuality& q) {
+    return std::tie(q.object_error_px, q.soft_edges, q.shadows, q.shadow_turns, q.picture_turns);
+  };
+  switch (part) {
+    case FramePart::kLocate:
+      return a.depth_stride == b.depth_stride && a.tracking_px == b.tracking_px;
+    case FramePart::kMesh:
+      return of_mesh(a) == of_mesh(b);
+    case FramePart::kPhysics:  // against what was meshed
+      return of_mesh(a) == of_mesh(b) && of_physics(a) == of_physics(b);
+    case FramePart::kCompose:
+      return of_compose(a) == of_compose(b);
+    case FramePart::kDone:
+      break;
+  }
+  return true;
+}
+
+/// A part that is made alike in two steps takes the same: what was measured otherwise is noise, or was
+/// measured with a field that is fixed now.
+void give_alike_parts_one_ratio(std::vector<FrontStep>& front) {
+  for (std::size_t step = 1; step < front.size(); ++step)
+    for (std::size_t part = 0; part < kFrameParts; ++part)
+      if (is_alike(static_cast<FramePart>(part), front[step - 1].run, front[step].run))
+        front[step].part_ratios[part] = front[step - 1].part_ratios[part];
 }
 
 /// What a frame of some load takes of the default's, about.
@@ -51,6 +87,7 @@ std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most,
     front.erase(std::remove_if(front.begin() + 1, front.end(),
                                [](const FrontStep& step) { return !(part_of_usual(step) < 1.0); }),
                 front.end());
+  give_alike_parts_one_ratio(front);
   return front;
 }
 

@@ -16,7 +16,7 @@ namespace roomradar {
 
 /// The steps that a run may take: `most`, and of the presets' front what comes after that, or all that is
 /// faster than the default if it is not in the front. What is fixed by name is so in all of them; neighbours
-/// that become alike are one.
+/// that become alike are one, and parts that neighbours make alike take the same in both.
 std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most, const FieldWords& fixed);
 
 /// Of the wall clock.

@@ -151,6 +151,36 @@ TEST(Budget, AccidentsPass) {
   EXPECT_EQ(machine.state.step, 0U);
 }
 
+TEST(Budget, LongFramesThatTookALotMoreThanEverAfterAreForgotten) {
+  for (const double longer : {20.0, 60.0, 1000.0}) {
+    Machine machine;
+    machine.config.budget_ms = 25.0;
+    machine.run(100, kCalm);
+    for (int i = 0; i < 3; ++i) machine.frame(kCalm, longer);
+    EXPECT_GT(machine.state.step, 0U);
+    machine.run(400, kCalm);
+    EXPECT_EQ(machine.state.step, 0U) << longer;
+  }
+}
+
+TEST(Budget, AStepThatIsDearerThanTheOneBeforeItDoesNotBarTheWayBack) {
+  std::vector<BudgetStep> front(4);
+  front[1].ratios.fill(1.2);
+  front[2].ratios.fill(0.9);
+  front[3].ratios.fill(0.4);
+  Machine machine;
+  machine.state = start_budget(front, {});
+  machine.config.budget_ms = 1.3 * machine.config.back_below * 10.0;
+  machine.run(10, kCalm);
+  machine.speed = 4.0;
+  machine.run(100, kCalm);
+  EXPECT_EQ(machine.state.step, 3U);
+  machine.speed = 0.95;
+  ASSERT_LT(foreseen_ms(start_budget(front, {}), 0, kCalm), 1.1 * machine.config.budget_ms);
+  machine.run(1000, kCalm);
+  EXPECT_EQ(machine.state.step, 0U);
+}
+
 TEST(Budget, TheFirstFrameMayTakeLong) {  // the camera is looked for in all of the map
   Machine machine;
   machine.config.budget_ms = 16.0;
@@ -218,6 +248,23 @@ TEST(RunBudget, TakesTheFrontFromWhatIsAskedForOnAndKeepsWhatIsFixed) {
   ASSERT_EQ(all.size(), 3U) << "no slower one, nor the default, which is none";
   EXPECT_EQ(all.front().run, other);
   EXPECT_EQ(all.back().run.depth_stride, 4);
+}
+
+TEST(RunBudget, APartThatIsMadeAlikeTakesTheSameWhateverWasMeasured) {
+  Presets presets;
+  presets.front.resize(3);
+  presets.front[1].run.shadows = presets.front[2].run.shadows = false;
+  presets.front[2].run.depth_stride = 2;
+  presets.front[1].part_ratios = {1.1, 1.0, 1.2, 0.6};
+  presets.front[2].part_ratios = {0.6, 0.3, 0.7, 0.65};
+  const auto front = front_for(presets, {}, {});
+  EXPECT_EQ(front[1].part_ratios, (std::array{1.0, 1.0, 1.0, 0.6}));
+  EXPECT_EQ(front[2].part_ratios, (std::array{0.6, 0.3, 0.7, 0.6}));
+  // With the stride fixed, the last two are one.
+  const auto fixed = front_for(presets, RunQuality{.depth_stride = 2}, {{"depth_stride", "2"}});
+  ASSERT_EQ(fixed.size(), 2U);
+  EXPECT_EQ(fixed[1].part_ratios[index_of(FramePart::kLocate)],
+            fixed[0].part_ratios[index_of(FramePart::kLocate)]);
 }
 
 TEST(RunBudget, ComesBackToWhatWasAskedForThoughTheFrontHasSlowerSettings) {

@@ -154,6 +154,7 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   EXPECT_EQ(budget["settings"].back()["step"], budget["steps"].get<int>() - 1);
   const Outcome again = roomradar("run " + hurried.string() + pictures("again"));
   EXPECT_NE(again.out.find("replay: 15 of 15 frames the same as recorded"), std::string::npos) << again.out;
+  expect_fault(roomradar("run " + hurried.string() + " --budget-ms 33"), 1, "quality events of its own");
   // Objects move in the same frames where no pictures are made.
   const Outcome unseen = roomradar("run " + session.string());
   EXPECT_NE(unseen.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos) << unseen.out;
@@ -376,6 +377,9 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   expect_fault(roomradar("trade --html " + path("none/trade.html")), 1, "none/trade.html");
   expect_fault(roomradar("trade --quick --only prescan " + path("none")), 1, "none");
   expect_fault(roomradar("trade --settings 0"), 2, "--settings");
+  expect_fault(roomradar("trade --only run --presets " + path("p.json")), 2, "--presets");
+  expect_fault(roomradar("trade --table1 --csv " + path("t.csv")), 2, "--csv");
+  expect_fault(roomradar("trade --table1 --rooms table,wall"), 2, "--table1");
   expect_fault(roomradar("trade --repeats x"), 2, "--repeats");
   expect_fault(roomradar("trade --only both"), 2, "prescan");
 }
