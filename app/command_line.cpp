@@ -472,7 +472,19 @@ void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work)
   sub->add_option("--presets", command.presets, "write fast, balanced, accurate and the front, for --preset")
       ->type_name("FILE");
   add_report_option(*sub, command.report);
-  sub->callback([&] { work = [&command] { return run(command); }; });
+  sub->callback([&, sub] {
+    if (sub->count("--presets") > 0 && sub->count("--only") > 0)
+      throw CLI::ValidationError("--presets: are of prescan and run, and --only leaves out one of them");
+    if (command.table1) {
+      if ((sub->count("--rooms") > 0 && command.rooms.size() > 1) || !command.recordings.empty())
+        throw CLI::ValidationError("--table1: is of one simulated room; name one by --rooms");
+      for (const char* name : {"--only", "--settings", "--repeats", "--objects", "--seed", "--time", "--csv",
+                               "--html", "--presets"})
+        if (sub->count(name) > 0)
+          throw CLI::ValidationError(std::string(name) + ": is of a sweep, and --table1 makes none");
+    }
+    work = [&command] { return run(command); };
+  });
 }
 
 }  // namespace

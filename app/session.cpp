@@ -134,6 +134,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   result.tracking = tracking.status;
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
     if (config_.make_picture) show_camera_alone(whole);
+    result.picture_is_new = config_.make_picture;
     T_world_before_.reset();
     return result;
   }
@@ -156,8 +157,8 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
   times.add_ms("contact", ms_since(handed_over));
   begin(FramePart::kCompose);
-  if (config_.make_picture && is_turn(0, config_.picture_turns))
-    times.timed("compose", [&] { compose_picture(whole, T_world_camera, dt_s); });
+  result.picture_is_new = config_.make_picture && is_turn(0, config_.picture_turns);
+  if (result.picture_is_new) times.timed("compose", [&] { compose_picture(whole, T_world_camera, dt_s); });
   T_world_before_ = T_world_camera;
   ++frames_;
 

@@ -76,6 +76,7 @@ struct FrameResult {
   std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by what was touched
   double deepest_penetration_m = 0.0;                 ///< >= 0, where it is measured
   FrameUse use;                                       ///< only if done
+  bool picture_is_new = false;  ///< else picture() is what it was after an earlier frame
 };
 
 /// Everything a run keeps from frame to frame. The saved map is only read. Not thread safe; GL on the thread

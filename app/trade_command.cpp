@@ -5,6 +5,7 @@
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
+#include "app/sim/scenarios.hpp"
 #include "app/sim/sim_options.hpp"
 #include "app/trade/draw_settings.hpp"
 #include "app/trade/ladder.hpp"
@@ -23,7 +24,11 @@ namespace {
 
 /// A scene that cannot be measured in is said now, and not when the sweep comes to it.
 void require_scenes(const TradeCommand& command) {
-  for (const std::string& room : command.rooms) (void)parse_sim_spec("sim:" + room);
+  for (const std::string& room : command.rooms) {
+    const SimOptions options = parse_sim_spec("sim:" + room);
+    if (command.only == "prescan" || command.table1) continue;
+    (void)make_scenario(make_scenario_room(options.room, options.seed), options.seed, 0);
+  }
   for (const std::string& recording : command.recordings)
     (void)frames_of_recording(recording, 0, 2 * kFewestTradeFrames);
 }
@@ -42,6 +47,11 @@ std::vector<TradeWork> works_of(const TradeCommand& command) {
 /// Ctrl-C once is remembered: what is measured so far is the result.
 class Stop {
  public:
+  Stop() {
+    Interrupt::say(
+        "\nroomradar: stops here: the scenes that are done are the result. Ctrl-C once more ends it at "
+        "once\n");
+  }
   bool asked() { return was_asked_ = was_asked_ || Interrupt::take(); }
 
  private:
@@ -82,6 +92,7 @@ TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& sto
   if (!ladder.empty() && !stop.asked()) measure(ladder);
   result.choice = choose_presets(work, result.summaries, result.usual);
   csv.write(work, result.summaries, result.usual, result.choice);
+  result.was_cut_short = stop.asked();
   return result;
 }
 
@@ -113,7 +124,11 @@ nlohmann::json to_json(const TradeResult& result) {
       row[result.work.figures[f].name] = summary.figures[f];
     settings.push_back(std::move(row));
   }
-  return {{"measurements", result.rows.size()}, {"settings", settings}, {"front", result.choice.front}};
+  return {{"measurements", result.rows.size()},
+          {"settings", settings},
+          {"front", result.choice.front},
+          {"cut_short", result.was_cut_short},
+          {"not_measured", faults_of(result)}};
 }
 
 int print_table1(const TradeCommand& command, Report report) {
@@ -145,15 +160,26 @@ int run(const TradeCommand& command) {
   TradeCsv csv(command.csv, works);
   Stop stop;
   std::vector<TradeResult> results;
+  std::string fault;  // what was measured before it is written all the same
   for (const TradeWork& work : works) {
     if (stop.asked()) break;
-    results.push_back(report.times.timed(work.name, [&] { return traded(work, command, stop, csv); }));
-    if (results.back().rows.empty()) results.pop_back();
+    try {
+      results.push_back(report.times.timed(work.name, [&] { return traded(work, command, stop, csv); }));
+      if (results.back().rows.empty()) results.pop_back();
+    } catch (const Error& error) {
+      fault += (fault.empty() ? "" : "; ") + work.name + ": " + error.what();
+    }
   }
-  if (results.empty()) throw Error("trade: stopped by Ctrl-C before anything was measured");
+  if (results.empty())
+    throw Error(fault.empty() ? "trade: stopped by Ctrl-C before anything was measured" : "trade: " + fault);
   for (const TradeResult& result : results) {
     print_presets(result);
     report.results[result.work.name] = to_json(result);
+    if (result.was_cut_short)
+      std::fprintf(stderr, "roomradar: %s: cut short: not everything that was asked for was measured\n",
+                   result.work.name.c_str());
+    for (const std::string& setting : faults_of(result))
+      std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
   }
   write_trade_page(
       results,
@@ -162,7 +188,11 @@ int run(const TradeCommand& command) {
        "seed " + std::to_string(command.seed) + ", " + std::to_string(command.repeats) +
            " repeats in each scene" + (command.quick ? ", quick: few frames of small images" : "")},
       command.html);
-  if (!command.presets.empty())
+  const bool has_both = results.size() == 2;
+  if (!command.presets.empty() && !has_both)
+    std::fprintf(stderr, "roomradar: %s: not written: only %s was measured, and presets are of both\n",
+                 command.presets.c_str(), results.front().work.name.c_str());
+  if (!command.presets.empty() && has_both)
     write_presets(chosen_presets(results, {{"processor", machine.processor},
                                            {"renderer", machine.renderer},
                                            {"system", machine.system},
@@ -172,6 +202,7 @@ int run(const TradeCommand& command) {
                                            {"scale", command.quick ? "quick" : "full"}}),
                   command.presets);
   write_report(report, command.report);
+  if (!fault.empty()) throw Error("trade: " + fault);
   return 0;
 }
 

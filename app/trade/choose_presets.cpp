@@ -40,27 +40,34 @@ double worst_loss_of(const TradeWork& work, const SettingSummary& setting, const
 
 PresetChoice choose_presets(const TradeWork& work, const std::vector<SettingSummary>& summaries,
                             std::size_t usual) {
-  std::vector<CostAndError> points;
-  for (const SettingSummary& summary : summaries) {
-    CostAndError point{std::numeric_limits<double>::quiet_NaN(), loss_of(work, summary, summaries[usual])};
-    if (summary.is_complete && has_usual_load(work.knobs, summary.setting) &&
-        worst_loss_of(work, summary, summaries[usual]) <= kMostWorstLoss)
-      point.cost = summary.time_ratio;
-    points.push_back(point);
-  }
+  const auto points_with = [&](double most_worst_loss) {
+    std::vector<CostAndError> points;
+    for (const SettingSummary& summary : summaries) {
+      CostAndError point{std::numeric_limits<double>::quiet_NaN(), loss_of(work, summary, summaries[usual])};
+      if (summary.is_complete && has_usual_load(work.knobs, summary.setting) &&
+          worst_loss_of(work, summary, summaries[usual]) <= most_worst_loss)
+        point.cost = summary.time_ratio;
+      points.push_back(point);
+    }
+    return points;
+  };
   PresetChoice choice;
-  choice.front = front_of(points);
+  choice.front = front_of(points_with(kMostWorstLoss));
+  const std::vector<CostAndError> points = points_with(kMostWorstLossOfPreset);
   const auto is_better = [&](const std::optional<std::size_t>& best, std::size_t i, const auto& measure) {
     return !best || measure(points[i]) < measure(points[*best]);
   };
   const auto cost = [](const CostAndError& p) { return p.cost; };
   const auto product = [](const CostAndError& p) { return p.cost * p.error; };
   const auto error = [](const CostAndError& p) { return p.error; };
-  for (const std::size_t i : choice.front) {
-    if (worst_loss_of(work, summaries[i], summaries[usual]) > kMostWorstLossOfPreset) continue;
+  for (const std::size_t i : front_of(points)) {
     if (points[i].error <= kMostLossOfFast && is_better(choice.fast, i, cost)) choice.fast = i;
     if (is_better(choice.balanced, i, product)) choice.balanced = i;
     if (points[i].cost <= kMostTimeOfAccurate && is_better(choice.accurate, i, error)) choice.accurate = i;
+  }
+  if (choice.accurate && !(points[*choice.accurate].error < kMostLossOfAccurate)) {
+    choice.accurate.reset();
+    if (std::isfinite(points[usual].cost)) choice.accurate = usual;
   }
   return choice;
 }

@@ -69,7 +69,8 @@ MovedTouchFacts judge_moved_touches(const std::vector<MovedTouch>& touches,
                                     const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
                                     LiveScene& scene, const TrialSurfaces& how, CyberRadar& radar) {
   if (touches.empty()) return {};
-  constexpr double kAbout_m = 0.02;  // as a session has it
+  constexpr double kAbout_m = 0.02;   // as a session has it
+  constexpr double kTooFar_m = 0.02;  // it went through, and was stopped by what is behind
   Mesh ball_mesh;
   append_mesh(ball(), {}, kMeshDeviation_m, ball_mesh);
   TriangleTree tree;
@@ -89,8 +90,9 @@ MovedTouchFacts judge_moved_touches(const std::vector<MovedTouch>& touches,
       const Eigen::Isometry3d T_world_ball(Eigen::Translation3d(touch.start_world));
       const Contact contact =
           radar.query({{&tree, T_world_ball}, touch.direction_world, kTouchLimit_m}, {surfaces, {}});
-      if (contact)
-        errors_m.push_back(std::abs(contact.travel_m - touch.true_travel_m));
+      const double past_m = contact.travel_m - touch.true_travel_m;
+      if (contact && past_m <= kTooFar_m)
+        errors_m.push_back(std::abs(past_m));
       else
         ++missed;
     }

@@ -1,7 +1,9 @@
 // picture_judge.cpp: the right picture, and what another one has different.
 #include "app/trade/picture_judge.hpp"
 
+#include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace roomradar {
 namespace {
@@ -10,14 +12,46 @@ double difference(Rgb a, Rgb b) {
   return (std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b)) / (3.0 * 255.0);
 }
 
+/// Whether some object is there in the layer, hidden or not.
+bool is_covered(const ObjectLayer& layer, int x, int y) {
+  if (x < layer.rect.x || x >= layer.rect.x + layer.rect.width) return false;
+  if (y < layer.rect.y || y >= layer.rect.y + layer.rect.height) return false;
+  for (int j = 0; j < layer.samples; ++j) {
+    const float* depth_m =
+        layer.depth_m.row((y - layer.rect.y) * layer.samples + j) + (x - layer.rect.x) * layer.samples;
+    if (std::any_of(depth_m, depth_m + layer.samples, [](float z_m) { return z_m > 0.0F; })) return true;
+  }
+  return false;
+}
+
+/// Marks what lies within the band about the places where objects go from shown to hidden.
+void mark_edges(const ObjectLayer& layer, const Occlusion& occlusion, MaskImage& edges) {
+  const PixelRect& rect = occlusion.rect;
+  edges.resize(rect.width, rect.height);
+  const auto is_hidden = [&](int x, int y) { return occlusion.unsoftened.at(x, y) >= 0.5F; };
+  for (int y = 0; y < rect.height; ++y) {
+    for (int x = 0; x < rect.width; ++x) {
+      if (!is_covered(layer, rect.x + x, rect.y + y)) continue;
+      for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}}) {
+        if (!edges.contains(x + dx, y + dy) || !is_covered(layer, rect.x + x + dx, rect.y + y + dy)) continue;
+        if (is_hidden(x, y) == is_hidden(x + dx, y + dy)) continue;
+        for (int v = std::max(y - kEdgeBand_px, 0); v < std::min(y + kEdgeBand_px + 1, rect.height); ++v)
+          std::fill_n(edges.row(v) + std::max(x - kEdgeBand_px, 0),
+                      std::min(x + kEdgeBand_px + 1, rect.width) - std::max(x - kEdgeBand_px, 0), 1);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 PictureJudge::PictureJudge(const std::vector<Mesh>& objects) : drawer_(context_) {
   for (const Mesh& mesh : objects) objects_.push_back(object_of(context_, "judged", mesh, objects_));
 }
 
-double PictureJudge::error_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
-                              const Eigen::Isometry3d& T_world_camera) {
+PictureErrors PictureJudge::errors_of(const JudgedPicture& judged, const Frame& frame,
+                                      const DepthImage& true_depth_m,
+                                      const Eigen::Isometry3d& T_world_camera) {
   std::vector<DrawnObject> drawn;
   std::vector<ShadowCaster> casters;
   for (const JudgedObject& shown : judged.objects) {
@@ -38,7 +72,22 @@ double PictureJudge::error_of(const JudgedPicture& judged, const Frame& frame, c
     sum += difference(right_.pixels[i], judged.picture.pixels[i]);
     changed += difference(right_.pixels[i], frame.colour.pixels[i]) > 0.0 ? 1 : 0;
   }
-  return changed > 0 ? sum / static_cast<double>(changed) : 0.0;
+  PictureErrors errors;
+  if (changed > 0) errors.whole = sum / static_cast<double>(changed);
+
+  mark_edges(layer_, occlusion_, edges_);
+  double edge_sum = 0.0;
+  std::size_t on_edge = 0;
+  for (int y = 0; y < edges_.height; ++y) {
+    for (int x = 0; x < edges_.width; ++x) {
+      if (edges_.at(x, y) == 0) continue;
+      const int u = occlusion_.rect.x + x, v = occlusion_.rect.y + y;
+      edge_sum += difference(right_.at(u, v), judged.picture.at(u, v));
+      ++on_edge;
+    }
+  }
+  if (on_edge > 0) errors.at_edges = edge_sum / static_cast<double>(on_edge);
+  return errors;
 }
 
 }  // namespace roomradar

@@ -1,5 +1,6 @@
 // picture_judge.hpp: how far a composed picture is from the one that the truth would give.
 #pragma once
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -23,6 +24,17 @@ struct JudgedPicture {
   std::vector<JudgedObject> objects;
 };
 
+/// How far a picture is from the right one: the colours' differences (0 to 1, mean of the channels).
+struct PictureErrors {
+  /// Summed over the whole picture, for each pixel in which the right one is not the camera's own; 0 where it
+  /// is so everywhere.
+  double whole = 0.0;
+  /// Mean over the pixels that lie within kEdgeBand_px of where the right picture begins to hide an object;
+  /// NaN where nothing does.
+  double at_edges = std::numeric_limits<double>::quiet_NaN();
+};
+inline constexpr int kEdgeBand_px = 4;
+
 /// Composes pictures from exact depth, exact poses, objects' full meshes and fresh shadows. GL on the thread
 /// that made it.
 class PictureJudge {
@@ -30,14 +42,12 @@ class PictureJudge {
   /// Throws Error as ObjectModel does.
   PictureJudge(const std::vector<Mesh>& objects);
 
-  /// Sum of the colours' differences (0 to 1, mean of the channels) over the whole picture, for each pixel in
-  /// which the right picture is not the camera's own; 0 where it is so everywhere. The colour camera must be
-  /// the depth camera.
+  /// The colour camera must be the depth camera.
   /// @param frame           with colour
   /// @param true_depth_m    of its size
   /// @param T_world_camera  true, in the objects' world
-  double error_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
-                  const Eigen::Isometry3d& T_world_camera);
+  PictureErrors errors_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
+                          const Eigen::Isometry3d& T_world_camera);
 
  private:
   GlContext context_;
@@ -46,6 +56,7 @@ class PictureJudge {
   ObjectLayer layer_;
   Occlusion occlusion_;
   ColourImage right_;
+  MaskImage edges_;
 };
 
 }  // namespace roomradar

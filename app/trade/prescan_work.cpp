@@ -20,8 +20,8 @@
 namespace roomradar {
 namespace {
 
-constexpr std::int64_t kHoldOut = 8;
-constexpr double kSpacing_m = 0.01;  // of the points on the mesh
+constexpr std::int64_t kHoldOut = 7;  // has no factor in common with any fuse_every
+constexpr double kSpacing_m = 0.01;   // of the points on the mesh
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct ScanScene {
@@ -78,7 +78,8 @@ std::array<double, 3> surface_errors(const ScanScene& scene, const PrescanResult
                                      FrameSource& source) {
   if (!scene.room) {
     const HeldOutScore score = score_held_out(source, scanned.map.mesh, scanned.map.trajectory, kHoldOut);
-    return {score.median_m, kNone, 1.0 - score.cover};
+    if (score.pixels == 0) return {kNone, kNone, kNone};
+    return {score.cover > 0.0 ? score.median_m : kNone, kNone, 1.0 - score.cover};
   }
   const SurfaceScore score =
       score_surface(scanned.map.mesh, T_room_map_of(scanned.map.trajectory, scene.frames), *scene.room,

@@ -1,7 +1,10 @@
 // run_facts.cpp: frames handed to a session as a run would, with what is true of them beside.
 #include "app/trade/run_facts.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <string_view>
 
 #include "app/apply_quality.hpp"
 #include "app/fallthrough/totals.hpp"
@@ -38,6 +41,42 @@ JudgedPicture shown_by(const Session& session) {
   return shown;
 }
 
+bool moved_some(const Session& session) {
+  return std::any_of(session.objects().begin(), session.objects().end(),
+                     [](const auto& object) { return object->in_room && object->waited_s == 0.0; });
+}
+
+double newest_ms(const StageTimes& times, std::string_view wanted) {
+  double newest = 0.0;
+  times.visit_newest([&](const std::string& stage, std::size_t, double ms) {
+    if (stage == wanted) newest = ms;
+  });
+  return newest;
+}
+
+/// How old what the picture shows of the objects is, frame by frame: they wait for their turn to be moved,
+/// and the picture for its own.
+class ShownAge {
+ public:
+  void note(const Session& session, const FrameResult& result, double stamp_s, bool counts) {
+    if (result.picture_is_new) {
+      made_s_ = stamp_s;
+      waited_s_.clear();
+      for (const auto& object : session.objects())
+        if (object->in_room) waited_s_.push_back(object->waited_s);
+    }
+    if (!counts) return;
+    for (const double waited_s : waited_s_) sum_s_ += waited_s + (stamp_s - made_s_);
+    count_ += waited_s_.size();
+  }
+  [[nodiscard]] double mean_ms() const { return 1e3 * sum_s_ / static_cast<double>(count_); }
+
+ private:
+  std::vector<double> waited_s_;  ///< of the objects in the picture, when it was made
+  double made_s_ = 0.0, sum_s_ = 0.0;
+  std::size_t count_ = 0;
+};
+
 }  // namespace
 
 RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mesh& object) {
@@ -50,40 +89,45 @@ RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mes
   RunFacts facts;
   facts.renderer = session.renderer();
   StageTimes warm_up;
-  int counted = 0, located = 0, ages = 0;
-  double squared_error_m2 = 0.0, age_s = 0.0;
+  ShownAge shown;
+  int counted = 0, located = 0, moved = 0;
+  double squared_error_m2 = 0.0;
   for (std::size_t i = 0; i < scene.frames.size(); ++i) {
     const Frame& frame = scene.frames[i];
     drop_objects(scene, setting.objects, static_cast<int>(i), session);
     const bool counts = i >= kWarmUpFrames;
     const double cpu_before_ms = process_cpu_ms();
+    const auto start = std::chrono::steady_clock::now();
     const FrameResult result = session.step(frame, counts ? facts.times : warm_up);
-    const double cpu_ms = process_cpu_ms() - cpu_before_ms;
+    const double frame_ms = ms_since(start), cpu_ms = process_cpu_ms() - cpu_before_ms;
     const std::size_t judged = facts.pictures.size();
     if (judged < scene.true_views.size() && scene.true_views[judged].frame == i)
       facts.pictures.push_back(shown_by(session));
+    shown.note(session, result, frame.stamp_s, counts);
     if (!counts) continue;
+    facts.frame_ms += frame_ms;
     facts.cpu_ms += cpu_ms;
     ++counted;
-    for (const auto& shown : session.objects()) {
-      if (!shown->in_room) continue;
-      age_s += shown->waited_s;
-      ++ages;
-    }
     if (result.status != FrameStatus::kDone) continue;
     ++located;
+    if (moved_some(session)) {
+      facts.moved_ms += newest_ms(facts.times, "physics");
+      ++moved;
+    }
     facts.dynamic_triangles += static_cast<double>(result.dynamic_triangles);
     facts.static_triangles += static_cast<double>(result.static_triangles_drawn);
     const Eigen::Isometry3d T_world_true = scene.map.info.T_world_recorded * *frame.T_world_camera;
     squared_error_m2 += (T_world_true.translation() - result.T_world_camera.translation()).squaredNorm();
   }
   facts.memory_mb = peak_growth_mb(start_bytes);
+  facts.frame_ms /= counted;
   facts.cpu_ms /= counted;
+  facts.moved_ms /= moved;
   facts.located = static_cast<double>(located) / counted;
   facts.dynamic_triangles /= located;
   facts.static_triangles /= located;
   facts.pose_error_m = std::sqrt(squared_error_m2 / located);
-  facts.object_age_ms = 1e3 * age_s / ages;
+  facts.object_age_ms = shown.mean_ms();
   return facts;
 }
 

@@ -21,13 +21,15 @@ struct RunSetting {
 struct RunFacts {
   std::string renderer;
   StageTimes times;
+  double frame_ms = 0.0;   ///< mean of all frames: where they take turns, no one of them is usual
   double cpu_ms = 0.0;     ///< of all threads, a frame
+  double moved_ms = 0.0;   ///< physics, mean of the frames in which some object had its turn; NaN: none
   double memory_mb = 0.0;  ///< that the process held more at its peak
   double located = 0.0;    ///< part of the frames
   /// Means over the located frames; NaN where there are none.
   double dynamic_triangles = 0.0, static_triangles = 0.0;
   double pose_error_m = 0.0;            ///< RMS, of the camera's position
-  double object_age_ms = 0.0;           ///< how long ago an object was moved, when a frame is done
+  double object_age_ms = 0.0;           ///< how long ago what is shown of the objects was so, after a frame
   std::vector<JudgedPicture> pictures;  ///< one a true view of the scene
 };
 

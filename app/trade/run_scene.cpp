@@ -12,7 +12,7 @@
 namespace roomradar {
 namespace {
 
-constexpr std::int64_t kJudgeEvery = 10;  // of the run's frames, its picture
+constexpr std::int64_t kJudgeEvery = 7;  // of the run's frames, its picture; no multiple of picture_turns
 constexpr std::int64_t kFirstJudged = 15;
 
 SavedMap mapped(FrameSource& source) {

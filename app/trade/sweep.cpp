@@ -61,6 +61,7 @@ std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const 
         try {
           row.figures = measure(plan.settings[setting]);
         } catch (const Error& error) {
+          if (plan.settings[setting] == usual && !is_stopped()) throw;
           row.fault = error.what();
           row.figures.assign(work.figures.size(), std::numeric_limits<double>::quiet_NaN());
         }

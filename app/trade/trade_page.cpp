@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <set>
 
 #include "app/svg_plot.hpp"
 #include "app/trade/front.hpp"
@@ -74,9 +76,11 @@ bool is_shown(const TradeResult& result, std::size_t setting) {
 
 /// @param negligible  of the error
 /// @param error_of    of a setting; both in the plot's unit
+/// @param given_front settings, where the front is not this plot's own
 template <typename ErrorOf>
 std::string plot_of(const TradeResult& result, const std::string& title, const std::string& y_name,
-                    double negligible, const ErrorOf& error_of) {
+                    double negligible, const ErrorOf& error_of,
+                    const std::optional<std::vector<std::size_t>>& given_front = {}) {
   constexpr double kOffThePlot =
       10.0;  // times the default's error: it broke down, and would squeeze the rest
   std::vector<std::size_t> shown;
@@ -92,14 +96,18 @@ std::string plot_of(const TradeResult& result, const std::string& title, const s
     shown.push_back(i);
     points.push_back(point);
   }
-  const std::vector<std::size_t> front = front_of(points);
+  std::vector<std::size_t> front;
+  if (!given_front)
+    for (const std::size_t k : front_of(points)) front.push_back(shown[k]);
+  const std::vector<std::size_t>& settings_on_front = given_front ? *given_front : front;
   FrontPlot plot{.title = title, .x_name = "time of the default beside it, times", .y_name = y_name};
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const std::size_t i = shown[k];
     const SettingSummary& summary = result.summaries[i];
     const bool is_default = i == result.usual;
     const std::string name = name_of(result, i);
-    const bool is_on_front = std::find(front.begin(), front.end(), k) != front.end();
+    const bool is_on_front =
+        std::find(settings_on_front.begin(), settings_on_front.end(), i) != settings_on_front.end();
     plot.dots.push_back({.x = points[k].cost,
                          .y = points[k].error,
                          .x_least = summary.least_ratio,
@@ -118,10 +126,12 @@ std::string plot_of(const TradeResult& result, const std::string& title, const s
 
 std::string plots_of(const TradeResult& result) {
   std::string html = "<div class=\"plots\">\n";
-  html += plot_of(result, result.work.name + ": all errors together",
-                  "loss: mean of errors, times the default's", 0.0, [&](std::size_t i) {
-                    return loss_of(result.work, result.summaries[i], result.summaries[result.usual]);
-                  });
+  html += plot_of(
+      result, result.work.name + ": all errors together", "loss: mean of errors, times the default's", 0.0,
+      [&](std::size_t i) {
+        return loss_of(result.work, result.summaries[i], result.summaries[result.usual]);
+      },
+      result.choice.front);
   for (std::size_t f = 0; f < result.work.figures.size(); ++f) {
     const FigureName& figure = result.work.figures[f];
     if (figure.kind != FigureKind::kError && figure.kind != FigureKind::kMemory) continue;
@@ -173,28 +183,47 @@ std::vector<std::size_t> single_turns_of(const TradeResult& result) {
   return settings;
 }
 
+/// In which scenes, how much, and what of it is missing.
+std::string about(const TradeResult& result) {
+  const auto shown =
+      std::count_if(result.summaries.begin(), result.summaries.end(), [&](const auto& summary) {
+        return is_shown(result, static_cast<std::size_t>(&summary - result.summaries.data()));
+      });
+  std::set<std::size_t> measured;
+  for (const SweepRow& row : result.rows) measured.insert(row.scene);
+  std::string scenes;
+  for (const std::size_t scene : measured) scenes += (scenes.empty() ? "" : ", ") + result.work.scenes[scene];
+  std::string text = std::to_string(shown) + " settings on the plots, " + std::to_string(result.rows.size()) +
+                     " measurements in: " + escaped(scenes) +
+                     "<br>Time compared: " + escaped(result.work.figures[result.work.time].title);
+  if (result.was_cut_short) text += "<br><b>Cut short:</b> not everything that was asked for was measured";
+  for (const std::string& fault : faults_of(result)) text += "<br><b>Not measured:</b> " + escaped(fault);
+  return text;
+}
+
 std::string section_of(const TradeResult& result) {
   const PresetChoice& choice = result.choice;
   std::vector<std::size_t> presets{result.usual};
   for (const auto& preset : {choice.fast, choice.balanced, choice.accurate})
     if (preset && std::find(presets.begin(), presets.end(), *preset) == presets.end())
       presets.push_back(*preset);
-  const auto shown =
-      std::count_if(result.summaries.begin(), result.summaries.end(), [&](const auto& summary) {
-        return summary.is_complete && has_usual_load(result.work.knobs, summary.setting);
-      });
-  std::string scenes;
-  for (const std::string& scene : result.work.scenes) scenes += (scenes.empty() ? "" : ", ") + scene;
-  return "<h2>" + escaped(result.work.name) + "</h2><p class=\"about\">" + std::to_string(shown) +
-         " settings on the plots, " + std::to_string(result.rows.size()) +
-         " measurements in: " + escaped(scenes) +
-         "<br>Time compared: " + escaped(result.work.figures[result.work.time].title) +
+  return "<h2>" + escaped(result.work.name) + "</h2><p class=\"about\">" + about(result) +
          "</p>\n<h3>Presets</h3>" + table_of(result, presets) + "<h3>Fronts</h3>" + plots_of(result) +
          "<h3>The front of all errors together</h3>" + table_of(result, choice.front) +
          "<h3>One knob at a time</h3>" + table_of(result, single_turns_of(result));
 }
 
 }  // namespace
+
+std::vector<std::string> faults_of(const TradeResult& result) {
+  std::set<std::size_t> told;
+  std::vector<std::string> faults;
+  for (const SweepRow& row : result.rows)
+    if (!row.fault.empty() && told.insert(row.setting).second)
+      faults.push_back(describe(result.work.knobs, result.settings[row.setting]) + ", in " +
+                       result.work.scenes[row.scene] + ": " + row.fault);
+  return faults;
+}
 
 void write_trade_page(const std::vector<TradeResult>& results, const std::vector<std::string>& about,
                       const std::filesystem::path& path) {
@@ -221,11 +250,10 @@ void write_trade_page(const std::vector<TradeResult>& results, const std::vector
          "(both "
          "with what is negligible added), so 1 is the default and 1.5 is half as much error again.</p>\n"
          "<p><b>Orange</b>: the ring is the default; diamonds are the presets. <i>fast</i> is the fastest "
-         "with a "
-         "loss of at most 1.5, <i>balanced</i> has the least product of time and loss, <i>accurate</i> has "
-         "the "
-         "least loss within 3 times the default's time; no preset has any error more than 3 times the "
-         "default's.</p>\n";
+         "with a loss of at most 1.5, <i>balanced</i> has the least product of time and loss, "
+         "<i>accurate</i> has the least loss within 3 times the default's time, or is the default where that "
+         "is less than 1 % better; no preset has any error more than 3 times the default's, and nothing on "
+         "the front of all errors one more than 10 times.</p>\n";
   for (const TradeResult& result : results) file << section_of(result);
   file << "</html>\n";
   whole.put_in_place();

@@ -16,7 +16,11 @@ struct TradeResult {
   std::vector<SettingSummary> summaries = {};
   std::size_t usual = 0;  ///< the default's place among the settings
   PresetChoice choice = {};
+  bool was_cut_short = false;  ///< before all settings had been measured in all scenes
 };
+
+/// A line for each setting that could not be measured somewhere: which, where and why.
+std::vector<std::string> faults_of(const TradeResult& result);
 
 /// Needs no network and no other file; light or dark as the reader's system is. Throws Error if it cannot be
 /// written. Nothing is written for an empty path.

@@ -54,7 +54,7 @@ FrontStep step_of(const TradeResult& run, std::size_t setting) {
   };
   set(FramePart::kLocate, {"reduce", "locate", "expected", "foreground"});
   set(FramePart::kMesh, {"mesh"});
-  set(FramePart::kPhysics, {"physics"});
+  set(FramePart::kPhysics, {"moved"});  // the others took no turn, and are not foreseen by it
   set(FramePart::kCompose, {"compose"});
   add_figures(run, setting, "", step.figures);
   return step;

@@ -2,11 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <map>
 #include <set>
+#include <span>
 #include <sstream>
 
 #include "app/sim/counter_random.hpp"
@@ -14,11 +16,14 @@
 #include "app/trade/draw_settings.hpp"
 #include "app/trade/front.hpp"
 #include "app/trade/ladder.hpp"
+#include "app/trade/picture_judge.hpp"
 #include "app/trade/prescan_work.hpp"
 #include "app/trade/run_work.hpp"
 #include "app/trade/sweep.hpp"
 #include "app/trade/trade_csv.hpp"
+#include "app/trade/trade_frames.hpp"
 #include "app/trade/trade_page.hpp"
+#include "app/trade/trade_presets.hpp"
 #include "mapping/types/error.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -265,6 +270,17 @@ TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) 
   EXPECT_EQ(told, 4U);
   EXPECT_EQ(whole.size(), 3U);
   EXPECT_TRUE(summarise(work, settings, whole)[2].is_complete);
+  // A default that fails in its own row spoils all comparisons: said at once, and not at the end.
+  Machine flaky;
+  TradeWork once = flaky.work({"a"});
+  int asked = 0;
+  once.open = [&](std::size_t) -> Measure {
+    return [&](const Setting&) -> Readings {
+      if (++asked == 2) throw Error("no memory");
+      return {1.0, 1.0, 1.0};
+    };
+  };
+  EXPECT_EQ(test::error_of([&] { (void)sweep(once, {settings, 1, 1}); }), "no memory");
   Machine broken;
   TradeWork impossible = broken.work();
   impossible.knobs[1].usual = 0;
@@ -310,6 +326,38 @@ TEST(Presets, AreTheFastestTheBestWithinReasonAndTheLeastProduct) {
   EXPECT_EQ(names_of(2, 2, choice, " "), "default fast");
 }
 
+TEST(Presets, WhatIsTooBadForOneInASingleErrorDoesNotPushAsideWhatIsNot) {
+  Machine machine;
+  TradeWork work = machine.work();
+  work.figures.push_back({"other_m", "another error, mm", 1e3, FigureKind::kError, 0.0001});
+  const auto of = [&](double time_ratio, double error_m, double other_m) {
+    SettingSummary summary = summary_of({1, 1, 0}, time_ratio, error_m);
+    summary.figures.push_back(other_m);
+    return summary;
+  };
+  std::vector<SettingSummary> summaries{of(1.0, 0.0009, 0.0009),    // the default
+                                        of(0.50, 0.0014, 0.0014),   // 1.5 times both
+                                        of(0.49, 0.0003, 0.0041)};  // 0.4 and 4.2 times: a loss of 1.3
+  summaries[0].setting = {2, 1, 0};
+  const PresetChoice choice = choose_presets(work, summaries, 0);
+  EXPECT_EQ(choice.front, (std::vector<std::size_t>{2, 0}));
+  EXPECT_EQ(choice.fast, 1U);
+  EXPECT_EQ(choice.balanced, 1U);
+}
+
+TEST(Presets, WhatIsBetterByChanceAloneIsNotCalledAccurate) {
+  Machine machine;
+  const TradeWork work = machine.work();
+  std::vector<SettingSummary> summaries{summary_of({2, 1, 0}, 1.0, 0.0019),
+                                        summary_of({1, 1, 0}, 0.95, 0.00189)};
+  EXPECT_EQ(choose_presets(work, summaries, 0).accurate, 0U);
+  summaries[1].figures[1] = 0.0018;
+  EXPECT_EQ(choose_presets(work, summaries, 0).accurate, 1U);
+  summaries[1].figures[1] = 0.00189;
+  summaries[0].is_complete = false;
+  EXPECT_EQ(choose_presets(work, summaries, 0).accurate, std::nullopt);
+}
+
 TEST(Ladder, TurnsFirstWhatGivesMostForLeastAndKeepsItTurned) {
   Machine machine;
   const TradeWork work = machine.work();
@@ -344,6 +392,49 @@ TEST(Presets, OfAnErrorThatNobodyKnowsAreNone) {
   const PresetChoice choice = choose_presets(work, {summary_of({2, 1, 0}, 1.0, kNone)}, 0);
   EXPECT_TRUE(choice.front.empty());
   EXPECT_FALSE(choice.fast || choice.balanced || choice.accurate);
+}
+
+/// A sweep of run in which the second setting takes half the time of all stages, and moves objects in half
+/// the frames, in each of which that takes as long as ever.
+TradeResult run_result() {
+  TradeResult result{.work = run_work({"table"}, {}, TradeScale{})};
+  result.settings = {usual_setting(result.work.knobs), usual_setting(result.work.knobs)};
+  const auto knob = std::find_if(result.work.knobs.begin(), result.work.knobs.end(),
+                                 [](const Knob& k) { return k.name == "object_turns"; });
+  result.settings[1][static_cast<std::size_t>(knob - result.work.knobs.begin())] = 2;
+  for (const double part : {1.0, 0.5}) {
+    SettingSummary summary{.setting = result.settings[part < 1.0 ? 1 : 0], .rows = 1, .time_ratio = part};
+    for (const FigureName& figure : result.work.figures) {
+      const bool is_time = figure.kind == FigureKind::kTime;
+      summary.figures.push_back(is_time ? 4.0 * part : 0.001 / part);
+      summary.ratios.push_back(is_time ? part : 1.0);
+    }
+    summary.figures[place_of(result.work, "physics_ms")] = part < 1.0 ? 0.0 : 4.0;  // a median of turns
+    summary.ratios[place_of(result.work, "physics_ms")] = part < 1.0 ? 0.0 : 1.0;
+    summary.figures[place_of(result.work, "moved_ms")] = 4.0;
+    summary.ratios[place_of(result.work, "moved_ms")] = 1.0;
+    summary.is_complete = true;
+    result.summaries.push_back(std::move(summary));
+  }
+  result.choice = choose_presets(result.work, result.summaries, 0);
+  return result;
+}
+
+TEST(Presets, AFrontSaysWhatAPartTakesInTheFramesThatHaveIt) {
+  const Presets presets = chosen_presets({run_result()}, {{"seed", "1"}});
+  ASSERT_EQ(presets.front.size(), 2U);
+  EXPECT_EQ(presets.front[0].run, RunQuality{});
+  EXPECT_EQ(presets.front[1].run.object_turns, 2);
+  const auto& ratios = presets.front[1].part_ratios;
+  EXPECT_EQ(ratios[index_of(FramePart::kLocate)], 0.5);
+  EXPECT_EQ(ratios[index_of(FramePart::kMesh)], 0.5);
+  EXPECT_EQ(ratios[index_of(FramePart::kCompose)], 0.5);
+  EXPECT_EQ(ratios[index_of(FramePart::kPhysics)], 1.0);
+  EXPECT_EQ(presets.front[1].figures.at("time_ratio"), 0.5);
+  // What trade writes is what --preset reads.
+  const test::TemporaryFolder folder;
+  write_presets(presets, folder.path() / "p.json");
+  EXPECT_EQ(read_presets(folder.path() / "p.json").front[1].run, presets.front[1].run);
 }
 
 TEST(TradeFiles, CsvFieldsAreQuotedWhereTheyMustBe) {
@@ -444,8 +535,77 @@ TEST(TradeWorks, ARunIsMeasuredAgainstTheRoomWhatMovesInItAndTheRightPicture) {
   EXPECT_LT(figures["moved_error_median_m"], 0.03);
   EXPECT_GT(figures["picture_error"], 0.0);
   EXPECT_LT(figures["picture_error"], 0.2);
+  EXPECT_LT(figures["picture_edge_error"], 0.5);
   EXPECT_EQ(figures["object_age_ms"], 0.0);
   EXPECT_LE(figures["radar_ms"], figures["frame_ms"]);
+}
+
+/// Red on the left, green on the right, and the depth of each side; the picture that compose makes of it with
+/// a teapot in the middle, when the depth's edge is at `edge_px`.
+struct TwoSides {
+  Frame frame;
+  DepthImage true_depth_m;
+  Mesh teapot = object_mesh("teapot");
+  Eigen::Isometry3d T_world_teapot{Eigen::Translation3d(0.0, 0.0, 1.0)};
+
+  TwoSides() {
+    frame.depth_camera = frame.colour_camera = kinect_of_width(160);
+    frame.colour.resize(160, 120, Rgb{0, 160, 0});
+    for (int y = 0; y < 120; ++y) std::fill_n(frame.colour.row(y), 80, Rgb{160, 0, 0});
+    true_depth_m = depth_with_edge(80);
+  }
+
+  [[nodiscard]] DepthImage depth_with_edge(int edge_px, float left_m = 0.5F) const {
+    DepthImage depth_m(160, 120, 3.0F);
+    for (int y = 0; y < 120; ++y) std::fill_n(depth_m.row(y), edge_px, left_m);
+    return depth_m;
+  }
+
+  [[nodiscard]] JudgedPicture shown(const DepthImage& depth_m) const {
+    GlContext context;
+    ObjectDrawer drawer(context);
+    const auto object = object_of(context, "teapot", teapot, {});
+    make_contact_shadow(object->model->surface, T_world_teapot.linear(), object->shadow);
+    ObjectLayer layer;
+    const DrawnObject drawn{.instance = {&object->model->shape.drawn, T_world_teapot},
+                            .is_closed = object->model->shape.touched.is_closed()};
+    drawer.draw(std::span(&drawn, 1), frame.colour_camera, Eigen::Isometry3d::Identity(), {}, layer);
+    ComposeConfig config;
+    config.occlusion.edge_reach_px = 0;
+    Occlusion occlusion;
+    JudgedPicture judged{{}, {{0, T_world_teapot}}};
+    compose(frame.colour, frame.colour_camera, Eigen::Isometry3d::Identity(), depth_m,
+            std::array{ShadowCaster{&object->shadow, T_world_teapot}}, layer, config, occlusion,
+            judged.picture);
+    return judged;
+  }
+};
+
+TEST(PictureJudge, SaysHowFarAnEdgeThatHidesAnObjectIsFromItsPlace) {
+  const TwoSides scene;
+  const JudgedPicture right = scene.shown(scene.true_depth_m);
+  const JudgedPicture off_by_one = scene.shown(scene.depth_with_edge(81));
+  const JudgedPicture off_by_three = scene.shown(scene.depth_with_edge(77));
+  PictureJudge judge({scene.teapot});  // last: its context is the one that is current
+  const auto errors_of = [&](const JudgedPicture& judged, const DepthImage& true_depth_m) {
+    return judge.errors_of(judged, scene.frame, true_depth_m, Eigen::Isometry3d::Identity());
+  };
+  const PictureErrors none = errors_of(right, scene.true_depth_m);
+  EXPECT_EQ(none.whole, 0.0);
+  EXPECT_EQ(none.at_edges, 0.0);
+  const PictureErrors one = errors_of(off_by_one, scene.true_depth_m);
+  const PictureErrors three = errors_of(off_by_three, scene.true_depth_m);
+  EXPECT_GT(one.at_edges, 0.02);
+  EXPECT_NEAR(three.at_edges / one.at_edges, 3.0, 1.0);
+  // An object that nothing hides, or of which nothing shows, begins to be hidden nowhere.
+  EXPECT_TRUE(std::isnan(errors_of(right, DepthImage(160, 120, 3.0F)).at_edges));
+  EXPECT_TRUE(std::isnan(errors_of(right, DepthImage(160, 120, 0.5F)).at_edges));
+  // What is wrong elsewhere is not said of edges.
+  JudgedPicture spoilt = right;
+  spoilt.picture.at(3, 3) = {255, 255, 255};
+  const PictureErrors elsewhere = errors_of(spoilt, scene.true_depth_m);
+  EXPECT_GT(elsewhere.whole, 0.0);
+  EXPECT_EQ(elsewhere.at_edges, 0.0);
 }
 
 TEST(TradeWorks, ASourceWithoutPosesIsRefusedBeforeAnythingIsMeasured) {
