@@ -1,5 +1,6 @@
 // calibrate_command.cpp: roomradar calibrate: cameras and depth errors from a recording of a checkerboard.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -7,6 +8,7 @@
 #include "app/calibration/calibrate.hpp"
 #include "app/calibration/calibration_plot.hpp"
 #include "app/commands.hpp"
+#include "app/interrupt.hpp"
 #include "app/open_source.hpp"
 #include "app/picture_file.hpp"
 #include "app/progress.hpp"
@@ -66,10 +68,22 @@ void print_fit(const BoardViews& views, const CalibrationFit& fit, const Summary
               1e3 * shift.y(), 1e3 * shift.z(), 1e3 * fit.sigmas.shift_m,
               Eigen::AngleAxisd(found.rig.T_colour_depth.linear()).angle() * 180.0 / M_PI,
               fit.sigmas.turn_rad * 180.0 / M_PI);
+  std::printf("depth scale %.4f\n", found.depth_correction.inverse_scale);
   std::printf("held-out views      before      after  (medians)\n");
   std::printf("corners, RMS     %7.3f px %7.3f px\n", before.colour_px, after.colour_px);
   std::printf("depth, bias      %7.2f mm %7.2f mm\n", 1e3 * before.depth_bias_m, 1e3 * after.depth_bias_m);
   std::printf("depth, RMS       %7.2f mm %7.2f mm\n", 1e3 * before.depth_rms_m, 1e3 * after.depth_rms_m);
+}
+
+/// The size of the squares is all that says how far things are: a board printed at 97 % makes a camera that
+/// measures 3 % too far.
+void say_if_scaled(double inverse_scale, double square_m) {
+  constexpr double kMost = 0.02;
+  if (std::abs(inverse_scale - 1.0) <= kMost) return;
+  std::fprintf(stderr,
+               "roomradar: the depth is taken for %+.1f %% off; where the squares are not %g m, measure one "
+               "and say so by --square\n",
+               100.0 * (inverse_scale - 1.0), square_m);
 }
 
 }  // namespace
@@ -87,7 +101,9 @@ int run(const CalibrateCommand& command) {
 
   SourceOptions options;
   options.as_recorded = true;  // not by a calibration that is there already
-  const std::unique_ptr<FrameSource> source = open_source(command.source, command.frames, {}, options);
+  const Interrupt interrupt;
+  const std::unique_ptr<FrameSource> source =
+      ended_by_interrupt(open_source(command.source, command.frames, {}, options));
   BoardViews views;
   {
     Progress progress("looking for the board", source->frame_count());
@@ -105,8 +121,10 @@ int run(const CalibrateCommand& command) {
   const Summary before = summary_of(fit.before, fit.held_out);
   const Summary after = summary_of(fit.after, fit.held_out);
   print_fit(views, fit, before, after);
+  say_if_scaled(fit.calibration.depth_correction.inverse_scale, command.board.square_m);
   report.results = {{"views", views.views.size()},
                     {"held_out_views", fit.held_out.size()},
+                    {"inverse_depth_scale", fit.calibration.depth_correction.inverse_scale},
                     {"before", to_json(before)},
                     {"after", to_json(after)}};
   write_report(report, command.report);

@@ -34,29 +34,41 @@ double distance_either_way_px(const std::vector<Eigen::Vector2d>& a, std::vector
   return std::min(one_way_px, distance_px(a, b));
 }
 
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 /// Depth pixels whose rays, by the cameras that the frame says, meet the board well inside of its corners'
-/// rectangle, and whose depth is about the board's.
-std::vector<DepthSample> depth_on_board(const Frame& frame, const Board& board,
-                                        const Eigen::Isometry3d& T_colour_board) {
+/// rectangle.
+struct DepthOnBoard {
+  std::vector<DepthSample> samples;  ///< whose depth is about the board's
+  std::vector<double> ratios;        ///< of all depth there, to the board's
+};
+
+DepthOnBoard depth_on_board(const Frame& frame, const Board& board, const Eigen::Isometry3d& T_colour_board) {
   const Eigen::Isometry3d T_depth_board = frame.T_colour_depth.inverse() * T_colour_board;
   const Eigen::Vector3d normal = T_depth_board.linear().col(2);
   const double offset_m = normal.dot(T_depth_board.translation());
   const double margin_m = 0.25 * board.square_m;
-  std::vector<DepthSample> samples;
+  DepthOnBoard found;
   for (int y = 0; y < frame.depth_m.height; y += kDepthStep_px)
     for (int x = 0; x < frame.depth_m.width; x += kDepthStep_px) {
       const double reported_m = static_cast<double>(frame.depth_m.at(x, y));
       const Eigen::Vector3d ray = back_project(frame.depth_camera, x, y, 1.0);
       const double plane_m = offset_m / normal.dot(ray);
-      if (!(reported_m > 0.0) || !(std::abs(reported_m - plane_m) < kNearPlane * plane_m)) continue;
+      if (!(reported_m > 0.0) || !(plane_m > 0.0)) continue;
       const Eigen::Vector3d p_board = T_depth_board.inverse() * (ray * plane_m);
       if (p_board.x() < margin_m || p_board.y() < margin_m ||
           p_board.x() > (board.columns - 1) * board.square_m - margin_m ||
           p_board.y() > (board.rows - 1) * board.square_m - margin_m)
         continue;
-      samples.push_back({static_cast<double>(x), static_cast<double>(y), reported_m});
+      found.ratios.push_back(reported_m / plane_m);
+      if (std::abs(reported_m - plane_m) < kNearPlane * plane_m)
+        found.samples.push_back({static_cast<double>(x), static_cast<double>(y), reported_m});
     }
-  return samples;
+  return found;
 }
 
 }  // namespace
@@ -89,9 +101,11 @@ std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colo
     return std::nullopt;
   // A window as large as half a square at most, or the next corner pulls at this one.
   double least_px = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 1; i < found.size(); ++i)
-    if (i % static_cast<std::size_t>(board.columns) != 0)
-      least_px = std::min(least_px, cv::norm(found[i] - found[i - 1]));
+  const auto columns = static_cast<std::size_t>(board.columns);
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    if (i % columns != 0) least_px = std::min(least_px, cv::norm(found[i] - found[i - 1]));
+    if (i >= columns) least_px = std::min(least_px, cv::norm(found[i] - found[i - columns]));
+  }
   const int half_px = std::clamp(static_cast<int>(0.4 * least_px), 2, 11);
   cv::cornerSubPix(grey, found, cv::Size(half_px, half_px), cv::Size(-1, -1),
                    cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 60, 1e-4));
@@ -109,10 +123,14 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
   while (result.views.size() < most) {
     const ReadResult read = source.next(frame);
     if (read.status == ReadStatus::kEnd) break;
-    if (read.status == ReadStatus::kSkipped) continue;
+    if (read.status == ReadStatus::kSkipped) {
+      if (!read.waiting) progress(result.views.size());
+      continue;
+    }
     ++result.frames;
     if (frame.colour.empty()) {
       before.clear();
+      progress(result.views.size());
       continue;
     }
     if (result.first.colour.empty()) result.first = frame;
@@ -125,10 +143,12 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
       return distance_either_way_px(*corners_px, view.corners_px) < kNew_px;
     };
     if (still && std::none_of(result.views.begin(), result.views.end(), is_known)) {
-      std::vector<DepthSample> depth =
+      DepthOnBoard depth =
           depth_on_board(frame, board, pose_of_board(*corners_px, board, frame.colour_camera, {}));
-      if (depth.size() >= kLeastDepthSamples)
-        result.views.push_back({frame.index, *corners_px, std::move(depth)});
+      if (depth.samples.size() >= kLeastDepthSamples)
+        result.views.push_back({frame.index, *corners_px, std::move(depth.samples)});
+      else if (depth.ratios.size() >= kLeastDepthSamples)
+        result.off_plane_ratios.push_back(median_of(std::move(depth.ratios)));
     }
     progress(result.views.size());
   }

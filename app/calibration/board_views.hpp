@@ -41,6 +41,9 @@ struct BoardViews {
   Frame first;                  ///< the first frame with colour: sizes, and the cameras that it says
   std::int64_t frames = 0;      ///< read
   std::int64_t with_board = 0;  ///< of those that were searched
+  /// Of frames that would be views, had they the depth that the board's size makes of its corners: the median
+  /// of what they have over that.
+  std::vector<double> off_plane_ratios;
 };
 
 /// Corners of the board to a fraction of a pixel, or nothing.

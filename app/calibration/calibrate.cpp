@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <opencv2/calib3d.hpp>
 #include <string>
 #include <utility>
@@ -216,7 +217,14 @@ CameraBlock start_of_colour(const std::vector<const BoardView*>& views, const Bo
           distortion[1], distortion[2], distortion[3], distortion[4]};
 }
 
-CalibrationSigmas sigmas_of(ceres::Problem& problem, const Unknowns& unknowns) {
+/// By how much what is left of the errors is larger than what was taken for one standard deviation; not less
+/// than 1.
+double excess_of(const ceres::Solver::Summary& summary) {
+  const double freedom = summary.num_residuals_reduced - summary.num_effective_parameters_reduced;
+  return freedom > 0.0 ? std::max(1.0, std::sqrt(2.0 * summary.final_cost / freedom)) : 1.0;
+}
+
+CalibrationSigmas sigmas_of(ceres::Problem& problem, const Unknowns& unknowns, double excess) {
   ceres::Covariance::Options options;
   options.algorithm_type = ceres::SPARSE_QR;
   ceres::Covariance covariance(options);
@@ -232,14 +240,16 @@ CalibrationSigmas sigmas_of(ceres::Problem& problem, const Unknowns& unknowns) {
   covariance.GetCovarianceBlock(colour, colour, of_colour.data());
   covariance.GetCovarianceBlock(depth, depth, of_depth.data());
   covariance.GetCovarianceBlock(pose, pose, of_pose.data());
-  const auto largest = [](const auto& of, int a, int b) { return std::sqrt(std::max(of(a, a), of(b, b))); };
+  const auto largest = [excess](const auto& of, int a, int b) {
+    return excess * std::sqrt(std::max(of(a, a), of(b, b)));
+  };
   CalibrationSigmas sigmas;
   sigmas.colour_focal_px = largest(of_colour, 0, 1);
   sigmas.colour_centre_px = largest(of_colour, 2, 3);
   sigmas.depth_focal_px = largest(of_depth, 0, 1);
   sigmas.depth_centre_px = largest(of_depth, 2, 3);
-  sigmas.turn_rad = std::sqrt(of_pose.diagonal().head<3>().maxCoeff());
-  sigmas.shift_m = std::sqrt(of_pose.diagonal().tail<3>().maxCoeff());
+  sigmas.turn_rad = excess * std::sqrt(of_pose.diagonal().head<3>().maxCoeff());
+  sigmas.shift_m = excess * std::sqrt(of_pose.diagonal().tail<3>().maxCoeff());
   return sigmas;
 }
 
@@ -269,6 +279,40 @@ void require_sure(const char* which, double focal_px, double sigma_px) {
               "; tilt the board more, by 30 to 50 degrees, near and far");
 }
 
+void require_views(const BoardViews& views, const Board& board) {
+  if (views.views.size() >= kLeastViews) return;
+  if (views.off_plane_ratios.size() >= kLeastViews) {
+    std::vector<double> ratios = views.off_plane_ratios;
+    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+    std::nth_element(ratios.begin(), middle, ratios.end());
+    std::array<char, 160> sizes{};
+    std::snprintf(
+        sizes.data(), sizes.size(),
+        "is %.3g times as far as squares of %g m would be; squares of %.3g m would fit. Measure one, "
+        "and say so by --square",
+        *middle, board.square_m, *middle * board.square_m);
+    throw Error("calibrate: the depth in " + std::to_string(ratios.size()) + " views of the board " +
+                sizes.data());
+  }
+  throw Error("calibrate: of " + std::to_string(views.frames) + " frames, " +
+              std::to_string(views.with_board) + " show a board of " + std::to_string(board.columns) +
+              " by " + std::to_string(board.rows) + " inner corners, and " +
+              std::to_string(views.views.size()) +
+              " of these are still, differ, and have depth on it; it takes " + std::to_string(kLeastViews) +
+              ". Count the inner corners, hold the board still for a moment in each position, 0.6 m or more "
+              "away");
+}
+
+/// What a file with this would not be read for: a lens that was seen in the image's middle alone may do
+/// anything in its corners.
+void require_readable(const Calibration& calibration) {
+  try {
+    require_valid(calibration, "calibrate: the fit");
+  } catch (const Error& fault) {
+    throw Error(std::string(fault.what()) + ". Show the board in all corners of the image too, near and far");
+  }
+}
+
 Calibration calibration_of(const Unknowns& unknowns, const CalibrateConfig& config, const Frame& first) {
   Calibration calibration;
   calibration.rig.depth_camera = camera_of(unknowns.depth, first.depth_camera);
@@ -284,14 +328,7 @@ Calibration calibration_of(const Unknowns& unknowns, const CalibrateConfig& conf
 }  // namespace
 
 CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config) {
-  if (views.views.size() < kLeastViews)
-    throw Error(
-        "calibrate: of " + std::to_string(views.frames) + " frames, " + std::to_string(views.with_board) +
-        " show a board of " + std::to_string(config.board.columns) + " by " +
-        std::to_string(config.board.rows) + " inner corners, and " + std::to_string(views.views.size()) +
-        " of these are still, differ, and have depth on it; it takes " + std::to_string(kLeastViews) +
-        ". Count the inner corners, hold the board still for a moment in each position, 0.6 m or more "
-        "away");
+  require_views(views, config.board);
   CalibrationFit fit;
   std::vector<const BoardView*> making;
   for (std::size_t i = 0; i < views.views.size(); ++i) {
@@ -327,14 +364,15 @@ CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config)
   options.function_tolerance = 1e-9;  // focal length and distance trade slowly
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  if (!summary.IsSolutionUsable())
+  if (summary.termination_type != ceres::CONVERGENCE)
     throw Error("calibrate: the fit does not converge: " + summary.message +
                 "; is the size of the squares right, and the board flat?");
 
-  fit.sigmas = sigmas_of(problem, unknowns);
+  fit.sigmas = sigmas_of(problem, unknowns, excess_of(summary));
   require_sure("colour", unknowns.colour[0], fit.sigmas.colour_focal_px);
   require_sure("depth", unknowns.depth[0], fit.sigmas.depth_focal_px);
   fit.calibration = calibration_of(unknowns, config, views.first);
+  require_readable(fit.calibration);
   Calibration said;
   said.rig = {views.first.depth_camera, views.first.colour_camera, views.first.T_colour_depth};
   for (const BoardView& view : views.views) {

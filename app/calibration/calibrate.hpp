@@ -21,7 +21,7 @@ struct ViewResidual {
   double distance_m = 0.0;  ///< of the board
 };
 
-/// One standard deviation, from the fit's covariance.
+/// One standard deviation, from the fit's covariance and what is left of the errors.
 struct CalibrationSigmas {
   double colour_focal_px = 0.0, colour_centre_px = 0.0, depth_focal_px = 0.0, depth_centre_px = 0.0;
   double shift_m = 0.0, turn_rad = 0.0;  ///< of T_colour_depth
@@ -41,8 +41,8 @@ struct CalibrationFit {
 /// its neighbours.
 /// Source of the method: Herrera, Kannala, Heikkila, Joint depth and color camera calibration with distortion
 /// correction, PAMI 2012; here with the depth error in disparity.
-/// Throws Error if there are fewer than 12 views, or 6 that are tilted, if the fit does not converge, or if
-/// the views leave a focal length unsure by more than 1 %.
+/// Throws Error if there are fewer than 12 views, or 6 that are tilted, if the fit does not converge, if the
+/// views leave a focal length unsure by more than 1 %, or the fit is nothing that could be read again.
 CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config);
 
 /// How well cameras explain one view: the board is posed by its corners, then its plane judges the depth.

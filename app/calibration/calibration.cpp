@@ -21,10 +21,12 @@ Json json_of(const Lens& lens) {
   return {{"k1", lens.k1}, {"k2", lens.k2}, {"p1", lens.p1}, {"p2", lens.p2}, {"k3", lens.k3}};
 }
 
-Lens lens_from(const Json& json, const Intrinsics& camera, const std::string& where) {
-  const Lens lens{json_number(json, "k1", where), json_number(json, "k2", where),
-                  json_number(json, "p1", where), json_number(json, "p2", where),
-                  json_number(json, "k3", where)};
+Lens lens_from(const Json& json, const std::string& where) {
+  return {json_number(json, "k1", where), json_number(json, "k2", where), json_number(json, "p1", where),
+          json_number(json, "p2", where), json_number(json, "k3", where)};
+}
+
+void require_lens(const Lens& lens, const Intrinsics& camera, const std::string& where) {
   for (const double x_px : {0.0, camera.width_px - 1.0})
     for (const double y_px : {0.0, camera.height_px - 1.0}) {
       const PlanePoint<double> p{(x_px - camera.cx_px) / camera.fx_px, (y_px - camera.cy_px) / camera.fy_px};
@@ -33,7 +35,14 @@ Lens lens_from(const Json& json, const Intrinsics& camera, const std::string& wh
         throw Error(where + ": would move a corner of the image by more than half of its distance from the " +
                     "middle; no lens does");
     }
-  return lens;
+}
+
+void require_correction(const DepthCorrection& correction, const std::string& where) {
+  if (!(correction.inverse_scale > 0.5 && correction.inverse_scale < 2.0))
+    throw Error(where + ": inverse_scale must be within 0.5 and 2");
+  for (const double offset_per_m : correction.offset_per_m)
+    if (!(std::abs(offset_per_m) <= kLargestOffset_per_m))
+      throw Error(where + ": each of offset_per_m must be a number within -0.2 and 0.2");
 }
 
 int nodes_from(const Json& json, const char* name, const std::string& where) {
@@ -46,8 +55,6 @@ int nodes_from(const Json& json, const char* name, const std::string& where) {
 DepthCorrection correction_from(const Json& json, const std::string& where) {
   DepthCorrection correction;
   correction.inverse_scale = json_number(json, "inverse_scale", where);
-  if (!(correction.inverse_scale > 0.5 && correction.inverse_scale < 2.0))
-    throw Error(where + ": inverse_scale must be within 0.5 and 2");
   correction.columns = nodes_from(json, "columns", where);
   correction.rows = nodes_from(json, "rows", where);
   const Json& offsets = json_field(json, "offset_per_m", where);
@@ -55,7 +62,7 @@ DepthCorrection correction_from(const Json& json, const std::string& where) {
   if (!offsets.is_array() || offsets.size() != nodes || (correction.columns == 0) != (correction.rows == 0))
     throw Error(where + ": offset_per_m must be a list of columns times rows numbers");
   for (const Json& offset : offsets) {
-    if (!offset.is_number() || !(std::abs(offset.get<double>()) <= kLargestOffset_per_m))
+    if (!offset.is_number())
       throw Error(where + ": each of offset_per_m must be a number within -0.2 and 0.2");
     correction.offset_per_m.push_back(offset.get<double>());
   }
@@ -91,14 +98,20 @@ Calibration read_calibration(const std::filesystem::path& path) {
   const Json root = parse_json_of_format(path, kFormat, kVersion);
   Calibration calibration;
   calibration.rig = rig_from_json(root, name);
-  calibration.depth_lens =
-      lens_from(json_field(root, "depth_lens", name), calibration.rig.depth_camera, name + ", depth_lens");
+  calibration.depth_lens = lens_from(json_field(root, "depth_lens", name), name + ", depth_lens");
   if (calibration.rig.colour_camera)
-    calibration.colour_lens = lens_from(json_field(root, "colour_lens", name), *calibration.rig.colour_camera,
-                                        name + ", colour_lens");
+    calibration.colour_lens = lens_from(json_field(root, "colour_lens", name), name + ", colour_lens");
   calibration.depth_correction =
       correction_from(json_field(root, "depth_correction", name), name + ", depth_correction");
+  require_valid(calibration, name);
   return calibration;
+}
+
+void require_valid(const Calibration& calibration, const std::string& where) {
+  require_lens(calibration.depth_lens, calibration.rig.depth_camera, where + ", depth_lens");
+  if (calibration.rig.colour_camera)
+    require_lens(calibration.colour_lens, *calibration.rig.colour_camera, where + ", colour_lens");
+  require_correction(calibration.depth_correction, where + ", depth_correction");
 }
 
 void write_calibration(const Calibration& calibration, const std::filesystem::path& path) {

@@ -1,6 +1,7 @@
 // calibration.hpp: what a calibration knows of a Kinect, and its file.
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "app/sources/camera_rig.hpp"
@@ -46,6 +47,8 @@ struct Calibration {
 /// Throws Error naming the file, and the field that is missing, of the wrong type or impossible (a lens that
 /// moves a corner of the image by more than half of its distance from the middle; an offset past 0.2 / m).
 Calibration read_calibration(const std::filesystem::path& path);
+/// Throws Error "WHERE, depth_lens: ..." if read_calibration() would refuse these numbers.
+void require_valid(const Calibration& calibration, const std::string& where);
 void write_calibration(const Calibration& calibration, const std::filesystem::path& path);
 
 }  // namespace roomradar

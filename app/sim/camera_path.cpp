@@ -100,9 +100,11 @@ CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, 
 
 double clearance_m(const Room& room, const CameraPath& path, double duration_s) {
   double least_m = std::numeric_limits<double>::infinity();
-  const int samples = std::clamp(static_cast<int>(duration_s * 5.0), 20, 400);
+  constexpr double kLongest_s = 1800.0;  // of a longer walk the rest goes the same ways
+  const double last_s = std::min(duration_s, kLongest_s);
+  const int samples = std::max(static_cast<int>(last_s * 5.0), 20);
   for (int i = 0; i <= samples; ++i) {
-    const Vector3d p_world = T_world_camera_at(path, duration_s * i / samples).translation();
+    const Vector3d p_world = T_world_camera_at(path, last_s * i / samples).translation();
     least_m = std::min(least_m, signed_distance_m(room, p_world));
   }
   return least_m;

@@ -57,12 +57,17 @@ PatchNoise make_patch_noise(const Intrinsics& camera, std::uint64_t key, std::ve
   return noise;
 }
 
+}  // namespace
+
 PlanePoint<double> ray_of(const PixelRays& rays, int x, int y) {
   if (rays.empty()) return {static_cast<double>(x), static_cast<double>(y)};
   return {rays.at(x, y).x, rays.at(x, y).y};
 }
 
-}  // namespace
+double reported_m(const DepthFaults& faults, int x, int y, double depth_m) {
+  if (faults.inverse_offset_per_m.empty()) return depth_m;
+  return faults.inverse_scale / (1.0 / depth_m - faults.inverse_offset_per_m.at(x, y));
+}
 
 void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
                   const PixelRays& rays, ExactView& exact) {
@@ -138,8 +143,7 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
       if (infrared[static_cast<std::size_t>(solid)] * cosine / (z * z) < kFaintest * ragged) continue;
       if (scratch.projector.is_blocked(u - disparity_px_m / z, v, z - kShadowMargin_m)) continue;
 
-      if (!faults.inverse_offset_per_m.empty())
-        z = faults.inverse_scale / (1.0 / z - faults.inverse_offset_per_m.at(x, y));
+      z = reported_m(faults, x, y, z);
       const double sigma_m = noise_scale * depth_sigma_m(static_cast<float>(z), std::acos(cosine));
       const double step_m = quantisation_step_m(camera, z);
       const double before_quantising_m = std::sqrt(std::max(sigma_m * sigma_m - step_m * step_m / 12.0, 0.0));

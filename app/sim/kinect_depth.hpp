@@ -40,6 +40,12 @@ struct DepthFaults {
   double inverse_scale = 1.0;
 };
 
+/// Where pixel (x, y) looks, in image coordinates.
+PlanePoint<double> ray_of(const PixelRays& rays, int x, int y);
+
+/// What a camera with these faults says of a depth > 0 at a pixel.
+double reported_m(const DepthFaults& faults, int x, int y, double depth_m);
+
 /// Scratch memory of measure_depth, and its view from the projector.
 struct KinectScratch {
   ViewCaster projector;

@@ -61,8 +61,9 @@ void put_things_on(Furnishing& f, const Eigen::Isometry3d& T_world_board, double
     const double kind = f.random.uniform();
     const std::uint32_t look = f.look();
     const Material paper = f.material(Pattern::kPoster), tiles = f.material(Pattern::kTiles);
-    const Vector3d size(f.random.uniform(0.06, 0.24), f.random.uniform(0.05, 0.2),
-                        f.random.uniform(0.03, 0.28));
+    const double size_z = f.random.uniform(0.03, 0.28), size_y = f.random.uniform(0.05, 0.2),
+                 size_x = f.random.uniform(0.06, 0.24);
+    const Vector3d size(size_x, size_y, size_z);
     const int books = 1 + static_cast<int>(4.0 * f.random.uniform());
     f.try_add([&](Room& room) {
       if (kind < 0.25) {
@@ -84,11 +85,13 @@ void put_things_on(Furnishing& f, const Eigen::Isometry3d& T_world_board, double
 void furnish_middle(Furnishing& f) {
   const double kind = f.random.uniform(), yaw_rad = f.random.uniform(-0.3, 0.3);
   const Material wood = f.material(Pattern::kWood), cloth = f.material(Pattern::kFabric);
-  Vector3d board_m(f.random.uniform(1.0, 1.7), f.random.uniform(0.7, 0.95), f.random.uniform(0.68, 0.78));
+  const double board_z = f.random.uniform(0.68, 0.78), board_y = f.random.uniform(0.7, 0.95),
+               board_x = f.random.uniform(1.0, 1.7);
+  Vector3d board_m(board_x, board_y, board_z);
   if (kind >= 0.5)
     board_m = {f.random.uniform(0.6, 1.1), f.random.uniform(0.5, 0.7), f.random.uniform(0.35, 0.5)};
-  const Eigen::Isometry3d T_world_middle =
-      standing_at(f.random.uniform(-0.3, 0.3), f.random.uniform(-0.15, 0.15), 0.0, yaw_rad);
+  const double middle_y = f.random.uniform(-0.15, 0.15), middle_x = f.random.uniform(-0.3, 0.3);
+  const Eigen::Isometry3d T_world_middle = standing_at(middle_x, middle_y, 0.0, yaw_rad);
   const Eigen::Isometry3d T_world_board = T_world_middle * standing_at(0, 0, board_m.z());
   f.room.focus_world = T_world_board * Vector3d(0.0, -0.5 * board_m.y() + 0.2, 0.0);
   if (kind < 0.75) {
@@ -104,23 +107,28 @@ void furnish_middle(Furnishing& f) {
     for (const double side : {-1.0, 1.0})
       for (double x = -0.5 * board_m.x() + 0.35; x < 0.5 * board_m.x(); x += 0.62) {
         if (f.random.uniform() < 0.2) continue;
+        const double turn_rad = f.random.uniform(-0.3, 0.3), away_m = f.random.uniform(0.1, 0.35),
+                     aside_m = f.random.uniform(-0.05, 0.05);
         const Eigen::Isometry3d T_world_chair =
-            T_world_middle * standing_at(x + f.random.uniform(-0.05, 0.05),
-                                         side * (0.5 * board_m.y() + f.random.uniform(0.1, 0.35)), 0.0,
-                                         (side > 0.0 ? std::numbers::pi : 0.0) + f.random.uniform(-0.3, 0.3));
+            T_world_middle * standing_at(x + aside_m, side * (0.5 * board_m.y() + away_m), 0.0,
+                                         (side > 0.0 ? std::numbers::pi : 0.0) + turn_rad);
         f.try_add([&](Room& room) { add_chair(room, T_world_chair, wood, cloth); });
       }
   } else if (kind < 0.75) {
     f.try_add([&](Room& room) {
-      add_sofa(room, T_world_middle * standing_at(0.0, 0.5 * board_m.y() + 0.75, 0.0, 0.0),
-               f.random.uniform(1.7, 2.1), cloth, f.material(Pattern::kFabric));
+      const Material cushions = f.material(Pattern::kFabric);
+      const double wide_m = f.random.uniform(1.7, 2.1);
+      add_sofa(room, T_world_middle * standing_at(0.0, 0.5 * board_m.y() + 0.75, 0.0, 0.0), wide_m, cloth,
+               cushions);
     });
   } else {
     for (int i = 0; i < 3; ++i) {
-      const Vector3d size(f.random.uniform(0.25, 0.6), f.random.uniform(0.25, 0.5),
-                          f.random.uniform(0.2, 0.7));
-      const Eigen::Isometry3d T_world_crate = standing_at(
-          f.random.uniform(-1.2, 1.2), f.random.uniform(-0.8, 0.8), 0.0, f.random.uniform(0.0, kTurn_rad));
+      const double size_z = f.random.uniform(0.2, 0.7), size_y = f.random.uniform(0.25, 0.5),
+                   size_x = f.random.uniform(0.25, 0.6);
+      const Vector3d size(size_x, size_y, size_z);
+      const double turn_rad = f.random.uniform(0.0, kTurn_rad), y = f.random.uniform(-0.8, 0.8),
+                   x = f.random.uniform(-1.2, 1.2);
+      const Eigen::Isometry3d T_world_crate = standing_at(x, y, 0.0, turn_rad);
       const Material planks = f.material(Pattern::kPlanks);
       f.try_add([&](Room& room) { add(room, T_world_crate, box({0, 0, 0.5 * size.z()}, size), planks); });
     }
@@ -174,16 +182,19 @@ void furnish_wall(Furnishing& f, int wall) {
 
 }  // namespace
 
+// What is drawn is drawn into names, one after the other: the order of a call's arguments is the compiler's.
 Room make_random_room(std::uint64_t seed) {
   Furnishing f{{}, {}, CounterRandom(seed, 0x726f6f6d)};
   Room& room = f.room;
   room.name = kRandomRoom;
-  const Vector3d half(f.random.uniform(2.5, 3.2), f.random.uniform(2.3, 2.8), 0.0);
+  const double half_y = f.random.uniform(2.3, 2.8), half_x = f.random.uniform(2.5, 3.2);
+  const Vector3d half(half_x, half_y, 0.0);
   room.interior_min_world = -half;
   room.interior_max_world = half + Vector3d(0, 0, f.random.uniform(2.4, 2.8));
   const std::array floors{Pattern::kPlanks, Pattern::kTiles, Pattern::kStone};
-  add_shell(room, f.material(floors[static_cast<std::size_t>(3.0 * f.random.uniform())]),
-            f.material(Pattern::kPlaster, 0.6), f.material(Pattern::kPlaster, 0.7));
+  const Material ceiling = f.material(Pattern::kPlaster, 0.7), walls = f.material(Pattern::kPlaster, 0.6),
+                 floor = f.material(floors[static_cast<std::size_t>(3.0 * f.random.uniform())]);
+  add_shell(room, floor, walls, ceiling);
 
   room.walk_centre_world = {0.0, 0.0, 1.5};
   room.walk_half_m = {half.x() - 1.05, half.y() - 1.0};

@@ -272,10 +272,9 @@ std::optional<Patch> draw_patch(const ScenarioRoom& from, CounterRandom& random)
   const auto frames = static_cast<double>(from.T_world_prescan.size());
   const Isometry3d& T_world_camera =
       from.T_world_prescan[static_cast<std::size_t>(random.uniform() * frames)];
-  const Vector3d direction =
-      T_world_camera.linear() * back_project(from.prescan.depth_camera,
-                                             random.uniform(0.0, from.prescan.depth_camera.width_px),
-                                             random.uniform(0.0, from.prescan.depth_camera.height_px), 1.0);
+  const Intrinsics& camera = from.prescan.depth_camera;
+  const double y_px = random.uniform(0.0, camera.height_px), x_px = random.uniform(0.0, camera.width_px);
+  const Vector3d direction = T_world_camera.linear() * back_project(camera, x_px, y_px, 1.0);
   const auto hit = cast_ray(from.room, T_world_camera.translation(), direction);
   if (!hit) return std::nullopt;
   return Patch{T_world_camera.translation() + hit->range_m * direction, hit->normal_world};

@@ -83,8 +83,11 @@ std::vector<Solid> draw_parts(ObjectShape shape, CounterRandom& random) {
       return {cylinder({0, 0, 0}, 0.5 * kThin_m, draw_size_m(random, 0.05, 0.4))};
     case ObjectShape::kSheet:
       return {box({0, 0, 0}, {draw_size_m(random, 0.08, 0.6), draw_size_m(random, 0.08, 0.4), kThin_m})};
-    case ObjectShape::kCup:
-      return cup(random.uniform(0.03, 0.05), random.uniform(0.06, 0.14), random.uniform(0.003, 0.006));
+    case ObjectShape::kCup: {
+      const double thick_m = random.uniform(0.003, 0.006), high_m = random.uniform(0.06, 0.14),
+                   radius_m = random.uniform(0.03, 0.05);
+      return cup(radius_m, high_m, thick_m);
+    }
     case ObjectShape::kTorus: {
       const double across_m = draw_size_m(random, 0.08, 0.4), tube_m = random.uniform(0.06, 0.14) * across_m;
       return torus(0.5 * across_m - tube_m, tube_m);
@@ -94,7 +97,9 @@ std::vector<Solid> draw_parts(ObjectShape shape, CounterRandom& random) {
     case ObjectShape::kTable:
       break;
   }
-  return table(random.uniform(0.5, 1.3), random.uniform(0.4, 0.8), random.uniform(0.35, 0.75));
+  const double high_m = random.uniform(0.35, 0.75), deep_m = random.uniform(0.4, 0.8),
+               wide_m = random.uniform(0.5, 1.3);
+  return table(wide_m, deep_m, high_m);
 }
 
 }  // namespace

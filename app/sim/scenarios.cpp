@@ -52,9 +52,11 @@ bool place_object(const ScenarioRoom& from, const Patch& patch, bool drop, Objec
   const double start_m = random.uniform(0.08, 0.4);
   const double reach_m = scenario.object.reach_m;
   scenario.T_world_object = Isometry3d::Identity();
-  scenario.T_world_object.linear() = (Eigen::AngleAxisd(random.uniform(0.0, kTurn_rad), Vector3d::UnitZ()) *
-                                      Eigen::AngleAxisd(random.uniform(-0.6, 0.6), random_unit(random)))
-                                         .toRotationMatrix();
+  const Vector3d tilt_axis = random_unit(random);
+  const double tilt_rad = random.uniform(-0.6, 0.6), yaw_rad = random.uniform(0.0, kTurn_rad);
+  scenario.T_world_object.linear() =
+      (Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()) * Eigen::AngleAxisd(tilt_rad, tilt_axis))
+          .toRotationMatrix();
   scenario.T_world_object.translation() = patch.point_world - (start_m + reach_m) * scenario.direction_world;
   if (signed_distance_m(from.room, scenario.T_world_object.translation()) < kStartClear_m) return false;
   if (clearance_m(from.room.solids, scenario.object.parts, scenario.T_world_object, kStartClear_m) <
@@ -179,7 +181,7 @@ Verdict judge(const Scenario& scenario, double travelled_m) {
   constexpr double kTooFar_m = 0.02, kTooShort_m = 0.03;
   Verdict verdict;
   verdict.error_m = travelled_m - scenario.true_travel_m;
-  if (verdict.error_m > kTooFar_m) verdict.outcome = Outcome::kPassedThrough;
+  if (!(verdict.error_m <= kTooFar_m)) verdict.outcome = Outcome::kPassedThrough;  // nowhere, too
   if (verdict.error_m < -kTooShort_m) verdict.outcome = Outcome::kStoppedFalse;
   return verdict;
 }

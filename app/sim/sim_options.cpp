@@ -197,8 +197,10 @@ std::string sim_spec(const SimOptions& options) {
   if (options.depth_camera.width_px != usual.depth_camera.width_px)
     say("width", std::to_string(options.depth_camera.width_px));
   if (options.faults) say("faults", "1");
-  if (!options.registered_colour) say("colour", "separate");
-  if (!options.with_colour) say("colour", "none");
+  if (!options.with_colour)
+    say("colour", "none");
+  else if (!options.registered_colour)
+    say("colour", "separate");
   return spec;
 }
 
@@ -211,8 +213,9 @@ void require_valid(const SimOptions& options) {
   if (!(options.noise_scale >= 0.0 && options.noise_scale <= 10.0))
     refuse("noise", without_trailing_zeros(options.noise_scale),
            "0 (off), 1 (a Kinect's) or another factor up to 10");
-  if (options.faults && options.registered_colour)
-    refuse("faults", "1", "said together with colour=separate: registering needs what it takes away");
+  if (options.faults && options.registered_colour && options.with_colour)
+    refuse("faults", "1",
+           "said together with colour=separate or colour=none: registering needs what it takes away");
   for (std::size_t i = 0; i < options.movers.size(); ++i)
     if (std::find(options.movers.begin(), options.movers.begin() + static_cast<std::ptrdiff_t>(i),
                   options.movers[i]) != options.movers.begin() + static_cast<std::ptrdiff_t>(i))

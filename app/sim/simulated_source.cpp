@@ -87,11 +87,12 @@ struct SimulatedSource::State {
   /// Two pixels' width at 1 m is as fine as anything is looked at from.
   static double finest_texel_m(const SimOptions& options) { return 1.6 / options.depth_camera.fx_px; }
 
-  void place_solids(double t_s) {
+  void place_solids(std::int64_t index) {
+    const double t_s = static_cast<double>(index) / options.rate_hz;
     solids.assign(room.solids.begin(), room.solids.end());
     for (const Mover& mover : movers) append_solids(mover, t_s, solids);
     if (crate_changes()) {
-      const bool second_half = t_s * options.rate_hz >= 0.5 * static_cast<double>(options.frames);
+      const bool second_half = 2 * index >= options.frames;
       crate_is_there = second_half == (options.crate == CrateKind::kComes);
       solids.push_back(crate);
       if (!crate_is_there) solids.back().T_world_solid.pretranslate(Vector3d(0, 0, -kAway_m));
@@ -144,7 +145,8 @@ void SimulatedSource::State::fill_truth() {
       truth.depth_m.pixels[i] = depth_m;
     if (crate_went) {
       const auto x = static_cast<int>(i) % width_px, y = static_cast<int>(i) / width_px;
-      const double crate_m = crate_view.depth_of(0, x, y);
+      const PlanePoint<double> ray = ray_of(depth_faults.rays, x, y);
+      const double crate_m = crate_view.depth_of(0, ray.x, ray.y);
       if (crate_m > 0.0 && (depth_m == 0.0F || crate_m < depth_m)) truth.revealed.pixels[i] = 255;
     }
     const auto moving = depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room.solids.size());
@@ -213,7 +215,7 @@ ReadResult SimulatedSource::next(Frame& frame) {
 void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame) {
   State& s = *state_;
   const double t_s = static_cast<double>(index) / s.options.rate_hz;
-  s.place_solids(t_s);
+  s.place_solids(index);
   s.depth_view.prepare(s.solids, s.options.depth_camera, T_world_camera);
   render_exact(s.solids, s.depth_view, s.options.depth_camera, s.depth_faults.rays, s.depth_exact);
   s.truth.T_world_camera = T_world_camera;
@@ -223,6 +225,11 @@ void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_
                   s.depth_faults, s.options.noise_scale, s.options.seed, index, s.scratch, frame.depth_m);
   } else {
     frame.depth_m = s.truth.depth_m;
+    for (int y = 0; y < frame.depth_m.height; ++y)
+      for (int x = 0; x < frame.depth_m.width; ++x) {
+        float& z_m = frame.depth_m.at(x, y);
+        if (z_m > 0.0F) z_m = static_cast<float>(reported_m(s.depth_faults, x, y, z_m));
+      }
   }
 
   const std::uint64_t colour_key = hash_of(s.options.seed, static_cast<std::uint64_t>(index), 0x636f6c);

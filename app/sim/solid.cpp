@@ -74,8 +74,13 @@ double sphere_entry(double radius_m, const Vector3d& o, const Vector3d& d) {
 /// started outside it goes monotonically to the first root, or finds the distance growing and knows that the
 /// ray misses.
 double convex_entry(const Solid& solid, const Vector3d& o, const Vector3d& d) {
-  double t = box_entry(bounds_half_m(solid), o, d);
-  if (t < 0.0) return -1.0;
+  const Vector3d bounds_m = bounds_half_m(solid);
+  double t = box_entry(bounds_m, o, d);
+  if (t < 0.0) {
+    // Between the bounds and the rounded solid there is room to start in.
+    if ((o.cwiseAbs() - bounds_m).maxCoeff() > 0.0 || signed_distance_local_m(solid, o) <= 0.0) return -1.0;
+    t = 0.0;
+  }
   constexpr double kNearEnough_m = 1e-10;
   for (int step = 0; step < 64; ++step) {
     const Vector3d p = o + t * d;

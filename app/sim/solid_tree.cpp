@@ -92,7 +92,7 @@ template <typename Visit>
 bool SolidTree::walk_ray(const Vector3d& origin_world, const Vector3d& direction_world, double& farthest,
                          const Visit& visit) const {
   if (nodes_.empty()) return false;
-  const Vector3d inverse = direction_world.cwiseInverse();
+  const Vector3d inverse = (direction_world.array() + 0.0).inverse();  // -0 is 0
   // The point of the box's slabs that the ray reaches first and leaves last; zeros in the direction give
   // infinities that order rightly, and a ray within a face's plane counts as touching.
   const auto meets = [&](const Eigen::AlignedBox3d& bounds) {

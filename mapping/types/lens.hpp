@@ -31,17 +31,30 @@ inline PlanePoint<double> distorted(const PlanePoint<double>& p, const Lens& len
   return distorted(p, lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
 }
 
-/// The other way, by a fixed number of rounds of p = p_distorted - (what the lens adds at p). Within 1e-9 for
-/// lenses that move no point of the image by more than a tenth of its distance from the middle.
+/// The other way, by a fixed number of Newton's steps. Within 1e-12 for lenses that move no point of the
+/// image by more than a tenth of its distance from the middle.
 template <typename Scalar, typename Coefficient>
 PlanePoint<Scalar> undistorted(const PlanePoint<Scalar>& p_distorted, const Coefficient& k1,
                                const Coefficient& k2, const Coefficient& p1, const Coefficient& p2,
                                const Coefficient& k3) {
-  constexpr int kRounds = 12;
+  constexpr int kSteps = 6;
   PlanePoint<Scalar> p = p_distorted;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int step = 0; step < kSteps; ++step) {
     const PlanePoint<Scalar> there = distorted(p, k1, k2, p1, p2, k3);
-    p = {p.x + p_distorted.x - there.x, p.y + p_distorted.y - there.y};
+    const Scalar missing_x = p_distorted.x - there.x, missing_y = p_distorted.y - there.y;
+    const Scalar r2 = p.x * p.x + p.y * p.y;
+    const Scalar radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+    const Scalar growth = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3));  // of radial, by half of r2
+    const Scalar xx = radial + p.x * p.x * growth + 2.0 * p1 * p.y + 6.0 * p2 * p.x;
+    const Scalar xy = p.x * p.y * growth + 2.0 * p1 * p.x + 2.0 * p2 * p.y;
+    const Scalar yy = radial + p.y * p.y * growth + 6.0 * p1 * p.y + 2.0 * p2 * p.x;
+    const Scalar determinant = xx * yy - xy * xy;
+    if (!(determinant > Scalar(0.1))) {  // the lens folds the image here: no lens does, but a file may say so
+      p = {p.x + missing_x, p.y + missing_y};
+      continue;
+    }
+    p = {p.x + (yy * missing_x - xy * missing_y) / determinant,
+         p.y + (xx * missing_y - xy * missing_x) / determinant};
   }
   return p;
 }

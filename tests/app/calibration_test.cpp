@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <opencv2/calib3d.hpp>
 #include <random>
 #include <sstream>
@@ -120,9 +122,18 @@ TEST(Lens, UndistortsToWhereItCameFrom) {
   for (double x = -0.55; x <= 0.55; x += 0.05)
     for (double y = -0.42; y <= 0.42; y += 0.05) {
       const PlanePoint<double> back = undistorted(distorted({x, y}, kBarrel), kBarrel);
-      EXPECT_NEAR(back.x, x, 1e-7);
-      EXPECT_NEAR(back.y, y, 1e-7);
+      EXPECT_NEAR(back.x, x, 1e-12);
+      EXPECT_NEAR(back.y, y, 1e-12);
+      // Each moves a corner by a tenth of its distance from the middle.
+      for (const Lens& lens : {Lens{.k1 = 0.2}, Lens{.k2 = 0.4}, Lens{.k3 = 0.9}, Lens{.k1 = -0.2}}) {
+        const PlanePoint<double> of_bent = undistorted(distorted({x, y}, lens), lens);
+        EXPECT_NEAR(of_bent.x, x, 1e-12);
+        EXPECT_NEAR(of_bent.y, y, 1e-12);
+      }
     }
+  // One that folds the image has no way back; there is an end to it all the same, and a number.
+  const PlanePoint<double> folded = undistorted({0.5, 0.4}, Lens{.k1 = -3.0});
+  EXPECT_TRUE(std::isfinite(folded.x) && std::isfinite(folded.y));
   const PlanePoint<double> same = distorted({0.3, -0.2}, Lens{});
   EXPECT_EQ(same.x, 0.3);
   EXPECT_EQ(same.y, -0.2);
@@ -218,6 +229,44 @@ TEST(CalibratedSource, APlaneThroughABentLensAndWithWrongDepthIsThePlaneAgain) {
   EXPECT_LT(seen, 640 * 480);
 }
 
+TEST(CalibratedSource, AColourSeenThroughABentLensIsWhereThePinholeHasIt) {
+  const Calibration truth = faulty_kinect();
+  const Intrinsics& camera = *truth.rig.colour_camera;
+  const auto colour_of = [](const PlanePoint<double>& p) {  // of the direction that a pixel looks in
+    const auto byte = [](double wave) { return static_cast<std::uint8_t>(128.5 + 100.0 * std::sin(wave)); };
+    return Rgb{byte(10.0 * p.x), byte(10.0 * p.y), byte(7.0 * (p.x - p.y))};
+  };
+  const auto plane_at = [&](int x, int y) {
+    return PlanePoint<double>{(x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px};
+  };
+  Frame real;
+  real.depth_m.resize(640, 480);
+  real.colour.resize(640, 480);
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x)
+      real.colour.at(x, y) = colour_of(undistorted(plane_at(x, y), truth.colour_lens));
+  const auto source = calibrated(std::make_unique<GivenFrame>(real), truth);
+  Frame frame;
+  ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
+  EXPECT_EQ(frame.colour_camera, camera);
+  EXPECT_TRUE(frame.T_colour_depth.isApprox(truth.rig.T_colour_depth));
+  int seen = 0, moved = 0;
+  for (int y = 0; y < 480; ++y)
+    for (int x = 0; x < 640; ++x) {
+      const Rgb pixel = frame.colour.at(x, y), ideal = colour_of(plane_at(x, y)),
+                before = real.colour.at(x, y);
+      if (pixel.r == 0 && pixel.g == 0 && pixel.b == 0) continue;  // outside of the real image
+      if (x < 8 || y < 8 || x >= 632 || y >= 472) continue;        // half outside
+      ++seen;
+      ASSERT_NEAR(pixel.r, ideal.r, 2) << x << ", " << y;
+      ASSERT_NEAR(pixel.g, ideal.g, 2) << x << ", " << y;
+      ASSERT_NEAR(pixel.b, ideal.b, 2) << x << ", " << y;
+      moved += std::abs(before.r - ideal.r) + std::abs(before.g - ideal.g) > 3 ? 1 : 0;
+    }
+  EXPECT_GT(seen, 0.9 * 640 * 480);
+  EXPECT_GT(moved, 1000) << "or the lens would not have shown";
+}
+
 TEST(CalibratedSource, ImagesOfAnotherSizeAreRefusedWithBothSizes) {
   Frame small;
   small.depth_m.resize(320, 240);
@@ -226,6 +275,52 @@ TEST(CalibratedSource, ImagesOfAnotherSizeAreRefusedWithBothSizes) {
   const std::string fault = error_of([&] { (void)source->next(frame); });
   EXPECT_NE(fault.find("320 x 240"), std::string::npos) << fault;
   EXPECT_NE(fault.find("640 x 480"), std::string::npos) << fault;
+}
+
+TEST(BoardViews, AreOfTheWholeStillBoardWithItsDepthOnIt) {
+  SimOptions options = parse_sim_spec("sim:board?path=swing&colour=separate&faults=1&frames=60&rate=15");
+  SimulatedSource source(options);
+  std::size_t told = 0;
+  const BoardViews views = find_board_views(source, kBoard, 100, [&](std::size_t) { ++told; });
+  EXPECT_EQ(views.frames, 60);
+  EXPECT_EQ(told, 60U);
+  EXPECT_GE(views.with_board, 30);
+  ASSERT_GE(views.views.size(), 3U);
+  EXPECT_TRUE(views.off_plane_ratios.empty());
+  for (const BoardView& view : views.views) {
+    EXPECT_EQ(view.corners_px.size(), 48U);
+    EXPECT_GE(view.depth.size(), 40U);
+    const ViewResidual residual =
+        residual_of(view, kBoard,
+                    {.rig = {views.first.depth_camera, views.first.colour_camera, views.first.T_colour_depth},
+                     .depth_lens = {},
+                     .colour_lens = {},
+                     .depth_correction = {}});
+    EXPECT_LT(residual.colour_rms_px, 1.0) << "the bent lens";
+    EXPECT_LT(std::abs(residual.depth_bias_m), 0.05 * residual.distance_m) << "the faults";
+  }
+  // Squares said to be half as large: nothing is where they are, and it is told what would be.
+  ASSERT_TRUE(source.rewind());
+  BoardViews wrong = find_board_views(source, Board{8, 6, 0.03}, 100, [](std::size_t) {});
+  EXPECT_TRUE(wrong.views.empty());
+  ASSERT_GE(wrong.off_plane_ratios.size(), 3U);
+  for (const double ratio : wrong.off_plane_ratios) EXPECT_NEAR(ratio, 2.0, 0.1);
+  wrong.off_plane_ratios.resize(12, 2.0);
+  const std::string fault = error_of([&] { (void)calibrate(wrong, {.board = Board{8, 6, 0.03}}); });
+  EXPECT_NE(fault.find("--square"), std::string::npos) << fault;
+}
+
+TEST(Calibrate, WhatNoFileWouldBeReadWithIsNoCalibration) {
+  Calibration fit = faulty_kinect();
+  require_valid(fit, "the fit");
+  fit.colour_lens.k3 = 40.0;
+  EXPECT_NE(error_of([&] { require_valid(fit, "the fit"); }).find("the fit, colour_lens"), std::string::npos);
+  fit = faulty_kinect();
+  fit.depth_correction.inverse_scale = 2.5;
+  EXPECT_NE(error_of([&] { require_valid(fit, "the fit"); }).find("inverse_scale"), std::string::npos);
+  fit = faulty_kinect();
+  fit.depth_correction.offset_per_m[7] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(error_of([&] { require_valid(fit, "the fit"); }).find("offset_per_m"), std::string::npos);
 }
 
 TEST(Calibrate, FindsAKinectWithKnownFaults) {

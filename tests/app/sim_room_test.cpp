@@ -71,6 +71,24 @@ TEST_P(SimRoom, WaysOfBallAndPersonAreFree) {
 
 INSTANTIATE_TEST_SUITE_P(EachRoom, SimRoom, testing::ValuesIn(room_names()));
 
+TEST(SimBoardRoom, SolidsDoNotOverlap) {
+  const Room room = make_room("board");
+  const Mesh mesh = room_mesh(room);
+  for (const Eigen::Vector3f& vertex : mesh.vertices)
+    EXPECT_GT(signed_distance_m(room, mesh.origin + vertex.cast<double>()), -1e-6);
+}
+
+TEST(SimRandomRoom, IsTheSameFromEveryCompiler) {
+  const Room room = make_room("random", false, 3);
+  EXPECT_EQ(room.solids.size(), 158U);
+  const Vector3d first = room.solids[40].T_world_solid.translation();
+  EXPECT_NEAR(room.interior_max_world.x(), 3.0554590936570669, 1e-6);
+  EXPECT_NEAR(room.interior_max_world.y(), 2.4488149170028208, 1e-6);
+  EXPECT_NEAR(room.focus_world.x(), -0.19874239744034761, 1e-6);
+  EXPECT_NEAR(first.x(), -0.18226593630082494, 1e-6);
+  EXPECT_NEAR(first.z(), 0.84, 1e-6);
+}
+
 TEST(SimRandomRoom, SolidsDoNotOverlapAndThereIsRoomToWalkAndScan) {
   std::size_t least = 1'000'000, most = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {

@@ -123,6 +123,37 @@ TEST(SimSource, ACrateThatComesOrGoesDoesSoAtHalfTimeAndTheMasksSayWhere) {
   }
 }
 
+TEST(SimSource, ACrateComesAtHalfTimeWhereTimesOfFramesAreNoExactNumbers) {
+  SimulatedSource comes(
+      parse_sim_spec("sim:table?frames=58&rate=25&width=160&path=view&noise=0&crate=comes"));
+  (void)frame_of(comes, 28);
+  EXPECT_EQ(std::count(comes.truth().moved.pixels.begin(), comes.truth().moved.pixels.end(), 255), 0);
+  (void)frame_of(comes, 29);
+  EXPECT_GT(std::count(comes.truth().moved.pixels.begin(), comes.truth().moved.pixels.end(), 255), 300);
+}
+
+TEST(SimSource, FaultsAreThereWithoutNoiseTooAndTheMasksLookThroughTheSameLens) {
+  const std::string view = "sim:table?frames=9&width=160&path=view&noise=0&colour=none&faults=1&crate=";
+  SimulatedSource goes(parse_sim_spec(view + "goes")), there(parse_sim_spec(view + "1")),
+      none(parse_sim_spec(view + "0"));
+  const Frame frame = frame_of(goes, 8);
+  const DepthImage& truth = goes.truth().depth_m;
+  double most_m = 0.0;
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i)
+    if (truth.pixels[i] > 0.0F)
+      most_m = std::max(most_m, std::abs(static_cast<double>(frame.depth_m.pixels[i] - truth.pixels[i])));
+  EXPECT_GT(most_m, 0.003);
+  EXPECT_LT(most_m, 0.15);
+  const DepthImage with = frame_of(there, 8).depth_m, without = frame_of(none, 8).depth_m;
+  int crate_pixels = 0;
+  for (std::size_t i = 0; i < with.pixels.size(); ++i) {
+    const bool crate = with.pixels[i] != without.pixels[i];
+    crate_pixels += crate ? 1 : 0;
+    ASSERT_EQ(goes.truth().revealed.pixels[i], crate ? 255 : 0) << i;
+  }
+  EXPECT_GT(crate_pixels, 300);
+}
+
 TEST(SimSource, HandPassesBeforeTheFocusAndWithdraws) {
   SimulatedSource source(parse_sim_spec("sim:table?frames=180&width=64&path=view&moving=hand&noise=0"));
   int hidden = 0, open = 0;
