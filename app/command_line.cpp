@@ -248,10 +248,13 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
       ->type_name("DIR");
   add_choice(*sub, "--at-end", command.at_end, kAtEnd,
              "after the last frame: end (without a window), stay there (with one), or begin again");
-  sub->add_option("--video", command.video, "write the composed pictures as .mp4, .avi or .mkv")
+  sub->add_option(
+         "--video", command.video,
+         "write the composed pictures as .mp4, .avi or .mkv, 30 a second, as fast as they were taken")
       ->type_name("FILE");
   sub->add_option("--pictures", command.pictures,
-                  "write composed pictures and masks of what moved as PNG into this folder")
+                  "write composed pictures and masks of what moved as PNG into this folder, named by the\n"
+                  "source's frame, and the run's where that comes again")
       ->type_name("DIR");
   sub->add_option("--pictures-every", command.pictures_every, "one picture every N frames (10)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))

@@ -113,7 +113,7 @@ Finding judge_renderer() {
                   " px are needed; update the driver, or "
                   "set ROOMRADAR_RENDERER=software"};
     if (context.is_software())
-      return {Health::kGood, what + " (no GPU is used: a frame of run takes some 30 ms)", {}};
+      return {Health::kGood, what + " (no GPU is used: a frame of run takes some 10 to 30 ms)", {}};
     return {Health::kGood, what, {}};
   } catch (const Error& error) {
     return {Health::kBad, error.what(), "install libegl-mesa0 and libgl1-mesa-dri; unset ROOMRADAR_RENDERER"};

@@ -56,7 +56,7 @@ void main() {
   vec3 to_eye = normalize(-p_eye);
   vec3 facet = normalize(cross(dFdx(p_eye), dFdy(p_eye)));
   if (dot(facet, to_eye) < 0.0) facet = -facet;
-  vec3 n = has_normals ? normalize(normal_eye) : facet;
+  vec3 n = has_normals && dot(normal_eye, normal_eye) > 0.0 ? normalize(normal_eye) : facet;
   if (dot(n, facet) < 0.0) n = -n;  // the inside of an open mesh
   vec3 ambient = mix(ground, sky, 0.5 + 0.5 * dot(n, up));
   float lambert = max(dot(n, to_light), 0.0);
@@ -83,23 +83,29 @@ struct ObjectDrawer::State {
   std::array<unsigned, 2> textures{};  // colour, depth
   int width_px = 0;
   int height_px = 0;
+  int most_px = 0;  ///< that a texture may have along a side
 
   void fit(int wanted_width_px, int wanted_height_px) {
     if (wanted_width_px <= width_px && wanted_height_px <= height_px) return;
-    width_px = std::max(wanted_width_px, width_px);
-    height_px = std::max(wanted_height_px, height_px);
+    const int wide_px = std::max(wanted_width_px, width_px);
+    const int high_px = std::max(wanted_height_px, height_px);
+    width_px = height_px = 0;  // until they are there
     glDeleteTextures(2, textures.data());
     glCreateTextures(GL_TEXTURE_2D, 2, textures.data());
-    glTextureStorage2D(textures[0], 1, GL_RGBA8, width_px, height_px);
-    glTextureStorage2D(textures[1], 1, GL_DEPTH_COMPONENT32F, width_px, height_px);
+    glTextureStorage2D(textures[0], 1, GL_RGBA8, wide_px, high_px);
+    glTextureStorage2D(textures[1], 1, GL_DEPTH_COMPONENT32F, wide_px, high_px);
     glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, textures[0], 0);
     glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, textures[1], 0);
+    require_drawn("virtual objects");
+    width_px = wide_px;
+    height_px = high_px;
   }
 };
 
 ObjectDrawer::ObjectDrawer(GlContext& /*context*/) : state_(std::make_unique<State>()) {
   state_->program = make_program("virtual objects", kVertexShader, kFragmentShader);
   glCreateFramebuffers(1, &state_->framebuffer);
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &state_->most_px);
 }
 
 ObjectDrawer::~ObjectDrawer() {
@@ -115,13 +121,15 @@ void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics&
   for (const DrawnObject& object : objects)
     rect = united(rect, pixels_of(object.instance, camera, T_world_camera, kNear_m));
   layer.rect = clamped(rect, camera.width_px, camera.height_px);
-  layer.samples = layer.rect.width * layer.rect.height <= kMaxSupersampled_px ? 2 : 1;
+  const bool fits_twice = 2 * std::max(layer.rect.width, layer.rect.height) <= state_->most_px;
+  layer.samples = fits_twice && layer.rect.width * layer.rect.height <= kMaxSupersampled_px ? 2 : 1;
   const int width = layer.rect.width * layer.samples;
   const int height = layer.rect.height * layer.samples;
   layer.colour.resize(width, height);
   layer.depth_m.resize(width, height);
   if (width == 0 || height == 0) return;
 
+  forget_gl_errors();
   state_->fit(width, height);
   glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer);
   glViewport(0, 0, width, height);
@@ -179,6 +187,7 @@ void ObjectDrawer::finish(ObjectLayer& layer) {
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, layer.depth_m.pixels.data());
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  require_drawn("virtual objects");
   for (float& depth_m : layer.depth_m.pixels)
     depth_m = depth_from_buffer(depth_m, static_cast<float>(kNear_m));
 }

@@ -1,4 +1,4 @@
-// draw.hpp: draw the virtual objects as a camera sees them; the one file of app/ that talks to GL.
+// draw.hpp: draw the virtual objects as a camera sees them.
 #pragma once
 #include <Eigen/Geometry>
 #include <memory>

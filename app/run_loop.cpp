@@ -31,13 +31,10 @@ void control(PlaybackSource& source, CameraPlay camera) {
 }
 
 /// The composed picture, and what moved as the depth camera saw it.
-void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& folder,
-                    std::int64_t frame_index) {
-  char number[24];
-  std::snprintf(number, sizeof number, "%06lld", static_cast<long long>(frame_index));
-  if (!session.picture().empty()) write_png(session.picture(), folder / (std::string(number) + ".png"));
+void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& name) {
+  if (!session.picture().empty()) write_png(session.picture(), name.string() + ".png");
   if (result.status == FrameStatus::kDone)
-    write_png(session.scene().moved_mask(), folder / (std::string(number) + ".moved.png"));
+    write_png(session.scene().moved_mask(), name.string() + ".moved.png");
 }
 
 class RunLoop {
@@ -69,7 +66,9 @@ class RunLoop {
   std::size_t next_event_ = 0;
   std::int64_t run_frame_ = 0;
   double run_time_s_ = 0.0;
+  std::int64_t last_picture_ = -1;  ///< the farthest of the source's frames that has one
 
+  std::string picture_name();
   void perform(const ScriptEvent& event, bool is_from_script);
   void perform_users(const std::vector<ScriptEvent>& events);
   void end_budget();
@@ -164,6 +163,18 @@ void RunLoop::count_skipped(const std::string& fault) {
   run_.totals.last_fault = fault;
 }
 
+/// The source's number of the frame; where it comes again, held or looped, with the run's beside it.
+std::string RunLoop::picture_name() {
+  const auto six_digits = [](std::int64_t number) {
+    char digits[24];
+    std::snprintf(digits, sizeof digits, "%06lld", static_cast<long long>(number));
+    return std::string(digits);
+  };
+  const bool is_again = frame_.index <= last_picture_;
+  last_picture_ = std::max(last_picture_, frame_.index);
+  return six_digits(frame_.index) + (is_again ? "-" + six_digits(run_frame_) : "");
+}
+
 void RunLoop::keep(const FrameResult& result) {
   const Session& session = *run_.session;
   if (run_.recorder || run_.check) {
@@ -171,11 +182,11 @@ void RunLoop::keep(const FrameResult& result) {
     if (run_.recorder) run_.recorder->write(fingerprint);
     if (run_.check) run_.check->compare(fingerprint);
   }
-  if (run_.video) run_.video->write(session.picture());
+  if (run_.video) run_.video->write_at(session.picture(), run_time_s_);
   if (run_.frames_csv && result.status == FrameStatus::kDone)
     run_.frames_csv->write(frame_.index, result.use, session.objects());
   if (!run_.command.pictures.empty() && run_frame_ % run_.command.pictures_every == 0)
-    write_pictures(session, result, run_.command.pictures, frame_.index);
+    write_pictures(session, result, std::filesystem::path(run_.command.pictures) / picture_name());
 }
 
 }  // namespace

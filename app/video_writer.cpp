@@ -2,6 +2,8 @@
 #include "app/video_writer.hpp"
 
 #include <unistd.h>
+#include <cmath>
+#include <limits>
 
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -48,6 +50,8 @@ struct VideoWriter::State {
   int width_px = 0;
   int height_px = 0;
   std::int64_t frames_written = 0;
+  double start_s = 0.0;  ///< stamp of the video's first picture
+  double last_stamp_s = -std::numeric_limits<double>::infinity();
   bool is_closed = false;
 
   void open() {
@@ -116,10 +120,22 @@ void VideoWriter::write(const ColourImage& picture) {
   ++s.frames_written;
 }
 
+void VideoWriter::write_at(const ColourImage& picture, double stamp_s) {
+  constexpr double kJump_s = 1.0;
+  State& s = *state_;
+  const bool is_next = stamp_s >= s.last_stamp_s && stamp_s <= s.last_stamp_s + kJump_s;
+  if (!is_next) s.start_s = stamp_s - static_cast<double>(s.frames_written) / s.frames_per_s;
+  s.last_stamp_s = stamp_s;
+  const auto place =
+      is_next ? static_cast<std::int64_t>((stamp_s - s.start_s) * s.frames_per_s + 0.5) : s.frames_written;
+  while (s.frames_written <= place) write(picture);
+}
+
 void VideoWriter::close() {
   State& s = *state_;
   if (std::exchange(s.is_closed, true) || s.frames_written == 0) return;
   s.writer.release();
+  if (s.partial == s.path) return;  // a pipe or a device: what went through it cannot be asked
   // OpenCV does not say when a write failed, so the file is asked: one that was cut short has no index, or
   // fewer frames.
   cv::VideoCapture reader(s.partial.string(), cv::CAP_FFMPEG);

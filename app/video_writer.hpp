@@ -24,6 +24,11 @@ class VideoWriter {
   /// Error if the file cannot be made, or the disk is full.
   void write(const ColourImage& picture);
 
+  /// The same as often as it takes for the video to go as fast as the stamps do: twice of a source of half
+  /// the video's rate, not at all where two pictures fall together. Stamps that jump, back or by more than a
+  /// second, are taken for the next picture's.
+  void write_at(const ColourImage& picture, double stamp_s);
+
   /// Finishes the file, reads it back and puts it in its place. If it holds fewer frames than were written
   /// (disk full) or cannot be put there, throws Error that says where it is instead. Nothing happens the
   /// second time, or if nothing was written.

@@ -98,6 +98,19 @@ void check_claimed_size(const std::filesystem::path& path, const Format& format)
                    std::to_string(kMaxFileBytes >> 20U) + "; simplify it first");
 }
 
+bool is_gltf(const Format& format) { return std::strcmp(format.extension, ".glb") == 0; }
+
+/// In a .glb y points up, and colours are linear; here z does, and they are sRGB.
+/// Source: glTF 2.0 specification, 3.3 and 3.7.2.1; IEC 61966-2-1 for sRGB.
+aiVector3D with_y_up(const aiVector3D& p) { return {p.x, p.z, -p.y}; }
+aiMatrix4x4 z_up_from_y_up() { return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}; }
+float linear_of(float srgb01) {
+  return srgb01 <= 0.04045F ? srgb01 / 12.92F : std::pow((srgb01 + 0.055F) / 1.055F, 2.4F);
+}
+float srgb_of(float linear01) {
+  return linear01 <= 0.0031308F ? 12.92F * linear01 : 1.055F * std::pow(linear01, 1.0F / 2.4F) - 0.055F;
+}
+
 std::uint8_t channel_of(float value01) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value01, 0.0F, 1.0F) * 255.0F));
 }
@@ -105,13 +118,14 @@ std::uint8_t channel_of(float value01) {
 // Collects the meshes below a node, moved by its transforms.
 class Collector {
  public:
-  Collector(const std::filesystem::path& path, const aiScene& scene) : path_(path), scene_(scene) {
+  Collector(const std::filesystem::path& path, const aiScene& scene, const Format& format)
+      : path_(path), scene_(scene), is_gltf_(is_gltf(format)) {
     has_normals_ = has_colours_ = true;
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
       has_normals_ = has_normals_ && scene.mMeshes[i]->HasNormals();
       has_colours_ = has_colours_ && scene.mMeshes[i]->HasVertexColors(0);
     }
-    if (scene.mRootNode) add(*scene.mRootNode, aiMatrix4x4(), 0);
+    if (scene.mRootNode) add(*scene.mRootNode, is_gltf_ ? z_up_from_y_up() : aiMatrix4x4(), 0);
   }
   Mesh take() { return std::move(mesh_); }
 
@@ -146,7 +160,8 @@ class Collector {
       }
       if (has_colours_) {
         const aiColor4D& c = part.mColors[0][i];
-        mesh_.colours.push_back({channel_of(c.r), channel_of(c.g), channel_of(c.b)});
+        const auto channel = [&](float value) { return channel_of(is_gltf_ ? srgb_of(value) : value); };
+        mesh_.colours.push_back({channel(c.r), channel(c.g), channel(c.b)});
       }
     }
     for (unsigned i = 0; i < part.mNumFaces; ++i) {
@@ -170,6 +185,7 @@ class Collector {
 
   const std::filesystem::path& path_;
   const aiScene& scene_;
+  bool is_gltf_ = false;
   bool has_normals_ = false;
   bool has_colours_ = false;
   Mesh mesh_;
@@ -195,7 +211,11 @@ void require_writable(const Mesh& mesh, const std::filesystem::path& path) {
     if (!vertex.allFinite()) fail(path, "not written: a vertex is not finite");
 }
 
-aiMesh* assimp_mesh(const Mesh& mesh) {
+aiMesh* assimp_mesh(const Mesh& mesh, bool for_gltf) {
+  const auto turned = [&](const Eigen::Vector3f& p) {
+    const aiVector3D v(p.x(), p.y(), p.z());
+    return for_gltf ? with_y_up(v) : v;
+  };
   auto part = std::make_unique<aiMesh>();
   part->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
   part->mNumVertices = static_cast<unsigned>(mesh.vertices.size());
@@ -204,11 +224,13 @@ aiMesh* assimp_mesh(const Mesh& mesh) {
   if (!mesh.colours.empty()) part->mColors[0] = new aiColor4D[mesh.vertices.size()];
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     const Eigen::Vector3f p = (mesh.origin + mesh.vertices[i].cast<double>()).cast<float>();
-    part->mVertices[i] = aiVector3D(p.x(), p.y(), p.z());
-    if (!mesh.normals.empty())
-      part->mNormals[i] = aiVector3D(mesh.normals[i].x(), mesh.normals[i].y(), mesh.normals[i].z());
+    part->mVertices[i] = turned(p);
+    if (!mesh.normals.empty()) part->mNormals[i] = turned(mesh.normals[i]);
     if (!mesh.colours.empty()) {
-      const auto level = [](std::uint8_t c) { return static_cast<float>(c) / 255.0F; };
+      const auto level = [&](std::uint8_t c) {
+        const float value = static_cast<float>(c) / 255.0F;
+        return for_gltf ? linear_of(value) : value;
+      };
       part->mColors[0][i] =
           aiColor4D(level(mesh.colours[i].r), level(mesh.colours[i].g), level(mesh.colours[i].b), 1.0F);
     }
@@ -228,7 +250,7 @@ std::string assimp_bytes(const Mesh& mesh, const Format& format, const std::file
   aiScene scene;  // owns everything below
   scene.mMaterials = new aiMaterial* [1] { new aiMaterial() };
   scene.mNumMaterials = 1;
-  scene.mMeshes = new aiMesh* [1] { assimp_mesh(mesh) };
+  scene.mMeshes = new aiMesh* [1] { assimp_mesh(mesh, is_gltf(format)) };
   scene.mNumMeshes = 1;
   scene.mRootNode = new aiNode("roomradar");
   scene.mRootNode->mMeshes = new unsigned[1]{0};
@@ -286,7 +308,7 @@ Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
                    (reason.empty() ? std::string() : " (" + reason.substr(0, 200) + ")") +
                    "; is it complete, and is its extension right?");
   }
-  Mesh mesh = Collector(path, *scene).take();
+  Mesh mesh = Collector(path, *scene, format).take();
   if (mesh.triangles.empty()) fail(path, "holds no triangles with an area; wanted a surface mesh");
   return mesh;
 }

@@ -50,12 +50,16 @@ DepthPass::~DepthPass() {
 
 void DepthPass::fit_framebuffer(int width_px, int height_px) {
   if (width_px <= texture_width_px_ && height_px <= texture_height_px_) return;
-  texture_width_px_ = std::max(width_px, texture_width_px_);
-  texture_height_px_ = std::max(height_px, texture_height_px_);
+  const int wide_px = std::max(width_px, texture_width_px_);
+  const int high_px = std::max(height_px, texture_height_px_);
+  texture_width_px_ = texture_height_px_ = 0;  // until it is there
   glDeleteTextures(1, &depth_texture_);
   glCreateTextures(GL_TEXTURE_2D, 1, &depth_texture_);
-  glTextureStorage2D(depth_texture_, 1, GL_DEPTH_COMPONENT32F, texture_width_px_, texture_height_px_);
+  glTextureStorage2D(depth_texture_, 1, GL_DEPTH_COMPONENT32F, wide_px, high_px);
   glNamedFramebufferTexture(framebuffer_, GL_DEPTH_ATTACHMENT, depth_texture_, 0);
+  require_drawn("depth of the room");
+  texture_width_px_ = wide_px;
+  texture_height_px_ = high_px;
 }
 
 std::size_t DepthPass::render(std::span<const MeshInstance> scene, const Intrinsics& camera,
@@ -84,6 +88,7 @@ std::size_t DepthPass::render(std::span<const MeshInstance> scene, const Intrins
 std::size_t DepthPass::render_with_gl(std::span<const MeshInstance> scene, const Intrinsics& camera,
                                       const Eigen::Isometry3d& T_world_camera, const PixelRect& inside,
                                       DepthImage& depth_m) {
+  forget_gl_errors();
   fit_framebuffer(inside.width, inside.height);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
   glViewport(0, 0, inside.width, inside.height);
@@ -111,6 +116,7 @@ std::size_t DepthPass::render_with_gl(std::span<const MeshInstance> scene, const
                depth_m.row(inside.y) + inside.x);
   glPixelStorei(GL_PACK_ROW_LENGTH, 0);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  require_drawn("depth of the room");
   const float near_m = static_cast<float>(config_.near_m);
   for (int y = inside.y; y < inside.y + inside.height; ++y) {
     float* row = depth_m.row(y) + inside.x;

@@ -151,14 +151,20 @@ RendererChoice renderer_choice_from_environment() {
 
 GlContext::GlContext(RendererChoice choice) {
   std::string tried;
-  for (const Candidate& candidate : candidates()) {
+  const std::vector<Candidate> all = candidates();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Candidate& candidate = all[i];
     if (choice == RendererChoice::kSoftware && !candidate.is_software) continue;
     std::string fault;
     const EGLContext context = make_context(candidate, fault);
     if (context != EGL_NO_CONTEXT) {
       const std::string name = gl_string(GL_RENDERER);
       const bool is_software = names_software(name);
-      if (choice == RendererChoice::kAuto || is_software == (choice == RendererChoice::kSoftware)) {
+      // A card without a driver of its own draws in software, too, though there may be a better one after it.
+      const bool is_taken = choice == RendererChoice::kAuto
+                                ? !is_software || candidate.is_software || i + 1 == all.size()
+                                : is_software == (choice == RendererChoice::kSoftware);
+      if (is_taken) {
         display_ = candidate.display;
         context_ = context;
         is_software_ = is_software;
@@ -199,5 +205,23 @@ void GlContext::make_current() const {
 }
 
 void GlContext::release() const { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+
+void forget_gl_errors() {
+  while (glGetError() != GL_NO_ERROR && glGetGraphicsResetStatus() == GL_NO_ERROR) {  // a lost one has no end
+  }
+}
+
+void require_drawn(const char* what) {
+  if (eglGetCurrentContext() == EGL_NO_CONTEXT)
+    throw Error(std::string(what) + ": the renderer's context is not current on this thread");
+  const GLenum error = glGetError();
+  const GLenum reset = glGetGraphicsResetStatus();
+  if (error == GL_NO_ERROR && reset == GL_NO_ERROR) return;
+  const char* why = reset != GL_NO_ERROR        ? "was reset, and what it held is lost; start again"
+                    : error == GL_OUT_OF_MEMORY ? "has no memory left; close what else uses it"
+                                                : "refused to draw; update the driver";
+  throw Error(std::string(what) + ": the renderer " + why +
+              ", or set ROOMRADAR_RENDERER=software to do without the GPU");
+}
 
 }  // namespace roomradar

@@ -46,4 +46,12 @@ class GlContext {
   bool is_software_ = true;
 };
 
+/// Forgets errors of GL that nobody asked about: what require_drawn() says after it is of what came between.
+void forget_gl_errors();
+
+/// Throws Error "WHAT: the renderer ..." if GL met an error since they were forgotten, has lost its context
+/// (a GPU that was reset, or slept), or none is current on this thread. What was read from it is then nothing
+/// to go by.
+void require_drawn(const char* what);
+
 }  // namespace roomradar

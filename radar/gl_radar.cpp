@@ -172,7 +172,8 @@ void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneM
 bool GlRadar::fit_atlases(std::size_t queries) {
   const auto side = static_cast<std::size_t>(std::max(config_.atlas_px / config_.resolution_px, 1));
   const auto fit = [&](TileAtlas& atlas, std::size_t tiles) {
-    tiles = std::min(tiles, side * side);
+    constexpr std::size_t kMostGroups = 255 * 255;  // a tile each, of one dispatch: 65,535 are sure
+    tiles = std::min({tiles, side * side, kMostGroups});
     if (atlas.tile_count() >= tiles) return false;
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(tiles))));
     const auto rows = (tiles + columns - 1) / columns;

@@ -17,8 +17,7 @@ TileAtlas::~TileAtlas() {
 }
 
 bool TileAtlas::resize(int columns, int rows, int tile_px) {
-  while (glGetError() != GL_NO_ERROR && glGetGraphicsResetStatus() == GL_NO_ERROR) {  // not ours
-  }
+  forget_gl_errors();
   glDeleteTextures(1, &texture_);
   glCreateTextures(GL_TEXTURE_2D, 1, &texture_);
   glTextureStorage2D(texture_, 1, GL_RGBA32F, columns * tile_px, rows * tile_px);

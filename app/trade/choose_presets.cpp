@@ -58,11 +58,10 @@ PresetChoice choose_presets(const TradeWork& work, const std::vector<SettingSumm
     return !best || measure(points[i]) < measure(points[*best]);
   };
   const auto cost = [](const CostAndError& p) { return p.cost; };
-  const auto product = [](const CostAndError& p) { return p.cost * p.error; };
   const auto error = [](const CostAndError& p) { return p.error; };
   for (const std::size_t i : front_of(points)) {
     if (points[i].error <= kMostLossOfFast && is_better(choice.fast, i, cost)) choice.fast = i;
-    if (is_better(choice.balanced, i, product)) choice.balanced = i;
+    if (points[i].error <= kMostLossOfBalanced && is_better(choice.balanced, i, cost)) choice.balanced = i;
     if (points[i].cost <= kMostTimeOfAccurate && is_better(choice.accurate, i, error)) choice.accurate = i;
   }
   if (choice.accurate && !(points[*choice.accurate].error < kMostLossOfAccurate)) {

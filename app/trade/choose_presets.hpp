@@ -24,7 +24,7 @@ struct PresetChoice {
 
 inline constexpr double kMostWorstLoss = 10.0;  ///< on the front no error is more times the default's
 inline constexpr double kMostWorstLossOfPreset = 3.0;
-inline constexpr double kMostLossOfFast = 1.5;
+inline constexpr double kMostLossOfFast = 1.5, kMostLossOfBalanced = 1.1;
 inline constexpr double kMostTimeOfAccurate = 3.0;   ///< times the default's
 inline constexpr double kMostLossOfAccurate = 0.99;  ///< what is no better than this may be so by chance
 
@@ -32,7 +32,7 @@ inline constexpr double kMostLossOfAccurate = 0.99;  ///< what is no better than
 /// where no error is more than kMostWorstLossOfPreset times the default's (what goes farther is for a budget
 /// that cannot be held otherwise),
 ///  fast      the least time with a loss of at most kMostLossOfFast,
-///  balanced  the least product of time and loss,
+///  balanced  the same with at most kMostLossOfBalanced: what is gained nearly for nothing,
 ///  accurate  the least loss that takes at most kMostTimeOfAccurate times the default; the default itself
 ///            where that is more than kMostLossOfAccurate.
 /// @param usual  the default's place among the summaries

@@ -250,7 +250,7 @@ void write_trade_page(const std::vector<TradeResult>& results, const std::vector
          "(both "
          "with what is negligible added), so 1 is the default and 1.5 is half as much error again.</p>\n"
          "<p><b>Orange</b>: the ring is the default; diamonds are the presets. <i>fast</i> is the fastest "
-         "with a loss of at most 1.5, <i>balanced</i> has the least product of time and loss, "
+         "with a loss of at most 1.5, <i>balanced</i> the fastest with one of at most 1.1, "
          "<i>accurate</i> has the least loss within 3 times the default's time, or is the default where that "
          "is less than 1 % better; no preset has any error more than 3 times the default's, and nothing on "
          "the front of all errors one more than 10 times.</p>\n";

@@ -93,7 +93,7 @@ std::vector<ScriptEvent> Player::events_of(std::span<const Wish> wishes, const S
         break;
       case WishKind::kRemove:
         if (!chosen_.empty()) events.push_back(event_of(Action::kRemove, chosen_));
-        grabbed_.reset();
+        if (grabbed_ && grabbed_->name == chosen_) grabbed_.reset();
         break;
       case WishKind::kReset:
         for (const auto& object : session.objects())

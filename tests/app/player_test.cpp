@@ -136,6 +136,22 @@ TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
   EXPECT_FALSE(pot().carried_to_world);
 }
 
+TEST_F(Playing, RemovingAnotherObjectDoesNotLeaveTheHeldOneHanging) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  play(new_teapot());
+  play(wish(WishKind::kPlace, Vec3(0.5, 0.0, 0.0)));
+  play(wish(WishKind::kGrab, middle()));
+  play(wish(WishKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
+  ASSERT_TRUE(pot().carried_to_world);
+  Wish choose = wish(WishKind::kChoose);
+  choose.event.name = "teapot";
+  play(choose);
+  ASSERT_EQ(play(wish(WishKind::kRemove)).at(0).name, "teapot");
+  EXPECT_TRUE(player_.is_grabbed());
+  play(wish(WishKind::kLetGo, middle()));
+  EXPECT_FALSE(pot().carried_to_world);
+}
+
 TEST_F(Playing, WhatIsLetGoInMotionFliesOnAsFastAsTheMouseWas) {
   play(wish(WishKind::kPlace, Vec3::Zero()));
   play(wish(WishKind::kGrab, middle()));

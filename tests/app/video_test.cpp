@@ -1,16 +1,20 @@
 // video_test.cpp: videos and pictures come back as they were written; a full disk is noticed.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>
+#include <thread>
 
 #include "app/picture_file.hpp"
 #include "app/video_writer.hpp"
@@ -101,6 +105,37 @@ TEST_F(Video, WhatWasThereStaysUntilTheNewOneIsWhole) {
   EXPECT_EQ(cv::VideoCapture(path.string()).get(cv::CAP_PROP_FRAME_COUNT), 3.0);
   const std::filesystem::directory_iterator files(folder_);
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+TEST_F(Video, GoesAsFastAsItsPicturesWereTaken) {
+  const auto frames_of = [&](std::initializer_list<double> stamps_s) {
+    VideoWriter writer(folder_ / "v.avi", 30.0);
+    for (const double stamp_s : stamps_s) writer.write_at(square_at(1, 160, 120), stamp_s);
+    return writer.frames_written();
+  };
+  EXPECT_EQ(frames_of({7.0, 7.0 + 1 / 30.0, 7.0 + 2 / 30.0, 7.0 + 3 / 30.0}), 4);
+  EXPECT_EQ(frames_of({7.0, 7.0 + 1 / 15.0, 7.0 + 2 / 15.0, 7.0 + 3 / 15.0}), 7) << "half the rate";
+  EXPECT_EQ(frames_of({7.0, 7.0 + 1 / 60.0, 7.0 + 2 / 60.0, 7.0 + 3 / 60.0, 7.0 + 4 / 60.0}), 3) << "twice";
+  EXPECT_EQ(frames_of({7.0, 7.5}), 16) << "frames that were dropped";
+  EXPECT_EQ(frames_of({7.0, 7.0 + 1 / 30.0, 3600.0, 3600.0 + 1 / 30.0, 2.0, 2.0 + 1 / 30.0}), 6) << "jumps";
+  EXPECT_EQ(frames_of({7.0, std::nan(""), 7.0}), 3);
+}
+
+TEST_F(Video, WhatGoesThroughAPipeIsNotWaitedForAgain) {
+  const auto path = folder_ / "v.avi";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  std::size_t bytes = 0;
+  std::thread reader([&] {
+    std::ifstream file(path, std::ios::binary);
+    for (char c = 0; file.get(c);) ++bytes;
+  });
+  {
+    VideoWriter writer(path, 30.0);
+    for (int frame = 0; frame < 3; ++frame) writer.write(square_at(frame, 160, 120));
+    writer.close();
+  }
+  reader.join();
+  EXPECT_GT(bytes, 1000U);
 }
 
 TEST_F(Video, NothingWrittenMakesNoFile) {

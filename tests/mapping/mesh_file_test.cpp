@@ -7,7 +7,9 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "mapping/types/error.hpp"
 #include "tests/support/recordings.hpp"
@@ -82,6 +84,40 @@ TEST_F(MeshFile, EachFormatKeepsVerticesAndTrianglesAndWhatElseItCan) {
         ASSERT_EQ(read.colours[after], mesh.colours[before]) << extension;
       }
   }
+}
+
+/// What a .glb's first mesh has of an attribute: of the first vertex, as numbers.
+std::vector<float> first_of_glb(const std::filesystem::path& path, const char* attribute) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  std::uint32_t json_bytes = 0;
+  std::memcpy(&json_bytes, bytes.data() + 12, 4);
+  const auto json = nlohmann::json::parse(bytes.substr(20, json_bytes));
+  const auto& accessor =
+      json["accessors"][json["meshes"][0]["primitives"][0]["attributes"][attribute].get<std::size_t>()];
+  EXPECT_EQ(accessor["componentType"], 5126) << "float";
+  const auto& view = json["bufferViews"][accessor["bufferView"].get<std::size_t>()];
+  std::vector<float> values(3);
+  std::memcpy(
+      values.data(),
+      bytes.data() + 28 + json_bytes + view.value("byteOffset", 0U) + accessor.value("byteOffset", 0U), 12);
+  return values;
+}
+
+TEST_F(MeshFile, AGlbHasYUpAndLinearColoursAsOtherProgramsExpect) {
+  Mesh mesh;
+  mesh.vertices = {{1.0F, 2.0F, 3.0F}, {2.0F, 2.0F, 3.0F}, {1.0F, 4.0F, 3.0F}};
+  mesh.normals.assign(3, Eigen::Vector3f::UnitZ());
+  mesh.colours.assign(3, {255, 128, 0});
+  mesh.triangles = {{0, 1, 2}};
+  const std::filesystem::path path = folder_.path() / "up.glb";
+  write_mesh(mesh, path);
+  EXPECT_EQ(first_of_glb(path, "POSITION"), (std::vector{1.0F, 3.0F, -2.0F}));
+  EXPECT_EQ(first_of_glb(path, "NORMAL"), (std::vector{0.0F, 1.0F, 0.0F}));
+  const std::vector<float> colour = first_of_glb(path, "COLOR_0");
+  EXPECT_EQ(colour[0], 1.0F);
+  EXPECT_NEAR(colour[1], 0.21586, 1e-5);
+  EXPECT_EQ(colour[2], 0.0F);
 }
 
 // assimp takes a newline at the start of the data for the end of the header.

@@ -1,6 +1,8 @@
 // gl_faults_test.cpp: a renderer that gives less than asked is a sentence or no answer, never a crash.
 #include <gtest/gtest.h>
 
+#include "mapping/types/error.hpp"
+#include "radar/depth_pass.hpp"
 #include "radar/gl_radar.hpp"
 #include "tests/radar/shapes.hpp"
 
@@ -37,6 +39,21 @@ TEST_F(GlFaults, WithoutTheContextThereIsNoAnswerAndWithItAgainThereIs) {
       EXPECT_EQ(again.status, ContactStatus::kContact);
       EXPECT_NEAR(again.travel_m, 0.7, 1e-6);
     }
+  }
+}
+
+TEST_F(GlFaults, DepthThatWasNotDrawnIsNoDepth) {
+  constexpr Intrinsics camera{64, 48, 60.0, 60.0, 31.5, 23.5};
+  DepthPass pass(context, {.renderer = DepthRenderer::kOpenGl});
+  DepthImage depth_m;
+  const MeshInstance instance{&cube, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 2))};
+  const auto render = [&] { pass.render({&instance, 1}, camera, Eigen::Isometry3d::Identity(), depth_m); };
+  for (int i = 0; i < 2; ++i) {  // before its texture is made, and after
+    context.release();
+    EXPECT_THROW(render(), Error);
+    context.make_current();
+    render();
+    EXPECT_GT(depth_m.at(32, 24), 1.0F);
   }
 }
 

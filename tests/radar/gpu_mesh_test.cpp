@@ -66,7 +66,7 @@ TEST_F(GpuMeshTest, BoundsHoldTheOrigin) {
 
 TEST_F(GpuMeshTest, StreamedUploadsReplaceEachOther) {
   constexpr Intrinsics camera{64, 48, 60.0, 60.0, 31.5, 23.5};
-  DepthPass pass(context);
+  DepthPass pass(context), by_gl(context, {.renderer = DepthRenderer::kOpenGl});
   DepthImage depth_m;
   const MeshInstance instance{&gpu, Eigen::Isometry3d::Identity()};
   // Growing, shrinking, empty: what is drawn is always the last one.
@@ -77,10 +77,14 @@ TEST_F(GpuMeshTest, StreamedUploadsReplaceEachOther) {
     gpu.upload(mesh, MeshUsage::kStreamed);
     pass.render({&instance, 1}, camera, Eigen::Isometry3d::Identity(), depth_m);
     EXPECT_NEAR(depth_m.at(32, 24), z_m, 1e-5F);
+    by_gl.render({&instance, 1}, camera, Eigen::Isometry3d::Identity(), depth_m);
+    EXPECT_NEAR(depth_m.at(32, 24), z_m, 1e-5F);
   }
   gpu.upload({}, MeshUsage::kStreamed);
-  pass.render({&instance, 1}, camera, Eigen::Isometry3d::Identity(), depth_m);
-  EXPECT_EQ(depth_m.at(32, 24), 0.0F);
+  for (DepthPass* each : {&pass, &by_gl}) {
+    each->render({&instance, 1}, camera, Eigen::Isometry3d::Identity(), depth_m);
+    EXPECT_EQ(depth_m.at(32, 24), 0.0F);
+  }
   EXPECT_TRUE(gpu.bounds().isEmpty());
 }
 
