@@ -9,7 +9,8 @@ namespace roomradar {
 namespace {
 
 /// World to picture: x to the right, y down, z the depth; all in pixels.
-Eigen::Affine3d looking_down(const Mesh& mesh, int width_px, int& height_px) {
+Eigen::Affine3d looking_down(const Mesh& mesh, std::span<const Change> changes, int width_px,
+                             int& height_px) {
   constexpr double kTurn_rad = 0.6, kTilt_rad = 0.9;  // about the vertical; from the horizontal
   Eigen::Matrix3d R;
   R.row(0) << std::cos(kTurn_rad), std::sin(kTurn_rad), 0.0;
@@ -18,9 +19,13 @@ Eigen::Affine3d looking_down(const Mesh& mesh, int width_px, int& height_px) {
   R.row(1) = R.row(2).cross(R.row(0));
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& vertex : mesh.vertices) box.extend(R * (mesh.origin + vertex.cast<double>()));
+  for (const Change& change : changes)
+    for (const Eigen::Vector3d& p_world : change.surface_world) box.extend(R * p_world);
   constexpr double kMargin_px = 20.0;
-  const double scale = (width_px - 2.0 * kMargin_px) / std::max(box.sizes().x(), 1e-3);
-  height_px = static_cast<int>(std::min(box.sizes().y() * scale + 2.0 * kMargin_px, 4.0 * width_px));
+  // Wide, but a narrow strip of a room no higher than four times that.
+  const double scale = std::min((width_px - 2.0 * kMargin_px) / std::max(box.sizes().x(), 1e-3),
+                                (4.0 * width_px - 2.0 * kMargin_px) / std::max(box.sizes().y(), 1e-3));
+  height_px = static_cast<int>(box.sizes().y() * scale + 2.0 * kMargin_px);
   return Eigen::Translation3d(Eigen::Vector3d::Constant(kMargin_px)) * Eigen::Scaling(scale) *
          Eigen::Translation3d(-box.min()) * Eigen::Affine3d(R);
 }
@@ -65,7 +70,7 @@ Rgb paled(Rgb colour, double facing) {
 ColourImage draw_changes(const Mesh& mesh, std::span<const Change> changes, int width_px) {
   if (mesh.triangles.empty()) return {};
   int height_px = 0;
-  const Eigen::Affine3d to_picture = looking_down(mesh, width_px, height_px);
+  const Eigen::Affine3d to_picture = looking_down(mesh, changes, width_px, height_px);
   Canvas canvas{ColourImage(width_px, height_px, Rgb{255, 255, 255}),
                 Image<float>(width_px, height_px, 1e9F)};
   std::vector<Eigen::Vector3d> corners;

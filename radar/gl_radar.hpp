@@ -76,6 +76,9 @@ struct GlQuery {
 /// wall that is passed closer than a pixel, a peg in a hollow. Such a query is settled on the processor if it
 /// can be (GlRadarConfig::settle): its answer is then exact, with lower_m = upper_m.
 ///
+/// Surfaces that are met from one side only (is_one_sided(), such as the frontier of what was seen) are met
+/// from both here: where that matters, ask CyberRadar.
+///
 /// Overlap and hollow need triangles that wind counter-clockwise seen from outside, and a closed object.
 /// Masks are kept: an object that is asked about again along the same direction in its own frame is not drawn
 /// again. Source of R, M and L: the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread

@@ -36,8 +36,9 @@ struct RadarPictures {
 };
 
 /// The pictures of a question to the processor's radar, sampled just off the middle of each pixel as GlRadar
-/// samples them: the same depths but for its renderer's rounding. R is the first surface that is not behind
-/// the object's front. Everything is drawn in double; neither CyberRadar nor its answer needs these.
+/// samples them: the same depths but for its renderer's rounding, overlaps (L is not negative here) and
+/// one-sided surfaces (which it does not know). R is the first surface that is not behind the object's front.
+/// Everything is drawn in double; neither CyberRadar nor its answer needs these.
 ///
 /// @param resolution_px  pixels along the longer side of the object's outline, 1 to 4096
 /// @return everything empty for a question that CyberRadar answers with kInvalidInput
