@@ -19,8 +19,9 @@ void draw_label(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colo
   ImGui::PushFont(fonts.small);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   ImGui::PopFont();
-  draw.AddRectFilled({at.x - 5.0F, at.y - 3.0F}, {at.x + size.x + 5.0F, at.y + size.y + 3.0F},
-                     IM_COL32(16, 19, 24, 190), 4.0F);
+  const float beside = look::px(5.0F), above = look::px(3.0F);
+  draw.AddRectFilled({at.x - beside, at.y - above}, {at.x + size.x + beside, at.y + size.y + above},
+                     IM_COL32(16, 19, 24, 190), look::px(4.0F));
   draw.AddText(fonts.small, fonts.small->FontSize, at, colour, text.c_str());
 }
 
@@ -50,19 +51,20 @@ void mark_chosen(ImDrawList& draw, const Snapshot& shown, const Area& image, dou
     low = {std::min(low.x, static_cast<float>(pixel.x())), std::min(low.y, static_cast<float>(pixel.y()))};
     high = {std::max(high.x, static_cast<float>(pixel.x())), std::max(high.y, static_cast<float>(pixel.y()))};
   }
-  const float left = image.x + low.x - 6.0F, top = image.y + low.y - 6.0F;
-  const float right = image.x + high.x + 6.0F, bottom = image.y + high.y + 6.0F;
-  const float arm = std::clamp(0.22F * std::min(right - left, bottom - top), 6.0F, 18.0F);
+  const float gap = look::px(6.0F);
+  const float left = image.x + low.x - gap, top = image.y + low.y - gap;
+  const float right = image.x + high.x + gap, bottom = image.y + high.y + gap;
+  const float arm = std::clamp(0.22F * std::min(right - left, bottom - top), look::px(6.0F), look::px(18.0F));
   const ImU32 colour = found->is_carried ? look::kWarn : look::kAccent;
   draw.PushClipRect({image.x, image.y}, {image.x + image.width, image.y + image.height}, true);
   for (const float x : {left, right}) {
     for (const float y : {top, bottom}) {
-      draw.AddLine({x, y}, {x + (x == left ? arm : -arm), y}, colour, 2.0F);
-      draw.AddLine({x, y}, {x, y + (y == top ? arm : -arm)}, colour, 2.0F);
+      draw.AddLine({x, y}, {x + (x == left ? arm : -arm), y}, colour, look::px(2.0F));
+      draw.AddLine({x, y}, {x, y + (y == top ? arm : -arm)}, colour, look::px(2.0F));
     }
   }
-  draw_label(draw, {left + 5.0F, bottom + 7.0F}, found->name + ": " + what_it_does(*found), look::kText,
-             fonts);
+  draw_label(draw, {left + look::px(5.0F), bottom + look::px(7.0F)},
+             found->name + ": " + what_it_does(*found), look::kText, fonts);
   draw.PopClipRect();
 }
 
@@ -91,28 +93,31 @@ void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindo
       corners[i] = *p;
     }
     draw.AddConvexPolyFilled(corners.data(), 4, fill);
-    draw.AddPolyline(corners.data(), 4, edge, ImDrawFlags_Closed, 2.0F);
+    draw.AddPolyline(corners.data(), 4, edge, ImDrawFlags_Closed, look::px(2.0F));
   };
   draw_box(
       draw,
       [&](int i) {
         return at((i & 1) != 0 ? 1 : 0, (i & 2) != 0 ? 1 : 0, (i & 4) != 0 ? volume.depth_m : 0.0);
       },
-      to_window, IM_COL32(240, 178, 74, 200), 1.5F);
+      to_window, IM_COL32(240, 178, 74, 200), look::px(1.5F));
   plane(0.0, IM_COL32(64, 196, 172, 36), look::kAccent);
   plane(volume.depth_m, IM_COL32(240, 178, 74, 36), look::kWarn);
-  draw_line(draw, at(0.5, 0.5, volume.length_m), at(0.5, 0.5, volume.depth_m), to_window, look::kWarn, 1.5F);
+  draw_line(draw, at(0.5, 0.5, volume.length_m), at(0.5, 0.5, volume.depth_m), to_window, look::kWarn,
+            look::px(1.5F));
   if (const auto rear = to_window(at(0, 0, 0.0)))
-    draw_label(draw, {rear->x + 6.0F, rear->y - 18.0F}, "rear plane", look::kAccent, fonts);
+    draw_label(draw, {rear->x + look::px(6.0F), rear->y - look::px(18.0F)}, "rear plane", look::kAccent,
+               fonts);
   if (const auto far = to_window(at(0, 0, volume.depth_m)))
-    draw_label(draw, {far->x + 6.0F, far->y + 6.0F}, "far plane", look::kWarn, fonts);
+    draw_label(draw, {far->x + look::px(6.0F), far->y + look::px(6.0F)}, "far plane", look::kWarn, fonts);
   if (!radar.contact) return;
   if (const auto touch = to_window(radar.contact.point_world)) {
-    draw.AddCircleFilled(*touch, 4.5F, look::kBad);
-    draw.AddCircle(*touch, 8.0F, look::kBad, 0, 1.5F);
+    draw.AddCircleFilled(*touch, look::px(4.5F), look::kBad);
+    draw.AddCircle(*touch, look::px(8.0F), look::kBad, 0, look::px(1.5F));
     std::array<char, 48> text{};
     std::snprintf(text.data(), text.size(), "contact after %.1f mm", 1e3 * radar.contact.travel_m);
-    draw_label(draw, {touch->x + 13.0F, touch->y - 7.0F}, text.data(), look::kText, fonts);
+    draw_label(draw, {touch->x + look::px(13.0F), touch->y - look::px(7.0F)}, text.data(), look::kText,
+               fonts);
   }
 }
 
@@ -128,8 +133,8 @@ void draw_camera(ImDrawList& draw, const Session::ShownView& view, double depth_
     corners[i] = view.T_world_view * back_project(camera, around[i][0], around[i][1], depth_m);
   const ImU32 colour = IM_COL32(222, 228, 236, 170);
   for (std::size_t i = 0; i < 4; ++i) {
-    draw_line(draw, view.T_world_view.translation(), corners[i], to_window, colour, 1.3F);
-    draw_line(draw, corners[i], corners[(i + 1) % 4], to_window, colour, 1.3F);
+    draw_line(draw, view.T_world_view.translation(), corners[i], to_window, colour, look::px(1.3F));
+    draw_line(draw, corners[i], corners[(i + 1) % 4], to_window, colour, look::px(1.3F));
   }
 }
 

@@ -6,11 +6,16 @@
 namespace roomradar::look {
 namespace {
 
+float scale_of_screen = 1.0F;
+
 ImVec4 part(ImU32 colour) { return ImGui::ColorConvertU32ToFloat4(colour); }
 
 }  // namespace
 
+float px(float length) { return scale_of_screen * length; }
+
 Fonts apply(float scale) {
+  scale_of_screen = scale;
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowRounding = 0.0F;
@@ -48,11 +53,15 @@ Fonts apply(float scale) {
   std::error_code ignored;
   if (std::filesystem::exists(plain, ignored) && std::filesystem::exists(bold, ignored)) {
     static const ImWchar kLetters[] = {0x20, 0xFF, 0x2010, 0x2026, 0x00B5, 0x00B5, 0x2190, 0x2193, 0};
-    fonts.text = io.Fonts->AddFontFromFileTTF(plain, 14.0F * scale, nullptr, kLetters);
-    fonts.small = io.Fonts->AddFontFromFileTTF(plain, 11.5F * scale, nullptr, kLetters);
-    fonts.large = io.Fonts->AddFontFromFileTTF(bold, 16.0F * scale, nullptr, kLetters);
+    fonts.text = io.Fonts->AddFontFromFileTTF(plain, px(14.0F), nullptr, kLetters);
+    fonts.small = io.Fonts->AddFontFromFileTTF(plain, px(11.5F), nullptr, kLetters);
+    fonts.large = io.Fonts->AddFontFromFileTTF(bold, px(16.0F), nullptr, kLetters);
   } else {
-    fonts.text = fonts.small = fonts.large = io.Fonts->AddFontDefault();
+    ImFontConfig config;  // as of AddFontDefault(), but for the size
+    config.SizePixels = px(13.0F);
+    config.OversampleH = config.OversampleV = 1;
+    config.PixelSnapH = true;
+    fonts.text = fonts.small = fonts.large = io.Fonts->AddFontDefault(&config);
   }
   return fonts;
 }
@@ -74,7 +83,7 @@ void end_pane() {
 }
 
 void heading(const char* text, const Fonts& fonts) {
-  ImGui::Dummy({0.0F, 3.0F});
+  ImGui::Dummy({0.0F, px(3.0F)});
   ImGui::PushFont(fonts.small);
   ImGui::PushStyleColor(ImGuiCol_Text, kDim);
   ImGui::TextUnformatted(text);
@@ -110,11 +119,11 @@ bool button(const char* label, const char* key, bool is_lit, ImVec2 size, bool e
 
 int segments(const char* id, const char* const* words, int count, int lit) {
   ImGui::PushID(id);
-  const float width =
-      (ImGui::GetContentRegionAvail().x - 2.0F * static_cast<float>(count - 1)) / static_cast<float>(count);
+  const float width = (ImGui::GetContentRegionAvail().x - px(2.0F) * static_cast<float>(count - 1)) /
+                      static_cast<float>(count);
   int clicked = -1;
   for (int i = 0; i < count; ++i) {
-    if (i > 0) ImGui::SameLine(0.0F, 2.0F);
+    if (i > 0) ImGui::SameLine(0.0F, px(2.0F));
     if (button(words[i], "", i == lit, {width, 0.0F})) clicked = i;
   }
   ImGui::PopID();
@@ -125,8 +134,8 @@ void pill(ImU32 colour, const std::string& text) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float height = ImGui::GetTextLineHeight();
   ImGui::GetWindowDrawList()->AddCircleFilled(
-      {at.x + 5.0F, at.y + 0.5F * height + ImGui::GetStyle().FramePadding.y}, 4.0F, colour);
-  ImGui::Dummy({14.0F, height});
+      {at.x + px(5.0F), at.y + 0.5F * height + ImGui::GetStyle().FramePadding.y}, px(4.0F), colour);
+  ImGui::Dummy({px(14.0F), height});
   ImGui::SameLine(0.0F, 0.0F);
   ImGui::TextUnformatted(text.c_str());
 }

@@ -28,6 +28,9 @@ struct Fonts {
 /// Sets Dear ImGui's style and loads letters: DejaVu where it is installed, else its own.
 Fonts apply(float scale);
 
+/// Pixels of a length that was thought for a screen of 96 dpi, with the scale of apply().
+float px(float length);
+
 /// A pane that fills an area, without a title or a border of its own. Always to be followed by end_pane().
 bool begin_pane(const char* name, const Area& area, ImU32 ground = kPanel, bool scrolls = false);
 void end_pane();

@@ -312,12 +312,13 @@ void ModelView::draw(const Area& area, const Snapshot& shown, const look::Fonts&
                 {IM_COL32(237, 115, 102, 255), "moved"},
                 {IM_COL32(140, 92, 158, 255), "its inferred back"},
                 {IM_COL32(64, 196, 172, 255), "chosen object"}};
-  float x = area.x + 12.0F;
-  const float y = area.y + area.height - 22.0F;
+  float x = area.x + look::px(12.0F);
+  const float y = area.y + area.height - look::px(22.0F);
   for (const auto& entry : legend) {
-    list.AddCircleFilled({x, y + 7.0F}, 4.0F, entry.colour);
-    list.AddText(fonts.small, fonts.small->FontSize, {x + 9.0F, y}, look::kDim, entry.what);
-    x += 9.0F + fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e4F, 0.0F, entry.what).x + 16.0F;
+    list.AddCircleFilled({x, y + look::px(7.0F)}, look::px(4.0F), entry.colour);
+    list.AddText(fonts.small, fonts.small->FontSize, {x + look::px(9.0F), y}, look::kDim, entry.what);
+    x += look::px(9.0F) + fonts.small->CalcTextSizeA(fonts.small->FontSize, 1e4F, 0.0F, entry.what).x +
+         look::px(16.0F);
   }
   look::end_pane();
 }

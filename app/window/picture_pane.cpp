@@ -38,10 +38,10 @@ void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Font
     std::array<char, 96> text{};
     std::snprintf(text.data(), text.size(), "frame %lld   %.1f s", static_cast<long long>(shown.source_frame),
                   shown.run_time_s);
-    draw->AddText(fonts.small, fonts.small->FontSize, {image.x + 11.0F, image.y + 9.0F},
+    draw->AddText(fonts.small, fonts.small->FontSize, {image.x + look::px(11.0F), image.y + look::px(9.0F)},
                   IM_COL32(0, 0, 0, 160), text.data());
-    draw->AddText(fonts.small, fonts.small->FontSize, {image.x + 10.0F, image.y + 8.0F}, look::kText,
-                  text.data());
+    draw->AddText(fonts.small, fonts.small->FontSize, {image.x + look::px(10.0F), image.y + look::px(8.0F)},
+                  look::kText, text.data());
   }
   look::end_pane();
 }

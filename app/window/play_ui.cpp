@@ -73,10 +73,11 @@ void PlayUi::count_rate() {
 }
 
 void PlayUi::draw(float width, float height) {
-  const WindowLayout layout = window_layout(width, height, view_);
+  const float scale = look::px(1.0F);
+  const WindowLayout layout = window_layout(width, height, view_, scale);
   draw_bar(layout.bar);
   if (shown_.run_frame < 0) {
-    draw_waiting(window_layout(width, height, MainView::kCamera).camera);
+    draw_waiting(window_layout(width, height, MainView::kCamera, scale).camera);
   } else {
     if (!layout.camera.empty())
       picture_.draw(layout.camera, shown_, fonts_, static_cast<double>(settings_.drop_height_m));
@@ -87,7 +88,7 @@ void PlayUi::draw(float width, float height) {
   timing_.draw(layout.timing, fonts_);
   radar_.draw(layout.radar, shown_.shown_radar, fonts_);
   draw_side_panel(layout.side, shown_, link_, settings_, fonts_);
-  const Area main = window_layout(width, height, MainView::kCamera).camera;
+  const Area main = window_layout(width, height, MainView::kCamera, scale).camera;
   draw_message(main);
   if (shows_help_) draw_help(width, height);
   link_.want({.radar = true, .models = view_ != MainView::kCamera});
@@ -110,7 +111,7 @@ void PlayUi::draw_bar(const Area& area) {
   ImGui::TextUnformatted("roomradar");
   ImGui::PopStyleColor();
   ImGui::PopFont();
-  ImGui::SameLine(0.0F, 18.0F);
+  ImGui::SameLine(0.0F, look::px(18.0F));
   const bool is_paused = link_.is_paused();
   if (look::button(is_paused ? "Play" : "Pause", "Space", is_paused)) press(GLFW_KEY_SPACE);
   ImGui::SameLine();
@@ -121,7 +122,7 @@ void PlayUi::draw_bar(const Area& area) {
   if (look::button("Hold camera", "F", shown_.is_held)) press(GLFW_KEY_F);
   ImGui::SameLine();
   if (look::button("Loop", "L", shown_.at_end == AtEnd::kLoop)) press(GLFW_KEY_L);
-  ImGui::SameLine(0.0F, 22.0F);
+  ImGui::SameLine(0.0F, look::px(22.0F));
   const struct {
     const char* name;
     MainView view;
@@ -129,9 +130,9 @@ void PlayUi::draw_bar(const Area& area) {
   for (const auto& view : views) {
     if (look::button(view.name, view.view == MainView::kBoth ? "V" : "", view_ == view.view))
       view_ = view.view;
-    ImGui::SameLine(0.0F, 2.0F);
+    ImGui::SameLine(0.0F, look::px(2.0F));
   }
-  ImGui::SameLine(0.0F, 22.0F);
+  ImGui::SameLine(0.0F, look::px(22.0F));
   if (look::button("Help", "H", shows_help_)) shows_help_ = !shows_help_;
   draw_state(area);
   draw_budget(area);
@@ -140,7 +141,7 @@ void PlayUi::draw_bar(const Area& area) {
 
 void PlayUi::draw_state(const Area& area) {
   ImGui::SameLine();
-  ImGui::SetCursorPosX(area.width - 338.0F);
+  ImGui::SetCursorPosX(area.width - look::px(338.0F));
   ImGui::AlignTextToFramePadding();
   const double silent_s = ImGui::GetTime() - newest_s_;
   const FrameResult& result = shown_.result;
@@ -168,43 +169,46 @@ void PlayUi::draw_budget(const Area& area) {
   if (speed_ != 1.0)
     std::snprintf(text.data(), text.size(), "%.1f ms   %.0f fps   x%g", static_cast<double>(frame_ms),
                   frames_per_s_, speed_);
-  const float left = area.width - 182.0F, top = area.y + 10.0F, width = 168.0F;
+  const float left = area.width - look::px(182.0F), top = area.y + look::px(10.0F), width = look::px(168.0F);
   draw->AddText(fonts_.small, fonts_.small->FontSize, {left, top}, look::kText, text.data());
   // How much of the budget the frame takes.
-  const float bar_y = top + 19.0F;
+  const float bar_y = top + look::px(19.0F), bar_height = look::px(6.0F), rounding = look::px(3.0F);
   const float part = std::min(frame_ms / static_cast<float>(kBudget_ms), 1.0F);
   const ImU32 colour = frame_ms <= static_cast<float>(kGoal_ms)     ? look::kGood
                        : frame_ms <= static_cast<float>(kBudget_ms) ? look::kWarn
                                                                     : look::kBad;
-  draw->AddRectFilled({left, bar_y}, {left + width, bar_y + 6.0F}, look::kRaised, 3.0F);
-  draw->AddRectFilled({left, bar_y}, {left + std::max(part * width, 6.0F), bar_y + 6.0F}, colour, 3.0F);
-  draw->AddLine({left + 0.5F * width, bar_y - 2.0F}, {left + 0.5F * width, bar_y + 8.0F}, look::kDim, 1.0F);
+  draw->AddRectFilled({left, bar_y}, {left + width, bar_y + bar_height}, look::kRaised, rounding);
+  draw->AddRectFilled({left, bar_y}, {left + std::max(part * width, bar_height), bar_y + bar_height}, colour,
+                      rounding);
+  draw->AddLine({left + 0.5F * width, bar_y - look::px(2.0F)}, {left + 0.5F * width, bar_y + look::px(8.0F)},
+                look::kDim, look::px(1.0F));
 }
 
 void PlayUi::draw_message(const Area& area) {
   if (ImGui::GetTime() > message_until_s_ || message_.empty()) return;
   const ImVec2 size = ImGui::CalcTextSize(message_.c_str(), nullptr, false, 0.8F * area.width);
-  const ImVec2 at{area.x + 0.5F * (area.width - size.x), area.y + area.height - size.y - 24.0F};
+  const ImVec2 at{area.x + 0.5F * (area.width - size.x), area.y + area.height - size.y - look::px(24.0F)};
+  const float beside = look::px(14.0F), above = look::px(8.0F);
   ImDrawList* draw = ImGui::GetForegroundDrawList();
-  draw->AddRectFilled({at.x - 14.0F, at.y - 8.0F}, {at.x + size.x + 14.0F, at.y + size.y + 8.0F},
-                      IM_COL32(38, 44, 54, 240), 8.0F);
+  draw->AddRectFilled({at.x - beside, at.y - above}, {at.x + size.x + beside, at.y + size.y + above},
+                      IM_COL32(38, 44, 54, 240), look::px(8.0F));
   draw->AddText(nullptr, 0.0F, at, look::kWarn, message_.c_str(), nullptr, 0.8F * area.width);
 }
 
 void PlayUi::draw_help(float width, float height) {
-  constexpr float kRow = 23.0F, kWidth = 520.0F;
-  const float tall = kRow * static_cast<float>(kHelp.size()) + 62.0F;
+  const float row = look::px(23.0F), wide = look::px(520.0F);
+  const float tall = row * static_cast<float>(kHelp.size()) + look::px(62.0F);
   ImDrawList* draw = ImGui::GetForegroundDrawList();
   draw->AddRectFilled({0.0F, 0.0F}, {width, height}, IM_COL32(8, 10, 13, 150));
-  const float left = 0.5F * (width - kWidth), top = 0.5F * (height - tall);
-  draw->AddRectFilled({left, top}, {left + kWidth, top + tall}, look::kRaised, 10.0F);
-  draw->AddText(fonts_.large, fonts_.large->FontSize, {left + 24.0F, top + 18.0F}, look::kText,
-                "Mouse and keys");
-  float y = top + 50.0F;
+  const float left = 0.5F * (width - wide), top = 0.5F * (height - tall);
+  draw->AddRectFilled({left, top}, {left + wide, top + tall}, look::kRaised, look::px(10.0F));
+  draw->AddText(fonts_.large, fonts_.large->FontSize, {left + look::px(24.0F), top + look::px(18.0F)},
+                look::kText, "Mouse and keys");
+  float y = top + look::px(50.0F);
   for (const auto& [keys, what] : kHelp) {
-    draw->AddText({left + 24.0F, y}, look::kAccent, keys);
-    draw->AddText({left + 210.0F, y}, look::kText, what);
-    y += kRow;
+    draw->AddText({left + look::px(24.0F), y}, look::kAccent, keys);
+    draw->AddText({left + look::px(210.0F), y}, look::kText, what);
+    y += row;
   }
 }
 

@@ -84,8 +84,8 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
 
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
-  constexpr float kGap = 12.0F, kLetters = 18.0F, kNumbers = 20.0F;
-  const Area cell{0.0F, 0.0F, (room.x - 2.0F * kGap) / 3.0F, room.y - kLetters - kNumbers};
+  const float gap = look::px(12.0F), above = look::px(18.0F), below = look::px(20.0F);  // two rows of letters
+  const Area cell{0.0F, 0.0F, (room.x - 2.0F * gap) / 3.0F, room.y - above - below};
   int x = -1, y = -1;
   const struct {
     const char* name;
@@ -95,9 +95,9 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
                 {"L = R + M - d", &lookat_}};
   for (int i = 0; i < 3; ++i) {
     const auto& scope = scopes[i];
-    const float left = from.x + static_cast<float>(i) * (cell.width + kGap);
+    const float left = from.x + static_cast<float>(i) * (cell.width + gap);
     draw->AddText(fonts.small, fonts.small->FontSize, {left, from.y}, look::kText, scope.name);
-    const Area image = fitted({left, from.y + kLetters, cell.width, cell.height}, scope.texture->width(),
+    const Area image = fitted({left, from.y + above, cell.width, cell.height}, scope.texture->width(),
                               scope.texture->height());
     if (image.empty()) continue;
     draw->AddImage(scope.texture->id(), {image.x, image.y}, {image.x + image.width, image.y + image.height});
@@ -105,7 +105,7 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
     if (i == 2 && least_x_ >= 0)
       draw->AddCircle({image.x + (static_cast<float>(least_x_) + 0.5F) * pixel,
                        image.y + (static_cast<float>(least_y_) + 0.5F) * pixel},
-                      6.0F, look::kBad, 0, 2.0F);
+                      look::px(6.0F), look::kBad, 0, look::px(2.0F));
     const ImVec2 mouse = ImGui::GetMousePos();
     if (mouse.x >= image.x && mouse.y >= image.y && mouse.x < image.x + image.width &&
         mouse.y < image.y + image.height) {
@@ -125,8 +125,8 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
   if (radar.contact)
     numbers += "   exact " + in_mm(static_cast<float>(radar.contact.travel_m), true) + " to " +
                std::string(to_string(radar.contact.touched));
-  draw->AddText(fonts.small, fonts.small->FontSize, {from.x, from.y + room.y - kNumbers + 4.0F}, look::kText,
-                numbers.c_str());
+  draw->AddText(fonts.small, fonts.small->FontSize, {from.x, from.y + room.y - below + look::px(4.0F)},
+                look::kText, numbers.c_str());
   ImGui::PopFont();
   look::end_pane();
 }

@@ -22,7 +22,7 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
     ImGui::PushID(object.name.c_str());
     const bool is_chosen = object.name == shown.chosen;
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (ImGui::Selectable("##choose", is_chosen, 0, {0.0F, 34.0F})) {
+    if (ImGui::Selectable("##choose", is_chosen, 0, {0.0F, look::px(34.0F)})) {
       Wish wish;
       wish.kind = WishKind::kChoose;
       wish.event.name = object.name;
@@ -33,10 +33,10 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
                       : object.is_carried ? look::kWarn
                       : object.at_rest    ? look::kGood
                                           : look::kAccent;
-    draw->AddCircleFilled({at.x + 8.0F, at.y + 17.0F}, 4.5F, dot);
-    draw->AddText({at.x + 20.0F, at.y + 1.0F}, look::kText, object.name.c_str());
-    draw->AddText(fonts.small, fonts.small->FontSize, {at.x + 20.0F, at.y + 18.0F}, look::kDim,
-                  what_it_does(object).c_str());
+    draw->AddCircleFilled({at.x + look::px(8.0F), at.y + look::px(17.0F)}, look::px(4.5F), dot);
+    draw->AddText({at.x + look::px(20.0F), at.y + look::px(1.0F)}, look::kText, object.name.c_str());
+    draw->AddText(fonts.small, fonts.small->FontSize, {at.x + look::px(20.0F), at.y + look::px(18.0F)},
+                  look::kDim, what_it_does(object).c_str());
     ImGui::PopID();
   }
   const auto ask = [&](WishKind kind) {
@@ -44,10 +44,11 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
     wish.kind = kind;
     link.ask(wish);
   };
-  if (look::button("Remove", "Del", false, {128.0F, 0.0F}, !shown.objects.empty())) ask(WishKind::kRemove);
+  const float half = look::px(128.0F);
+  if (look::button("Remove", "Del", false, {half, 0.0F}, !shown.objects.empty())) ask(WishKind::kRemove);
   ImGui::SameLine();
-  if (look::button("Reset", "R", false, {128.0F, 0.0F}, !shown.objects.empty())) ask(WishKind::kReset);
-  ImGui::SetNextItemWidth(128.0F);
+  if (look::button("Reset", "R", false, {half, 0.0F}, !shown.objects.empty())) ask(WishKind::kReset);
+  ImGui::SetNextItemWidth(half);
   const auto short_name = [](const std::string& mesh) { return mesh.substr(mesh.find_last_of('/') + 1); };
   if (ImGui::BeginCombo("##mesh", short_name(settings.meshes[settings.mesh]).c_str())) {
     for (std::size_t i = 0; i < settings.meshes.size(); ++i)
@@ -55,7 +56,7 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
     ImGui::EndCombo();
   }
   ImGui::SameLine();
-  if (look::button("Add", "A", false, {128.0F, 0.0F})) link.ask(new_object_wish(settings));
+  if (look::button("Add", "A", false, {half, 0.0F})) link.ask(new_object_wish(settings));
   ImGui::PushItemWidth(-1.0F);
   ImGui::SliderFloat("##size", &settings.new_size_m, 0.0F, 0.6F,
                      settings.new_size_m < 0.001F ? "new: its own size" : "new: %.2f m long",
@@ -109,7 +110,7 @@ void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
     std::array<char, 64> text{};
     std::snprintf(text.data(), text.size(), format, values...);
     ImGui::TextDisabled("%s", name);
-    ImGui::SameLine(130.0F);
+    ImGui::SameLine(look::px(130.0F));
     ImGui::TextUnformatted(text.data());
   };
   row("moved pixels", "%.1f %%", moved);

@@ -53,15 +53,15 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
   ImGui::PopStyleColor();
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
-  constexpr float kLegend = 128.0F;
-  const float width = std::max(room.x - kLegend - 14.0F, 20.0F), height = room.y - 4.0F;
+  const float legend = look::px(128.0F), beside = look::px(14.0F);
+  const float width = std::max(room.x - legend - beside, look::px(20.0F)), height = room.y - look::px(4.0F);
   float top_ms = 40.0F;
   std::vector<float> values;
   for (const Times& times : frames_) values.push_back(times.whole_ms);
   const float median_ms = median(values);
   top_ms = std::max(top_ms, 1.6F * median_ms);
   const auto y_of = [&](float ms) { return from.y + height * (1.0F - std::min(ms / top_ms, 1.0F)); };
-  draw->AddRectFilled(from, {from.x + width, from.y + height}, look::kGround, 4.0F);
+  draw->AddRectFilled(from, {from.x + width, from.y + height}, look::kGround, look::px(4.0F));
   const float column = width / static_cast<float>(kKept);
   float x = from.x + column * static_cast<float>(kKept - frames_.size());
   for (const Times& times : frames_) {
@@ -82,21 +82,24 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
                {kBudget_ms, IM_COL32(240, 178, 74, 200), "33 ms"}};
   for (const auto& line : lines) {
     const float y = y_of(static_cast<float>(line.ms));
-    draw->AddLine({from.x, y}, {from.x + width, y}, line.colour, 1.0F);
-    draw->AddText(fonts.small, fonts.small->FontSize, {from.x + 5.0F, y - 15.0F}, line.colour, line.text);
+    draw->AddLine({from.x, y}, {from.x + width, y}, line.colour, look::px(1.0F));
+    draw->AddText(fonts.small, fonts.small->FontSize, {from.x + look::px(5.0F), y - look::px(15.0F)},
+                  line.colour, line.text);
   }
 
-  const float left = from.x + width + 14.0F;
-  const float step = std::min(height / static_cast<float>(kStages.size() + 2), 17.0F);
+  const float left = from.x + width + beside;
+  const float step = std::min(height / static_cast<float>(kStages.size() + 2), look::px(17.0F));
   std::array<char, 32> number{};
   const auto row = [&](std::size_t at, ImU32 colour, const char* name, float ms, bool is_stage) {
     const float y = from.y + step * static_cast<float>(at);
-    if (is_stage) draw->AddRectFilled({left, y + 3.0F}, {left + 8.0F, y + 11.0F}, colour, 2.0F);
-    draw->AddText(fonts.small, fonts.small->FontSize, {left + 14.0F, y}, is_stage ? look::kText : look::kDim,
-                  name);
+    if (is_stage)
+      draw->AddRectFilled({left, y + look::px(3.0F)}, {left + look::px(8.0F), y + look::px(11.0F)}, colour,
+                          look::px(2.0F));
+    draw->AddText(fonts.small, fonts.small->FontSize, {left + look::px(14.0F), y},
+                  is_stage ? look::kText : look::kDim, name);
     std::snprintf(number.data(), number.size(), "%.1f", static_cast<double>(ms));
     const float wide = ImGui::CalcTextSize(number.data()).x;
-    draw->AddText(fonts.small, fonts.small->FontSize, {left + kLegend - wide - 2.0F, y},
+    draw->AddText(fonts.small, fonts.small->FontSize, {left + legend - wide - look::px(2.0F), y},
                   is_stage ? look::kText : look::kDim, number.data());
   };
   for (std::size_t i = 0; i < kStages.size(); ++i) {

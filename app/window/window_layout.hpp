@@ -16,17 +16,18 @@ struct WindowLayout {
   Area bar, camera, models, side, timing, radar;
 };
 
-constexpr WindowLayout window_layout(float width, float height, MainView view) {
-  constexpr float kBar = 48.0F, kSide = 292.0F;
-  const float strip = std::clamp(0.27F * height, 120.0F, 250.0F);
-  const float main_width = std::max(width - kSide, 0.0F);
-  const float main_height = std::max(height - kBar - strip, 0.0F);
+/// `scale`: that of the screen; 1 at 96 dpi.
+constexpr WindowLayout window_layout(float width, float height, MainView view, float scale = 1.0F) {
+  const float bar = scale * 48.0F, side = scale * 292.0F;
+  const float strip = std::clamp(0.27F * height, scale * 120.0F, scale * 250.0F);
+  const float main_width = std::max(width - side, 0.0F);
+  const float main_height = std::max(height - bar - strip, 0.0F);
   WindowLayout layout;
-  layout.bar = {0.0F, 0.0F, width, kBar};
-  layout.side = {main_width, kBar, kSide, height - kBar};
-  layout.timing = {0.0F, kBar + main_height, 0.5F * main_width, strip};
-  layout.radar = {0.5F * main_width, kBar + main_height, 0.5F * main_width, strip};
-  const Area whole{0.0F, kBar, main_width, main_height};
+  layout.bar = {0.0F, 0.0F, width, bar};
+  layout.side = {main_width, bar, side, height - bar};
+  layout.timing = {0.0F, bar + main_height, 0.5F * main_width, strip};
+  layout.radar = {0.5F * main_width, bar + main_height, 0.5F * main_width, strip};
+  const Area whole{0.0F, bar, main_width, main_height};
   if (view == MainView::kCamera) layout.camera = whole;
   if (view == MainView::kModels) layout.models = whole;
   if (view == MainView::kBoth) {
