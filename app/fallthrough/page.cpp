@@ -107,6 +107,13 @@ std::string speed_of(const ScenarioRow& row) {
   return row.speed_m_s < 3.0 ? "1 to 3 m/s" : "3 to 10 m/s";
 }
 
+std::size_t failure_count(const std::vector<ScenarioRow>& rows) {
+  std::size_t failures = 0;
+  for (const ScenarioRow& row : rows)
+    for (const Trial& trial : row.trials) failures += trial.verdict.outcome != Outcome::kStoppedRight ? 1 : 0;
+  return failures;
+}
+
 }  // namespace
 
 void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
@@ -136,7 +143,10 @@ void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
          "the true room, orange what hides it, lines what the object could touch: black the map, blue this "
          "frame's, violet inferred, red the border of the unknown. Object: blue at its start, green where it "
          "ought to have stopped, red where it was in the end.</p>\n";
-  if (pictures.empty()) file << "<p>Nothing did.</p>";
+  const std::size_t failures = failure_count(rows);
+  if (failures == 0) file << "<p>Nothing did.</p>";
+  if (failures > pictures.size())
+    file << "<p>" << pictures.size() << " of " << failures << " are shown, the last policies' first.</p>\n";
   for (const FailurePicture& picture : pictures)
     file << "<figure><img alt=\"\" src=\"data:image/png;base64," << base64(encode_png(picture.picture))
          << "\"><figcaption>" << escaped(picture.caption) << "</figcaption></figure>\n";

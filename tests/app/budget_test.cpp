@@ -47,7 +47,7 @@ struct Machine {
     for (std::size_t i = 0; i < kFrameParts; ++i) {
       const auto which = static_cast<FramePart>(i);
       if (which == FramePart::kMesh) known = load;
-      decide(state, config, which, known, elapsed_ms);
+      changes += decide(state, config, which, known, elapsed_ms) ? 1 : 0;
       const double ratio = state.front[state.step].ratios[i];
       parts_ms[i] = factor * usual_ms(which, load) * (ratio + (1.0 - ratio) * wrong);
       elapsed_ms += parts_ms[i];
@@ -59,9 +59,7 @@ struct Machine {
 
   void run(int frames, const FrameLoad& load, std::vector<double>* took_ms = nullptr) {
     for (int i = 0; i < frames; ++i) {
-      const std::size_t before = state.step;
       const double ms = frame(load);
-      changes += state.step != before ? 1 : 0;
       if (took_ms != nullptr) took_ms->push_back(ms);
     }
   }

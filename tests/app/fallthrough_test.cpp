@@ -117,6 +117,7 @@ TEST(FallthroughFiles, CsvHasALineAScenarioAndPolicyAndThePageNeedsNothingElse) 
   EXPECT_NE(page.find("a &lt;run&gt;"), std::string::npos);
   EXPECT_NE(page.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
   EXPECT_EQ(page.find("://"), std::string::npos) << "no network";
+  EXPECT_NE(page.find("1 of " + std::to_string(kPolicyCount) + " are shown"), std::string::npos);
   EXPECT_EQ(page.find("nan "), std::string::npos);
   EXPECT_THROW(write_page(rows, "", {}, folder.path() / "none" / "page.html"), Error);
 }
