@@ -117,7 +117,8 @@ std::string drawn(const PlotDot& dot, const Axis& x, const Axis& y) {
     svg += format("<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>",
                   dot.is_on_front ? "dot best" : "dot", at_x, at_y, dot.is_on_front ? 5.0 : 3.5);
   if (!dot.label.empty()) {
-    const bool is_far_right = at_x > x.to_px - 90.0;
+    constexpr double kLetter = 7.5;
+    const bool is_far_right = at_x + 11.0 + kLetter * static_cast<double>(dot.label.size()) > x.to_px;
     svg += format("<text x=\"%.1f\" y=\"%.1f\" class=\"%s\">", at_x + (is_far_right ? -11.0 : 11.0),
                   at_y - 8.0, is_far_right ? "label end" : "label") +
            escaped(dot.label) + "</text>";
