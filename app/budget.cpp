@@ -12,7 +12,7 @@ constexpr double kMostSpread = 2.0;
 constexpr double kQuantile = 0.95, kQuantileStep = 0.02;
 constexpr std::int64_t kLongAgo = -1'000'000;
 constexpr double kNotMade = 0.02;
-constexpr int kMostNotMade_frames = 16;                 // turns are no longer than that
+constexpr int kMostNotMade_frames = 17;  // turns of pictures and objects are no longer than that
 constexpr double kMostStrain = 1.5, kStrainKept = 0.9;  // two frames of some ten that were cut on their way
 
 double part_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
@@ -74,7 +74,8 @@ void settle(BudgetState& state, const BudgetConfig& config, const FrameLoad& loa
   const std::size_t with_time = most_accurate_in_time(state, config, load);
   state.calm_frames = with_time < before ? state.calm_frames + 1 : 0;
   if (rest_ms(state, before, 0, load) > config.budget_ms) {
-    state.settled = step_in_time(state, config, before, 0, load, 0.0);
+    state.settled = with_time < before ? half_way_back(state, config, with_time, load)
+                                       : step_in_time(state, config, before, 0, load, 0.0);
   } else if (state.strain > kMostStrain) {  // foreseen it has time, and then it has not
     state.settled = std::min(before + 1, state.front.size() - 1);
   } else if (state.calm_frames >= state.patience_frames) {

@@ -175,6 +175,7 @@ void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics&
     object.is_closed ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
     mesh.draw(clip);
   }
+  require_drawn("virtual objects");  // before others forget what went wrong
   glFlush();
 }
 

@@ -65,6 +65,13 @@ void require_can_save_map(const RunCommand& command, const Script& script) {
   require_can_become_map(command.save_map);
 }
 
+void require_budget_alone(const RunCommand& command, const Script& script) {
+  if (command.budget_ms && has(script, Action::kQuality))
+    throw Error(
+        "--budget-ms: the script or the session has quality events of its own, and each would undo the "
+        "other; leave out one of them");
+}
+
 void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
   if (info.up_source != to_string(UpSource::kNone)) return;
   std::fprintf(stderr,
@@ -98,10 +105,6 @@ void open_frames(OpenedRun& run, bool has_picture) {
 void open_budget(OpenedRun& run, bool has_picture) {
   const RunCommand& command = run.command;
   if (!command.budget_ms) return;
-  if (has(run.script, Action::kQuality))
-    throw Error(
-        "--budget-ms: the script, or the recorded session, has quality events of its own, and each "
-        "would undo the other; leave out one of them");
   const std::filesystem::path path = presets_file(command.presets);
   std::vector<FrontStep> front = front_for(read_presets(path), command.quality, command.fixed);
   if (front.size() < 2)
@@ -179,6 +182,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   require_writable(command.frames_csv);
   run.script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
   require_can_save_map(command, run.script);
+  require_budget_alone(command, run.script);
   run.map = load_map(command.map);
   say_if_up_is_not_known(run.map.info, command.map);
   const bool has_picture = makes_picture(command, link != nullptr);

@@ -162,10 +162,12 @@ int run(const TradeCommand& command) {
   std::vector<TradeResult> results;
   std::string fault;  // what was measured before it is written all the same
   for (const TradeWork& work : works) {
-    if (stop.asked()) break;
     try {
-      results.push_back(report.times.timed(work.name, [&] { return traded(work, command, stop, csv); }));
-      if (results.back().rows.empty()) results.pop_back();
+      if (!stop.asked())
+        results.push_back(report.times.timed(work.name, [&] { return traded(work, command, stop, csv); }));
+      if (!results.empty() && results.back().rows.empty()) results.pop_back();
+      if (results.empty() || results.back().work.name != work.name)
+        std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
     } catch (const Error& error) {
       fault += (fault.empty() ? "" : "; ") + work.name + ": " + error.what();
     }

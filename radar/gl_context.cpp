@@ -151,9 +151,9 @@ RendererChoice renderer_choice_from_environment() {
 
 GlContext::GlContext(RendererChoice choice) {
   std::string tried;
-  const std::vector<Candidate> all = candidates();
+  std::vector<Candidate> all = candidates();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Candidate& candidate = all[i];
+    const Candidate candidate = all[i];
     if (choice == RendererChoice::kSoftware && !candidate.is_software) continue;
     std::string fault;
     const EGLContext context = make_context(candidate, fault);
@@ -162,7 +162,7 @@ GlContext::GlContext(RendererChoice choice) {
       const bool is_software = names_software(name);
       // A card without a driver of its own draws in software, too, though there may be a better one after it.
       const bool is_taken = choice == RendererChoice::kAuto
-                                ? !is_software || candidate.is_software || i + 1 == all.size()
+                                ? !is_software || candidate.is_software
                                 : is_software == (choice == RendererChoice::kSoftware);
       if (is_taken) {
         display_ = candidate.display;
@@ -178,6 +178,10 @@ GlContext::GlContext(RendererChoice choice) {
       eglMakeCurrent(candidate.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
       eglDestroyContext(candidate.display, context);
       fault = "is " + name + ", not what was asked for";
+      if (choice == RendererChoice::kAuto) {  // after all others, then
+        all.push_back(candidate);
+        all.back().is_software = true;
+      }
     }
     tried += "\n  " + candidate.name + " " + fault;
   }

@@ -58,7 +58,7 @@ DepthOnBoard depth_on_board(const Frame& frame, const Board& board, const Eigen:
       const double reported_m = static_cast<double>(frame.depth_m.at(x, y));
       const Eigen::Vector3d ray = back_project(frame.depth_camera, x, y, 1.0);
       const double plane_m = offset_m / normal.dot(ray);
-      if (!(reported_m > 0.0) || !(plane_m > 0.0)) continue;
+      if (!(reported_m > 0.0) || !(plane_m > 0.0) || !std::isfinite(plane_m)) continue;
       const Eigen::Vector3d p_board = T_depth_board.inverse() * (ray * plane_m);
       if (p_board.x() < margin_m || p_board.y() < margin_m ||
           p_board.x() > (board.columns - 1) * board.square_m - margin_m ||
@@ -118,6 +118,7 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
                             const std::function<void(std::size_t)>& progress) {
   require_valid(board);
   BoardViews result;
+  std::vector<std::vector<Eigen::Vector2d>> off_plane_px;  // corners of each of result.off_plane_ratios
   std::vector<Eigen::Vector2d> before;  // the corners of the frame before; empty: it had none
   Frame frame;
   while (result.views.size() < most) {
@@ -139,16 +140,20 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
         corners_px && !before.empty() && distance_either_way_px(*corners_px, before) < kStill_px;
     if (corners_px) ++result.with_board;
     before = corners_px.value_or(std::vector<Eigen::Vector2d>{});
-    const auto is_known = [&](const BoardView& view) {
-      return distance_either_way_px(*corners_px, view.corners_px) < kNew_px;
+    const auto is_there = [&](const std::vector<Eigen::Vector2d>& known_px) {
+      return distance_either_way_px(*corners_px, known_px) < kNew_px;
     };
+    const auto is_known = [&](const BoardView& view) { return is_there(view.corners_px); };
     if (still && std::none_of(result.views.begin(), result.views.end(), is_known)) {
       DepthOnBoard depth =
           depth_on_board(frame, board, pose_of_board(*corners_px, board, frame.colour_camera, {}));
       if (depth.samples.size() >= kLeastDepthSamples)
         result.views.push_back({frame.index, *corners_px, std::move(depth.samples)});
-      else if (depth.ratios.size() >= kLeastDepthSamples)
+      else if (depth.ratios.size() >= kLeastDepthSamples &&
+               std::none_of(off_plane_px.begin(), off_plane_px.end(), is_there)) {
         result.off_plane_ratios.push_back(median_of(std::move(depth.ratios)));
+        off_plane_px.push_back(*corners_px);
+      }
     }
     progress(result.views.size());
   }

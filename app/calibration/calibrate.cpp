@@ -281,7 +281,7 @@ void require_sure(const char* which, double focal_px, double sigma_px) {
 
 void require_views(const BoardViews& views, const Board& board) {
   if (views.views.size() >= kLeastViews) return;
-  if (views.off_plane_ratios.size() >= kLeastViews) {
+  if (views.off_plane_ratios.size() >= kLeastViews && views.off_plane_ratios.size() > views.views.size()) {
     std::vector<double> ratios = views.off_plane_ratios;
     const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
     std::nth_element(ratios.begin(), middle, ratios.end());

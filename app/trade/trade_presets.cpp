@@ -60,6 +60,18 @@ FrontStep step_of(const TradeResult& run, std::size_t setting) {
   return step;
 }
 
+/// From slow to fast; a budget goes on from whatever preset is asked for, so each is a step.
+std::vector<std::size_t> front_with_presets(const TradeResult& run) {
+  std::vector<std::size_t> settings = run.choice.front;
+  for (const auto& preset : {run.choice.accurate, run.choice.balanced, run.choice.fast})
+    if (preset && std::find(settings.begin(), settings.end(), *preset) == settings.end())
+      settings.push_back(*preset);
+  std::stable_sort(settings.begin(), settings.end(), [&](std::size_t a, std::size_t b) {
+    return run.summaries[a].time_ratio > run.summaries[b].time_ratio;
+  });
+  return settings;
+}
+
 }  // namespace
 
 Presets chosen_presets(const std::vector<TradeResult>& results,
@@ -84,8 +96,8 @@ Presets chosen_presets(const std::vector<TradeResult>& results,
     }
   }
   if (run != nullptr)
-    for (auto setting = run->choice.front.rbegin(); setting != run->choice.front.rend(); ++setting)
-      presets.front.push_back(step_of(*run, *setting));
+    for (const std::size_t setting : front_with_presets(*run))
+      presets.front.push_back(step_of(*run, setting));
   return presets;
 }
 

@@ -302,7 +302,7 @@ SettingSummary summary_of(const Setting& setting, double time_ratio, double erro
   return {setting, 1, time_ratio, time_ratio, time_ratio, {}, {time_ratio, error_m, 0.0}, true};
 }
 
-TEST(Presets, AreTheFastestTheBestWithinReasonAndTheLeastProduct) {
+TEST(Presets, AreTheFastestTheFastestOfLittleLossAndTheBestWithinReason) {
   Machine machine;
   const TradeWork work = machine.work();
   const std::vector<SettingSummary> summaries{
@@ -431,6 +431,11 @@ TEST(Presets, AFrontSaysWhatAPartTakesInTheFramesThatHaveIt) {
   EXPECT_EQ(ratios[index_of(FramePart::kCompose)], 0.5);
   EXPECT_EQ(ratios[index_of(FramePart::kPhysics)], 1.0);
   EXPECT_EQ(presets.front[1].figures.at("time_ratio"), 0.5);
+  // A preset that something else pushed off the front is a step all the same.
+  TradeResult pushed = run_result();
+  pushed.choice.front = {0};
+  pushed.choice.fast = 1;
+  EXPECT_EQ(chosen_presets({pushed}, {}).front.size(), 2U);
   // What trade writes is what --preset reads.
   const test::TemporaryFolder folder;
   write_presets(presets, folder.path() / "p.json");
