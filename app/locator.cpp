@@ -100,14 +100,20 @@ bool is_certain(const TriedPose& finding) {
   // People stand before what is known, never behind it. Where the depth leaves a direction open, floorboards
   // repeat along it, and it is for the few edges to say that the pose is wrong.
   constexpr double kMostFarther = 0.12, kMostFartherOpen = 0.05;
+  // There half of some hundred patches may be alike in a wrong place, of which the depth says so, too: the
+  // one or the other has to be clear.
+  constexpr double kClearLook = 0.6, kClearDepth = 0.95;
   const Evidence& evidence = finding.evidence;
   const PatchProof& look = finding.look;
   if (!is_located(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
       evidence.both < 0.2 * evidence.valid)
     return false;
-  if (is_proven_by_look(finding))
-    return fit_of(evidence) > 0.4 &&
+  if (is_proven_by_look(finding)) {
+    const bool is_clear =
+        finding.tracking || look.alike_part() > kClearLook || evidence.alike_part() > kClearDepth;
+    return is_clear && fit_of(evidence) > 0.4 &&
            evidence.farther_part() < (finding.tracking ? kMostFarther : kMostFartherOpen);
+  }
   if (!finding.tracking || evidence.both < 0.5 * evidence.valid || evidence.farther_part() > 0.03)
     return false;
   if (look.compared < kFewPatches) return evidence.alike_part() > 0.9;
