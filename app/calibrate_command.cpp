@@ -1,5 +1,4 @@
 // calibrate_command.cpp: roomradar calibrate: cameras and depth errors from a recording of a checkerboard.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -7,6 +6,7 @@
 
 #include "app/calibration/calibrate.hpp"
 #include "app/calibration/calibration_plot.hpp"
+#include "app/calibration/median.hpp"
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
 #include "app/open_source.hpp"
@@ -19,12 +19,6 @@ namespace {
 
 constexpr std::size_t kMostViews = 100;
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Medians over the views that judge.
 struct Summary {
   double colour_px, depth_bias_m, depth_rms_m;
@@ -36,7 +30,7 @@ Summary summary_of(const std::vector<ViewResidual>& residuals, const std::vector
     bias_m.push_back(std::abs(residuals[i].depth_bias_m));
     rms_m.push_back(residuals[i].depth_rms_m);
   }
-  return {median(colour_px), median(bias_m), median(rms_m)};
+  return {median_of(colour_px), median_of(bias_m), median_of(rms_m)};
 }
 
 nlohmann::json to_json(const Summary& summary) {

@@ -163,11 +163,13 @@ int run(const TradeCommand& command) {
   std::string fault;  // what was measured before it is written all the same
   for (const TradeWork& work : works) {
     try {
+      TradeResult result;
       if (!stop.asked())
-        results.push_back(report.times.timed(work.name, [&] { return traded(work, command, stop, csv); }));
-      if (!results.empty() && results.back().rows.empty()) results.pop_back();
-      if (results.empty() || results.back().work.name != work.name)
+        result = report.times.timed(work.name, [&] { return traded(work, command, stop, csv); });
+      if (result.rows.empty())
         std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
+      else
+        results.push_back(std::move(result));
     } catch (const Error& error) {
       fault += (fault.empty() ? "" : "; ") + work.name + ": " + error.what();
     }

@@ -2,9 +2,9 @@
 #include "app/video_writer.hpp"
 
 #include <unistd.h>
+
 #include <cmath>
 #include <limits>
-
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 #include <string>

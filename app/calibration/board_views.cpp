@@ -10,6 +10,7 @@
 #include <string>
 
 #include "app/calibration/board_pose.hpp"
+#include "app/calibration/median.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -32,12 +33,6 @@ double distance_either_way_px(const std::vector<Eigen::Vector2d>& a, std::vector
   const double one_way_px = distance_px(a, b);
   std::reverse(b.begin(), b.end());
   return std::min(one_way_px, distance_px(a, b));
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Depth pixels whose rays, by the cameras that the frame says, meet the board well inside of its corners'

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "app/calibration/board_pose.hpp"
+#include "app/calibration/median.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/error.hpp"
 
@@ -282,17 +283,15 @@ void require_sure(const char* which, double focal_px, double sigma_px) {
 void require_views(const BoardViews& views, const Board& board) {
   if (views.views.size() >= kLeastViews) return;
   if (views.off_plane_ratios.size() >= kLeastViews && views.off_plane_ratios.size() > views.views.size()) {
-    std::vector<double> ratios = views.off_plane_ratios;
-    const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-    std::nth_element(ratios.begin(), middle, ratios.end());
+    const double ratio = median_of(views.off_plane_ratios);
     std::array<char, 160> sizes{};
     std::snprintf(
         sizes.data(), sizes.size(),
         "is %.3g times as far as squares of %g m would be; squares of %.3g m would fit. Measure one, "
         "and say so by --square",
-        *middle, board.square_m, *middle * board.square_m);
-    throw Error("calibrate: the depth in " + std::to_string(ratios.size()) + " views of the board " +
-                sizes.data());
+        ratio, board.square_m, ratio * board.square_m);
+    throw Error("calibrate: the depth in " + std::to_string(views.off_plane_ratios.size()) +
+                " views of the board " + sizes.data());
   }
   throw Error("calibrate: of " + std::to_string(views.frames) + " frames, " +
               std::to_string(views.with_board) + " show a board of " + std::to_string(board.columns) +
@@ -418,10 +417,8 @@ ViewResidual residual_of(const BoardView& view, const Board& board, const Calibr
     errors_m.push_back(error_m);
     sum_m2 += error_m * error_m;
   }
-  const auto middle = errors_m.begin() + static_cast<std::ptrdiff_t>(errors_m.size() / 2);
-  std::nth_element(errors_m.begin(), middle, errors_m.end());
-  residual.depth_bias_m = *middle;
   residual.depth_rms_m = std::sqrt(sum_m2 / static_cast<double>(errors_m.size()));
+  residual.depth_bias_m = median_of(std::move(errors_m));
   return residual;
 }
 

@@ -178,7 +178,7 @@ Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_
 }
 
 Verdict judge(const Scenario& scenario, double travelled_m) {
-  constexpr double kTooFar_m = 0.02, kTooShort_m = 0.03;
+  constexpr double kTooShort_m = 0.03;
   Verdict verdict;
   verdict.error_m = travelled_m - scenario.true_travel_m;
   if (!(verdict.error_m <= kTooFar_m)) verdict.outcome = Outcome::kPassedThrough;  // nowhere, too

@@ -100,6 +100,8 @@ struct Verdict {
   Outcome outcome = Outcome::kStoppedRight;
   double error_m = 0.0;  ///< travelled less true; positive: too far
 };
+/// Past the true contact by more than this, it went through.
+inline constexpr double kTooFar_m = 0.02;
 /// Judges how far a policy let the object move; a policy that found nothing to stop it gives limit_m.
 Verdict judge(const Scenario& scenario, double travelled_m);
 

@@ -69,8 +69,7 @@ MovedTouchFacts judge_moved_touches(const std::vector<MovedTouch>& touches,
                                     const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
                                     LiveScene& scene, const TrialSurfaces& how, CyberRadar& radar) {
   if (touches.empty()) return {};
-  constexpr double kAbout_m = 0.02;   // as a session has it
-  constexpr double kTooFar_m = 0.02;  // it went through, and was stopped by what is behind
+  constexpr double kAbout_m = 0.02;  // as a session has it
   Mesh ball_mesh;
   append_mesh(ball(), {}, kMeshDeviation_m, ball_mesh);
   TriangleTree tree;
@@ -91,7 +90,7 @@ MovedTouchFacts judge_moved_touches(const std::vector<MovedTouch>& touches,
       const Contact contact =
           radar.query({{&tree, T_world_ball}, touch.direction_world, kTouchLimit_m}, {surfaces, {}});
       const double past_m = contact.travel_m - touch.true_travel_m;
-      if (contact && past_m <= kTooFar_m)
+      if (contact && past_m <= kTooFar_m)  // else it went through, to what is behind
         errors_m.push_back(std::abs(past_m));
       else
         ++missed;

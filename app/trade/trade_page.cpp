@@ -185,10 +185,8 @@ std::vector<std::size_t> single_turns_of(const TradeResult& result) {
 
 /// In which scenes, how much, and what of it is missing.
 std::string about(const TradeResult& result) {
-  const auto shown =
-      std::count_if(result.summaries.begin(), result.summaries.end(), [&](const auto& summary) {
-        return is_shown(result, static_cast<std::size_t>(&summary - result.summaries.data()));
-      });
+  int shown = 0;
+  for (std::size_t i = 0; i < result.summaries.size(); ++i) shown += is_shown(result, i) ? 1 : 0;
   std::set<std::size_t> measured;
   for (const SweepRow& row : result.rows) measured.insert(row.scene);
   std::string scenes;

@@ -2,8 +2,8 @@
 #include "app/presets.hpp"
 
 #include <gtest/gtest.h>
-#include <algorithm>
 
+#include <algorithm>
 #include <fstream>
 
 #include "mapping/types/error.hpp"
