@@ -120,27 +120,30 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
   return clamped(rect, camera.width_px, camera.height_px);
 }
 
-void compose(const ColourImage& background, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-             const DepthImage& real_depth_m, std::span<const ShadowCaster> casters, const ObjectLayer& layer,
-             const ComposeConfig& config, Occlusion& occlusion, ColourImage& picture) {
+void cast_shadows(const ColourImage& background, const Intrinsics& camera,
+                  const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
+                  std::span<const ShadowCaster> casters, float strength, ColourImage& picture) {
   require_size("the background", background, camera.width_px, camera.height_px);
   require_size("the real depth", real_depth_m, camera.width_px, camera.height_px);
   picture.width = background.width;
   picture.height = background.height;
   picture.pixels = background.pixels;
-
   for (const ShadowCaster& caster : casters)
     if (caster.shadow != nullptr)
-      cast_shadow(caster, camera, T_world_camera, real_depth_m, config.shadow_strength, picture);
+      cast_shadow(caster, camera, T_world_camera, real_depth_m, strength, picture);
+}
 
+void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
+                 Occlusion& occlusion, ColourImage& picture) {
+  require_size("the real depth", real_depth_m, picture.width, picture.height);
   if (layer.rect.width <= 0 || layer.rect.height <= 0) return;
-  if (!(clamped(layer.rect, camera.width_px, camera.height_px) == layer.rect))
+  if (!(clamped(layer.rect, picture.width, picture.height) == layer.rect))
     throw Error("compose: the objects' layer reaches past the picture");
   require_size("the layer's colour", layer.colour, layer.rect.width * layer.samples,
                layer.rect.height * layer.samples);
   require_size("the layer's depth", layer.depth_m, layer.rect.width * layer.samples,
                layer.rect.height * layer.samples);
-  find_occlusion(picture, real_depth_m, layer, config.occlusion, occlusion);
+  find_occlusion(picture, real_depth_m, layer, config, occlusion);
   lay_over(layer, occlusion, picture);
 }
 

@@ -24,27 +24,35 @@ struct ShadowCaster {
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
 
-/// The pixels whose real depth `compose` looks at: those of the layer, about it, and of the shadows. Only
-/// these need rendering.
+/// The pixels whose real depth shadows and objects look at: those of the layer, about it, and of the shadows.
+/// Only these need rendering.
 PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
                             const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
                             const OcclusionConfig& config);
 
-/// The picture of the room with the objects in it.
+/// The picture of the room with the objects' shadows in it; those of the objects not yet drawn are missing.
 ///
 /// @param background       the camera's picture, of its size: the live colour, or the depth by shade_depth
 /// @param camera           the (colour) camera
 /// @param T_world_camera   its pose
-/// @param real_depth_m     real surfaces as this camera sees them, of its size; 0 hides nothing
+/// @param real_depth_m     real surfaces as this camera sees them, of its size; 0 takes no shadow
 /// @param casters          objects that cast a soft shadow on real surfaces
-/// @param layer            the objects as this camera sees them (ObjectDrawer)
-/// @param occlusion        what hides the objects; buffers that are reused
-/// @param picture          of the camera's size; may not be `background`
+/// @param strength         0 none .. 1: black where an object covers the whole sky
+/// @param picture          out, of the camera's size; may not be `background`
+/// @throws Error if sizes disagree
+/// Only the shadows' rectangles cost time beyond one copy.
+void cast_shadows(const ColourImage& background, const Intrinsics& camera,
+                  const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
+                  std::span<const ShadowCaster> casters, float strength, ColourImage& picture);
+
+/// Lays the objects over the picture that has their shadows.
+///
+/// @param layer         the objects as the picture's camera sees them (ObjectDrawer)
+/// @param real_depth_m  real surfaces, of the picture's size; 0 hides nothing
+/// @param occlusion     what hides the objects; buffers that are reused
 /// @throws Error if sizes disagree, or the layer reaches past the picture
-/// Only the objects' and shadows' rectangles cost time beyond one copy.
-void compose(const ColourImage& background, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-             const DepthImage& real_depth_m, std::span<const ShadowCaster> casters, const ObjectLayer& layer,
-             const ComposeConfig& config, Occlusion& occlusion, ColourImage& picture);
+void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
+                 Occlusion& occlusion, ColourImage& picture);
 
 /// A grey picture of a depth image, lit from the camera, for sources without colour. Pixels without depth are
 /// dark.

@@ -88,15 +88,16 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
                      .is_closed = object->model->shape.touched.is_closed()});
     if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
   }
-  drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // goes on beside shadows and real depth
+  drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // goes on beside real depth and shadows
 
   if (has_shadows) renew_a_shadow();
   real_depth_m_.resize(camera.width_px, camera.height_px);
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
   if (rect.width > 0 && rect.height > 0) scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);
+  cast_shadows(background_, camera, T_world_view, real_depth_m_, casters, config_.picture.shadow_strength,
+               picture_);
   drawer_.finish(layer_);
-  compose(background_, camera, T_world_view, real_depth_m_, casters, layer_, config_.picture, occlusion_,
-          picture_);
+  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_);
 }
 
 }  // namespace roomradar

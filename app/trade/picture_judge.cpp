@@ -64,8 +64,9 @@ PictureErrors PictureJudge::errors_of(const JudgedPicture& judged, const Frame& 
   drawer_.draw(drawn, frame.colour_camera, T_world_camera, {}, layer_);
   ComposeConfig config;
   config.occlusion.edge_reach_px = 0;  // the depth has no edge in the wrong place
-  compose(frame.colour, frame.colour_camera, T_world_camera, true_depth_m, casters, layer_, config,
-          occlusion_, right_);
+  cast_shadows(frame.colour, frame.colour_camera, T_world_camera, true_depth_m, casters,
+               config.shadow_strength, right_);
+  lay_objects(layer_, true_depth_m, config.occlusion, occlusion_, right_);
   double sum = 0.0;
   std::size_t changed = 0;
   for (std::size_t i = 0; i < right_.pixels.size(); ++i) {

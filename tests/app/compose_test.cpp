@@ -30,10 +30,9 @@ ObjectLayer flat_layer(const PixelRect& rect, float depth_m, int samples = 2) {
 
 ColourImage composed(const DepthImage& real_depth_m, const ObjectLayer& layer,
                      const ComposeConfig& config = {}) {
-  ColourImage picture;
+  ColourImage picture(kCamera.width_px, kCamera.height_px, kGrey);
   Occlusion occlusion;
-  compose(ColourImage(kCamera.width_px, kCamera.height_px, kGrey), kCamera, Eigen::Isometry3d::Identity(),
-          real_depth_m, {}, layer, config, occlusion, picture);
+  lay_objects(layer, real_depth_m, config.occlusion, occlusion, picture);
   return picture;
 }
 
@@ -216,10 +215,10 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
   ShadowCaster caster{&shadow, Eigen::Isometry3d::Identity()};
   caster.T_world_object.translation() = Eigen::Vector3d(0.2, 0.1, 0.03);
   const DepthImage table_m(64, 48, 1.0F);
+  const ColourImage grey(64, 48, kGrey);
+  constexpr float kStrength = ComposeConfig{}.shadow_strength;
   ColourImage picture;
-  Occlusion occlusion;
-  compose(ColourImage(64, 48, kGrey), kCamera, T_world_camera, table_m, {&caster, 1}, {}, {}, occlusion,
-          picture);
+  cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, kStrength, picture);
   const int x = static_cast<int>(std::lround(60.0 * 0.2 + 31.5));
   const int y = static_cast<int>(std::lround(60.0 * -0.1 + 23.5));  // world y is up in the picture
   EXPECT_LT(picture.at(x, y).r, 60);
@@ -234,9 +233,12 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
       }
     }
   }
-  compose(ColourImage(64, 48, kGrey), kCamera, T_world_camera, DepthImage(64, 48), {&caster, 1}, {}, {},
-          occlusion, picture);
-  EXPECT_EQ(picture.pixels, ColourImage(64, 48, kGrey).pixels);  // no surface, no shadow
+  cast_shadows(grey, kCamera, T_world_camera, DepthImage(64, 48), {&caster, 1}, kStrength, picture);
+  EXPECT_EQ(picture.pixels, grey.pixels);  // no surface, no shadow
+  cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, 0.0F, picture);
+  EXPECT_EQ(picture.pixels, grey.pixels);
+  EXPECT_THROW(cast_shadows(grey, kCamera, T_world_camera, DepthImage(63, 48), {}, kStrength, picture),
+               Error);
 }
 
 TEST(ShadeDepth, IsBrighterWhereTheSurfaceFacesTheCamera) {

@@ -579,9 +579,10 @@ struct TwoSides {
     config.occlusion.edge_reach_px = 0;
     Occlusion occlusion;
     JudgedPicture judged{{}, {{0, T_world_teapot}}};
-    compose(frame.colour, frame.colour_camera, Eigen::Isometry3d::Identity(), depth_m,
-            std::array{ShadowCaster{&object->shadow, T_world_teapot}}, layer, config, occlusion,
-            judged.picture);
+    cast_shadows(frame.colour, frame.colour_camera, Eigen::Isometry3d::Identity(), depth_m,
+                 std::array{ShadowCaster{&object->shadow, T_world_teapot}}, config.shadow_strength,
+                 judged.picture);
+    lay_objects(layer, depth_m, config.occlusion, occlusion, judged.picture);
     return judged;
   }
 };
