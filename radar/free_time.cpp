@@ -31,6 +31,8 @@ struct Course {
   double turn_rad_s;
   double reach_m;  // from the centre to the farthest point of the object, across the axis
   double keep_m;
+  /// Of the turning, what moves along each axis of the frame: at most by the quadratic, ever at most so fast.
+  Vec3 quadratic_m_s2, fastest_m_s;
 
   [[nodiscard]] Vec3 velocity_at(const Vec3& p) const { return linear + angular.cross(p - centre); }
   /// Until boxes that axes keep apart can be as near as they may; 0 where none does.
@@ -46,11 +48,9 @@ struct Course {
       const int l = (k + 1) % 3, m = (k + 2) % 3;
       const double spread = w[l] * o_half[m] + w[m] * o_half[l];
       const double side = between[k] > 0.0 ? 1.0 : -1.0;
-      const double turning = std::hypot(angular[l], angular[m]);
       const double allowed = allowed_m(apart_m, keep_m);
-      const double now =
-          time_for(allowed, -side * velocity[k] + spread, 0.5 * turning * turn_rad_s * reach_m);
-      const double ever = time_for(allowed, -side * linear[k] + turning * reach_m, 0.0);
+      const double now = time_for(allowed, -side * velocity[k] + spread, quadratic_m_s2[k]);
+      const double ever = time_for(allowed, -side * linear[k] + fastest_m_s[k], 0.0);
       free_s = std::max({free_s, now, ever});
     }
     return static_cast<float>(free_s) * (1.0F - 1e-6F);
@@ -102,17 +102,24 @@ double reach_of(const TreeInstance& object, const RigidMotion& motion) {
 Course course_of(const TreeInstance& object, const RigidMotion& motion, double keep_m,
                  const TreePair& trees) {
   const Eigen::Matrix3d R_frame_world = trees.T_world_frame.linear().transpose();
+  const Vec3 angular = R_frame_world * motion.angular_rad_s;
+  const double turn_rad_s = angular.norm(), reach_m = reach_of(object, motion);
+  const Vec3 turning_m_s =
+      reach_m * Vec3(std::hypot(angular.y(), angular.z()), std::hypot(angular.z(), angular.x()),
+                     std::hypot(angular.x(), angular.y()));
   return {R_frame_world * motion.linear_m_s,
-          R_frame_world * motion.angular_rad_s,
+          angular,
           trees.T_world_frame.inverse() * (object.T_world_mesh * motion.centre_object),
-          motion.angular_rad_s.norm(),
-          reach_of(object, motion),
-          keep_m};
+          turn_rad_s,
+          reach_m,
+          keep_m,
+          0.5 * turn_rad_s * turning_m_s,
+          turning_m_s};
 }
 
 /// One tree of the scene: how long its pairs of triangles let the motion go on.
 struct TreeFreedom {
-  const TreePair& trees;
+  TreePair& trees;
   const Touched kind;
   const std::uint32_t number;  // among the scene's
   const Course course;
@@ -125,8 +132,7 @@ struct TreeFreedom {
     if (!(static_cast<double>(free_s) < result.free_s)) return kLongEnough;
     if (are_large_against(o, s)) {
       const Vec3 centre = s.centre.cast<double>(), half = s.half.cast<double>();
-      for (std::uint32_t i = o.first; i < o.first + o.count; ++i) {
-        const FrameTriangle t = trees.object_triangle(i);
+      for (const FrameTriangle& t : trees.of_object(o)) {
         const Vec3 direction = t.normal.dot(t.corners[0] - centre) >= 0.0 ? t.normal : Vec3(-t.normal);
         const double face_at = direction.dot(centre) + direction.cwiseAbs().dot(half);
         if (course.free_s(direction, t, face_at) < result.free_s) return free_s;
@@ -134,8 +140,7 @@ struct TreeFreedom {
       return kLongEnough;
     }
     if (are_large_against(s, o)) {
-      for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
-        const FrameTriangle t = trees.scene_triangle(i);
+      for (const FrameTriangle& t : trees.of_scene(s)) {
         if (course.free_s(t, o) < result.free_s && !(is_one_sided(kind) && is_behind(t, o))) return free_s;
       }
       return kLongEnough;
@@ -168,10 +173,8 @@ struct TreeFreedom {
   }
 
   void look_at_leaves(const PairBox& o, const PairBox& s) {
-    for (std::uint32_t i = o.first; i < o.first + o.count; ++i) {
-      const FrameTriangle triangle = trees.object_triangle(i);
-      for (std::uint32_t j = s.first; j < s.first + s.count; ++j) look(triangle, trees.scene_triangle(j));
-    }
+    for (const FrameTriangle& object : trees.of_object(o))
+      for (const FrameTriangle& scene : trees.of_scene(s)) look(object, scene);
   }
 };
 
@@ -189,13 +192,13 @@ FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& mot
     const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
     if (are_farther_apart(object, tree.instance, way_m + 2.0 * keep_m)) continue;
-    const TreePair trees(object, tree.instance);
+    TreePair trees(object, tree.instance);
     TreeFreedom freedom{trees, tree.kind, number, course_of(object, motion, keep_m, trees), result};
     visit_pairs<PairOrder::kLeastFirst>(
         trees, pending_, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
         [&](const PairBox& o, const PairBox& s) {
           freedom.look_at_leaves(o, s);
-          return false;
+          return static_cast<float>(freedom.result.free_s);
         });
     result = freedom.result;
   }

@@ -1,8 +1,7 @@
 // near_field.cpp: the object's tree beside each of the scene's, and the places of each pair of triangles.
 #include "radar/near_field.hpp"
 
-#include <array>
-#include <cassert>
+#include <algorithm>
 #include <cmath>
 
 #include "radar/near_places.hpp"
@@ -11,6 +10,8 @@
 namespace roomradar {
 namespace {
 
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
 bool is_far_from(const FrameTriangle& t, const PairBox& box, double reach_m) {
   return std::abs(t.normal.dot(box.centre.cast<double>() - t.corners[0])) -
              t.normal.cwiseAbs().dot(box.half.cast<double>()) >
@@ -18,35 +19,29 @@ bool is_far_from(const FrameTriangle& t, const PairBox& box, double reach_m) {
 }
 
 /// Whether what is in two boxes may be within reach.
-bool may_be_near(const TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
+bool may_be_near(TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
   const double reach_m = places.reach_m;
   const Eigen::Array3f apart = (o.centre - s.centre).array().abs() - o.half.array() - s.half.array();
   if (apart.maxCoeff() > static_cast<float>(reach_m)) return false;
   if (are_large_against(o, s)) {
-    for (std::uint32_t i = o.first; i < o.first + o.count; ++i)
-      if (!is_far_from(trees.object_triangle(i), s, reach_m)) return true;
-    return false;
+    const auto triangles = trees.of_object(o);
+    return std::any_of(triangles.begin(), triangles.end(),
+                       [&](const FrameTriangle& t) { return !is_far_from(t, s, reach_m); });
   }
   if (are_large_against(s, o)) {
-    for (std::uint32_t i = s.first; i < s.first + s.count; ++i) {
-      const FrameTriangle t = trees.scene_triangle(i);
-      if (!is_far_from(t, o, reach_m) && !(places.scene_is_one_sided && is_behind(t, o))) return true;
-    }
-    return false;
+    const auto triangles = trees.of_scene(s);
+    return std::any_of(triangles.begin(), triangles.end(), [&](const FrameTriangle& t) {
+      return !is_far_from(t, o, reach_m) && !(places.scene_is_one_sided && is_behind(t, o));
+    });
   }
   return true;
 }
 
 /// All pairs of two leaves' triangles. Returns whether any cross.
-bool look_at_leaves(const TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
-  std::array<Face, kLeafTriangles> objects;
-  assert(o.count <= kLeafTriangles);
-  for (std::uint32_t i = 0; i < o.count; ++i) objects[i] = face_of(trees.object_triangle(o.first + i));
+bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
   bool crosses = false;
-  for (std::uint32_t j = s.first; j < s.first + s.count; ++j) {
-    const Face face = face_of(trees.scene_triangle(j));
-    for (std::uint32_t i = 0; i < o.count; ++i) crosses = places.look(objects[i], face) || crosses;
-  }
+  for (const FrameTriangle& scene : trees.of_scene(s))
+    for (const FrameTriangle& object : trees.of_object(o)) crosses = places.look(object, scene) || crosses;
   return crosses;
 }
 
@@ -63,16 +58,19 @@ Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, doubl
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
     if (are_farther_apart(object, tree.instance, reach_m)) continue;
     const std::size_t found_before = found_.size();
-    const TreePair trees(object, tree.instance);
+    TreePair trees(object, tree.instance);
     const PairPlaces places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),
                             tree.kind, trees.T_world_frame,      found_};
     bool crosses = false;
     visit_pairs<PairOrder::kAny>(
         trees, pending_,
         [&](const PairBox& o, const PairBox& s) {
-          return may_be_near(trees, o, s, places) ? 0.0F : std::numeric_limits<float>::infinity();
+          return may_be_near(trees, o, s, places) ? 0.0F : kInfinity;
         },
-        [&](const PairBox& o, const PairBox& s) { return crosses = look_at_leaves(trees, o, s, places); });
+        [&](const PairBox& o, const PairBox& s) {
+          crosses = look_at_leaves(trees, o, s, places);
+          return crosses ? -kInfinity : kInfinity;
+        });
     for (std::size_t i = found_before; i < found_.size(); ++i) found_[i].tree = number;
     if (!crosses) continue;
     crossed |= bit_of(tree.kind);

@@ -80,13 +80,13 @@ Vec3 PairPlaces::off_object(double height_m, const Vec3& corner, const Face& o, 
   return -side * o.normal;
 }
 
-bool PairPlaces::look(const Face& o, const Face& s) const {
-  std::array<double, 3> over_scene,
-      over_object;  // heights of the corners of the one above the other's plane
+bool PairPlaces::look(const FrameTriangle& object, const FrameTriangle& scene) const {
+  // Heights of the corners of the one above the other's plane.
+  std::array<double, 3> over_scene, over_object;
   Range of_object, of_scene;
   for (std::size_t k = 0; k < 3; ++k) {
-    over_scene[k] = s.normal.dot(o.corners[k] - s.corners[0]);
-    over_object[k] = o.normal.dot(s.corners[k] - o.corners[0]);
+    over_scene[k] = scene.normal.dot(object.corners[k] - scene.corners[0]);
+    over_object[k] = object.normal.dot(scene.corners[k] - object.corners[0]);
     of_object.include(over_scene[k]);
     of_scene.include(over_object[k]);
   }
@@ -95,6 +95,7 @@ bool PairPlaces::look(const Face& o, const Face& s) const {
     return false;
   if (scene_is_one_sided && of_object.low < -kTouching_m) return false;
   if (object_is_closed && of_scene.high < -kTouching_m) return false;
+  const Face o = face_of(object), s = face_of(scene);
   if (of_object.low < 0.0 && of_object.high > 0.0 && of_scene.low < 0.0 && of_scene.high > 0.0 && cross(o, s))
     return true;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -104,13 +105,20 @@ bool PairPlaces::look(const Face& o, const Face& s) const {
     if (std::abs(g) <= reach_m && !(object_is_closed && g < -kTouching_m) && is_over(s.corners[k], o))
       add(s.corners[k], off_object(g, s.corners[k], o, of_scene), std::abs(g));
   }
+  // Seen along the scene's normal, all of the one triangle may lie on one side of an edge of the other.
+  std::array<bool, 3> is_passed;  // by the scene's edges
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Range side = range_along(s.inward[j], o.corners);
+    const double at = s.inward[j].dot(s.corners[j]), reach = reach_m * s.inward[j].norm();
+    is_passed[j] = side.low > at + reach || side.high < at - reach;
+  }
   for (std::size_t i = 0; i < 3; ++i) {
-    // Seen along the scene's normal, all of the scene's triangle may lie on one side of the edge.
     const Vec3 across = o.edge[i].cross(s.normal);
     const Range side = range_along(across, s.corners);
     const double at = across.dot(o.corners[i]), reach = reach_m * across.norm();
     if (side.low > at + reach || side.high < at - reach) continue;
-    for (std::size_t j = 0; j < 3; ++j) look_at_edges(o, i, s, j);
+    for (std::size_t j = 0; j < 3; ++j)
+      if (!is_passed[j]) look_at_edges(o, i, s, j);
   }
   return false;
 }

@@ -43,7 +43,7 @@ struct PairPlaces {
   std::vector<NearPoint>& found;
 
   /// Returns whether the triangles cross.
-  bool look(const Face& o, const Face& s) const;
+  bool look(const FrameTriangle& object, const FrameTriangle& scene) const;
 
  private:
   /// Nothing without a normal.

@@ -3,8 +3,11 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "radar/radar_scene.hpp"
@@ -48,9 +51,30 @@ inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other
   return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
 }
 
+/// A leaf's triangles, made once for as long as the same leaf is asked for: the other tree's boxes go by.
+class LeafTriangles {
+ public:
+  /// @param triangle  triangle(i) for each of the leaf's numbers, where it is another than the last time
+  template <typename MakeTriangle>
+  std::span<const FrameTriangle> of(const PairBox& leaf, const MakeTriangle& triangle) {
+    assert(leaf.count <= kLeafTriangles);
+    if (leaf.first != first_ || leaf.count != count_) {
+      first_ = leaf.first;
+      count_ = leaf.count;
+      for (std::uint32_t i = 0; i < count_; ++i) triangles_[i] = triangle(first_ + i);
+    }
+    return {triangles_.data(), count_};
+  }
+
+ private:
+  std::array<FrameTriangle, kLeafTriangles> triangles_;
+  std::uint32_t first_ = 0, count_ = 0;
+};
+
 /// An object's tree where it stands beside one of the scene's. Frame: the scene's mesh, about its tree's
 /// centre.
-struct TreePair {
+class TreePair {
+ public:
   const TriangleTree& object;
   const TriangleTree& scene;
   Eigen::Isometry3d T_world_frame;
@@ -62,6 +86,17 @@ struct TreePair {
         T_world_frame(s.T_world_mesh * Eigen::Translation3d(scene.origin() + scene.centre())),
         T_frame_object(T_world_frame.inverse() * o.T_world_mesh *
                        Eigen::Translation3d(object.origin() + object.centre())) {}
+
+  /// The triangles of a leaf of either tree; until the next call for the same tree.
+  [[nodiscard]] std::span<const FrameTriangle> of_object(const PairBox& leaf) {
+    return object_leaf_.of(leaf, [this](std::uint32_t i) { return object_triangle(i); });
+  }
+  [[nodiscard]] std::span<const FrameTriangle> of_scene(const PairBox& leaf) {
+    return scene_leaf_.of(leaf, [this](std::uint32_t i) { return scene_triangle(i); });
+  }
+
+ private:
+  LeafTriangles object_leaf_, scene_leaf_;
 
   [[nodiscard]] FrameTriangle object_triangle(std::uint32_t i) const {
     FrameTriangle t;
@@ -96,10 +131,11 @@ inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
 }
 
 /// Goes through all pairs of leaves that key(object box, scene box) gives a finite number for, until leaf()
-/// returns that it has seen enough. With PairOrder::kLeastFirst the key is asked again when it is a pair's
-/// turn.
+/// returns -infinity. With PairOrder::kLeastFirst it ends where no key is less than what leaf() returned
+/// last.
 template <PairOrder order, typename Key, typename Leaf>
 void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
+  constexpr float kNone = std::numeric_limits<float>::infinity();
   const TriangleTree& object = trees.object;
   const TriangleTree& scene = trees.scene;
   // Boxes hold what is in them with the rounding of a float turn and shift counted in.
@@ -111,7 +147,7 @@ void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const
   const auto is_later = [](const PendingPair& a, const PendingPair& b) { return a.key > b.key; };
   const auto push = [&](const PairBox& o, const PairBox& s) {
     const float k = key(o, s);
-    if (!(k < std::numeric_limits<float>::infinity())) return;
+    if (!(k < kNone)) return;
     pending.push_back({o, s, k});
     if constexpr (order == PairOrder::kLeastFirst) std::push_heap(pending.begin(), pending.end(), is_later);
   };
@@ -119,15 +155,15 @@ void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const
   const Eigen::Vector3f slack = Eigen::Vector3f::Constant(slack_m);
   push({t, R_abs * object.half_size() + slack, 0, 0},
        {Eigen::Vector3f::Zero(), scene.half_size() + slack, 0, 0});
+  float bound = kNone;
   while (!pending.empty()) {
     if constexpr (order == PairOrder::kLeastFirst) std::pop_heap(pending.begin(), pending.end(), is_later);
     const PendingPair pair = pending.back();
     pending.pop_back();
-    if constexpr (order == PairOrder::kLeastFirst) {
-      if (!(key(pair.object, pair.scene) < std::numeric_limits<float>::infinity())) continue;
-    }
+    if (order == PairOrder::kLeastFirst && !(pair.key < bound)) return;
     if (pair.object.count > 0 && pair.scene.count > 0) {
-      if (leaf(pair.object, pair.scene)) return;
+      bound = leaf(pair.object, pair.scene);
+      if (bound == -kNone) return;
       continue;
     }
     const bool opens_object =
