@@ -274,13 +274,10 @@ void Checkpoints::write_numbered(std::int64_t number, const std::string& stage,
   const Json before = previous.empty() ? Json::object() : read_json(previous / kManifest).at("files");
   write_files(into, previous);
   Json manifest{{"stage", stage}, {"files", Json::object()}};
-  for (const fs::path& file : files_below(into)) {
+  for (const fs::path& file : files_below(into))
     manifest["files"][file.generic_string()] = description_of(into, file, previous, before);
-    sync_to_disk(into / file);
-  }
   write_text(into / kManifest, manifest.dump(1) + "\n");
-  sync_to_disk(into / kManifest);
-  sync_to_disk(into);
+  sync_all_to_disk(folder_);
   fs::remove_all(numbered(number));  // damaged, or of a count that began anew
   fs::rename(into, numbered(number));
   sync_to_disk(folder_);

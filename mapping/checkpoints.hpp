@@ -22,7 +22,8 @@ struct Checkpoint {
 };
 
 /// The folder of one unfinished piece of work: `work.json` (what the work is), `lock`, and the last two
-/// checkpoints, each a folder that appears whole or not at all. A checkpoint is written by a forked child,
+/// checkpoints, each a folder that appears whole or not at all, and only once all that was written beside it
+/// before (as a live scan's frames) is on the disk, too. A checkpoint is written by a forked child,
 /// which sees the state as it was and lets the work go on; it dies with its parent. The folder comes into
 /// being with the first checkpoint. One process at a time may have it.
 class Checkpoints {

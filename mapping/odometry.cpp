@@ -27,6 +27,51 @@ KeyframeJobConfig job_config(const OdometryConfig& config) {
   return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
 }
 
+/// Takes over the keyframes' poses. What is known of the camera's pose moves with the current keyframe.
+/// Returns how that moved.
+Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept) {
+  const Eigen::Isometry3d before = kept.graph.keyframes[kept.current].T_world_camera;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    kept.graph.keyframes[i].T_world_camera = moved[i].T_world_camera;
+    if (i < kept.places.keyframes.size()) kept.places.keyframes[i].T_world_camera = moved[i].T_world_camera;
+  }
+  const Eigen::Isometry3d T_new_old = kept.graph.keyframes[kept.current].T_world_camera * before.inverse();
+  kept.T_world_last = T_new_old * kept.T_world_last;
+  kept.last_moved.T_world_camera = T_new_old * kept.last_moved.T_world_camera;
+  return T_new_old;
+}
+
+void anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera, OdometrySnapshot& kept) {
+  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // of a relocalised pose
+  Matrix6d information = Matrix6d::Zero();
+  information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
+  information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
+  kept.graph.anchors.push_back({keyframe, T_known_camera, information});
+  ++kept.counts.anchored;
+}
+
+/// Moves the keyframes to where the second thread found them.
+Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
+  const std::size_t newest = result.graph.keyframes.size() - 1;
+  kept.graph.constraints = std::move(result.graph.constraints);
+  kept.graph.loops_found = result.graph.loops_found;
+  kept.graph.loops_rejected = result.graph.loops_rejected;
+  kept.places.keyframes.push_back(std::move(result.place));
+  Eigen::Isometry3d T_new_old = move_keyframes(result.graph.keyframes, kept);
+  if (result.T_known_camera) {
+    if (!kept.located) {
+      const Eigen::Isometry3d T_known_world =
+          *result.T_known_camera * kept.graph.keyframes[newest].T_world_camera.inverse();
+      std::vector<Keyframe> moved = kept.graph.keyframes;
+      for (Keyframe& keyframe : moved) keyframe.T_world_camera = T_known_world * keyframe.T_world_camera;
+      T_new_old = move_keyframes(moved, kept) * T_new_old;
+      kept.located = true;
+    }
+    anchor(newest, *result.T_known_camera, kept);
+  }
+  return T_new_old;
+}
+
 }  // namespace
 
 struct Odometry::State {
@@ -40,7 +85,8 @@ struct Odometry::State {
   Image<std::uint8_t> open_measured;
   bool open_is_newer = false;  ///< than what is stored
   std::future<KeyframeJobResult> job;
-  int job_frames = 0;  ///< since it was begun
+  std::optional<KeyframeJobResult> joined;  ///< what it came to, where that was waited for
+  int job_frames = 0;                       ///< since it was begun
 
   explicit State(const OdometryConfig& chosen) : config(chosen), warm(chosen.graph.warm) {}
 
@@ -54,9 +100,8 @@ struct Odometry::State {
   void add_keyframe(const Frame& frame, const Tracking& tracking);
   void take_up(std::size_t keyframe);
   void store_open();
+  void wait_for_job();
   Eigen::Isometry3d take_over_job();
-  Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved);
-  void anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera);
   void keep(const Frame& frame, const Tracking& tracking);
 };
 
@@ -191,51 +236,16 @@ void Odometry::State::store_open() {
   ++keyframe.revision;
 }
 
+void Odometry::State::wait_for_job() {
+  if (job.valid()) joined = job.get();
+}
+
 /// Waits for the second thread and moves the keyframes to where it found them. Returns what that does to
 /// poses near the current keyframe.
 Eigen::Isometry3d Odometry::State::take_over_job() {
-  if (!job.valid()) return Eigen::Isometry3d::Identity();
-  KeyframeJobResult result = job.get();
-  const std::size_t newest = result.graph.keyframes.size() - 1;
-  kept.graph.constraints = std::move(result.graph.constraints);
-  kept.graph.loops_found = result.graph.loops_found;
-  kept.graph.loops_rejected = result.graph.loops_rejected;
-  kept.places.keyframes.push_back(std::move(result.place));
-  Eigen::Isometry3d T_new_old = move_keyframes(result.graph.keyframes);
-  if (result.T_known_camera) {
-    if (!kept.located) {
-      const Eigen::Isometry3d T_known_world =
-          *result.T_known_camera * kept.graph.keyframes[newest].T_world_camera.inverse();
-      std::vector<Keyframe> moved = kept.graph.keyframes;
-      for (Keyframe& keyframe : moved) keyframe.T_world_camera = T_known_world * keyframe.T_world_camera;
-      T_new_old = move_keyframes(moved) * T_new_old;
-      kept.located = true;
-    }
-    anchor(newest, *result.T_known_camera);
-  }
-  return T_new_old;
-}
-
-/// Takes over the keyframes' poses. What is known of the camera's pose moves with the current keyframe.
-Eigen::Isometry3d Odometry::State::move_keyframes(const std::vector<Keyframe>& moved) {
-  const Eigen::Isometry3d before = kept.graph.keyframes[kept.current].T_world_camera;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    kept.graph.keyframes[i].T_world_camera = moved[i].T_world_camera;
-    if (i < kept.places.keyframes.size()) kept.places.keyframes[i].T_world_camera = moved[i].T_world_camera;
-  }
-  const Eigen::Isometry3d T_new_old = kept.graph.keyframes[kept.current].T_world_camera * before.inverse();
-  kept.T_world_last = T_new_old * kept.T_world_last;
-  kept.last_moved.T_world_camera = T_new_old * kept.last_moved.T_world_camera;
-  return T_new_old;
-}
-
-void Odometry::State::anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera) {
-  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // of a relocalised pose
-  Matrix6d information = Matrix6d::Zero();
-  information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
-  information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
-  kept.graph.anchors.push_back({keyframe, T_known_camera, information});
-  ++kept.counts.anchored;
+  wait_for_job();
+  if (!joined) return Eigen::Isometry3d::Identity();
+  return take_over(*std::exchange(joined, std::nullopt), kept);
 }
 
 void Odometry::State::keep(const Frame& frame, const Tracking& tracking) {
@@ -273,7 +283,8 @@ Tracking Odometry::track(const Frame& frame) {
   ++kept.counts.frames;
   make_pyramid(frame, s.config.view, s.pyramid);
   make_live(s.pyramid, s.live);
-  if (s.job.valid() && ++s.job_frames >= s.config.join_frames) s.take_over_job();
+  const bool is_joining = s.job.valid() || s.joined;
+  if (is_joining && ++s.job_frames >= s.config.join_frames) s.take_over_job();
   const bool first = kept.graph.keyframes.empty();
   if (!first && shows_the_same(kept.last_moved_grey, s.pyramid.grey)) {
     ++kept.counts.tracked;
@@ -330,25 +341,27 @@ void Odometry::add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_ca
   ++s.kept.counts.keyframes;
 }
 
-bool Odometry::is_settled() const { return !state_->job.valid(); }
-
 void Odometry::settle() {
-  State& s = *state_;
-  s.take_over_job();
-  s.store_open();
+  state_->wait_for_job();
+  state_->store_open();
 }
 
-OdometrySnapshot Odometry::snapshot() const { return state_->kept; }
+OdometrySnapshot Odometry::snapshot() const {
+  OdometrySnapshot snapshot = state_->kept;
+  if (state_->joined) take_over(*state_->joined, snapshot);
+  return snapshot;
+}
 
 std::vector<TrackedFrame> Odometry::optimise() {
   State& s = *state_;
-  settle();
+  s.take_over_job();
+  s.store_open();
   if (!s.kept.graph.keyframes.empty()) {
     KeyframeGraph graph = s.kept.graph;
     s.warm = WarmKeyframes(s.config.graph.warm);  // of no use now, and large
     join_all(graph, job_config(s.config).join);
     solve_positions_then_turns(graph);
-    s.move_keyframes(graph.keyframes);
+    move_keyframes(graph.keyframes, s.kept);
     graph.keyframes = s.kept.graph.keyframes;
     s.kept.graph = std::move(graph);
   }

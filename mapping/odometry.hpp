@@ -88,11 +88,11 @@ class Odometry {
 
   [[nodiscard]] OdometryCounts counts() const;
 
-  /// Whether the second thread has nothing to do, so that settle() neither waits nor moves a pose.
-  [[nodiscard]] bool is_settled() const;
-  /// Waits for what the second thread does and takes it over; before a snapshot or a fork.
+  /// Waits until the second thread has nothing to do; before a snapshot or a fork. Moves no pose: what it
+  /// found is taken over when it would have been anyway.
   void settle();
-  /// All that is known, to go on from. Views are shared, not copied. Only after settle().
+  /// All that is known, to go on from, with what the second thread found taken over. Views are shared, not
+  /// copied. Only after settle().
   [[nodiscard]] OdometrySnapshot snapshot() const;
   /// Goes on from a snapshot; known places must be given again. What it holds must fit together
   /// (load_odometry() sees to that).

@@ -51,12 +51,15 @@ void skip_frames(FrameSource& source, std::int64_t count, const char* stage,
                  const PrescanProgress& progress) {
   for (std::int64_t i = 0; progress && i < count; ++i) progress(stage, "resumed");
   Frame frame;
+  const auto refuse = [&](const std::string& has) {
+    throw Error(source.name() + ": has " + has + " frames, but the scan to be resumed had read " +
+                std::to_string(count) + "; is it the same recording?");
+  };
   std::int64_t position = source.seek(count - 1) ? count - 1 : 0;
+  // Of a live scan the frames to pass over were kept: what the device shows now is none of them.
+  if (position < count - 1 && source.seek(0)) refuse("fewer");
   while (position < count && source.next(frame).status != ReadStatus::kEnd) ++position;
-  if (position < count)
-    throw Error(source.name() + ": has " + std::to_string(position) +
-                " frames, but the scan to be resumed had read " + std::to_string(count) +
-                "; is it the same recording?");
+  if (position < count) refuse(std::to_string(position));
 }
 
 /// Whether more frames would take more memory than allowed. What comes after them needs some, too.
@@ -77,12 +80,9 @@ void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, StageTimes& t
   });
 }
 
-/// The same in the first pass, where no other thread may be at work at the fork. To settle the odometry moves
-/// poses by what noise does, so that is put off as long as it would not do so by itself.
+/// The same in the first pass, where the odometry's thread may not be at work at the fork.
 void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass, StageTimes& times) {
-  constexpr double kLatest_s = 4.0;
-  if (!checkpoints || !(pass.odometry.is_settled() || checkpoints->since_last_s() > kLatest_s)) return;
-  if (!checkpoints->is_due()) return;
+  if (!checkpoints || !checkpoints->is_due()) return;
   pass.odometry.settle();
   keep(checkpoints, kTrackingStage, pass, times);
 }
@@ -191,8 +191,9 @@ std::vector<TimedPose> trusted_poses(const FusingPass& pass) {
   return poses;
 }
 
-/// The second pass, from its start or from a checkpoint. False if it was stopped for want of memory.
-bool fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass) {
+/// The second pass, from its start or from a checkpoint. Nothing where that is of what comes after it.
+void fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass) {
+  if (pass.revision || pass.ghost_voxels) return;
   std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
   for (const TimedPose& pose : trajectory) T_world_camera[pose.frame_index] = pose.T_world_camera;
   if (!work.source.rewind()) throw Error(work.source.name() + ": cannot be read a second time");
@@ -221,8 +222,8 @@ bool fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass
     keep(work.checkpoints, kFusingStage, pass, work.times);
     has_room = !is_full(work.config, kSurfaceMemory * static_cast<double>(pass.octree.memory_bytes()));
   }
+  pass.counts.stopped_for_memory |= !has_room;
   keep(work.checkpoints, kFusingStage, pass, work.times, /*between_frames=*/false);
-  return has_room;
 }
 
 std::string why_none_fused(const Work& work, const StaticMap& octree) {
@@ -239,8 +240,7 @@ std::string why_none_fused(const Work& work, const StaticMap& octree) {
 }
 
 /// What the map says of itself, but for what save_map fills in.
-MapInfo describe_map(const Work& work, const FusingPass& pass,
-                     const std::optional<TrajectoryError>& against_recorded) {
+MapInfo describe_map(const Work& work, const FusingPass& pass, const std::vector<TimedPose>& trajectory) {
   MapInfo info;
   info.source = work.source.name();
   info.frames_read = pass.counts.frames_read;
@@ -250,11 +250,10 @@ MapInfo describe_map(const Work& work, const FusingPass& pass,
                    {"poses", std::string(to_string(work.config.poses))}};
   if (work.config.fuse_every > 1) info.settings["fuse_every"] = std::to_string(work.config.fuse_every);
   if (work.config.hold_out > 0) info.settings["hold_out"] = std::to_string(work.config.hold_out);
-  if (work.config.poses == PoseOrigin::kRecorded) {
+  if (work.config.poses == PoseOrigin::kRecorded)
     info.T_world_recorded = pass.T_world_found;
-  } else if (against_recorded) {
-    info.T_world_recorded = against_recorded->T_reference_estimate.inverse();
-  }
+  else if (const auto T_recorded_world = pose_alignment(trajectory, pass.found.recorded))
+    info.T_world_recorded = T_recorded_world->inverse();
   return info;
 }
 
@@ -285,7 +284,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
                      : "is there depth between 0.5 and 6 m in the frames?"));
 
   // What was there?
-  const bool all_fused = fuse(work, map.trajectory, pass);
+  fuse(work, map.trajectory, pass);
   if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(work, pass.octree));
 
   // What of that moved on?
@@ -313,7 +312,6 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   transform(map.places, pass.T_world_found);
 
   counts = pass.counts;
-  counts.stopped_for_memory |= !all_fused;
   counts.frames_tracked = static_cast<std::int64_t>(map.trajectory.size());
   counts.frames_lost = counts.frames_read - counts.frames_skipped - counts.frames_tracked;
   counts.frames_held_out = std::count_if(map.trajectory.begin(), map.trajectory.end(), [&](const auto& pose) {
@@ -325,7 +323,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     const TrajectoryError error = absolute_trajectory_error(map.trajectory, pass.found.recorded);
     if (error.poses > 0) counts.against_recorded = error;
   }
-  map.info = describe_map(work, pass, counts.against_recorded);
+  map.info = describe_map(work, pass, map.trajectory);
   if (start.map) {
     append_session(*start.map, map);
     start.map->octree = std::move(map.octree);

@@ -48,8 +48,9 @@ void write_state(TrackingPass& pass, const std::filesystem::path& into,
                  const std::filesystem::path& previous);
 void write_state(FusingPass& pass, const std::filesystem::path& into, const std::filesystem::path& previous);
 
-/// Reads a checkpoint of that stage: the work goes on exactly as it would have. The files are not trusted.
-/// Throws Error naming the file and the fault.
+/// Reads a checkpoint of that stage: the second pass goes on exactly as it would have, the first up to what
+/// the rounding of the keyframes' views does (about 1 mm). The files are not trusted. Throws Error naming the
+/// file and the fault.
 TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConfig& config);
 FusingPass read_fusing_pass(const Checkpoint& checkpoint);
 

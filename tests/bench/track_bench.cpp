@@ -117,7 +117,6 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
   const bool known = frame.T_world_camera.has_value();
   const TrajectoryError ate = absolute_trajectory_error(estimate, truth);
   const OdometryCounts counts = odometry.counts();
-  odometry.settle();
   return {{"source", name},
           {"frames", counts.frames},
           {"tracked", counts.tracked},

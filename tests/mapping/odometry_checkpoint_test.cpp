@@ -60,6 +60,23 @@ TEST(OdometryCheckpoint, GoesOnAsIfItHadNeverEnded) {
   EXPECT_EQ(resumed.take_places().keyframes.size(), whole.take_places().keyframes.size());
 }
 
+TEST(OdometryCheckpoint, TakingOneMovesNoPose) {
+  const test::TemporaryFolder folder;
+  Odometry plain, watched;
+  for (int i = 0; i < 26; ++i) {
+    const Frame frame = frame_at(on_path(i, kFrames), i);
+    const Tracking expected = plain.track(frame), found = watched.track(frame);
+    EXPECT_TRUE(found.T_world_camera.matrix() == expected.T_world_camera.matrix()) << i;
+    watched.settle();
+    save_odometry(watched, folder_in(folder, std::to_string(i).c_str()), {});
+  }
+  const std::vector<TrackedFrame> expected = plain.optimise(), found = watched.optimise();
+  EXPECT_GT(plain.counts().keyframes, 2);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    EXPECT_TRUE(found[i].T_world_camera.matrix() == expected[i].T_world_camera.matrix()) << i;
+}
+
 TEST(OdometryCheckpoint, OnlyWhatIsNewIsWrittenAgain) {
   const test::TemporaryFolder folder;
   const fs::path first = folder_in(folder, "a"), second = folder_in(folder, "b");
