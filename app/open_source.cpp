@@ -52,15 +52,18 @@ std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceO
 
 }  // namespace
 
+std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen) {
+  if (!chosen.empty()) return chosen;
+  const std::filesystem::path in_folder = std::filesystem::path(source) / "calibration.json";
+  return std::filesystem::exists(in_folder) ? in_folder : std::filesystem::path{};
+}
+
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration,
                                          const SourceOptions& options) {
   std::unique_ptr<FrameSource> opened = open_whole(source, options);
-  const std::filesystem::path in_folder = std::filesystem::path(source) / "calibration.json";
-  if (!calibration.empty())
-    opened = calibrated(std::move(opened), read_calibration(calibration));
-  else if (!options.as_recorded && std::filesystem::exists(in_folder))
-    opened = calibrated(std::move(opened), read_calibration(in_folder));
+  const std::filesystem::path used = options.as_recorded ? calibration : calibration_for(source, calibration);
+  if (!used.empty()) opened = calibrated(std::move(opened), read_calibration(used));
   if (!frames) return opened;
   return limit_frames(std::move(opened), frames->first, frames->last);
 }

@@ -11,11 +11,14 @@
 
 namespace roomradar {
 
+/// The calibration file that frames of a source are seen with: the one chosen, else calibration.json in the
+/// source's folder; empty: none.
+std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen);
+
 /// `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder with a recording or a
-/// recorded session, recognised by what is in it; only `frames` of it
-/// where given. With a calibration, or a file calibration.json in the folder, frames are as the calibrated
-/// cameras would have taken them. Throws Error saying what SOURCE can be if it is none of these, and whatever
-/// opening it or the calibration throws.
+/// recorded session, recognised by what is in it; only `frames` of it where given. With a calibration, or a
+/// file calibration.json in the folder, frames are as the calibrated cameras would have taken them. Throws
+/// Error saying what SOURCE can be if it is none of these, and whatever opening it or the calibration throws.
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});

@@ -101,15 +101,23 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
                 static_cast<long long>(held_out->frames), 1e3 * held_out->median_m, 1e2 * held_out->cover);
 }
 
-/// Says what the scan will take, before it begins. Throws Error if it cannot even begin under the cap.
-void announce_memory(FrameSource& source, const PrescanConfig& config, Report& report) {
-  constexpr double kMB = 1e6, kLeast_bytes = 60e6;
+constexpr double kMB = 1e6;
+
+constexpr double kToTrack_bytes = 60e6, kToOpen_bytes = 20e6;
+
+/// Throws Error if the scan cannot even begin under the cap with so much more memory than now.
+void require_can_begin(const PrescanConfig& config, double least_bytes) {
   const auto cap_bytes = static_cast<double>(config.max_memory_bytes);
   const auto now_bytes = static_cast<double>(resident_bytes());
-  if (cap_bytes > 0.0 && now_bytes + kLeast_bytes > cap_bytes)
+  if (cap_bytes > 0.0 && now_bytes + least_bytes > cap_bytes)
     throw Error("--max-memory " + std::to_string(std::llround(cap_bytes / kMB)) +
                 ": is too little to begin with; give at least " +
-                std::to_string(std::llround((now_bytes + kLeast_bytes) / kMB) + 1));
+                std::to_string(std::llround((now_bytes + least_bytes) / kMB) + 1));
+}
+
+/// Says what the scan will take, before it begins.
+void announce_memory(FrameSource& source, const PrescanConfig& config, Report& report) {
+  const auto cap_bytes = static_cast<double>(config.max_memory_bytes);
   const std::optional<MemoryEstimate> estimate = estimate_memory(source, config.resolution_m);
   if (!estimate) return;
   std::fprintf(stderr, "expected: octree %.0f MB, process %.0f MB at the most, for %lld frames%s\n",
@@ -158,10 +166,8 @@ void stop(const std::string& map, Checkpoints* checkpoints) {
               (resumable ? ", and the same command with --resume goes on from the last checkpoint" : ""));
 }
 
-/// The map is saved: the checkpoints go, and what was wrong with them is said.
+/// The map is saved: the checkpoints go.
 void finish(Checkpoints& checkpoints) {
-  for (const std::string& fault : checkpoints.faults())
-    std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   checkpoints.remove();
   if (checkpoints.failures() > 0)
     std::fprintf(stderr, "roomradar: %s: %lld checkpoints could not be written; is the disk full?\n",
@@ -192,6 +198,7 @@ int run(const PrescanCommand& command) {
   config.remove_ghosts = command.poses == PoseOrigin::kTracked;
   require_can_become_map(command.map);
   require_writable(command.report);
+  require_can_begin(config, kToOpen_bytes + kToTrack_bytes);  // before a scan that was cut off is given up
   ScanStart start = start_scan(command);
   if (start.is_done) {
     std::printf("%s: holds %s already; there is nothing to resume\n", command.map.c_str(),
@@ -208,6 +215,7 @@ int run(const PrescanCommand& command) {
                    config.resolution_m);
     report.settings["resolution_m"] = config.resolution_m;
   }
+  if (start.map) require_can_begin(config, kToTrack_bytes);
   announce_memory(*source, config, report);
 
   std::unique_ptr<Progress> progress;
@@ -218,6 +226,9 @@ int run(const PrescanCommand& command) {
     });
   std::string stage_shown;
   const auto show = [&](const std::string& stage, const std::string& note) {
+    if (stage_shown.empty() && start.checkpoints)  // they are read by now
+      for (const std::string& fault : start.checkpoints->faults())
+        std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
     if (stage != stage_shown) {
       progress.reset();
       // The ghosts' passes read what they need, and some of it twice.

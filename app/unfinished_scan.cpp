@@ -95,6 +95,7 @@ ScanStart start_scan(const PrescanCommand& command) {
   if (command.checkpoint_every_s > 0.0 || spooled || is_unfinished(folder)) {
     const double every_s = command.checkpoint_every_s > 0.0 ? command.checkpoint_every_s
                                                             : std::numeric_limits<double>::infinity();
+    const fs::path calibration = calibration_for(command.source, command.calibration);
     std::map<std::string, std::string> identity{
         {"source", live ? command.source : start.source->name()},
         {"resolution", std::to_string(command.quality.resolution_m)},
@@ -105,7 +106,7 @@ ScanStart start_scan(const PrescanCommand& command) {
                        ? std::to_string(command.frames->first) + ":" + std::to_string(command.frames->last)
                        : "all"},
         {"hold-out", std::to_string(command.hold_out)},
-        {"calibration", command.calibration.empty() ? "none" : sha256_of_file(command.calibration)},
+        {"calibration", calibration.empty() ? "none" : sha256_of_file(calibration)},
         {"into", into}};
     if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
     start.checkpoints = std::make_unique<Checkpoints>(folder, identity, every_s);

@@ -257,9 +257,14 @@ std::string describe(const Registration& registration) {
                     100.0 * registration.overlap);
       break;
     case RegistrationStatus::kContradicted:
-      std::snprintf(text.data(), text.size(),
-                    "%d views look alike, but only %.0f %% of the surface agrees; is it another room?",
-                    registration.agreeing_views, 100.0 * registration.agreement);
+      if (registration.agreeing_views > 0)
+        std::snprintf(text.data(), text.size(),
+                      "%d views look alike, but only %.0f %% of the surface agrees; is it another room?",
+                      registration.agreeing_views, 100.0 * registration.agreement);
+      else
+        std::snprintf(text.data(), text.size(),
+                      "only %.0f %% of the surface agrees; was the room rearranged?",
+                      100.0 * registration.agreement);
       break;
   }
   return text.data();

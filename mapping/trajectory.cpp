@@ -83,6 +83,30 @@ TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate
   return error;
 }
 
+std::optional<Eigen::Isometry3d> pose_alignment(const std::vector<TimedPose>& estimate,
+                                                const std::vector<TimedPose>& reference) {
+  constexpr Eigen::Index kPointsAPose = 4;
+  std::map<std::int64_t, const Eigen::Isometry3d*> T_reference_camera;
+  for (const TimedPose& pose : reference) T_reference_camera[pose.frame_index] = &pose.T_world_camera;
+  Eigen::Matrix<double, 3, kPointsAPose> points_camera = Eigen::Matrix<double, 3, kPointsAPose>::Zero();
+  points_camera.rightCols<3>().setIdentity();
+  Eigen::Matrix3Xd from(3, kPointsAPose * static_cast<Eigen::Index>(estimate.size()));
+  Eigen::Matrix3Xd to(3, from.cols());
+  Eigen::Index matched = 0;
+  for (const TimedPose& pose : estimate) {
+    const auto found = T_reference_camera.find(pose.frame_index);
+    if (found == T_reference_camera.end()) continue;
+    from.middleCols<kPointsAPose>(matched) = pose.T_world_camera * points_camera;
+    to.middleCols<kPointsAPose>(matched) = *found->second * points_camera;
+    matched += kPointsAPose;
+  }
+  if (matched == 0) return std::nullopt;
+  Eigen::Isometry3d T_reference_estimate;
+  T_reference_estimate.matrix() =
+      Eigen::umeyama(from.leftCols(matched), to.leftCols(matched), /*with_scaling=*/false);
+  return T_reference_estimate;
+}
+
 double end_gap_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference) {
   if (estimate.empty() || reference.empty()) return 0.0;
   const auto end = [](const std::vector<TimedPose>& poses) -> Eigen::Vector3d {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace roomradar {
@@ -32,6 +33,12 @@ struct TrajectoryError {
 /// `poses` is 0 where fewer than 3 match. Source: Horn 1987; Sturm et al., IROS 2012.
 TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
                                           const std::vector<TimedPose>& reference);
+
+/// T_reference_estimate that brings whole poses together, matched by frame index: the places of the camera
+/// and those a metre in front of it, beside and below it. So it holds where the camera hardly moved, or
+/// moved in a line, and positions alone would leave a rotation to noise. Nothing where no pose matches.
+std::optional<Eigen::Isometry3d> pose_alignment(const std::vector<TimedPose>& estimate,
+                                                const std::vector<TimedPose>& reference);
 
 /// How far the estimate's last position is from the reference's, m, once both begin at the same pose; 0 where
 /// one of them is empty. First and last poses of both are of the same frames.

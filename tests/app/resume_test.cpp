@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
 #include <string>
@@ -218,6 +219,40 @@ TEST_F(ResumeTest, ASourceThatIsNotThereGivesUpNothing) {
   ASSERT_TRUE(cut_off(false, [&] { return newest() > 0; }));
   EXPECT_EQ(run({"prescan", temporary_.path() / "no-such-folder", "--map", map()}), 1);
   EXPECT_GT(newest(), 0) << "a slip of the pen takes no scan away";
+}
+
+TEST_F(ResumeTest, ACapThatIsTooLowGivesUpNothing) {
+  ASSERT_TRUE(cut_off(false, [&] { return newest() > 0; }));
+  std::vector<std::string> words = scan(map(), false);
+  words.insert(words.end(), {"--max-memory", "1"});
+  EXPECT_EQ(run(words), 1);
+  EXPECT_NE(said().find("too little to begin with"), std::string::npos) << said();
+  EXPECT_GT(newest(), 0);
+}
+
+TEST_F(ResumeTest, ACalibrationThatCameMeanwhileIsAnotherScan) {
+  const fs::path recording = temporary_.path() / "recording";
+  ASSERT_EQ(run({"record", kSource, recording}), 0) << said();
+  const auto words = [&](bool resume) {
+    std::vector<std::string> all = scan(map(), resume);
+    all[1] = recording;
+    return all;
+  };
+  const pid_t child = start(words(false));
+  while (newest() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  kill(child, SIGKILL);
+  ASSERT_EQ(status_of(child), 128 + SIGKILL);
+  nlohmann::json calibration = nlohmann::json::parse(text_of(recording / "camera.json"));
+  calibration.update({{"format", "roomradar calibration"}, {"version", 1}});
+  for (const char* lens : {"depth_lens", "colour_lens"})
+    calibration[lens] = {{"k1", 0.01}, {"k2", 0}, {"p1", 0}, {"p2", 0}, {"k3", 0}};
+  calibration["depth_correction"] = {
+      {"inverse_scale", 1.0}, {"columns", 0}, {"rows", 0}, {"offset_per_m", nlohmann::json::array()}};
+  std::ofstream(recording / "calibration.json") << calibration;
+  EXPECT_EQ(run(words(true)), 1);
+  EXPECT_NE(said().find("was begun with calibration \"none\""), std::string::npos) << said();
+  fs::remove(recording / "calibration.json");
+  EXPECT_EQ(run(words(true)), 0) << said();
 }
 
 TEST_F(ResumeTest, NothingToResumeIsSaid) {

@@ -94,6 +94,38 @@ TEST(TrajectoryError, MatchesByFrameAndNeedsThree) {
   EXPECT_EQ(absolute_trajectory_error(estimate, reference).poses, 0U);
 }
 
+TEST(PoseAlignment, KnowsTheTurnOfACameraThatHardlyMoved) {
+  const Eigen::Isometry3d T_moved =
+      Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 1, 0).normalized());
+  // 5 mm back and forth, and wrong by 2 mm and 2 mrad: to positions alone any turn is as good as another.
+  std::vector<TimedPose> reference(20), estimate(20);
+  const Eigen::Matrix3d wrong = Eigen::AngleAxisd(0.002, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  for (int i = 0; i < 20; ++i) {
+    reference[i] = {i, i / 30.0, Eigen::Isometry3d(Eigen::Translation3d(1, 1 + 0.005 * (i % 2), 1.5))};
+    estimate[i] = {i, i / 30.0, T_moved * reference[i].T_world_camera};
+    estimate[i].T_world_camera.translate(0.002 * Eigen::Vector3d(i % 3 - 1, i % 5 - 2, i % 7 - 3) / 3.0);
+    estimate[i].T_world_camera.rotate(i % 2 ? wrong : wrong.transpose());
+  }
+  const auto turn_deg = [&](const Eigen::Isometry3d& T_reference_estimate) {
+    return Eigen::AngleAxisd((T_reference_estimate * T_moved).linear()).angle() * 180.0 / M_PI;
+  };
+  EXPECT_GT(turn_deg(absolute_trajectory_error(estimate, reference).T_reference_estimate), 5.0);
+  const auto T_reference_estimate = pose_alignment(estimate, reference);
+  ASSERT_TRUE(T_reference_estimate);
+  EXPECT_LT(turn_deg(*T_reference_estimate), 0.1);
+  EXPECT_LT((*T_reference_estimate * estimate[3].T_world_camera.translation() -
+             reference[3].T_world_camera.translation())
+                .norm(),
+            0.005);
+
+  estimate.resize(1);
+  const Eigen::Isometry3d T_one = reference.front().T_world_camera * estimate[0].T_world_camera.inverse();
+  EXPECT_TRUE(pose_alignment(estimate, reference)->isApprox(T_one, 1e-9));
+  estimate[0].frame_index = 99;
+  EXPECT_FALSE(pose_alignment(estimate, reference));
+  EXPECT_FALSE(pose_alignment({}, {}));
+}
+
 TEST(TrajectoryError, GapAtTheEndIsSeenFromTheFirstPose) {
   const std::vector<TimedPose> reference = random_walk(20, 4);
   const Eigen::Isometry3d T_moved =
