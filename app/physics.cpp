@@ -369,9 +369,10 @@ StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const Physic
   if (body.at_rest && is_still && stepper.is_held_up()) return report;
   stepper.wake();
 
-  const int pieces = static_cast<int>(std::ceil(dt_s / config.max_step_s - 1e-9));
+  constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two pieces of 1/60 s, not three
+  const int pieces = std::max(static_cast<int>(std::ceil(dt_s / config.max_step_s - kOver)), 1);
   for (int piece = 0; piece < pieces && !body.at_rest && !stepper.failed(); ++piece)
-    stepper.move(dt_s / std::max(pieces, 1));
+    stepper.move(dt_s / pieces);
   return report;
 }
 

@@ -156,7 +156,7 @@ struct TreeFreedom {
       return free_s >= result.free_s;
     };
     const double side_of_scene = s.normal.dot(o.corners[0] - s.corners[0]) >= 0.0 ? 1.0 : -1.0;
-    if (is_one_sided(kind) && range_along(s.normal, o.corners).low < s.normal.dot(s.corners[0])) return;
+    if (is_one_sided(kind) && range_along(s.normal, o.corners).high < s.normal.dot(s.corners[0])) return;
     const double side_of_object = o.normal.dot(s.corners[0] - o.corners[0]) >= 0.0 ? -1.0 : 1.0;
     if (is_long_enough(side_of_scene * s.normal) || is_long_enough(side_of_object * o.normal)) return;
     const auto [from, way] = shortest_way(o, s, 0.0);
@@ -167,6 +167,7 @@ struct TreeFreedom {
       free_s = 0.0;  // so near that rounding hides the plane between them
     }
     if (!(distance_m > 0.0)) return;  // they touch: how they part is for contacts to say
+    if (is_one_sided(kind) && !is_outside(-way / distance_m, s)) return;
     result.free_s = free_s;
     result.limit = {trees.T_world_frame * (from + way), trees.T_world_frame.linear() * (-way / distance_m),
                     distance_m, kind, number};

@@ -36,13 +36,13 @@ struct FreeTime {
 /// once as much was held.
 ///
 /// A surface that crosses the object has no side from which it is near: the radar's overlaps are what to ask
-/// about it. Nor do triangles of a one-sided surface (is_one_sided()) count that the object is not in front
-/// of.
+/// about it. Of a one-sided surface (is_one_sided()) nothing counts but what is near on its outside, and it
+/// is never said to cross.
 class NearField {
  public:
   /// Corners over faces and edges across edges within reach_m, at most kMostPoints of them: those that hold
-  /// up most for each direction that normals have, the nearest first. A closed object is near what it faces
-  /// only.
+  /// up most for up to four directions that normals have, the nearest first. A closed object is near what it
+  /// faces only.
   /// @param left_out  kinds that are not looked at
   /// @param points    out
   /// @return kinds of surfaces that cross the object; of a tree that does, no point is given

@@ -57,8 +57,9 @@ bool cross(const Face& a, const Face& b) {
   return false;
 }
 
-void PairPlaces::add(const Vec3& on_scene, const Vec3& normal, double gap_m) const {
+void PairPlaces::add(const Vec3& on_scene, const Vec3& normal, double gap_m, const Face& s) const {
   if (normal.isZero() || !(gap_m <= reach_m)) return;
+  if (scene_is_one_sided && !is_outside(normal, s)) return;
   found.push_back({T_world_frame * on_scene, T_world_frame.linear() * normal, gap_m, kind});
 }
 
@@ -67,7 +68,7 @@ Vec3 PairPlaces::off_scene(double height_m, const Face& o, const Face& s, const 
   // It touches: the object is where the rest of its triangle is. One that lies in the plane faces the scene.
   if (side == 0.0) side = side_of(heights.low + heights.high);
   if (side == 0.0 && object_is_closed) side = -side_of(o.normal.dot(s.normal));
-  if (side == 0.0 && scene_is_one_sided) side = 1.0;
+  if (side == 0.0) side = 1.0;
   return side * s.normal;
 }
 
@@ -93,17 +94,17 @@ bool PairPlaces::look(const FrameTriangle& object, const FrameTriangle& scene) c
   if (of_object.low > reach_m || of_object.high < -reach_m || of_scene.low > reach_m ||
       of_scene.high < -reach_m)
     return false;
-  if (scene_is_one_sided && of_object.low < -kTouching_m) return false;
+  if (scene_is_one_sided && of_object.high < -kTouching_m) return false;
   if (object_is_closed && of_scene.high < -kTouching_m) return false;
   const Face o = face_of(object), s = face_of(scene);
   if (of_object.low < 0.0 && of_object.high > 0.0 && of_scene.low < 0.0 && of_scene.high > 0.0 && cross(o, s))
-    return true;
+    return !scene_is_one_sided;
   for (std::size_t k = 0; k < 3; ++k) {
     const double h = over_scene[k], g = over_object[k];
     if (std::abs(h) <= reach_m && is_over(o.corners[k], s))
-      add(o.corners[k] - h * s.normal, off_scene(h, o, s, of_object), std::abs(h));
+      add(o.corners[k] - h * s.normal, off_scene(h, o, s, of_object), std::abs(h), s);
     if (std::abs(g) <= reach_m && !(object_is_closed && g < -kTouching_m) && is_over(s.corners[k], o))
-      add(s.corners[k], off_object(g, s.corners[k], o, of_scene), std::abs(g));
+      add(s.corners[k], off_object(g, s.corners[k], o, of_scene), std::abs(g), s);
   }
   // Seen along the scene's normal, all of the one triangle may lie on one side of an edge of the other.
   std::array<bool, 3> is_passed;  // by the scene's edges
@@ -139,11 +140,11 @@ void PairPlaces::look_at_edges(const Face& o, std::size_t i, const Face& s, std:
   if (!(gap_m <= reach_m)) return;
   if (gap_m <= kTouching_m) {  // across both, towards the rest of the object's triangle
     const Vec3 normal = u.cross(v).normalized();
-    return add(on_scene, side_of(normal.dot(o.corners[(i + 2) % 3] - a)) * normal, gap_m);
+    return add(on_scene, side_of(normal.dot(o.corners[(i + 2) % 3] - a)) * normal, gap_m, s);
   }
   // The way leaves a closed object inwards: another of its faces is nearer.
   if (object_is_closed && way.dot(o.normal) > 1e-9 * gap_m) return;
-  add(on_scene, way / gap_m, gap_m);
+  add(on_scene, way / gap_m, gap_m, s);
 }
 
 void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kept) {

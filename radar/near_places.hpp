@@ -19,6 +19,13 @@ Face face_of(const FrameTriangle& triangle);
 /// Whether an edge of the one goes through the other.
 bool cross(const Face& a, const Face& b);
 
+/// Whether a unit direction leaves a triangle on its outside, within 60 degrees of its normal: of the faces
+/// of an edge whose normals are up to 120 degrees apart one at least has each direction between them, and
+/// what slides along the inside is not taken for outside by rounding.
+inline bool is_outside(const Eigen::Vector3d& direction, const FrameTriangle& t) {
+  return direction.dot(t.normal) > 0.5 - 1e-9;
+}
+
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
 
@@ -46,8 +53,8 @@ struct PairPlaces {
   bool look(const FrameTriangle& object, const FrameTriangle& scene) const;
 
  private:
-  /// Nothing without a normal.
-  void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m) const;
+  /// Nothing without a normal, nor inside of what is met from its outside only.
+  void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m, const Face& s) const;
   /// The scene's normal on the side of an object's corner that is so high above it; zero where none can be
   /// told.
   /// @param heights  of all corners of the object's triangle

@@ -279,8 +279,14 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
     if (i + 1 < edges.size() && edges[i + 1].first == edges[i].first) continue;
     if (balance != 0) return false;
   }
-  return std::all_of(triangles.begin(), triangles.end(),
-                     [&](const Triangle& t) { return volume_m3[part_of(number[t[0]])] > 0.0; });
+  bool encloses = false;
+  for (const Triangle& t : triangles) {
+    const std::uint32_t a = number[t[0]], b = number[t[1]], c = number[t[2]];
+    if (a == b || b == c || c == a) continue;  // a point or a line bounds nothing
+    if (!(volume_m3[part_of(number[t[0]])] > 0.0)) return false;
+    encloses = true;
+  }
+  return encloses;
 }
 
 std::uint64_t next_revision() {

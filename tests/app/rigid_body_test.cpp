@@ -333,6 +333,31 @@ TEST(RigidBody, WhatStandsMoreThanHalfOverAnEdgeTipsOverIt) {
   EXPECT_NEAR(tips.T_world_object.translation().z(), 0.101, 1e-3);
 }
 
+TEST(RigidBody, TheEdgeOfWhatIsMetFromOneSideHoldsAsAnyOther) {
+  for (const Touched kind : {Touched::kStatic, Touched::kUnknownFrontier}) {
+    Stage stage(shapes::box({0.3F, 0.3F, 0.3F}));
+    stage.add(shapes::box({1.0F, 1.0F, 1.0F}), kind);
+    // Tips over the edge of its top.
+    Body body = stage.body_at({0.52, 0.0, 0.652});
+    double deepest_m = 0.0;
+    for (int frame = 0; frame < 20; ++frame)
+      deepest_m = std::max(deepest_m, stage.step(body).deepest_overlap_m);
+    EXPECT_GT(Eigen::AngleAxisd(body.T_world_object.linear()).angle(), 0.3) << static_cast<int>(kind);
+    EXPECT_EQ(deepest_m, 0.0) << static_cast<int>(kind);
+    // Thrown flat against an upright edge.
+    body = stage.body_at({0.9, 0.9, 0.0});
+    body.T_world_object.rotate(Eigen::AngleAxisd(M_PI / 4.0, Vec3::UnitZ()));
+    body.velocity_world_mps = {-4.0, -4.0, 0.0};
+    PhysicsConfig weightless;
+    weightless.gravity_world_mps2.setZero();
+    for (int frame = 0; frame < 10; ++frame) {
+      (void)stage.step(body, kFrame_s, weightless);
+      EXPECT_GT(body.T_world_object.translation().dot(Vec3(1, 1, 0).normalized()), std::sqrt(0.5) + 0.15)
+          << static_cast<int>(kind) << ' ' << frame;
+    }
+  }
+}
+
 TEST(RigidBody, PushedHighATallBoxTipsPushedLowItSlides) {
   const auto hand = [](double x_m, double z_m) {
     Mesh mesh;  // a small upright sheet that faces +x
@@ -443,6 +468,17 @@ TEST(RigidBody, SetExactlyOnAFaceItStaysThereAndIsLiftedToItsMargin) {
     EXPECT_LT(body.T_world_object.translation().head<2>().norm(), 1e-6);
     EXPECT_TRUE(body.at_rest);
   }
+}
+
+TEST(RigidBody, ASheetSetExactlyOnAFloorDoesNotFallThroughIt) {
+  Stage stage(shapes::floor(0.25F, 0.0F));
+  stage.add(shapes::floor(1.0F, 0.0F));
+  Body body = stage.body_at(Vec3::Zero());
+  for (int frame = 0; frame < 15; ++frame) {
+    (void)stage.step(body);
+    EXPECT_GE(body.T_world_object.translation().z(), 0.0) << frame;
+  }
+  EXPECT_LT(body.T_world_object.translation().norm(), 0.0015);
 }
 
 }  // namespace

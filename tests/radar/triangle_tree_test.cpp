@@ -114,6 +114,15 @@ TEST(TriangleTree, ClosedMeansEveryEdgeIsSharedAndTheVolumePositive) {
   for (Triangle& t : inside_out.triangles) std::swap(t[0], t[1]);
   tree.build_by_place(inside_out);
   EXPECT_FALSE(tree.is_closed());
+  Mesh with_a_point = box;
+  with_a_point.vertices.emplace_back(3.0F, 0.0F, 0.0F);
+  const auto point = static_cast<std::uint32_t>(with_a_point.vertices.size() - 1);
+  with_a_point.triangles.push_back({point, point, point});
+  tree.build_by_place(with_a_point);
+  EXPECT_TRUE(tree.is_closed());
+  with_a_point.triangles = {{point, point, point}};
+  tree.build_by_place(with_a_point);
+  EXPECT_FALSE(tree.is_closed());
   box.triangles.pop_back();
   tree.build_by_place(box);
   EXPECT_FALSE(tree.is_closed());
