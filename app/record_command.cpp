@@ -1,6 +1,8 @@
 // record_command.cpp: roomradar record: a source's frames as a folder that can be read again.
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "app/commands.hpp"
 #include "app/interrupt.hpp"
@@ -10,6 +12,22 @@
 
 namespace roomradar {
 
+namespace {
+
+/// The source's next frame; where it fails, what was written before is whole, and said to be there.
+ReadResult read(FrameSource& source, RecordingWriter& writer, const std::string& folder, Frame& frame) {
+  try {
+    return source.next(frame);
+  } catch (const Error& error) {
+    writer.close();
+    if (writer.frames_written() == 0) throw;
+    throw Error(std::string(error.what()) + ". The " + std::to_string(writer.frames_written()) +
+                " frames before that are whole, in " + folder);
+  }
+}
+
+}  // namespace
+
 int run(const RecordCommand& command) {
   SourceOptions options;
   options.keep_all = true;
@@ -17,19 +35,22 @@ int run(const RecordCommand& command) {
   const std::unique_ptr<FrameSource> source =
       ended_by_interrupt(open_source(command.source, command.frames, command.calibration, options));
   RecordingWriter writer(command.folder, command.format);
-  std::int64_t skipped = 0;
+  std::int64_t skipped = 0, last_index = 0;
+  std::optional<std::int64_t> first_index;
   {
     Progress progress("recording", source->frame_count());
     Frame frame;
     for (;;) {
-      const ReadResult read = source->next(frame);
-      if (read.status == ReadStatus::kEnd) break;
-      if (read.waiting) continue;
-      if (read.status == ReadStatus::kSkipped) {
+      const ReadResult result = read(*source, writer, command.folder, frame);
+      if (result.status == ReadStatus::kEnd) break;
+      if (result.waiting) continue;
+      if (result.status == ReadStatus::kSkipped) {
         ++skipped;
-        progress.step("skipped: " + read.fault);
+        progress.step("skipped: " + result.fault);
         continue;
       }
+      if (!first_index) first_index = frame.index;
+      last_index = frame.index;
       writer.write(frame);
       progress.step();
     }
@@ -39,6 +60,11 @@ int run(const RecordCommand& command) {
   std::printf("%s: %lld frames written as %s, %lld skipped\n", command.folder.c_str(),
               static_cast<long long>(writer.frames_written()), std::string(to_string(command.format)).c_str(),
               static_cast<long long>(skipped));
+  // Of a live device's frames, those that came while the disk was behind.
+  const std::int64_t lost = last_index - first_index.value_or(0) + 1 - writer.frames_written() - skipped;
+  if (!source->frame_count() && lost > 0)
+    std::printf("%lld of the device's frames in between are not in it; is the disk fast enough?\n",
+                static_cast<long long>(lost));
   return 0;
 }
 

@@ -23,7 +23,8 @@ struct NumberedFiles {
 using FilesByNumber = std::map<std::int64_t, NumberedFiles>;
 
 const std::regex& seven_scenes_name() {
-  static const std::regex pattern(R"(frame-(\d{1,9})\.(depth\.png|color\.png|color\.jpe?g|pose\.txt))");
+  static const std::regex pattern(
+      R"(frame-(\d{1,9})\.(depth\.png|color\.png|color\.jpe?g|color\.none|pose\.txt))");
   return pattern;
 }
 
@@ -42,7 +43,7 @@ bool holds_seven_scenes(const fs::path& folder) {
 }
 
 /// Frames in the order of their numbers. A frame whose colour or pose is missing while others have theirs is
-/// bad.
+/// bad; one whose colour is a file .none came without.
 std::vector<RecordedFrame> frames_of(const FilesByNumber& files, const fs::path& folder) {
   bool any_colour = false, any_pose = false;
   for (const auto& [number, file] : files) {
@@ -54,7 +55,7 @@ std::vector<RecordedFrame> frames_of(const FilesByNumber& files, const fs::path&
   for (const auto& [number, file] : files) {
     RecordedFrame frame{.stamp_s = static_cast<double>(number) / kNominalRate_hz,
                         .depth_file = file.depth,
-                        .colour_file = file.colour,
+                        .colour_file = file.colour.extension() == ".none" ? fs::path{} : file.colour,
                         .pose_file = file.pose};
     const char* missing = file.depth.empty()                  ? "depth image"
                           : any_colour && file.colour.empty() ? "colour image"

@@ -125,7 +125,7 @@ std::optional<Eigen::Vector3d> down_at(double stamp_s, const std::vector<std::ve
 /// Sends both lists through the pairing in the order of their stamps.
 void associate(const std::vector<ListedImage>& depth, const std::vector<ListedImage>& colours,
                std::vector<RecordedFrame>& frames) {
-  StampPairing pairing({});
+  StampPairing pairing({.tolerance_s = kDevicePairing.tolerance_s});  // as a device paired them
   std::size_t c = 0;
   const auto add_colours_until = [&](double stamp_s) {
     for (; c < colours.size() && colours[c].stamp_s <= stamp_s; ++c) {

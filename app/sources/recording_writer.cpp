@@ -147,7 +147,10 @@ void RecordingWriter::write_tum(const Frame& frame) {
 void RecordingWriter::write_seven_scenes(const Frame& frame) {
   const fs::path stem = folder_ / formatted("frame-%06lld", static_cast<long long>(frames_written_));
   write_depth_file(frame.depth_m, DepthEncoding::kMillimetres, stem.string() + ".depth.png");
-  if (!frame.colour.empty()) write_colour_file(frame.colour, stem.string() + ".color.png");
+  if (frame.colour.empty())
+    std::ofstream(stem.string() + ".color.none");  // tells it from an image that was lost
+  else
+    write_colour_file(frame.colour, stem.string() + ".color.png");
   const fs::path pose_file = stem.string() + ".pose.txt";
   std::ofstream pose(pose_file);
   const Eigen::Matrix4d matrix =

@@ -128,6 +128,24 @@ TEST(RecordingRoundTrip, FakenectKeepsDepthToTheRawStepColourAndGravity) {
     EXPECT_EQ(again.frames[i].depth_m.pixels, all.frames[i].depth_m.pixels);
 }
 
+TEST(RecordingRoundTrip, FramesAmongOthersThatCameWithoutColourComeBackWithout) {
+  for (const auto format : {RecordingFormat::kTum, RecordingFormat::kSevenScenes}) {
+    const TemporaryFolder folder;
+    RecordingWriter writer(folder.path(), format);
+    for (int i = 0; i < 16; ++i) {
+      Frame frame = some_frame(i);
+      frame.colour_after_depth_s = 0.025;  // as far as a device pairs
+      if (i > 2 && i < 15) frame.colour.resize(0, 0);
+      writer.write(frame);
+    }
+    writer.close();
+    const auto all = read_all(*open_folder(folder.path()));
+    ASSERT_EQ(all.frames.size(), 16U) << to_string(format);
+    for (std::size_t i = 0; i < 16; ++i)
+      EXPECT_EQ(all.frames[i].colour.empty(), i > 2 && i < 15) << to_string(format) << ' ' << i;
+  }
+}
+
 TEST(RecordingRoundTrip, FramesWithoutPoseOrColourComeBackWithout) {
   for (const auto format : {RecordingFormat::kTum, RecordingFormat::kSevenScenes}) {
     const TemporaryFolder folder;
