@@ -3,6 +3,7 @@
 #include "app/session.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -21,6 +22,11 @@ PhysicsConfig in_hand(PhysicsConfig config) {
   config.gravity_world_mps2.setZero();
   config.friction = config.restitution = 0.0;
   return config;
+}
+
+/// An object that waited for its turn for longer than one call of advance() takes is moved by several.
+int pieces_of(double waited_s, const PhysicsConfig& config) {
+  return std::max(1, static_cast<int>(std::ceil(waited_s / config.max_advance_s - 1e-9)));
 }
 
 /// On its way to where it is wanted, to be there after this frame.
@@ -322,7 +328,7 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
   for (std::size_t number = 0; number < objects_.size(); ++number) {
     VirtualObject* const object = objects_[number].get();
     if (!object->in_room) continue;
-    object->waited_s += dt_s;
+    object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // more: it stalled
     if (!object->carried_to_world && !is_turn_to_move(number)) continue;
     const double waited_s = std::exchange(object->waited_s, 0.0);
     object->in_unknown = object->in_unknown && is_in_unknown(*object);
@@ -341,13 +347,17 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
     const RadarScene radar_scene{scene, {}};
     BodyProbe probe = probe_of(radar_, near_field_, object->model->shape.touched, radar_scene, &radar_ms);
     probe.others = bodies_in(scene, *object);
-    if (object->carried_to_world) set_in_hand(*object, waited_s);
-    const StepReport moved =
-        advance(object->body, waited_s, probe,
-                object->carried_to_world ? in_hand(config_.physics) : config_.physics, push.span());
-    result.contacts += moved.contacts;
-    for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
-      result.contacts_by_kind[kind] += moved.contacts_by_kind[kind];
+    const int pieces = pieces_of(waited_s, config_.physics);
+    for (int left = pieces; left > 0; --left) {
+      const double piece_s = waited_s / pieces;
+      if (object->carried_to_world) set_in_hand(*object, left * piece_s);
+      const StepReport moved =
+          advance(object->body, piece_s, probe,
+                  object->carried_to_world ? in_hand(config_.physics) : config_.physics, push.span());
+      result.contacts += moved.contacts;
+      for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
+        result.contacts_by_kind[kind] += moved.contacts_by_kind[kind];
+    }
   }
   times.add_ms("radar", radar_ms);
 }

@@ -220,6 +220,25 @@ void go_on(Session& session, std::int64_t first, std::int64_t frames) {
   }
 }
 
+/// A pot that fell where there is no floor, for 33 frames.
+Body fallen(const SessionConfig& config) {
+  const SavedMap map = half_floor_map();
+  Session session(map, config);
+  drop_pots(session, {{1.0, 0.0, 0.0}});
+  go_on(session, 0, 34);
+  return session.objects().front()->body;
+}
+
+TEST(Session, ObjectsThatAreMovedInTurnsFallAsFastAsOthers) {
+  SessionConfig config = by_recorded_poses();
+  const Body usual = fallen(config);
+  config.object_turns = 16;
+  config.picture_turns = 2;
+  const Body in_turns = fallen(config);  // moved in frames 1 and 33
+  EXPECT_NEAR(in_turns.velocity_world_mps.z(), -9.81 * 33.0 / 30.0, 1e-9);
+  EXPECT_NEAR(in_turns.T_world_object.translation().z(), usual.T_world_object.translation().z(), 1e-6);
+}
+
 TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
   const SavedMap map = half_floor_map();
   for (const Action how : {Action::kThrow, Action::kCarry}) {
