@@ -132,6 +132,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   const double dt_s = has_last_stamp_ ? std::max(0.0, whole.stamp_s - last_stamp_s_) : 0.0;
   last_stamp_s_ = whole.stamp_s;
   has_last_stamp_ = true;
+  watch_for_colour(whole);
 
   begin(FramePart::kLocate);
   const Frame& frame = times.timed("reduce", [&]() -> const Frame& { return with_depth_reduced(whole); });

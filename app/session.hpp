@@ -176,7 +176,8 @@ class Session {
 
   std::optional<Eigen::Isometry3d> T_world_before_;  ///< of the frame before, if it was located
   std::optional<ShownView> shown_view_;
-  std::optional<ShownView> colour_view_;  ///< of the last colour
+  std::optional<ShownView> colour_view_;  ///< of the last colour, while it lasts
+  int frames_without_colour_ = 0;         ///< since the last that had any
   DepthImage real_depth_m_;               ///< as the colour camera sees it, where objects are
   ObjectLayer layer_;
   Occlusion occlusion_;
@@ -217,9 +218,11 @@ class Session {
   [[nodiscard]] bool is_in_unknown(const VirtualObject& object) const;
   double penetration_m();
   /// Sets background_ and says which camera saw it from where: the frame's colour, from where the camera was
-  /// when that was taken; where this one frame has none, the last colour there was; in a recording without
-  /// any, the depth, shaded, as the depth camera sees it.
+  /// when that was taken; where a few frames have none, the last colour there was; where there is none for
+  /// longer, the depth, shaded, as the depth camera sees it.
   ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
+  /// Where the colour has stopped, its last picture does not stand for what is there now.
+  void watch_for_colour(const Frame& frame);
   /// The picture of a frame whose place is not known.
   void show_camera_alone(const Frame& frame);
   /// Makes one shadow anew: coarsely that of the object that has turned most since its own was made, or where

@@ -41,6 +41,12 @@ Session::ShownView Session::view_of(const Frame& frame, const Eigen::Isometry3d&
   return {frame.depth_camera, T_world_camera};
 }
 
+void Session::watch_for_colour(const Frame& frame) {
+  constexpr int kLasts_frames = 15;  // half a second of a Kinect's
+  frames_without_colour_ = frame.colour.empty() ? std::min(frames_without_colour_ + 1, kLasts_frames + 1) : 0;
+  if (frames_without_colour_ > kLasts_frames) colour_view_.reset();
+}
+
 void Session::show_camera_alone(const Frame& frame) {
   shown_view_.reset();
   if (!frame.colour.empty())

@@ -78,6 +78,28 @@ TEST(Session, OneFrameWithoutColourKeepsTheLastPicture) {
   }
 }
 
+TEST(Session, ACameraWhoseColourHasStoppedShowsItsDepthUntilThereIsColourAgain) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame coloured = depth_only(0, kAtTheFloor);
+  coloured.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
+  coloured.colour.resize(320, 240, {10, 200, 30});
+  for (const bool is_located : {true, false}) {
+    static_cast<void>(session.step(coloured, times));
+    for (std::int64_t i = 1; i <= 20; ++i) {
+      const auto T_world_camera = is_located ? std::optional(kAtTheFloor) : std::nullopt;
+      static_cast<void>(session.step(depth_only(coloured.index + i, T_world_camera), times));
+      const bool lasts = i <= 15;  // half a second
+      EXPECT_EQ(session.picture().width, lasts ? 320 : 160) << "frame " << i << " located " << is_located;
+    }
+    coloured.index += 21;
+    coloured.stamp_s = static_cast<double>(coloured.index) / 30.0;
+  }
+  static_cast<void>(session.step(coloured, times));
+  EXPECT_EQ(session.picture().pixels, coloured.colour.pixels);
+}
+
 TEST(Session, WhatMovedNeedsNoColour) {
   const SavedMap map = floor_map();
   for (const bool has_colour : {false, true}) {
