@@ -118,7 +118,8 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
   }
   FrameResult result = times.timed("frame", [&] { return pass_through(frame, times); });
   if (config_.watch) static_cast<void>(config_.watch(FramePart::kDone, load()));
-  due_quality_ = {};  // of parts that were not come to
+  for (auto& due : due_quality_)  // of parts that were not come to
+    if (due) set_quality(*std::exchange(due, std::nullopt));
   if (config_.measure_penetration && result.status == FrameStatus::kDone)
     result.deepest_penetration_m = penetration_m();
   return result;

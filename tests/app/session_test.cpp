@@ -261,6 +261,18 @@ TEST(Session, ObjectsThatAreMovedInTurnsFallAsFastAsOthers) {
   EXPECT_NEAR(in_turns.T_world_object.translation().z(), usual.T_world_object.translation().z(), 1e-6);
 }
 
+TEST(Session, AQualityThatWasDueInALostFrameHoldsFromThereOn) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  ScriptEvent change = event(Action::kQuality);
+  change.quality.shadow_turns = 7;
+  change.from = FramePart::kCompose;
+  session.apply(change);
+  ASSERT_EQ(session.step(depth_only(0, std::nullopt), times).status, FrameStatus::kNotLocated);
+  EXPECT_EQ(session.config().shadow_turns, 7);
+}
+
 TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
   const SavedMap map = half_floor_map();
   for (const Action how : {Action::kThrow, Action::kCarry}) {
