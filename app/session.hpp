@@ -113,8 +113,9 @@ class Session {
 
   /// Adds, places, drops, throws, turns, carries or removes an object, or changes a policy, before the frame
   /// it is due in. A drop over "a surface in view" that has none waits for a frame that shows one, or for the
-  /// object's next event, which replaces it. Throws Error where that cannot be, and changes nothing: no such
-  /// object, two of one name, a mesh that cannot be read, a policy that does not go with another.
+  /// object's next event, which replaces it; what is not in the room is not turned. Throws Error where that
+  /// cannot be, and changes nothing: no such object, two of one name, a mesh that cannot be read, a policy
+  /// that does not go with another.
   void apply(const ScriptEvent& event);
 
   /// Where a thread has several sessions: before another one is used, or ends. Throws Error if the renderer
@@ -129,6 +130,8 @@ class Session {
   /// As it was given, but for the policies that were changed since.
   [[nodiscard]] const SessionConfig& config() const { return config_; }
   [[nodiscard]] bool unknown_is_solid() const { return unknown_is_solid_; }
+  /// Drops over a surface in view that have found none yet.
+  [[nodiscard]] const std::vector<ScriptEvent>& waiting_drops() const { return waiting_; }
   /// All that an object can touch, without itself; null: with every object in the room.
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
   /// The camera that the picture was taken with, and its pose; nothing before the first frame that was
@@ -170,7 +173,7 @@ class Session {
   Frame reduced_;                                                   ///< the frame, where its depth is reduced
   double moved_fraction_ = 0.0;
   std::int64_t frames_ = 0;           ///< that were located
-  std::vector<ScriptEvent> waiting_;  ///< drops that have found no surface yet
+  std::vector<ScriptEvent> waiting_;  ///< waiting_drops()
   double last_stamp_s_ = 0.0;
   bool has_last_stamp_ = false;
 

@@ -179,7 +179,8 @@ void Session::change_objects(const ScriptEvent& event) {
     raise_over_others(object);
     object.in_unknown = object.began_in_unknown = is_in_unknown(object);
   };
-  // Whatever is said of an object now takes the place of a drop that it waits for.
+  if (event.action == Action::kTurn && !object.in_room) return;
+  // Whatever else is said of an object now takes the place of a drop that it waits for.
   std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
   if (event.R_world_object && event.position_world)
     object.body.T_world_object.linear() = *event.R_world_object;
@@ -206,7 +207,7 @@ void Session::change_objects(const ScriptEvent& event) {
       object.R_world_put = object.body.T_world_object.linear();
       break;
     case Action::kTurn:
-      if (object.in_room) turn(object, event.turn_world_deg);
+      turn(object, event.turn_world_deg);
       break;
     case Action::kRemove:
       object.in_room = false;

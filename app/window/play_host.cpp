@@ -62,7 +62,15 @@ void PlayHost::show(std::int64_t run_frame, double run_time_s, const Frame& fram
   run_time_s_ = run_time_s;
   source_frame_ = frame.index;
   result_ = result;
+  say_if_a_drop_waits();
   publish();
+}
+
+void PlayHost::say_if_a_drop_waits() {
+  const std::string waits = session_.waiting_drops().empty() ? "" : session_.waiting_drops().back().name;
+  if (!waits.empty() && waits != said_to_wait_)
+    link_.say(waits + " waits for a level surface in view, to be dropped over it");
+  said_to_wait_ = waits;
 }
 
 void PlayHost::publish() {

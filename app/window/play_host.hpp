@@ -56,9 +56,11 @@ class PlayHost {
   double run_time_s_ = 0.0;
   FrameResult result_;
   std::string given_up_;
+  std::string said_to_wait_;  ///< object whose drop waits, since that was said
 
   /// Moves what adds an object out of the wishes, and those whose object is ready back in.
   void ready_new_objects(std::vector<Wish>& wishes);
+  void say_if_a_drop_waits();
   void publish();
 };
 

@@ -279,6 +279,19 @@ TEST_F(Hosted, AMeshThatCannotBeReadIsSaidAndThoseAfterItCome) {
   EXPECT_EQ(events[0].name, "teapot2");
 }
 
+TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
+  ScriptEvent drop;
+  drop.action = Action::kDrop;
+  drop.name = "pot";
+  session_.apply(drop);
+  frame_.T_world_camera.reset();  // nobody knows what is in view
+  result_ = session_.step(frame_, times_);
+  host_.show(0, 0.0, frame_, result_);
+  EXPECT_NE(link_.take_message().find("pot waits for a level surface"), std::string::npos);
+  host_.show(1, 0.1, frame_, result_);
+  EXPECT_EQ(link_.take_message(), "");
+}
+
 TEST(PlayLink, APausedSessionWaitsForAStepOrTheEnd) {
   PlayLink link;
   link.set_paused(true);

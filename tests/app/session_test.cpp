@@ -170,6 +170,18 @@ TEST(Session, DropWaitsForAFrameThatShowsALevelSurface) {
               0.02);  // the drop's height
 }
 
+TEST(Session, ADropThatWaitsOutlivesATurnOfWhatIsNotInTheRoom) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  let_a_drop_wait(session, times);
+  ScriptEvent turn = event(Action::kTurn);
+  turn.turn_world_deg = Eigen::Vector3d(0.0, 0.0, 30.0);
+  session.apply(turn);
+  static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
+  EXPECT_TRUE(session.objects().front()->in_room);
+}
+
 TEST(Session, RemovedObjectDoesNotComeInByADropThatWaited) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
