@@ -204,7 +204,6 @@ void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
   command.quality = recorded.quality;
   if (!is_given("--adopt")) command.adopt_after_s = recorded.adopt_after_s;
   if (!is_given("--at-end")) command.at_end = recorded.at_end;
-  command.had_picture = recorded.had_picture;
 }
 
 void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {

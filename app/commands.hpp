@@ -49,7 +49,6 @@ struct RunCommand {
   std::optional<double> budget_ms;      ///< of a frame
   std::optional<double> adopt_after_s;  ///< none: only what the script asks for, if it does
   AtEnd at_end = AtEnd::kEnd;           ///< what follows the source's last frame
-  std::optional<bool> had_picture;      ///< of a recorded session: whether it made pictures
   bool window = false;
   std::string record_session;  ///< folder for frames, events and settings; empty: none
   std::string save_map;        ///< folder for the map as it is at the end; empty: it is not saved

@@ -81,12 +81,12 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
 }
 
 /// The frames, recorded on their way or compared with what was recorded of them.
-void open_frames(OpenedRun& run, bool has_picture) {
+void open_frames(OpenedRun& run) {
   const RunCommand& command = run.command;
   std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
   run.is_live = !opened->frame_count();
   if (!command.record_session.empty()) {
-    run.recorder.emplace(command.record_session, command, has_picture, run.map.info);
+    run.recorder.emplace(command.record_session, command, run.map.info);
     opened = run.recorder->recorded(std::move(opened));
   }
   if (is_session_folder(command.source)) {
@@ -125,7 +125,6 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
   config.scene.surfaces = command.surfaces;
   apply(command.quality, config);
   config.make_picture = has_picture;
-  config.yields_to_pictures = command.had_picture;
   config.measure_penetration = !command.report.empty();
   if (run.budget)
     config.watch = [budget = run.budget.get()](FramePart part, const FrameLoad& load) {
@@ -186,7 +185,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   run.map = load_map(command.map);
   say_if_up_is_not_known(run.map.info, command.map);
   const bool has_picture = makes_picture(command, link != nullptr);
-  open_frames(run, has_picture);
+  open_frames(run);
   open_budget(run, has_picture);
   open_session(run, has_picture);
   open_outputs(run);

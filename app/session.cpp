@@ -192,10 +192,10 @@ FrameLoad Session::load() const {
 }
 
 bool Session::is_turn_to_move(std::size_t number) const {
-  const bool yields = config_.yields_to_pictures.value_or(config_.make_picture);
-  const std::int64_t pictures = yields ? config_.picture_turns : 1;
+  const std::int64_t pictures = config_.picture_turns;
   if (pictures == 1) return is_turn(number, config_.object_turns);
-  // Pictures are made in the others: no frame has both to do.
+  // Pictures are made in the others: no frame has both to do. Also where none are made, so that objects do
+  // the same with pictures and without.
   const std::int64_t frame = frames_ % pictures;
   const std::int64_t of_these = frames_ / pictures * (pictures - 1) + frame - 1;
   return frame > 0 && (of_these + static_cast<std::int64_t>(number)) % config_.object_turns == 0;

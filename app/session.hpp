@@ -46,9 +46,6 @@ struct SessionConfig {
   int shadow_turns = 1;          ///< frames from one shadow made anew in full to the next
   int picture_turns = 1;     ///< frames from one picture to the next; more than 1: objects move in the others
   bool make_picture = true;  ///< false: no drawing, only what moves the objects
-  /// Whether objects keep out of the frames that are a picture's turn; none: if pictures are made. What a run
-  /// with pictures did is repeated without them so.
-  std::optional<bool> yields_to_pictures;
   /// Called before each part of a frame, and after it; what it returns is the quality from that part on.
   /// Null: nobody asks.
   std::function<std::optional<RunQuality>(FramePart, const FrameLoad&)> watch;

@@ -77,8 +77,7 @@ void require_written(const std::ofstream& file, const fs::path& path) {
 
 }  // namespace
 
-SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, bool has_picture,
-                                 const MapInfo& map)
+SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map)
     : folder_(std::move(folder)) {
   std::error_code fault;
   fs::create_directories(folder_, fault);
@@ -95,8 +94,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, boo
                {"surfaces", to_string(command.surfaces)},
                {"unknown_is_solid", command.unknown_is_solid},
                {"quality", to_json(command.quality)},
-               {"at_end", to_string(command.at_end)},
-               {"picture", command.had_picture.value_or(has_picture)}};
+               {"at_end", to_string(command.at_end)}};
   if (command.adopt_after_s) json["adopt_s"] = *command.adopt_after_s;
   std::ofstream settings(folder_ / kSettings);
   settings << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
@@ -158,7 +156,6 @@ RunCommand read_session(const fs::path& folder) {
     command.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
     command.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
     command.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
-    if (json.contains("picture")) command.had_picture = json["picture"].get<bool>();
     if (json.contains("adopt_s")) command.adopt_after_s = adopt_seconds(json["adopt_s"], folder);
   } catch (const Json::exception& fault) {
     throw Error((folder / kSettings).string() + ": is damaged: " + fault.what());

@@ -26,10 +26,8 @@ namespace roomradar {
 class SessionRecorder {
  public:
   /// Makes the folder, or takes an empty one. Throws Error if it holds anything, or cannot be written.
-  /// @param has_picture  whether pictures are made
-  /// @param map          as it was loaded; its checksums tell later whether it is still the same
-  SessionRecorder(std::filesystem::path folder, const RunCommand& command, bool has_picture,
-                  const MapInfo& map);
+  /// @param map  as it was loaded; its checksums tell later whether it is still the same
+  SessionRecorder(std::filesystem::path folder, const RunCommand& command, const MapInfo& map);
 
   /// The source, which from now on is recorded as it is read, and can be read again.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;

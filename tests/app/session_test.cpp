@@ -273,6 +273,14 @@ TEST(Session, ObjectsThatAreMovedInTurnsFallAsFastAsOthers) {
   EXPECT_NEAR(in_turns.T_world_object.translation().z(), usual.T_world_object.translation().z(), 1e-6);
 }
 
+TEST(Session, ObjectsMoveInTheSameFramesWhereNoPicturesAreMade) {
+  SessionConfig config = by_recorded_poses();
+  config.picture_turns = 3;
+  const Body seen = fallen(config);
+  config.make_picture = false;
+  EXPECT_TRUE(fallen(config).T_world_object.isApprox(seen.T_world_object, 0.0));
+}
+
 TEST(Session, AQualityThatWasDueInALostFrameHoldsFromThereOn) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
