@@ -194,6 +194,9 @@ void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
   const auto is_given = [&](const char* name) { return sub.count(name) > 0; };
   if (is_given("--calibration"))
     throw CLI::ValidationError("--calibration: a recorded session's frames are calibrated already");
+  if (is_given("--frames"))
+    throw CLI::ValidationError(
+        "--frames: a recorded session is played from its first frame, which its events count from");
   if (is_given("--object"))
     throw CLI::ValidationError("--object: a recorded session has its own objects; --script gives it others");
   if (!is_given("--map")) command.map = recorded.map;

@@ -161,6 +161,7 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
 
   // What it was recorded with is in it, and is not to be done twice.
   expect_fault(roomradar("run " + session.string() + " --calibration c.json"), 2, "calibrated already");
+  expect_fault(roomradar("run " + session.string() + " --frames 3:9"), 2, "from its first frame");
   expect_fault(roomradar("run " + session.string() + " --object teapot"), 2, "has its own objects");
 
   // It can fail: dropped from higher up the pot is elsewhere, and that is told.
