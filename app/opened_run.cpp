@@ -57,6 +57,12 @@ bool has(const Script& script, Action action) {
                      [action](const ScriptEvent& event) { return event.action == action; });
 }
 
+Script script_of(const RunCommand& command) {
+  if (command.script.empty()) return drop_over_view(command.object);
+  const bool is_recorded = is_session_folder(std::filesystem::path(command.script).parent_path());
+  return read_script(command.script, is_recorded ? LastLine::kMayBeCut : LastLine::kWhole);
+}
+
 void require_can_save_map(const RunCommand& command, const Script& script) {
   if (command.save_map.empty()) return;
   if (!command.adopt_after_s && !has(script, Action::kAdopt))
@@ -179,7 +185,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   run.report.settings = settings_of(command);
   require_writable(command.report);
   require_writable(command.frames_csv);
-  run.script = command.script.empty() ? drop_over_view(command.object) : read_script(command.script);
+  run.script = script_of(command);
   require_can_save_map(command, run.script);
   require_budget_alone(command, run.script);
   run.map = load_map(command.map);

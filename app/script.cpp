@@ -299,7 +299,7 @@ Script parse_script(std::string_view text, std::string_view where) {
   return script;
 }
 
-Script read_script(const std::filesystem::path& path) {
+Script read_script(const std::filesystem::path& path, LastLine last_line) {
   std::error_code fault;
   if (!std::filesystem::is_regular_file(path, fault))
     throw Error(path.string() + ": no such file; --script wants a text file with one event a line");
@@ -310,6 +310,7 @@ Script read_script(const std::filesystem::path& path) {
   std::string text(static_cast<std::size_t>(bytes), '\0');
   if (!file || !file.read(text.data(), static_cast<std::streamsize>(bytes)))
     throw Error(path.string() + ": cannot be read");
+  if (last_line == LastLine::kMayBeCut) text.resize(text.rfind('\n') + 1);  // npos + 1 is 0
 
   Script script = parse_script(text, path.string());
   for (ScriptEvent& event : script.events) {

@@ -99,10 +99,13 @@ struct Script {
 /// place, drop and throw may end with `turned YAW PITCH ROLL`: degrees about z, then y, then x, each of them
 /// the axes as they were turned before. Without it an object stands as it stood last, upright at first.
 ///
+/// @param last_line  of a file that a program was writing when it was killed, a last line without its end is
+///                   not an event
 /// Throws Error "FILE:LINE: ..." with what was found and what is wanted for: an unknown word, a missing or
 /// surplus word, a number that is none, not finite or out of range, a negative frame or time, a name that was
 /// not added (or was twice), a file that cannot be read, is binary or longer than 64 MiB.
-Script read_script(const std::filesystem::path& path);
+enum class LastLine { kWhole, kMayBeCut };
+Script read_script(const std::filesystem::path& path, LastLine last_line = LastLine::kWhole);
 
 /// The same from text; `where` stands for the file's name in messages, mesh paths stay as they are.
 Script parse_script(std::string_view text, std::string_view where);

@@ -176,7 +176,7 @@ std::string map_difference(const fs::path& folder, const MapInfo& map) {
 
 ReplayCheck::ReplayCheck(const fs::path& folder) {
   std::ifstream file(folder / kResults);
-  for (std::string line; std::getline(file, line);) {
+  for (std::string line; std::getline(file, line) && !file.eof();) {  // a last line that was cut says nothing
     FrameFingerprint fingerprint;
     if (std::sscanf(line.c_str(), "%" SCNd64 " %" SCNx64 " %" SCNx64, &fingerprint.run_frame,
                     &fingerprint.objects, &fingerprint.picture) == 3)

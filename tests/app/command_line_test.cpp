@@ -191,6 +191,13 @@ TEST_F(CommandLine, ASessionThatWasCutOffReplaysToWhereItCame) {
   EXPECT_EQ(replayed.status, 0) << replayed.out;
   EXPECT_NE(replayed.out.find("replay: 11 of 11 frames the same"), std::string::npos) << replayed.out;
 
+  // As if the disk had been full: the last result that is left, and the last event, are cut within a number.
+  fs::resize_file(session / "results.txt", fs::file_size(session / "results.txt") - 21);
+  std::ofstream(session / "events.txt", std::ios::app) << "frame 12 tur";
+  const Outcome cut_again = roomradar("run " + session.string());
+  EXPECT_EQ(cut_again.status, 0) << cut_again.out;
+  EXPECT_NE(cut_again.out.find("replay: 10 of 10 frames the same"), std::string::npos) << cut_again.out;
+
   // Killed while the camera was held, and a frame past the end: it ends where the results do.
   const fs::path held = folder_ / "cut-held", script = folder_ / "held.txt";
   std::ofstream(script) << "frame 0 add pot teapot\nframe 8 camera hold\nframe 40 quit\n";

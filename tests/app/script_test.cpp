@@ -226,6 +226,14 @@ TEST_F(ScriptFile, MeshFilesAreRelativeToTheScript) {
   EXPECT_EQ(script.events[2].mesh, "teapot");
 }
 
+TEST_F(ScriptFile, ALastLineThatWasCutIsLeftOutWhereThatIsSaid) {
+  std::ofstream(folder_ / "cut.txt") << "frame 0 add pot teapot\nframe 3 drop po";
+  EXPECT_THROW((void)read_script(folder_ / "cut.txt"), Error);
+  EXPECT_EQ(read_script(folder_ / "cut.txt", LastLine::kMayBeCut).events.size(), 1U);
+  std::ofstream(folder_ / "cut.txt") << "frame 0 add po";
+  EXPECT_TRUE(read_script(folder_ / "cut.txt", LastLine::kMayBeCut).events.empty());
+}
+
 TEST_F(ScriptFile, RefusesMissingFoldersAndHugeFiles) {
   EXPECT_THROW((void)read_script(folder_ / "none.txt"), Error);
   EXPECT_THROW((void)read_script(folder_), Error);
