@@ -86,15 +86,11 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
                folder.c_str());
 }
 
-/// The frames, recorded on their way or compared with what was recorded of them.
-void open_frames(OpenedRun& run) {
+/// The frames, as they come, and what was recorded of them if that is to be compared.
+std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
   const RunCommand& command = run.command;
   std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
   run.is_live = !opened->frame_count();
-  if (!command.record_session.empty()) {
-    run.recorder.emplace(command.record_session, command, run.map.info);
-    opened = run.recorder->recorded(std::move(opened));
-  }
   if (is_session_folder(command.source)) {
     run.check.emplace(command.source);
     if (const std::string fault = map_difference(command.source, run.map.info); !fault.empty())
@@ -102,10 +98,8 @@ void open_frames(OpenedRun& run) {
   }
   // A session that was cut off has no event that ends it: it goes as far as there are results.
   if (run.check && !has(run.script, Action::kQuit)) run.last_frame = run.check->last_frame();
-  auto played = std::make_unique<PlaybackSource>(std::move(opened), command.at_end);
-  run.playback = played.get();
   run.interrupt.emplace();
-  run.source = ended_by_interrupt(std::move(played));
+  return opened;
 }
 
 void open_budget(OpenedRun& run, bool has_picture) {
@@ -139,7 +133,8 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
   if (command.adopt_after_s || has(run.script, Action::kAdopt)) {
     config.adopt.emplace();
     config.adopt->after_s = command.adopt_after_s;
-    config.adopt->wait = !run.is_live || run.recorder;  // a device does not wait, unless it is to be repeated
+    // A device does not wait, unless it is to be repeated.
+    config.adopt->wait = !run.is_live || !command.record_session.empty();
   }
   return config;
 }
@@ -158,12 +153,8 @@ void open_session(OpenedRun& run, bool has_picture) {
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
   if (run.command.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   // Objects are loaded now, so that a wrong mesh is said before the first frame and not when its turn comes.
-  // For the same reason they are recorded as added now: a user may ask for one before its turn.
-  for (const ScriptEvent& event : run.script.events) {
-    if (event.action != Action::kAdd) continue;
-    run.session->apply(event);
-    if (run.recorder) run.recorder->write(event, 0);
-  }
+  for (const ScriptEvent& event : run.script.events)
+    if (event.action == Action::kAdd) run.session->apply(event);
 }
 
 void open_outputs(OpenedRun& run) {
@@ -173,6 +164,23 @@ void open_outputs(OpenedRun& run) {
   std::error_code failed;
   std::filesystem::create_directories(command.pictures, failed);
   if (failed) throw Error(command.pictures + ": the folder cannot be made: " + failed.message());
+}
+
+/// Recorded on their way from now on, if that is wanted.
+void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
+  const RunCommand& command = run.command;
+  if (command.record_session.empty()) return;
+  run.recorder.emplace(command.record_session, command, run.map.info);
+  // As they were loaded: a user may ask for one before its turn.
+  for (const ScriptEvent& event : run.script.events)
+    if (event.action == Action::kAdd) run.recorder->write(event, 0);
+  frames = run.recorder->recorded(std::move(frames));
+}
+
+void play_frames(OpenedRun& run, std::unique_ptr<FrameSource> frames) {
+  auto played = std::make_unique<PlaybackSource>(std::move(frames), run.command.at_end);
+  run.playback = played.get();
+  run.source = ended_by_interrupt(std::move(played));
 }
 
 }  // namespace
@@ -188,14 +196,17 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   run.script = script_of(command);
   require_can_save_map(command, run.script);
   require_budget_alone(command, run.script);
+  if (!command.record_session.empty()) require_can_become_session(command.record_session);
   run.map = load_map(command.map);
   say_if_up_is_not_known(run.map.info, command.map);
   const bool has_picture = makes_picture(command, link != nullptr);
-  open_frames(run);
+  std::unique_ptr<FrameSource> frames = open_frames(run);
   open_budget(run, has_picture);
   open_session(run, has_picture);
   open_outputs(run);
   if (!command.frames_csv.empty()) run.frames_csv.emplace(command.frames_csv);
+  record_frames(run, frames);  // last: a run that cannot be opened leaves no folder in the next one's way
+  play_frames(run, std::move(frames));
   if (link != nullptr)
     run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, run.is_live);
   return opened;

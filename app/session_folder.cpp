@@ -77,14 +77,19 @@ void require_written(const std::ofstream& file, const fs::path& path) {
 
 }  // namespace
 
+void require_can_become_session(const fs::path& folder) {
+  std::error_code fault;
+  if (fs::exists(folder, fault) && (!fs::is_empty(folder, fault) || fault))
+    throw Error(folder.string() +
+                ": is not empty; a session is recorded to a folder of its own, name a new one");
+}
+
 SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map)
     : folder_(std::move(folder)) {
   std::error_code fault;
   fs::create_directories(folder_, fault);
   if (fault) throw Error(folder_.string() + ": the folder cannot be made: " + fault.message());
-  if (!fs::is_empty(folder_, fault) || fault)
-    throw Error(folder_.string() +
-                ": is not empty; a session is recorded to a folder of its own, name a new one");
+  require_can_become_session(folder_);
   Json json = {{"format", kFormat},
                {"format_version", kFormatVersion},
                {"source", command.source},

@@ -21,6 +21,9 @@
 
 namespace roomradar {
 
+/// Throws Error if there is something in the folder already.
+void require_can_become_session(const std::filesystem::path& folder);
+
 /// Writes a session while it is played. What is written is whole lines at any moment, so that a run that was
 /// killed replays to where it came.
 class SessionRecorder {

@@ -177,6 +177,17 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   EXPECT_EQ(roomradar("record " + session.string() + " " + (folder_ / "frames").string()).status, 0);
 }
 
+TEST_F(CommandLine, ARunThatCannotBeginLeavesNoSession) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path session = folder_ / "not-begun";
+  const std::string run =
+      "run 'sim:table?frames=2&width=160' --map " + map() + " --record-session " + session.string();
+  expect_fault(roomradar(run + " --object /no/such/pot.obj"), 1, "/no/such/pot.obj");
+  expect_fault(roomradar(run + " --video " + (folder_ / "film.gif").string()), 1, "film.gif");
+  EXPECT_FALSE(fs::exists(session));
+  EXPECT_EQ(roomradar(run).status, 0);
+}
+
 TEST_F(CommandLine, ASessionThatWasCutOffReplaysToWhereItCame) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const fs::path session = folder_ / "cut";
