@@ -173,7 +173,7 @@ void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
   run.recorder.emplace(command.record_session, command, run.map.info);
   // As they were loaded: a user may ask for one before its turn.
   for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kAdd) run.recorder->write(event, 0);
+    if (event.action == Action::kAdd) run.recorder->write(run.recorder->with_mesh_kept(event), 0);
   frames = run.recorder->recorded(std::move(frames));
 }
 

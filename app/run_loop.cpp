@@ -109,13 +109,14 @@ void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
   if (event.action == Action::kQuit) run_.was_quit = true;
   if (event.action == Action::kCamera) control(*run_.playback, event.camera);
   if (event.action == Action::kRadar && run_.budget) run_.budget->keep(event.radar);
-  if (event.action != Action::kAdd)
-    run_.session->apply(event);
-  else if (is_from_script)
+  if (event.action == Action::kAdd && is_from_script)
     return;  // it was added, and recorded, before the first frame
-  else
+  const ScriptEvent kept = run_.recorder ? run_.recorder->with_mesh_kept(event) : event;
+  if (event.action == Action::kAdd)
     run_.session->add_object(event.name, run_.host->take_parts());
-  if (run_.recorder) run_.recorder->write(event, run_frame_);
+  else
+    run_.session->apply(event);
+  if (run_.recorder) run_.recorder->write(kept, run_frame_);
 }
 
 void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {

@@ -118,18 +118,21 @@ std::unique_ptr<FrameSource> SessionRecorder::recorded(std::unique_ptr<FrameSour
   return SpooledSource::kept(std::move(source), folder_ / kFrames, kAhead);
 }
 
+ScriptEvent SessionRecorder::with_mesh_kept(ScriptEvent event) {
+  if (event.action != Action::kAdd || event.mesh == "teapot") return event;
+  const fs::path original = event.mesh;
+  const std::string name = "mesh-" + std::to_string(++meshes_) + original.extension().string();
+  std::error_code fault;
+  fs::create_directories(folder_ / kMeshes, fault);
+  if (!fault) fs::copy_file(original, folder_ / kMeshes / name, fault);
+  if (fault) throw Error((folder_ / kMeshes / name).string() + ": cannot be copied: " + fault.message());
+  event.mesh = std::string(kMeshes) + "/" + name;
+  return event;
+}
+
 void SessionRecorder::write(ScriptEvent event, std::int64_t run_frame) {
   event.frame = run_frame;
   event.time_s.reset();
-  if (event.action == Action::kAdd && event.mesh != "teapot") {
-    const fs::path original = event.mesh;
-    const std::string name = "mesh-" + std::to_string(++meshes_) + original.extension().string();
-    std::error_code fault;
-    fs::create_directories(folder_ / kMeshes, fault);
-    if (!fault) fs::copy_file(original, folder_ / kMeshes / name, fault);
-    if (fault) throw Error((folder_ / kMeshes / name).string() + ": cannot be copied: " + fault.message());
-    event.mesh = std::string(kMeshes) + "/" + name;
-  }
   events_ << to_line(event) << '\n' << std::flush;
   require_written(events_, folder_ / kEvents);
 }

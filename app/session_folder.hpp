@@ -34,8 +34,11 @@ class SessionRecorder {
 
   /// The source, which from now on is recorded as it is read, and can be read again.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
-  /// An event as it was applied before frame `run_frame`; the mesh file of an added object is copied. Throws
-  /// Error if the disk does not take it.
+  /// The event, naming a copy of the mesh file where it adds an object. Before it is applied: throws Error if
+  /// the file cannot be copied, and then there must be no object that the session knows nothing of.
+  ScriptEvent with_mesh_kept(ScriptEvent event);
+  /// An event, with its mesh kept, as it was applied before frame `run_frame`. Throws Error if the disk does
+  /// not take it.
   void write(ScriptEvent event, std::int64_t run_frame);
   void write(const FrameFingerprint& fingerprint);
 

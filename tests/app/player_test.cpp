@@ -5,13 +5,17 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <thread>
 
 #include "app/interrupt.hpp"
+#include "app/opened_run.hpp"
+#include "app/run_loop.hpp"
 #include "app/window/play_host.hpp"
 #include "app/window/play_link.hpp"
 #include "mapping/types/error.hpp"
 #include "tests/support/exact_depth.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roomradar {
 namespace {
@@ -290,6 +294,56 @@ TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
   EXPECT_NE(link_.take_message().find("pot waits for a level surface"), std::string::npos);
   host_.show(1, 0.1, frame_, result_);
   EXPECT_EQ(link_.take_message(), "");
+}
+
+/// While it is read a user adds what is in a mesh file, and turns it, until something was said.
+class AskedMeanwhile : public NoFrames {
+ public:
+  AskedMeanwhile(PlayLink& link, const std::string& mesh, std::string& said) : link_(link), said_(said) {
+    wish_.kind = WishKind::kNew;
+    wish_.event.mesh = mesh;
+  }
+  ReadResult next(Frame& frame) override {
+    said_ += link_.take_message();
+    if (!said_.empty()) --frames_left_;
+    if (frames_left_ == 0) return {};
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    link_.ask(wish_);
+    wish_.kind = WishKind::kTurn;
+    frame.depth_camera = kCamera;
+    frame.depth_m.resize(kCamera.width_px, kCamera.height_px, 0.0F);
+    frame.stamp_s += 0.01;
+    return {ReadStatus::kFrame, {}};
+  }
+
+ private:
+  PlayLink& link_;
+  std::string& said_;
+  Wish wish_;
+  int frames_left_ = 5;
+};
+
+TEST(RecordedRun, AnObjectWhoseMeshCannotBeKeptDoesNotComeIn) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "roof.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
+  RunCommand command;
+  command.map = folder.path() / "none";
+  OpenedRun run(command);
+  run.map = floor_map();
+  run.session = std::make_unique<Session>(run.map, SessionConfig());
+  run.recorder.emplace(folder.path() / "session", command, run.map.info);
+  std::ofstream(folder.path() / "session" / "meshes") << "where the folder of meshes should be";
+  PlayLink link;
+  std::string said;
+  auto source = std::make_unique<PlaybackSource>(
+      std::make_unique<AskedMeanwhile>(link, (folder.path() / "roof.obj").string(), said), AtEnd::kEnd);
+  run.playback = source.get();
+  run.source = std::move(source);
+  run.host.emplace(link, *run.session, *run.playback, run.report.times, run.map.mesh, /*is_live=*/true);
+  play_to_end(run);
+  EXPECT_NE(said.find("cannot be copied"), std::string::npos) << said;
+  EXPECT_TRUE(run.session->objects().empty());
+  EXPECT_NO_THROW(static_cast<void>(read_script(folder.path() / "session" / "events.txt")));
 }
 
 TEST(PlayLink, APausedSessionWaitsForAStepOrTheEnd) {
