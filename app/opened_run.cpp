@@ -90,7 +90,7 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
 std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
   const RunCommand& command = run.command;
   std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
-  run.is_live = !opened->frame_count();
+  run.is_live = !opened->rewind();  // a device has a count, too, where so many frames are asked for
   if (is_session_folder(command.source)) {
     run.check.emplace(command.source);
     if (const std::string fault = map_difference(command.source, run.map.info); !fault.empty())

@@ -29,13 +29,15 @@ ReadResult PlaybackSource::next(Frame& frame) {
     stamp_offset_s_ = was_rewound_ ? following_s : std::max(stamp_offset_s_, following_s);
   }
   was_rewound_ = was_repeated_ = false;
+  is_again_ = frame.index <= newest_index_;
+  newest_index_ = std::max(newest_index_, frame.index);
   frame.stamp_s += stamp_offset_s_;
   last_stamp_s_ = frame.stamp_s;
   return result;
 }
 
 ReadResult PlaybackSource::repeat(Frame& frame) {
-  is_repeating_ = was_repeated_ = true;
+  is_repeating_ = is_again_ = was_repeated_ = true;
   frame.stamp_s = *last_stamp_s_ + kFrame_s;
   last_stamp_s_ = frame.stamp_s;
   return {ReadStatus::kFrame, {}};

@@ -42,12 +42,16 @@ class PlaybackSource final : public FrameSource {
   [[nodiscard]] AtEnd at_end() const { return at_end_; }
   /// Whether the last frame was not a new one: held, or past the end.
   [[nodiscard]] bool is_repeating() const { return is_repeating_; }
+  /// Whether the last frame had been passed on before: repeated, or after a rewind.
+  [[nodiscard]] bool is_again() const { return is_again_; }
 
  private:
   std::unique_ptr<FrameSource> source_;
   AtEnd at_end_;
   bool is_held_ = false;
   bool is_repeating_ = false;
+  bool is_again_ = false;
+  std::int64_t newest_index_ = -1;      ///< of all that were passed on
   std::optional<double> last_stamp_s_;  ///< as it was passed on
   bool was_rewound_ = false;            ///< the next frame's stamp does not follow on the last one's
   bool was_repeated_ = false;           ///< the last frame was passed on once more

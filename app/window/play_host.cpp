@@ -20,7 +20,7 @@ ObjectParts parts_of(const ScriptEvent& add) {
 }  // namespace
 
 bool PlayHost::wait_turn(const Frame& frame) {
-  const bool in_time = !is_live_ || source_.is_repeating();
+  const bool in_time = !is_live_ || source_.is_again();
   return link_.wait_turn(frame.stamp_s, in_time, [this] {
     if (run_frame_ >= 0) publish();
   });

@@ -19,7 +19,7 @@ namespace roomradar {
 /// All of a run that only a window needs. Session, source and times must outlive it.
 class PlayHost {
  public:
-  /// @param is_live  frames come when they come; nothing waits for their stamps
+  /// @param is_live  frames come when they come, and nothing waits for their stamps but where they come again
   PlayHost(PlayLink& link, const Session& session, const PlaybackSource& source, const StageTimes& times,
            const Mesh& room, bool is_live)
       : link_(link), session_(session), source_(source), times_(times), is_live_(is_live), maker_(room) {}

@@ -97,6 +97,29 @@ TEST(PlaybackSource, TimeDoesNotGoOnTwiceWhereADevicesClockDoesWhileItsFrameIsHe
   EXPECT_NEAR(next_of(source, frame).stamp_s, 5.3, 1e-12);
 }
 
+TEST(PlaybackSource, SaysWhichFramesHadBeenThereBefore) {
+  PlaybackSource source = numbers(6, AtEnd::kStay);
+  Frame frame;
+  const auto is_again = [&] {
+    next_of(source, frame);
+    return source.is_again();
+  };
+  EXPECT_FALSE(is_again());  // 0
+  EXPECT_FALSE(is_again());  // 2
+  source.hold(true);
+  EXPECT_TRUE(is_again());
+  source.hold(false);
+  EXPECT_FALSE(is_again());  // 3
+  ASSERT_TRUE(source.rewind());
+  for (const int index : {0, 2, 3}) {
+    EXPECT_TRUE(is_again()) << index;
+    EXPECT_EQ(frame.index, index);
+  }
+  EXPECT_FALSE(is_again());  // 4
+  EXPECT_FALSE(is_again());  // 5
+  EXPECT_TRUE(is_again()) << "the last one stays";
+}
+
 TEST(PlaybackSource, NothingIsHeldBeforeThereIsAFrame) {
   PlaybackSource source = numbers(3, AtEnd::kStay);
   source.hold(true);
