@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 namespace roomradar {
 namespace {
@@ -24,6 +26,20 @@ ScriptEvent event_of(Action action, const std::string& name) {
   event.action = action;
   event.name = name;
   return event;
+}
+
+/// What is carried and let go between two frames is carried in the one, or it would stay where it is, and let
+/// go in the next: that, and what is said of the object after it, is taken out of the events.
+std::vector<ScriptEvent> take_held_back(std::vector<ScriptEvent>& events) {
+  std::set<std::string> carried, let_go;
+  std::vector<ScriptEvent> now, later;
+  for (ScriptEvent& event : events) {
+    if (event.action == Action::kCarry) carried.insert(event.name);
+    if (event.action == Action::kRelease && carried.contains(event.name)) let_go.insert(event.name);
+    (let_go.contains(event.name) ? later : now).push_back(std::move(event));
+  }
+  events = std::move(now);
+  return later;
 }
 
 }  // namespace
@@ -53,7 +69,7 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel) {
 }
 
 std::vector<ScriptEvent> Player::events_of(std::span<const Wish> wishes, const Session& session) {
-  std::vector<ScriptEvent> events;
+  std::vector<ScriptEvent> events = std::exchange(held_back_, {});
   complaint_.clear();
   choose_if_none(session);
   for (const Wish& wish : wishes) {
@@ -103,6 +119,7 @@ std::vector<ScriptEvent> Player::events_of(std::span<const Wish> wishes, const S
         break;
     }
   }
+  held_back_ = take_held_back(events);
   return events;
 }
 

@@ -25,6 +25,8 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel);
 class Player {
  public:
   /// The events, without their frame, in the order in which they are to be applied before the next frame.
+  /// Some may be of earlier wishes: of a carry and a release together, the release is held back for one
+  /// frame.
   std::vector<ScriptEvent> events_of(std::span<const Wish> wishes, const Session& session);
 
   [[nodiscard]] const std::string& chosen() const { return chosen_; }
@@ -42,6 +44,7 @@ class Player {
   std::string chosen_;
   std::optional<Grabbed> grabbed_;
   std::string complaint_;
+  std::vector<ScriptEvent> held_back_;  ///< for the next call
 
   void choose_if_none(const Session& session);
   void add(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events);

@@ -140,6 +140,24 @@ TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
   EXPECT_FALSE(pot().carried_to_world);
 }
 
+TEST_F(Playing, WhatIsDraggedAndLetGoBetweenTwoFramesIsCarriedThere) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  for (int i = 0; i < 30; ++i) step();
+  const Vec3 before = position(), way(0.2, 0.0, 0.3);
+  const std::vector<Wish> wishes = {wish(WishKind::kGrab, middle()), wish(WishKind::kDrag, middle() + way),
+                                    wish(WishKind::kLetGo, middle() + way)};
+  const std::vector<ScriptEvent> first = player_.events_of(wishes, session_);
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first[0].action, Action::kCarry);
+  session_.apply(first[0]);
+  step();
+  EXPECT_GT((position() - before).norm(), 0.2);
+  const std::vector<ScriptEvent> second = player_.events_of({}, session_);
+  ASSERT_EQ(second.size(), 1U);
+  EXPECT_EQ(second[0].action, Action::kRelease);
+  EXPECT_TRUE(player_.events_of({}, session_).empty());
+}
+
 TEST_F(Playing, RemovingAnotherObjectDoesNotLeaveTheHeldOneHanging) {
   play(wish(WishKind::kPlace, Vec3::Zero()));
   play(new_teapot());
