@@ -21,7 +21,6 @@ constexpr double kMaxCoordinate_m = 1000.0;   // farther away than any room
 constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxSpin_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
-constexpr double kMaxTurn_deg = 3600.0;
 
 template <typename Value>
 struct Word {

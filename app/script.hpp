@@ -42,6 +42,8 @@ enum class CameraPlay {
   kStay,    ///< at the end of the source its last frame is held
 };
 
+inline constexpr double kMaxTurn_deg = 3600.0;  ///< of one turn, about each axis
+
 /// One line of the file. Positions are of the object's origin, in the world (m, +z up).
 struct ScriptEvent {
   int line = 0;                       ///< in the file, from 1; 0 in a script made in code

@@ -7,15 +7,29 @@
 #include "app/interrupt.hpp"
 
 namespace roomradar {
+namespace {
+
+/// Of a mouse that moves faster than frames come, only the newest place counts, and turns add up to one.
+/// False: the next is a wish of its own.
+bool merge(Wish& last, const Wish& next) {
+  if (last.kind != next.kind) return false;
+  if (next.kind == WishKind::kDrag) {
+    last = next;
+    return true;
+  }
+  if (next.kind != WishKind::kTurn) return false;
+  const Eigen::Vector3d turn_world_deg = last.event.turn_world_deg + next.event.turn_world_deg;
+  if (turn_world_deg.cwiseAbs().maxCoeff() > kMaxTurn_deg) return false;
+  last.event.turn_world_deg = turn_world_deg;
+  return true;
+}
+
+}  // namespace
 
 void PlayLink::ask(Wish wish) {
   const std::lock_guard lock(mutex_);
   if (is_paused_ && wish.kind != WishKind::kGrab) message_ = "paused: it happens with the next frame";
-  // Of a mouse that moves faster than frames come, only the newest place counts.
-  if (wish.kind == WishKind::kDrag && !wishes_.empty() && wishes_.back().kind == WishKind::kDrag)
-    wishes_.back() = std::move(wish);
-  else
-    wishes_.push_back(std::move(wish));
+  if (wishes_.empty() || !merge(wishes_.back(), wish)) wishes_.push_back(std::move(wish));
 }
 
 void PlayLink::set_paused(bool is_paused) {

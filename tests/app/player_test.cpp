@@ -402,5 +402,27 @@ TEST(PlayLink, OfManyDragsOnlyTheNewestCountsAndTheOrderOfTheRestStays) {
   EXPECT_TRUE(link.take_wishes().empty());
 }
 
+TEST(PlayLink, TurnsBetweenTwoFramesAddUpAsFarAsAScriptCanSayThem) {
+  PlayLink link;
+  Wish turn;
+  turn.kind = WishKind::kTurn;
+  turn.event.turn_world_deg = {0.5, 0.0, -1.0};
+  for (int i = 0; i < 1000; ++i) link.ask(turn);
+  std::vector<Wish> wishes = link.take_wishes();
+  ASSERT_EQ(wishes.size(), 1U);
+  EXPECT_TRUE(wishes[0].event.turn_world_deg.isApprox(Vec3(500.0, 0.0, -1000.0)));
+  for (int i = 0; i < 5000; ++i) link.ask(turn);
+  wishes = link.take_wishes();
+  ASSERT_EQ(wishes.size(), 2U);
+  EXPECT_EQ(wishes[0].event.turn_world_deg.z(), -3600.0);
+  EXPECT_EQ(wishes[1].event.turn_world_deg.z(), -1400.0);
+  link.ask(turn);
+  Wish choose;
+  choose.kind = WishKind::kChoose;
+  link.ask(choose);
+  link.ask(turn);
+  EXPECT_EQ(link.take_wishes().size(), 3U) << "of two objects, maybe";
+}
+
 }  // namespace
 }  // namespace roomradar
