@@ -6,12 +6,12 @@
 #include <cstdio>
 
 #include "app/window/annotate.hpp"
+#include "app/window/player.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr double kDragFrom_px = 4.0;  // of the window; less is a click
-constexpr double kTurn_deg_per_px = 0.5;
 constexpr double kWheel_m = 0.04;
 
 }  // namespace
@@ -118,12 +118,8 @@ void PicturePane::turn(const Snapshot& shown) {
   if (way.x == 0.0F && way.y == 0.0F) return;
   Wish wish;
   wish.kind = WishKind::kTurn;
-  // To the side: about the vertical; up and down: about the picture's horizontal.
-  Eigen::Vector3d right = shown.view->T_world_view.linear().col(0);
-  right.z() = 0.0;
-  wish.event.turn_world_deg = kTurn_deg_per_px * static_cast<double>(way.x) * Eigen::Vector3d::UnitZ();
-  if (right.norm() > 1e-6)
-    wish.event.turn_world_deg -= kTurn_deg_per_px * static_cast<double>(way.y) * right.normalized();
+  wish.event.turn_world_deg =
+      turn_of_drag_world_deg(shown.view->T_world_view.linear(), Eigen::Vector2d(way.x, way.y));
   link_.ask(wish);
 }
 

@@ -29,7 +29,7 @@ class PicturePane {
   PlayLink& link_;
   GlTexture texture_{/*smooth=*/true};
   std::optional<Eigen::Vector2d> pixel_;
-  bool is_down_ = false, was_dragged_ = false, is_turning_ = false;
+  bool is_down_ = false, was_dragged_ = false;
   Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();  ///< of the window
   double nearer_m_ = 0.0;
   struct Sample {

@@ -68,6 +68,17 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel) {
   return pointed;
 }
 
+Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, const Eigen::Vector2d& way_px) {
+  constexpr double kTurn_deg_per_px = 0.5;
+  // A camera that looks straight down sees nothing go to the side that turns about the vertical.
+  constexpr double kLeastUpright = 0.3;
+  const Eigen::Vector3d right = R_world_view.col(0), up = -R_world_view.col(1);
+  const Eigen::Vector3d upright =
+      std::abs(up.z()) > kLeastUpright ? Eigen::Vector3d(0.0, 0.0, std::copysign(1.0, up.z())) : up;
+  // What is near lies along -z of the camera's axes: about x it goes along y, down; about -y along x, right.
+  return kTurn_deg_per_px * (way_px.x() * upright + way_px.y() * right);
+}
+
 std::vector<ScriptEvent> Player::events_of(std::span<const Wish> wishes, const Session& session) {
   std::vector<ScriptEvent> events = std::exchange(held_back_, {});
   complaint_.clear();

@@ -22,6 +22,13 @@ struct Pointed {
 /// Nothing where the camera was not located.
 Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel);
 
+/// How far to turn what a mouse is drawn over, so that the side of it that faces the camera goes with the
+/// mouse. To the side it turns about the vertical, where the picture's up is anywhere near that; else, and up
+/// and down, about the picture's own axes.
+/// @param R_world_view  camera axes: x right, y down, z forward
+/// @param way_px        of the mouse, x right, y down
+Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, const Eigen::Vector2d& way_px);
+
 class Player {
  public:
   /// The events, without their frame, in the order in which they are to be applied before the next frame.

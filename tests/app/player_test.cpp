@@ -237,6 +237,27 @@ TEST_F(Playing, PoliciesThatDoNotGoTogetherAreRefusedAndNothingChanges) {
   EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kMap);
 }
 
+TEST(TurnOfDrag, TheSideThatFacesTheCameraGoesWithTheMouse) {
+  const Vec3 target(0.0, 0.0, 0.0);
+  const Vec3 places[] = {{0.0, -2.0, 0.0}, {0.0, -1.2, 1.2}, {1.0, 1.0, -1.0}, {0.0, -0.05, 2.0}};
+  for (const Vec3& place : places)
+    for (const double roll_deg : {0.0, 30.0, 90.0, 180.0, 270.0}) {
+      const Eigen::Matrix3d R_world_view =
+          test::looking_at(place, target).linear() *
+          Eigen::AngleAxisd(roll_deg * M_PI / 180.0, Vec3::UnitZ()).toRotationMatrix();
+      const Vec3 near_world = -0.1 * R_world_view.col(2);
+      for (const Eigen::Vector2d& way_px : {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.0, 1.0)}) {
+        const Vec3 turn_world_deg = turn_of_drag_world_deg(R_world_view, way_px);
+        const Vec3 goes_view = R_world_view.transpose() * turn_world_deg.cross(near_world);
+        EXPECT_GT(goes_view.head<2>().dot(way_px), 0.01)
+            << "from " << place.transpose() << " rolled " << roll_deg << " by " << way_px.transpose();
+      }
+    }
+  // An upright object stays upright where the mouse goes to the side.
+  const Vec3 aside_deg = turn_of_drag_world_deg(kAtTheFloor.linear(), {1.0, 0.0});
+  EXPECT_TRUE(aside_deg.isApprox(0.5 * Vec3::UnitZ()));
+}
+
 /// A device that never has a frame.
 class NoFrames : public FrameSource {
  public:
