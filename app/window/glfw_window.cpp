@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "app/window/key_meant.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -50,9 +51,10 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);
-  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int, int action, int modifiers) {
-    if (action != GLFW_RELEASE)
-      static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->keys_.push_back({key, modifiers});
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+    if (action == GLFW_RELEASE) return;
+    const int meant = key_meant(key, glfwGetKeyName(key, scancode));
+    static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->keys_.push_back({meant, modifiers});
   });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
     auto& files = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->files_;

@@ -9,7 +9,7 @@ struct GLFWwindow;
 namespace roomradar {
 
 struct Key {
-  int key = 0;
+  int key = 0;        ///< as key_meant() says
   int modifiers = 0;  ///< as they were when it was pressed
 };
 

@@ -254,6 +254,7 @@ void PlayUi::press(int key, int modifiers) {
       link_.set_paused(!link_.is_paused());
       break;
     case GLFW_KEY_PERIOD:
+    case GLFW_KEY_KP_DECIMAL:
       if (!link_.is_paused()) link_.set_paused(true);
       link_.step();
       break;
@@ -315,7 +316,8 @@ void PlayUi::press(int key, int modifiers) {
     case GLFW_KEY_C:
       models_.look_at_chosen(shown_);
       break;
-    case GLFW_KEY_EQUAL:
+    case '+':
+    case GLFW_KEY_EQUAL:  // which types + with Shift
     case GLFW_KEY_KP_ADD:
       set_speed(2.0 * speed_);
       break;

@@ -24,7 +24,8 @@ class PlayUi {
   /// Takes what is new; whether there was anything.
   bool take_news();
   void draw(float width, float height);
-  /// @param key, modifiers  as GLFW names them
+  /// @param key        as key_meant() says
+  /// @param modifiers  as GLFW names them
   void press(int key, int modifiers = 0);
   /// Adds what is in a mesh file, and offers it from now on.
   void take_file(const std::string& path);

@@ -11,6 +11,7 @@
 #include "app/interrupt.hpp"
 #include "app/opened_run.hpp"
 #include "app/run_loop.hpp"
+#include "app/window/key_meant.hpp"
 #include "app/window/play_host.hpp"
 #include "app/window/play_link.hpp"
 #include "mapping/types/error.hpp"
@@ -256,6 +257,18 @@ TEST(TurnOfDrag, TheSideThatFacesTheCameraGoesWithTheMouse) {
   // An upright object stays upright where the mouse goes to the side.
   const Vec3 aside_deg = turn_of_drag_world_deg(kAtTheFloor.linear(), {1.0, 0.0});
   EXPECT_TRUE(aside_deg.isApprox(0.5 * Vec3::UnitZ()));
+}
+
+TEST(KeyMeant, IsWhatTheKeyTypesWhereThatIsOneLetterOrSign) {
+  constexpr int kOfA = 'A', kOfMinus = '-', kOfSlash = '/', kHome = 268, kOfKeypadPlus = 334;
+  EXPECT_EQ(key_meant(kOfA, "a"), 'A');
+  EXPECT_EQ(key_meant(kOfA, "q"), 'Q') << "a French keyboard";
+  EXPECT_EQ(key_meant(kOfSlash, "-"), '-') << "a German keyboard";
+  EXPECT_EQ(key_meant(kOfMinus, "ß"), kOfMinus);
+  EXPECT_EQ(key_meant(kOfA, "ф"), kOfA) << "a Russian keyboard";
+  EXPECT_EQ(key_meant(kOfA, nullptr), kOfA);
+  EXPECT_EQ(key_meant(kHome, nullptr), kHome);
+  EXPECT_EQ(key_meant(kOfKeypadPlus, "+"), kOfKeypadPlus);
 }
 
 /// A device that never has a frame.

@@ -32,7 +32,7 @@ shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$
 
 "$program" prescan 'sim:table?frames=40&width=160' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 || fail prescan
 
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp 3> "$work/display" > /dev/null 2>&1 &
+Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp -noreset 3> "$work/display" > /dev/null 2>&1 &
 for _ in $(seq 100); do [[ -s $work/display ]] && break; sleep 0.1; done
 DISPLAY=:$(cat "$work/display")
 export DISPLAY
@@ -173,7 +173,8 @@ play_again() {
 play_again 20
 
 if command -v fakenect > /dev/null; then
-  echo "== a Kinect's driver, with fakenect in the device's place"
+  echo "== a Kinect's driver, with fakenect in the device's place, and a French keyboard, whose Q is where A is"
+  setxkbmap fr || echo "no French keyboard: setxkbmap is not installed (package x11-xkb-utils)"
   "$program" record 'sim:table?frames=15&path=view&seed=2' "$work/kinect" --format fakenect > "$work/log" 2>&1 || fail record
   rm -r "$work/map" "$work/session"
   "$program" prescan 'sim:table?frames=20&width=320&path=view&seed=2' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 ||
