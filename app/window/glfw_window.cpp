@@ -54,7 +54,8 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {
     if (action == GLFW_RELEASE) return;
     const int meant = key_meant(key, glfwGetKeyName(key, scancode));
-    static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->keys_.push_back({meant, modifiers});
+    static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))
+        ->keys_.push_back({meant, modifiers, action == GLFW_REPEAT});
   });
   glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
     auto& files = static_cast<GlfwWindow*>(glfwGetWindowUserPointer(window))->files_;

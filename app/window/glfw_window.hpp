@@ -9,8 +9,9 @@ struct GLFWwindow;
 namespace roomradar {
 
 struct Key {
-  int key = 0;        ///< as key_meant() says
-  int modifiers = 0;  ///< as they were when it was pressed
+  int key = 0;             ///< as key_meant() says
+  int modifiers = 0;       ///< as they were when it was pressed
+  bool is_repeat = false;  ///< it has been held down for a while
 };
 
 /// GLFW's window with a current context. Keys that are pressed in it, and files that are dropped onto it, are

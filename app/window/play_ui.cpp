@@ -247,6 +247,22 @@ void PlayUi::set_speed(double speed) {
   link_.set_speed(speed_);
 }
 
+bool PlayUi::repeats(int key) {
+  switch (key) {
+    case GLFW_KEY_PERIOD:
+    case GLFW_KEY_KP_DECIMAL:
+    case GLFW_KEY_TAB:
+    case '+':
+    case GLFW_KEY_EQUAL:
+    case GLFW_KEY_KP_ADD:
+    case GLFW_KEY_MINUS:
+    case GLFW_KEY_KP_SUBTRACT:
+      return true;
+    default:
+      return false;
+  }
+}
+
 void PlayUi::press(int key, int modifiers) {
   Wish wish;
   switch (key) {

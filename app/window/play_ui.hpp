@@ -27,6 +27,8 @@ class PlayUi {
   /// @param key        as key_meant() says
   /// @param modifiers  as GLFW names them
   void press(int key, int modifiers = 0);
+  /// Whether a key that is held down acts again and again.
+  static bool repeats(int key);
   /// Adds what is in a mesh file, and offers it from now on.
   void take_file(const std::string& path);
   [[nodiscard]] bool wants_to_quit() const { return quits_; }

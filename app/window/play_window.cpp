@@ -64,7 +64,8 @@ void show(GlfwWindow& window, PlayLink& link, const std::vector<std::string>& me
     ImGui::NewFrame();
     const std::vector<Key> keys = window.take_keys();
     if (!ImGui::GetIO().WantTextInput)
-      for (const Key& key : keys) ui.press(key.key, key.modifiers);
+      for (const Key& key : keys)
+        if (!key.is_repeat || PlayUi::repeats(key.key)) ui.press(key.key, key.modifiers);
     for (const std::string& file : window.take_files()) ui.take_file(file);
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     ui.draw(size.x, size.y);

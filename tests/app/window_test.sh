@@ -76,6 +76,16 @@ xdotool key Delete
 until_true has_event ' remove teapot$'
 settle
 
+echo "== a key that is held down acts once"
+before=$(grep -c ' unknown ' "$work/session/events.txt")
+xdotool keydown u
+sleep 1.5
+xdotool keyup u
+settle
+[[ $(grep -c ' unknown ' "$work/session/events.txt") == $((before + 1)) ]] || fail "a key that was held down acted again"
+xdotool key u
+settle
+
 echo "== drag, throw, turn"
 xdotool key Tab
 xdotool mousemove 494 330
