@@ -61,7 +61,7 @@ int run(const RunCommand& command) {
   if (!command.window) return run_frames(command, nullptr);
   std::vector<std::string> meshes;
   if (command.object != "teapot") meshes.push_back(command.object);
-  return run_in_window("roomradar - " + command.source, meshes,
+  return run_in_window("roomradar - " + command.source, meshes, command.budget_ms,
                        [&](PlayLink& link) { return run_frames(command, &link); });
 }
 

@@ -40,8 +40,9 @@ constexpr std::array<std::array<const char*, 2>, 21> kHelp = {
 
 }  // namespace
 
-PlayUi::PlayUi(PlayLink& link, const look::Fonts& fonts, const std::vector<std::string>& meshes)
-    : link_(link), fonts_(fonts), picture_(link) {
+PlayUi::PlayUi(PlayLink& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
+               std::optional<double> budget_ms)
+    : link_(link), fonts_(fonts), picture_(link), timing_(budget_ms) {
   settings_.meshes = {"teapot"};
   settings_.meshes.insert(settings_.meshes.end(), meshes.begin(), meshes.end());
 }
@@ -171,17 +172,18 @@ void PlayUi::draw_budget(const Area& area) {
                   frames_per_s_, speed_);
   const float left = area.width - look::px(182.0F), top = area.y + look::px(10.0F), width = look::px(168.0F);
   draw->AddText(fonts_.small, fonts_.small->FontSize, {left, top}, look::kText, text.data());
-  // How much of the budget the frame takes.
+  // How much of the budget the frame takes, and how much of it the goal is.
   const float bar_y = top + look::px(19.0F), bar_height = look::px(6.0F), rounding = look::px(3.0F);
-  const float part = std::min(frame_ms / static_cast<float>(kBudget_ms), 1.0F);
-  const ImU32 colour = frame_ms <= static_cast<float>(kGoal_ms)     ? look::kGood
-                       : frame_ms <= static_cast<float>(kBudget_ms) ? look::kWarn
-                                                                    : look::kBad;
+  const float budget_ms = static_cast<float>(timing_.budget_ms());
+  const float goal_ms = static_cast<float>(timing_.goal_ms());
+  const float part = std::min(frame_ms / budget_ms, 1.0F);
+  const ImU32 colour = frame_ms <= goal_ms ? look::kGood : frame_ms <= budget_ms ? look::kWarn : look::kBad;
   draw->AddRectFilled({left, bar_y}, {left + width, bar_y + bar_height}, look::kRaised, rounding);
   draw->AddRectFilled({left, bar_y}, {left + std::max(part * width, bar_height), bar_y + bar_height}, colour,
                       rounding);
-  draw->AddLine({left + 0.5F * width, bar_y - look::px(2.0F)}, {left + 0.5F * width, bar_y + look::px(8.0F)},
-                look::kDim, look::px(1.0F));
+  const float goal_x = left + goal_ms / budget_ms * width;
+  draw->AddLine({goal_x, bar_y - look::px(2.0F)}, {goal_x, bar_y + look::px(8.0F)}, look::kDim,
+                look::px(1.0F));
 }
 
 void PlayUi::draw_message(const Area& area) {

@@ -1,6 +1,7 @@
 // play_ui.hpp: all that is seen in the window, and what its keys do.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,10 @@ namespace roomradar {
 /// Within Dear ImGui's frames, on the window's thread.
 class PlayUi {
  public:
-  /// @param meshes  files that can be added beside the built-in teapot
-  PlayUi(PlayLink& link, const look::Fonts& fonts, const std::vector<std::string>& meshes);
+  /// @param meshes     files that can be added beside the built-in teapot
+  /// @param budget_ms  of a frame, where it is held to one
+  PlayUi(PlayLink& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
+         std::optional<double> budget_ms);
 
   /// Takes what is new; whether there was anything.
   bool take_news();

@@ -51,9 +51,10 @@ struct ImGuiOfWindow {
 
 /// Draws when something has happened, and some frames more, since Dear ImGui answers a frame late; else
 /// seldom.
-void show(GlfwWindow& window, PlayLink& link, const std::vector<std::string>& meshes) {
+void show(GlfwWindow& window, PlayLink& link, const std::vector<std::string>& meshes,
+          std::optional<double> budget_ms) {
   const ImGuiOfWindow imgui(window.get());
-  PlayUi ui(link, imgui.fonts, meshes);
+  PlayUi ui(link, imgui.fonts, meshes, budget_ms);
   constexpr double kLeastFrame_s = 1.0 / 60.0, kIdle_s = 0.25;
   while (glfwWindowShouldClose(window.get()) == GLFW_FALSE && !ui.wants_to_quit()) {
     glfwWaitEventsTimeout(kIdle_s);
@@ -86,7 +87,7 @@ void show(GlfwWindow& window, PlayLink& link, const std::vector<std::string>& me
 }  // namespace
 
 int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
-                  const std::function<int(PlayLink&)>& work) {
+                  std::optional<double> budget_ms, const std::function<int(PlayLink&)>& work) {
   GlfwWindow window(title);
   PlayLink link([] { glfwPostEmptyEvent(); });
   int status = 0;
@@ -101,7 +102,7 @@ int run_in_window(const std::string& title, const std::vector<std::string>& mesh
     link.finish();
   });
   try {
-    show(window, link, meshes);
+    show(window, link, meshes, budget_ms);
   } catch (...) {
     link.close();
     session.join();

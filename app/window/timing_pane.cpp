@@ -55,7 +55,7 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float legend = look::px(128.0F), beside = look::px(14.0F);
   const float width = std::max(room.x - legend - beside, look::px(20.0F)), height = room.y - look::px(4.0F);
-  float top_ms = 40.0F;
+  float top_ms = 1.2F * static_cast<float>(budget_ms_);
   std::vector<float> values;
   for (const Times& times : frames_) values.push_back(times.whole_ms);
   const float median_ms = median(values);
@@ -77,19 +77,18 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
   const struct {
     double ms;
     ImU32 colour;
-    const char* text;
-  } lines[] = {{kGoal_ms, IM_COL32(96, 200, 120, 200), "16.6 ms"},
-               {kBudget_ms, IM_COL32(240, 178, 74, 200), "33 ms"}};
+  } lines[] = {{goal_ms(), IM_COL32(96, 200, 120, 200)}, {budget_ms_, IM_COL32(240, 178, 74, 200)}};
+  std::array<char, 32> number{};
   for (const auto& line : lines) {
+    std::snprintf(number.data(), number.size(), "%.3g ms", line.ms);
     const float y = y_of(static_cast<float>(line.ms));
     draw->AddLine({from.x, y}, {from.x + width, y}, line.colour, look::px(1.0F));
     draw->AddText(fonts.small, fonts.small->FontSize, {from.x + look::px(5.0F), y - look::px(15.0F)},
-                  line.colour, line.text);
+                  line.colour, number.data());
   }
 
   const float left = from.x + width + beside;
   const float step = std::min(height / static_cast<float>(kStages.size() + 2), look::px(17.0F));
-  std::array<char, 32> number{};
   const auto row = [&](std::size_t at, ImU32 colour, const char* name, float ms, bool is_stage) {
     const float y = from.y + step * static_cast<float>(at);
     if (is_stage)

@@ -1,7 +1,9 @@
 // timing_pane.hpp: how long each stage of the last frames took, against the budget.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,14 +13,19 @@
 
 namespace roomradar {
 
-inline constexpr double kBudget_ms = 33.3;  ///< of a frame at the Kinect's rate
-inline constexpr double kGoal_ms = 16.6;    ///< of a frame at 60 Hz
+inline constexpr double kGoal_ms = 16.6;  ///< of a frame at 60 Hz
 
 class TimingPane {
  public:
+  /// @param budget_ms  what is held to; none: of a frame at the Kinect's rate
+  explicit TimingPane(std::optional<double> budget_ms) : budget_ms_(budget_ms.value_or(33.3)) {}
+
   void add(const Snapshot& shown);
   void draw(const Area& area, const look::Fonts& fonts) const;
 
+  [[nodiscard]] double budget_ms() const { return budget_ms_; }
+  /// No more than the budget.
+  [[nodiscard]] double goal_ms() const { return std::min(kGoal_ms, budget_ms_); }
   /// Of the last frame, all but reading it.
   [[nodiscard]] float frame_ms() const { return frames_.empty() ? 0.0F : frames_.back().whole_ms; }
 
@@ -33,6 +40,7 @@ class TimingPane {
     float read_ms = 0.0F;
   };
   static constexpr std::size_t kKept = 240;
+  double budget_ms_;
   std::vector<Times> frames_;  ///< oldest first
 };
 
