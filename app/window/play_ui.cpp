@@ -36,7 +36,7 @@ constexpr std::array<std::array<const char*, 2>, 21> kHelp = {
      {"X", "radar exact, sampled"},
      {"V", "camera, models, both"},
      {"C", "models: look at the chosen object"},
-     {"Esc", "close this; Ctrl + Q quits"}}};
+     {"Esc, a click", "close this; Ctrl + Q quits"}}};
 
 }  // namespace
 
@@ -203,6 +203,15 @@ void PlayUi::draw_help(float width, float height) {
   ImDrawList* draw = ImGui::GetForegroundDrawList();
   draw->AddRectFilled({0.0F, 0.0F}, {width, height}, IM_COL32(8, 10, 13, 150));
   const float left = 0.5F * (width - wide), top = 0.5F * (height - tall);
+  // Over all panes, which stay behind: a click goes to nothing else.
+  ImGui::SetNextWindowPos({0.0F, 0.0F});
+  ImGui::SetNextWindowSize({width, height});
+  ImGui::Begin("help", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground);
+  ImGui::SetCursorScreenPos({0.0F, 0.0F});
+  if (ImGui::InvisibleButton("close", {width, height})) shows_help_ = false;
+  ImGui::End();
   draw->AddRectFilled({left, top}, {left + wide, top + tall}, look::kRaised, look::px(10.0F));
   draw->AddText(fonts_.large, fonts_.large->FontSize, {left + look::px(24.0F), top + look::px(18.0F)},
                 look::kText, "Mouse and keys");

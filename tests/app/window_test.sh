@@ -164,6 +164,19 @@ xdotool key v h
 sleep 1
 shot help
 
+echo "== a click closes the help, and does nothing else"
+before=$(wc -l < "$work/session/events.txt")
+xdotool mousemove 494 330 click 1
+sleep 1
+settle
+[[ $(wc -l < "$work/session/events.txt") == "$before" ]] || fail "a click went through the help"
+has_dropped() {  # keys act at the mouse again
+  xdotool key d
+  sleep 0.3
+  tail -n "+$((before + 1))" "$work/session/events.txt" | grep -q ' drop object at '
+}
+until_true has_dropped
+
 echo "== quit, and play it again without a window"
 xdotool key Escape
 xdotool key ctrl+q
