@@ -319,15 +319,15 @@ Tracking resume(Locator& locator, const Frame& frame, const Places& places,
 
 /// What was followed into a place that the depth speaks against for some frames is searched for; what is not
 /// found then is lost, unless a good part of the view still fits: things may have been taken away. From where
-/// it was to another place there was no motion.
-void doubt(Locator& locator, const Frame& frame, const Places& places, const ExpectedDepth& expected_depth,
+/// it was to another place there was no motion. False: all of the map was searched, and it is lost.
+bool doubt(Locator& locator, const Frame& frame, const Places& places, const ExpectedDepth& expected_depth,
            Tracking& tracking) {
   constexpr double kMinAlike = 0.3, kMaxFarther = 0.25, kHopeless = 0.3;
   constexpr int kPatience_frames = 3, kSure_frames = 30;
   const Evidence evidence = evidence_of(frame.depth_m, expected_depth(tracking.T_world_camera));
   const bool is_doubtful = evidence.alike_part() < kMinAlike || evidence.farther_part() > kMaxFarther;
   locator.doubtful_frames = is_doubtful ? locator.doubtful_frames + 1 : 0;
-  if (locator.doubtful_frames < kPatience_frames || --locator.sure_until > 0) return;
+  if (locator.doubtful_frames < kPatience_frames || --locator.sure_until > 0) return true;
   look_at_all(locator);
   const Tracking found = search(locator, frame, places, expected_depth);
   if (is_located(found)) {
@@ -336,14 +336,15 @@ void doubt(Locator& locator, const Frame& frame, const Places& places, const Exp
     if (is_elsewhere) {
       locator.T_world_camera.reset();
       locator.doubtful_frames = locator.sure_until = 0;
-      return;
+      return true;
     }
   } else if (evidence.alike_part() < kHopeless) {
     tracking = {};
-    return;
+    return false;
   }
   locator.sure_until = kSure_frames;
   expected_depth(tracking.T_world_camera);
+  return true;
 }
 
 }  // namespace
@@ -368,9 +369,10 @@ Tracking locate(Locator& locator, const Frame& frame, const Places& places, cons
   make_live(locator.live_pyramid, locator.live, moved_mask, kLiveStep_px);
 
   Tracking tracking;
+  bool may_be_found = true;  // by a search; one a frame is enough
   if (locator.T_world_camera) {
     tracking = follow(locator, frame, expected_depth);
-    if (is_located(tracking)) doubt(locator, frame, places, expected_depth, tracking);
+    if (is_located(tracking)) may_be_found = doubt(locator, frame, places, expected_depth, tracking);
     if (!is_located(tracking)) {
       locator.T_world_lost = locator.T_world_camera;
       locator.T_world_camera.reset();
@@ -380,7 +382,7 @@ Tracking locate(Locator& locator, const Frame& frame, const Places& places, cons
   if (!is_located(tracking)) {
     look_at_all(locator);
     tracking = resume(locator, frame, places, expected_depth);
-    if (!is_located(tracking)) tracking = search(locator, frame, places, expected_depth);
+    if (!is_located(tracking) && may_be_found) tracking = search(locator, frame, places, expected_depth);
   }
 
   if (!is_located(tracking)) {
