@@ -214,8 +214,8 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   sub->add_option(
          "SOURCE", command.source,
          std::string(kSourceHelp) +
-             ",\nor a session that was recorded by --record-session: it is played again, with its own\n"
-             "settings where none are given")
+             ",\nor a session that was recorded by --record-session: it is played again from its\n"
+             "first frame on, with its own settings where none are given")
       ->required();
   sub->add_option("--map", command.map, "the saved map; it is only read")->type_name("DIR");
   add_choice(*sub, "--poses", command.poses, kPoses,

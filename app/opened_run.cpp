@@ -59,8 +59,8 @@ bool has(const Script& script, Action action) {
 
 Script script_of(const RunCommand& command) {
   if (command.script.empty()) return drop_over_view(command.object);
-  const bool is_recorded = is_session_folder(std::filesystem::path(command.script).parent_path());
-  return read_script(command.script, is_recorded ? LastLine::kMayBeCut : LastLine::kWhole);
+  return read_script(command.script,
+                     is_session_events(command.script) ? LastLine::kMayBeCut : LastLine::kWhole);
 }
 
 void require_can_save_map(const RunCommand& command, const Script& script) {

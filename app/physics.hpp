@@ -42,7 +42,7 @@ struct PhysicsConfig {
   /// Gap kept to a surface, on top of what the radar's lower bound keeps where it is not exact: a body that
   /// touches could not tell resting from overlap.
   double contact_margin_m = 0.001;
-  double max_step_s = 1.0 / 60.0;  ///< a step longer by a 20th is cut into such pieces
+  double max_step_s = 1.0 / 60.0;  ///< a step longer by more than a 20th of it is cut into such pieces
   /// Time past this in one call is dropped (a stalled camera must not launch things).
   double max_advance_s = 0.5;
   int max_slides = 16;  ///< times that a piece of a step may be stopped; what is left of it then is dropped

@@ -103,18 +103,6 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
 
 constexpr double kMB = 1e6;
 
-constexpr double kToTrack_bytes = 60e6, kToOpen_bytes = 20e6;
-
-/// Throws Error if the scan cannot even begin under the cap with so much more memory than now.
-void require_can_begin(const PrescanConfig& config, double least_bytes) {
-  const auto cap_bytes = static_cast<double>(config.max_memory_bytes);
-  const auto now_bytes = static_cast<double>(resident_bytes());
-  if (cap_bytes > 0.0 && now_bytes + least_bytes > cap_bytes)
-    throw Error("--max-memory " + std::to_string(std::llround(cap_bytes / kMB)) +
-                ": is too little to begin with; give at least " +
-                std::to_string(std::llround((now_bytes + least_bytes) / kMB) + 1));
-}
-
 /// Says what the scan will take, before it begins.
 void announce_memory(FrameSource& source, const PrescanConfig& config, Report& report) {
   const auto cap_bytes = static_cast<double>(config.max_memory_bytes);
@@ -198,7 +186,6 @@ int run(const PrescanCommand& command) {
   config.remove_ghosts = command.poses == PoseOrigin::kTracked;
   require_can_become_map(command.map);
   require_writable(command.report);
-  require_can_begin(config, kToOpen_bytes + kToTrack_bytes);  // before a scan that was cut off is given up
   ScanStart start = start_scan(command);
   if (start.is_done) {
     std::printf("%s: holds %s already; there is nothing to resume\n", command.map.c_str(),
@@ -215,7 +202,6 @@ int run(const PrescanCommand& command) {
                    config.resolution_m);
     report.settings["resolution_m"] = config.resolution_m;
   }
-  if (start.map) require_can_begin(config, kToTrack_bytes);
   announce_memory(*source, config, report);
 
   std::unique_ptr<Progress> progress;

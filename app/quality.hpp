@@ -98,10 +98,10 @@ void visit_fields(Quality& quality, Visit&& visit) {
                    "not depend on it",
                    1, 4096},
       quality.radar_px);
-  visit(
-      QualityField{"physics_step_s", "--physics-step", "S",
-                   "longest piece of time that an object is moved by at once, seconds (0.0167)", 0.001, 0.5},
-      quality.physics_step_s);
+  visit(QualityField{"physics_step_s", "--physics-step", "S",
+                     "about the longest piece of time that an object is moved by at once, seconds (0.0167)",
+                     0.001, 0.5},
+        quality.physics_step_s);
   visit(QualityField{"object_turns", "--object-turns", "N",
                      "an object is moved every Nth frame, then by all of the time since (1)", 1, 16},
         quality.object_turns);

@@ -34,8 +34,9 @@ int run(const RecordCommand& command) {
   const Interrupt interrupt;
   const std::unique_ptr<FrameSource> source =
       ended_by_interrupt(open_source(command.source, command.frames, command.calibration, options));
+  const bool is_live = !source->rewind();
   RecordingWriter writer(command.folder, command.format);
-  std::int64_t skipped = 0, last_index = 0;
+  std::int64_t skipped = 0, skipped_between = 0, lost = 0;
   std::optional<std::int64_t> first_index;
   {
     Progress progress("recording", source->frame_count());
@@ -46,11 +47,12 @@ int run(const RecordCommand& command) {
       if (result.waiting) continue;
       if (result.status == ReadStatus::kSkipped) {
         ++skipped;
+        if (first_index) ++skipped_between;
         progress.step("skipped: " + result.fault);
         continue;
       }
       if (!first_index) first_index = frame.index;
-      last_index = frame.index;
+      lost = frame.index - *first_index - writer.frames_written() - skipped_between;
       writer.write(frame);
       progress.step();
     }
@@ -60,9 +62,7 @@ int run(const RecordCommand& command) {
   std::printf("%s: %lld frames written as %s, %lld skipped\n", command.folder.c_str(),
               static_cast<long long>(writer.frames_written()), std::string(to_string(command.format)).c_str(),
               static_cast<long long>(skipped));
-  // Of a live device's frames, those that came while the disk was behind.
-  const std::int64_t lost = last_index - first_index.value_or(0) + 1 - writer.frames_written() - skipped;
-  if (!source->frame_count() && lost > 0)
+  if (is_live && lost > 0)  // they came while the disk was behind
     std::printf("%lld of the device's frames in between are not in it; is the disk fast enough?\n",
                 static_cast<long long>(lost));
   return 0;

@@ -76,6 +76,9 @@ struct Script {
   std::vector<ScriptEvent> events;
 };
 
+/// Whether a last line without its end is an event, or what a program wrote when it was killed.
+enum class LastLine { kWhole, kMayBeCut };
+
 /// Reads an events file. One event a line, words between blanks, # begins a comment:
 ///
 ///     frame 0    add pot teapot size 0.2
@@ -106,7 +109,6 @@ struct Script {
 /// Throws Error "FILE:LINE: ..." with what was found and what is wanted for: an unknown word, a missing or
 /// surplus word, a number that is none, not finite or out of range, a negative frame or time, a name that was
 /// not added (or was twice), a file that cannot be read, is binary or longer than 64 MiB.
-enum class LastLine { kWhole, kMayBeCut };
 Script read_script(const std::filesystem::path& path, LastLine last_line = LastLine::kWhole);
 
 /// The same from text; `where` stands for the file's name in messages, mesh paths stay as they are.

@@ -150,6 +150,10 @@ bool is_session_folder(const fs::path& folder) {
   return fs::is_regular_file(folder / kSettings, fault);
 }
 
+bool is_session_events(const fs::path& file) {
+  return file.filename() == kEvents && is_session_folder(file.parent_path());
+}
+
 RunCommand read_session(const fs::path& folder) {
   const Json json = read_settings(folder);
   RunCommand command;

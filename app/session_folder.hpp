@@ -50,6 +50,8 @@ class SessionRecorder {
 
 /// Whether a folder holds a recorded session.
 bool is_session_folder(const std::filesystem::path& folder);
+/// Whether a file is the events of such a folder.
+bool is_session_events(const std::filesystem::path& file);
 
 /// The command that was recorded: source (the folder itself), map, script, and the settings that a session's
 /// results depend on. Throws Error naming the file and the fault.

@@ -1,6 +1,7 @@
 // unfinished_scan.cpp: what lies at the map's place and beside it decides how a prescan begins.
 #include "app/unfinished_scan.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -10,6 +11,7 @@
 #include "app/interrupt.hpp"
 #include "app/open_source.hpp"
 #include "app/sources/spooled_source.hpp"
+#include "mapping/memory_use.hpp"
 #include "mapping/sha256.hpp"
 #include "mapping/types/error.hpp"
 
@@ -30,6 +32,15 @@ void require_no_live_scan(const fs::path& folder) {
   throw Error(folder.string() +
               ": holds a live scan that was cut off; go on with it by --resume, or delete "
               "the folder to begin anew");
+}
+
+/// Throws Error if the scan cannot even begin under the cap.
+void require_memory_to_begin(double cap_mb) {
+  constexpr double kMB = 1e6, kToTrack_mb = 60.0;
+  const double least_mb = static_cast<double>(resident_bytes()) / kMB + kToTrack_mb;
+  if (!(cap_mb > 0.0) || least_mb <= cap_mb) return;
+  throw Error("--max-memory " + std::to_string(std::llround(cap_mb)) +
+              ": is too little to begin with; give at least " + std::to_string(std::llround(least_mb) + 1));
 }
 
 /// A scan that was cut off, and is not to be resumed: what can be read again may go.
@@ -75,12 +86,16 @@ ScanStart start_scan(const PrescanCommand& command) {
   SourceOptions options;
   options.keep_all = true;
   if (!spooled) start.source = open_source(command.source, command.frames, command.calibration, options);
+  require_memory_to_begin(command.max_memory_mb);
   if (!command.resume) give_up_unfinished(folder);  // what follows it is there
   const bool live = spooled || !start.source->rewind();
   start.is_live = live && !spooled;
   if (start.is_live) start.source = ended_by_interrupt(std::move(start.source));
   const std::string into = extend ? sha256_of_file(map / "map.json") : kNewMap;
-  if (extend) start.map = load_map(map);
+  if (extend) {
+    start.map = load_map(map);
+    require_memory_to_begin(command.max_memory_mb);
+  }
   if (extend && !live && holds(start.map->info, *start.source) &&
       (!is_unfinished(folder) || identity_of(folder)["into"] != into)) {
     if (fs::exists(folder)) {

@@ -123,6 +123,12 @@ std::vector<std::int64_t> numbers_in(const fs::path& folder) {
   return numbers;
 }
 
+/// Waits until all that was written in a folder and those in it since a moment is on the disk.
+void sync_new_files(const fs::path& folder, fs::file_time_type since) {
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_directory() || entry.last_write_time() >= since) sync_to_disk(entry.path());
+}
+
 /// Whether the open file is the one of that name: whoever has the lock may remove the folder.
 bool is_still_there(int file, const fs::path& path) {
   struct stat opened {
@@ -231,6 +237,7 @@ double Checkpoints::since_last_s() const {
 void Checkpoints::write(const std::string& stage, const WriteFiles& write_files) {
   reap(/*wait=*/true);
   last_start_ = std::chrono::steady_clock::now();
+  being_written_since_ = fs::file_time_type::clock::now();
   try {
     ensure_folder();
   } catch (const Error&) {
@@ -241,10 +248,7 @@ void Checkpoints::write(const std::string& stage, const WriteFiles& write_files)
   writer_ = ::fork();
   if (writer_ > 0) return;
   if (writer_ < 0) {  // no memory for a child: then the work has to wait
-    if (try_to_write(stage, write_files))
-      ++last_number_;
-    else
-      fail_to_write();
+    note_written(try_to_write(stage, write_files));
     return;
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -277,7 +281,7 @@ void Checkpoints::write_numbered(std::int64_t number, const std::string& stage,
   for (const fs::path& file : files_below(into))
     manifest["files"][file.generic_string()] = description_of(into, file, previous, before);
   write_text(into / kManifest, manifest.dump(1) + "\n");
-  sync_all_to_disk(folder_);
+  sync_new_files(folder_, on_disk_until_);
   fs::remove_all(numbered(number));  // damaged, or of a count that began anew
   fs::rename(into, numbered(number));
   sync_to_disk(folder_);
@@ -295,10 +299,14 @@ void Checkpoints::reap(bool wait) {
   } while (ended < 0 && errno == EINTR);
   if (ended == 0) return;
   writer_ = -1;
-  if (ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0)
-    ++last_number_;
-  else
-    fail_to_write();
+  note_written(ended > 0 && WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
+void Checkpoints::note_written(bool is_written) {
+  if (!is_written) return fail_to_write();
+  ++last_number_;
+  constexpr std::chrono::seconds kClockStep{2};  // of file systems that count coarsely
+  on_disk_until_ = being_written_since_ - kClockStep;
 }
 
 void Checkpoints::fail_to_write() {

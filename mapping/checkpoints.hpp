@@ -75,6 +75,7 @@ class Checkpoints {
 
  private:
   void take_lock();
+  void note_written(bool is_written);
   void fail_to_write();
   void reap(bool wait);
   bool try_to_write(const std::string& stage, const WriteFiles& write_files) const;
@@ -85,6 +86,8 @@ class Checkpoints {
   std::map<std::string, std::string> identity_;
   std::chrono::duration<double> every_s_;
   std::chrono::steady_clock::time_point last_start_;
+  std::filesystem::file_time_type being_written_since_;
+  std::filesystem::file_time_type on_disk_until_ = std::filesystem::file_time_type::min();
   std::int64_t last_number_ = 0;  ///< of the last whole checkpoint; 0: none
   int lock_ = -1;
   pid_t writer_ = -1;

@@ -58,15 +58,6 @@ void sync_to_disk(const fs::path& path) {
   if (result != 0) fail(path, "does not reach the disk", reason);
 }
 
-void sync_all_to_disk(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) fail(folder, "cannot be opened to sync it", errno);
-  const int result = ::syncfs(descriptor);
-  const int reason = errno;
-  ::close(descriptor);
-  if (result != 0) fail(folder, "its file system does not reach the disk", reason);
-}
-
 PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_(beside(target, "partial")) {
   std::error_code fault;
   fs::create_directories(parent_of(target), fault);

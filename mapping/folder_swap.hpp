@@ -9,8 +9,6 @@ namespace roomradar {
 /// Waits until a file, or the list of names in a folder, is on the disk. Throws Error if it does not get
 /// there.
 void sync_to_disk(const std::filesystem::path& path);
-/// The same for all that was written to the file system that a folder is on.
-void sync_all_to_disk(const std::filesystem::path& folder);
 
 /// A new folder beside `target` (target.partial-PID), removed again unless it is put in place.
 class PartialFolder {

@@ -124,8 +124,8 @@ std::optional<Eigen::Vector3d> down_at(double stamp_s, const std::vector<std::ve
 
 /// Sends both lists through the pairing in the order of their stamps.
 void associate(const std::vector<ListedImage>& depth, const std::vector<ListedImage>& colours,
-               std::vector<RecordedFrame>& frames) {
-  StampPairing pairing({.tolerance_s = kDevicePairing.tolerance_s});  // as a device paired them
+               double tolerance_s, std::vector<RecordedFrame>& frames) {
+  StampPairing pairing({.tolerance_s = tolerance_s});
   std::size_t c = 0;
   const auto add_colours_until = [&](double stamp_s) {
     for (; c < colours.size() && colours[c].stamp_s <= stamp_s; ++c) {
@@ -175,7 +175,9 @@ RecordingIndex index_tum(const fs::path& folder) {
     }
     index.frames.push_back(std::move(frame));
   }
-  associate(depth, colours, index.frames);
+  // A recording of RecordingWriter's has the pairs that a device made.
+  const bool is_own = fs::exists(folder / "camera.json");
+  associate(depth, colours, is_own ? kDevicePairing.tolerance_s : PairingConfig{}.tolerance_s, index.frames);
   return index;
 }
 

@@ -18,9 +18,8 @@ std::string_view to_string(RecordingFormat format);
 
 /// Writes a recording frame by frame. What comes back through open_folder:
 ///   kTum          stamps to 1 us, depth to 0.1 mm (none past 13.1 m), colour, poses, gravity
-///   kSevenScenes  depth to 0.5 mm (none past 65.5 m), colour (an empty file frame-N.color.none of a frame
-///   without), poses;
-///                 stamps are frame / 30 s; no gravity
+///   kSevenScenes  depth to 0.5 mm (none past 65.5 m), colour, poses; stamps are frame / 30 s; no gravity;
+///                 of a frame without colour an empty file frame-N.color.none
 ///   kFakenect     stamps to 1/60 us but for a common offset (35 s between frames at most), depth in the
 ///                 Kinect's own steps (none past 10 m), colour, gravity to 1/819 g; no poses; 640 x 480
 ///                 only, which is all that fakenect replays
