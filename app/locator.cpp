@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "app/evidence.hpp"
@@ -12,19 +11,7 @@
 namespace roomradar {
 namespace {
 
-constexpr int kFewPatches = 12;        // of which no part can be told, and which contradict nothing
-constexpr double kContradicted = 0.2;  // of more patches: with no larger part of them alike a pose is wrong
 constexpr int kLiveStep_px = 1;  // all pixels of the finest level: a still camera's pose shakes the less
-
-bool is_located(const Tracking& tracking) {
-  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
-}
-
-bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
-             double reach_rad) {
-  const Eigen::Isometry3d T_a_b = T_world_a.inverse() * T_world_b;
-  return T_a_b.translation().norm() < reach_m && Eigen::AngleAxisd(T_a_b.linear()).angle() < reach_rad;
-}
 
 /// A Kinect that recalibrates itself bends its depth from one frame to the next, and alignment takes that for
 /// a motion, by which edges come to stand where they are not seen. So a motion that nothing announced has to
@@ -56,87 +43,6 @@ Tracking align_with_model(Locator& locator, const AlignConfig& config, const Int
     T_world_view = tracking.T_world_camera;
   }
   return tracking;
-}
-
-/// How well the model's depth explains the frame's, of what it has an answer to: from 1, all of it, down.
-double fit_of(const Evidence& evidence) { return evidence.alike_part() - 2.0 * evidence.farther_part(); }
-
-/// The same by depth and by look: from 2 down.
-double support_of(const TriedPose& finding) {
-  constexpr double kEnough = 0.4;  // of the depth, that the model must have an answer to
-  const Evidence& evidence = finding.evidence;
-  const double covered = std::min(1.0, evidence.both / (kEnough * std::max(evidence.valid, 1)));
-  return covered * fit_of(evidence) +
-         static_cast<double>(finding.look.alike.size()) / std::max(finding.look.compared, kFewPatches);
-}
-
-/// The standard deviation of the camera's position in the direction in which it is greatest, of what the
-/// depth and the patches fix; infinite if that is not all.
-double uncertainty_m(const Tracking& tracking) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(tracking.information);
-  if (!(solver.eigenvalues()(0) > 1e-3)) return std::numeric_limits<double>::infinity();
-  const Eigen::Matrix3d covariance_m2 = tracking.information.inverse().topLeftCorner<3, 3>();
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance_m2).eigenvalues()(2));
-}
-
-/// Whether enough patches lie where ones like them are known. Where boards or tiles repeat, some twenty do in
-/// a wrong place, so where the depth leaves a direction to them there must be more, or next to nothing may
-/// speak against the pose.
-bool is_proven_by_look(const TriedPose& finding) {
-  constexpr std::size_t kMany = 15, kManyAlone = 40, kManyUndisputed = 25;
-  constexpr double kMinAlike = 0.35;
-  constexpr double kUndisputed = 0.75, kUndisputedFit = 0.9;  // wrong poses have the one or the other
-  const PatchProof& look = finding.look;
-  const bool is_undisputed = look.alike_part() > kUndisputed && fit_of(finding.evidence) > kUndisputedFit;
-  const std::size_t enough = finding.tracking ? kMany : is_undisputed ? kManyUndisputed : kManyAlone;
-  return look.alike.size() >= enough && look.alike_part() > kMinAlike;
-}
-
-/// Whether a pose is certain enough by itself: many patches lie where ones like them are known, and the depth
-/// does not speak against it; or the depth alone fixes it, next to nothing of the model is seen through, and
-/// the patches do not speak against it.
-bool is_certain(const TriedPose& finding) {
-  constexpr double kMostUncertain_m = 0.015;  // three and more of it are 5 cm
-  // People stand before what is known, never behind it. Where the depth leaves a direction open, floorboards
-  // repeat along it, and it is for the few edges to say that the pose is wrong.
-  constexpr double kMostFarther = 0.12, kMostFartherOpen = 0.05;
-  // There half of some hundred patches may be alike in a wrong place, of which the depth says so, too: the
-  // one or the other has to be clear.
-  constexpr double kClearLook = 0.6, kClearDepth = 0.95;
-  const Evidence& evidence = finding.evidence;
-  const PatchProof& look = finding.look;
-  if (!is_located(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
-      evidence.both < 0.2 * evidence.valid)
-    return false;
-  if (is_proven_by_look(finding)) {
-    const bool is_clear =
-        finding.tracking || look.alike_part() > kClearLook || evidence.alike_part() > kClearDepth;
-    return is_clear && fit_of(evidence) > 0.4 &&
-           evidence.farther_part() < (finding.tracking ? kMostFarther : kMostFartherOpen);
-  }
-  if (!finding.tracking || evidence.both < 0.5 * evidence.valid || evidence.farther_part() > 0.03)
-    return false;
-  if (look.compared < kFewPatches) return evidence.alike_part() > 0.9;
-  return look.alike_part() > kContradicted &&
-         evidence.alike_part() > (look.alike.size() > kFewPatches ? 0.7 : 0.9);
-}
-
-/// Poses so near each other are one place.
-bool is_same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
-  constexpr double kSame_m = 0.1, kSame_rad = 0.1;
-  return is_near(a, b, kSame_m, kSame_rad);
-}
-
-/// Whether another pose explains the frame about as well, so that nobody can say which is the right one: of
-/// few patches a good part may be alike in one place and not in its twin by chance.
-bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings) {
-  constexpr double kClear = 0.08, kChance = 0.8;  // two deviations of a part of one patch
-  return std::any_of(findings.begin(), findings.end(), [&](const TriedPose& other) {
-    const int compared = std::min(best.look.compared, other.look.compared);
-    const double chance = compared >= kFewPatches ? kChance / std::sqrt(compared) : 0.0;
-    return !is_same_place(best.tracking.T_world_camera, other.tracking.T_world_camera) &&
-           is_located(other.tracking) && support_of(other) > support_of(best) - kClear - chance;
-  });
 }
 
 /// Moves an aligned pose so that patches come to lie on those they look like, as far as the depth leaves that
@@ -296,7 +202,7 @@ bool is_borne_out_by_look(Locator& locator, const Frame& frame, const Places& pl
   if (locator.known.empty()) locator.known = known_patches(places);
   const PatchProof look = prove_with_patches(describe_patches(frame, locator.relocalise.place.patches),
                                              locator.known, T_world_camera);
-  return look.compared >= kFewPatches && look.alike_part() > kContradicted;
+  return is_borne_out(look);
 }
 
 /// Where the camera was lost some frames ago it may still be: a hand was before the lens. Before a wall the

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/evidence.hpp"
+#include "app/tried_pose.hpp"
 #include "mapping/align.hpp"
 #include "mapping/patch_matching.hpp"
 #include "mapping/places.hpp"
@@ -17,14 +17,6 @@ namespace roomradar {
 
 /// The depth that the room's static model shows at a pose, of the live depth image's size.
 using ExpectedDepth = std::function<const DepthImage&(const Eigen::Isometry3d& T_world_camera)>;
-
-/// A pose that a search of the map tried, and what speaks for it.
-struct TriedPose {
-  Tracking tracking;
-  double uncertainty_m = 0.0;  ///< of the position, one standard deviation, as far as depth and patches say
-  PatchProof look;
-  Evidence evidence;
-};
 
 /// How a search of the map ended.
 enum class SearchEnd {

@@ -222,6 +222,7 @@ void fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass
     keep(work.checkpoints, kFusingStage, pass, work.times);
     has_room = !is_full(work.config, kSurfaceMemory * static_cast<double>(pass.octree.memory_bytes()));
   }
+  pass.stopped_for_memory = !has_room;
   keep(work.checkpoints, kFusingStage, pass, work.times, /*between_frames=*/false);
 }
 
@@ -311,7 +312,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   transform(map.places, pass.T_world_found);
 
   counts = pass.counts;
-  counts.stopped_for_memory |= pass.frames_read < pass.counts.frames_read;
+  counts.stopped_for_memory |= pass.stopped_for_memory;
   counts.frames_tracked = static_cast<std::int64_t>(map.trajectory.size());
   counts.frames_lost = counts.frames_read - counts.frames_skipped - counts.frames_tracked;
   counts.frames_held_out = std::count_if(map.trajectory.begin(), map.trajectory.end(), [&](const auto& pose) {

@@ -85,7 +85,7 @@ constexpr const char* kOdometry = "odometry";
 constexpr const char* kOctree = "octree.ot";
 constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRPRSCAN";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 template <typename Archive>
 void transfer_state(Archive& archive, TrackingPass& pass) {
@@ -103,6 +103,7 @@ void transfer_state(Archive& archive, FusingPass& pass) {
   transfer(archive, pass.T_world_found);
   transfer(archive, pass.frames_read);
   transfer(archive, pass.fused);
+  transfer(archive, pass.stopped_for_memory);
   transfer(archive, pass.revision);
   transfer(archive, pass.ghost_voxels);
 }

@@ -61,10 +61,6 @@ struct Mapped {
   DepthImage expected_m;
 };
 
-bool is_located(const Tracking& tracking) {
-  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
-}
-
 double error_m(const Tracking& tracking, const Eigen::Isometry3d& truth) {
   return (tracking.T_world_camera.translation() - truth.translation()).norm();
 }

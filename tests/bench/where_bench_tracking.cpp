@@ -17,10 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-bool is_located(const Tracking& tracking) {
-  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
-}
-
 /// Puts a ball into the frame, as the sensor would measure it; returns how many pixels it covers.
 int put_ball(const Vector3d& centre_camera, double radius_m, Frame& frame) {
   int covered = 0;

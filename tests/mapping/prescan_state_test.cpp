@@ -43,6 +43,7 @@ FusingPass fusing_pass(int frames) {
   pass.found.up = {UpSource::kPlane, Eigen::Vector3d::UnitZ(), 0.4};
   pass.T_world_found.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
   pass.ghost_voxels = 5;
+  pass.stopped_for_memory = true;
   pass.revision = GhostRevision{{{{1, -2, 3}}, {{4, 5, 6}, {7, 8, 9}}, {}}, 2};
   for (int i = 0; i < frames; ++i) {
     const Frame frame = seen_from(pose(i));
@@ -65,6 +66,7 @@ TEST(PrescanState, TheSecondPassGoesOnAsIfItHadNeverEnded) {
   EXPECT_EQ(resumed.counts.last_fault, "frame 3 is broken");
   EXPECT_EQ(resumed.frames_read, 6);
   EXPECT_EQ(resumed.ghost_voxels, 5);
+  EXPECT_TRUE(resumed.stopped_for_memory);
   ASSERT_TRUE(resumed.revision);
   EXPECT_EQ(resumed.revision->verdicts.ghosts, whole.revision->verdicts.ghosts);
   EXPECT_EQ(resumed.revision->verdicts.absent, whole.revision->verdicts.absent);
