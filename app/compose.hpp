@@ -30,7 +30,7 @@ PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrins
                             const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
                             const OcclusionConfig& config);
 
-/// The picture of the room with the objects' shadows in it; those of the objects not yet drawn are missing.
+/// The picture of the room with the objects' shadows in it, and not yet the objects.
 ///
 /// @param background       the camera's picture, of its size: the live colour, or the depth by shade_depth
 /// @param camera           the (colour) camera

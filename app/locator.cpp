@@ -38,8 +38,7 @@ Tracking align_with_model(Locator& locator, const AlignConfig& config, const Int
     make_pyramid(expected_depth(T_world_view), camera, locator.expected_view, locator.expected_pyramid);
     make_reference(locator.expected_pyramid, T_world_view, locator.expected_view, locator.expected);
     tracking = align(locator.live, locator.expected, tracking.T_world_camera, config);
-    if (!is_located(tracking) || is_near(T_world_view, tracking.T_world_camera, kFarOff_m, kFarOff_rad))
-      break;
+    if (!has_pose(tracking) || is_near(T_world_view, tracking.T_world_camera, kFarOff_m, kFarOff_rad)) break;
     T_world_view = tracking.T_world_camera;
   }
   return tracking;
@@ -146,8 +145,8 @@ Tracking search(Locator& locator, const Frame& frame, const Places& places,
   const auto judge = [&] {
     const auto best =
         std::max_element(findings.begin(), findings.end(), [](const TriedPose& a, const TriedPose& b) {
-          return is_located(a.tracking) != is_located(b.tracking) ? is_located(b.tracking)
-                                                                  : support_of(a) < support_of(b);
+          return has_pose(a.tracking) != has_pose(b.tracking) ? has_pose(b.tracking)
+                                                              : support_of(a) < support_of(b);
         });
     if (best == findings.end()) return Tracking{};
     locator.search_end = !is_certain(*best)             ? SearchEnd::kNotCertain
@@ -167,14 +166,14 @@ Tracking search(Locator& locator, const Frame& frame, const Places& places,
       findings.push_back(tried(locator, frame, seen, {by_preview.T_world_camera, 0, {}}, expected_depth));
   }
   Tracking found = judge();
-  if (!is_located(found) && frame.down_camera) {
+  if (!has_pose(found) && frame.down_camera) {
     if (locator.known_shape.empty()) locator.known_shape = known_shape(places);
     for (const ShapeCandidate& candidate : propose_by_shape(
              frame.depth_m, frame.depth_camera, *frame.down_camera, locator.known_shape, kByShape))
       findings.push_back(tried(locator, frame, seen, {candidate.T_world_camera, 0, {}}, expected_depth));
     found = judge();
   }
-  if (is_located(found)) expected_depth(found.T_world_camera);
+  if (has_pose(found)) expected_depth(found.T_world_camera);
   return found;
 }
 
@@ -188,7 +187,7 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
       locator, locator.align, frame.depth_camera,
       is_near(T_world_last, T_world_predicted, kNear_m, kNear_rad) ? T_world_last : T_world_predicted,
       T_world_predicted, expected_depth);
-  if (is_located(tracking) &&
+  if (has_pose(tracking) &&
       is_bend_not_motion(tracking, T_world_predicted, T_world_last, frame.depth_m, expected_depth)) {
     tracking.status = TrackStatus::kDegenerate;
     tracking.T_world_camera = T_world_last;
@@ -215,7 +214,7 @@ Tracking resume(Locator& locator, const Frame& frame, const Places& places,
   const Tracking tracking = align_with_model(locator, locator.align, frame.depth_camera,
                                              *locator.T_world_lost, *locator.T_world_lost, expected_depth);
   const Evidence evidence = evidence_of(frame.depth_m, expected_depth(tracking.T_world_camera));
-  const bool holds = is_located(tracking) && 2 * evidence.both > evidence.valid &&
+  const bool holds = has_pose(tracking) && 2 * evidence.both > evidence.valid &&
                      evidence.alike_part() > kMinAlike && evidence.farther_part() < kMaxFarther;
   const bool is_open = tracking.status == TrackStatus::kDegenerate;
   if (!holds || (is_open && !is_borne_out_by_look(locator, frame, places, tracking.T_world_camera)))
@@ -236,7 +235,7 @@ bool doubt(Locator& locator, const Frame& frame, const Places& places, const Exp
   if (locator.doubtful_frames < kPatience_frames || --locator.sure_until > 0) return true;
   look_at_all(locator);
   const Tracking found = search(locator, frame, places, expected_depth);
-  if (is_located(found)) {
+  if (has_pose(found)) {
     const bool is_elsewhere = !is_same_place(found.T_world_camera, tracking.T_world_camera);
     tracking = found;
     if (is_elsewhere) {
@@ -278,20 +277,20 @@ Tracking locate(Locator& locator, const Frame& frame, const Places& places, cons
   bool may_be_found = true;  // by a search; one a frame is enough
   if (locator.T_world_camera) {
     tracking = follow(locator, frame, expected_depth);
-    if (is_located(tracking)) may_be_found = doubt(locator, frame, places, expected_depth, tracking);
-    if (!is_located(tracking)) {
+    if (has_pose(tracking)) may_be_found = doubt(locator, frame, places, expected_depth, tracking);
+    if (!has_pose(tracking)) {
       locator.T_world_lost = locator.T_world_camera;
       locator.T_world_camera.reset();
       locator.lost_frames = locator.doubtful_frames = locator.sure_until = 0;
     }
   }
-  if (!is_located(tracking)) {
+  if (!has_pose(tracking)) {
     look_at_all(locator);
     tracking = resume(locator, frame, places, expected_depth);
-    if (!is_located(tracking) && may_be_found) tracking = search(locator, frame, places, expected_depth);
+    if (!has_pose(tracking) && may_be_found) tracking = search(locator, frame, places, expected_depth);
   }
 
-  if (!is_located(tracking)) {
+  if (!has_pose(tracking)) {
     locator.T_last_now.setIdentity();
     return tracking;
   }

@@ -21,7 +21,7 @@ a simulated Kinect in the room
 keys are seed, frames, rate, path, moving, noise and others
 .TP
 .I DIR
-a recording, recognised by what is in it: 7-Scenes (frame-XXXXXX.depth.png, .color.jpg or .png, .pose.txt), TUM RGB-D
+a recording, recognised by what is in it: 7-Scenes (frame-XXXXXX.depth.png, .color.jpg, .png or, empty, .none, .pose.txt), TUM RGB-D
 (depth.txt, rgb.txt), fakenect (INDEX.txt), or numbered images (depth/00000.png, color/00000.jpg). A camera.json in
 it gives the cameras, a calibration.json their errors.
 .SH FILES

@@ -1,17 +1,16 @@
 // record_command.cpp: roomradar record: a source's frames as a folder that can be read again.
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "app/commands.hpp"
+#include "app/dropped_frames.hpp"
 #include "app/interrupt.hpp"
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
-
 namespace {
 
 /// The source's next frame; where it fails, what was written before is whole, and said to be there.
@@ -36,8 +35,8 @@ int run(const RecordCommand& command) {
       ended_by_interrupt(open_source(command.source, command.frames, command.calibration, options));
   const bool is_live = !source->rewind();
   RecordingWriter writer(command.folder, command.format);
-  std::int64_t skipped = 0, skipped_between = 0, lost = 0;
-  std::optional<std::int64_t> first_index;
+  std::int64_t skipped = 0;
+  DroppedFrames dropped;
   {
     Progress progress("recording", source->frame_count());
     Frame frame;
@@ -47,13 +46,11 @@ int run(const RecordCommand& command) {
       if (result.waiting) continue;
       if (result.status == ReadStatus::kSkipped) {
         ++skipped;
-        if (first_index) ++skipped_between;
         progress.step("skipped: " + result.fault);
         continue;
       }
-      if (!first_index) first_index = frame.index;
-      lost = frame.index - *first_index - writer.frames_written() - skipped_between;
       writer.write(frame);
+      dropped.see(frame.index, writer.frames_written() + skipped);
       progress.step();
     }
   }
@@ -62,9 +59,9 @@ int run(const RecordCommand& command) {
   std::printf("%s: %lld frames written as %s, %lld skipped\n", command.folder.c_str(),
               static_cast<long long>(writer.frames_written()), std::string(to_string(command.format)).c_str(),
               static_cast<long long>(skipped));
-  if (is_live && lost > 0)  // they came while the disk was behind
+  if (is_live && dropped.count > 0)  // they came while the disk was behind
     std::printf("%lld of the device's frames in between are not in it; is the disk fast enough?\n",
-                static_cast<long long>(lost));
+                static_cast<long long>(dropped.count));
   return 0;
 }
 

@@ -36,7 +36,7 @@ int finish(OpenedRun& run) {
   const RunTotals& totals = run.totals;
   if (!command.save_map.empty()) save_changed(run.map, run.session->adopted().size(), command.save_map);
   run.report.frames_read = totals.read;
-  run.report.frames_skipped = totals.skipped + totals.dropped;
+  run.report.frames_skipped = totals.skipped + totals.dropped.count;
   run.report.results = results_of(totals, *run.session);
   if (run.budget) run.report.results["budget"] = run.budget->report();
   if (run.check) run.report.results["replay"] = report_replay(*run.check);

@@ -89,7 +89,7 @@ RunLoop::Next RunLoop::read() {
     return Next::kSkipped;
   }
   if (totals.read - totals.skipped == 1) totals.first_stamp_s = frame_.stamp_s;
-  totals.count_dropped(frame_.index);
+  totals.dropped.see(frame_.index, totals.read);
   run_time_s_ = frame_.stamp_s - totals.first_stamp_s;
   return Next::kFrame;
 }

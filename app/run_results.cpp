@@ -51,7 +51,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"frames_located", totals.located},
       {"frames_degenerate", totals.degenerate},
       {"lost", lost},
-      {"frames_dropped", totals.dropped},
+      {"frames_dropped", totals.dropped.count},
       {"moved_fraction_mean", totals.per_frame(totals.moved_fraction)},
       {"moved_fraction_max", totals.max_moved_fraction},
       {"dynamic_triangles_mean", totals.per_frame(totals.dynamic_triangles)},

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/dropped_frames.hpp"
 #include "app/lost_spans.hpp"
 #include "app/run_use.hpp"
 #include "app/session.hpp"
@@ -23,15 +24,8 @@ struct RunTotals {
   double first_stamp_s = 0.0;
   std::string last_fault;
   LostSpans lost;
-  std::int64_t dropped = 0;  // by a live source, for newer ones
-  std::optional<std::int64_t> first_index;
+  DroppedFrames dropped;
   RunUse use;
-
-  /// Every frame that was read before, and those that were dropped, have a lower index.
-  void count_dropped(std::int64_t index) {
-    if (!first_index) first_index = index - (read - 1);
-    dropped = std::max(dropped, index - *first_index - (read - 1));
-  }
 
   void add(const FrameResult& frame, const Session& session) {
     if (frame.status != FrameStatus::kDone) return;

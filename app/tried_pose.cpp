@@ -60,7 +60,7 @@ bool is_certain(const TriedPose& finding) {
   constexpr double kClearLook = 0.6, kClearDepth = 0.95;
   const Evidence& evidence = finding.evidence;
   const PatchProof& look = finding.look;
-  if (!is_located(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
+  if (!has_pose(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
       evidence.both < 0.2 * evidence.valid)
     return false;
   if (is_proven_by_look(finding)) {
@@ -82,7 +82,7 @@ bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings) 
     const int compared = std::min(best.look.compared, other.look.compared);
     const double chance = compared >= kFewPatches ? kChance / std::sqrt(compared) : 0.0;
     return !is_same_place(best.tracking.T_world_camera, other.tracking.T_world_camera) &&
-           is_located(other.tracking) && support_of(other) > support_of(best) - kClear - chance;
+           has_pose(other.tracking) && support_of(other) > support_of(best) - kClear - chance;
   });
 }
 

@@ -17,10 +17,6 @@ struct TriedPose {
   Evidence evidence;
 };
 
-/// Whether there is a pose to go on with.
-inline bool is_located(const Tracking& tracking) {
-  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
-}
 bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
              double reach_rad);
 

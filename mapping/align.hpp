@@ -32,6 +32,11 @@ struct [[nodiscard]] Tracking {
   explicit operator bool() const { return status == TrackStatus::kTracked; }
 };
 
+/// Whether there is a pose to go on with, though some of its directions may be the guess's.
+inline bool has_pose(const Tracking& tracking) {
+  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
+}
+
 struct AlignConfig {
   int coarsest_level = 2;  ///< levels of the views that are used: from here ...
   int finest_level = 0;    ///< ... down to here

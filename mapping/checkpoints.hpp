@@ -54,8 +54,6 @@ class Checkpoints {
   bool is_due();
   /// Whether it has come at the end of a stage, where a third of the time is enough; waits for the last one.
   bool is_due_at_end();
-  /// Since the last one was begun, or this object made.
-  [[nodiscard]] double since_last_s() const;
   /// Writes a checkpoint beside the work; takes some milliseconds itself. A failure (disk full) leaves the
   /// one before, is counted in failures(), and the first one is told.
   void write(const std::string& stage, const WriteFiles& write_files);
@@ -75,6 +73,8 @@ class Checkpoints {
 
  private:
   void take_lock();
+  /// Since the last one was begun, or this object made.
+  [[nodiscard]] double since_last_s() const;
   void note_written(bool is_written);
   void fail_to_write();
   void reap(bool wait);

@@ -16,8 +16,7 @@ namespace {
 constexpr std::size_t kNeighbours = 3;  // keyframes closer in number than this are neighbours, not loops
 
 bool is_joint(const Tracking& t, const KeyframeGraphConfig& config) {
-  return (t.status == TrackStatus::kTracked || t.status == TrackStatus::kDegenerate) &&
-         t.overlap >= config.min_overlap && t.inlier_fraction >= config.min_inliers;
+  return has_pose(t) && t.overlap >= config.min_overlap && t.inlier_fraction >= config.min_inliers;
 }
 
 /// `count` of the items, evenly spread from the first to the last.

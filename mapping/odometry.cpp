@@ -14,10 +14,6 @@
 namespace roomradar {
 namespace {
 
-bool has_pose(const Tracking& tracking) {
-  return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
-}
-
 /// A radian counts as a metre.
 double length(const Eigen::Isometry3d& T) {
   return T.translation().norm() + Eigen::AngleAxisd(T.linear()).angle();

@@ -31,10 +31,6 @@ struct Proof {
   double agreement = 0.0;
 };
 
-bool is_aligned(const Tracking& t) {
-  return t.status == TrackStatus::kTracked || t.status == TrackStatus::kDegenerate;
-}
-
 double angle_rad(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
 
 /// Refines a pose found by features with the view's depth: these must agree with each other and with the
@@ -48,7 +44,7 @@ Proof prove_with_features(const LiveView& live, const Place& place, const PlaceM
   const Tracking t = align(live, reference, match.T_a_b, {.coarsest_level = 1, .gate_m = 0.15F});
   Proof proof{.T_place_camera = t.T_world_camera, .agreement = t.inlier_fraction};
   const Eigen::Isometry3d correction = match.T_a_b.inverse() * t.T_world_camera;
-  proof.holds = is_aligned(t) && t.overlap > 0.2 && t.inlier_fraction >= config.min_depth_agreement &&
+  proof.holds = has_pose(t) && t.overlap > 0.2 && t.inlier_fraction >= config.min_depth_agreement &&
                 correction.translation().norm() < kMaxCorrection_m &&
                 angle_rad(correction) < kMaxCorrection_rad;
   return proof;
@@ -116,7 +112,7 @@ Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& liv
   posed.reserve(references.size());
   for (const ReferenceView& reference : references) posed.push_back({&reference, reference.T_world_view});
   const Tracking refined = align(live, posed, found.T_world_camera, {.coarsest_level = 1});
-  if (is_aligned(refined)) found.T_world_camera = refined.T_world_camera;
+  if (has_pose(refined)) found.T_world_camera = refined.T_world_camera;
   return found;
 }
 

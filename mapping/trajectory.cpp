@@ -12,6 +12,32 @@
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
+namespace {
+
+struct MatchedPoints {
+  Eigen::Matrix3Xd estimated, expected;
+};
+
+/// Points of the camera where the two have them, of the frames that both know.
+MatchedPoints matched_points(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference,
+                             const Eigen::Matrix3Xd& points_camera) {
+  std::map<std::int64_t, const Eigen::Isometry3d*> T_reference_camera;
+  for (const TimedPose& pose : reference) T_reference_camera[pose.frame_index] = &pose.T_world_camera;
+  const Eigen::Index points = points_camera.cols();
+  Eigen::Matrix3Xd estimated(3, points * static_cast<Eigen::Index>(estimate.size()));
+  Eigen::Matrix3Xd expected(3, estimated.cols());
+  Eigen::Index matched = 0;
+  for (const TimedPose& pose : estimate) {
+    const auto found = T_reference_camera.find(pose.frame_index);
+    if (found == T_reference_camera.end()) continue;
+    estimated.middleCols(matched, points) = pose.T_world_camera * points_camera;
+    expected.middleCols(matched, points) = *found->second * points_camera;
+    matched += points;
+  }
+  return {estimated.leftCols(matched), expected.leftCols(matched)};
+}
+
+}  // namespace
 
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory) {
   std::ofstream file(path);
@@ -58,23 +84,10 @@ std::vector<TimedPose> read_trajectory(const std::filesystem::path& path) {
 
 TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate,
                                           const std::vector<TimedPose>& reference) {
-  std::map<std::int64_t, Eigen::Vector3d> reference_m;
-  for (const TimedPose& pose : reference) reference_m[pose.frame_index] = pose.T_world_camera.translation();
-  Eigen::Matrix3Xd from(3, estimate.size());
-  Eigen::Matrix3Xd to(3, estimate.size());
-  Eigen::Index matched = 0;
-  for (const TimedPose& pose : estimate) {
-    const auto found = reference_m.find(pose.frame_index);
-    if (found == reference_m.end()) continue;
-    from.col(matched) = pose.T_world_camera.translation();
-    to.col(matched) = found->second;
-    ++matched;
-  }
-  if (matched < 3) return {};
-  const auto estimated = from.leftCols(matched);
-  const auto expected = to.leftCols(matched);
+  const auto [estimated, expected] = matched_points(estimate, reference, Eigen::Vector3d::Zero());
+  if (estimated.cols() < 3) return {};
   TrajectoryError error;
-  error.poses = static_cast<std::size_t>(matched);
+  error.poses = static_cast<std::size_t>(estimated.cols());
   error.T_reference_estimate.matrix() = Eigen::umeyama(estimated, expected, /*with_scaling=*/false);
   const Eigen::RowVectorXd squared_m2 =
       ((error.T_reference_estimate * estimated).eval() - expected).colwise().squaredNorm();
@@ -85,25 +98,12 @@ TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate
 
 std::optional<Eigen::Isometry3d> pose_alignment(const std::vector<TimedPose>& estimate,
                                                 const std::vector<TimedPose>& reference) {
-  constexpr Eigen::Index kPointsAPose = 4;
-  std::map<std::int64_t, const Eigen::Isometry3d*> T_reference_camera;
-  for (const TimedPose& pose : reference) T_reference_camera[pose.frame_index] = &pose.T_world_camera;
-  Eigen::Matrix<double, 3, kPointsAPose> points_camera = Eigen::Matrix<double, 3, kPointsAPose>::Zero();
+  Eigen::Matrix3Xd points_camera = Eigen::Matrix3Xd::Zero(3, 4);
   points_camera.rightCols<3>().setIdentity();
-  Eigen::Matrix3Xd from(3, kPointsAPose * static_cast<Eigen::Index>(estimate.size()));
-  Eigen::Matrix3Xd to(3, from.cols());
-  Eigen::Index matched = 0;
-  for (const TimedPose& pose : estimate) {
-    const auto found = T_reference_camera.find(pose.frame_index);
-    if (found == T_reference_camera.end()) continue;
-    from.middleCols<kPointsAPose>(matched) = pose.T_world_camera * points_camera;
-    to.middleCols<kPointsAPose>(matched) = *found->second * points_camera;
-    matched += kPointsAPose;
-  }
-  if (matched == 0) return std::nullopt;
+  const auto [estimated, expected] = matched_points(estimate, reference, points_camera);
+  if (estimated.cols() == 0) return std::nullopt;
   Eigen::Isometry3d T_reference_estimate;
-  T_reference_estimate.matrix() =
-      Eigen::umeyama(from.leftCols(matched), to.leftCols(matched), /*with_scaling=*/false);
+  T_reference_estimate.matrix() = Eigen::umeyama(estimated, expected, /*with_scaling=*/false);
   return T_reference_estimate;
 }
 

@@ -11,7 +11,8 @@ namespace roomradar {
 /// Opens the recording in `folder`, recognised by what is in it:
 ///   fakenect      INDEX.txt with d-*.pgm (raw 11 bit), r-*.ppm, a-*.dump (accelerometer)
 ///   TUM RGB-D     depth.txt, rgb.txt; optional groundtruth.txt, accelerometer.txt
-///   7-Scenes      frame-XXXXXX.depth.png, .color.jpg or .color.png, optional .pose.txt
+///   7-Scenes      frame-XXXXXX.depth.png, .color.jpg, .color.png or .color.none (empty: it came without),
+///                 optional .pose.txt
 ///   numbered      depth/NNNNN.png (mm), optional color/NNNNN.jpg or .png
 /// A camera.json in the folder gives the intrinsics (camera_rig.hpp); else camera-intrinsics.txt (3 x 3,
 /// depth camera); else the format's published figures, scaled to the width of its images.

@@ -164,8 +164,7 @@ TEST(Extremes, ChainedPosesStayRotations) {
     const PosedReference reference{&before.reference, T_world_camera};
     const Eigen::Isometry3d T_guess = T_world_camera * before.T_world_camera.inverse() * now.T_world_camera;
     const Tracking tracking = align(now.live, {&reference, 1}, T_guess, config);
-    tracked +=
-        tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate ? 1 : 0;
+    tracked += has_pose(tracking) ? 1 : 0;
     T_world_camera = tracking.T_world_camera;
     worst = std::max(worst, off_rotation(T_world_camera));
   }

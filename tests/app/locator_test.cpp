@@ -79,7 +79,7 @@ TEST(Locator, FindsViewsFarFromEveryPlace) {
                             test::looking_at({0.8, 0.9, 0.7}, {-1.5, 0.9, 0.5}, {0.3, 0.1, 0.9})}) {
     Mapped fresh = mapped;
     const Tracking found = fresh.find(fresh.seen_from(truth));
-    ASSERT_TRUE(is_located(found));
+    ASSERT_TRUE(has_pose(found));
     EXPECT_LT(error_m(found, truth), 0.02);
   }
 }
@@ -89,8 +89,8 @@ TEST(Locator, IsMendedWithinFiveFramesWhenTheCameraIsCarriedAway) {
   for (int i = 0; i < 4; ++i) ASSERT_LT(error_m(mapped.find(mapped.seen_from(walk(i))), walk(i)), 0.02) << i;
   for (int i = 0; i < 10; ++i) {
     const Tracking found = mapped.find(mapped.seen_from(elsewhere(i)));
-    if (i < 5 && (!is_located(found) || error_m(found, elsewhere(i)) > 0.02)) continue;
-    ASSERT_TRUE(is_located(found)) << i;
+    if (i < 5 && (!has_pose(found) || error_m(found, elsewhere(i)) > 0.02)) continue;
+    ASSERT_TRUE(has_pose(found)) << i;
     EXPECT_LT(error_m(found, elsewhere(i)), 0.02) << i;
     EXPECT_LT(mapped.locator.T_last_now.translation().norm(), 0.1) << i << ": the way there was no motion";
   }
@@ -98,23 +98,23 @@ TEST(Locator, IsMendedWithinFiveFramesWhenTheCameraIsCarriedAway) {
 
 TEST(Locator, SaysSoWhileTheLensIsCoveredAndGoesOnAfterwards) {
   Mapped mapped(room());
-  for (int i = 0; i < 4; ++i) ASSERT_TRUE(is_located(mapped.find(mapped.seen_from(walk(i)))));
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(has_pose(mapped.find(mapped.seen_from(walk(i)))));
   Frame dark = mapped.seen_from(walk(4));
   dark.depth_m.resize(kCamera.width_px, kCamera.height_px);
-  EXPECT_FALSE(is_located(mapped.find(dark)));
+  EXPECT_FALSE(has_pose(mapped.find(dark)));
   Frame covered = mapped.seen_from(walk(4));
   covered.depth_m.resize(kCamera.width_px, kCamera.height_px, 0.5F);
   covered.colour.resize(kCamera.width_px, kCamera.height_px, {90, 60, 50});
-  EXPECT_FALSE(is_located(mapped.find(covered)));
+  EXPECT_FALSE(has_pose(mapped.find(covered)));
   const Tracking found = mapped.find(mapped.seen_from(walk(5)));
-  ASSERT_TRUE(is_located(found));
+  ASSERT_TRUE(has_pose(found));
   EXPECT_LT(error_m(found, walk(5)), 0.02);
   EXPECT_FALSE(mapped.locator.T_world_lost && mapped.locator.lost_frames > 3);
 }
 
 TEST(Locator, ACoveredLensIsNoticedWithinFiveFramesThoughItsMotionSeemsKnown) {
   Mapped mapped(room());
-  for (int i = 0; i < 4; ++i) ASSERT_TRUE(is_located(mapped.find(mapped.seen_from(walk(i)))));
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(has_pose(mapped.find(mapped.seen_from(walk(i)))));
   Frame covered = mapped.seen_from(walk(4));
   for (int y = 0; y < kCamera.height_px; ++y)  // a hand's shape, close, and a rim of the room
     for (int x = 20; x < kCamera.width_px; ++x) {
@@ -122,20 +122,20 @@ TEST(Locator, ACoveredLensIsNoticedWithinFiveFramesThoughItsMotionSeemsKnown) {
       covered.colour.at(x, y) = {90, 60, 50};
     }
   bool is_noticed = false;
-  for (int i = 0; i < 5; ++i) is_noticed = is_noticed || !is_located(mapped.find(covered));
+  for (int i = 0; i < 5; ++i) is_noticed = is_noticed || !has_pose(mapped.find(covered));
   EXPECT_TRUE(is_noticed);
 }
 
 TEST(Locator, DoesNotChooseBetweenTwoPlacesThatLookTheSame) {
   Mapped twins(twin_room(), twin_grey);
   const Eigen::Isometry3d truth = test::looking_at({0.8, -0.2, 1.2}, {-1.2, 2.0, 0.5});
-  EXPECT_FALSE(is_located(twins.find(twins.seen_from(truth))));
+  EXPECT_FALSE(has_pose(twins.find(twins.seen_from(truth))));
   // One poster that the other wall has not tells them apart.
   Mapped told(twin_room(), [](const Eigen::Vector3d& p) {
     return p.y() > 1.0 ? test::cube_grey(p) : twin_grey(p + Eigen::Vector3d(7.0, 3.0, 0.0));
   });
   const Tracking found = told.find(told.seen_from(truth));
-  ASSERT_TRUE(is_located(found));
+  ASSERT_TRUE(has_pose(found));
   EXPECT_LT(error_m(found, truth), 0.02);
 }
 
@@ -146,7 +146,7 @@ TEST(Locator, FindsAViewWithoutColourByItsShape) {
   frame.colour = {};
   frame.down_camera = truth.linear().transpose() * -Eigen::Vector3d::UnitZ();
   const Tracking found = mapped.find(frame);
-  ASSERT_TRUE(is_located(found));
+  ASSERT_TRUE(has_pose(found));
   EXPECT_LT(error_m(found, truth), 0.02);
   EXPECT_EQ(mapped.locator.search_end, SearchEnd::kFound);
 }
@@ -172,7 +172,7 @@ TEST(Locator, OneSmallPosterSaysWhereAlongABareWallItIs) {
     const Eigen::Isometry3d truth = test::looking_at({0.3, 0.4, 1.2}, {aim, 2.5, 0.4});
     Mapped fresh = mapped;
     const Tracking found = fresh.find(fresh.seen_from(truth));
-    ASSERT_TRUE(is_located(found)) << aim;
+    ASSERT_TRUE(has_pose(found)) << aim;
     EXPECT_LT(error_m(found, truth), 0.02) << aim;
     EXPECT_LT(fresh.locator.findings.front().look.alike.size(), 40U) << aim;
   }
@@ -184,7 +184,7 @@ TEST(Locator, OneOfTwoEqualPostersDoesNotSayWhereItIs) {
       return poster(p.y() > 0.0 ? p : Eigen::Vector3d(-p.x(), -p.y(), p.z()));
     });
     const Frame frame = mapped.seen_from(test::looking_at({0.3, 0.4, 1.2}, {0.3, 2.5, 0.4}));
-    EXPECT_FALSE(is_located(mapped.find(frame))) << width_m;
+    EXPECT_FALSE(has_pose(mapped.find(frame))) << width_m;
     EXPECT_EQ(mapped.locator.search_end, SearchEnd::kRivalled) << width_m;
   }
 }
@@ -197,9 +197,9 @@ TEST(Locator, IsNotTakenToBeWhereItWasWhenCarriedAlongAWallWithTheLensCovered) {
     for (int i = 0; i < 3; ++i) ASSERT_LT(error_m(mapped.find(mapped.seen_from(from)), from), 0.02);
     Frame dark = mapped.seen_from(from);
     dark.depth_m.resize(kCamera.width_px, kCamera.height_px);
-    EXPECT_FALSE(is_located(mapped.find(dark)));
+    EXPECT_FALSE(has_pose(mapped.find(dark)));
     const Tracking found = mapped.find(mapped.seen_from(to));
-    ASSERT_TRUE(is_located(found)) << carried_m;
+    ASSERT_TRUE(has_pose(found)) << carried_m;
     EXPECT_LT(error_m(found, to), 0.02) << carried_m;
   }
 }
@@ -208,11 +208,11 @@ TEST(Locator, IsLostBeforeAWallWithoutMarksAfterTheLensWasCovered) {
   const auto before_wall = [](double x) { return test::looking_at({x, 0.4, 1.2}, {x, 2.5, 0.4}); };
   Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
   bare.locator.T_world_camera = before_wall(0.3);
-  ASSERT_TRUE(is_located(bare.find(bare.seen_from(before_wall(0.3)))));
+  ASSERT_TRUE(has_pose(bare.find(bare.seen_from(before_wall(0.3)))));
   Frame dark = bare.seen_from(before_wall(0.3));
   dark.depth_m.resize(kCamera.width_px, kCamera.height_px);
-  EXPECT_FALSE(is_located(bare.find(dark)));
-  EXPECT_FALSE(is_located(bare.find(bare.seen_from(before_wall(-0.3)))));
+  EXPECT_FALSE(has_pose(bare.find(dark)));
+  EXPECT_FALSE(has_pose(bare.find(bare.seen_from(before_wall(-0.3)))));
 }
 
 TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
@@ -221,7 +221,7 @@ TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
   const Eigen::Isometry3d truth = looking_at({0.3, 0.4, 1.2}, {0.3, 2.5, 0.4});
   Frame frame = bare.seen_from(truth);
   frame.down_camera = truth.linear().transpose() * -Eigen::Vector3d::UnitZ();
-  EXPECT_FALSE(is_located(bare.find(frame)));
+  EXPECT_FALSE(has_pose(bare.find(frame)));
   EXPECT_NE(bare.locator.search_end, SearchEnd::kFound);
 }
 

@@ -55,6 +55,12 @@ void let_a_drop_wait(Session& session, StageTimes& times) {
   static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
 }
 
+/// A green picture, twice as fine as the depth.
+void give_colour(Frame& frame) {
+  frame.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
+  frame.colour.resize(320, 240, {10, 200, 30});
+}
+
 TEST(Session, FrameWithoutColourThatIsNotLocatedShowsItsDepth) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
@@ -69,8 +75,7 @@ TEST(Session, OneFrameWithoutColourKeepsTheLastPicture) {
   Session session(map, by_recorded_poses());
   StageTimes times;
   Frame coloured = depth_only(0, kAtTheFloor);
-  coloured.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
-  coloured.colour.resize(320, 240, {10, 200, 30});
+  give_colour(coloured);
   for (const Frame& frame : {coloured, depth_only(1, kAtTheFloor), depth_only(2, std::nullopt)}) {
     static_cast<void>(session.step(frame, times));
     EXPECT_EQ(session.picture().width, 320) << frame.index;
@@ -83,8 +88,7 @@ TEST(Session, ACameraWhoseColourHasStoppedShowsItsDepthUntilThereIsColourAgain) 
   Session session(map, by_recorded_poses());
   StageTimes times;
   Frame coloured = depth_only(0, kAtTheFloor);
-  coloured.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
-  coloured.colour.resize(320, 240, {10, 200, 30});
+  give_colour(coloured);
   for (const bool is_located : {true, false}) {
     static_cast<void>(session.step(coloured, times));
     for (std::int64_t i = 1; i <= 20; ++i) {
@@ -110,10 +114,7 @@ TEST(Session, WhatMovedNeedsNoColour) {
     frame.depth_m = session.scene().expected_depth_m();
     for (int y = 40; y < 80; ++y)
       for (int x = 50; x < 100; ++x) frame.depth_m.at(x, y) = 0.8F;
-    if (has_colour) {
-      frame.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
-      frame.colour.resize(320, 240, {10, 200, 30});
-    }
+    if (has_colour) give_colour(frame);
     FrameResult result;
     for (frame.index = 1; frame.index < 4; ++frame.index) {
       frame.stamp_s = static_cast<double>(frame.index) / 30.0;

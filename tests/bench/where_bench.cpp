@@ -90,8 +90,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
     thread.samples_ms.push_back(test::thread_ms() - thread_start_ms);
     wall.samples_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
-    const bool is_found =
-        tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
+    const bool is_found = has_pose(tracking);
     const Eigen::Isometry3d truth = mapped.map.info.T_world_recorded * *frame.T_world_camera;
     const Eigen::Isometry3d error = truth.inverse() * tracking.T_world_camera;
     const double error_m = error.translation().norm();

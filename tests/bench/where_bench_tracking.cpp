@@ -45,7 +45,7 @@ Tracking step(SearchedRoom& mapped, Locator& locator, const Frame& frame, test::
   const double start_ms = test::thread_ms(), drawn_ms = mapped.drawing_ms;
   const Tracking tracking = mapped.find(locator, frame, mapped.scene.moved_mask());
   locate_ms.samples_ms.push_back(test::thread_ms() - start_ms - (mapped.drawing_ms - drawn_ms));
-  if (is_located(tracking)) {
+  if (has_pose(tracking)) {
     mapped.scene.render_expected(frame.depth_camera, tracking.T_world_camera);
     mapped.scene.find_moved(frame);
   }
@@ -80,7 +80,7 @@ nlohmann::json follow_behind_ball(const std::string& name, const SimOptions& sca
     const Tracking tracking = step(mapped, locator, frame, locate_ms);
     const Eigen::Isometry3d T_world_true = mapped.map.info.T_world_recorded * *frame.T_world_camera;
     truth.push_back({frame.index, frame.stamp_s, T_world_true});
-    if (!is_located(tracking)) continue;
+    if (!has_pose(tracking)) continue;
     estimate.push_back({frame.index, frame.stamp_s, tracking.T_world_camera});
     squares += (tracking.T_world_camera.translation() - T_world_true.translation()).squaredNorm();
   }
@@ -112,7 +112,7 @@ nlohmann::json stand_still(const std::string& name, const SimOptions& scan, Sear
   for (std::int64_t i = 0; i < frames; ++i) {
     source.look(i, T_room_camera, frame);
     const Tracking tracking = step(mapped, locator, frame, locate_ms);
-    if (is_located(tracking) && i > 3)
+    if (has_pose(tracking) && i > 3)
       errors.push_back(log_twist(T_world_true.inverse() * tracking.T_world_camera));
   }
   Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
@@ -153,9 +153,9 @@ nlohmann::json carry_away(const std::string& name, const SimOptions& scan, Searc
       }
       const Tracking tracking = step(mapped, locator, frame, locate_ms);
       const bool is_right =
-          is_located(tracking) &&
+          has_pose(tracking) &&
           (tracking.T_world_camera.translation() - T_world_true.translation()).norm() < 0.05;
-      wrong += is_located(tracking) && !is_right;
+      wrong += has_pose(tracking) && !is_right;
       if (is_right && until_right < 0) until_right = i - (k % 2 == 1 ? kBlack_frames : 0);
     }
     never += until_right < 0;
