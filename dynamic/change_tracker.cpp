@@ -133,11 +133,12 @@ void ChangeTracker::update(const DepthImage& depth_m, const DepthImage& expected
   assert(depth_m.width == labels.width && depth_m.height == labels.height);
   if (!has_origin_) {
     origin_world_ = T_world_camera.translation();
-    last_stamp_s_ = stamp_s;
+    if (std::isfinite(stamp_s)) last_stamp_s_ = stamp_s;
     has_origin_ = true;
   }
-  const double dt_s = std::clamp(stamp_s - last_stamp_s_, 0.0, kLongestStep_s);
-  last_stamp_s_ = stamp_s;
+  const double passed_s = stamp_s - last_stamp_s_;
+  const double dt_s = passed_s > 0.0 ? std::min(passed_s, kLongestStep_s) : 0.0;  // nothing by a NaN
+  if (std::isfinite(stamp_s)) last_stamp_s_ = stamp_s;
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   const double focal_px = std::min(camera.fx_px, camera.fy_px);
   const int stride_px = std::max(static_cast<int>(focal_px * config_.spacing_m / kFarApart_m), 1);

@@ -95,6 +95,7 @@ struct CyberRadar::Search {
 
   double best_m = kInfinity;      // least travel that was settled
   bool overlaps = false;          // settled, and nothing else matters any more
+  OverlappedTriangle overlapped;  // if it does
   bool leaves_something = false;  // which faces along the motion and crosses the object now
   bool met_a_back = false;        // of something that faces along the motion
   bool collects_backs = false;    // instead of meeting them
@@ -158,10 +159,13 @@ SceneBound CyberRadar::bound_of(const Search& search) const {
 /// triangles are. The exact answer does not depend on how fine M is.
 void CyberRadar::build_front(const TurnedTree& object, bool is_kept) {
   constexpr int kFewFresh_px = 64;
-  constexpr std::array kKept_px{96, 192, 384};
+  constexpr int kFinest_px = 384;  // unless it is to be sampled more finely
+  const std::array kept_px{96, 192, kFinest_px, std::max(kFinest_px, config_.resolution_px)};
   constexpr std::size_t kFewTriangles = 500;  // their M costs little
   const bool is_exact = config_.mode == RadarMode::kExact;
-  const auto at_most_asked = [&](int px) { return is_exact ? px : std::min(px, config_.resolution_px); };
+  const auto at_most_asked = [&](int px) {
+    return is_exact ? std::min(px, kFinest_px) : std::min(px, config_.resolution_px);
+  };
   if (!is_kept) {
     front_work_ = 0;
     const bool has_few = object.tree->triangle_count() < kFewTriangles;
@@ -169,7 +173,7 @@ void CyberRadar::build_front(const TurnedTree& object, bool is_kept) {
     return;
   }
   int finest_px = 0;
-  for (const int px : kKept_px)
+  for (const int px : kept_px)
     if (2 * front_work_ > work_to_build(object, at_most_asked(px))) finest_px = at_most_asked(px);
   if (finest_px > 0) front_.build(object, finest_px);
 }
@@ -196,6 +200,7 @@ void CyberRadar::look(Search& search) {
   const bool may_stop_early = config_.mode == RadarMode::kSampled && !search.collects_backs;
   int settled_count = 0;
   columns_.work = 0;
+  backs_.clear();
   patch_.clear();
   heap_.clear();
   scene_.begin(bound, static_cast<float>(limit_m(search)), heap_);
@@ -269,7 +274,7 @@ void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriang
     has_ahead = has_ahead || gap.low_m < -object.touching_m;
     if (gap.low_m >= limit_m(search)) return;
     if (search.collects_backs && s.normal.z() > kEdgeOn) {
-      backs_.push_back({gap.low_m, gap.high_m, i, item});
+      if (!search.is_cut_short) backs_.push_back({gap.low_m, gap.high_m, i, item});
       return;
     }
     set_normal(o);
@@ -278,6 +283,7 @@ void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriang
         return;
       case Meeting::kCrossing:
         search.overlaps = true;
+        search.overlapped = {s, scene_.kind(item)};
         return;
       case Meeting::kLeaving:
         search.leaves_something = true;
@@ -293,6 +299,7 @@ void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriang
   });
   if (has_ahead && !search.overlaps && s.normal.z() <= kEdgeOn) {
     search.overlaps = is_inside(object, s, columns_, layers_);
+    if (search.overlaps) search.overlapped = {s, scene_.kind(item)};
   }
 }
 
@@ -300,7 +307,6 @@ void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriang
 void CyberRadar::leave(Search& search) {
   search.collects_backs = true;
   search.best_m = kInfinity;
-  backs_.clear();
   look(search);
   if (search.is_cut_short) return;
   std::sort(backs_.begin(), backs_.end(), [](const Back& a, const Back& b) { return a.low_m < b.low_m; });
@@ -357,7 +363,7 @@ Contact CyberRadar::thick_contact_of(const Search& search) const {
 
 Contact CyberRadar::overlap_of(const Search& search) {
   Contact contact = nothing_found(search);
-  const Overlap overlap = overlap_depth(search.object, front_, scene_, overlap_);
+  const Overlap overlap = overlap_depth(search.object, front_, scene_, search.overlapped, overlap_);
   contact.status = ContactStatus::kOverlap;
   contact.travel_m = contact.upper_m = -overlap.depth_m;
   contact.lower_m = overlap.is_all ? -overlap.depth_m : -kInfinity;

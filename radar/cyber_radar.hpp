@@ -25,9 +25,9 @@ constexpr std::string_view to_string(RadarMode mode) {
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
   /// Pixels along the longer side of the object's outline, 1 to 4096: how wide the bounds of sampled mode
-  /// are once a direction has come three times in the object's own frame (before, M of an object of many
-  /// triangles has 40 at most), and Contact::pixel_m. Exact mode takes as many pixels as is fastest; its
-  /// answer does not depend on them.
+  /// are once a direction of the object's own frame has come so often that a finer M pays (before, M has 40
+  /// at most, or 64 of an object of few triangles), and Contact::pixel_m. Exact mode takes as many pixels as
+  /// is fastest; its answer does not depend on them.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };

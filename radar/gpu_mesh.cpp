@@ -116,8 +116,9 @@ void GpuMesh::upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree
   send(mesh, usage);
 }
 
-/// What is at hand to the renderer.
+/// What is at hand to the renderer. Where that has no room, or is gone, nothing is left to be drawn.
 void GpuMesh::send(const Mesh& mesh, MeshUsage usage) {
+  forget_gl_errors();
   chunk_boxes_.clear();
   for (const MeshChunk& chunk : chunked_.chunks) chunk_boxes_.push_back(chunk.bounds_local.cast<double>());
   chunk_tree_.build(chunk_boxes_);
@@ -140,6 +141,16 @@ void GpuMesh::send(const Mesh& mesh, MeshUsage usage) {
     glEnableVertexArrayAttrib(vertex_array_, kColours);
   } else {
     glDisableVertexArrayAttrib(vertex_array_, kColours);
+  }
+  try {
+    require_drawn("mesh");
+  } catch (const Error&) {
+    tree_ = nullptr;
+    vertices_ = {};
+    chunked_ = {};
+    chunk_tree_.build({});
+    capacity_bytes_ = {};
+    throw;
   }
 }
 

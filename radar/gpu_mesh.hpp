@@ -36,7 +36,8 @@ class GpuMesh {
   /// keeps what was there. kStreamed drops such triangles and counts them; it allocates nothing once a mesh
   /// as large was here. An empty mesh is fine and draws nothing.
   /// @throws Error if refused (kStatic), or if normals or colours are there but not one a vertex, or the
-  ///         origin is not finite, or there are more than 2^31 / 3 triangles
+  ///         origin is not finite, or there are more than 2^31 / 3 triangles; or if the renderer has no room
+  ///         for it or is gone: then it is empty
   void upload(const Mesh& mesh, MeshUsage usage);
 
   /// The same with triangles and the copy at hand shared with a tree instead of held twice.

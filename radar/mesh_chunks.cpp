@@ -6,17 +6,10 @@
 #include <utility>
 
 #include "mapping/types/morton.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
-
-bool is_usable(const Mesh& mesh, const Triangle& triangle) {
-  const std::size_t count = mesh.vertices.size();
-  if (triangle[0] >= count || triangle[1] >= count || triangle[2] >= count) return false;
-  const Eigen::Vector3f sum =
-      mesh.vertices[triangle[0]] + mesh.vertices[triangle[1]] + mesh.vertices[triangle[2]];
-  return std::isfinite(sum.x() + sum.y() + sum.z());  // one coordinate not finite makes the sum so
-}
 
 void keep_usable(const Mesh& mesh, ChunkedTriangles& out) {
   out.triangles.resize(mesh.triangles.size());

@@ -2,6 +2,7 @@
 #include "radar/overlap_depth.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace roomradar {
 namespace {
@@ -69,12 +70,23 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
 }  // namespace
 
 Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFrame& scene,
-                      OverlapScratch& scratch) {
+                      const OverlappedTriangle& known, OverlapScratch& scratch) {
   Overlap result;
+  result.point = inner_point(known.triangle, 0);
+  result.normal = known.triangle.normal;
+  result.kind = known.kind;
   double free_m = 0.0;
+  const auto step_back = [&](const FrameTriangle& triangle, Touched kind, double from_m) {
+    Eigen::Vector3d point = inner_point(triangle, 0);
+    const double end_m = free_below(object, triangle, from_m, scratch, point);
+    if (!(end_m < free_m)) return;
+    free_m = end_m;
+    result = {.depth_m = -free_m, .point = point, .normal = triangle.normal, .kind = kind};
+  };
   scratch.columns.work = 0;
-  for (double before_m = 1.0; before_m > free_m;) {
-    before_m = free_m;
+  step_back(known.triangle, known.kind, 0.0);
+  double before_m = 0.0;
+  do {
     Eigen::AlignedBox3d volume = front.bounds();
     volume.min().z() += before_m;
     volume.max().z() += before_m;
@@ -108,13 +120,9 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
       }
       const FrameTriangle triangle = scene.triangle(item);
       if (triangle.normal.z() > kEdgeOn || !(bound.low_m(triangle) < limit())) continue;
-      Eigen::Vector3d point = inner_point(triangle, 0);
-      const double end_m = free_below(object, triangle, before_m, scratch, point);
-      if (!(end_m < free_m)) continue;
-      free_m = end_m;
-      result = {.depth_m = -free_m, .point = point, .normal = triangle.normal, .kind = scene.kind(item)};
+      step_back(triangle, scene.kind(item), before_m);
     }
-  }
+  } while (std::exchange(before_m, free_m) > free_m);
   return result;
 }
 

@@ -20,6 +20,12 @@ struct OverlapScratch {
   std::vector<SceneItem> items;
 };
 
+/// A triangle of the scene in the frame, and what it is of.
+struct OverlappedTriangle {
+  FrameTriangle triangle;
+  Touched kind = Touched::kNothing;
+};
+
 struct Overlap {
   double depth_m = 0.0;                              ///< > 0; 0: they do not overlap
   bool is_all = true;                                ///< false: at least so deep; the search was cut short
@@ -36,7 +42,8 @@ inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 /// triangle is inside a closed object between the spans where more ways out of it than in are ahead. The
 /// depth is how far the union of these spans that holds 0 reaches back. Scene triangles that face along the
 /// motion do not count.
+/// @param known  one that is overlapped, so that something is told however soon the search is cut short
 Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFrame& scene,
-                      OverlapScratch& scratch);
+                      const OverlappedTriangle& known, OverlapScratch& scratch);
 
 }  // namespace roomradar

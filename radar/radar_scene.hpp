@@ -20,6 +20,9 @@ struct SceneTree {
   TreeInstance instance;
   Touched kind = Touched::kStatic;
 };
+inline bool has_surface(const SceneTree& s) {
+  return s.instance.tree != nullptr && !s.instance.tree->empty();
+}
 
 /// The surface through a depth image's pixels, never meshed as a whole: only where a volume projects into the
 /// image. Images are not owned.

@@ -17,7 +17,6 @@ Eigen::AlignedBox3d moved(const Eigen::AlignedBox3d& box, const Eigen::Isometry3
 bool has_surface(const SceneMesh& s) {
   return s.instance.mesh != nullptr && s.instance.mesh->triangle_count() > 0;
 }
-bool has_surface(const SceneTree& s) { return s.instance.tree != nullptr && !s.instance.tree->empty(); }
 
 Eigen::AlignedBox3d bounds_world(const SceneMesh& s) {
   return moved(s.instance.mesh->bounds(), s.instance.T_world_mesh);

@@ -16,7 +16,6 @@ bool is_finite(const SceneTree& s) {
   return s.instance.tree == nullptr || s.instance.tree->empty() ||
          s.instance.T_world_mesh.matrix().allFinite();
 }
-bool has_surface(const SceneTree& s) { return s.instance.tree != nullptr && !s.instance.tree->empty(); }
 bool has_surface(const SceneDepth& s) { return s.depth_m != nullptr && !s.depth_m->empty(); }
 
 bool is_usable(const SceneDepth& s) {

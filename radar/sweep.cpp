@@ -53,6 +53,14 @@ TriangleTree axis_tree(const Capsule& capsule, const RigidMotion& motion) {
   return tree;
 }
 
+bool is_answer(const Contact& contact) {
+  return contact.status != ContactStatus::kInvalidInput && contact.status != ContactStatus::kNoAnswer;
+}
+
+SweepStatus failure(const Contact& contact) {
+  return contact.status == ContactStatus::kNoAnswer ? SweepStatus::kNoAnswer : SweepStatus::kInvalidInput;
+}
+
 /// A sweep under way.
 struct Course {
   CyberRadar& radar;
@@ -124,9 +132,9 @@ struct Course {
     return step;
   }
 
-  /// Whether the object as it is at time_s meets the scene already; asked along the motion first, then along
-  /// all axes, since what a direction leaves is no overlap for it.
-  bool meets(double time_s, Contact& contact) {
+  /// kOverlap if the object as it is at time_s meets the scene already, kFree, or why that is not known.
+  /// Asked along the motion first, then along all axes, since what a direction leaves is no overlap for it.
+  SweepStatus state_at(double time_s, Contact& contact) {
     const Eigen::Isometry3d T_world_mesh = pose_after(object.T_world_mesh, motion, time_s);
     const std::array<Eigen::Vector3d, 7> directions = {motion.linear_m_s,         Eigen::Vector3d::UnitX(),
                                                        -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
@@ -134,23 +142,17 @@ struct Course {
                                                        -Eigen::Vector3d::UnitZ()};
     for (const Eigen::Vector3d& direction : directions) {
       if (!(direction.stableNorm() > 0.0)) continue;
-      if (!has_queries()) return false;
+      if (!has_queries()) return SweepStatus::kOutOfQueries;
       const Contact got = ask({object.tree, T_world_mesh}, direction, config.tolerance_m, 0.0);
+      if (!is_answer(got)) return failure(got);
       if (got.status != ContactStatus::kOverlap) continue;
       contact = got;
-      return true;
+      return SweepStatus::kOverlap;
     }
-    return false;
+    return SweepStatus::kFree;
   }
+  bool meets(double time_s, Contact& contact) { return state_at(time_s, contact) == SweepStatus::kOverlap; }
 };
-
-bool is_answer(const Contact& contact) {
-  return contact.status != ContactStatus::kInvalidInput && contact.status != ContactStatus::kNoAnswer;
-}
-
-SweepStatus failure(const Contact& contact) {
-  return contact.status == ContactStatus::kNoAnswer ? SweepStatus::kNoAnswer : SweepStatus::kInvalidInput;
-}
 
 /// Nothing turns: the radar's own bounds.
 void sweep_straight(Course& course, double duration_s, SweepResult& result) {
@@ -281,12 +283,9 @@ SweepResult sweep(CyberRadar& radar, const TreeInstance& object, const RigidMoti
   const bool turns = course.straying_m(duration_s) > kNoTurn_m;
   if (turns) course.axis = axis_tree(course.capsule, motion);
   if (course.speed_m_s * duration_s == 0.0 && !turns) {
-    result.status = course.meets(0.0, result.contact) ? SweepStatus::kOverlap : SweepStatus::kFree;
-    if (result.status == SweepStatus::kOverlap) {
-      result.contact_s = 0.0;
-    } else {
-      result.safe_s = duration_s;
-    }
+    result.status = course.state_at(0.0, result.contact);
+    if (result.status == SweepStatus::kOverlap) result.contact_s = 0.0;
+    if (result.status == SweepStatus::kFree) result.safe_s = duration_s;
   } else if (!turns) {
     sweep_straight(course, duration_s, result);
   } else {

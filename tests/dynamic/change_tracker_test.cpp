@@ -243,6 +243,21 @@ TEST(ChangeTracker, AJumpOfTheClockCountsAsHalfASecondAtMost) {
   EXPECT_TRUE(watched.tracker.settled(2.0).empty());
 }
 
+TEST(ChangeTracker, AStampThatIsNoNumberTakesNothingAway) {
+  const Scene with_crate = test::nearest_of(room(), crate_at({0, 0, 0}));
+  for (const double stamp_s :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -100.0}) {
+    Watched watched(room());
+    const DepthImage depth_m = test::exact_frame(with_crate, kCamera, pose_at(0.0)).depth_m;
+    const DepthImage expected_m = test::exact_frame(room(), kCamera, pose_at(0.0)).depth_m;
+    const LabelImage labels = labels_of(depth_m, expected_m);
+    for (int i = 0; i < 40; ++i)
+      watched.tracker.update(depth_m, expected_m, labels, kCamera, pose_at(0.0),
+                             i % 10 == 0 ? stamp_s : 0.1 * i);
+    EXPECT_EQ(watched.tracker.settled(2.0).size(), 1U) << stamp_s;
+  }
+}
+
 TEST(ChangeTracker, PointsAreBounded) {
   ChangeTrackerConfig config;
   config.max_points = 50;

@@ -57,6 +57,19 @@ TEST_F(GlFaults, DepthThatWasNotDrawnIsNoDepth) {
   }
 }
 
+TEST_F(GlFaults, AMeshThatTheRendererDidNotTakeIsSaidAndNotDrawn) {
+  GlRadar radar(context, {.resolution_px = 64});
+  for (const MeshUsage usage : {MeshUsage::kStreamed, MeshUsage::kStatic}) {
+    context.release();
+    EXPECT_THROW(floor.upload(shapes::floor(3.0F, 0.0F), usage), Error);
+    context.make_current();
+    EXPECT_EQ(floor.triangle_count(), 0U);
+    EXPECT_EQ(ask(radar).status, ContactStatus::kNoTarget);
+    floor.upload(shapes::floor(3.0F, 0.0F), usage);
+    EXPECT_NEAR(ask(radar).travel_m, 0.7, 1e-6);
+  }
+}
+
 TEST_F(GlFaults, TextureThatIsNotGivenIsSaid) {
   TileAtlas atlas(context);
   EXPECT_FALSE(atlas.resize(1000, 1000, 4096));

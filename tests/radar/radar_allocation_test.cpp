@@ -69,5 +69,33 @@ TEST(RadarAllocation, AQueryTakesNothingFromTheHeapAfterTheFirstOnesOfItsSize) {
   }
 }
 
+TEST(RadarAllocation, QueriesThatAreCutShortTakeNoMoreFromTheHeapEachTime) {
+  // A ball that leaves a ground of 2 mm cells, in which it is sunk, towards a wall that is met from behind.
+  const JudgedMesh ground([] {
+    Mesh mesh = shapes::bumpy_ground(500);
+    for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= 0.5F;
+    return mesh;
+  }());
+  const JudgedMesh ball(shapes::ball(0.1F, 40, 60)), wall(shapes::floor(1.0F, 0.25F));
+  const SceneTree trees[] = {{{&ground.tree, ground.T_world_mesh}, Touched::kStatic},
+                             {{&wall.tree, wall.T_world_mesh}, Touched::kDynamic}};
+  CyberRadar radar;
+  const auto ask_all = [&] {
+    int cut_short = 0;
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Isometry3d T(Eigen::Translation3d(0.01 * i - 0.1, 0.05 - 0.005 * i, 0.02));
+      const Contact got = radar.query(
+          {.object = {&ball.tree, T}, .direction_world = Eigen::Vector3d::UnitZ(), .distance_m = 0.3},
+          {.trees = trees, .depths = {}});
+      cut_short += got.lower_m == 0.0 ? 1 : 0;
+    }
+    return cut_short;
+  };
+  EXPECT_GT(ask_all(), 5);
+  const std::size_t before = test::allocations;
+  for (int again = 0; again < 3; ++again) ask_all();
+  EXPECT_EQ(test::allocations - before, 0U);
+}
+
 }  // namespace
 }  // namespace roomradar

@@ -1,6 +1,7 @@
 // radar_sunk_test.cpp: what is sunk in a very fine mesh is answered after bounded work, and honestly.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -73,6 +74,25 @@ TEST(RadarSunk, AWayBackThatIsTooLongIsSaidToBeAtLeastAsFarAsWasLooked) {
   }
   EXPECT_GT(cut_short, 5);
   EXPECT_GT(whole, 5);
+}
+
+TEST(RadarSunk, AnOverlapIsOfSomethingAndSomewhereOnItHoweverSoonTheSearchIsCutShort) {
+  std::mt19937 random(6);
+  CyberRadar radar;
+  const Mesh ball = shapes::ball(0.1F, 40, 60), box = shapes::box({0.2F, 0.2F, 0.2F});
+  int cut_short = 0;
+  for (int i = 0; i < 120; ++i) {
+    const JudgedMesh object = sunk(i % 2 == 0 ? ball : box, random, 0.01 + 0.004 * (i % 20));
+    Eigen::Vector3d direction = shapes::random_point(random);
+    direction.z() = i % 3 == 0 ? direction.z() : 0.0;
+    const Contact got = ask(radar, object, direction.normalized());
+    if (got.status != ContactStatus::kOverlap) continue;
+    cut_short += got.lower_m == -std::numeric_limits<double>::infinity() ? 1 : 0;
+    EXPECT_EQ(got.touched, Touched::kStatic) << i;
+    EXPECT_LT(got.travel_m, 0.0) << i;
+    EXPECT_LT(std::abs(got.point_world.z()), 0.03) << i << ": the ground is no higher nor deeper";
+  }
+  EXPECT_GT(cut_short, 10);
 }
 
 TEST(RadarSunk, LeavingAVeryFineMeshIsFreeForAsMuchAsIsKnownAndAWallAheadIsFound) {

@@ -220,6 +220,16 @@ TEST(Sweep, StandingStillIsFreeUnlessItOverlaps) {
     EXPECT_EQ(stuck.contact_s, 0.0);
     EXPECT_TRUE(stuck.T_world_object.isApprox(at(0, 0, 0.1), 0.0));
   }
+  // What could not be asked is not free.
+  Stage nowhere{JudgedMesh(box, at(0, 0, 1)), JudgedMesh(floor)};
+  nowhere.scene.T_world_mesh.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(nowhere.sweep_for({}, 2.0).status, SweepStatus::kInvalidInput);
+  EXPECT_EQ(nowhere.sweep_for({}, 2.0).safe_s, 0.0);
+  Mesh upright = floor;  // met along the first axis alone if it is asked from the other side
+  for (Eigen::Vector3f& vertex : upright.vertices) vertex = {vertex.z(), vertex.x(), vertex.y()};
+  const Stage crossed{JudgedMesh(box, at(0, 0, 0)), JudgedMesh(upright)};
+  EXPECT_EQ(crossed.sweep_for({}, 2.0, {.max_queries = 1}).status, SweepStatus::kOutOfQueries);
+  EXPECT_EQ(crossed.sweep_for({}, 2.0, {.max_queries = 2}).status, SweepStatus::kOverlap);
   const SweepResult no_time = through.sweep_for({.linear_m_s = {0, 0, 1}}, 0.0);
   EXPECT_NE(no_time.status, SweepStatus::kInvalidInput);
 }
