@@ -27,10 +27,14 @@ void require_scenes(const TradeCommand& command) {
   for (const std::string& room : command.rooms) {
     const SimOptions options = parse_sim_spec("sim:" + room);
     if (command.only == "prescan" || command.table1) continue;
+    if (!options.with_colour || !options.registered_colour)
+      throw Error(
+          "trade: " + room +
+          ": pictures are judged in the depth camera's view; leave out colour=, or take --only prescan");
     (void)make_scenario(make_scenario_room(options.room, options.seed), options.seed, 0);
   }
   for (const std::string& recording : command.recordings)
-    (void)frames_of_recording(recording, 0, 2 * kFewestTradeFrames);
+    (void)frames_of_recording(recording, 2 * kFewestTradeFrames);
 }
 
 std::vector<TradeWork> works_of(const TradeCommand& command) {
@@ -81,18 +85,21 @@ TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& sto
       std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
       progress.step(row.fault.empty() ? note : row.fault);
     };
-    for (SweepRow& row : sweep(work, {settings, command.repeats, command.seed}, watch))
-      result.rows.push_back(of_all(std::move(row)));
+    SweptRows made = sweep(work, {settings, command.repeats, command.seed}, watch);
+    for (SweepRow& row : made.rows) result.rows.push_back(of_all(std::move(row)));
+    result.fault = std::move(made.fault);
     result.summaries = summarise(work, result.settings, result.rows);
   };
   std::vector<Setting> drawn = draw_settings(work.knobs, command.settings - on_ladder, command.seed);
   drawn.insert(drawn.begin(), usual_setting(work.knobs));
   measure(drawn);
-  const std::vector<Setting> ladder = ladder_settings(work, result.summaries, result.usual, on_ladder);
-  if (!ladder.empty() && !stop.asked()) measure(ladder);
+  if (result.rows.empty()) return result;
+  if (result.fault.empty() && !stop.asked()) {
+    const std::vector<Setting> ladder = ladder_settings(work, result.summaries, result.usual, on_ladder);
+    if (!ladder.empty()) measure(ladder);
+  }
   result.choice = choose_presets(work, result.summaries, result.usual);
-  csv.write(work, result.summaries, result.usual, result.choice);
-  result.was_cut_short = stop.asked();
+  result.was_cut_short = stop.asked() || !result.fault.empty();
   return result;
 }
 
@@ -160,22 +167,20 @@ int run(const TradeCommand& command) {
   TradeCsv csv(command.csv, works);
   Stop stop;
   std::vector<TradeResult> results;
-  std::string fault;  // what was measured before it is written all the same
+  std::string faults;  // what was measured before them is written all the same
+  const auto add_fault = [&](const std::string& fault) { faults += (faults.empty() ? "" : "; ") + fault; };
   for (const TradeWork& work : works) {
-    try {
-      TradeResult result;
-      if (!stop.asked())
-        result = report.times.timed(work.name, [&] { return traded(work, command, stop, csv); });
-      if (result.rows.empty())
-        std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
-      else
-        results.push_back(std::move(result));
-    } catch (const Error& error) {
-      fault += (fault.empty() ? "" : "; ") + work.name + ": " + error.what();
-    }
+    TradeResult result;
+    if (!stop.asked())
+      result = report.times.timed(work.name, [&] { return traded(work, command, stop, csv); });
+    if (!result.fault.empty()) add_fault(work.name + ": " + result.fault);
+    if (!result.rows.empty())
+      results.push_back(std::move(result));
+    else if (result.fault.empty())
+      std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
   }
   if (results.empty())
-    throw Error(fault.empty() ? "trade: stopped by Ctrl-C before anything was measured" : "trade: " + fault);
+    throw Error("trade: " + (faults.empty() ? "stopped by Ctrl-C before anything was measured" : faults));
   for (const TradeResult& result : results) {
     print_presets(result);
     report.results[result.work.name] = to_json(result);
@@ -185,18 +190,31 @@ int run(const TradeCommand& command) {
     for (const std::string& setting : faults_of(result))
       std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
   }
-  write_trade_page(
-      results,
-      {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
-           machine.system,
-       "seed " + std::to_string(command.seed) + ", " + std::to_string(command.repeats) +
-           " repeats in each scene" + (command.quick ? ", quick: few frames of small images" : "")},
-      command.html);
-  const bool has_both = results.size() == 2;
-  if (!command.presets.empty() && !has_both)
-    std::fprintf(stderr, "roomradar: %s: not written: only %s was measured, and presets are of both\n",
-                 command.presets.c_str(), results.front().work.name.c_str());
-  if (!command.presets.empty() && has_both)
+  const auto write = [&](const auto& output) {
+    try {
+      output();
+    } catch (const Error& error) {
+      add_fault(error.what());
+    }
+  };
+  write([&] {
+    for (const TradeResult& result : results)
+      csv.write(result.work, result.summaries, result.usual, result.choice);
+  });
+  write([&] {
+    write_trade_page(
+        results,
+        {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
+             machine.system,
+         "seed " + std::to_string(command.seed) + ", " + std::to_string(command.repeats) +
+             " repeats in each scene" + (command.quick ? ", quick: few frames of small images" : "")},
+        command.html);
+  });
+  write([&] {
+    if (command.presets.empty()) return;
+    if (results.size() < 2)
+      throw Error(command.presets + ": not written: only " + results.front().work.name +
+                  " was measured, and presets are of both");
     write_presets(chosen_presets(results, {{"processor", machine.processor},
                                            {"renderer", machine.renderer},
                                            {"system", machine.system},
@@ -205,8 +223,9 @@ int run(const TradeCommand& command) {
                                            {"objects", std::to_string(command.objects)},
                                            {"scale", command.quick ? "quick" : "full"}}),
                   command.presets);
-  write_report(report, command.report);
-  if (!fault.empty()) throw Error("trade: " + fault);
+  });
+  write([&] { write_report(report, command.report); });
+  if (!faults.empty()) throw Error("trade: " + faults);
   return 0;
 }
 

@@ -143,7 +143,7 @@ std::shared_ptr<const ScanScene> open_room(const std::string& spec, const TradeS
 std::shared_ptr<const ScanScene> open_recording(const std::string& folder, const TradeScale& scale) {
   auto scene = std::make_shared<ScanScene>();
   scene->name = folder;
-  scene->frames = frames_of_recording(folder, 0, scale.scan_frames);
+  scene->frames = frames_of_recording(folder, scale.scan_frames);
   return scene;
 }
 

@@ -95,7 +95,7 @@ std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const Trade
 std::unique_ptr<RunScene> run_scene_of_recording(const std::string& folder, const TradeScale& scale) {
   auto scene = std::make_unique<RunScene>();
   scene->name = folder;
-  const std::vector<Frame> all = frames_of_recording(folder, 0, scale.map_frames + scale.run_frames);
+  const std::vector<Frame> all = frames_of_recording(folder, scale.map_frames + scale.run_frames);
   const std::size_t run_frames = std::min(all.size() / 2, static_cast<std::size_t>(scale.run_frames));
   const auto middle = all.end() - static_cast<std::ptrdiff_t>(run_frames);
   const std::vector<Frame> scanned(all.begin(), middle);

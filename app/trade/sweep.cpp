@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "app/sim/counter_random.hpp"
@@ -33,50 +32,54 @@ std::vector<SweepRow> stopped_in(std::size_t scene, std::vector<SweepRow> rows) 
   return rows;
 }
 
-}  // namespace
+bool is_stopped(const SweepWatch& watch) { return watch.is_stopped && watch.is_stopped(); }
 
-std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch) {
-  const auto is_stopped = [&] { return watch.is_stopped && watch.is_stopped(); };
-  std::vector<SweepRow> rows;
+/// False where the sweep was stopped meanwhile. Throws Error if the default cannot be measured.
+bool measure_scene(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch, std::size_t scene,
+                   std::vector<SweepRow>& rows) {
   const Setting usual = usual_setting(work.knobs);
-  for (std::size_t scene = 0; scene < work.scenes.size(); ++scene) {
-    if (is_stopped()) return rows;
-    const Measure measure = work.open(scene);
-    /// Nothing where the sweep was stopped meanwhile: Ctrl-C ends a measurement's process, too.
-    const auto measure_default = [&]() -> std::optional<Readings> {
-      if (is_stopped()) return std::nullopt;
+  const Measure measure = work.open(scene);
+  for (int repeat = 0; repeat < plan.repeats; ++repeat) {
+    CounterRandom random(plan.seed, static_cast<std::uint64_t>(repeat) + 1000 * scene);
+    if (is_stopped(watch)) return false;
+    Readings before = measure(usual);
+    for (const std::size_t setting : order_of(plan.settings, usual, random)) {
+      if (is_stopped(watch)) return false;
+      SweepRow row{.setting = setting, .scene = scene, .repeat = repeat};
       try {
-        return measure(usual);
-      } catch (const Error&) {
-        if (!is_stopped()) throw;
-        return std::nullopt;
+        row.figures = measure(plan.settings[setting]);
+      } catch (const Error& error) {
+        if (plan.settings[setting] == usual) throw;
+        row.fault = error.what();
+        row.figures.assign(work.figures.size(), std::numeric_limits<double>::quiet_NaN());
       }
-    };
-    for (int repeat = 0; repeat < plan.repeats; ++repeat) {
-      CounterRandom random(plan.seed, static_cast<std::uint64_t>(repeat) + 1000 * scene);
-      std::optional<Readings> before = measure_default();
-      for (const std::size_t setting : order_of(plan.settings, usual, random)) {
-        if (!before) return stopped_in(scene, std::move(rows));
-        SweepRow row{.setting = setting, .scene = scene, .repeat = repeat};
-        try {
-          row.figures = measure(plan.settings[setting]);
-        } catch (const Error& error) {
-          if (plan.settings[setting] == usual && !is_stopped()) throw;
-          row.fault = error.what();
-          row.figures.assign(work.figures.size(), std::numeric_limits<double>::quiet_NaN());
-        }
-        std::optional<Readings> after = measure_default();
-        if (!after) return stopped_in(scene, std::move(rows));
-        for (std::size_t i = 0; i < row.figures.size(); ++i)
-          row.ratios.push_back(row.figures[i] / (0.5 * ((*before)[i] + (*after)[i])));
-        row.default_before = std::exchange(*before, *after);
-        row.default_after = std::move(*after);
-        if (watch.on_row) watch.on_row(row);
-        rows.push_back(std::move(row));
-      }
+      if (is_stopped(watch)) return false;
+      const Readings after = measure(usual);
+      for (std::size_t i = 0; i < row.figures.size(); ++i)
+        row.ratios.push_back(row.figures[i] / (0.5 * (before[i] + after[i])));
+      row.default_before = std::exchange(before, after);
+      row.default_after = after;
+      rows.push_back(row);
+      if (watch.on_row) watch.on_row(row);
     }
   }
-  return rows;
+  return true;
+}
+
+}  // namespace
+
+SweptRows sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch) {
+  std::vector<SweepRow> rows;
+  for (std::size_t scene = 0; scene < work.scenes.size(); ++scene) {
+    try {
+      if (!is_stopped(watch) && measure_scene(work, plan, watch, scene, rows)) continue;
+      return {stopped_in(scene, std::move(rows)), {}};
+    } catch (const Error& error) {
+      // Ctrl-C ends a measurement's process, too.
+      return {stopped_in(scene, std::move(rows)), is_stopped(watch) ? std::string() : error.what()};
+    }
+  }
+  return {std::move(rows), {}};
 }
 
 }  // namespace roomradar

@@ -28,6 +28,11 @@ struct SweepPlan {
   std::uint64_t seed = 1;  ///< of the order
 };
 
+struct SweptRows {
+  std::vector<SweepRow> rows;
+  std::string fault;  ///< why it ended before all was measured; empty if it did not, or was stopped
+};
+
 struct SweepWatch {
   std::function<void(const SweepRow& row)> on_row;  ///< as soon as a row is there; may be empty
   std::function<bool()> is_stopped;                 ///< asked before each measurement; may be empty
@@ -36,8 +41,9 @@ struct SweepWatch {
 /// Scene by scene, and in a scene repeat by repeat, all settings in an order of their own, the default's own
 /// row first. Between any two the default is measured, and each setting is compared with the one before and
 /// the one after it: a machine that becomes slower, or has other work for a while, slows all three. Where a
-/// setting cannot be done its row says why and the sweep goes on; a default that cannot is an Error. When it
-/// is stopped, the scenes that were done are given, or what is done of the first.
-std::vector<SweepRow> sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch = {});
+/// setting cannot be done its row says why and the sweep goes on. Where it is stopped, or the default cannot
+/// be done, or a scene not opened, or on_row throws, the scenes that were done are given, or what is done of
+/// the first.
+SweptRows sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch = {});
 
 }  // namespace roomradar

@@ -15,8 +15,8 @@ Intrinsics kinect_of_width(int width_px);
 
 inline constexpr std::size_t kFewestTradeFrames = 30;
 
-/// Up to `count` frames of a folder from index `first` on. Throws Error if it cannot be read, there are fewer
-/// than kFewestTradeFrames, or they come without poses: nothing could be said of errors then.
-std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t first, std::int64_t count);
+/// The first frames of a folder, up to `count` of them. Throws Error if it cannot be read, fewer than
+/// kFewestTradeFrames are readable, or they come without poses: nothing could be said of errors then.
+std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t count);
 
 }  // namespace roomradar

@@ -17,6 +17,7 @@ struct TradeResult {
   std::size_t usual = 0;  ///< the default's place among the settings
   PresetChoice choice = {};
   bool was_cut_short = false;  ///< before all settings had been measured in all scenes
+  std::string fault = {};      ///< why it was, if not because the user wanted it so
 };
 
 /// A line for each setting that could not be measured somewhere: which, where and why.

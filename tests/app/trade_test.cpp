@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "app/sim/counter_random.hpp"
+#include "app/sim/simulate.hpp"
 #include "app/trade/choose_presets.hpp"
 #include "app/trade/draw_settings.hpp"
 #include "app/trade/front.hpp"
@@ -199,7 +200,7 @@ TEST(Sweep, RatiosAreFlatThoughTheMachineSlowsDownTwofold) {
   const TradeWork work = machine.work();
   const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}, {0, 1, 0}};
   machine.slower = std::pow(2.0, 1.0 / (2.0 * 2.0 * 7.0));  // over all of the sweep's measurements
-  const std::vector<SweepRow> rows = sweep(work, {settings, 2, 1});
+  const std::vector<SweepRow> rows = sweep(work, {settings, 2, 1}).rows;
   ASSERT_EQ(rows.size(), 12U);
   EXPECT_GT(rows.back().default_after.front(), 1.9 * rows.front().default_before.front())
       << "it did slow down";
@@ -238,7 +239,7 @@ TEST(Sweep, TheDefaultsOwnRowIsTheFirstSoThatACutOffSweepCanBeCompared) {
   Machine machine;
   const TradeWork work = machine.work({"a"});
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const std::vector<SweepRow> rows = sweep(work, {{{0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, 2, seed});
+    const std::vector<SweepRow> rows = sweep(work, {{{0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, 2, seed}).rows;
     ASSERT_EQ(rows.size(), 6U);
     EXPECT_EQ(rows[0].setting, 2U);
     EXPECT_EQ(rows[3].setting, 2U);
@@ -249,7 +250,7 @@ TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) 
   Machine machine;
   const TradeWork work = machine.work();
   const std::vector<Setting> settings{{2, 1, 0}, {2, 0, 0}, {1, 1, 0}};
-  const std::vector<SweepRow> rows = sweep(work, {settings, 1, 1});
+  const std::vector<SweepRow> rows = sweep(work, {settings, 1, 1}).rows;
   ASSERT_EQ(rows.size(), 6U);
   EXPECT_EQ(std::count_if(rows.begin(), rows.end(),
                           [](const SweepRow& row) { return row.fault == "cannot be done"; }),
@@ -261,18 +262,44 @@ TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) 
 
   std::size_t told = 0;
   const std::vector<SweepRow> some =
-      sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 2; }});
+      sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 2; }}).rows;
   EXPECT_EQ(some.size(), 2U);
   // A scene that was not finished does not take those that were from all settings but a few.
   told = 0;
   const std::vector<SweepRow> whole =
-      sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 4; }});
+      sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 4; }}).rows;
   EXPECT_EQ(told, 4U);
   EXPECT_EQ(whole.size(), 3U);
   EXPECT_TRUE(summarise(work, settings, whole)[2].is_complete);
+}
+
+TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
+  const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}, {0, 1, 0}};
+  // The default of the second scene, or the scene itself: what there is of the first stays.
+  for (const bool is_opened : {true, false}) {
+    Machine machine;
+    TradeWork work = machine.work({"a", "b"});
+    const auto sound = work.open;
+    work.open = [&, sound](std::size_t scene) -> Measure {
+      if (scene == 0) return sound(scene);
+      if (!is_opened) throw Error("no such folder");
+      return [](const Setting&) -> Readings { throw Error("no memory"); };
+    };
+    const SweptRows result = sweep(work, {settings, 1, 1});
+    EXPECT_EQ(result.fault, is_opened ? "no memory" : "no such folder");
+    EXPECT_EQ(result.rows.size(), 3U);
+  }
+  // So it does where the file for the rows is full, the row that was to be written with them.
+  Machine machine;
+  int written = 0;
+  const auto write = [&](const SweepRow&) {
+    if (++written == 2) throw Error("the disk is full");
+  };
+  const SweptRows full = sweep(machine.work({"a"}), {settings, 1, 1}, {write, {}});
+  EXPECT_EQ(full.fault, "the disk is full");
+  EXPECT_EQ(full.rows.size(), 2U);
   // A default that fails in its own row spoils all comparisons: said at once, and not at the end.
-  Machine flaky;
-  TradeWork once = flaky.work({"a"});
+  TradeWork once = machine.work({"a"});
   int asked = 0;
   once.open = [&](std::size_t) -> Measure {
     return [&](const Setting&) -> Readings {
@@ -280,18 +307,31 @@ TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) 
       return {1.0, 1.0, 1.0};
     };
   };
-  EXPECT_EQ(test::error_of([&] { (void)sweep(once, {settings, 1, 1}); }), "no memory");
-  Machine broken;
-  TradeWork impossible = broken.work();
-  impossible.knobs[1].usual = 0;
-  EXPECT_THROW((void)sweep(impossible, {settings, 1, 1}), Error);
+  EXPECT_EQ(sweep(once, {settings, 1, 1}).fault, "no memory");
+  EXPECT_EQ(asked, 2);
+  // Ctrl-C ends what is being measured, too, and is no fault.
+  asked = 0;
+  const SweptRows stopped = sweep(once, {settings, 1, 1}, {{}, [&] { return asked == 2; }});
+  EXPECT_EQ(stopped.fault, "");
+  EXPECT_TRUE(stopped.rows.empty());
+}
+
+TEST(TradeFrames, AreAsManyAsTheRecordingHas) {
+  const test::TemporaryFolder folder;
+  SimOptions options = parse_sim_spec("sim:table?frames=40&width=64");
+  simulate(folder.path() / "r", options, RecordingFormat::kTum, [](std::int64_t, std::int64_t) {});
+  const std::string recording = (folder.path() / "r").string();
+  EXPECT_EQ(frames_of_recording(recording, 35).size(), 35U);
+  EXPECT_EQ(frames_of_recording(recording, 360).size(), 40U);
+  EXPECT_NE(test::error_of([&] { (void)frames_of_recording(recording, 29); }).find("at least 30"),
+            std::string::npos);
 }
 
 TEST(Summaries, OfASceneThatOthersWereMeasuredInTooAreNotComplete) {
   Machine machine;
   const TradeWork work = machine.work();
   const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}};
-  std::vector<SweepRow> rows = sweep(work, {settings, 1, 1});
+  std::vector<SweepRow> rows = sweep(work, {settings, 1, 1}).rows;
   std::erase_if(rows, [](const SweepRow& row) { return row.scene == 1 && row.setting == 1; });
   const std::vector<SettingSummary> summaries = summarise(work, settings, rows);
   EXPECT_TRUE(summaries[0].is_complete);
@@ -454,7 +494,7 @@ TEST(TradeFiles, CsvHasAllColumnsInEachLineAndThePageNeedsNothingElse) {
   Machine machine;
   TradeResult result{.work = machine.work({"a <scene>, \"b\""}),
                      .settings = {{2, 1, 0}, {1, 1, 0}, {2, 0, 0}, {2, 1, 1}}};
-  result.rows = sweep(result.work, {result.settings, 2, 1});
+  result.rows = sweep(result.work, {result.settings, 2, 1}).rows;
   result.summaries = summarise(result.work, result.settings, result.rows);
   result.choice = choose_presets(result.work, result.summaries, 0);
   {
