@@ -91,6 +91,7 @@ int run(const CalibrateCommand& command) {
                      {"square_m", command.board.square_m},
                      {"calibration", command.calibration}};
   require_valid(command.board);
+  require_png_name(command.plot);
   for (const std::string& path : {command.calibration, command.plot, command.report}) require_writable(path);
 
   SourceOptions options;

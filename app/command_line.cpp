@@ -182,7 +182,9 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
   add_preset_options(*sub, command.preset, command.presets);
   add_quality_options(*sub, command.quality, command.fixed);
   add_report_option(*sub, command.report);
-  sub->callback([&] {
+  sub->callback([&, sub] {
+    if (sub->count("--presets") > 0 && sub->count("--preset") == 0)
+      throw CLI::ValidationError("--presets: says where --preset NAME is looked up, and none is given");
     settle_quality(command);
     work = [&command] { return run(command); };
   });
@@ -211,11 +213,10 @@ void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
 
 void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand("run", "augmented reality in a saved map");
-  sub->add_option(
-         "SOURCE", command.source,
-         std::string(kSourceHelp) +
-             ",\nor a session that was recorded by --record-session: it is played again from its\n"
-             "first frame on, with its own settings where none are given")
+  sub->add_option("SOURCE", command.source,
+                  std::string(kSourceHelp) +
+                      ",\nor a session that was recorded by --record-session: it is played again from its\n"
+                      "first frame on, with its own settings where none are given")
       ->required();
   sub->add_option("--map", command.map, "the saved map; it is only read")->type_name("DIR");
   add_choice(*sub, "--poses", command.poses, kPoses,
@@ -277,6 +278,12 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
     if (command.window && sub->count("--at-end") == 0) command.at_end = AtEnd::kStay;
     if (sub->count("--object") > 0 && sub->count("--script") > 0 && !command.window)
       throw CLI::ValidationError("--object: --script says which objects there are; add it there");
+    if (sub->count("--presets") > 0 && sub->count("--preset") == 0 && !command.budget_ms)
+      throw CLI::ValidationError(
+          "--presets: says where --preset NAME and what --budget-ms gives up are looked up, and neither is "
+          "given");
+    if (sub->count("--pictures-every") > 0 && command.pictures.empty())
+      throw CLI::ValidationError("--pictures-every: --pictures says into which folder, and is not given");
     if (is_session_folder(command.source)) take_recorded_settings(command, *sub);
     settle_quality(command);
     if (command.map.empty()) throw CLI::RequiredError("--map");
@@ -332,8 +339,9 @@ void add_map(CLI::App& app, Arguments& arguments, std::function<int()>& work) {
 void add_simulate(CLI::App& app, SimulateCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand("simulate", "record a simulated Kinect, with ground truth beside it");
   sub->add_option("DIR", command.folder, "folder to write; must be empty or not there")->required();
-  sub->add_option("--room", command.room, "table, shelf or wall (table)")->type_name("NAME");
-  sub->add_option("--seed", command.seed, "of the camera's path and the noise (1)")->type_name("N");
+  sub->add_option("--room", command.room, "table, shelf, wall, random or board (table)")->type_name("NAME");
+  sub->add_option("--seed", command.seed, "of the camera's path, the noise, and what is in a random room (1)")
+      ->type_name("N");
   sub->add_option("--frames", command.frames, "how many (300)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
@@ -433,6 +441,7 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
       refuse(of_source, ": is about a SOURCE, and none is given");
     else
       refuse(of_rooms, ": is about simulated rooms, and not about a SOURCE");
+    if (!command.source.empty() && command.map.empty()) throw CLI::RequiredError("--map");
     if (command.scenario) refuse(of_many, ": is not made of one --scenario alone");
     work = [&command] { return run(command); };
   });

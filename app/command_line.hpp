@@ -9,7 +9,8 @@ struct ParsedCommand {
   int exit_status = 0;        ///< 0 after help, 2 after wrong usage
 };
 
-/// Prints help or a usage message itself. Throws nothing for anything that a user can type.
+/// Prints help or a usage message itself. Throws Error if a file or a recorded
+/// session cannot be read that says more of the settings.
 ParsedCommand parse_command_line(int argc, const char* const* argv);
 
 }  // namespace roomradar

@@ -86,13 +86,15 @@ std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vect
 
 /// One scenario alone: only its room is scanned.
 int replay(const FallthroughCommand& command, const RoomScan& scan) {
+  require_writable(command.video);
+  VideoWriter video(command.video, kReplayPicturesPerS);
   const std::vector<RoomChoice> choices = choose_rooms(command.random_rooms);
   const std::vector<RoomChoice> one{choices[static_cast<std::size_t>(*command.scenario) % choices.size()]};
   GlContext context;
   const Rooms rooms = map_rooms(context, one, scan, 1);
   PreparedScenario prepared(rooms.front()->scanned.simulated, command.seed, *command.scenario);
   CyberRadar radar;
-  write_replay(prepared, *rooms.front(), radar, command.video);
+  write_replay(prepared, *rooms.front(), radar, video);
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const Trial trial = run_trial(prepared, *rooms.front(), i, radar);
     std::printf("%-11s %-10s %+7.1f mm, rested on: %s\n", std::string(kFallthroughPolicies[i].name).c_str(),

@@ -5,35 +5,13 @@
 #include "app/commands.hpp"
 #include "app/map_picture.hpp"
 #include "app/picture_file.hpp"
+#include "app/registered_maps.hpp"
 #include "app/report.hpp"
 #include "mapping/map_diff.hpp"
 #include "mapping/map_merge.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
-namespace {
-
-/// Throws Error where it is not certain how they stand to each other.
-Registration require_registered(const SavedMap& a, const SavedMap& b, const std::string& name_a,
-                                const std::string& name_b, Report& report) {
-  Registration found = report.times.timed("register", [&] { return register_maps(a, b); });
-  if (!found)
-    throw Error(name_b + ": cannot be placed in " + name_a + ": " + describe(found) +
-                "; both must have seen a good part of the same room");
-  std::printf("%s in %s: %s\n", name_b.c_str(), name_a.c_str(), describe(found).c_str());
-  nlohmann::json T_a_b = nlohmann::json::array();
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) T_a_b.push_back(found.T_a_b.matrix()(row, column));
-  report.results["registration"] = {{"T_a_b", T_a_b},
-                                    {"agreeing_views", found.agreeing_views},
-                                    {"overlap", found.overlap},
-                                    {"agreement", found.agreement},
-                                    {"residual_m", found.residual_m}};
-  return found;
-}
-
-}  // namespace
-
 int run(const MapMergeCommand& command) {
   Report report;
   report.command = "map merge";
@@ -62,8 +40,7 @@ int run(const MapDiffCommand& command) {
   report.source = command.a + ", " + command.b;
   report.settings = {{"a", command.a}, {"b", command.b}};
   require_writable(command.report);
-  if (!command.picture.empty() && !command.picture.ends_with(".png"))
-    throw Error(command.picture + ": is no name for a PNG picture; give one that ends in .png");
+  require_png_name(command.picture);
   require_writable(command.picture);
   const SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);

@@ -11,6 +11,7 @@
 #include "app/apply_quality.hpp"
 #include "app/open_source.hpp"
 #include "app/quality_json.hpp"
+#include "mapping/map_folder.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -193,6 +194,8 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   run.report.settings = settings_of(command);
   require_writable(command.report);
   require_writable(command.frames_csv);
+  require_outside_maps(command.video);
+  require_contents_outside_maps(command.pictures);
   run.script = script_of(command);
   require_can_save_map(command, run.script);
   require_budget_alone(command, run.script);

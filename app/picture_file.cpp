@@ -34,6 +34,11 @@ cv::Mat view_of(const Image<Pixel>& image, int type) {
 
 }  // namespace
 
+void require_png_name(const std::filesystem::path& path) {
+  if (!path.empty() && path.extension() != ".png")
+    throw Error(path.string() + ": is no name for a PNG picture; give one that ends in .png");
+}
+
 void write_png(const ColourImage& picture, const std::filesystem::path& path) {
   require_pixels(picture, path);
   cv::Mat bgr;

@@ -6,6 +6,10 @@
 
 namespace roomradar {
 
+/// Throws Error if a PNG picture should not have that name: it would be taken for another format. An empty
+/// one is fine.
+void require_png_name(const std::filesystem::path& path);
+
 /// 8-bit RGB. Both throw Error naming the path if the image is empty or the file cannot be written whole.
 void write_png(const ColourImage& picture, const std::filesystem::path& path);
 

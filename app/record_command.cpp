@@ -8,6 +8,7 @@
 #include "app/interrupt.hpp"
 #include "app/open_source.hpp"
 #include "app/progress.hpp"
+#include "mapping/map_folder.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -28,6 +29,7 @@ ReadResult read(FrameSource& source, RecordingWriter& writer, const std::string&
 }  // namespace
 
 int run(const RecordCommand& command) {
+  require_contents_outside_maps(command.folder);
   SourceOptions options;
   options.keep_all = true;
   const Interrupt interrupt;

@@ -38,7 +38,7 @@ void require_writable(const std::filesystem::path& path);
 /// Writes the report, or does nothing for an empty path. Throws Error if the file cannot be written.
 void write_report(const Report& report, const std::filesystem::path& path);
 
-/// Largest resident memory of this process so far, in MiB.
+/// Largest resident memory of this process so far, in 10^6 bytes.
 double peak_rss_mb();
 /// What all threads of this process have computed so far.
 double process_cpu_ms();

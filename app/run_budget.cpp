@@ -77,7 +77,7 @@ std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most,
   for (FrontStep step : presets.front) {
     set_fields(step.run, fixed);
     if (step.run == most) {
-      front = {std::move(step)};  // what is more accurate than this is not asked for
+      if (!is_in_front) front = {std::move(step)};  // what is more accurate than this is not asked for
       is_in_front = true;
     } else if (!(step.run == front.back().run)) {
       front.push_back(std::move(step));

@@ -8,6 +8,7 @@
 #include "app/run_loop.hpp"
 #include "app/window/play_window.hpp"
 #include "mapping/surface.hpp"
+#include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
@@ -34,7 +35,12 @@ nlohmann::json report_replay(const ReplayCheck& check) {
 int finish(OpenedRun& run) {
   const RunCommand& command = run.command;
   const RunTotals& totals = run.totals;
-  if (!command.save_map.empty()) save_changed(run.map, run.session->adopted().size(), command.save_map);
+  std::string not_saved;  // what was measured is said all the same
+  try {
+    if (!command.save_map.empty()) save_changed(run.map, run.session->adopted().size(), command.save_map);
+  } catch (const Error& error) {
+    not_saved = error.what();
+  }
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped.count;
   run.report.results = results_of(totals, *run.session);
@@ -42,6 +48,7 @@ int finish(OpenedRun& run) {
   if (run.check) run.report.results["replay"] = report_replay(*run.check);
   write_report(run.report, command.report);
   print_summary(totals, *run.session);
+  if (!not_saved.empty()) throw Error(not_saved);
   if (totals.located > 0 || run.was_quit) return 0;
   std::fprintf(stderr, "roomradar: %s: no frame shows where in %s the camera is; was that room mapped?\n",
                command.source.c_str(), command.map.c_str());

@@ -78,6 +78,7 @@ void require_written(const std::ofstream& file, const fs::path& path) {
 }  // namespace
 
 void require_can_become_session(const fs::path& folder) {
+  require_contents_outside_maps(folder);
   std::error_code fault;
   if (fs::exists(folder, fault) && (!fs::is_empty(folder, fault) || fault))
     throw Error(folder.string() +

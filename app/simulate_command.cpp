@@ -4,10 +4,12 @@
 #include "app/commands.hpp"
 #include "app/progress.hpp"
 #include "app/sim/simulate.hpp"
+#include "mapping/map_folder.hpp"
 
 namespace roomradar {
 
 int run(const SimulateCommand& command) {
+  require_contents_outside_maps(command.folder);
   // One parser for what can be simulated: the command's options are put together as a sim: source.
   std::string spec = "sim:" + command.room + "?seed=" + std::to_string(command.seed) +
                      "&frames=" + std::to_string(command.frames) + "&path=" + command.path;

@@ -94,7 +94,11 @@ void PartialFolder::put_in_place() {
     std::error_code ignored;
     fs::remove_all(aside, ignored);
   }
-  sync_to_disk(parent_of(target_));
+  try {
+    sync_to_disk(parent_of(target_));
+  } catch (
+      const Error&) {  // it is in place; what is lost if the power fails now is the new name, not the map
+  }
 }
 
 std::string swap_mark_of(const fs::path& folder) {

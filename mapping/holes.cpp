@@ -51,7 +51,7 @@ std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Fr
 }
 
 std::string describe(const Hole& hole) {
-  char text[256];
+  char text[512];  // five numbers of up to 42 digits, and words
   const auto& p = hole.position_world;
   const auto& look = hole.look_direction_world;
   int length = std::snprintf(

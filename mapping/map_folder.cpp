@@ -149,6 +149,12 @@ void require_outside_maps(const fs::path& path) {
     fail(path, "lies in the folder of a map, which holds nothing but the map; choose another place");
 }
 
+void require_contents_outside_maps(const fs::path& folder) {
+  if (folder.empty()) return;
+  require_outside_maps((folder / "").parent_path());
+  require_outside_maps(folder / "contents");
+}
+
 void require_can_become_map(const fs::path& folder) { require_replaceable(tidy_map_name(folder)); }
 
 void save_map(const fs::path& folder, const SavedMap& map) {
@@ -196,7 +202,10 @@ MapInfo read_info(const fs::path& folder) {
   if (!fs::is_directory(folder, fault))
     fail(folder, "there is no such map folder; make one with `roomradar prescan`");
   const fs::path path = folder / kInfo;
-  if (!fs::is_regular_file(path, fault)) fail(path, "is missing, so the folder is no map");
+  const fs::file_status status = fs::symlink_status(path, fault);
+  if (!fs::exists(status)) fail(path, "is missing, so the folder is no map");
+  if (!fs::is_regular_file(status))
+    fail(path, "is no file of its own (a link, or a folder); a map has no such");
   if (fs::file_size(path, fault) > kMaxInfoBytes)
     fail(path, "is larger than 1 MB, so it is no description of a map");
   std::ifstream file(path, std::ios::binary);
@@ -244,6 +253,7 @@ std::vector<std::string> faults_of(const fs::path& folder) {
       if (name == kMesh) static_cast<void>(read_mesh(folder / part));
       if (name == kPlaces) static_cast<void>(read_places(folder / part));
       if (name == kTrajectory) static_cast<void>(read_trajectory(folder / part));
+      if (name == kCoverage) static_cast<void>(read_picture(folder / part));
     });
   }
   return faults;

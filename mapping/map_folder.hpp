@@ -58,6 +58,8 @@ std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
 
 /// Throws Error if the file or folder would lie in a map's folder, which holds nothing but the map's own.
 void require_outside_maps(const std::filesystem::path& path);
+/// The same for what will be put into a folder, which may be a map's itself.
+void require_contents_outside_maps(const std::filesystem::path& folder);
 
 /// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it: a check to
 /// make before minutes of work.

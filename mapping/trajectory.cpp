@@ -45,7 +45,7 @@ void write_trajectory(const std::filesystem::path& path, const std::vector<Timed
   for (const TimedPose& pose : trajectory) {
     const Eigen::Vector3d t = pose.T_world_camera.translation();
     const Eigen::Quaterniond q(pose.T_world_camera.linear());
-    std::array<char, 256> line{};
+    std::array<char, 512> line{};  // a stamp may have 309 digits
     std::snprintf(line.data(), line.size(), "%.9f %.12g %.12g %.12g %.12g %.12g %.12g %.12g\n", pose.stamp_s,
                   t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
     file << line.data();

@@ -53,7 +53,9 @@ class CalibratedSource final : public FrameSource {
     const ReadResult result = source_->next(frame);
     if (result.status != ReadStatus::kFrame) return result;
     correct_depth(frame);
-    if (calibration_.rig.colour_camera && !frame.colour.empty()) correct_colour(frame);
+    // Also of a frame that came without its colour: all of a recording's frames have the same cameras.
+    const bool has_colour_camera = !frame.colour.empty() || frame.colour_camera.width_px > 0;
+    if (calibration_.rig.colour_camera && has_colour_camera) correct_colour(frame);
     return result;
   }
   bool rewind() override { return source_->rewind(); }
@@ -93,14 +95,15 @@ class CalibratedSource final : public FrameSource {
 
   void correct_colour(Frame& frame) {
     const Intrinsics& camera = *calibration_.rig.colour_camera;
+    frame.colour_camera = camera;
+    frame.T_colour_depth = calibration_.rig.T_colour_depth;
+    if (frame.colour.empty()) return;
     require_size("colour", frame.colour.width, frame.colour.height, camera);
     real_colour_.pixels.swap(frame.colour.pixels);
     frame.colour.resize(camera.width_px, camera.height_px);
     const cv::Mat real(camera.height_px, camera.width_px, CV_8UC3, real_colour_.pixels.data());
     cv::Mat ideal(camera.height_px, camera.width_px, CV_8UC3, frame.colour.pixels.data());
     cv::remap(real, ideal, colour_x_, colour_y_, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-    frame.colour_camera = camera;
-    frame.T_colour_depth = calibration_.rig.T_colour_depth;
   }
 
   std::unique_ptr<FrameSource> source_;

@@ -7,6 +7,7 @@
 #include "app/locator.hpp"
 #include "app/open_source.hpp"
 #include "app/picture_file.hpp"
+#include "app/registered_maps.hpp"
 #include "app/report.hpp"
 #include "mapping/types/error.hpp"
 
@@ -41,12 +42,22 @@ Eigen::Isometry3d read_located(const FallthroughCommand& command, const SavedMap
   return tracking.T_world_camera;
 }
 
+/// Whether the frames that both were made of came with poses in one world.
+bool share_recorded_world(const MapInfo& a, const MapInfo& b) {
+  const auto is_known = [](const MapInfo& info) {
+    return !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
+  };
+  return a.source == b.source && is_known(a) && is_known(b);
+}
+
 /// The reference's surface in the map's world.
-Mesh reference_of(const FallthroughCommand& command, const SavedMap& map) {
+Mesh reference_of(const FallthroughCommand& command, const SavedMap& map, Report& report) {
   if (command.reference.empty()) return map.mesh;
   SavedMap reference = load_map(command.reference);
   const Eigen::Isometry3d T_map_reference =
-      map.info.T_world_recorded * reference.info.T_world_recorded.inverse();
+      share_recorded_world(map.info, reference.info)
+          ? map.info.T_world_recorded * reference.info.T_world_recorded.inverse()
+          : require_registered(map, reference, command.map, command.reference, report).T_a_b;
   Mesh& mesh = reference.mesh;
   for (Eigen::Vector3f& vertex : mesh.vertices)
     vertex = (T_map_reference.linear() * vertex.cast<double>()).cast<float>();
@@ -58,14 +69,13 @@ Mesh reference_of(const FallthroughCommand& command, const SavedMap& map) {
 }  // namespace
 
 int run_grid(const FallthroughCommand& command) {
-  if (command.map.empty())
-    throw Error("fallthrough " + command.source + ": give the room's map with --map DIR");
   Report report;
   report.command = "fallthrough";
   report.source = command.source;
+  require_png_name(command.picture);
   for (const std::string& path : {command.report, command.picture}) require_writable(path);
   const SavedMap map = load_map(command.map);
-  const Mesh reference_world = reference_of(command, map);
+  const Mesh reference_world = reference_of(command, map, report);
   GlContext context;
   report.renderer = context.renderer();
   Frame frame;

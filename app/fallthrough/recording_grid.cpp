@@ -28,12 +28,15 @@ Eigen::AlignedBox3d bounds_of(const Mesh& mesh_world) {
 
 /// Whether all of the ball lies in space that rays have crossed.
 bool is_free(const StaticMap& octree, const Vector3d& middle_world, double radius_m) {
-  const double step_m = octree.resolution_m();
-  for (double x = -radius_m; x <= radius_m; x += step_m)
-    for (double y = -radius_m; y <= radius_m; y += step_m)
-      for (double z = -radius_m; z <= radius_m; z += step_m) {
-        const Vector3d p(x, y, z);
-        if (p.norm() <= radius_m && octree.occupancy_at(middle_world + p) != Occupancy::kFree) return false;
+  const int steps =
+      static_cast<int>(std::ceil(radius_m / octree.resolution_m()));  // each way from the middle
+  const double step_m = radius_m / steps;
+  for (int x = -steps; x <= steps; ++x)
+    for (int y = -steps; y <= steps; ++y)
+      for (int z = -steps; z <= steps; ++z) {
+        const Vector3d p = step_m * Vector3d(x, y, z);
+        if (p.norm() <= (1.0 + 1e-9) * radius_m && octree.occupancy_at(middle_world + p) != Occupancy::kFree)
+          return false;
       }
   return true;
 }

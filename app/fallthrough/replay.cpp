@@ -26,9 +26,8 @@ struct Panel {
 
 }  // namespace
 
-void write_replay(PreparedScenario& prepared, MappedRoom& room, CyberRadar& radar,
-                  const std::filesystem::path& path) {
-  constexpr double kPicturesPerS = 30.0, kShown_s = 4.0;
+void write_replay(PreparedScenario& prepared, MappedRoom& room, CyberRadar& radar, VideoWriter& video) {
+  constexpr double kShown_s = 4.0;
   const Scenario& scenario = prepared.scenario;
   const SideView side(scenario, room.scanned.simulated.room, kPanel_px, kPanel_px);
   std::array<Panel, kPolicyCount> panels;
@@ -42,8 +41,8 @@ void write_replay(PreparedScenario& prepared, MappedRoom& room, CyberRadar& rada
     });
     most_steps = std::max(most_steps, panels[i].steps.size());
   }
-  const int slow = std::max(2, static_cast<int>(kPicturesPerS * kShown_s / static_cast<double>(most_steps)));
-  VideoWriter video(path, kPicturesPerS);
+  const int slow =
+      std::max(2, static_cast<int>(kReplayPicturesPerS * kShown_s / static_cast<double>(most_steps)));
   ColourImage picture(kColumns * kPanel_px, kRows * kPanel_px);
   const auto show = [&](std::size_t step, double part) {
     picture.resize(picture.width, picture.height, Rgb{255, 255, 255});
@@ -71,7 +70,7 @@ void write_replay(PreparedScenario& prepared, MappedRoom& room, CyberRadar& rada
   };
   for (std::size_t step = 0; step < most_steps; ++step)
     for (int i = 0; i < slow; ++i) show(step, static_cast<double>(i) / slow);
-  for (int i = 0; i < static_cast<int>(kPicturesPerS); ++i) show(most_steps, 1.0);
+  for (int i = 0; i < static_cast<int>(kReplayPicturesPerS); ++i) show(most_steps, 1.0);
   video.close();
 }
 

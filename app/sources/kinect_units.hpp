@@ -10,8 +10,9 @@ namespace roomradar {
 constexpr std::uint16_t kRawNoDepth = 2047;
 /// Of the 32 bit stamps on its images; they wrap after 71.6 s.
 constexpr double kKinectTicksPerSecond = 60e6;
-constexpr double kKinectCountsPerG = 819.0;   ///< of its accelerometer (KXSD9 data sheet; libfreenect.h)
-constexpr std::uint16_t kRawFarthest = 1057;  ///< 9.88 m; past it one raw step is more than 0.5 m
+constexpr double kKinectCountsPerG = 819.0;        ///< of its accelerometer (KXSD9 data sheet; libfreenect.h)
+constexpr double kStandardGravity_m_s2 = 9.80665;  ///< 1 g
+constexpr std::uint16_t kRawFarthest = 1057;       ///< 9.88 m; past it one raw step is more than 0.5 m
 
 /// Depth (m) along the optical axis of a raw 11 bit disparity: 0.1236 tan(raw / 2842.5 + 1.1863).
 /// Grows with raw from 0.31 m at 0 to 9.88 m at 1057; 0 (nothing measured) above.

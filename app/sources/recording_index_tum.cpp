@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kStandardGravity_m_s2 = 9.80665;
 constexpr double kSameStamp_s = 2e-6;        // stamps are written to 1 us
 constexpr double kLongestPoseGap_s = 0.050;  // a hand-held camera's path is not straight for longer
 constexpr double kGravityWithin_s = 0.050;

@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kStandardGravity_m_s2 = 9.80665;
-
 template <typename... Values>
 std::string formatted(const char* format, Values... values) {
   std::array<char, 512> text{};

@@ -213,6 +213,9 @@ bool SpooledSource::capture_one(Frame& frame) {
     frame.index += index_offset_;
     frame.stamp_s += *stamp_offset_s_;
     write_exact_depth_file(frame.depth_m, depth_file(folder_, position));
+    // A process that was killed may have left the colour of a frame that is not in the list.
+    std::error_code fault;
+    fs::remove(colour_file(folder_, position), fault);
     if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder_, position));
     entry = Entry{without_images(frame), {}};
   } else if (result.status == ReadStatus::kSkipped && !result.waiting) {

@@ -27,8 +27,7 @@ Readings measured_apart(const std::string& what, const std::function<Readings()>
 }
 
 double peak_growth_mb(std::size_t start_bytes) {
-  constexpr double kMiB = 1024.0 * 1024.0;
-  return std::max(0.0, peak_rss_mb() * kMiB - static_cast<double>(start_bytes)) / 1e6;
+  return std::max(0.0, peak_rss_mb() - static_cast<double>(start_bytes) / 1e6);
 }
 
 }  // namespace roomradar

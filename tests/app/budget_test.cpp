@@ -248,6 +248,16 @@ TEST(RunBudget, TakesTheFrontFromWhatIsAskedForOnAndKeepsWhatIsFixed) {
   EXPECT_EQ(all.back().run.depth_stride, 4);
 }
 
+TEST(RunBudget, AStepThatAFixedFieldMakesWhatWasAskedForTakesNoneAway) {
+  Presets presets;
+  presets.front.resize(3);
+  presets.front[1].run.soft_edges = false;
+  presets.front[2].run.depth_stride = 2;
+  const auto front = front_for(presets, RunQuality{.depth_stride = 2}, {{"depth_stride", "2"}});
+  ASSERT_EQ(front.size(), 2U);
+  EXPECT_FALSE(front[1].run.soft_edges);
+}
+
 TEST(RunBudget, APartThatIsMadeAlikeTakesTheSameWhateverWasMeasured) {
   Presets presets;
   presets.front.resize(3);

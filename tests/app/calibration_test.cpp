@@ -267,6 +267,24 @@ TEST(CalibratedSource, AColourSeenThroughABentLensIsWhereThePinholeHasIt) {
   EXPECT_GT(moved, 1000) << "or the lens would not have shown";
 }
 
+TEST(CalibratedSource, AFrameWithoutItsColourHasTheSameCamerasAsTheOthers) {
+  const Calibration truth = faulty_kinect();
+  Frame depth_only;
+  depth_only.depth_m.resize(640, 480, 1.5F);
+  depth_only.colour_camera = {640, 480, 525.0, 525.0, 319.5, 239.5};
+  const auto source = calibrated(std::make_unique<GivenFrame>(depth_only), truth);
+  Frame frame;
+  ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
+  EXPECT_TRUE(frame.colour.empty());
+  EXPECT_EQ(frame.colour_camera, *truth.rig.colour_camera);
+  EXPECT_TRUE(frame.T_colour_depth.isApprox(truth.rig.T_colour_depth));
+  // A device that has no colour camera does not get one.
+  depth_only.colour_camera = {};
+  ASSERT_EQ(calibrated(std::make_unique<GivenFrame>(depth_only), truth)->next(frame).status,
+            ReadStatus::kFrame);
+  EXPECT_EQ(frame.colour_camera.width_px, 0);
+}
+
 TEST(CalibratedSource, ImagesOfAnotherSizeAreRefusedWithBothSizes) {
   Frame small;
   small.depth_m.resize(320, 240);

@@ -392,6 +392,7 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   const nlohmann::json report = nlohmann::json::parse(read_text(path("trade.json")));
   EXPECT_EQ(report["command"], "trade");
   EXPECT_EQ(report["prescan"]["measurements"], 3);
+  expect_fault(roomradar("trade --quick --rooms 'table?colour=separate' --settings 1"), 1, "colour=");
   expect_fault(roomradar("trade --rooms attic --settings 2 --quick"), 1, "table");
   expect_fault(roomradar("trade --html " + path("none/trade.html")), 1, "none/trade.html");
   expect_fault(roomradar("trade --quick --only prescan " + path("none")), 1, "none");
@@ -430,6 +431,11 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
                2, "--csv: is about simulated rooms");
   expect_fault(roomradar("fallthrough --scenario 1 --video v.avi --html " + (folder_ / "f.html").string()), 2,
                "--html: is not made of one --scenario");
+  expect_fault(roomradar("fallthrough sim:table"), 2, "--map");
+  expect_fault(roomradar(prescan + " --presets p.json"), 2, "--preset NAME");
+  expect_fault(roomradar(run + " --presets p.json"), 2, "--budget-ms");
+  expect_fault(roomradar(run + " --pictures-every 3"), 2, "--pictures");
+  EXPECT_NE(roomradar(run + " --preset fast --presets /no/p.json").out.find("/no/p.json"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
 
@@ -468,6 +474,14 @@ TEST_F(CommandLine, NothingElseIsPutIntoAMapsFolder) {
       roomradar("prescan " + source + " --map " + (folder_ / "unused").string() + " --report " + json), 1,
       rule);
   expect_fault(roomradar("map diff " + map() + " " + map() + " --report " + json), 1, rule);
+  const std::string run = "run " + source + " --map " + map();
+  expect_fault(roomradar(run + " --video " + map() + "/ar.avi"), 1, rule);
+  for (const char* below : {"", "/", "/below", "/below/"}) {
+    expect_fault(roomradar(run + " --pictures " + map() + below), 1, rule);
+    expect_fault(roomradar(run + " --record-session " + map() + below), 1, rule);
+    expect_fault(roomradar("record " + source + " " + map() + below), 1, rule);
+    expect_fault(roomradar("simulate " + map() + below), 1, rule);
+  }
   expect_fault(roomradar("map diff " + map() + " " + map() + " --picture " + map() + "/coverage.png"), 1,
                rule);
   expect_fault(roomradar("map export " + map() + " " + map() + "/mesh.ply"), 1, rule);
@@ -478,7 +492,12 @@ TEST_F(CommandLine, AReportCannotBeAFolderNorAPictureAnythingButPng) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const std::string diff = "map diff " + map() + " " + map();
   expect_fault(roomradar(diff + " --report " + folder_.string()), 1, "a folder has that name");
-  expect_fault(roomradar(diff + " --picture " + (folder_ / "picture.jpg").string()), 1, ".png");
+  const std::string jpg = (folder_ / "picture.jpg").string();
+  expect_fault(roomradar(diff + " --picture " + jpg), 1, ".png");
+  expect_fault(roomradar("fallthrough sim:table --map " + map() + " --picture " + jpg), 1, ".png");
+  expect_fault(roomradar("calibrate sim:board --out " + (folder_ / "c.json").string() + " --plot " + jpg), 1,
+               ".png");
+  expect_fault(roomradar("fallthrough --scenario 1 --video " + (folder_ / "v.webm").string()), 1, ".mp4");
 }
 
 TEST_F(CommandLine, AMapIsNotJoinedWithItself) {
