@@ -84,7 +84,6 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
     result = {.depth_m = -free_m, .point = point, .normal = triangle.normal, .kind = kind};
   };
   scratch.columns.work = 0;
-  step_back(known.triangle, known.kind, 0.0);
   double before_m = 0.0;
   do {
     Eigen::AlignedBox3d volume = front.bounds();
@@ -106,6 +105,7 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
       if (!(item.low_m < limit())) break;
       scratch.columns.work += 2;
       if (scratch.columns.work > kMostOverlapWork) {
+        if (free_m == 0.0) step_back(known.triangle, known.kind, 0.0);
         result.is_all = false;
         return result;
       }

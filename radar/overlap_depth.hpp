@@ -42,7 +42,7 @@ inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 /// triangle is inside a closed object between the spans where more ways out of it than in are ahead. The
 /// depth is how far the union of these spans that holds 0 reaches back. Scene triangles that face along the
 /// motion do not count.
-/// @param known  one that is overlapped, so that something is told however soon the search is cut short
+/// @param known  one that is overlapped: what is told if the search is cut short before it comes to any
 Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFrame& scene,
                       const OverlappedTriangle& known, OverlapScratch& scratch);
 
