@@ -7,8 +7,10 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <utility>
 
+#include "app/fit_normals.hpp"
 #include "mapping/mesh_simplify.hpp"
 #include "mapping/types/validity.hpp"
 
@@ -91,7 +93,7 @@ void sharpen(Mesh& mesh) {
 }
 
 /// What a level is made from: the coarsest that leaves most of the bound, but no large mesh twice.
-const ObjectLevel& base_of(float bound_m, const ObjectLevel& full, const std::vector<ObjectLevel>& levels) {
+const ObjectLevel& base_of(float bound_m, const ObjectLevel& full, std::span<const ObjectLevel> levels) {
   const bool is_large = full.mesh.triangles.size() > kWholeTriangles;
   const ObjectLevel* base = is_large && !levels.empty() ? levels.data() : &full;
   for (const ObjectLevel& level : levels)
@@ -117,12 +119,13 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
     set_mean_normals(full.mesh);
   }
   std::size_t triangles = full.mesh.triangles.size();
+  const bool is_large = triangles > kWholeTriangles;
   for (float bound_m = kFinestOfSize * size_m;
        bound_m <= kCoarsestOfSize * size_m && triangles > kFewTriangles; bound_m *= kCoarser) {
     // This one may lie so far off the one it is made from that both together stay within the bound.
     const ObjectLevel& finer = base_of(bound_m, full, levels);
     SimplifiedMesh simple = simplified(finer.mesh, bound_m - finer.deviation_m, kSpacingOfSize * size_m,
-                                       levels.empty() ? kBlockTriangles : kWholeTriangles);
+                                       is_large && levels.empty() ? kBlockTriangles : kWholeTriangles);
     if (static_cast<float>(simple.mesh.triangles.size()) > kWorthHaving * static_cast<float>(triangles))
       continue;
     triangles = simple.mesh.triangles.size();
@@ -130,8 +133,13 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
     while (!levels.empty() && levels.back().deviation_m >= off_m) levels.pop_back();  // fewer lie nearer
     levels.push_back({std::move(simple.mesh), off_m});
   }
-  if (!has_normals)
-    for (ObjectLevel& level : levels) sharpen(level.mesh);
+
+  if (!has_normals) sharpen(full.mesh);
+  for (auto level = levels.begin(); level != levels.end(); ++level) {
+    if (!has_normals) sharpen(level->mesh);
+    const ObjectLevel& finer = base_of(level->deviation_m, full, {levels.begin(), level});
+    fit_normals(finer.mesh, level->deviation_m + finer.deviation_m, kSpacingOfSize * size_m, level->mesh);
+  }
   return levels;
 }
 

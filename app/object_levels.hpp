@@ -16,13 +16,13 @@ struct ObjectLevel {
 
 /// The levels between a mesh and about a hundred triangles, finest first; none for a mesh of less than 1,000.
 /// Each may lie 1.4 times as far off as the one before; the first a 1,024th of the mesh's size. They have
-/// normals, so that they are lit as the full mesh is: the full mesh's where it has them; else the means of
-/// the faces round a vertex, and where a face is turned from that mean by more than 25 degrees (an edge of
-/// the thing) the face's own.
+/// normals that light them as the full mesh is lit (fit_normals.hpp); where that has none, it counts as lit
+/// by the means of the faces round a vertex, or, where a face is turned from that mean by more than 25
+/// degrees (an edge of the thing), by the face's own.
 std::vector<ObjectLevel> object_levels(const Mesh& mesh);
 
 /// Whether a level lies off by no more than so much of what a pixel shows of it.
-inline bool is_fine_enough(float deviation_m, double pixel_m, double error_px = 0.5) {
+inline bool is_fine_enough(float deviation_m, double pixel_m, double error_px) {
   return static_cast<double>(deviation_m) <= error_px * pixel_m;
 }
 

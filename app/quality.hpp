@@ -30,7 +30,7 @@ struct RunQuality {
   int radar_px = 64;
   double physics_step_s = 1.0 / 60.0;
   int object_turns = 1;
-  double object_error_px = 0.5;
+  double object_error_px = 0.7;
   bool soft_edges = true;
   bool shadows = true;
   int shadow_turns = 1;
@@ -106,7 +106,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
                      "an object is moved every Nth frame, then by all of the time since (1)", 1, 16},
         quality.object_turns);
   visit(QualityField{"object_error_px", "--object-error", "PX",
-                     "how far the mesh that is drawn of an object may lie from its file's, pixels (0.5)",
+                     "how far the mesh that is drawn of an object may lie from its file's, pixels (0.7)",
                      0.01, 100.0},
         quality.object_error_px);
   visit(

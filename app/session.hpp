@@ -42,7 +42,7 @@ struct SessionConfig {
   int tracking_px = 160;         ///< widest image that the camera is located by
   bool fine_mesh = false;        ///< what moved is meshed as finely as it was seen about the objects
   int object_turns = 1;          ///< objects are moved in every so many-th frame, in turns
-  double object_error_px = 0.5;  ///< how far an object's drawn mesh may lie off the file's
+  double object_error_px = 0.7;  ///< how far an object's drawn mesh may lie off the file's
   int shadow_turns = 1;          ///< frames from one shadow made anew in full to the next
   int picture_turns = 1;     ///< frames from one picture to the next; more than 1: objects move in the others
   bool make_picture = true;  ///< false: no drawing, only what moves the objects

@@ -48,7 +48,7 @@ double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_
 /// The coarsest mesh of the object that lies no farther than error_px off the full one, as the camera sees it
 /// at its nearest point.
 const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
-                          const Eigen::Isometry3d& T_world_camera, double error_px = 0.5);
+                          const Eigen::Isometry3d& T_world_camera, double error_px);
 
 /// The mesh that a user names: `teapot`, the built-in one, 0.15 m high, or a file that read_mesh reads.
 /// Scaled so that its longest side is size_m, if that is > 0. Throws Error naming the file and the fault.

@@ -18,34 +18,37 @@ constexpr float kReachesACube = 4.0F;  // a query looks into one to eight cubes
 
 std::uint64_t mixed(std::uint64_t code) { return code * 0x9E3779B97F4A7C15U; }
 // A hash is its upper bits. Tells cubes of one hash apart; two that it does not cost time, not truth.
-std::uint32_t tag_of(std::uint64_t code) { return static_cast<std::uint32_t>(mixed(code) >> 14U); }
+std::uint32_t tag_of(std::uint64_t mixed_code) { return static_cast<std::uint32_t>(mixed_code >> 14U); }
 
 }  // namespace
 
 SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
-    : mesh_(mesh),
-      reach_m_(reach_m),
-      edge_m_(kReachesACube * reach_m),
-      hash_shift_(64 - static_cast<int>(std::bit_width(mesh.triangles.size() | 1U))),
-      first_of_hash_((std::size_t{1} << (64 - hash_shift_)) + 1, 0) {
+    : mesh_(mesh), reach_m_(reach_m), edge_m_(kReachesACube * reach_m) {
   if (!mesh.vertices.empty()) {
     low_ = mesh.vertices.front();
     for (const Eigen::Vector3f& vertex : mesh.vertices) low_ = low_.cwiseMin(vertex);
   }
-  const auto for_each_entry = [&](const auto& visit) {
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      for_each_cube(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c],
-                    [&](std::uint64_t cube) { visit(cube, t); });
-    }
+  struct Part {
+    std::uint64_t mixed_code;
+    std::uint32_t triangle;
   };
-  for_each_entry([&](std::uint64_t cube, std::uint32_t) { ++first_of_hash_[hash_of(mixed(cube)) + 1]; });
+  std::vector<Part> parts;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    for_each_cube(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], [&](std::uint64_t cube) {
+      parts.push_back({mixed(cube), t});
+    });
+  }
+  // About a hash a triangle, more where triangles lie in very many cubes.
+  const std::size_t hashes = std::max(mesh.triangles.size(), parts.size() / 4);
+  hash_shift_ = 64 - static_cast<int>(std::bit_width(hashes | 1U));
+  first_of_hash_.assign((std::size_t{1} << (64 - hash_shift_)) + 1, 0);
+  for (const Part& part : parts) ++first_of_hash_[hash_of(part.mixed_code) + 1];
   for (std::size_t h = 1; h < first_of_hash_.size(); ++h) first_of_hash_[h] += first_of_hash_[h - 1];
-  entries_.resize(first_of_hash_.back());
+  entries_.resize(parts.size());
   std::vector<std::uint32_t> next(first_of_hash_.begin(), first_of_hash_.end() - 1);
-  for_each_entry([&](std::uint64_t cube, std::uint32_t triangle) {
-    entries_[next[hash_of(mixed(cube))]++] = {tag_of(cube), triangle};
-  });
+  for (const Part& part : parts)
+    entries_[next[hash_of(part.mixed_code)]++] = {tag_of(part.mixed_code), part.triangle};
 }
 
 // A large triangle is halved along its longest side until its parts' boxes touch few cubes.
@@ -78,30 +81,52 @@ void SurfaceNear::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f&
   }
 }
 
-float SurfaceNear::distance_m(const Eigen::Vector3f& p, float enough_m) const {
-  float nearest = reach_m_ * reach_m_;
-  bool found = false;
+template <typename Visit>
+void SurfaceNear::visit_near(const Eigen::Vector3f& p, const Visit& visit) const {
   const Eigen::Array3f place = (p - low_).array();
   const Eigen::Array3i low = ((place - reach_m_) / edge_m_).floor().cast<int>();
   const Eigen::Array3i high = ((place + reach_m_) / edge_m_).floor().cast<int>();
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int x = low.x(); x <= high.x(); ++x) {
-        const std::uint64_t wanted = cell_code(x, y, z);
-        const std::size_t hash = hash_of(mixed(wanted));
+        const std::uint64_t wanted = mixed(cell_code(x, y, z));
+        const std::size_t hash = hash_of(wanted);
         const std::uint32_t tag = tag_of(wanted);
-        for (std::uint32_t i = first_of_hash_[hash]; i < first_of_hash_[hash + 1]; ++i) {
-          if (entries_[i].cube != tag) continue;
-          const auto& [a, b, c] = mesh_.triangles[entries_[i].triangle];
-          const float distance =
-              squared_distance_to_triangle(p, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
-          if (distance > nearest) continue;
-          if (distance <= enough_m * enough_m) return std::sqrt(distance);
-          nearest = distance;
-          found = true;
-        }
+        for (std::uint32_t i = first_of_hash_[hash]; i < first_of_hash_[hash + 1]; ++i)
+          if (entries_[i].cube == tag && visit(entries_[i].triangle)) return;
       }
+}
+
+float SurfaceNear::distance_m(const Eigen::Vector3f& p, float enough_m) const {
+  float nearest = reach_m_ * reach_m_;
+  bool found = false;
+  visit_near(p, [&](std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    const float distance =
+        squared_distance_to_triangle(p, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+    if (distance > nearest) return false;
+    nearest = distance;
+    found = true;
+    return distance <= enough_m * enough_m;
+  });
   return found ? std::sqrt(nearest) : kInfinity;
+}
+
+std::optional<std::uint32_t> SurfaceNear::nearest_facing(const Eigen::Vector3f& p,
+                                                         const Eigen::Vector3f& facing) const {
+  float nearest = reach_m_ * reach_m_;
+  std::optional<std::uint32_t> found;
+  visit_near(p, [&](std::uint32_t triangle) {
+    const auto& [i, j, k] = mesh_.triangles[triangle];
+    const Eigen::Vector3f &a = mesh_.vertices[i], &b = mesh_.vertices[j], &c = mesh_.vertices[k];
+    if (!((b - a).cross(c - a).dot(facing) > 0.0F)) return false;
+    const float distance = squared_distance_to_triangle(p, a, b, c);
+    if (distance > nearest) return false;
+    nearest = distance;
+    found = triangle;
+    return false;
+  });
+  return found;
 }
 
 float greatest_distance_m(const Mesh& mesh, const SurfaceNear& other, float spacing_m, float limit_m,

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "mapping/types/mesh.hpp"
@@ -18,6 +19,11 @@ class SurfaceNear {
   /// than reach_m. What is not farther than enough_m need not be the nearest: the search ends there.
   [[nodiscard]] float distance_m(const Eigen::Vector3f& p, float enough_m = 0.0F) const;
 
+  /// The triangle nearest to a point among those within reach_m whose front is turned less than 90 degrees
+  /// from `facing` (any length): of a thin sheet not the other side. None if there is none.
+  [[nodiscard]] std::optional<std::uint32_t> nearest_facing(const Eigen::Vector3f& p,
+                                                            const Eigen::Vector3f& facing) const;
+
  private:
   struct Entry {
     std::uint32_t cube;  // part of its code
@@ -28,12 +34,16 @@ class SurfaceNear {
   void for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                      const Visit& visit) const;
 
+  /// Calls visit(triangle) for each that may be within reach of the point, until it says true.
+  template <typename Visit>
+  void visit_near(const Eigen::Vector3f& p, const Visit& visit) const;
+
   [[nodiscard]] std::size_t hash_of(std::uint64_t mixed) const { return mixed >> hash_shift_; }
 
   const Mesh& mesh_;
   float reach_m_;
   float edge_m_;
-  int hash_shift_;  ///< about one hash a triangle
+  int hash_shift_ = 63;
   Eigen::Vector3f low_ = Eigen::Vector3f::Zero();
   std::vector<std::uint32_t> first_of_hash_;  ///< in entries_
   std::vector<Entry> entries_;                ///< by the hash of their cubes

@@ -106,7 +106,7 @@ std::vector<Knob> run_knobs(int objects) {
       {"radar", {"sampled", "exact"}, 1},
       {"radar_px", {"16", "32", "64", "128"}, 2},
       {"object_turns", {"8", "4", "2", "1"}, 3},
-      {"object_error_px", {"6", "3", "2", "1", "0.5", "0.25"}, 4},
+      {"object_error_px", {"6", "3", "2", "1", "0.7", "0.35"}, 4},
       {"soft_edges", {"off", "on"}, 1},
       {"shadows", {"off", "on"}, 1},
       {"shadow_turns", {"1000", "8", "3", "1"}, 3},
