@@ -143,6 +143,7 @@ fs::path tidy_map_name(const fs::path& folder) {
 }
 
 void require_outside_maps(const fs::path& path) {
+  if (path.empty()) return;
   std::error_code ignored;
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   if (fs::exists(folder / kInfo, ignored))

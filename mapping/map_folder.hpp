@@ -56,7 +56,8 @@ struct SavedMap {
 /// The folder's name without `.`, `..` and a slash at its end. Throws Error if that is no name for a map.
 std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
 
-/// Throws Error if the file or folder would lie in a map's folder, which holds nothing but the map's own.
+/// Throws Error if the file or folder would lie in a map's folder, which holds nothing but the map's own. An
+/// empty path is fine.
 void require_outside_maps(const std::filesystem::path& path);
 /// The same for what will be put into a folder, which may be a map's itself.
 void require_contents_outside_maps(const std::filesystem::path& folder);

@@ -172,6 +172,31 @@ TEST_F(MapFolder, FoldersThatAreNoMapsAreNeverOverwritten) {
   EXPECT_NO_THROW(save_map(folder_.path() / "empty", room_));
 }
 
+TEST_F(MapFolder, NothingElseBelongsIntoIt) {
+  const std::string rule = "lies in the folder of a map";
+  for (const char* file : {"x.avi", "map.json"})
+    EXPECT_NE(error_of([&] { require_outside_maps(map_ / file); }).find(rule), std::string::npos);
+  EXPECT_NO_THROW(require_outside_maps(map_)) << "it may be replaced itself";
+  for (const fs::path& path : {map_, map_ / "", map_ / "below", map_ / "below" / ""})
+    EXPECT_NE(error_of([&] { require_contents_outside_maps(path); }).find(rule), std::string::npos) << path;
+  EXPECT_NO_THROW(require_contents_outside_maps(folder_.path() / "beside"));
+  // No path is no file in the folder that the program runs in.
+  const fs::path before = fs::current_path();
+  fs::current_path(map_);
+  EXPECT_NO_THROW(require_outside_maps({}));
+  EXPECT_NO_THROW(require_contents_outside_maps({}));
+  EXPECT_THROW(require_outside_maps("x.avi"), Error);
+  fs::current_path(before);
+}
+
+TEST_F(MapFolder, ItsDescriptionIsNoLinkOutOfIt) {
+  const fs::path outside = folder_.path() / "outside.json";
+  fs::rename(map_ / "map.json", outside);
+  fs::create_symlink(outside, map_ / "map.json");
+  EXPECT_NE(error_of([&] { (void)load_map(map_); }).find("a link"), std::string::npos);
+  ASSERT_EQ(verify_map(map_).size(), 1U);
+}
+
 TEST_F(MapFolder, ParentFoldersAreMade) {
   save_map(folder_.path() / "a" / "b" / "c", room_);
   EXPECT_TRUE(verify_map(folder_.path() / "a" / "b" / "c").empty());
