@@ -9,8 +9,8 @@ struct ParsedCommand {
   int exit_status = 0;        ///< 0 after help, 2 after wrong usage
 };
 
-/// Prints help or a usage message itself. Throws Error if a file or a recorded
-/// session cannot be read that says more of the settings.
+/// Prints help or a usage message itself. Throws Error if presets or a recorded session that it names
+/// cannot be read.
 ParsedCommand parse_command_line(int argc, const char* const* argv);
 
 }  // namespace roomradar

@@ -92,10 +92,11 @@ void sharpen(Mesh& mesh) {
   }
 }
 
+bool is_large(const Mesh& mesh) { return mesh.triangles.size() > kWholeTriangles; }
+
 /// What a level is made from: the coarsest that leaves most of the bound, but no large mesh twice.
 const ObjectLevel& base_of(float bound_m, const ObjectLevel& full, std::span<const ObjectLevel> levels) {
-  const bool is_large = full.mesh.triangles.size() > kWholeTriangles;
-  const ObjectLevel* base = is_large && !levels.empty() ? levels.data() : &full;
+  const ObjectLevel* base = is_large(full.mesh) && !levels.empty() ? levels.data() : &full;
   for (const ObjectLevel& level : levels)
     if (level.deviation_m <= kBaseOfBound * bound_m) base = &level;
   return *base;
@@ -119,13 +120,13 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
     set_mean_normals(full.mesh);
   }
   std::size_t triangles = full.mesh.triangles.size();
-  const bool is_large = triangles > kWholeTriangles;
   for (float bound_m = kFinestOfSize * size_m;
        bound_m <= kCoarsestOfSize * size_m && triangles > kFewTriangles; bound_m *= kCoarser) {
     // This one may lie so far off the one it is made from that both together stay within the bound.
     const ObjectLevel& finer = base_of(bound_m, full, levels);
-    SimplifiedMesh simple = simplified(finer.mesh, bound_m - finer.deviation_m, kSpacingOfSize * size_m,
-                                       is_large && levels.empty() ? kBlockTriangles : kWholeTriangles);
+    SimplifiedMesh simple =
+        simplified(finer.mesh, bound_m - finer.deviation_m, kSpacingOfSize * size_m,
+                   is_large(full.mesh) && levels.empty() ? kBlockTriangles : kWholeTriangles);
     if (static_cast<float>(simple.mesh.triangles.size()) > kWorthHaving * static_cast<float>(triangles))
       continue;
     triangles = simple.mesh.triangles.size();

@@ -2,7 +2,6 @@
 #include "radar/mesh_chunks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "mapping/types/morton.hpp"

@@ -28,8 +28,7 @@ Eigen::AlignedBox3d bounds_of(const Mesh& mesh_world) {
 
 /// Whether all of the ball lies in space that rays have crossed.
 bool is_free(const StaticMap& octree, const Vector3d& middle_world, double radius_m) {
-  const int steps =
-      static_cast<int>(std::ceil(radius_m / octree.resolution_m()));  // each way from the middle
+  const int steps = static_cast<int>(std::ceil(radius_m / octree.resolution_m()));  // from the middle
   const double step_m = radius_m / steps;
   for (int x = -steps; x <= steps; ++x)
     for (int y = -steps; y <= steps; ++y)

@@ -309,6 +309,10 @@ TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
   };
   EXPECT_EQ(sweep(once, {settings, 1, 1}).fault, "no memory");
   EXPECT_EQ(asked, 2);
+  TradeWork impossible = machine.work();
+  impossible.knobs[1].usual = 0;
+  EXPECT_EQ(sweep(impossible, {settings, 1, 1}).fault, "cannot be done");
+  EXPECT_TRUE(sweep(impossible, {settings, 1, 1}).rows.empty());
   // Ctrl-C ends what is being measured, too, and is no fault.
   asked = 0;
   const SweptRows stopped = sweep(once, {settings, 1, 1}, {{}, [&] { return asked == 2; }});
