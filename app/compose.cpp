@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -99,10 +100,7 @@ void require_size(const char* what, const Image<Pixel>& image, int width_px, int
 
 void require_valid(const ComposeConfig& config) {
   require_valid(config.occlusion);
-  const auto require = [](bool holds, const char* name, float value, const char* rule) {
-    if (!holds)
-      throw Error(std::string("compose.") + name + " = " + std::to_string(value) + ": must be " + rule);
-  };
+  const SettingRules require{"compose"};
   const auto is_length = [](float value_m) { return value_m >= 0.0F && value_m <= 1.0F; };
   require(is_length(config.shadow_strength), "shadow_strength", config.shadow_strength, "in 0..1");
 }

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <string>
 
 #include "mapping/surface_patch.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -18,11 +18,6 @@ constexpr double kRegionCell_m = 0.03;  // what is within one to two of a change
 // A change that is hidden while it is measured waits for so many times the frames that it takes.
 constexpr int kPatience = 10;
 
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds)
-    throw Error("adopt." + std::string(field) + " = " + std::to_string(value) + ": must be " + rule);
-}
-
 bool holds_samples(const StaticMap& octree) {
   bool any = false;
   octree.visit_samples([&any](const SurfaceSample&) { any = true; });
@@ -32,6 +27,7 @@ bool holds_samples(const StaticMap& octree) {
 }  // namespace
 
 void require_valid(const AdoptConfig& config) {
+  const SettingRules require{"adopt"};
   if (config.after_s)
     require(*config.after_s > 0.0 && *config.after_s <= 86400.0, "after_s", *config.after_s, "in 0..86400 s");
   require(config.asked_after_s > 0.0 && config.asked_after_s <= 60.0, "asked_after_s", config.asked_after_s,

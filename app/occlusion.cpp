@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -267,10 +267,7 @@ void soften(Image<float>& hidden, Image<float>& softened) {
 }  // namespace
 
 void require_valid(const OcclusionConfig& config) {
-  const auto require = [](bool holds, const char* name, float value, const char* rule) {
-    if (!holds)
-      throw Error(std::string("occlusion.") + name + " = " + std::to_string(value) + ": must be " + rule);
-  };
+  const SettingRules require{"occlusion"};
   const auto is_length = [](float value_m) { return value_m >= 0.0F && value_m <= 1.0F; };
   require(is_length(config.tolerance_m), "tolerance_m", config.tolerance_m, "in 0..1");
   require(is_length(config.tolerance_per_m2), "tolerance_per_m2", config.tolerance_per_m2, "in 0..1");

@@ -9,7 +9,7 @@
 
 #include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -23,11 +23,6 @@ constexpr int kContradiction = 2, kConfirmation = 1, kMostDoubt = 7;
 constexpr float kFarApart_m = 4.0F;  // pixels of the sampling grid are spacing_m apart at this depth
 constexpr int kAllRound = 7;         // of the eight cells round one in a flat surface
 constexpr float kNothing_m = std::numeric_limits<float>::quiet_NaN();
-
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds)
-    throw Error("change_tracker." + std::string(field) + " = " + std::to_string(value) + ": must be " + rule);
-}
 
 std::uint8_t bit_of(LastingKind kind) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(kind)); }
 
@@ -95,6 +90,7 @@ Eigen::AlignedBox3d LastingChange::box_world() const {
 }
 
 void require_valid(const ChangeTrackerConfig& config) {
+  const SettingRules require{"change_tracker"};
   const auto part = [](float value) { return value >= 0.0F && value <= 1.0F; };
   require(config.spacing_m >= 0.002F && config.spacing_m <= 1.0F, "spacing_m", config.spacing_m,
           "in 0.002..1");

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <string>
 
 #include "dynamic/jump_rule.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -187,14 +186,10 @@ void fill_ends(int width, float* depth_m) {
   std::fill(last + 1, end, *last);
 }
 
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds)
-    throw Error("depth_mesh." + std::string(field) + " = " + std::to_string(value) + ": must be " + rule);
-}
-
 }  // namespace
 
 void require_valid(const DepthMeshConfig& config) {
+  const SettingRules require{"depth_mesh"};
   require(config.stride_px >= 1 && config.stride_px <= 64, "stride_px", config.stride_px, "in 1..64");
   require(config.jump_sigmas >= 0.0F && config.jump_sigmas < 1e3F, "jump_sigmas", config.jump_sigmas,
           "in 0..1000");

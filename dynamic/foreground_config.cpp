@@ -2,21 +2,12 @@
 #include "dynamic/foreground_config.hpp"
 
 #include <cmath>
-#include <string>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
-namespace {
-
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds)
-    throw Error("foreground." + std::string(field) + " = " + std::to_string(value) + ": must be " + rule);
-}
-
-}  // namespace
-
 void require_valid(const ForegroundConfig& config) {
+  const SettingRules require{"foreground"};
   const auto from_0_to_1 = [](float value) { return value >= 0.0F && value <= 1.0F; };
   require(from_0_to_1(config.model_sigma_m), "model_sigma_m", config.model_sigma_m, "in 0..1");
   require(from_0_to_1(config.pose_sigma_m), "pose_sigma_m", config.pose_sigma_m, "in 0..1");

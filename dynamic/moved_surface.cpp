@@ -5,10 +5,9 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <string>
 
 #include "dynamic/bisected_grid.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -266,15 +265,11 @@ void reserve(std::size_t pixels, bool with_back, MovedSurfaceScratch& scratch, M
   scratch.first_edge.reserve(pixels);
 }
 
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds)
-    throw Error("moved_surface." + std::string(field) + " = " + std::to_string(value) + ": must be " + rule);
-}
-
 }  // namespace
 
 void require_valid(const MovedSurfaceConfig& config) {
-  const auto require_sigmas = [](const char* field, float value) {
+  const SettingRules require{"moved_surface"};
+  const auto require_sigmas = [&require](const char* field, float value) {
     require(value > 0.0F && value < 1e3F, field, value, "over 0 and under 1000");
   };
   require_sigmas("deviation_sigmas", config.deviation_sigmas);

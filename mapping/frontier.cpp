@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <string>
 #include <utility>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/cell_code.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -21,13 +21,6 @@ enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 
 constexpr std::array<std::array<int, 3>, 6> kFaces = {
     {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
-
-Vector3i neighbour26(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
-constexpr int kSelf = 13;  // of neighbour26
-
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (!holds) throw Error(std::string("frontier.") + field + " = " + std::to_string(value) + ": " + rule);
-}
 
 // What is known, in cells of a whole number of voxels. Past its border everything is unknown.
 class Grid {
@@ -149,7 +142,7 @@ Border find_border(const Grid& grid) {
     BorderCell& own = border.cells[i];
     Vector3d sum = Vector3d::Zero();
     for (int n = 0; n < 27; ++n) {
-      const Vector3i near = own.cell + neighbour26(n);
+      const Vector3i near = own.cell + cell_round(n);
       if (!grid.contains(near)) continue;
       const std::int32_t at = border.position[grid.index(near)];
       if (at != kNoBorder) sum += faces[static_cast<std::size_t>(at)];
@@ -170,8 +163,8 @@ Border find_border(const Grid& grid) {
 double enclosed_part(const Grid& grid, const BorderCell& from) {
   int ways = 0, ended = 0;
   for (int n = 0; n < 27; ++n) {
-    if (n == kSelf) continue;
-    const Vector3i step = neighbour26(n);
+    if (n == kOwnCell) continue;
+    const Vector3i step = cell_round(n);
     if (step.cast<double>().normalized().dot(from.normal) < 0.3) continue;
     ++ways;
     for (Vector3i cell = from.cell + step; grid.contains(cell); cell += step)
@@ -196,7 +189,7 @@ int number_patches(const Grid& grid, Border& border, double max_size_m) {
     for (std::size_t done = 0; done < reached.size(); ++done) {
       const Vector3i cell = border.cells[reached[done]].cell;
       for (int n = 0; n < 27; ++n) {
-        const Vector3i near = cell + neighbour26(n);
+        const Vector3i near = cell + cell_round(n);
         if (!grid.contains(near)) continue;
         const std::int32_t at = border.position[grid.index(near)];
         if (at == kNoBorder) continue;
@@ -252,12 +245,12 @@ std::optional<Vector3d> place_to_stand(const Grid& grid, const Vector3d& hole_wo
 }  // namespace
 
 void require_valid(const FrontierConfig& c) {
-  require(c.cell_m > 0.0 && c.cell_m <= 1.0, "cell_m", c.cell_m, "must be in 0..1 m");
-  require(c.min_area_m2 >= 0.0 && std::isfinite(c.min_area_m2), "min_area_m2", c.min_area_m2, "must be >= 0");
-  require(c.max_size_m > 0.0, "max_size_m", c.max_size_m, "must be > 0");
-  require(c.min_enclosed >= 0.0 && c.min_enclosed <= 1.0, "min_enclosed", c.min_enclosed, "must be in 0..1");
-  require(c.max_open_part >= 0.0 && c.max_open_part <= 1.0, "max_open_part", c.max_open_part,
-          "must be in 0..1");
+  const SettingRules require{"frontier"};
+  require(c.cell_m > 0.0 && c.cell_m <= 1.0, "cell_m", c.cell_m, "in 0..1 m");
+  require(c.min_area_m2 >= 0.0 && std::isfinite(c.min_area_m2), "min_area_m2", c.min_area_m2, ">= 0");
+  require(c.max_size_m > 0.0, "max_size_m", c.max_size_m, "> 0");
+  require(c.min_enclosed >= 0.0 && c.min_enclosed <= 1.0, "min_enclosed", c.min_enclosed, "in 0..1");
+  require(c.max_open_part >= 0.0 && c.max_open_part <= 1.0, "max_open_part", c.max_open_part, "in 0..1");
 }
 
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {

@@ -5,14 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "mapping/sample_bricks.hpp"
 #include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
@@ -31,10 +30,6 @@ constexpr int kHardlySeen = 3;  // looks: what hangs together with such a group 
 
 constexpr std::size_t kEveryColour =
     4;  // of so many voxels one looks at its colour: it is a group's that counts
-
-void require(bool holds, const char* field, float value, const char* rule) {
-  if (!holds) throw Error(std::string("ghosts.") + field + " = " + std::to_string(value) + ": " + rule);
-}
 
 // False if nothing within radius_m of the centre can be in the image.
 bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_camera, double radius_m) {
@@ -99,22 +94,20 @@ std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) 
 }  // namespace
 
 void require_valid(const GhostConfig& c) {
-  require(c.margin_m > 0.0F && std::isfinite(c.margin_m), "margin_m", c.margin_m, "must be > 0");
-  require(c.margin_per_m >= 0.0F && std::isfinite(c.margin_per_m), "margin_per_m", c.margin_per_m,
-          "must be >= 0");
+  const SettingRules require{"ghosts"};
+  require(c.margin_m > 0.0F && std::isfinite(c.margin_m), "margin_m", c.margin_m, "> 0");
+  require(c.margin_per_m >= 0.0F && std::isfinite(c.margin_per_m), "margin_per_m", c.margin_per_m, ">= 0");
   require(c.margin_sigmas >= 0.0F && std::isfinite(c.margin_sigmas), "margin_sigmas", c.margin_sigmas,
-          "must be >= 0");
+          ">= 0");
   require(c.window_radius_m >= 0.0F && c.window_radius_m <= 1.0F, "window_radius_m", c.window_radius_m,
-          "must be in 0..1 m");
+          "in 0..1 m");
   require(c.min_measured_share >= 0.0F && c.min_measured_share <= 1.0F, "min_measured_share",
-          c.min_measured_share, "must be in 0..1");
-  require(c.min_through >= 1, "min_through", static_cast<float>(c.min_through), "must be 1 or more");
+          c.min_measured_share, "in 0..1");
+  require(c.min_through >= 1, "min_through", c.min_through, "1 or more");
   require(c.min_through_share >= 0.0F && c.min_through_share <= 1.0F, "min_through_share",
-          c.min_through_share, "must be in 0..1");
-  require(c.min_extent_m >= 0.0F && std::isfinite(c.min_extent_m), "min_extent_m", c.min_extent_m,
-          "must be >= 0");
-  require(c.max_looks >= 1 && c.max_looks <= 60'000, "max_looks", static_cast<float>(c.max_looks),
-          "must be in 1..60000");
+          c.min_through_share, "in 0..1");
+  require(c.min_extent_m >= 0.0F && std::isfinite(c.min_extent_m), "min_extent_m", c.min_extent_m, ">= 0");
+  require(c.max_looks >= 1 && c.max_looks <= 60'000, "max_looks", c.max_looks, "in 1..60000");
 }
 
 GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)

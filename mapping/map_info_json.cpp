@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -78,10 +79,7 @@ Eigen::Isometry3d pose(const Fields& fields, const char* name) {
   const Eigen::Matrix<double, 16, 1> rows = fields.numbers<16>(name);
   Eigen::Isometry3d T;
   T.matrix() = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(rows.data());
-  const Eigen::Matrix3d R = T.linear();
-  if ((R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() > 1e-6 ||
-      R.determinant() < 0.0 || T.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-    fields.fail("\"" + std::string(name) + "\" is no rotation and translation");
+  if (!is_rigid(T, 1e-6)) fields.fail("\"" + std::string(name) + "\" is no rotation and translation");
   return T;
 }
 

@@ -10,6 +10,7 @@
 #include "mapping/checkpoints.hpp"
 #include "mapping/odometry_snapshot.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -31,10 +32,7 @@ void put_pose(std::string& out, const Eigen::Isometry3d& T) { put(out, T.matrix(
 Eigen::Isometry3d take_pose(BinaryReader& in, const char* what) {
   Eigen::Isometry3d T;
   for (Eigen::Index i = 0; i < 16; ++i) T.matrix().data()[i] = in.take_finite(what);
-  if (!(T.linear() * T.linear().transpose()).isIdentity(1e-6) || T.linear().determinant() < 0.0 ||
-      T.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) {
-    in.fail(std::string(what) + " is not a rotation and a shift");
-  }
+  if (!is_rigid(T, 1e-6)) in.fail(std::string(what) + " is not a rotation and a shift");
   return T;
 }
 

@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
 
 namespace roomradar {
@@ -141,18 +142,13 @@ Eigen::Vector3i cell_of(const Eigen::Vector3f& point_world) {
   return (point_world / kCell_m).array().floor().cast<int>();
 }
 
-std::uint64_t cell_key(const Eigen::Vector3i& cell) {
-  const auto part = [](int x) { return static_cast<std::uint64_t>(x) & 0xfffffU; };
-  return part(cell.x()) << 40U | part(cell.y()) << 20U | part(cell.z());
-}
-
 /// Calls visit(patch) for the known patches in the cells within half a cell of a point.
 template <typename Visit>
 void visit_near(const KnownPatches::OfSize& known, const Eigen::Vector3f& point_world, const Visit& visit) {
   const Eigen::Vector3i low = cell_of(point_world - Eigen::Vector3f::Constant(0.5F * kCell_m));
   for (int k = 0; k < 8; ++k) {
     const auto [first, last] =
-        known.by_cell.equal_range(cell_key(low + Eigen::Vector3i(k & 1, k >> 1 & 1, k >> 2)));
+        known.by_cell.equal_range(cell_code(low + Eigen::Vector3i(k & 1, k >> 1 & 1, k >> 2)));
     for (auto entry = first; entry != last; ++entry) visit(known.patches[entry->second]);
   }
 }
@@ -191,7 +187,7 @@ KnownPatches known_patches(const Places& places) {
                                 distance_bits(other.bits, patch.bits) <= kSameLook_bits);
       });
       if (is_known) continue;
-      of_size.by_cell.emplace(cell_key(cell_of(patch.point)),
+      of_size.by_cell.emplace(cell_code(cell_of(patch.point)),
                               static_cast<std::uint32_t>(of_size.patches.size()));
       of_size.patches.push_back(patch);
       of_size.first_bits.push_back(first_bits(patch.bits));

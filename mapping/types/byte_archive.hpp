@@ -14,6 +14,7 @@
 
 #include "mapping/types/error.hpp"
 #include "mapping/types/intrinsics.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 
@@ -105,10 +106,7 @@ template <typename Archive>
 void transfer(Archive& archive, Eigen::Isometry3d& T) {
   transfer(archive, T.matrix());
   if constexpr (Archive::kReads) {
-    const Eigen::Matrix3d R = T.linear();
-    const bool rigid = T.matrix().allFinite() && (R.transpose() * R).isIdentity(1e-3) &&
-                       R.determinant() > 0.0 && T.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
-    if (!rigid) archive.fail("is damaged: a pose is no rotation and translation");
+    if (!is_rigid(T, 1e-3)) archive.fail("is damaged: a pose is no rotation and translation");
   }
 }
 

@@ -15,7 +15,8 @@ inline std::uint64_t cell_code(const Eigen::Vector3i& cell) {
 }
 
 inline constexpr int kCellsRound = 27;
-/// From a cell to the i-th of those round it, itself among them (i = 13).
+inline constexpr int kOwnCell = 13;
+/// From a cell to the i-th of those round it, itself (kOwnCell) among them.
 inline Eigen::Vector3i cell_round(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
 
 }  // namespace roomradar

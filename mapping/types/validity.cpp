@@ -57,6 +57,13 @@ void require_valid(const Intrinsics& camera, const char* where) {
                 ": must be " + fault->rule);
 }
 
+bool is_rigid(const Eigen::Isometry3d& T, double tolerance) {
+  const Eigen::Matrix3d R = T.linear();
+  return T.matrix().allFinite() && T.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1) &&
+         (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < tolerance &&
+         R.determinant() > 0.0;
+}
+
 std::string_view depth_fault_of(const Frame& frame) {
   if (!is_valid(frame.depth_camera)) return "its depth camera cannot be one";
   if (!fits(frame.depth_m, frame.depth_camera)) return "its depth image and its depth camera differ in size";

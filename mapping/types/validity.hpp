@@ -1,6 +1,7 @@
 // validity.hpp: whether a camera can be one, whether a frame's images fit its cameras, and whether a triangle
 // has its corners; as values, without exceptions, for the path of a frame.
 #pragma once
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <string_view>
 
@@ -15,6 +16,10 @@ namespace roomradar {
 
 /// Whether it keeps the rules of require_valid().
 [[nodiscard]] bool is_valid(const Intrinsics& camera);
+
+/// Whether it is a rotation and a shift and nothing else, all of it finite. A rotation's columns are of
+/// length 1 and at right angles, each within the tolerance.
+[[nodiscard]] bool is_rigid(const Eigen::Isometry3d& T, double tolerance);
 
 /// What is wrong with a frame whose depth image does not fit its camera, as a sentence; empty where nothing
 /// is.

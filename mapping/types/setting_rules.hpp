@@ -1,0 +1,19 @@
+// setting_rules.hpp: the one sentence for a setting that breaks its rule.
+#pragma once
+#include <string>
+
+#include "mapping/types/error.hpp"
+
+namespace roomradar {
+
+/// The rules of one group of settings. Called with a rule that does not hold it throws Error:
+/// "fusion.max_range_m = -1.000000: must be in 0..100 m".
+struct SettingRules {
+  const char* group;
+  void operator()(bool holds, const char* field, double value, const char* rule) const {
+    if (!holds)
+      throw Error(std::string(group) + "." + field + " = " + std::to_string(value) + ": must be " + rule);
+  }
+};
+
+}  // namespace roomradar
