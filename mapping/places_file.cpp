@@ -12,6 +12,7 @@
 #include "mapping/binary_file.hpp"
 #include "mapping/places.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -19,6 +20,7 @@ namespace {
 constexpr std::string_view kMagic = "RRPLACES";
 constexpr std::uint32_t kVersion = 2;           // 1 had no patches
 constexpr std::uint32_t kMaxPreview_px = 4096;  // a side
+constexpr double kMaxPlace_m = 1e5;             // no map reaches farther: 32,768 voxels of 1 m
 
 void put_place(std::string& out, const Place& place) {
   put(out, place.frame_index);
@@ -70,9 +72,9 @@ Place take_place(BinaryReader& in) {
   }
   place.T_world_camera.linear() = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.data());
   place.T_world_camera.translation() = Eigen::Map<const Eigen::Vector3d>(pose.data() + 9);
-  const Eigen::Matrix3d R = place.T_world_camera.linear();
-  if (!(R * R.transpose()).isIdentity(1e-6) || R.determinant() < 0.0)
-    in.fail("a view's pose is not a rotation");
+  if (!(place.T_world_camera.translation().cwiseAbs().maxCoeff() <= kMaxPlace_m))
+    in.fail("a view's pose is 100 km away and more, where no map reaches");
+  if (!is_rigid(place.T_world_camera, 1e-6)) in.fail("a view's pose is not a rotation");
 
   const auto width = in.take<std::uint32_t>("preview size"), height = in.take<std::uint32_t>("preview size");
   if (width > kMaxPreview_px || height > kMaxPreview_px) {

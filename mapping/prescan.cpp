@@ -38,12 +38,11 @@ bool read(FrameSource& source, StageTimes& times, Frame& frame, PrescanCounts& c
   }
 }
 
-Tracking recorded_pose(const Frame& frame) {
-  Tracking tracking;
-  if (!frame.T_world_camera) return tracking;
-  tracking.status = TrackStatus::kTracked;
-  tracking.T_world_camera = *frame.T_world_camera;
-  return tracking;
+/// The pose that came with the frame, if a map reaches there: one slip of the recording's writer, kilometres
+/// away, is no place of the room.
+std::optional<Eigen::Isometry3d> recorded_pose(const Frame& frame, double reach_m) {
+  const auto& T = frame.T_world_camera;
+  return T && (T->translation().array().abs() < reach_m).all() ? T : std::nullopt;
 }
 
 /// Passes over frames that a checkpoint has behind it, without reading them where the source can.
@@ -94,8 +93,10 @@ struct Work {
   StageTimes& times;
   const PrescanProgress& progress;
   Checkpoints* checkpoints = nullptr;
-  std::map<std::int64_t, double> track_ms;    // by frame index
-  std::optional<FuseStatus> last_fused = {};  // what became of the last frame that was to be fused
+  double reach_m = 0.0;                          // of the octree, from its origin
+  std::map<std::int64_t, double> track_ms = {};  // by frame index
+  std::optional<FuseStatus> last_fused = {};     // what became of the last frame that was to be fused
+  bool has_far_poses = false;                    // recorded ones, out of that reach
 
   void show(const std::string& stage, const std::string& note) const {
     if (progress) progress(stage, note);
@@ -109,17 +110,19 @@ Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
   SeenArea seen;
   while (read(work.source, work.times, frame, pass.counts)) {
     const Clock::time_point start = Clock::now();
+    const std::optional<Eigen::Isometry3d> recorded = recorded_pose(frame, work.reach_m);
+    work.has_far_poses |= frame.T_world_camera && !recorded;
+    if (recorded) pass.recorded.push_back({frame.index, frame.stamp_s, *recorded});
     Tracking tracking;
     if (config.poses == PoseOrigin::kTracked) {
       tracking = pass.odometry.track(frame);
-    } else {
-      tracking = recorded_pose(frame);
-      if (tracking) pass.odometry.add_posed(frame, tracking.T_world_camera);
+    } else if (recorded) {
+      tracking = {.status = TrackStatus::kTracked, .T_world_camera = *recorded};
+      pass.odometry.add_posed(frame, *recorded);
     }
     work.track_ms[frame.index] = ms_since(start);
     work.times.add_ms("track", work.track_ms[frame.index]);
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
-    if (frame.T_world_camera) pass.recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
     if (work.progress) {  // nobody else asks how much was seen
       if (tracking) seen.add(frame, tracking.T_world_camera);
       work.progress(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
@@ -226,17 +229,27 @@ void fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass
   keep(work.checkpoints, kFusingStage, pass, work.times, /*between_frames=*/false);
 }
 
-std::string why_none_fused(const Work& work, const StaticMap& octree) {
-  if (!work.last_fused) return "no frame was left to be fused: fuse_every and hold_out leave out all of them";
-  if (work.last_fused != FuseStatus::kOutOfReach)
-    return "no frame could be fused; the depth images hold no usable measurement";
-  std::array<char, 160> reach{};
+std::string poses_out_of_reach(double reach_m) {
+  std::array<char, 160> text{};
   std::snprintf(
-      reach.data(), reach.size(),
-      "no frame could be fused: the poses are out of the octree's reach of %.0f m; take coarser cells, or "
-      "poses whose origin is in the room",
-      octree.reach_m());
-  return reach.data();
+      text.data(), text.size(),
+      "the poses are out of the octree's reach of %.0f m; take coarser cells, or poses whose origin "
+      "is in the room",
+      reach_m);
+  return text.data();
+}
+
+std::string why_none_trusted(const Work& work) {
+  if (work.config.poses == PoseOrigin::kTracked) return "is there depth between 0.5 and 6 m in the frames?";
+  return work.has_far_poses ? poses_out_of_reach(work.reach_m)
+                            : "the recording has no poses: use --poses tracked";
+}
+
+std::string why_none_fused(const Work& work) {
+  if (!work.last_fused) return "no frame was left to be fused: fuse_every and hold_out leave out all of them";
+  if (work.last_fused == FuseStatus::kOutOfReach)
+    return "no frame could be fused: " + poses_out_of_reach(work.reach_m);
+  return "no frame could be fused; the depth images hold no usable measurement";
 }
 
 /// What the map says of itself, but for what save_map fills in.
@@ -269,7 +282,8 @@ std::string_view to_string(PoseOrigin poses) {
 
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress, PrescanStart start) {
-  Work work{source, config, times, progress, start.checkpoints, {}};
+  const double reach_m = start.map ? start.map->octree.reach_m() : StaticMap(config.resolution_m).reach_m();
+  Work work{source, config, times, progress, start.checkpoints, reach_m};
   PrescanResult result;
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;
@@ -279,13 +293,11 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   map.trajectory = trusted_poses(pass);
   if (map.trajectory.empty())
     throw Error(source.name() + ": no frame has a pose that can be trusted, so there is nothing to map; " +
-                (config.poses == PoseOrigin::kRecorded
-                     ? "the recording has no poses: use --poses tracked"
-                     : "is there depth between 0.5 and 6 m in the frames?"));
+                why_none_trusted(work));
 
   // What was there?
   fuse(work, map.trajectory, pass);
-  if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(work, pass.octree));
+  if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(work));
 
   // What of that moved on?
   if (config.remove_ghosts && !pass.ghost_voxels) {

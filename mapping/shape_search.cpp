@@ -14,8 +14,9 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr double kCoarse_m = 0.15;
-constexpr std::size_t kMostCells = 500'000;
+constexpr double kMostCells = 5e5;
 constexpr float kNearest_m = 0.4F, kFarthest_m = 5.0F;  // beyond it a Kinect's noise is a cube's size
+constexpr float kWidest = 10.0F;  // a ray's length, of its depth: at 84 degrees from the optical axis
 constexpr int kHeadings = 72;
 
 /// Points of an image at the crossings of so many columns and rows; none of an image too small for that.
@@ -34,7 +35,7 @@ std::vector<Vector3f> points_of(const DepthImage& depth_m, const Intrinsics& cam
   return points;
 }
 
-/// Points of all previews, in the world.
+/// Points of all previews, in the world; none that a damaged camera casts kilometres away.
 std::vector<Vector3f> points_of(const Places& places) {
   constexpr int kStep_px = 2;
   std::vector<Vector3f> points;
@@ -44,9 +45,9 @@ std::vector<Vector3f> points_of(const Places& places) {
       for (int x = 0; x < place.preview_depth_mm.width; x += kStep_px) {
         const float depth = 0.001F * static_cast<float>(place.preview_depth_mm.at(x, y));
         if (!(depth > kNearest_m && depth < kFarthest_m)) continue;
-        points.emplace_back(
-            T_world_camera *
-            back_project(place.preview_camera, x, y, static_cast<double>(depth)).cast<float>());
+        const Vector3f p_camera =
+            back_project(place.preview_camera, x, y, static_cast<double>(depth)).cast<float>();
+        if (p_camera.norm() < kWidest * kFarthest_m) points.emplace_back(T_world_camera * p_camera);
       }
     }
   }
@@ -74,23 +75,24 @@ void spread(std::vector<int>& squares, int count, std::size_t stride, std::size_
   }
 }
 
-ShapeGrid grid_of(const std::vector<Vector3f>& points, double cell_m) {
+constexpr double kRim_cells = 2.0;
+
+/// Cubes along x, y, z of a grid with a rim round a box of these edges.
+Eigen::Array3d cells_across(const Vector3d& edges_m, double cell_m) {
+  return (edges_m.array() / cell_m + 2.0 * kRim_cells).floor() + 1.0;
+}
+
+ShapeGrid grid_of(const std::vector<Vector3f>& points, const Eigen::AlignedBox3f& box, double cell_m) {
   constexpr int kFew = 3;  // points of a cube that may be noise
   constexpr int kFar = ShapeGrid::kReach_cells * ShapeGrid::kReach_cells;
   ShapeGrid grid;
   grid.cell_m = cell_m;
-  Eigen::AlignedBox3f box;
-  for (const Vector3f& p : points) box.extend(p);
-  const Vector3f rim = Vector3f::Constant(2.0F * static_cast<float>(cell_m));
-  box = {box.min() - rim, box.max() + rim};
-  grid.low = box.min().cast<double>();
-  for (int axis = 0; axis < 3; ++axis)
-    grid.size[static_cast<std::size_t>(axis)] =
-        1 + static_cast<int>(static_cast<double>(box.sizes()(axis)) / cell_m);
+  grid.low = box.min().cast<double>() - Vector3d::Constant(kRim_cells * cell_m);
+  const Eigen::Array3i across = cells_across(box.sizes().cast<double>(), cell_m).cast<int>();
+  grid.size = {across.x(), across.y(), across.z()};
   std::vector<int> squares(index_in(grid, 0, 0, grid.size[2]), 0);
-  const auto inverse = static_cast<float>(1.0 / cell_m);
   for (const Vector3f& p : points) {
-    const Eigen::Vector3i cell = ((p - box.min()) * inverse).cast<int>();
+    const Eigen::Vector3i cell = ((p.cast<double>() - grid.low) / cell_m).cast<int>();
     ++squares[index_in(grid, cell.x(), cell.y(), cell.z())];
   }
   for (int& cell : squares) cell = cell >= kFew ? 0 : 2 * kFar;
@@ -235,9 +237,10 @@ KnownShape known_shape(const Places& places) {
   if (points.empty()) return {};
   Eigen::AlignedBox3f box;
   for (const Vector3f& p : points) box.extend(p);
-  const double volume_m3 = (box.sizes().cast<double>().array() + kCoarse_m).prod();
-  const double coarse_m = std::max(kCoarse_m, std::cbrt(volume_m3 / static_cast<double>(kMostCells)));
-  return {grid_of(points, coarse_m), grid_of(points, 0.5 * coarse_m)};
+  double coarse_m = kCoarse_m;
+  const auto cells = [&] { return cells_across(box.sizes().cast<double>(), coarse_m).prod(); };
+  while (cells() > kMostCells) coarse_m *= std::max(1.02, std::cbrt(cells() / kMostCells));
+  return {grid_of(points, box, coarse_m), grid_of(points, box, 0.5 * coarse_m)};
 }
 
 std::vector<ShapeCandidate> propose_by_shape(const DepthImage& depth_m, const Intrinsics& camera,

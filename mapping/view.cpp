@@ -137,7 +137,11 @@ int make_depth_levels(const DepthImage& depth_m, const Intrinsics& camera, const
   int block = 1;
   const auto invert = [&](float depth) { return inverse_depth(depth, config); };
   const auto keep = [](float q) { return q; };
-  if (camera.width_px <= config.finest_width_px) {
+  // An image of one row is not made smaller: there would be none.
+  const auto is_too_wide = [&](const Intrinsics& c) {
+    return c.width_px > config.finest_width_px && c.height_px > 1;
+  };
+  if (!is_too_wide(camera)) {
     finest.inverse_depth_per_m.resize(depth_m.width, depth_m.height);
     std::transform(depth_m.pixels.begin(), depth_m.pixels.end(), finest.inverse_depth_per_m.pixels.begin(),
                    invert);
@@ -146,7 +150,7 @@ int make_depth_levels(const DepthImage& depth_m, const Intrinsics& camera, const
     finest.camera = scaled(camera, 0.5);
     block = 2;
     Image<float> half;
-    while (finest.camera.width_px > config.finest_width_px) {
+    while (is_too_wide(finest.camera)) {
       halve(finest.inverse_depth_per_m, keep, half);
       std::swap(half, finest.inverse_depth_per_m);
       finest.camera = scaled(finest.camera, 0.5);

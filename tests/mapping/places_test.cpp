@@ -132,6 +132,16 @@ TEST(PlacesFile, WhatIsCutOrAlteredIsRefused) {
   EXPECT_NE(refusal(folder.path() / "absent.bin").find("absent.bin"), std::string::npos);
 }
 
+TEST(PlacesFile, APlaceThatNoMapReachesIsRefused) {
+  const test::TemporaryFolder folder;
+  for (const double away_m : {-1.1e5, 1e12}) {
+    Places places = three_places();
+    places.keyframes.back().T_world_camera.translation().z() = away_m;
+    write_places(places, folder.path() / "far.bin");
+    EXPECT_NE(refusal(folder.path() / "far.bin").find("where no map reaches"), std::string::npos) << away_m;
+  }
+}
+
 TEST(PlacesFile, SizesThatLieAreRefusedBeforeMemoryIsTaken) {
   // A file whose checksum is right and whose counts are not: 4 billion views, none of them there.
   const test::TemporaryFolder folder;

@@ -79,6 +79,25 @@ TEST(ShapeSearch, MovesWithTheRoom) {
   EXPECT_LT(error_m(found.front().T_world_camera, T_new_old * kViews[0]), 0.1);
 }
 
+TEST(ShapeSearch, StaysWithinItsMemoryHoweverFarThePlacesAreApart) {
+  const Places room = scanned();
+  for (const double apart_m : {100.0, 1e3, 3e4})
+    for (int axis = 0; axis < 3; ++axis) {
+      Places places = room;
+      Places other = room;
+      transform(other, Eigen::Isometry3d(Eigen::Translation3d(apart_m * Eigen::Vector3d::Unit(axis))));
+      places.keyframes.insert(places.keyframes.end(), other.keyframes.begin(), other.keyframes.end());
+      const KnownShape known = known_shape(places);
+      EXPECT_GE(known.coarse.cell_m, 0.15);
+      EXPECT_LE(known.coarse.nearness.size(), 500'000U) << apart_m;
+      EXPECT_LE(known.fine.nearness.size(), 8U * 500'000U) << apart_m;
+      EXPECT_GT(known.coarse.nearness.size(), 100U) << apart_m;
+    }
+  Places damaged = room;
+  damaged.keyframes.front().preview_camera.fx_px = 1e-300;
+  EXPECT_DOUBLE_EQ(known_shape(damaged).coarse.cell_m, 0.15);
+}
+
 TEST(ShapeSearch, IsNearWhereSurfacesAreAndNowhereElse) {
   const ShapeGrid grid = known_shape(scanned()).coarse;
   const auto at = [&grid](const Eigen::Vector3d& p_world) {

@@ -1,0 +1,97 @@
+// prescan_test.cpp: what a prescan makes of poses and images that no camera has.
+#include "mapping/prescan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mapping/map_folder.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/kept_source.hpp"
+#include "tests/support/noisy_room.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kFrames = 6;
+
+std::vector<Frame> posed_frames() {
+  std::vector<Frame> frames;
+  for (int i = 0; i < kFrames; ++i) {
+    const Eigen::Isometry3d eye = test::on_path(i, 2 * kFrames);
+    frames.push_back(test::frame_at(eye, i));
+    frames.back().T_world_camera = eye;
+  }
+  return frames;
+}
+
+PrescanResult prescan_of(std::vector<Frame> frames, PoseOrigin poses = PoseOrigin::kRecorded) {
+  test::KeptSource source(std::move(frames));
+  PrescanConfig config;
+  config.poses = poses;
+  StageTimes times;
+  return prescan(source, config, times);
+}
+
+TEST(Prescan, ARecordedPoseThatNoMapReachesIsNone) {
+  for (const double away_m : {1e4, 1e9, 1e15, 1e300, static_cast<double>(INFINITY), std::nan("")}) {
+    std::vector<Frame> frames = posed_frames();
+    frames[2].T_world_camera->translation().y() = away_m;
+    const PrescanResult result = prescan_of(std::move(frames));
+    EXPECT_EQ(result.counts.frames_tracked, kFrames - 1) << away_m;
+    EXPECT_EQ(result.counts.frames_lost, 1) << away_m;
+    EXPECT_EQ(result.counts.frames_fused, kFrames - 1) << away_m;
+    ASSERT_FALSE(result.map.places.keyframes.empty());
+    for (const Place& place : result.map.places.keyframes)
+      EXPECT_LT(place.T_world_camera.translation().norm(), 3.0) << away_m;
+    for (const TimedPose& pose : result.map.trajectory)
+      EXPECT_LT(pose.T_world_camera.translation().norm(), 3.0) << away_m;
+  }
+}
+
+TEST(Prescan, PosesThatAreAllOutOfReachAreNamed) {
+  std::vector<Frame> frames = posed_frames();
+  for (Frame& frame : frames) frame.T_world_camera->translation().x() += 1e5;
+  EXPECT_NE(test::error_of([&] { prescan_of(frames); }).find("the poses are out of the octree's reach"),
+            std::string::npos);
+  for (Frame& frame : frames) frame.T_world_camera.reset();
+  EXPECT_NE(test::error_of([&] { prescan_of(frames); }).find("has no poses: use --poses tracked"),
+            std::string::npos);
+}
+
+TEST(Prescan, OneBadPoseIsNotWhatTrackingIsComparedWith) {
+  std::vector<Frame> frames = posed_frames();
+  frames[3].T_world_camera->translation().z() = 1e12;
+  const PrescanResult with_it = prescan_of(frames, PoseOrigin::kTracked);
+  frames[3].T_world_camera.reset();
+  const PrescanResult without_it = prescan_of(frames, PoseOrigin::kTracked);
+  ASSERT_TRUE(with_it.counts.against_recorded && without_it.counts.against_recorded);
+  EXPECT_EQ(with_it.counts.against_recorded->poses, static_cast<std::size_t>(kFrames - 1));
+  EXPECT_EQ(with_it.counts.against_recorded->max_m, without_it.counts.against_recorded->max_m);
+}
+
+TEST(Prescan, AMapOfImagesOfAFewRowsIsReadAgain) {
+  for (const int rows : {1, 3}) {
+    std::vector<Frame> frames = posed_frames();
+    for (Frame& frame : frames) {
+      DepthImage few(frame.depth_m.width, rows);
+      for (int y = 0; y < few.height; ++y)
+        for (int x = 0; x < few.width; ++x) few.at(x, y) = frame.depth_m.at(x, 118 + y);
+      frame.depth_m = few;
+      frame.depth_camera.height_px = rows;
+      frame.depth_camera.cy_px -= 118.0;
+      frame.colour.resize(0, 0);
+    }
+    const SavedMap map = prescan_of(std::move(frames)).map;
+    ASSERT_FALSE(map.places.keyframes.empty());
+    EXPECT_GT(map.places.keyframes.front().preview_depth_mm.height, 0);
+    const test::TemporaryFolder folder;
+    save_map(folder.path() / "slit", map);
+    EXPECT_TRUE(verify_map(folder.path() / "slit").empty());
+    EXPECT_EQ(load_map(folder.path() / "slit").places.keyframes.size(), map.places.keyframes.size());
+  }
+}
+
+}  // namespace
+}  // namespace roomradar
