@@ -60,9 +60,12 @@ class ThingFinder {
     static const std::array<Eigen::Vector3d, 14> kAround = directions();
     has_.visit_leaves([&](const MapLeaf& leaf) {
       if (leaf.log_odds <= 0.0F) return;
-      for (int z = 0; z < leaf.edge_voxels; ++z)
-        for (int y = 0; y < leaf.edge_voxels; ++y)
-          for (int x = 0; x < leaf.edge_voxels; ++x) {
+      const int last = leaf.edge_voxels - 1;
+      const auto is_rim = [&](int i) { return i == 0 || i == last; };
+      for (int z = 0; z <= last; ++z)
+        for (int y = 0; y <= last; ++y)
+          for (int x = 0; x <= last;
+               x += is_rim(y) || is_rim(z) ? 1 : last) {  // what is inside is no surface
             const VoxelIndex voxel = leaf.lowest_voxel + VoxelIndex(x, y, z);
             const Eigen::Vector3d p = T_lacks_has_ * centre(voxel);
             if (lacks_.occupancy_at(p) != Occupancy::kFree) continue;

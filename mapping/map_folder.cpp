@@ -13,6 +13,7 @@
 
 #include "mapping/folder_swap.hpp"
 #include "mapping/map_info_json.hpp"
+#include "mapping/memory_use.hpp"
 #include "mapping/mesh_file.hpp"
 #include "mapping/sha256.hpp"
 #include "mapping/types/error.hpp"
@@ -71,7 +72,8 @@ void write_text(const fs::path& path, const std::string& text) {
   if (!file) fail(path, "cannot be written; is the disk full?");
 }
 
-// Size and checksum; nothing if they are as map.json says.
+// Size and checksum; nothing if they are as map.json says. A file that no memory can hold is not read
+// through.
 std::optional<std::string> fault_of(const fs::path& path, const MapFile& expected) {
   std::error_code fault;
   const fs::file_status status = fs::symlink_status(path, fault);
@@ -83,6 +85,9 @@ std::optional<std::string> fault_of(const fs::path& path, const MapFile& expecte
     return path.string() + ": has " + std::to_string(bytes) + " bytes, and " + kInfo + " says " +
            std::to_string(expected.bytes) +
            (bytes < expected.bytes ? "; it is cut short" : "; it was altered");
+  if (const std::uint64_t most = machine_bytes(); most > 0 && bytes > most)
+    return path.string() + ": has " + std::to_string(bytes) + " bytes, and this machine's memory " +
+           std::to_string(most) + "; it cannot be read here";
   try {
     if (sha256_of_file(path) != expected.sha256)
       return path.string() + ": was altered: its checksum is another";

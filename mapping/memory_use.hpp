@@ -11,6 +11,9 @@ namespace roomradar {
 /// Memory of this process that is in use now, in bytes; 0 where the system does not say. Some 10 us.
 std::size_t resident_bytes();
 
+/// Memory that this machine has, in bytes; 0 where the system does not say.
+std::uint64_t machine_bytes();
+
 /// Gives memory that is no longer used back to the system, where that can be asked for.
 void release_unused_memory();
 

@@ -188,13 +188,6 @@ double checked_resolution(double resolution_m) {
   return resolution_m;
 }
 
-bool is_rigid(const Eigen::Isometry3d& T) {
-  const Eigen::Matrix3d R = T.linear();
-  return T.matrix().allFinite() &&
-         (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < 1e-3 &&
-         R.determinant() > 0.0;
-}
-
 }  // namespace
 
 StaticMap::Octree::Octree(double resolution_m, const FusionConfig& fusion)
@@ -208,8 +201,10 @@ StaticMap::StaticMap(StaticMap&&) noexcept = default;
 StaticMap& StaticMap::operator=(StaticMap&&) noexcept = default;
 
 FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  if (!depth_fault_of(frame).empty()) return FuseStatus::kInvalidFrame;
-  if (!is_rigid(T_world_camera)) return FuseStatus::kInvalidPose;
+  constexpr int kMaxSide_px = 4096;  // pixels are counted in floats
+  if (!depth_fault_of(frame).empty() || std::max(frame.depth_m.width, frame.depth_m.height) > kMaxSide_px)
+    return FuseStatus::kInvalidFrame;
+  if (!is_rigid(T_world_camera, 1e-3)) return FuseStatus::kInvalidPose;
   Octree& o = *octree_;
   switch (collect_hits(frame, T_world_camera, resolution_m(), o.config, o.scratch)) {
     case HitStatus::kNone:

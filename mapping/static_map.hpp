@@ -19,9 +19,11 @@ enum class Occupancy { kUnknown, kFree, kOccupied };
 enum class FuseStatus {
   kFused,
   kNothingMeasured,  ///< no pixel holds a depth; the map is as it was
-  kInvalidFrame,  ///< depth image and depth camera disagree in size, or the camera cannot be one; not fused
-  kInvalidPose,   ///< not finite, or not a rotation; not fused
-  kOutOfReach,    ///< the frame reaches past the octree's 16-bit keys (reach_m()); not fused
+  /// depth image and depth camera disagree in size, or have more than 4,096 pixels a side, or the camera
+  /// cannot be one; not fused
+  kInvalidFrame,
+  kInvalidPose,  ///< not finite, or not a rotation; not fused
+  kOutOfReach,   ///< the frame reaches past the octree's 16-bit keys (reach_m()); not fused
 };
 std::string_view to_string(FuseStatus status);
 

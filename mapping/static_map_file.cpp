@@ -233,7 +233,7 @@ class NodeReader {
     if (node.sample || depth >= kLeafDepth) fault();
     const auto children = bytes_.get<std::uint8_t>();
     if (children == 0) {
-      if (node.log_odds == 0) fault();
+      if (!is_cube_of_a_room(node.log_odds, depth)) fault();
       return Slot::cube(node.log_odds);
     }
     if (depth == kLeafDepth - 1)
@@ -292,6 +292,16 @@ class NodeReader {
       tree_.colours(block).colours[i] = leaf.sample->colour;
       block.coloured |= static_cast<std::uint8_t>(1U << i);
     }
+  }
+
+  // A sensor sees free space cube by cube, and of what is solid the skin. What walks the voxels of such a
+  // cube comes to an end.
+  [[nodiscard]] bool is_cube_of_a_room(LogOdds log_odds, unsigned depth) const {
+    constexpr int kMaxFree_voxels = 8192;
+    constexpr double kMaxSolid_m = 4.0;
+    const int edge_voxels = 1 << (kLeafDepth - depth);
+    if (log_odds < 0) return edge_voxels <= kMaxFree_voxels;
+    return log_odds > 0 && edge_voxels * tree_.resolution_m() <= kMaxSolid_m;
   }
 
   static long in_steps(float value, float step, float least, float most) {

@@ -250,7 +250,10 @@ TEST(RoomOcTree, AWorldOfOneCubeIsWrittenInBothForms) {
   map.add_evidence(MapLeaf{{-32768, -32768, -32768}, 65536, -1.0F});
   EXPECT_EQ(map.counts().nodes, 1U);
   map.write_ot(folder.path() / "all.ot");
-  EXPECT_EQ(StaticMap::read_ot(folder.path() / "all.ot").occupancy_at({100, -5, 3}), Occupancy::kFree);
+  const std::unique_ptr<octomap::AbstractOcTree> own(
+      octomap::AbstractOcTree::read((folder.path() / "all.ot").string()));
+  ASSERT_TRUE(own);
+  EXPECT_EQ(own->size(), 1U);
   map.write_bt(folder.path() / "all.bt");
   octomap::OcTree plain(0.1);
   ASSERT_TRUE(plain.readBinary((folder.path() / "all.bt").string()));

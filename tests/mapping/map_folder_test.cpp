@@ -260,6 +260,18 @@ TEST_F(MapFolder, OneChangedByteAnywhereIsNoticed) {
   EXPECT_TRUE(verify_map(map_).empty());
 }
 
+TEST_F(MapFolder, AFileThatNoMemoryHoldsIsNotReadThrough) {
+  // A hole of 8.8 TB takes nothing on the disk; to read it through would take hours.
+  constexpr std::uintmax_t kVast_bytes = std::uintmax_t{1} << 43U;
+  std::error_code fault;
+  const std::uintmax_t bytes = fs::file_size(map_ / "octree.ot");
+  fs::resize_file(map_ / "octree.ot", kVast_bytes, fault);
+  if (fault) GTEST_SKIP() << "this file system has no files as large";
+  edit_info("\"octree.ot\": {\n      \"bytes\": " + std::to_string(bytes),
+            "\"octree.ot\": {\n      \"bytes\": " + std::to_string(kVast_bytes));
+  expect_fault("octree.ot", "this machine's memory");
+}
+
 TEST_F(MapFolder, VerifyListsEveryFaultAtOnce) {
   fs::remove(map_ / "mesh.ply");
   put_text(map_ / "octree.ot", "x");

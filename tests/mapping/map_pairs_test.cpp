@@ -246,6 +246,19 @@ TEST_F(MapPairs, PosesThatAreOffAreNoChange) {
   EXPECT_FALSE(diff_maps(a().octree, b().octree, T_off * kT_a_b, trusting).empty());
 }
 
+TEST(MapDiff, OfASolidCubeTheSkinHasChanged) {
+  constexpr int kEdge = 16;
+  StaticMap before(0.02), after(0.02);
+  before.add_evidence(MapLeaf{{-64, -64, -64}, 64, -2.0F});
+  before.add_evidence(MapLeaf{{-64, -64, 0}, 64, -2.0F});
+  after.add_evidence(MapLeaf{{-48, -48, -16}, kEdge, 3.0F});
+  const std::vector<Change> changes = diff_maps(before, after, Isometry3d::Identity());
+  ASSERT_EQ(changes.size(), 1U);
+  constexpr int kInside = kEdge - 2;
+  EXPECT_EQ(changes[0].surface_world.size(), kEdge * kEdge * kEdge - kInside * kInside * kInside);
+  EXPECT_NEAR(changes[0].box_world.sizes().minCoeff(), kEdge * 0.02, 1e-9);
+}
+
 TEST(SampleSurface, SpreadsPointsByArea) {
   Mesh mesh;
   mesh.origin = Vector3d(10, 0, 0);

@@ -189,6 +189,12 @@ TEST(StaticMap, FramesThatCannotBeFusedChangeNothingAndSayWhy) {
   frame.depth_m.resize(320, 240);
   EXPECT_EQ(map.fuse(frame, kAtOrigin), FuseStatus::kNothingMeasured);
   EXPECT_EQ(map.fuse(Frame{}, kAtOrigin), FuseStatus::kInvalidFrame);
+  for (const Intrinsics& vast :
+       {Intrinsics{4097, 2, 500, 500, 2048, 0.5}, Intrinsics{2, 4097, 500, 500, 0.5, 2048}}) {
+    frame.depth_camera = vast;
+    frame.depth_m = DepthImage(vast.width_px, vast.height_px, 2.0F);
+    EXPECT_EQ(map.fuse(frame, kAtOrigin), FuseStatus::kInvalidFrame);
+  }
   EXPECT_EQ(map.counts().nodes, 0U);
   EXPECT_EQ(map.occupancy_at({0, 0, std::numeric_limits<double>::quiet_NaN()}), Occupancy::kUnknown);
   EXPECT_EQ(map.occupancy_at({1e9, 0, 0}), Occupancy::kUnknown);
@@ -407,6 +413,20 @@ TEST_F(StaticMapFile, WhatIsBrokenIsNamedAndNeverCrashes) {
   std::string deep = good.substr(0, good.find("data\n") + 5);
   for (int i = 0; i < 100'000; ++i) deep += std::string("\x00\x00\x80\x3f\x00\xff", 6);
   EXPECT_NE(message_for(deep).find("damaged"), std::string::npos);
+}
+
+TEST_F(StaticMapFile, ACubeThatNoSensorSeesIsNamed) {
+  const auto read_again = [&](const MapLeaf& cube) {
+    StaticMap map(0.02);
+    map.add_evidence(cube);
+    map.write_ot(path_);
+    return StaticMap::read_ot(path_).counts();
+  };
+  EXPECT_EQ(read_again({{0, 0, 0}, 8192, -1.0F}).free_leaves, 1U);    // 164 m of free space
+  EXPECT_EQ(read_again({{0, 0, 0}, 128, 1.0F}).occupied_leaves, 1U);  // 2.56 m of solid
+  for (const MapLeaf& absurd : {MapLeaf{{-32768, -32768, -32768}, 65536, 1.0F},
+                                MapLeaf{{0, 0, 0}, 16384, -1.0F}, MapLeaf{{0, 0, 0}, 256, 1.0F}})
+    EXPECT_NE(error_of([&] { read_again(absurd); }).find("damaged: node"), std::string::npos);
 }
 
 TEST_F(StaticMapFile, RandomDamageNeverCrashes) {
