@@ -81,7 +81,6 @@ class LiveScene {
   [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
   [[nodiscard]] const MovedSurface& moved_world() const { return moved_world_; }
   [[nodiscard]] std::size_t moved_triangles() const { return moved_.touched.triangle_count(); }
-  [[nodiscard]] const TriangleTree& inferred() const { return inferred_; }
   [[nodiscard]] std::size_t inferred_triangles() const { return inferred_.triangle_count(); }
 
  private:

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "app/rigid_motion.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 #include "mapping/types/stage_times.hpp"
 #include "radar/cyber_radar.hpp"
 
@@ -57,8 +57,9 @@ class Stepper {
   /// the given.
   void leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world);
 
-  /// Whether what leave_overlaps saw below still holds the body up, within the noise.
-  [[nodiscard]] bool is_held_up() const;
+  /// Whether what leave_overlaps saw below still holds the body up, within the noise, and does not carry it
+  /// along or let it tip.
+  [[nodiscard]] bool is_held_up(double dt_s);
 
   /// One piece of motion, and perhaps rest.
   void move(double dt_s);
@@ -154,7 +155,6 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   report_.deepest_overlap_m = std::max(report_.deepest_overlap_m, way.depth_m);
   if (way.contact.touched == Touched::kStatic)
     report_.deepest_static_overlap_m = std::max(report_.deepest_static_overlap_m, way.depth_m);
-  note_touched(way.contact.touched, report_);
   if (way.depth_m <= (body_.at_rest ? config_.wake_overlap_m : config_.overlap_allowed_m)) return;
 
   wake();
@@ -177,9 +177,11 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction;
 }
 
-bool Stepper::is_held_up() const {
+bool Stepper::is_held_up(double dt_s) {
   if (down_.isZero()) return true;
-  return below_ && below_.lower_m <= config_.wake_gap_m + config_.contact_margin_m;
+  if (!below_ || below_.lower_m > config_.wake_gap_m + config_.contact_margin_m) return false;
+  // Other bodies are known without noise. By that of a measured surface a ball would never come to rest.
+  return body_.rests_on != Touched::kObject || stays_at_rest(body_, dt_s, probe_, config_, scratch_, report_);
 }
 
 /// Takes out what goes into the surface, of the velocity by restitution and friction, of the motion that
@@ -244,7 +246,6 @@ void Stepper::move(double dt_s) {
   }
   if (piece.is_held_up) {
     body_.rests_on = piece.rests_on;
-    note_touched(piece.rests_on, report_);
     if (!push_) linger(dt_s, piece.is_balanced);
   } else {
     body_.rests_on = Touched::kNothing;
@@ -291,10 +292,7 @@ bool Stepper::slide(double dt_s) {
 }  // namespace
 
 void require_valid(const PhysicsConfig& config) {
-  const auto require = [](bool holds, const char* name, double value, const char* rule) {
-    if (!holds)
-      throw Error(std::string("physics.") + name + " = " + std::to_string(value) + ": must be " + rule);
-  };
+  const SettingRules require{"physics"};
   const auto require_positive = [&](const char* name, double value) {
     require(std::isfinite(value) && value > 0.0, name, value, "> 0");
   };
@@ -366,7 +364,7 @@ StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const Physic
   stepper.leave_overlaps(dt_s, push_directions_world);
   if (stepper.failed()) return report;
   const bool is_still = body.velocity_world_mps.isZero() && body.spin_world_rad_s.isZero();
-  if (body.at_rest && is_still && stepper.is_held_up()) return report;
+  if (body.at_rest && is_still && stepper.is_held_up(dt_s)) return report;
   stepper.wake();
 
   constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two pieces of 1/60 s, not three

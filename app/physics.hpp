@@ -99,14 +99,10 @@ struct [[nodiscard]] StepReport {
   int contacts = 0;                                   ///< surfaces met
   std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by what was touched
   int queries = 0;                                    ///< of the radar along a direction
-  int moves = 0;                                      ///< pieces of motion that were shown free
   /// Deepest overlap seen before it was resolved, by the shortest way out, >= 0.
   double deepest_overlap_m = 0.0;
   double deepest_static_overlap_m = 0.0;  ///< the same, with the prescanned room only
-  bool touched_static = false;
-  bool touched_dynamic = false;
-  bool touched_object = false;
-  bool woke = false;  ///< was at rest before and is not any more
+  bool woke = false;                      ///< was at rest before and is not any more
 };
 
 /// Moves `body` on by dt_s: gravity, contact, Coulomb friction, rest.
@@ -129,6 +125,7 @@ struct [[nodiscard]] StepReport {
 /// @param push_directions_world  unit directions from the body to moving surfaces (push_directions): an
 ///               overlap there moves the body away by the shortest of these ways; may be empty
 /// A body at rest is asked about along gravity only (and along push_directions), and does not move by noise.
+/// One that rests on another body goes with it, and tips where that is drawn from under it.
 /// A body at rest with a velocity is woken by it. Steps longer than max_advance_s count as that.
 StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
                    std::span<const Eigen::Vector3d> push_directions_world = {});

@@ -42,9 +42,10 @@ class Piece {
   }
 
   RigidPiece run();
+  bool stays_where_it_is();
 
  private:
-  bool find_contacts();
+  bool find_contacts(double reach_m);
   void set_room(double dt_s);
   std::size_t other_on(const NearPoint& p);
   void bounce();
@@ -72,10 +73,10 @@ class Piece {
   Kinds left_out_ = 0;
 };
 
-/// Contacts at the pose as it is; false where a surface crosses the body that does not push it.
-bool Piece::find_contacts() {
+/// Contacts within reach_m at the pose as it is; false where a surface crosses the body that does not push
+/// it.
+bool Piece::find_contacts(double reach_m) {
   const double margin_m = config_.contact_margin_m;
-  const double reach_m = (1.0 + kTouchingBand) * margin_m;
   if (probe_.near(body_.T_world_object, std::max(reach_m, 1e-6), left_out_, scratch_.near) != 0) return false;
   centre_ = centre_world(body_);
   inertia_ = inertia_world_m2(body_);
@@ -257,7 +258,6 @@ void Piece::go(const Velocity& after) {
   motion.linear_m_s += lift.linear_mps;
   motion.angular_rad_s += lift.angular_rad_s;
 
-  ++report_.moves;
   const FreeTime free =
       probe_.free_time(body_.T_world_object, motion, left_s_, kKept * config_.contact_margin_m, left_out_);
   const double gone_s = std::clamp(free.free_s, 0.0, left_s_);
@@ -276,13 +276,26 @@ void Piece::go(const Velocity& after) {
   left_s_ -= gone_s;
 }
 
+/// Whether what is near, as if it touched, holds the body up where it is.
+bool Piece::stays_where_it_is() {
+  constexpr double kUnnoticed = 0.1;  // of what a free body would begin with
+  if (!find_contacts(config_.wake_gap_m + config_.contact_margin_m) || scratch_.contacts.empty()) return true;
+  for (SolverContact& contact : scratch_.contacts) contact.leaves_mps = 0.0;
+  for (SolverOther& other : scratch_.others) other.gives = 0.0;
+  const Vec3 fall_mps = config_.gravity_world_mps2 * left_s_;
+  Velocity begins{fall_mps, Vec3::Zero()};
+  solve_contacts(scratch_.contacts, inertia_, resting_, begins, scratch_.others);
+  return begins.linear_mps.norm() + begins.angular_rad_s.norm() * body_.mass.radius_m <
+         kUnnoticed * fall_mps.norm();
+}
+
 RigidPiece Piece::run() {
   RigidPiece piece;
   limit(velocity_.linear_mps, config_.max_speed_mps);
   limit(velocity_.angular_rad_s, config_.max_spin_rad_s);
   const double whole_s = left_s_;
   for (int stop = 0; stop < config_.max_slides && left_s_ > kNoTime_s; ++stop) {
-    if (!find_contacts()) {
+    if (!find_contacts((1.0 + kTouchingBand) * config_.contact_margin_m)) {
       piece.crosses = true;
       piece.left_s = left_s_;
       break;
@@ -318,16 +331,14 @@ Eigen::Matrix3d inertia_world_m2(const Body& body) {
   return R * body.mass.inertia_m2 * R.transpose();
 }
 
-void note_touched(Touched touched, StepReport& report) {
-  report.touched_static |= touched == Touched::kStatic;
-  report.touched_dynamic |= touched == Touched::kDynamic;
-  report.touched_object |= touched == Touched::kObject;
-}
-
 void note_contact(Touched touched, StepReport& report) {
   ++report.contacts;
   ++report.contacts_by_kind[static_cast<std::size_t>(touched)];
-  note_touched(touched, report);
+}
+
+bool stays_at_rest(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
+                   RigidScratch& scratch, StepReport& report) {
+  return Piece(body, dt_s, probe, config, {}, scratch, report).stays_where_it_is();
 }
 
 RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,

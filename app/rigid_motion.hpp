@@ -22,9 +22,7 @@ constexpr bool is_moving_surface(Touched kind) {
 
 inline constexpr double kSupportCosine = 0.5;  ///< a surface within 60 degrees of level holds a body up
 
-/// Says in the report what was touched.
-void note_touched(Touched touched, StepReport& report);
-/// The same, and counts it as a surface that was met.
+/// Counts it as a surface that was met.
 void note_contact(Touched touched, StepReport& report);
 
 struct [[nodiscard]] RigidPiece {
@@ -49,6 +47,11 @@ struct RigidScratch {
 /// @param report  contacts and moves are counted
 RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
                         const std::optional<Push>& push, RigidScratch& scratch, StepReport& report);
+
+/// Whether a body at rest would stay if what is within wake_gap_m of it touched it, and moved on as it moves:
+/// false where it would tip, slide or be carried along. True where a surface crosses it, or none is near.
+bool stays_at_rest(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
+                   RigidScratch& scratch, StepReport& report);
 
 /// Columns of unit length at right angles again, after any number of turns.
 void make_orthonormal(Eigen::Isometry3d& T);

@@ -41,6 +41,7 @@ class Pair {
     bodies[0].T_world_object.translation() = first_world;
     bodies[1].T_world_object.translation() = second_world;
   }
+  void hold_second() { is_second_held_ = true; }
   void add_floor() { floor_.build_by_place(shapes::floor(4.0F, 0.0F)); }
 
   void step(const PhysicsConfig& config) {
@@ -52,7 +53,9 @@ class Pair {
       const RadarScene radar_scene{scene, {}};
       BodyProbe probe = probe_of(radar_, field_, trees_[i], radar_scene);
       probe.others = others;
-      const StepReport report = advance(bodies[i], kFrame_s, probe, config);
+      PhysicsConfig own = config;
+      if (i == 1 && is_second_held_) own.gravity_world_mps2.setZero();
+      const StepReport report = advance(bodies[i], kFrame_s, probe, own);
       deepest_m = std::max(deepest_m, report.deepest_overlap_m);
     }
   }
@@ -82,6 +85,7 @@ class Pair {
  private:
   std::array<TriangleTree, 2> trees_;
   TriangleTree floor_;
+  bool is_second_held_ = false;
   CyberRadar radar_;
   NearField field_;
 };
@@ -172,6 +176,46 @@ TEST(BodiesTogether, OneThatIsSetDownOnAnotherLetsItRest) {
   pair.run(2.0, {});
   EXPECT_TRUE(pair.bodies[1].T_world_object.isApprox(stood, 0.0));
   EXPECT_EQ(pair.bodies[0].rests_on, Touched::kObject);
+}
+
+/// A body of 10 cm in the middle of a board of 30 cm that a hand holds at 1 m.
+void put_on_a_held_board(Pair& pair, const Vec3& at) {
+  pair.gives = {0.0, 1e6};
+  pair.put(at, {0, 0, 1});
+  pair.run(1.5, {});
+}
+
+TEST(BodiesTogether, OneThatRestsIsCarriedAlongByWhatItRestsOn) {
+  for (const double speed_mps : {0.05, 0.3}) {
+    Pair pair(box(0.1, 0.1, 0.1), box(0.3, 0.3, 0.1));
+    pair.hold_second();
+    put_on_a_held_board(pair, {0, 0, 1.102});
+    ASSERT_TRUE(pair.bodies[0].at_rest);
+    pair.bodies[1].velocity_world_mps = {speed_mps, 0, 0};
+    pair.run(1.0, {});
+    EXPECT_NEAR(pair.bodies[0].T_world_object.translation().x(), speed_mps, 0.02);
+    EXPECT_NEAR(pair.bodies[0].T_world_object.translation().z(), 1.101, 2e-3);
+    pair.bodies[1].velocity_world_mps.setZero();
+    pair.run(1.0, {});
+    EXPECT_TRUE(pair.bodies[0].at_rest);
+  }
+}
+
+TEST(BodiesTogether, OneTipsWhoseSupportIsDrawnAwayFromUnderHalfOfIt) {
+  for (const double beyond_m : {-0.015, 0.02}) {  // how far the board's edge is from under the middle
+    Pair pair(box(0.1, 0.1, 0.1), box(0.3, 0.3, 0.1));
+    pair.hold_second();
+    put_on_a_held_board(pair, {0.1, 0, 1.102});
+    ASSERT_TRUE(pair.bodies[0].at_rest);
+    pair.bodies[1].T_world_object.translation().x() = 0.1 - 0.15 - beyond_m;
+    pair.run(1.0, {});
+    if (beyond_m > 0.0) {
+      EXPECT_LT(pair.bodies[0].T_world_object.translation().z(), 0.5);
+    } else {
+      EXPECT_TRUE(pair.bodies[0].at_rest);
+      EXPECT_NEAR(pair.bodies[0].T_world_object.translation().z(), 1.101, 2e-3);
+    }
+  }
 }
 
 TEST(BodiesTogether, OneInAHandGoesOnAndTakesTheOtherWithIt) {

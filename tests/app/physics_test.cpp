@@ -306,7 +306,8 @@ TEST(Physics, IsPushedAsideByAHandFromTheSide) {
   for (int i = 0; i < 60; ++i) {  // 0.3 m/s towards +x, from 0.3 m away to 0.3 m past the body's side
     room.boxes[0].low.x() += 0.01;
     room.boxes[0].high.x() += 0.01;
-    was_touched |= step(body, kFrame_s, room, {}, {&towards_hand, 1}).touched_dynamic;
+    const StepReport report = step(body, kFrame_s, room, {}, {&towards_hand, 1});
+    was_touched |= report.contacts_by_kind[static_cast<std::size_t>(Touched::kDynamic)] > 0;
     EXPECT_GT(body.T_world_object.translation().x() - kHalf_m, room.boxes[0].high.x() - 0.009);
     EXPECT_NEAR(height(body), 0.001, 3e-4);
   }
