@@ -31,9 +31,8 @@ std::optional<ImageSize> first_size(const std::filesystem::path& folder,
   std::string first_fault;
   int bad = 0;
   for (const RecordedFrame& frame : frames) {
-    if ((frame.*file).empty() && frame.fault.empty()) continue;
+    if ((frame.*file).empty()) continue;
     try {
-      if (!frame.fault.empty()) throw Error(frame.fault);
       return read_size(frame.*file);
     } catch (const Error& fault) {
       if (bad++ == 0) first_fault = fault.what();

@@ -181,10 +181,13 @@ void read_exact_depth_file(const std::filesystem::path& path, DepthImage& depth_
   const cv::Mat halves = decode_16_bit_png(path);
   depth_m.resize(halves.cols, halves.rows / 2);
   for (int y = 0; y < depth_m.height; ++y)
-    for (int x = 0; x < depth_m.width; ++x)
-      depth_m.at(x, y) =
-          std::bit_cast<float>(static_cast<std::uint32_t>(halves.at<std::uint16_t>(y, x)) << 16 |
-                               halves.at<std::uint16_t>(y + depth_m.height, x));
+    for (int x = 0; x < depth_m.width; ++x) {
+      float& depth = depth_m.at(x, y);
+      depth = std::bit_cast<float>(static_cast<std::uint32_t>(halves.at<std::uint16_t>(y, x)) << 16 |
+                                   halves.at<std::uint16_t>(y + depth_m.height, x));
+      if (!(depth >= 0.0F && std::isfinite(depth)))
+        throw Error(path.string() + ": is damaged: a pixel holds " + std::to_string(depth) + " m");
+    }
 }
 
 }  // namespace roomradar

@@ -239,11 +239,14 @@ class KinectFeed::Work {
 
   /// Moves what the pairing has decided on to where take() finds it.
   void hand_over() {
-    while (const auto pair = pairing_.take()) {
+    while (true) {
+      put_broken();
+      const auto pair = pairing_.take();
+      if (!pair) return;
       KinectFrame frame = std::move(depths_.front());
       depths_.pop_front();
       if (pair->stamp_goes_back) {
-        fail(frame.number, "has a stamp that is not later than that of the one before it");
+        put(broken_frame(frame.number, "has a stamp that is not later than that of the one before it"));
         // A device's clock may be set back, but not every image's stamp be wrong.
         if (++backwards_ < kBackwardsMost || config_.is_replay) continue;
         clock_.restart(last_stamp_s_ + kFrame_s);
@@ -264,11 +267,11 @@ class KinectFeed::Work {
 
   void finish_pairing() {
     if (std::exchange(is_finishing_, true)) return;
+    if (config_.is_replay) pass_over_broken();
     pairing_.finish();
     hand_over();
     pairing_ = StampPairing(kDevicePairing);
     is_finishing_ = false;
-    if (config_.is_replay) pass_over_broken();
   }
 
   void pass_over_broken() {
@@ -277,11 +280,21 @@ class KinectFeed::Work {
       fail(depth_count_++, known->second);
   }
 
-  void fail(std::int64_t number, const std::string& what) {
+  /// It waits for its turn with those that wait for their colour.
+  void fail(std::int64_t number, const std::string& what) { depths_.push_back(broken_frame(number, what)); }
+
+  [[nodiscard]] KinectFrame broken_frame(std::int64_t number, const std::string& what) const {
     KinectFrame frame;
     frame.number = number;
     frame.fault = config_.name + ": depth image " + std::to_string(number) + " " + what;
-    put(std::move(frame));
+    return frame;
+  }
+
+  void put_broken() {
+    while (!depths_.empty() && !depths_.front().fault.empty()) {
+      put(std::move(depths_.front()));
+      depths_.pop_front();
+    }
   }
 
   void put(KinectFrame frame) {

@@ -18,6 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kLongestGap_s = 30.0;  // in fakenect's form
+
 template <typename... Values>
 std::string formatted(const char* format, Values... values) {
   std::array<char, 512> text{};
@@ -167,15 +169,21 @@ void RecordingWriter::write_fakenect(const Frame& frame) {
     throw Error(folder_.string() +
                 ": fakenect replays images of 640 x 480 only; choose the format tum or 7scenes");
   const fs::path index_file = folder_ / "INDEX.txt";
-  const auto stamps_at = [](double stamp_s) {
+  if (frames_written_ > 0 && frame.stamp_s - last_stamp_s_ > kLongestGap_s)
+    left_out_s_ += frame.stamp_s - last_stamp_s_ - kLongestGap_s;
+  const auto stamps_at = [this](double stamp_s) {
+    stamp_s -= left_out_s_;
     const auto total_ticks = static_cast<std::int64_t>(std::llround(stamp_s * kKinectTicksPerSecond));
     return fixed_6(stamp_s) + "-" + std::to_string(static_cast<std::uint32_t>(total_ticks));
   };
   const std::string stamps = stamps_at(frame.stamp_s);
 
-  // Gravity first: the reader gives a depth image the latest before it.
-  if (frame.down_camera) {
-    const Eigen::Vector3d counts = acceleration_at_rest_g(*frame.down_camera) * kKinectCountsPerG;
+  // Gravity first: the reader gives a depth image the latest before it. What is not known is written as none.
+  if (frame.down_camera || wrote_gravity_) {
+    wrote_gravity_ = frame.down_camera.has_value();
+    const Eigen::Vector3d counts =
+        frame.down_camera ? Eigen::Vector3d(acceleration_at_rest_g(*frame.down_camera) * kKinectCountsPerG)
+                          : Eigen::Vector3d::Zero();
     const std::array<std::int16_t, 6> tilt_state = {static_cast<std::int16_t>(std::lround(counts.x())),
                                                     static_cast<std::int16_t>(std::lround(counts.y())),
                                                     static_cast<std::int16_t>(std::lround(counts.z()))};

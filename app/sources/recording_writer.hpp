@@ -20,7 +20,8 @@ std::string_view to_string(RecordingFormat format);
 ///   kTum          stamps to 1 us, depth to 0.1 mm (none past 13.1 m), colour, poses, gravity
 ///   kSevenScenes  depth to 0.5 mm (none past 65.5 m), colour, poses; stamps are frame / 30 s; no gravity;
 ///                 of a frame without colour an empty file frame-N.color.none
-///   kFakenect     stamps to 1/60 us but for a common offset (35 s between frames at most), depth in the
+///   kFakenect     stamps to 1/60 us but for a common offset (a gap of more than 30 s is written as one of
+///                 30 s: the device's clock goes round in 72 s), depth in the
 ///                 Kinect's own steps (none past 10 m), colour, gravity to 1/819 g; no poses; 640 x 480
 ///                 only, which is all that fakenect replays
 /// Colour is lossless. All frames must have the first one's cameras, which go to camera.json.
@@ -48,6 +49,8 @@ class RecordingWriter {
   RecordingFormat format_;
   std::optional<CameraRig> rig_;
   double last_stamp_s_ = 0.0;
+  double left_out_s_ = 0.0;     // of long gaps, as kFakenect keeps none
+  bool wrote_gravity_ = false;  // and not since that it is not known
   std::int64_t frames_written_ = 0;
   std::ofstream depth_list_, colour_list_, pose_list_, gravity_list_;
 };

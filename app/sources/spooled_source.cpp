@@ -13,6 +13,7 @@
 #include "app/sources/temporary_folder.hpp"
 #include "mapping/types/byte_archive.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/validity.hpp"
 
 namespace roomradar {
 namespace {
@@ -265,6 +266,8 @@ ReadResult SpooledSource::read_again(const Entry& entry, std::size_t position, F
   frame = entry.frame;
   frame.depth_m = std::move(depth_m);
   frame.colour = std::move(colour);
+  if (const std::string_view fault = fault_of(frame); !fault.empty())
+    throw Error(depth_file(folder_, position).string() + ": is damaged: " + std::string(fault));
   return {ReadStatus::kFrame, {}};
 }
 

@@ -24,22 +24,32 @@ std::optional<DepthColourPair> StampPairing::take() {
     return pair;
   }
 
-  const auto distance_s = [&](const Stamped& colour) { return std::abs(colour.stamp_s - depth.stamp_s); };
-  const auto nearest =
-      std::min_element(colours_.begin(), colours_.end(),
-                       [&](const Stamped& a, const Stamped& b) { return distance_s(a) < distance_s(b); });
-  const bool certain = finished_ || waiting_.size() > 1 ||
-                       (nearest != colours_.end() && distance_s(*nearest) <= config_.unbeatable_s) ||
-                       std::any_of(colours_.begin(), colours_.end(),
-                                   [&](const Stamped& colour) { return colour.stamp_s >= depth.stamp_s; });
-  if (!certain) return std::nullopt;
+  const auto distance_s = [](const Stamped& colour, const Stamped& depth_image) {
+    return std::abs(colour.stamp_s - depth_image.stamp_s);
+  };
+  const auto next = std::find_if(waiting_.begin() + 1, waiting_.end(),
+                                 [&](const Stamped& later) { return later.stamp_s > depth.stamp_s; });
+  const Stamped* nearest = nullptr;
+  bool has_later = false;
+  for (const Stamped& colour : colours_) {
+    has_later |= colour.stamp_s >= depth.stamp_s;
+    if (next != waiting_.end() && distance_s(colour, *next) < distance_s(colour, depth)) continue;
+    if (nearest == nullptr || distance_s(colour, depth) < distance_s(*nearest, depth)) nearest = &colour;
+  }
+  const auto is_certain = [&] {
+    if (finished_ || waiting_.size() > 1) return true;
+    if (nearest == nullptr) return false;
+    return distance_s(*nearest, depth) <= config_.unbeatable_s ||
+           (has_later && nearest->stamp_s <= depth.stamp_s);
+  };
+  if (!is_certain()) return std::nullopt;
 
   waiting_.pop_front();
   last_depth_s_ = depth.stamp_s;
-  if (nearest != colours_.end() && distance_s(*nearest) <= config_.tolerance_s) {
+  if (nearest != nullptr && distance_s(*nearest, depth) <= config_.tolerance_s) {
     pair.colour = nearest->number;
     pair.colour_after_depth_s = nearest->stamp_s - depth.stamp_s;
-    colours_.erase(nearest);
+    std::erase_if(colours_, [&](const Stamped& colour) { return colour.number == *pair.colour; });
   }
   std::erase_if(colours_, [&](const Stamped& colour) { return colour.stamp_s <= depth.stamp_s; });
   return pair;

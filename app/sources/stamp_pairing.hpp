@@ -8,8 +8,8 @@ namespace roomradar {
 
 struct PairingConfig {
   double tolerance_s = 0.020;  ///< farther apart is no pair; half a period at 30 Hz is 0.017
-  /// A colour image this little before its depth image is taken at once, since no later one can be nearer:
-  /// half of the shortest time between colour images. 0 where that is not known. Saves a live device up to a
+  /// Half of the shortest time between images of a kind; 0 where that is not known. A colour image as near to
+  /// its depth image is taken at once, since no other of either can be nearer: saves a live device up to a
   /// frame of waiting.
   double unbeatable_s = 0.0;
 };
@@ -23,13 +23,14 @@ struct DepthColourPair {
   std::int64_t depth = 0;
   std::optional<std::int64_t> colour{};
   double colour_after_depth_s = 0.0;  ///< by their stamps; 0 without colour
-  bool stamp_goes_back = false;  ///< not later than the depth image before it: not to be used
+  bool stamp_goes_back = false;       ///< not later than the depth image before it: not to be used
 };
 
 /// Depth and colour images, known by numbers, come in as they arrive; pairs go out in the order of the depth
-/// images. Each depth image takes the colour image nearest to it in time, within the tolerance and not taken
-/// before. It waits for it until a colour image not earlier than itself, or the depth image after it, has
-/// arrived. The answer depends on the order of arrivals only, not on the time of day, so a recording of
+/// images. Each depth image takes the colour image nearest to it in time, within the tolerance, not taken
+/// before, and not nearer to the depth image after it: where one colour image is lost, one depth image goes
+/// without. It waits for it until none that arrives can be nearer, or the depth image after it has arrived.
+/// The answer depends on the order of arrivals only, not on the time of day, so a recording of
 /// arrivals gives the same pairs as the device did.
 class StampPairing {
  public:

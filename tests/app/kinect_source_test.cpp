@@ -286,6 +286,22 @@ TEST(KinectSource, BrokenImagesArePassedOverAndCounted) {
   EXPECT_TRUE(all.frames[2].colour.empty());
 }
 
+TEST(KinectSource, ABrokenImageDoesNotOvertakeTheFrameThatWaitsForItsColour) {
+  const auto script = std::make_shared<Script>();
+  std::vector<Act> acts = images(4);
+  acts[1].kind = Act::Kind::kSilence;  // frame 0 has no colour
+  acts[2].kind = Act::Kind::kShortDepth;
+  script->openings = {acts};
+  const auto source = open_scripted(script);
+  std::vector<std::int64_t> order;  // -1: a fault
+  for (Frame frame; order.size() < 4;) {
+    const ReadResult result = source->next(frame);
+    ASSERT_NE(result.status, ReadStatus::kEnd);
+    if (!result.waiting) order.push_back(result.status == ReadStatus::kFrame ? frame.index : -1);
+  }
+  EXPECT_EQ(order, (std::vector<std::int64_t>{0, -1, 2, 3}));
+}
+
 TEST(KinectSource, AClockThatIsSetBackStopsNothing) {
   const auto script = std::make_shared<Script>();
   std::vector<Act> acts = images(3, 100 * kFrameTicks);

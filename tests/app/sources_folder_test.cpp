@@ -128,13 +128,51 @@ TEST(RecordingRoundTrip, FakenectKeepsDepthToTheRawStepColourAndGravity) {
     EXPECT_EQ(again.frames[i].depth_m.pixels, all.frames[i].depth_m.pixels);
 }
 
+TEST(RecordingRoundTrip, FakenectShortensAGapThatItsClockCannotTell) {
+  const TemporaryFolder folder;
+  const std::vector<double> stamps_s = {0.0, 0.033, 50.0, 50.033, 150.0, 179.0};
+  {
+    RecordingWriter writer(folder.path(), RecordingFormat::kFakenect);
+    for (std::size_t i = 0; i < stamps_s.size(); ++i) {
+      Frame frame = some_frame(static_cast<int>(i), 640, 480);
+      frame.stamp_s = 10.0 + stamps_s[i];
+      writer.write(frame);
+    }
+    writer.close();
+  }
+  const auto all = read_all(*open_folder(folder.path()));
+  EXPECT_TRUE(all.faults.empty());
+  ASSERT_EQ(all.frames.size(), stamps_s.size());
+  for (std::size_t i = 1; i < stamps_s.size(); ++i)
+    EXPECT_NEAR(all.frames[i].stamp_s - all.frames[i - 1].stamp_s,
+                std::min(stamps_s[i] - stamps_s[i - 1], 30.0), 1e-6)
+        << i;
+}
+
+TEST(RecordingRoundTrip, FakenectDoesNotKeepAGravityThatIsNotKnownAnyMore) {
+  const TemporaryFolder folder;
+  {
+    RecordingWriter writer(folder.path(), RecordingFormat::kFakenect);
+    for (int i = 0; i < 5; ++i) {
+      Frame frame = some_frame(i, 640, 480);
+      if (i < 1 || i == 2 || i == 3) frame.down_camera.reset();
+      writer.write(frame);
+    }
+    writer.close();
+  }
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 5U);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(all.frames[i].down_camera.has_value(), i == 1 || i == 4) << i;
+}
+
 TEST(RecordingRoundTrip, FramesAmongOthersThatCameWithoutColourComeBackWithout) {
   for (const auto format : {RecordingFormat::kTum, RecordingFormat::kSevenScenes}) {
     const TemporaryFolder folder;
     RecordingWriter writer(folder.path(), format);
     for (int i = 0; i < 16; ++i) {
       Frame frame = some_frame(i);
-      frame.colour_after_depth_s = 0.025;  // as far as a device pairs
+      frame.stamp_s = 100.0 + i / 15.0;
+      frame.colour_after_depth_s = 0.025;  // as far as a device pairs where depth images are lost
       if (i > 2 && i < 15) frame.colour.resize(0, 0);
       writer.write(frame);
     }
@@ -372,6 +410,29 @@ TEST(BadFrame, RecordingWithNoneButBadOnesIsRefused) {
   write_recording(folder.path(), RecordingFormat::kSevenScenes, 3);
   for (int i = 0; i < 3; ++i) write_text(name_of(folder.path(), i, "depth.png"), "text");
   EXPECT_TRUE(contains(error_of([&] { open_folder(folder.path()); }), "none of its first 3 frames"));
+}
+
+TEST(BadFrame, OneOfARecordingWithoutColourIsPassedOver) {
+  for (const RecordingFormat format : {RecordingFormat::kTum, RecordingFormat::kSevenScenes}) {
+    const TemporaryFolder folder;
+    {
+      RecordingWriter writer(folder.path(), format);
+      for (int i = 0; i < kFrames; ++i) {
+        Frame frame = some_frame(i);
+        frame.colour.resize(0, 0);
+        frame.colour_camera = {};
+        writer.write(frame);
+      }
+      writer.close();
+    }
+    if (format == RecordingFormat::kTum)
+      std::ofstream(folder.path() / "depth.txt", std::ios::app) << "100.25\n";  // cut off as it was written
+    else
+      fs::remove(name_of(folder.path(), 2, "pose.txt"));
+    const auto all = read_all(*open_folder(folder.path()));
+    EXPECT_EQ(all.faults.size(), 1U) << to_string(format);
+    EXPECT_GE(all.frames.size(), static_cast<std::size_t>(kFrames - 1)) << to_string(format);
+  }
 }
 
 // ---- depth and poses ----

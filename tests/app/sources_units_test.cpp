@@ -4,9 +4,11 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <limits>
 #include <thread>
 
 #include "app/sources/frame_range.hpp"
+#include "app/sources/image_file.hpp"
 #include "app/sources/kinect_units.hpp"
 #include "app/sources/parse_numbers.hpp"
 #include "app/sources/spooled_source.hpp"
@@ -94,6 +96,7 @@ TEST(StampPairing, TakesTheNearerOfTheImagesBeforeAndAfter) {
   pairing.add_depth(0, 1.000);
   EXPECT_TRUE(take_all(pairing).empty());  // a nearer one may still come
   pairing.add_colour(1, 1.004);
+  pairing.add_depth(1, 1.033);
   const auto pairs = take_all(pairing);
   ASSERT_EQ(pairs.size(), 1U);
   EXPECT_EQ(pairs[0].colour, 1);
@@ -127,6 +130,34 @@ TEST(StampPairing, DoesNotWaitPastTheNextDepthImage) {
   const auto pairs = take_all(pairing);
   ASSERT_EQ(pairs.size(), 1U);
   EXPECT_FALSE(pairs[0].colour);
+}
+
+TEST(StampPairing, ALostColourImageCostsOneFrameItsColourAndNoOther) {
+  constexpr double kPeriod_s = 1.0 / 30.0;
+  constexpr int kFrames = 12, kLost = 4;
+  for (const PairingConfig& config : {kDevicePairing, PairingConfig{}})
+    for (double phase_s = -0.016; phase_s < 0.0165; phase_s += 0.001) {
+      StampPairing pairing(config);
+      std::vector<DepthColourPair> pairs;
+      for (int i = 0; i < kFrames; ++i) {
+        const double stamp_s = 10.0 + i * kPeriod_s;
+        const auto add_colour = [&] {
+          if (i != kLost) pairing.add_colour(i, stamp_s + phase_s);
+        };
+        if (phase_s < 0.0) add_colour();
+        pairing.add_depth(i, stamp_s);
+        if (phase_s >= 0.0) add_colour();
+        for (const DepthColourPair& pair : take_all(pairing)) pairs.push_back(pair);
+        EXPECT_GE(pairs.size() + 2, static_cast<std::size_t>(i) + 1);  // none waits for more than one frame
+      }
+      pairing.finish();
+      for (const DepthColourPair& pair : take_all(pairing)) pairs.push_back(pair);
+      ASSERT_EQ(pairs.size(), static_cast<std::size_t>(kFrames));
+      for (const DepthColourPair& pair : pairs) {
+        EXPECT_EQ(pair.colour.has_value(), pair.depth != kLost) << phase_s;
+        EXPECT_EQ(pair.colour.value_or(pair.depth), pair.depth) << phase_s;
+      }
+    }
 }
 
 TEST(StampPairing, SaysWhichStampsGoBack) {
@@ -330,6 +361,22 @@ TEST(SpooledSource, KeptGoesOnInALaterProcess) {
   EXPECT_EQ(read_all(*source).frames.size(), 5U);
   ASSERT_TRUE(source->rewind());
   EXPECT_EQ(read_all(*source).frames.size(), 5U);
+}
+
+TEST(SpooledSource, AnImageThatIsNotItsCamerasIsNamed) {
+  const test::TemporaryFolder parent;
+  const std::filesystem::path folder = parent.path() / "spool";
+  (void)read_all(*SpooledSource::kept(std::make_unique<MadeSource>(3, false), folder));
+  Frame frame;
+  for (const DepthImage& damaged :
+       {DepthImage(3, 2, 1.0F), DepthImage(16, 12, -1.0F), DepthImage(16, 12, std::nanf("")),
+        DepthImage(16, 12, std::numeric_limits<float>::infinity())}) {
+    write_exact_depth_file(damaged, folder / "1.depth.png");
+    const auto source = SpooledSource::kept(nullptr, folder);
+    EXPECT_EQ(source->next(frame).status, ReadStatus::kFrame);
+    const std::string fault = error_of([&] { (void)source->next(frame); });
+    EXPECT_TRUE(contains(fault, "1.depth.png: is damaged")) << fault;
+  }
 }
 
 TEST(SpooledSource, IsNotReadAheadByMoreThanAsked) {
