@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::string_view kKinect = "kinect:";
 constexpr std::string_view kSim = "sim:";
+constexpr std::string_view kRegistered = "?depth=registered";
 
 /// kinect:N[?depth=raw|mm|registered]
 std::unique_ptr<FrameSource> open_kinect_named(const std::string& source, SourceOptions options) {
@@ -27,7 +28,7 @@ std::unique_ptr<FrameSource> open_kinect_named(const std::string& source, Source
   const std::string_view rest(parsed.ptr, static_cast<std::size_t>(end - parsed.ptr));
   if (rest == "?depth=mm")
     options.kinect_depth = KinectDepth::kMillimetres;
-  else if (rest == "?depth=registered")
+  else if (rest == kRegistered)
     options.kinect_depth = KinectDepth::kRegistered;
   const bool is_known = rest.empty() || rest == "?depth=raw" || options.kinect_depth != KinectDepth::kRaw;
   if (parsed.ec != std::errc() || !is_known || device < 0)
@@ -61,8 +62,13 @@ std::filesystem::path calibration_for(const std::string& source, const std::file
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration,
                                          const SourceOptions& options) {
-  std::unique_ptr<FrameSource> opened = open_whole(source, options);
   const std::filesystem::path used = options.as_recorded ? calibration : calibration_for(source, calibration);
+  const bool is_registered = source.starts_with(kKinect) && source.ends_with(kRegistered);
+  if (is_registered && (options.as_recorded || !used.empty()))
+    throw Error(source +
+                ": registered depth is seen from the colour camera, and a calibration is the depth camera's: "
+                "take ?depth=raw or ?depth=mm with it");
+  std::unique_ptr<FrameSource> opened = open_whole(source, options);
   if (!used.empty()) opened = calibrated(std::move(opened), read_calibration(used));
   if (!frames) return opened;
   return limit_frames(std::move(opened), frames->first, frames->last);

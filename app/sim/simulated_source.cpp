@@ -266,7 +266,6 @@ bool SimulatedSource::seek(std::int64_t index) {
 std::optional<std::int64_t> SimulatedSource::frame_count() const { return state_->options.frames; }
 std::string SimulatedSource::name() const { return sim_spec(state_->options); }
 const SimTruth& SimulatedSource::truth() const { return state_->truth; }
-const SimOptions& SimulatedSource::options() const { return state_->options; }
 const Room& SimulatedSource::room() const { return state_->room; }
 
 }  // namespace roomradar

@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPath = "FAKENECT_PATH";
 constexpr std::uintmax_t kDepthBytes = std::uintmax_t{640} * 480 * 2,
                          kColourBytes = std::uintmax_t{640} * 480 * 3;
 constexpr std::streamsize kLongestHeader = 256;
@@ -60,12 +59,6 @@ fs::path folder_of_links(const fs::path& folder, const std::vector<std::string>&
 
 }  // namespace
 
-std::optional<fs::path> replayed_folder() {
-  const char* path = std::getenv(kPath);
-  if (!path) return std::nullopt;
-  return path;
-}
-
 FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
   index_fakenect(folder);  // refuses a list that is broken
   std::ifstream list(folder / "INDEX.txt");
@@ -93,12 +86,12 @@ FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
   if (all_sound) return;
 
   links_ = folder_of_links(folder, sound);
-  setenv(kPath, links_.c_str(), 1);
+  setenv(kFakenectPath, links_.c_str(), 1);
 }
 
 FakenectReplay::~FakenectReplay() {
   if (links_.empty()) return;
-  setenv(kPath, folder_.c_str(), 1);
+  setenv(kFakenectPath, folder_.c_str(), 1);
   std::error_code ignored;  // nobody is left to be told
   fs::remove_all(links_, ignored);
 }

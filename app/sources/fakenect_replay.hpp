@@ -8,7 +8,9 @@
 
 namespace roomradar {
 
-/// What is in FAKENECT_PATH: there fakenect's library replays a recording instead of a device.
+inline constexpr const char* kFakenectPath = "FAKENECT_PATH";
+/// What is in FAKENECT_PATH, where fakenect's library is loaded in libfreenect's place: it replays a
+/// recording instead of a device. The variable alone does nothing.
 std::optional<std::filesystem::path> replayed_folder();
 
 /// fakenect reads beyond the end of an image that is cut short, and ends the process where a file is missing.
@@ -21,7 +23,6 @@ class FakenectReplay {
   FakenectReplay(const FakenectReplay&) = delete;
   FakenectReplay& operator=(const FakenectReplay&) = delete;
 
-  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// What is wrong with depth images that are left out, by their place among all depth images, from 0.
   [[nodiscard]] const std::map<std::int64_t, std::string>& broken() const { return broken_; }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
 #include <utility>
 
@@ -222,6 +223,13 @@ int count_kinects() {
   const int devices = freenect_num_devices(context);
   freenect_shutdown(context);
   return std::max(devices, 0);
+}
+
+std::optional<std::filesystem::path> replayed_folder() {
+  const bool is_fakenect = freenect_copy_registration == nullptr;
+  const char* path = std::getenv(kFakenectPath);
+  if (!is_fakenect || path == nullptr) return std::nullopt;
+  return path;
 }
 
 }  // namespace roomradar

@@ -1,5 +1,6 @@
 // freenect_device_absent.cpp: stands in for freenect_device.cpp where the program is built without
 // libfreenect.
+#include "app/sources/fakenect_replay.hpp"
 #include "app/sources/freenect_device.hpp"
 #include "app/sources/kinect_source.hpp"
 #include "mapping/types/error.hpp"
@@ -13,5 +14,7 @@ std::unique_ptr<KinectDevice> open_freenect(const KinectWish& wish) {
 }
 
 int count_kinects() { return -1; }
+
+std::optional<std::filesystem::path> replayed_folder() { return std::nullopt; }
 
 }  // namespace roomradar

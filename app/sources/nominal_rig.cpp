@@ -103,7 +103,7 @@ CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
   if (has_camera_file) require_fit(rig.depth_camera, depth, "depth", camera_file.string());
   if (chosen_depth) {
     require_valid(*chosen_depth, "the depth intrinsics that were given");
-    require_fit(*chosen_depth, depth, "depth", folder.string());
+    require_fit(*chosen_depth, depth, "depth", folder.empty() ? "the device" : folder.string());
     rig.depth_camera = *chosen_depth;
     depth_is_given = true;
   } else if (!has_camera_file && !folder.empty() && std::filesystem::exists(matrix_file)) {
