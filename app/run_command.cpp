@@ -31,24 +31,51 @@ nlohmann::json report_replay(const ReplayCheck& check) {
   return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
 }
 
-/// Saves, reports and prints what the run came to; the exit status.
-int finish(OpenedRun& run) {
+/// What goes wrong while a run is played or put away. The rest of it is put away all the same.
+class Faults {
+ public:
+  template <typename Act>
+  void attempt(const Act& act) {
+    try {
+      act();
+    } catch (const Error& error) {
+      if (!first_.empty()) std::fprintf(stderr, "roomradar: %s\n", error.what());
+      if (first_.empty()) first_ = error.what();
+    }
+  }
+  /// Throws Error with the first of them; the others were said when they came.
+  void throw_first() const {
+    if (!first_.empty()) throw Error(first_);
+  }
+
+ private:
+  std::string first_;
+};
+
+/// Plays, saves, reports and prints what the run came to; the exit status.
+int play(OpenedRun& run) {
   const RunCommand& command = run.command;
   const RunTotals& totals = run.totals;
-  std::string not_saved;  // what was measured is said all the same
-  try {
-    if (!command.save_map.empty()) save_changed(run.map, run.session->adopted().size(), command.save_map);
-  } catch (const Error& error) {
-    not_saved = error.what();
+  Faults faults;
+  faults.attempt([&] { play_to_end(run); });
+  if (run.video) faults.attempt([&] { run.video->close(); });
+  if (run.frames_csv) faults.attempt([&] { run.frames_csv->close(); });
+  if (totals.read == totals.skipped) {
+    faults.throw_first();
+    throw Error(command.source + ": there is not one readable frame" +
+                (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
   }
+  run.session->finish_adopting();
+  if (!command.save_map.empty())
+    faults.attempt([&] { save_changed(run.map, run.session->adopted().size(), command.save_map); });
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped.count;
   run.report.results = results_of(totals, *run.session);
   if (run.budget) run.report.results["budget"] = run.budget->report();
   if (run.check) run.report.results["replay"] = report_replay(*run.check);
-  write_report(run.report, command.report);
+  faults.attempt([&] { write_report(run.report, command.report); });
   print_summary(totals, *run.session);
-  if (!not_saved.empty()) throw Error(not_saved);
+  faults.throw_first();
   if (totals.located > 0 || run.was_quit) return 0;
   std::fprintf(stderr, "roomradar: %s: no frame shows where in %s the camera is; was that room mapped?\n",
                command.source.c_str(), command.map.c_str());
@@ -56,11 +83,7 @@ int finish(OpenedRun& run) {
 }
 
 /// @param link  to the window; null: there is none
-int run_frames(const RunCommand& command, PlayLink* link) {
-  const std::unique_ptr<OpenedRun> run = open_run(command, link);
-  play_to_end(*run);
-  return finish(*run);
-}
+int run_frames(const RunCommand& command, PlayLink* link) { return play(*open_run(command, link)); }
 
 }  // namespace
 

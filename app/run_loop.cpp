@@ -70,6 +70,8 @@ class RunLoop {
 
   std::string picture_name();
   void perform(const ScriptEvent& event, bool is_from_script);
+  ScriptEvent apply(const ScriptEvent& event);
+  void record(const ScriptEvent& event);
   void perform_users(const std::vector<ScriptEvent>& events);
   void end_budget();
   void count_skipped(const std::string& fault);
@@ -106,29 +108,41 @@ void RunLoop::perform_due() {
 }
 
 void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
+  if (event.action == Action::kAdd && is_from_script)
+    return;  // it was added, and recorded, before the first frame
+  record(apply(event));
+}
+
+/// As it is to be recorded.
+ScriptEvent RunLoop::apply(const ScriptEvent& event) {
+  const ScriptEvent kept = run_.recorder ? run_.recorder->with_mesh_kept(event) : event;
   if (event.action == Action::kQuit) run_.was_quit = true;
   if (event.action == Action::kCamera) control(*run_.playback, event.camera);
   if (event.action == Action::kRadar && run_.budget) run_.budget->keep(event.radar);
-  if (event.action == Action::kAdd && is_from_script)
-    return;  // it was added, and recorded, before the first frame
-  const ScriptEvent kept = run_.recorder ? run_.recorder->with_mesh_kept(event) : event;
   if (event.action == Action::kAdd)
     run_.session->add_object(event.name, run_.host->take_parts());
   else
     run_.session->apply(event);
-  if (run_.recorder) run_.recorder->write(kept, run_frame_);
+  return kept;
+}
+
+void RunLoop::record(const ScriptEvent& event) {
+  if (run_.recorder) run_.recorder->write(event, run_frame_);
 }
 
 void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {
   std::set<std::string> not_made;
   for (const ScriptEvent& event : events) {
     if (not_made.contains(event.name)) continue;
+    ScriptEvent applied;
     try {
-      perform(event, /*is_from_script=*/false);
+      applied = apply(event);
     } catch (const Error& fault) {
       run_.host->complain(fault.what());
       if (event.action == Action::kAdd) not_made.insert(event.name);
+      continue;
     }
+    record(applied);  // one that cannot be ends the run: it would be replayed to something else
   }
 }
 
@@ -192,14 +206,6 @@ void RunLoop::keep(const FrameResult& result) {
 
 }  // namespace
 
-void play_to_end(OpenedRun& run) {
-  RunLoop(run).play();
-  if (run.video) run.video->close();
-  if (run.frames_csv) run.frames_csv->close();
-  run.session->finish_adopting();
-  if (run.totals.read == run.totals.skipped)
-    throw Error(run.command.source + ": there is not one readable frame" +
-                (run.totals.last_fault.empty() ? "" : "; the last fault: " + run.totals.last_fault));
-}
+void play_to_end(OpenedRun& run) { RunLoop(run).play(); }
 
 }  // namespace roomradar

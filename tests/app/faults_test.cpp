@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -194,6 +195,20 @@ TEST_F(Faults, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
   EXPECT_EQ(run(again), 0) << said();
   EXPECT_EQ(said().find("track 12/12"), std::string::npos) << "that pass was over: " << said();
   EXPECT_TRUE(text_of(disk() / "map" / "octree.ot") == text_of(at("reference") / "octree.ot"));
+}
+
+TEST_F(Faults, ARunThatIsCutShortSavesAndReportsWhatCameBefore) {
+  ASSERT_EQ(scan(at("made")), 0) << said();
+  mount_disk(128);
+  ASSERT_EQ(run({"run", kSource, "--map", at("made"), "--pictures", disk() / "pictures", "--pictures-every",
+                 "1", "--adopt", "0.5", "--save-map", at("kept"), "--report", at("report.json")}),
+            1);
+  EXPECT_NE(said().find("roomradar: " + disk().string()), std::string::npos) << said();
+  EXPECT_TRUE(verify_map(at("kept")).empty());
+  std::ifstream file(at("report.json"));
+  const auto report = nlohmann::json::parse(file);
+  EXPECT_GT(report.at("frames_read").get<int>(), 0);
+  EXPECT_TRUE(report.contains("adopted"));
 }
 
 TEST_F(Faults, ASessionThatFilledTheDiskReplaysToWhereItCame) {
