@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -84,7 +84,6 @@ class HeightGrid {
   }
 
   [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] bool is_inside(int i, int j) const { return i >= 0 && j >= 0 && i < size_ && j < size_; }
   [[nodiscard]] std::size_t index(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
   }
@@ -139,7 +138,6 @@ FootprintCells cells_under(double radius_cells, int grid_size, const PlacementCo
 struct Footprint {
   bool is_level = false;
   double height_m = 0.0;  // of the fitted plane at the middle
-  double spread_m = 0.0;
 };
 
 /// Fits z = a + b x + c y to the tops under the footprint, and tells whether an object can stand there.
@@ -170,15 +168,13 @@ Footprint footprint_at(const float* top_m, const FootprintCells& footprint, cons
   const Eigen::Vector3d plane = moments.ldlt().solve(Eigen::Vector3d(rises_m, x_rises_m2, y_rises_m2));
   if (!plane.allFinite() || plane.tail<2>().norm() > steepest_of(config)) return {};
 
-  double squares_m2 = 0.0;
   for (const FootprintCells::Cell& cell : footprint.cells) {
     const float cell_top_m = top_m[cell.away];
     if (cell_top_m == kUnseen) continue;
     const double off_m = cell_top_m - middle_m - plane[0] - plane[1] * cell.x_m - plane[2] * cell.y_m;
     if (std::abs(off_m) > config.flatness_m) return {};
-    squares_m2 += off_m * off_m;
   }
-  return {true, middle_m + plane[0], std::sqrt(squares_m2 / (all - unseen))};
+  return {true, middle_m + plane[0]};
 }
 
 /// Distance (cells, chamfer 1 and sqrt 2) of each place to the nearest one that is none.
@@ -207,28 +203,6 @@ std::vector<float> distance_inside(const std::vector<char>& is_place, int size) 
   return distance;
 }
 
-struct Place {
-  int i, j;
-};
-
-std::size_t connected_places(std::vector<char> is_place, const HeightGrid& grid, Place start) {
-  std::vector<Place> open{start};
-  is_place[grid.index(start.i, start.j)] = 0;
-  std::size_t count = 0;
-  while (!open.empty()) {
-    const Place place = open.back();
-    open.pop_back();
-    ++count;
-    for (const Place step : {Place{1, 0}, Place{-1, 0}, Place{0, 1}, Place{0, -1}}) {
-      const Place next{place.i + step.i, place.j + step.j};
-      if (!grid.is_inside(next.i, next.j) || !is_place[grid.index(next.i, next.j)]) continue;
-      is_place[grid.index(next.i, next.j)] = 0;
-      open.push_back(next);
-    }
-  }
-  return count;
-}
-
 /// 1 in the middle of the picture, falling towards its edge; 0 outside.
 double centrality(const Eigen::Vector3d& p_camera, const Intrinsics& camera) {
   if (p_camera.z() <= 0.0) return 0.0;
@@ -242,10 +216,10 @@ double centrality(const Eigen::Vector3d& p_camera, const Intrinsics& camera) {
 }  // namespace
 
 void require_valid(const PlacementConfig& config) {
-  const auto require = [](const char* name, double value, double lowest, double highest) {
-    if (value >= lowest && value <= highest) return;
-    throw Error(std::string("placement.") + name + " = " + std::to_string(value) + ": must be in " +
-                std::to_string(lowest) + ".." + std::to_string(highest));
+  const SettingRules rules{"placement"};
+  const auto require = [&](const char* name, double value, double lowest, double highest) {
+    rules(value >= lowest && value <= highest, name, value,
+          ("in " + std::to_string(lowest) + ".." + std::to_string(highest)).c_str());
   };
   require("cell_m", config.cell_m, 0.005, 0.1);
   require("max_tilt_deg", config.max_tilt_deg, 0.0, 60.0);
@@ -257,9 +231,9 @@ void require_valid(const PlacementConfig& config) {
   require("table_below_camera_m", config.table_below_camera_m, 0.0, 10.0);
 }
 
-std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics& camera,
-                                    const Eigen::Isometry3d& T_world_camera, double footprint_radius_m,
-                                    const PlacementConfig& config) {
+std::optional<Eigen::Vector3d> find_support(const DepthImage& depth_m, const Intrinsics& camera,
+                                            const Eigen::Isometry3d& T_world_camera,
+                                            double footprint_radius_m, const PlacementConfig& config) {
   require_valid(config);
   if (!(footprint_radius_m > 0.0 && footprint_radius_m <= kMostFootprint_m)) return std::nullopt;
   if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px)
@@ -280,7 +254,7 @@ std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics&
   constexpr double kAmple_m = 0.15;      // more room than this is no better
   constexpr double kFloorIsWorth = 0.2;  // as a place for things, against a table
   double best_worth = 0.0;
-  Place best{0, 0};
+  std::optional<Eigen::Vector3d> best_world;
   for (int j = 0; j < grid.size(); ++j) {
     for (int i = 0; i < grid.size(); ++i) {
       if (!is_place[grid.index(i, j)]) continue;
@@ -291,19 +265,12 @@ std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics&
                            (height_m >= -config.table_below_camera_m ? 1.0 : kFloorIsWorth);
       if (worth > best_worth) {
         best_worth = worth;
-        best = {i, j};
+        const Footprint found = footprint_at(grid.top_m(i, j), footprint, config);
+        best_world = grid.point_world(i, j, found.height_m);
       }
     }
   }
-  if (best_worth <= 0.0) return std::nullopt;
-
-  const Footprint found = footprint_at(grid.top_m(best.i, best.j), footprint, config);
-  Support support;
-  support.point_world = grid.point_world(best.i, best.j, found.height_m);
-  support.spread_m = found.spread_m;
-  support.area_m2 =
-      static_cast<double>(connected_places(is_place, grid, best)) * config.cell_m * config.cell_m;
-  return support;
+  return best_world;
 }
 
 }  // namespace roomradar

@@ -22,12 +22,6 @@ struct PlacementConfig {
 /// Throws Error "placement.cell_m = 0: must be in 0.005..0.1" and the like.
 void require_valid(const PlacementConfig& config);
 
-struct Support {
-  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< on the surface, under the object's middle
-  double spread_m = 0.0;  ///< of the heights under the footprint about their plane, root mean square
-  double area_m2 = 0.0;   ///< of the connected places where the object's middle could stand as well
-};
-
 inline constexpr double kMostFootprint_m = 1.0;
 
 /// The best place for an object of the given footprint: level, flat, clear of what stands about, near the
@@ -36,10 +30,11 @@ inline constexpr double kMostFootprint_m = 1.0;
 /// @param depth_m         live or expected depth, of the camera's size
 /// @param T_world_camera  world with +z up
 /// @param footprint_radius_m  > 0, at most kMostFootprint_m; else nothing is found
+/// @return the point of the surface under the object's middle, in the world
 /// Nothing is found either where the sizes disagree. Takes some 10 ms: for when an object is dropped, not for
 /// each frame.
-std::optional<Support> find_support(const DepthImage& depth_m, const Intrinsics& camera,
-                                    const Eigen::Isometry3d& T_world_camera, double footprint_radius_m,
-                                    const PlacementConfig& config = {});
+std::optional<Eigen::Vector3d> find_support(const DepthImage& depth_m, const Intrinsics& camera,
+                                            const Eigen::Isometry3d& T_world_camera,
+                                            double footprint_radius_m, const PlacementConfig& config = {});
 
 }  // namespace roomradar

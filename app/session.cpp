@@ -165,8 +165,9 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
   times.add_ms("contact", ms_since(handed_over));
   begin(FramePart::kCompose);
+  if (config_.make_picture) keep_colour(whole, T_world_camera, dt_s);
   result.picture_is_new = config_.make_picture && is_turn(0, config_.picture_turns);
-  if (result.picture_is_new) times.timed("compose", [&] { compose_picture(whole, T_world_camera, dt_s); });
+  if (result.picture_is_new) times.timed("compose", [&] { compose_picture(whole, T_world_camera); });
   T_world_before_ = T_world_camera;
   ++frames_;
 

@@ -176,9 +176,10 @@ class Session {
 
   std::optional<Eigen::Isometry3d> T_world_before_;  ///< of the frame before, if it was located
   std::optional<ShownView> shown_view_;
-  std::optional<ShownView> colour_view_;  ///< of the last colour, while it lasts
-  int frames_without_colour_ = 0;         ///< since the last that had any
-  DepthImage real_depth_m_;               ///< as the colour camera sees it, where objects are
+  std::optional<ShownView> colour_view_;                 ///< of the last colour, while it lasts
+  static constexpr int kColourLasts_frames = 15;         ///< half a second of a Kinect's
+  int frames_without_colour_ = kColourLasts_frames + 1;  ///< since the last that had any
+  DepthImage real_depth_m_;                              ///< as the colour camera sees it, where objects are
   ObjectLayer layer_;
   Occlusion occlusion_;
   ColourImage background_;
@@ -217,10 +218,12 @@ class Session {
   void move_objects(double dt_s, StageTimes& times, FrameResult& result);
   [[nodiscard]] bool is_in_unknown(const VirtualObject& object) const;
   double penetration_m();
-  /// Sets background_ and says which camera saw it from where: the frame's colour, from where the camera was
-  /// when that was taken; where a few frames have none, the last colour there was; where there is none for
-  /// longer, the depth, shaded, as the depth camera sees it.
-  ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
+  /// The frame's colour, if it has any, into background_, and from where the camera was when that was taken
+  /// into colour_view_.
+  void keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
+  /// Which camera saw background_ from where: the last colour there was; where there is none for longer than
+  /// a few frames, the depth, shaded, as the depth camera sees it.
+  ShownView view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   /// Where the colour has stopped, its last picture does not stand for what is there now.
   void watch_for_colour(const Frame& frame);
   /// The picture of a frame whose place is not known.
@@ -228,7 +231,7 @@ class Session {
   /// Makes one shadow anew: coarsely that of the object that has turned most since its own was made, or where
   /// none has, in full that of one that has come to rest.
   void renew_a_shadow();
-  void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s);
+  void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   VirtualObject& object_named(const std::string& name);
   void require_new(const std::string& name) const;
   void change_objects(const ScriptEvent& event);

@@ -180,6 +180,7 @@ void Session::change_objects(const ScriptEvent& event) {
     object.in_unknown = object.began_in_unknown = is_in_unknown(object);
   };
   if (event.action == Action::kTurn && !object.in_room) return;
+  if (event.action == Action::kDrop && !event.position_world) require_small_enough(object, event);
   // Whatever else is said of an object now takes the place of a drop that it waits for.
   std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
   if (event.R_world_object && event.position_world)
@@ -194,7 +195,6 @@ void Session::change_objects(const ScriptEvent& event) {
       if (event.position_world) {
         put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
       } else {
-        require_small_enough(object, event);
         waiting_.push_back(event);
       }
       break;
@@ -221,14 +221,14 @@ void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_wor
   for (ScriptEvent& event : std::exchange(waiting_, {})) {
     const VirtualObject& object = object_named(event.name);
     const Eigen::Matrix3d R_world_object = event.R_world_object.value_or(object.body.T_world_object.linear());
-    const std::optional<Support> support =
+    const std::optional<Eigen::Vector3d> support_world =
         find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
                      footprint_radius_m(object, R_world_object));
-    if (!support) {
+    if (!support_world) {
       waiting_.push_back(event);
       continue;
     }
-    event.position_world = support->point_world;
+    event.position_world = support_world;
     apply(event);
   }
 }

@@ -27,34 +27,35 @@ Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eig
 
 }  // namespace
 
-Session::ShownView Session::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                                    double dt_s) {
-  if (!frame.colour.empty()) {
-    const Eigen::Isometry3d T_world_then =
-        T_world_before_ ? pose_beside(*T_world_before_, T_world_camera, dt_s, frame.colour_after_depth_s)
-                        : T_world_camera;
-    colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
-    background_ = frame.colour;
-  }
+void Session::keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
+  if (frame.colour.empty()) return;
+  const Eigen::Isometry3d T_world_then =
+      T_world_before_ ? pose_beside(*T_world_before_, T_world_camera, dt_s, frame.colour_after_depth_s)
+                      : T_world_camera;
+  colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
+  background_ = frame.colour;
+}
+
+void Session::watch_for_colour(const Frame& frame) {
+  frames_without_colour_ =
+      frame.colour.empty() ? std::min(frames_without_colour_ + 1, kColourLasts_frames + 1) : 0;
+  if (frames_without_colour_ > kColourLasts_frames) colour_view_.reset();
+}
+
+Session::ShownView Session::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   if (colour_view_) return *colour_view_;
   shade_depth(frame.depth_m, frame.depth_camera, background_);
   return {frame.depth_camera, T_world_camera};
 }
 
-void Session::watch_for_colour(const Frame& frame) {
-  constexpr int kLasts_frames = 15;  // half a second of a Kinect's
-  frames_without_colour_ = frame.colour.empty() ? std::min(frames_without_colour_ + 1, kLasts_frames + 1) : 0;
-  if (frames_without_colour_ > kLasts_frames) colour_view_.reset();
-}
-
 void Session::show_camera_alone(const Frame& frame) {
   shown_view_.reset();
-  if (!frame.colour.empty())
+  if (!frame.colour.empty()) {
     picture_ = frame.colour;
-  else if (colour_view_)
-    picture_ = background_;
-  else
+    colour_view_.reset();  // older, and from where nobody knows
+  } else if (frames_without_colour_ > kColourLasts_frames || picture_.empty()) {
     shade_depth(frame.depth_m, frame.depth_camera, picture_);
+  }
 }
 
 void Session::renew_a_shadow() {
@@ -80,8 +81,8 @@ void Session::renew_a_shadow() {
                         is_fine ? kFine : kCoarse);
 }
 
-void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
-  shown_view_ = view_of(frame, T_world_camera, dt_s);
+void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  shown_view_ = view_of(frame, T_world_camera);
   const auto& [camera, T_world_view] = *shown_view_;
 
   const bool has_shadows = config_.picture.shadow_strength > 0.0F;

@@ -63,30 +63,30 @@ const Box kTable{{-0.6, -0.4, 0.70}, {0.6, 0.4, 0.73}};
 TEST(Placement, FindsTheMiddleOfATable) {
   const Eigen::Isometry3d T_world_camera = looking({0, -1.2, 1.4}, {0, 0, 0.7});
   for (const bool is_noisy : {false, true}) {
-    const auto support =
+    const auto support_world =
         find_support(view_of({kFloor, kTable}, T_world_camera, is_noisy), kCamera, T_world_camera, 0.12);
-    ASSERT_TRUE(support) << is_noisy;
-    EXPECT_NEAR(support->point_world.z(), 0.73, is_noisy ? 0.008 : 0.002);
-    EXPECT_LT(std::abs(support->point_world.x()), 0.6 - 0.12);
-    EXPECT_LT(std::abs(support->point_world.y()), 0.4 - 0.12);
-    EXPECT_LT(support->point_world.head<2>().norm(), 0.25);
-    EXPECT_GT(support->area_m2, 0.2);
+    ASSERT_TRUE(support_world) << is_noisy;
+    EXPECT_NEAR(support_world->z(), 0.73, is_noisy ? 0.008 : 0.002);
+    EXPECT_LT(std::abs(support_world->x()), 0.6 - 0.12);
+    EXPECT_LT(std::abs(support_world->y()), 0.4 - 0.12);
+    EXPECT_LT(support_world->head<2>().norm(), 0.25);
   }
 }
 
 TEST(Placement, PrefersTheTableToMoreFloor) {
   // The floor is in the middle.
   const Eigen::Isometry3d T_world_camera = looking({0, -2.0, 1.5}, {0.3, 0.3, 0.3});
-  const auto support = find_support(view_of({kFloor, kTable}, T_world_camera), kCamera, T_world_camera, 0.1);
-  ASSERT_TRUE(support);
-  EXPECT_NEAR(support->point_world.z(), 0.73, 0.005);
+  const auto support_world =
+      find_support(view_of({kFloor, kTable}, T_world_camera), kCamera, T_world_camera, 0.1);
+  ASSERT_TRUE(support_world);
+  EXPECT_NEAR(support_world->z(), 0.73, 0.005);
 }
 
 TEST(Placement, TakesTheFloorWhereThereIsNothingElse) {
   const Eigen::Isometry3d T_world_camera = looking({0, -1.5, 1.4}, {0, 0, 0});
-  const auto support = find_support(view_of({kFloor}, T_world_camera), kCamera, T_world_camera, 0.15);
-  ASSERT_TRUE(support);
-  EXPECT_NEAR(support->point_world.z(), 0.0, 0.002);
+  const auto support_world = find_support(view_of({kFloor}, T_world_camera), kCamera, T_world_camera, 0.15);
+  ASSERT_TRUE(support_world);
+  EXPECT_NEAR(support_world->z(), 0.0, 0.002);
 }
 
 TEST(Placement, KeepsClearOfWhatStandsOnTheTable) {
@@ -94,12 +94,12 @@ TEST(Placement, KeepsClearOfWhatStandsOnTheTable) {
   const Box mug{{-0.05, -0.05, 0.73}, {0.05, 0.05, 0.83}};
   const Box book{{0.2, -0.2, 0.73}, {0.4, 0.1, 0.76}};
   const double radius_m = 0.1;
-  const auto support =
+  const auto support_world =
       find_support(view_of({kFloor, kTable, mug, book}, T_world_camera), kCamera, T_world_camera, radius_m);
-  ASSERT_TRUE(support);
-  EXPECT_NEAR(support->point_world.z(), 0.73, 0.005);
+  ASSERT_TRUE(support_world);
+  EXPECT_NEAR(support_world->z(), 0.73, 0.005);
   for (const Box& thing : {mug, book}) {
-    const Eigen::Vector2d p = support->point_world.head<2>();
+    const Eigen::Vector2d p = support_world->head<2>();
     const Eigen::Vector2d nearest = p.cwiseMax(thing.low.head<2>()).cwiseMin(thing.high.head<2>());
     EXPECT_GT((p - nearest).norm(), radius_m);
   }

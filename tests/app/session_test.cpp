@@ -104,6 +104,39 @@ TEST(Session, ACameraWhoseColourHasStoppedShowsItsDepthUntilThereIsColourAgain) 
   EXPECT_EQ(session.picture().pixels, coloured.colour.pixels);
 }
 
+TEST(Session, ColourThatComesBetweenTwoPicturesIsInTheNextOne) {
+  const SavedMap map = floor_map();
+  SessionConfig config = by_recorded_poses();
+  config.picture_turns = 2;
+  Session session(map, config);
+  StageTimes times;
+  for (std::int64_t i = 0; i < 40; ++i) {
+    Frame frame = depth_only(i, kAtTheFloor);
+    if (i % 2 == 1) give_colour(frame);
+    const bool is_composed = session.step(frame, times).picture_is_new;
+    ASSERT_EQ(is_composed, i % 2 == 0);
+    EXPECT_EQ(session.picture().width, i < 2 ? 160 : 320) << i;
+  }
+}
+
+TEST(Session, ALostCameraDoesNotShowAnOlderPictureThanItHasShown) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame found = depth_only(0, kAtTheFloor);
+  give_colour(found);
+  static_cast<void>(session.step(found, times));
+  Frame lost = depth_only(1, std::nullopt);
+  give_colour(lost);
+  lost.colour.resize(320, 240, {200, 10, 30});
+  static_cast<void>(session.step(lost, times));
+  EXPECT_EQ(session.picture().pixels, lost.colour.pixels);
+  static_cast<void>(session.step(depth_only(2, std::nullopt), times));
+  EXPECT_EQ(session.picture().pixels, lost.colour.pixels);
+  static_cast<void>(session.step(depth_only(3, kAtTheFloor), times));
+  EXPECT_NE(session.picture().pixels, found.colour.pixels);
+}
+
 TEST(Session, WhatMovedNeedsNoColour) {
   const SavedMap map = floor_map();
   for (const bool has_colour : {false, true}) {
@@ -412,6 +445,12 @@ TEST(Session, WhatIsTooLargeForAnyPlaceInViewIsRefusedInWords) {
   const std::string fault = test::error_of([&] { session.apply(event(Action::kDrop)); });
   EXPECT_NE(fault.find("pot: reaches 61.9 m sideways"), std::string::npos) << fault;
   EXPECT_NE(fault.find("Meshes are in metres"), std::string::npos) << fault;
+  // What is refused changes nothing.
+  ScriptEvent carry = event(Action::kCarry);
+  carry.position_world = Eigen::Vector3d(0, 0, 100);
+  session.apply(carry);
+  EXPECT_NE(test::error_of([&] { session.apply(event(Action::kDrop)); }), "");
+  EXPECT_TRUE(session.objects().front()->carried_to_world);
 }
 
 TEST(Session, WhatTheRadarLookedAtIsCountedAcrossAChangeOfRadar) {
