@@ -31,7 +31,7 @@ void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindo
 /// The camera's pyramid of view down to a depth.
 void draw_camera(ImDrawList& draw, const Session::ShownView& view, double depth_m, const ToWindow& to_window);
 
-/// "at rest on seen static", "falls at 1.2 m/s", "is carried".
+/// "at rest on seen static", "moves at 1.2 m/s", "carried".
 std::string what_it_does(const ShownObject& object);
 
 }  // namespace roomradar

@@ -4,6 +4,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "app/window/key_meant.hpp"
@@ -18,6 +19,22 @@ std::string last_glfw_error() {
   const char* what = nullptr;
   glfwGetError(&what);
   return what != nullptr ? what : "no reason was given";
+}
+
+/// No narrower than what the bar at the top has to say, on a screen that is wide enough.
+void keep_wide_enough(GLFWwindow* window) {
+  constexpr float kLeastWidth = 1240.0F, kLeastHeight = 600.0F;
+  float scale_x = 1.0F, scale_y = 1.0F;
+  glfwGetWindowContentScale(window, &scale_x, &scale_y);
+  int x = 0, y = 0, width_px = 0, height_px = 0;
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor(); monitor != nullptr)
+    glfwGetMonitorWorkarea(monitor, &x, &y, &width_px, &height_px);
+  const auto least = [](float wanted, int there_is) {
+    const int wanted_px = static_cast<int>(wanted);
+    return there_is > 0 ? std::min(wanted_px, there_is) : wanted_px;
+  };
+  glfwSetWindowSizeLimits(window, least(kLeastWidth * scale_x, width_px),
+                          least(kLeastHeight * scale_y, height_px), GLFW_DONT_CARE, GLFW_DONT_CARE);
 }
 
 }  // namespace
@@ -47,7 +64,7 @@ GlfwWindow::GlfwWindow(const std::string& title) {
     throw Error("--window: the display gives no window with OpenGL 3.3 (" + fault +
                 "); leave --window out and write what it would show with --video FILE.mp4");
   }
-  glfwSetWindowSizeLimits(window_, 900, 600, GLFW_DONT_CARE, GLFW_DONT_CARE);
+  keep_wide_enough(window_);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window_, this);

@@ -78,7 +78,6 @@ void PlayHost::publish() {
   filled_.run_time_s = run_time_s_;
   filled_.source_frame = source_frame_;
   filled_.chosen = player_.chosen();
-  filled_.is_grabbed = player_.is_grabbed();
   filled_.is_held = source_.is_held();
   filled_.is_repeating = source_.is_repeating();
   filled_.at_end = source_.at_end();

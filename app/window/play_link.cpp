@@ -109,7 +109,7 @@ bool PlayLink::wait_turn(double stamp_s, bool in_time, const std::function<void(
     }
     const Clock::time_point now = Clock::now();
     Clock::time_point due = now;
-    if (in_time && speed_ > 0.0 && last_turn_ && steps_ == 0) {
+    if (in_time && last_turn_ && steps_ == 0) {
       const double wait_s = std::clamp((stamp_s - last_turn_->first) / speed_, 0.0, 1.0);
       due = last_turn_->second +
             std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));

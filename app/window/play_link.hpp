@@ -86,7 +86,6 @@ struct Snapshot {
   std::vector<std::pair<std::string, float>> stages_ms;  ///< of this frame: read, then the session's
   std::vector<ShownObject> objects;
   std::string chosen;
-  bool is_grabbed = false;
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = false;
   RadarConfig radar;
@@ -97,7 +96,6 @@ struct Snapshot {
   std::shared_ptr<const Mesh> room;
   Mesh seen_world, inferred_world;  ///< what moved
   ShownRadar shown_radar;
-  std::string renderer;
 };
 
 /// Thread safe; one window, one session.
@@ -112,7 +110,7 @@ class PlayLink {
   [[nodiscard]] bool is_paused() const;
   /// One frame more while it is paused.
   void step();
-  /// Times the source's own; 0: as fast as it goes.
+  /// Times the source's own, > 0.
   void set_speed(double speed);
   void want(const ViewsWanted& views);
   /// Swaps the newest snapshot into `shown`; false if there is no newer one than that taken last.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <utility>
 
 namespace roomradar {
 namespace {
@@ -249,7 +250,7 @@ void PlayUi::choose_next() {
   const std::size_t at = static_cast<std::size_t>(chosen - shown_.objects.begin());
   Wish wish;
   wish.kind = WishKind::kChoose;
-  wish.event.name = shown_.objects[(at + 1) % shown_.objects.size()].name;
+  wish.event.name = shown_.chosen = shown_.objects[(at + 1) % shown_.objects.size()].name;
   link_.ask(wish);
 }
 
@@ -287,13 +288,15 @@ void PlayUi::press(int key, int modifiers) {
       break;
     case GLFW_KEY_HOME:
       link_.ask(camera_wish(CameraPlay::kRewind));
-      if (shown_.is_held) link_.ask(camera_wish(CameraPlay::kGo));
+      if (std::exchange(shown_.is_held, false)) link_.ask(camera_wish(CameraPlay::kGo));
       break;
-    case GLFW_KEY_F:
-      link_.ask(camera_wish(shown_.is_held ? CameraPlay::kGo : CameraPlay::kHold));
+    case GLFW_KEY_F:  // the next key may come before the next frame does
+      shown_.is_held = !shown_.is_held;
+      link_.ask(camera_wish(shown_.is_held ? CameraPlay::kHold : CameraPlay::kGo));
       break;
     case GLFW_KEY_L:
-      link_.ask(camera_wish(shown_.at_end == AtEnd::kLoop ? CameraPlay::kStay : CameraPlay::kLoop));
+      shown_.at_end = shown_.at_end == AtEnd::kLoop ? AtEnd::kStay : AtEnd::kLoop;
+      link_.ask(camera_wish(shown_.at_end == AtEnd::kLoop ? CameraPlay::kLoop : CameraPlay::kStay));
       break;
     case GLFW_KEY_D:
       ask_at_mouse(WishKind::kDrop);

@@ -109,6 +109,7 @@ int run_in_window(const std::string& title, const std::vector<std::string>& mesh
     throw;
   }
   link.close();
+  glfwHideWindow(window.get());  // what is under way may take a while to end
   session.join();
   if (fault) std::rethrow_exception(fault);
   return status;

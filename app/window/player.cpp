@@ -123,8 +123,8 @@ std::vector<ScriptEvent> Player::events_of(std::span<const Wish> wishes, const S
         if (grabbed_ && grabbed_->name == chosen_) grabbed_.reset();
         break;
       case WishKind::kReset:
-        for (const auto& object : session.objects())
-          if (object->in_room) events.push_back(event_of(Action::kRemove, object->body.name));
+        for (const auto& object : session.objects())  // a drop that one outside of the room waits for, too
+          events.push_back(event_of(Action::kRemove, object->body.name));
         if (!chosen_.empty()) events.push_back(event_of(Action::kDrop, chosen_));
         grabbed_.reset();
         break;

@@ -51,8 +51,13 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
   ImGui::SetNextItemWidth(half);
   const auto short_name = [](const std::string& mesh) { return mesh.substr(mesh.find_last_of('/') + 1); };
   if (ImGui::BeginCombo("##mesh", short_name(settings.meshes[settings.mesh]).c_str())) {
-    for (std::size_t i = 0; i < settings.meshes.size(); ++i)
-      if (ImGui::Selectable(short_name(settings.meshes[i]).c_str(), i == settings.mesh)) settings.mesh = i;
+    for (std::size_t i = 0; i < settings.meshes.size(); ++i) {  // two files may share a name
+      ImGui::PushID(static_cast<int>(i));
+      if (ImGui::Selectable("##file", i == settings.mesh)) settings.mesh = i;
+      ImGui::PopID();
+      ImGui::SameLine(0.0F, 0.0F);
+      ImGui::TextUnformatted(short_name(settings.meshes[i]).c_str());
+    }
     ImGui::EndCombo();
   }
   ImGui::SameLine();

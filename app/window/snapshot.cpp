@@ -44,7 +44,6 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
   shown.surfaces = session.config().scene.surfaces;
   shown.unknown_is_solid = session.unknown_is_solid();
   shown.radar = session.config().radar;
-  shown.renderer = session.renderer();
 
   const TriangleTree& room = session.room().touched;
   if (room_revision_ != 0 && room_revision_ != room.revision())

@@ -211,6 +211,19 @@ TEST_F(Playing, AnotherObjectHasANameOfItsOwnAndIsChosen) {
   EXPECT_EQ(reset.back().name, "teapot2");
 }
 
+TEST_F(Playing, ResetLeavesNoDropWaiting) {
+  for (const Action action : {Action::kAdd, Action::kDrop}) {
+    ScriptEvent other;
+    other.action = action;
+    other.name = "other";
+    other.mesh = "teapot";
+    session_.apply(other);  // its drop waits for the next frame
+  }
+  (void)play(wish(WishKind::kReset));
+  EXPECT_TRUE(session_.objects()[0]->in_room);
+  EXPECT_FALSE(session_.objects()[1]->in_room);
+}
+
 TEST_F(Playing, WhereThereIsNothingTheUserIsTold) {
   const Wish at_the_sky = wish(WishKind::kDrop, {0.0, 40.0, 0.0});
   EXPECT_TRUE(play(at_the_sky).empty());
