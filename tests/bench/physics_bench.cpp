@@ -105,15 +105,14 @@ void measure_rest(nlohmann::json& rows) {
     for (int i = 0; source.next(frame).status == ReadStatus::kFrame; ++i) {
       const Eigen::Isometry3d& T_world_camera = *frame.T_world_camera;
       if (i == 0) {
-        const auto support = find_support(frame.depth_m, frame.depth_camera, T_world_camera, 0.12);
-        if (!support) throw Error(std::string(name) + ": no level surface in view");
+        const auto support_world = find_support(frame.depth_m, frame.depth_camera, T_world_camera, 0.12);
+        if (!support_world) throw Error(std::string(name) + ": no level surface in view");
         for (const Thing* thing : {&cube, &pot, &ball, &plate}) {
           for (auto& of_policy : lying) {
             Lying& one = of_policy.emplace_back();
             one.thing = thing;
             one.body.mass = thing->mass;
-            one.body.T_world_object.translation() =
-                support->point_world + Vec3(0, 0, 0.1 + thing->mass.radius_m);
+            one.body.T_world_object.translation() = *support_world + Vec3(0, 0, 0.1 + thing->mass.radius_m);
           }
         }
       }
@@ -256,21 +255,34 @@ void measure_throws(int throws, nlohmann::json& rows) {
     BodyProbe probe = probe_of(radar, field, thing.tree, scene);
     bool tunnelled = false;
     Vec3 met_world = Vec3::Zero();
+    Eigen::Isometry3d T_followed = body.T_world_object;
+    const auto follow = [&](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
+                            double duration_s) {
+      if (tunnelled) return;
+      tunnelled =
+          meets_any(place.room.solids, solid, T_world_object, motion, duration_s, thing.mass.radius_m);
+      if (tunnelled) met_world = T_world_object.translation();
+      T_followed = pose_after(T_world_object, motion, duration_s);
+    };
+    // What is shifted between two pieces of a path, out of an overlap, goes straight there.
+    const auto follow_to = [&](const Eigen::Isometry3d& T_world_object) {
+      RigidMotion shift;
+      shift.linear_m_s = T_world_object.translation() - T_followed.translation();
+      if (shift.linear_m_s.norm() > 1e-9) follow(T_followed, shift, 1.0);
+    };
     probe.free_time = [&, ask = probe.free_time](const Eigen::Isometry3d& T_world_object,
                                                  const RigidMotion& motion, double duration_s, double keep_m,
                                                  Kinds left_out) {
       const FreeTime free = ask(T_world_object, motion, duration_s, keep_m, left_out);
-      if (!tunnelled &&
-          meets_any(place.room.solids, solid, T_world_object, motion, free.free_s, thing.mass.radius_m)) {
-        tunnelled = true;
-        met_world = T_world_object.translation();
-      }
+      follow_to(T_world_object);
+      follow(T_world_object, motion, free.free_s);
       return free;
     };
     for (int frame = 0; frame < 120 && !body.at_rest; ++frame) {
       (void)advance(body, kFrame_s, probe, config);
       total.most_gain_j_kg = std::max(total.most_gain_j_kg, energy_of(body, config) - energy_before);
     }
+    follow_to(body.T_world_object);
     const Vec3 centre = centre_world(body);
     if (tunnelled) {
       std::printf("throw %d, a %s in %s: in a solid at %.3f %.3f %.3f m\n", number, thing.name.c_str(),

@@ -81,8 +81,9 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
   Locator fresh;
   fresh.known = known_patches(mapped.map.places);
   nlohmann::json failed = nlohmann::json::array();
-  while (source.next(frame).status == ReadStatus::kFrame) {
+  for (ReadResult read; (read = source.next(frame)).status != ReadStatus::kEnd;) {
     ++asked;
+    if (read.status == ReadStatus::kSkipped) continue;  // one that is asked for and not found
     Locator locator = fresh;
     const auto start = std::chrono::steady_clock::now();
     const double thread_start_ms = test::thread_ms();
@@ -136,7 +137,9 @@ std::unique_ptr<FrameSource> free_views(const SimOptions& scan, const SavedMap& 
     SimOptions options = scan;
     options.movers = movers;
     SimulatedSource source(options);
-    RecordingWriter writer(folder, RecordingFormat::kTum);
+    const std::filesystem::path unfinished = folder.string() + ".unfinished";
+    std::filesystem::remove_all(unfinished);
+    RecordingWriter writer(unfinished, RecordingFormat::kTum);
     Frame frame;
     std::int64_t index = 0;
     for (const Eigen::Isometry3d& T_room_camera : draw_free_views(
@@ -145,6 +148,7 @@ std::unique_ptr<FrameSource> free_views(const SimOptions& scan, const SavedMap& 
       writer.write(frame);
     }
     writer.close();
+    std::filesystem::rename(unfinished, folder);
   }
   return open_folder(folder);
 }
@@ -183,7 +187,8 @@ nlohmann::json bench(const Settings& settings) {
     std::printf("%s\n", rows.back().dump().c_str());
     std::fflush(stdout);
   };
-  const std::string kitchen = std::string(ROOMRADAR_DATA_DEFAULT) + "/kitchen";
+  const char* chosen = std::getenv("ROOMRADAR_DATA");
+  const std::string kitchen = std::string(chosen ? chosen : ROOMRADAR_DATA_DEFAULT) + "/kitchen";
   add("kitchen", [&] {
     SearchedRoom mapped(
         map_of(*open_source(kitchen, FrameRange{0, 399}), PoseOrigin::kRecorded, settings.maps / "kitchen"));

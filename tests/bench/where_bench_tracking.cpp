@@ -108,12 +108,14 @@ nlohmann::json stand_still(const std::string& name, const SimOptions& scan, Sear
   (void)source.next(frame);
   const Eigen::Isometry3d T_room_camera = *frame.T_world_camera;
   const Eigen::Isometry3d T_world_true = mapped.map.info.T_world_recorded * T_room_camera;
-  std::vector<Eigen::Matrix<double, 6, 1>> errors;
+  std::int64_t located = 0;
+  std::vector<Eigen::Matrix<double, 6, 1>> errors;  // of those past the first four frames
   for (std::int64_t i = 0; i < frames; ++i) {
     source.look(i, T_room_camera, frame);
     const Tracking tracking = step(mapped, locator, frame, locate_ms);
-    if (has_pose(tracking) && i > 3)
-      errors.push_back(log_twist(T_world_true.inverse() * tracking.T_world_camera));
+    if (!has_pose(tracking)) continue;
+    ++located;
+    if (i > 3) errors.push_back(log_twist(T_world_true.inverse() * tracking.T_world_camera));
   }
   Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
   for (const auto& error : errors) mean += error / static_cast<double>(errors.size());
@@ -122,12 +124,15 @@ nlohmann::json stand_still(const std::string& name, const SimOptions& scan, Sear
     shake_m2 += (error - mean).head<3>().squaredNorm() / static_cast<double>(errors.size());
     shake_rad2 += (error - mean).tail<3>().squaredNorm() / static_cast<double>(errors.size());
   }
+  const auto none_if_empty = [&](double value) {
+    return errors.empty() ? nlohmann::json() : nlohmann::json(value);
+  };
   return {{"row", name},
           {"frames", frames},
-          {"located", errors.size() + 4},
-          {"off_mm", 1e3 * mean.head<3>().norm()},
-          {"shake_mm", 1e3 * std::sqrt(shake_m2)},
-          {"shake_deg", std::sqrt(shake_rad2) * 180.0 / std::numbers::pi},
+          {"located", located},
+          {"off_mm", none_if_empty(1e3 * mean.head<3>().norm())},
+          {"shake_mm", none_if_empty(1e3 * std::sqrt(shake_m2))},
+          {"shake_deg", none_if_empty(std::sqrt(shake_rad2) * 180.0 / std::numbers::pi)},
           {"thread_median_ms", locate_ms.percentile(0.5)}};
 }
 
