@@ -21,7 +21,7 @@ namespace {
 constexpr char kSourceHelp[] =
     "where frames come from: kinect:N[?depth=raw|mm|registered], sim:ROOM[?seed=N&...], or a folder with a "
     "recording\n"
-    "(7-Scenes, TUM RGB-D, fakenect, or numbered color/ and depth/)";
+    "(7-Scenes, TUM RGB-D, fakenect, or numbered color/ and depth/); kinect:N goes on until Ctrl-C";
 
 const std::map<std::string, PoseOrigin> kPoses = {{"tracked", PoseOrigin::kTracked},
                                                   {"recorded", PoseOrigin::kRecorded}};
@@ -345,7 +345,8 @@ void add_simulate(CLI::App& app, SimulateCommand& command, std::function<int()>&
   sub->add_option("--frames", command.frames, "how many (300)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
-  sub->add_option("--path", command.path, "scan (round the room) or view (looks at its focus)")
+  sub->add_option("--path", command.path,
+                  "scan (round the room), view (looks at its focus) or swing (before the board)")
       ->type_name("KIND");
   sub->add_option("--moving", command.moving, "what moves: hand, ball, person; several with commas")
       ->type_name("LIST");

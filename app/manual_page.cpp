@@ -13,17 +13,43 @@ constexpr std::string_view kSections = R"(.SH SOURCES
 A SOURCE is one of
 .TP
 .BR kinect: N
-a Kinect v1, the first being 0
+a Kinect v1, the first being 0; it goes on until Ctrl-C, pressed once
 .TP
 .BR sim: ROOM [ ?key=value & ... ]
 a simulated Kinect in the room
 .BR table ", " shelf ", " wall ", " random " or " board ;
-keys are seed, frames, rate, path, moving, noise and others
+keys are seed, frames, rate, path (scan, view, swing), moving (hand, ball, person, with commas between them), pace
+(steady, slow, waits, leaves), noise (0 is none, 1 a Kinect's), crate (0, 1, comes, goes), width (pixels of the image),
+colour (registered, separate, none) and faults (1: the cameras are not quite what they are said to be)
 .TP
 .I DIR
 a recording, recognised by what is in it: 7-Scenes (frame-XXXXXX.depth.png, .color.jpg, .png or, empty, .none, .pose.txt), TUM RGB-D
 (depth.txt, rgb.txt), fakenect (INDEX.txt), or numbered images (depth/00000.png, color/00000.jpg). A camera.json in
-it gives the cameras, a calibration.json their errors.
+it gives the cameras, a calibration.json their errors: \fBroomradar record\fR and \fBcalibrate\fR write these.
+.SH SCRIPT
+What
+.B run \-\-script
+reads: one event a line, in the order in which they happen, due before a frame of the run or at a time (s). Positions are in
+the map's world (m, z up), velocities in m/s, # begins a comment.
+.nf
+frame 0    add pot teapot size 0.2           # or a mesh file
+frame 10   drop pot view height 0.3          # over a level surface that the camera sees
+time 2.5   drop pot at 0.4 \-0.1 0.75 height 0.3
+time 4     place pot 0.4 \-0.1 0.9            # drop, place, throw may end: turned YAW PITCH ROLL (degrees)
+time 5     throw pot 0.4 \-0.1 1.2 velocity 1 0 0.5
+time 5.5   throw pot 0.4 \-0.1 1.2 velocity 1 0 0.5 spin 0 6 0      # rad/s about x y z
+time 5.5   turn pot 0 0 45                   # about the world's axes, degrees
+time 5.6   carry pot 0.4 \-0.1 1.0
+time 5.9   release pot velocity 0 0 0
+time 6     remove pot
+time 7     adopt                             # what stands still now in view becomes part of the room
+frame 200  surfaces skirt                    # holes, skirt, border or map
+frame 210  unknown solid                     # or free
+frame 220  radar sampled 64                  # exact or sampled; pixels
+frame 225  quality depth_stride 2 shadows off
+frame 230  camera hold                       # go, rewind, loop or stay
+frame 300  quit
+.fi
 .SH FILES
 .TP
 .I MAP/

@@ -93,7 +93,8 @@ class KinectSource final : public FrameSource {
     std::snprintf(text, sizeof text, ": no depth image for %.1f s", waited_s_);
     if (is_replay_) return {ReadStatus::kSkipped, name_ + text + ": the recording has a gap", true};
     if (waited_s_ > timeout_s_)
-      throw Error(name_ + text + "; check its cable and power supply, then begin again");
+      throw Error(name_ + text +
+                  "; check its cable and power supply, then begin again (a scan goes on by --resume)");
     return {ReadStatus::kSkipped, name_ + text + "; it is waited for", true};
   }
 

@@ -447,6 +447,10 @@ TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
   expect_fault(roomradar("prescan " + empty.string() + to), 1, empty.string());
   expect_fault(roomradar("prescan sim:palace" + to), 1, "table");
   expect_fault(roomradar("prescan kinect:x" + to), 1, "kinect:N");
+  expect_fault(roomradar("prescan kinect:0?depth=registered --calibration c.json" + to), 1,
+               "registered depth");
+  expect_fault(roomradar("calibrate kinect:0?depth=registered --square 0.03 --out c.json"), 1,
+               "registered depth");
   expect_fault(roomradar("prescan 'sim:table?frames=10' --frames 8:12" + to), 1, "10");
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
