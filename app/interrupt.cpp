@@ -71,8 +71,6 @@ bool Interrupt::take() {
 bool Interrupt::is_asked() { return asked == kToEnd; }
 
 std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source) {
-  if (!source->frame_count())
-    std::fprintf(stderr, "%s: goes on until Ctrl-C, pressed once\n", source->name().c_str());
   return std::make_unique<EndedByInterrupt>(std::move(source));
 }
 

@@ -70,7 +70,10 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
                 "take ?depth=raw or ?depth=mm with it");
   std::unique_ptr<FrameSource> opened = open_whole(source, options);
   if (!used.empty()) opened = calibrated(std::move(opened), read_calibration(used));
-  if (!frames) return opened;
+  if (!frames) {
+    if (!opened->frame_count()) options.say(opened->name() + ": goes on until Ctrl-C, pressed once");
+    return opened;
+  }
   return limit_frames(std::move(opened), frames->first, frames->last);
 }
 
