@@ -1,6 +1,7 @@
 // run_results.cpp: sums, lists and sentences about a run.
 #include "app/run_results.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <numbers>
 
@@ -82,10 +83,16 @@ void print_summary(const RunTotals& totals, const Session& session) {
                 change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
                 p.x(), p.y(), p.z(), size.x(), size.y(), size.z());
   }
+  const auto waits = [&](const std::string& name) {
+    return std::any_of(session.waiting_drops().begin(), session.waiting_drops().end(),
+                       [&](const ScriptEvent& drop) { return drop.name == name; });
+  };
   for (const auto& object : session.objects()) {
     const Eigen::Vector3d p = object->body.T_world_object.translation();
     if (!object->in_room)
-      std::printf("%s: not in the room\n", object->body.name.c_str());
+      std::printf(
+          "%s: not in the room%s\n", object->body.name.c_str(),
+          waits(object->body.name) ? "; its drop waits yet for a level surface in view that has space" : "");
     else
       std::printf(
           "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),

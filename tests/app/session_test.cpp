@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "app/run_results.hpp"
 #include "mapping/types/error.hpp"
 #include "tests/radar/shapes.hpp"
 #include "tests/support/error_of.hpp"
@@ -202,6 +203,20 @@ TEST(Session, DropWaitsForAFrameThatShowsALevelSurface) {
   EXPECT_TRUE(session.objects().front()->in_room);
   EXPECT_NEAR(session.objects().front()->body.T_world_object.translation().z(), 0.3,
               0.02);  // the drop's height
+}
+
+TEST(Session, ADropThatWaitsToTheEndIsSaid) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  let_a_drop_wait(session, times);
+  for (const bool is_in_view : {false, true}) {
+    if (is_in_view) static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
+    testing::internal::CaptureStdout();
+    print_summary({}, session);
+    const std::string said = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(said.find("pot: not in the room; its drop waits") == std::string::npos, is_in_view) << said;
+  }
 }
 
 TEST(Session, ADropThatWaitsOutlivesATurnOfWhatIsNotInTheRoom) {
