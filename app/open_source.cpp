@@ -8,6 +8,7 @@
 #include "app/calibration/calibrated_source.hpp"
 #include "app/session_folder.hpp"
 #include "app/sim/simulated_source.hpp"
+#include "app/sources/fakenect_replay.hpp"
 #include "app/sources/folder_source.hpp"
 #include "app/sources/kinect_source.hpp"
 #include "mapping/types/error.hpp"
@@ -71,7 +72,8 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
   std::unique_ptr<FrameSource> opened = open_whole(source, options);
   if (!used.empty()) opened = calibrated(std::move(opened), read_calibration(used));
   if (!frames) {
-    if (!opened->frame_count()) options.say(opened->name() + ": goes on until Ctrl-C, pressed once");
+    if (!opened->frame_count() && !replayed_folder())
+      options.say(opened->name() + ": goes on until Ctrl-C, pressed once");
     return opened;
   }
   return limit_frames(std::move(opened), frames->first, frames->last);

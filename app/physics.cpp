@@ -57,9 +57,10 @@ class Stepper {
   /// the given.
   void leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world);
 
-  /// Whether what leave_overlaps saw below still holds the body up, within the noise, and does not carry it
-  /// along or let it tip.
-  [[nodiscard]] bool is_held_up(double dt_s);
+  /// Whether what leave_overlaps saw below still holds the body up, within the noise.
+  [[nodiscard]] bool is_held_up() const;
+  /// Whether another body, which it touched when it came to rest, is not where it was.
+  [[nodiscard]] bool has_lost_a_neighbour() const;
 
   /// One piece of motion, and perhaps rest.
   void move(double dt_s);
@@ -177,11 +178,17 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction;
 }
 
-bool Stepper::is_held_up(double dt_s) {
+bool Stepper::is_held_up() const {
   if (down_.isZero()) return true;
-  if (!below_ || below_.lower_m > config_.wake_gap_m + config_.contact_margin_m) return false;
-  // Other bodies are known without noise. By that of a measured surface a ball would never come to rest.
-  return body_.rests_on != Touched::kObject || stays_at_rest(body_, dt_s, probe_, config_, scratch_, report_);
+  return below_ && below_.lower_m <= config_.wake_gap_m + config_.contact_margin_m;
+}
+
+bool Stepper::has_lost_a_neighbour() const {
+  return std::any_of(body_.leans.begin(), body_.leans.end(), [&](const Body::Leant& leant) {
+    const bool is_there = std::any_of(probe_.others.begin(), probe_.others.end(),
+                                      [&](const OtherBody& other) { return other.body == leant.on; });
+    return !is_there || strayed_m(*leant.on, leant.T_world_other) > config_.wake_moved_m;
+  });
 }
 
 /// Takes out what goes into the surface, of the velocity by restitution and friction, of the motion that
@@ -223,16 +230,15 @@ void Stepper::collide(const Contact& contact, Vec3& remaining) {
 /// is not balanced has to stay for longer: it may be about to tip.
 void Stepper::linger(double dt_s, bool is_balanced) {
   constexpr double kLongerUnbalanced = 4.0;
-  const Eigen::Isometry3d moved = body_.lingers_at.inverse() * body_.T_world_object;
-  const double drift_m = (centre_world(body_) - body_.lingers_at * body_.mass.centre_object).norm() +
-                         Eigen::AngleAxisd(moved.linear()).angle() * body_.mass.radius_m;
-  if (body_.lingered_s <= 0.0 || !(drift_m <= config_.rest_drift_m)) {
+  if (body_.lingered_s <= 0.0 || !(strayed_m(body_, body_.lingers_at) <= config_.rest_drift_m)) {
     body_.lingers_at = body_.T_world_object;
     body_.lingered_s = 0.0;
   }
   body_.lingered_s += dt_s;
   if (body_.lingered_s < config_.rest_after_s * (is_balanced ? 1.0 : kLongerUnbalanced)) return;
   body_.at_rest = true;
+  body_.leans.clear();
+  for (const Body* other : scratch_.bodies) body_.leans.push_back({other, other->T_world_object});
   body_.lingered_s = 0.0;  // whoever sets it in motion again has not lingered
   body_.velocity_world_mps.setZero();
   body_.spin_world_rad_s.setZero();
@@ -315,6 +321,7 @@ void require_valid(const PhysicsConfig& config) {
   require_positive("rest_drift_m", config.rest_drift_m);
   require_positive("rest_after_s", config.rest_after_s);
   require_positive("wake_gap_m", config.wake_gap_m);
+  require_positive("wake_moved_m", config.wake_moved_m);
   require_positive("wake_overlap_m", config.wake_overlap_m);
   require_not_negative("overlap_allowed_m", config.overlap_allowed_m);
   require_positive("push_out_mps", config.push_out_mps);
@@ -364,7 +371,7 @@ StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const Physic
   stepper.leave_overlaps(dt_s, push_directions_world);
   if (stepper.failed()) return report;
   const bool is_still = body.velocity_world_mps.isZero() && body.spin_world_rad_s.isZero();
-  if (body.at_rest && is_still && stepper.is_held_up(dt_s)) return report;
+  if (body.at_rest && is_still && stepper.is_held_up() && !stepper.has_lost_a_neighbour()) return report;
   stepper.wake();
 
   constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two pieces of 1/60 s, not three

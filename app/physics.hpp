@@ -28,6 +28,12 @@ struct Body {
   double lingered_s = 0.0;  ///< for how long it has been on a support within rest_drift_m of lingers_at
   Eigen::Isometry3d lingers_at = Eigen::Isometry3d::Identity();
   Touched rests_on = Touched::kNothing;  ///< what held it up when it was last moved
+  /// Bodies that it touched as it came to rest, and where they were.
+  struct Leant {
+    const Body* on;
+    Eigen::Isometry3d T_world_other;
+  };
+  std::vector<Leant> leans;
 };
 
 struct PhysicsConfig {
@@ -49,6 +55,7 @@ struct PhysicsConfig {
   double rest_drift_m = 0.012;  ///< no point strays farther on a support for rest_after_s: at rest
   double rest_after_s = 0.3;
   double wake_gap_m = 0.012;         ///< support sank by more than this: falls again; sensor noise is some mm
+  double wake_moved_m = 0.001;       ///< another body that it touched moved by more than this: goes on
   double wake_overlap_m = 0.008;     ///< support or a hand came in by more than this: moves out of the way
   double overlap_allowed_m = 0.001;  ///< less is left as it is
   double push_out_mps = 1.0;  ///< fastest way out of an overlap; also the speed of a hand that still pushes
@@ -125,7 +132,8 @@ struct [[nodiscard]] StepReport {
 /// @param push_directions_world  unit directions from the body to moving surfaces (push_directions): an
 ///               overlap there moves the body away by the shortest of these ways; may be empty
 /// A body at rest is asked about along gravity only (and along push_directions), and does not move by noise.
-/// One that rests on another body goes with it, and tips where that is drawn from under it.
+/// One that touched another body as it came to rest is woken when that moves on, or is there no more: it goes
+/// with it, or tips where that is drawn from under it.
 /// A body at rest with a velocity is woken by it. Steps longer than max_advance_s count as that.
 StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
                    std::span<const Eigen::Vector3d> push_directions_world = {});

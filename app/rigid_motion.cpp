@@ -42,10 +42,9 @@ class Piece {
   }
 
   RigidPiece run();
-  bool stays_where_it_is();
 
  private:
-  bool find_contacts(double reach_m);
+  bool find_contacts();
   void set_room(double dt_s);
   std::size_t other_on(const NearPoint& p);
   void bounce();
@@ -73,10 +72,10 @@ class Piece {
   Kinds left_out_ = 0;
 };
 
-/// Contacts within reach_m at the pose as it is; false where a surface crosses the body that does not push
-/// it.
-bool Piece::find_contacts(double reach_m) {
+/// Contacts at the pose as it is; false where a surface crosses the body that does not push it.
+bool Piece::find_contacts() {
   const double margin_m = config_.contact_margin_m;
+  const double reach_m = (1.0 + kTouchingBand) * margin_m;
   if (probe_.near(body_.T_world_object, std::max(reach_m, 1e-6), left_out_, scratch_.near) != 0) return false;
   centre_ = centre_world(body_);
   inertia_ = inertia_world_m2(body_);
@@ -276,26 +275,13 @@ void Piece::go(const Velocity& after) {
   left_s_ -= gone_s;
 }
 
-/// Whether what is near, as if it touched, holds the body up where it is.
-bool Piece::stays_where_it_is() {
-  constexpr double kUnnoticed = 0.1;  // of what a free body would begin with
-  if (!find_contacts(config_.wake_gap_m + config_.contact_margin_m) || scratch_.contacts.empty()) return true;
-  for (SolverContact& contact : scratch_.contacts) contact.leaves_mps = 0.0;
-  for (SolverOther& other : scratch_.others) other.gives = 0.0;
-  const Vec3 fall_mps = config_.gravity_world_mps2 * left_s_;
-  Velocity begins{fall_mps, Vec3::Zero()};
-  solve_contacts(scratch_.contacts, inertia_, resting_, begins, scratch_.others);
-  return begins.linear_mps.norm() + begins.angular_rad_s.norm() * body_.mass.radius_m <
-         kUnnoticed * fall_mps.norm();
-}
-
 RigidPiece Piece::run() {
   RigidPiece piece;
   limit(velocity_.linear_mps, config_.max_speed_mps);
   limit(velocity_.angular_rad_s, config_.max_spin_rad_s);
   const double whole_s = left_s_;
   for (int stop = 0; stop < config_.max_slides && left_s_ > kNoTime_s; ++stop) {
-    if (!find_contacts((1.0 + kTouchingBand) * config_.contact_margin_m)) {
+    if (!find_contacts()) {
       piece.crosses = true;
       piece.left_s = left_s_;
       break;
@@ -324,6 +310,12 @@ void make_orthonormal(Eigen::Isometry3d& T) {
   T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
 }
 
+double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before) {
+  const Eigen::Matrix3d turned = T_world_before.linear().transpose() * body.T_world_object.linear();
+  return (centre_world(body) - T_world_before * body.mass.centre_object).norm() +
+         Eigen::AngleAxisd(turned).angle() * body.mass.radius_m;
+}
+
 Eigen::Vector3d centre_world(const Body& body) { return body.T_world_object * body.mass.centre_object; }
 
 Eigen::Matrix3d inertia_world_m2(const Body& body) {
@@ -334,11 +326,6 @@ Eigen::Matrix3d inertia_world_m2(const Body& body) {
 void note_contact(Touched touched, StepReport& report) {
   ++report.contacts;
   ++report.contacts_by_kind[static_cast<std::size_t>(touched)];
-}
-
-bool stays_at_rest(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
-                   RigidScratch& scratch, StepReport& report) {
-  return Piece(body, dt_s, probe, config, {}, scratch, report).stays_where_it_is();
 }
 
 RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,

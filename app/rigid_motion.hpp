@@ -48,13 +48,11 @@ struct RigidScratch {
 RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
                         const std::optional<Push>& push, RigidScratch& scratch, StepReport& report);
 
-/// Whether a body at rest would stay if what is within wake_gap_m of it touched it, and moved on as it moves:
-/// false where it would tip, slide or be carried along. True where a surface crosses it, or none is near.
-bool stays_at_rest(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
-                   RigidScratch& scratch, StepReport& report);
-
 /// Columns of unit length at right angles again, after any number of turns.
 void make_orthonormal(Eigen::Isometry3d& T);
+
+/// At most so far has a point of the body come from where it was: what its centre moved, and what it turned.
+double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before);
 
 /// Centre of mass, in the world.
 Eigen::Vector3d centre_world(const Body& body);

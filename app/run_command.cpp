@@ -1,5 +1,6 @@
 // run_command.cpp: roomradar run: augmented reality in a saved room.
 #include <cstdio>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,13 @@ class Faults {
   void attempt(const Act& act) {
     try {
       act();
-    } catch (const Error& error) {
+    } catch (const std::exception& error) {
       if (!first_.empty()) std::fprintf(stderr, "roomradar: %s\n", error.what());
       if (first_.empty()) first_ = error.what();
     }
   }
+  /// Empty: none.
+  [[nodiscard]] const std::string& first() const { return first_; }
   /// Throws Error with the first of them; the others were said when they came.
   void throw_first() const {
     if (!first_.empty()) throw Error(first_);
@@ -65,7 +68,7 @@ int play(OpenedRun& run) {
     throw Error(command.source + ": there is not one readable frame" +
                 (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
   }
-  run.session->finish_adopting();
+  faults.attempt([&] { run.session->finish_adopting(); });
   if (!command.save_map.empty())
     faults.attempt([&] { save_changed(run.map, run.session->adopted().size(), command.save_map); });
   run.report.frames_read = totals.read;
@@ -73,6 +76,7 @@ int play(OpenedRun& run) {
   run.report.results = results_of(totals, *run.session);
   if (run.budget) run.report.results["budget"] = run.budget->report();
   if (run.check) run.report.results["replay"] = report_replay(*run.check);
+  if (!faults.first().empty()) run.report.results["fault"] = faults.first();
   faults.attempt([&] { write_report(run.report, command.report); });
   print_summary(totals, *run.session);
   faults.throw_first();

@@ -53,6 +53,8 @@ void Session::show_camera_alone(const Frame& frame) {
   if (!frame.colour.empty()) {
     picture_ = frame.colour;
     colour_view_.reset();  // older, and from where nobody knows
+  } else if (colour_view_) {
+    picture_ = background_;
   } else if (frames_without_colour_ > kColourLasts_frames || picture_.empty()) {
     shade_depth(frame.depth_m, frame.depth_camera, picture_);
   }

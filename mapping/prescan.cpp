@@ -38,11 +38,12 @@ bool read(FrameSource& source, StageTimes& times, Frame& frame, PrescanCounts& c
   }
 }
 
-/// The pose that came with the frame, if a map reaches there: one slip of the recording's writer, kilometres
-/// away, is no place of the room.
-std::optional<Eigen::Isometry3d> recorded_pose(const Frame& frame, double reach_m) {
+/// The pose that came with the frame, if a map round `middle` reaches there: one slip of the recording's
+/// writer, kilometres away, is no place of the room.
+std::optional<Eigen::Isometry3d> recorded_pose(const Frame& frame, const Eigen::Vector3d& middle,
+                                               double reach_m) {
   const auto& T = frame.T_world_camera;
-  return T && (T->translation().array().abs() < reach_m).all() ? T : std::nullopt;
+  return T && ((T->translation() - middle).array().abs() < reach_m).all() ? T : std::nullopt;
 }
 
 /// Passes over frames that a checkpoint has behind it, without reading them where the source can.
@@ -94,14 +95,21 @@ struct Work {
   const PrescanProgress& progress;
   Checkpoints* checkpoints = nullptr;
   double reach_m = 0.0;                          // of the octree, from its origin
+  bool maps_recorded_world = false;              // as it is: its origin is the octree's
   std::map<std::int64_t, double> track_ms = {};  // by frame index
   std::optional<FuseStatus> last_fused = {};     // what became of the last frame that was to be fused
-  bool has_far_poses = false;                    // recorded ones, out of that reach
 
   void show(const std::string& stage, const std::string& note) const {
     if (progress) progress(stage, note);
   }
 };
+
+/// Where recorded poses lie about: the origin, if that is to be the map's, else the first of them.
+Eigen::Vector3d middle_of_recorded(const Work& work, const TrackingPass& pass, const Frame& frame) {
+  if (work.maps_recorded_world || !frame.T_world_camera) return Eigen::Vector3d::Zero();
+  return pass.recorded.empty() ? frame.T_world_camera->translation()
+                               : pass.recorded.front().T_world_camera.translation();
+}
 
 /// Reads the source to its end and says where the camera was in each frame.
 Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
@@ -110,8 +118,8 @@ Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
   SeenArea seen;
   while (read(work.source, work.times, frame, pass.counts)) {
     const Clock::time_point start = Clock::now();
-    const std::optional<Eigen::Isometry3d> recorded = recorded_pose(frame, work.reach_m);
-    work.has_far_poses |= frame.T_world_camera && !recorded;
+    const std::optional<Eigen::Isometry3d> recorded =
+        recorded_pose(frame, middle_of_recorded(work, pass, frame), work.reach_m);
     if (recorded) pass.recorded.push_back({frame.index, frame.stamp_s, *recorded});
     Tracking tracking;
     if (config.poses == PoseOrigin::kTracked) {
@@ -229,26 +237,17 @@ void fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass
   keep(work.checkpoints, kFusingStage, pass, work.times, /*between_frames=*/false);
 }
 
-std::string poses_out_of_reach(double reach_m) {
-  std::array<char, 160> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "the poses are out of the octree's reach of %.0f m; take coarser cells, or poses whose origin "
-      "is in the room",
-      reach_m);
-  return text.data();
-}
-
 std::string why_none_trusted(const Work& work) {
   if (work.config.poses == PoseOrigin::kTracked) return "is there depth between 0.5 and 6 m in the frames?";
-  return work.has_far_poses ? poses_out_of_reach(work.reach_m)
-                            : "the recording has no poses: use --poses tracked";
+  return "the recording has no poses, or none within the octree's reach of " +
+         std::to_string(std::lround(work.reach_m)) + " m: use --poses tracked";
 }
 
 std::string why_none_fused(const Work& work) {
   if (!work.last_fused) return "no frame was left to be fused: fuse_every and hold_out leave out all of them";
   if (work.last_fused == FuseStatus::kOutOfReach)
-    return "no frame could be fused: " + poses_out_of_reach(work.reach_m);
+    return "no frame could be fused: the poses are out of the octree's reach of " +
+           std::to_string(std::lround(work.reach_m)) + " m; take coarser cells";
   return "no frame could be fused; the depth images hold no usable measurement";
 }
 
@@ -283,7 +282,8 @@ std::string_view to_string(PoseOrigin poses) {
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress, PrescanStart start) {
   const double reach_m = start.map ? start.map->octree.reach_m() : StaticMap(config.resolution_m).reach_m();
-  Work work{source, config, times, progress, start.checkpoints, reach_m};
+  const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
+  Work work{source, config, times, progress, start.checkpoints, reach_m, maps_recorded_world};
   PrescanResult result;
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;

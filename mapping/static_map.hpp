@@ -116,7 +116,8 @@ class StaticMap {
   [[nodiscard]] MapCounts counts() const;
 
   /// Everything, in OctoMap's .ot form with the tree type "RoomRadarOcTree". Throws Error if the file cannot
-  /// be written.
+  /// be written. What no sensor sees is not read again: one free cube of more than 8,192 voxels' edge, or one
+  /// solid cube of more than 4 m.
   void write_ot(const std::filesystem::path& path) const;
   /// Occupied and free only, as OctoMap's plain OcTree in .bt form, which octovis opens. Throws Error
   /// likewise.

@@ -209,6 +209,7 @@ TEST_F(Faults, ARunThatIsCutShortSavesAndReportsWhatCameBefore) {
   const auto report = nlohmann::json::parse(file);
   EXPECT_GT(report.at("frames_read").get<int>(), 0);
   EXPECT_TRUE(report.contains("adopted"));
+  EXPECT_NE(report.at("fault").get<std::string>().find(disk().string()), std::string::npos);
 }
 
 TEST_F(Faults, ASessionThatFilledTheDiskReplaysToWhereItCame) {

@@ -53,11 +53,23 @@ TEST(Prescan, ARecordedPoseThatNoMapReachesIsNone) {
 TEST(Prescan, PosesThatAreAllOutOfReachAreNamed) {
   std::vector<Frame> frames = posed_frames();
   for (Frame& frame : frames) frame.T_world_camera->translation().x() += 1e5;
-  EXPECT_NE(test::error_of([&] { prescan_of(frames); }).find("the poses are out of the octree's reach"),
+  EXPECT_NE(test::error_of([&] { prescan_of(frames); }).find("none within the octree's reach of"),
             std::string::npos);
   for (Frame& frame : frames) frame.T_world_camera.reset();
-  EXPECT_NE(test::error_of([&] { prescan_of(frames); }).find("has no poses: use --poses tracked"),
-            std::string::npos);
+  EXPECT_NE(test::error_of([&] { prescan_of(frames); }).find("has no poses"), std::string::npos);
+}
+
+TEST(Prescan, TrackedFramesAreComparedWithPosesOfAnyOrigin) {
+  std::vector<Frame> frames = posed_frames();
+  const PrescanResult near = prescan_of(frames, PoseOrigin::kTracked);
+  const Eigen::Vector3d survey_m(5e5, 4e6, 100.0);
+  for (Frame& frame : frames) frame.T_world_camera->pretranslate(survey_m);
+  const PrescanResult far = prescan_of(frames, PoseOrigin::kTracked);
+  ASSERT_TRUE(near.counts.against_recorded && far.counts.against_recorded);
+  EXPECT_EQ(far.counts.against_recorded->poses, static_cast<std::size_t>(kFrames));
+  EXPECT_NEAR(far.counts.against_recorded->max_m, near.counts.against_recorded->max_m, 1e-6);
+  EXPECT_TRUE((far.map.info.T_world_recorded * Eigen::Translation3d(survey_m))
+                  .isApprox(near.map.info.T_world_recorded, 1e-6));
 }
 
 TEST(Prescan, OneBadPoseIsNotWhatTrackingIsComparedWith) {
