@@ -36,11 +36,12 @@ void require_no_live_scan(const fs::path& folder) {
 
 /// Throws Error if the scan cannot even begin under the cap.
 void require_memory_to_begin(double cap_mb) {
-  constexpr double kMB = 1e6, kToTrack_mb = 60.0;
+  constexpr double kMB = 1e6, kToTrack_mb = 60.0, kSpare = 1.03;  // a process differs by 1 MB from run to run
   const double least_mb = static_cast<double>(resident_bytes()) / kMB + kToTrack_mb;
   if (!(cap_mb > 0.0) || least_mb <= cap_mb) return;
   throw Error("--max-memory " + std::to_string(std::llround(cap_mb)) +
-              ": is too little to begin with; give at least " + std::to_string(std::llround(least_mb) + 1));
+              ": is too little to begin with; give at least " +
+              std::to_string(std::llround(std::ceil(kSpare * least_mb))));
 }
 
 /// A scan that was cut off, and is not to be resumed: what can be read again may go.
