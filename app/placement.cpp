@@ -254,7 +254,7 @@ std::optional<Eigen::Vector3d> find_support(const DepthImage& depth_m, const Int
   constexpr double kAmple_m = 0.15;      // more room than this is no better
   constexpr double kFloorIsWorth = 0.2;  // as a place for things, against a table
   double best_worth = 0.0;
-  std::optional<Eigen::Vector3d> best_world;
+  std::optional<Eigen::Vector2i> best;
   for (int j = 0; j < grid.size(); ++j) {
     for (int i = 0; i < grid.size(); ++i) {
       if (!is_place[grid.index(i, j)]) continue;
@@ -265,12 +265,13 @@ std::optional<Eigen::Vector3d> find_support(const DepthImage& depth_m, const Int
                            (height_m >= -config.table_below_camera_m ? 1.0 : kFloorIsWorth);
       if (worth > best_worth) {
         best_worth = worth;
-        const Footprint found = footprint_at(grid.top_m(i, j), footprint, config);
-        best_world = grid.point_world(i, j, found.height_m);
+        best = Eigen::Vector2i(i, j);
       }
     }
   }
-  return best_world;
+  if (!best) return std::nullopt;
+  const Footprint found = footprint_at(grid.top_m(best->x(), best->y()), footprint, config);
+  return grid.point_world(best->x(), best->y(), found.height_m);
 }
 
 }  // namespace roomradar

@@ -40,8 +40,10 @@ class Faults {
     try {
       act();
     } catch (const std::exception& error) {
-      if (!first_.empty()) std::fprintf(stderr, "roomradar: %s\n", error.what());
-      if (first_.empty()) first_ = error.what();
+      if (first_.empty())
+        first_ = error.what();
+      else
+        std::fprintf(stderr, "roomradar: %s\n", error.what());
     }
   }
   /// Empty: none.

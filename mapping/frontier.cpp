@@ -141,7 +141,7 @@ Border find_border(const Grid& grid) {
   for (std::size_t i = 0; i < border.cells.size(); ++i) {
     BorderCell& own = border.cells[i];
     Vector3d sum = Vector3d::Zero();
-    for (int n = 0; n < 27; ++n) {
+    for (int n = 0; n < kCellsRound; ++n) {
       const Vector3i near = own.cell + cell_round(n);
       if (!grid.contains(near)) continue;
       const std::int32_t at = border.position[grid.index(near)];
@@ -162,7 +162,7 @@ Border find_border(const Grid& grid) {
 // Of the ways on into the unknown, the part that ends at a surface.
 double enclosed_part(const Grid& grid, const BorderCell& from) {
   int ways = 0, ended = 0;
-  for (int n = 0; n < 27; ++n) {
+  for (int n = 0; n < kCellsRound; ++n) {
     if (n == kOwnCell) continue;
     const Vector3i step = cell_round(n);
     if (step.cast<double>().normalized().dot(from.normal) < 0.3) continue;
@@ -188,7 +188,7 @@ int number_patches(const Grid& grid, Border& border, double max_size_m) {
     reached.assign(1, seed);
     for (std::size_t done = 0; done < reached.size(); ++done) {
       const Vector3i cell = border.cells[reached[done]].cell;
-      for (int n = 0; n < 27; ++n) {
+      for (int n = 0; n < kCellsRound; ++n) {
         const Vector3i near = cell + cell_round(n);
         if (!grid.contains(near)) continue;
         const std::int32_t at = border.position[grid.index(near)];

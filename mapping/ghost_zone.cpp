@@ -72,8 +72,8 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
       (found->second.*bits).set(offset_of(ghost));
       return;
     }
-    for (int i = 0; i < 27; ++i) {
-      const VoxelIndex step(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+    for (int i = 0; i < kCellsRound; ++i) {
+      const VoxelIndex step = cell_round(i);
       const VoxelIndex first = brick_of(ghost) + kBrickEdge * step;
       if (marks_.try_emplace(cell_code(first)).second) bricks_.push_back(first);
       const VoxelIndex neighbour = ghost + kCellEdge * step;

@@ -5,12 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <unordered_map>
 #include <utility>
 
 #include "mapping/types/cell_code.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -228,13 +227,13 @@ std::string_view to_string(ChangeKind kind) {
 }
 
 void require_valid(const DiffConfig& config) {
+  const SettingRules require{"diff"};
   for (const auto& [name, value] :
        {std::pair("clearance_m", config.clearance_m), std::pair("clearance_voxels", config.clearance_voxels),
         std::pair("min_area_m2", config.min_area_m2), std::pair("min_size_m", config.min_size_m),
         std::pair("max_pose_error_m", config.max_pose_error_m),
         std::pair("min_same_shape", config.min_same_shape)})
-    if (!(value >= 0.0 && std::isfinite(value)))
-      throw Error(std::string("diff.") + name + " = " + std::to_string(value) + ": must be finite and >= 0");
+    require(value >= 0.0 && std::isfinite(value), name, value, "finite and >= 0");
 }
 
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,

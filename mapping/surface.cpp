@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,7 +12,7 @@
 #include "mapping/sample_guess.hpp"
 #include "mapping/sample_smoothing.hpp"
 #include "mapping/surface_net.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 
 namespace roomradar {
 namespace {
@@ -25,10 +24,9 @@ constexpr double kOverlap_voxels = 1.0;
 constexpr float kSpacing_voxels = 1.5F;  // of the points at which the simplified surface is measured
 
 void require_valid(const SurfaceConfig& config) {
-  const auto require = [](const char* field, float value) {
-    if (!(std::isfinite(value) && value >= 0.0F))
-      throw Error(std::string("surface.") + field + " = " + std::to_string(value) +
-                  ": must be finite and >= 0");
+  const SettingRules rules{"surface"};
+  const auto require = [&rules](const char* field, float value) {
+    rules(std::isfinite(value) && value >= 0.0F, field, value, "finite and >= 0");
   };
   require("min_weight", config.min_weight);
   require("smoothing", config.smoothing);

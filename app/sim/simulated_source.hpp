@@ -40,7 +40,7 @@ class SimulatedSource final : public FrameSource {
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override;
   [[nodiscard]] std::string name() const override;
 
-  [[nodiscard]] const SimTruth& truth() const;
+  [[nodiscard]] const SimTruth& truth() const;  ///< of the frame that was filled last
   [[nodiscard]] const Room& room() const;
 
  private:

@@ -36,22 +36,19 @@ std::optional<DepthColourPair> StampPairing::take() {
     if (next != waiting_.end() && distance_s(colour, *next) < distance_s(colour, depth)) continue;
     if (nearest == nullptr || distance_s(colour, depth) < distance_s(*nearest, depth)) nearest = &colour;
   }
-  const auto is_certain = [&] {
-    if (finished_ || waiting_.size() > 1) return true;
-    if (nearest == nullptr) return false;
-    return distance_s(*nearest, depth) <= config_.unbeatable_s ||
-           (has_later && nearest->stamp_s <= depth.stamp_s);
-  };
-  if (!is_certain()) return std::nullopt;
+  const bool is_unbeaten = nearest != nullptr && (distance_s(*nearest, depth) <= config_.unbeatable_s ||
+                                                  (has_later && nearest->stamp_s <= depth.stamp_s));
+  if (!finished_ && waiting_.size() == 1 && !is_unbeaten) return std::nullopt;
 
   waiting_.pop_front();
   last_depth_s_ = depth.stamp_s;
   if (nearest != nullptr && distance_s(*nearest, depth) <= config_.tolerance_s) {
     pair.colour = nearest->number;
     pair.colour_after_depth_s = nearest->stamp_s - depth.stamp_s;
-    std::erase_if(colours_, [&](const Stamped& colour) { return colour.number == *pair.colour; });
   }
-  std::erase_if(colours_, [&](const Stamped& colour) { return colour.stamp_s <= depth.stamp_s; });
+  std::erase_if(colours_, [&](const Stamped& colour) {
+    return colour.number == pair.colour || colour.stamp_s <= depth.stamp_s;
+  });
   return pair;
 }
 

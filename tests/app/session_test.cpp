@@ -62,6 +62,13 @@ void give_colour(Frame& frame) {
   frame.colour.resize(320, 240, {10, 200, 30});
 }
 
+/// What a camera with colour sees of it.
+Frame in_colour(std::int64_t index, const std::optional<Eigen::Isometry3d>& T_world_camera) {
+  Frame frame = depth_only(index, T_world_camera);
+  give_colour(frame);
+  return frame;
+}
+
 TEST(Session, FrameWithoutColourThatIsNotLocatedShowsItsDepth) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
@@ -75,8 +82,7 @@ TEST(Session, OneFrameWithoutColourKeepsTheLastPicture) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  Frame coloured = depth_only(0, kAtTheFloor);
-  give_colour(coloured);
+  Frame coloured = in_colour(0, kAtTheFloor);
   for (const Frame& frame : {coloured, depth_only(1, kAtTheFloor), depth_only(2, std::nullopt)}) {
     static_cast<void>(session.step(frame, times));
     EXPECT_EQ(session.picture().width, 320) << frame.index;
@@ -88,8 +94,7 @@ TEST(Session, ACameraWhoseColourHasStoppedShowsItsDepthUntilThereIsColourAgain) 
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  Frame coloured = depth_only(0, kAtTheFloor);
-  give_colour(coloured);
+  Frame coloured = in_colour(0, kAtTheFloor);
   for (const bool is_located : {true, false}) {
     static_cast<void>(session.step(coloured, times));
     for (std::int64_t i = 1; i <= 20; ++i) {
@@ -124,11 +129,9 @@ TEST(Session, ALostCameraDoesNotShowAnOlderPictureThanItHasShown) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  Frame found = depth_only(0, kAtTheFloor);
-  give_colour(found);
+  const Frame found = in_colour(0, kAtTheFloor);
   static_cast<void>(session.step(found, times));
-  Frame lost = depth_only(1, std::nullopt);
-  give_colour(lost);
+  Frame lost = in_colour(1, std::nullopt);
   lost.colour.resize(320, 240, {200, 10, 30});
   static_cast<void>(session.step(lost, times));
   EXPECT_EQ(session.picture().pixels, lost.colour.pixels);

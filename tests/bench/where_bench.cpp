@@ -32,6 +32,7 @@
 #include "app/sources/recording_writer.hpp"
 #include "bench_times.hpp"
 #include "tests/bench/bench_program.hpp"
+#include "tests/support/recordings.hpp"
 #include "where_bench_rooms.hpp"
 #include "where_bench_tracking.hpp"
 
@@ -187,8 +188,7 @@ nlohmann::json bench(const Settings& settings) {
     std::printf("%s\n", rows.back().dump().c_str());
     std::fflush(stdout);
   };
-  const char* chosen = std::getenv("ROOMRADAR_DATA");
-  const std::string kitchen = std::string(chosen ? chosen : ROOMRADAR_DATA_DEFAULT) + "/kitchen";
+  const std::string kitchen = test::recording("kitchen").value_or("kitchen").string();
   add("kitchen", [&] {
     SearchedRoom mapped(
         map_of(*open_source(kitchen, FrameRange{0, 399}), PoseOrigin::kRecorded, settings.maps / "kitchen"));
