@@ -8,15 +8,13 @@
 #include <system_error>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
 
-std::string word_of(double value) {
-  std::array<char, 32> text{};  // the shortest that reads back to the same double
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-std::string word_of(int value) { return std::to_string(value); }
+std::string word_of(double value) { return number_text(value); }
+std::string word_of(int value) { return number_text(value); }
 std::string word_of(bool value) { return value ? "on" : "off"; }
 std::string word_of(RadarMode value) { return std::string(to_string(value)); }
 

@@ -13,6 +13,7 @@
 #include "app/quality_json.hpp"
 #include "app/sources/spooled_source.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -57,7 +58,7 @@ double adopt_seconds(const Json& value, const fs::path& folder) {
   constexpr double kMost_s = 86400.0;
   const double seconds = value.is_number() ? value.get<double>() : -1.0;
   if (!(seconds > 0.0 && seconds <= kMost_s))
-    throw Error((folder / kSettings).string() + ": adopt_s = " + std::to_string(seconds) +
+    throw Error((folder / kSettings).string() + ": adopt_s = " + number_text(seconds) +
                 ": must be seconds, up to a day");
   return seconds;
 }

@@ -38,15 +38,15 @@ class Grid {
     edge_voxels_ = std::max(1, static_cast<int>(std::lround(cell_m / map.resolution_m())));
     while (((high - low).cast<double>() / edge_voxels_).prod() > kMostCells) ++edge_voxels_;
     cell_m_ = edge_voxels_ * map.resolution_m();
-    first_ = low.unaryExpr([&](int v) { return floor_div(v); });
-    size_ = high.unaryExpr([&](int v) { return floor_div(v - 1); }) - first_ + Vector3i::Ones();
+    first_ = low.unaryExpr([&](int v) { return floor_div(v, edge_voxels_); });
+    size_ = high.unaryExpr([&](int v) { return floor_div(v - 1, edge_voxels_); }) - first_ + Vector3i::Ones();
     cells_.assign(static_cast<std::size_t>(size_.cast<std::int64_t>().prod()), CellState::kUnknown);
     std::vector<std::int64_t> free_voxels(cells_.size(), 0);
     map.visit_leaves([&](const MapLeaf& leaf) {
       if (leaf.log_odds == 0.0F) return;
       const Vector3i end = leaf.lowest_voxel + Vector3i::Constant(leaf.edge_voxels);
-      const Vector3i from = leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v); });
-      const Vector3i to = end.unaryExpr([&](int v) { return floor_div(v - 1); });
+      const Vector3i from = leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v, edge_voxels_); });
+      const Vector3i to = end.unaryExpr([&](int v) { return floor_div(v - 1, edge_voxels_); });
       for (int z = from.z(); z <= to.z(); ++z)
         for (int y = from.y(); y <= to.y(); ++y)
           for (int x = from.x(); x <= to.x(); ++x) {
@@ -89,9 +89,6 @@ class Grid {
   }
 
  private:
-  [[nodiscard]] int floor_div(int voxel) const {
-    return voxel >= 0 ? voxel / edge_voxels_ : -((-voxel + edge_voxels_ - 1) / edge_voxels_);
-  }
   int edge_voxels_ = 1;
   double cell_m_ = 0.0;
   Vector3i first_ = Vector3i::Zero();  // in cells

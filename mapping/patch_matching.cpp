@@ -2,7 +2,6 @@
 #include "mapping/patch_matching.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <numeric>
@@ -46,14 +45,6 @@ void count_differing(std::uint64_t seen, const std::uint64_t* known, std::size_t
     x += x >> 32;
     bits[k] = x & 0x7f;
   }
-}
-
-int distance_bits(const Descriptor& a, const Descriptor& b) {
-  std::array<std::uint64_t, 4> p, q;
-  std::memcpy(p.data(), a.data(), sizeof p);
-  std::memcpy(q.data(), b.data(), sizeof q);
-  return std::popcount(p[0] ^ q[0]) + std::popcount(p[1] ^ q[1]) + std::popcount(p[2] ^ q[2]) +
-         std::popcount(p[3] ^ q[3]);
 }
 
 /// The known patches, at places of their own, that look most like one.

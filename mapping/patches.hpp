@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +12,13 @@ namespace roomradar {
 
 /// 256 comparisons of brightness.
 using Descriptor = std::array<std::uint8_t, 32>;
+/// How many of them differ. Unrelated descriptors differ in 128, and rarely in less than 80.
+inline int distance_bits(const Descriptor& a, const Descriptor& b) {
+  using Words = std::array<std::uint64_t, 4>;
+  const auto p = std::bit_cast<Words>(a), q = std::bit_cast<Words>(b);
+  return std::popcount(p[0] ^ q[0]) + std::popcount(p[1] ^ q[1]) + std::popcount(p[2] ^ q[2]) +
+         std::popcount(p[3] ^ q[3]);
+}
 
 /// A square piece of surface as if looked at straight on: where it is, how it lies, and what it looks like.
 /// Two views of one patch tell each its whole pose in the other.

@@ -2,11 +2,9 @@
 #include "mapping/place_matching.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <random>
+#include <span>
 #include <utility>
 
 #include "mapping/types/depth_noise.hpp"
@@ -14,32 +12,16 @@
 namespace roomradar {
 namespace {
 
-// Of 256; unrelated descriptors differ in 128, and rarely in less than 80.
-constexpr int kMaxDistance_bits = 60;
+constexpr int kMaxDistance_bits = 60;  // of 256
 constexpr float kRatio = 0.85F;
 // With a third of the matches right, 1 - (1 - 1/27)^400 = 0.9999997 to hit a good triple.
 constexpr int kSamples = 400;
 constexpr std::size_t kMinMatches = 6;
 
-struct Bits {
-  std::array<std::uint64_t, 4> words;
-};
-
-std::vector<Bits> as_words(const Place& place, std::size_t most) {
-  std::vector<Bits> words(std::min(place.descriptors.size(), most));
-  for (std::size_t i = 0; i < words.size(); ++i)
-    std::memcpy(&words[i], place.descriptors[i].data(), sizeof(Bits));
-  return words;
-}
-
-int distance_bits(const Bits& a, const Bits& b) {
-  return std::popcount(a.words[0] ^ b.words[0]) + std::popcount(a.words[1] ^ b.words[1]) +
-         std::popcount(a.words[2] ^ b.words[2]) + std::popcount(a.words[3] ^ b.words[3]);
-}
+using Descriptors = std::span<const Descriptor>;
 
 /// Pairs (of `from`, of `to`): each feature with its nearest, where the second nearest is clearly further.
-std::vector<std::pair<std::size_t, std::size_t>> matches(const std::vector<Bits>& from,
-                                                         const std::vector<Bits>& to) {
+std::vector<std::pair<std::size_t, std::size_t>> matches(Descriptors from, Descriptors to) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < from.size(); ++i) {
     int best = 257, second = 257;
@@ -99,10 +81,12 @@ bool is_usable_triple(const std::vector<PointPair>& pairs, const std::vector<std
 
 std::vector<std::size_t> most_alike(const Place& place, std::span<const Place> places, std::size_t count,
                                     int min_matches, std::size_t strongest) {
-  const std::vector<Bits> own = as_words(place, strongest);
+  const auto strongest_of = [&](const Place& of) {
+    return Descriptors(of.descriptors).first(std::min(strongest, of.descriptors.size()));
+  };
   std::vector<std::pair<int, std::size_t>> votes;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const int found = static_cast<int>(matches(own, as_words(places[i], strongest)).size());
+    const int found = static_cast<int>(matches(strongest_of(place), strongest_of(places[i])).size());
     if (found >= min_matches) votes.emplace_back(-found, i);
   }
   std::sort(votes.begin(), votes.end());
@@ -114,9 +98,8 @@ std::vector<std::size_t> most_alike(const Place& place, std::span<const Place> p
 }
 
 PlaceMatch match_places(const Place& a, const Place& b) {
-  constexpr std::size_t kAll = 100'000;
   std::vector<PointPair> pairs;
-  for (const auto& [i, j] : matches(as_words(b, kAll), as_words(a, kAll))) {
+  for (const auto& [i, j] : matches(b.descriptors, a.descriptors)) {
     const Eigen::Vector3f& pa = a.points_camera[j];
     const Eigen::Vector3f& pb = b.points_camera[i];
     const float sigma_m = depth_sigma_m(std::max(pa.z(), pb.z()));

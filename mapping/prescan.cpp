@@ -19,6 +19,7 @@
 #include "mapping/registration.hpp"
 #include "mapping/seen_area.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -319,7 +320,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
       times.timed("surface", [&] { return extract_surface(map.octree, config.surface, &result.surface); });
   if (map.mesh.triangles.empty())
     throw Error(source.name() + ": " + std::to_string(pass.fused.size()) + " frames show no surface at " +
-                std::to_string(config.resolution_m) + " m; try another --resolution");
+                number_text(config.resolution_m) + " m; try another --resolution");
   map.places = std::move(pass.found.places);
   transform(map.places, pass.T_world_found);
 

@@ -9,6 +9,7 @@
 
 #include "mapping/static_map_octree.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
@@ -184,7 +185,7 @@ const FusionConfig& checked(const FusionConfig& config) {
 
 double checked_resolution(double resolution_m) {
   if (!(resolution_m >= 0.001 && resolution_m <= 1.0))
-    throw Error("resolution = " + std::to_string(resolution_m) + " m: must be within 0.001 and 1 m");
+    throw Error("resolution = " + number_text(resolution_m) + " m: must be within 0.001 and 1 m");
   return resolution_m;
 }
 

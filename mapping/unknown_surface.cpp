@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "mapping/barred_steps.hpp"
 #include "mapping/cell_faces.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/cell_code.hpp"
+#include "mapping/types/setting_rules.hpp"
 #include "mapping/voxel_bits.hpp"
 
 namespace roomradar {
@@ -19,14 +19,6 @@ using Eigen::Vector3i;
 
 constexpr double kMostCells = 2e8;  // 25 MB of bits
 constexpr int kGridsAtOnce = 15;    // of bits; most of them when the faces are sought
-
-void require_in_1_to_16(const char* field, int value) {
-  if (value < 1 || value > 16)
-    throw Error(std::string("unknown_surface.") + field + " = " + std::to_string(value) +
-                ": must be in 1..16");
-}
-
-int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 // What the map knows, in cells of one voxel, or of more where the map is very large.
 struct Known {
@@ -134,15 +126,15 @@ std::vector<CellFaces> faces_between(const VoxelBits& unknown, const VoxelBits& 
 }  // namespace
 
 void require_valid(const UnknownSurfaceConfig& config) {
-  require_in_1_to_16("least_voxels", config.least_voxels);
-  require_in_1_to_16("cube_voxels", config.cube_voxels);
-  require_in_1_to_16("rim_voxels", config.rim_voxels);
-  if (config.pocket_voxels < 0 || config.pocket_voxels > 1'000'000'000)
-    throw Error("unknown_surface.pocket_voxels = " + std::to_string(config.pocket_voxels) +
-                ": must be in 0..10^9");
-  if (config.rim_voxels < 3 * (config.cube_voxels - 1))
-    throw Error("unknown_surface.rim_voxels = " + std::to_string(config.rim_voxels) +
-                ": must be at least 3 * (cube_voxels - 1), or some cubes of unknown voxels are out of reach");
+  const SettingRules require{"unknown_surface"};
+  const auto is_in_1_to_16 = [](int value) { return value >= 1 && value <= 16; };
+  require(is_in_1_to_16(config.least_voxels), "least_voxels", config.least_voxels, "in 1..16");
+  require(is_in_1_to_16(config.cube_voxels), "cube_voxels", config.cube_voxels, "in 1..16");
+  require(is_in_1_to_16(config.rim_voxels), "rim_voxels", config.rim_voxels, "in 1..16");
+  require(config.pocket_voxels >= 0 && config.pocket_voxels <= 1'000'000'000, "pocket_voxels",
+          config.pocket_voxels, "in 0..10^9");
+  require(config.rim_voxels >= 3 * (config.cube_voxels - 1), "rim_voxels", config.rim_voxels,
+          "at least 3 * (cube_voxels - 1), or some cubes of unknown voxels are out of reach");
 }
 
 UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,

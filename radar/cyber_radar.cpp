@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 #include "radar/frame_along.hpp"
 #include "radar/solid_inside.hpp"
 #include "radar/thick_travel.hpp"
@@ -66,9 +66,9 @@ double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, 
 }  // namespace
 
 void require_valid(const RadarConfig& config) {
-  if (config.resolution_px < 1 || config.resolution_px > 4096) {
-    throw Error("radar.resolution_px = " + std::to_string(config.resolution_px) + ": must be in 1..4096");
-  }
+  const SettingRules require{"radar"};
+  require(config.resolution_px >= 1 && config.resolution_px <= 4096, "resolution_px", config.resolution_px,
+          "in 1..4096");
 }
 
 bool is_valid(const RadarQuery& q) {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 #include "mapping/types/validity.hpp"
 #include "radar/draw_positions.hpp"
 #include "radar/gl_program.hpp"
@@ -23,9 +23,8 @@ void main() {}
 }  // namespace
 
 void require_valid(const DepthPassConfig& config) {
-  if (!(config.near_m > 0.0) || !std::isfinite(config.near_m)) {
-    throw Error("depth_pass.near_m = " + std::to_string(config.near_m) + ": must be > 0");
-  }
+  const SettingRules require{"depth_pass"};
+  require(config.near_m > 0.0 && std::isfinite(config.near_m), "near_m", config.near_m, "> 0");
 }
 
 DepthPass::DepthPass(GlContext& context, const DepthPassConfig& config) : config_(config) {

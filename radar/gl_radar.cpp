@@ -11,6 +11,7 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/setting_rules.hpp"
 #include "radar/gl_program.hpp"
 #include "radar/tile_shaders.hpp"
 
@@ -60,16 +61,12 @@ TileQuery tile_query(const RadarOutline& outline, double distance_m, double tole
 }  // namespace
 
 void require_valid(const GlRadarConfig& config) {
-  if (config.resolution_px < 1 || config.resolution_px > 4096) {
-    throw Error("radar.resolution_px = " + std::to_string(config.resolution_px) + ": must be in 1..4096");
-  }
-  if (!(config.overlap_tolerance_m >= 0.0) || !std::isfinite(config.overlap_tolerance_m)) {
-    throw Error("radar.overlap_tolerance_m = " + std::to_string(config.overlap_tolerance_m) +
-                ": must be >= 0");
-  }
-  if (config.atlas_px < 1 || config.atlas_px > 16384) {
-    throw Error("radar.atlas_px = " + std::to_string(config.atlas_px) + ": must be in 1..16384");
-  }
+  const SettingRules require{"radar"};
+  require(config.resolution_px >= 1 && config.resolution_px <= 4096, "resolution_px", config.resolution_px,
+          "in 1..4096");
+  require(config.overlap_tolerance_m >= 0.0 && std::isfinite(config.overlap_tolerance_m),
+          "overlap_tolerance_m", config.overlap_tolerance_m, ">= 0");
+  require(config.atlas_px >= 1 && config.atlas_px <= 16384, "atlas_px", config.atlas_px, "in 1..16384");
 }
 
 GlRadar::GlRadar(GlContext& context, const GlRadarConfig& config)

@@ -7,6 +7,7 @@
 
 #include "app/sim/room.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -41,12 +42,6 @@ Number number(std::string_view key, std::string_view value, const std::string& w
   const auto [end, fault] = std::from_chars(value.data(), value.data() + value.size(), result);
   if (fault != std::errc{} || end != value.data() + value.size()) refuse(key, value, wanted);
   return result;
-}
-
-std::string without_trailing_zeros(double of) {
-  char text[32];
-  const auto [end, fault] = std::to_chars(text, text + sizeof(text), of);
-  return fault == std::errc{} ? std::string(text, end) : "0";
 }
 
 void set_option(SimOptions& options, std::string_view key, std::string_view value) {
@@ -186,14 +181,14 @@ std::string sim_spec(const SimOptions& options) {
   };
   if (options.seed != usual.seed) say("seed", std::to_string(options.seed));
   if (options.frames != usual.frames) say("frames", std::to_string(options.frames));
-  if (options.rate_hz != usual.rate_hz) say("rate", without_trailing_zeros(options.rate_hz));
+  if (options.rate_hz != usual.rate_hz) say("rate", number_text(options.rate_hz));
   if (options.path != usual.path) say("path", std::string(to_string(options.path)));
   std::string moving;
   for (const MoverKind kind : options.movers) append_with_comma(moving, to_string(kind), ",");
   if (!moving.empty()) say("moving", moving);
   if (options.crate != usual.crate) say("crate", std::string(to_string(options.crate)));
   if (options.pace != usual.pace) say("pace", std::string(to_string(options.pace)));
-  if (options.noise_scale != usual.noise_scale) say("noise", without_trailing_zeros(options.noise_scale));
+  if (options.noise_scale != usual.noise_scale) say("noise", number_text(options.noise_scale));
   if (options.depth_camera.width_px != usual.depth_camera.width_px)
     say("width", std::to_string(options.depth_camera.width_px));
   if (options.faults) say("faults", "1");
@@ -209,10 +204,9 @@ void require_valid(const SimOptions& options) {
   if (options.frames < 1 || options.frames > 100'000'000)
     refuse("frames", std::to_string(options.frames), "a whole number, 1 to 100000000");
   if (!(options.rate_hz >= 0.1 && options.rate_hz <= 1000.0))
-    refuse("rate", without_trailing_zeros(options.rate_hz), "frames a second, 0.1 to 1000");
+    refuse("rate", number_text(options.rate_hz), "frames a second, 0.1 to 1000");
   if (!(options.noise_scale >= 0.0 && options.noise_scale <= 10.0))
-    refuse("noise", without_trailing_zeros(options.noise_scale),
-           "0 (off), 1 (a Kinect's) or another factor up to 10");
+    refuse("noise", number_text(options.noise_scale), "0 (off), 1 (a Kinect's) or another factor up to 10");
   if (options.faults && options.registered_colour && options.with_colour)
     refuse("faults", "1",
            "said together with colour=separate or colour=none: registering needs what it takes away");

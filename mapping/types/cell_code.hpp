@@ -1,9 +1,12 @@
-// cell_code.hpp: the cells of a grid as keys of a hash table, and the cells round one.
+// cell_code.hpp: the cells of a grid: which one a voxel is in, as keys of a hash table, and those round one.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
 
 namespace roomradar {
+
+/// a / b rounded down, below zero, too; b > 0.
+inline int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 /// One number a cell; different for cells that are less than 2^21 apart along each axis.
 inline std::uint64_t cell_code(std::int64_t x, std::int64_t y, std::int64_t z) {

@@ -3,16 +3,18 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 
 /// The rules of one group of settings. Called with a rule that does not hold it throws Error:
-/// "fusion.max_range_m = -1.000000: must be in 0..100 m".
+/// "fusion.max_range_m = -1: must be in 0..100 m".
 struct SettingRules {
   const char* group;
-  void operator()(bool holds, const char* field, double value, const char* rule) const {
+  template <typename Number>
+  void operator()(bool holds, const char* field, Number value, const char* rule) const {
     if (!holds)
-      throw Error(std::string(group) + "." + field + " = " + std::to_string(value) + ": must be " + rule);
+      throw Error(std::string(group) + "." + field + " = " + number_text(value) + ": must be " + rule);
   }
 };
 

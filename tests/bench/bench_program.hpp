@@ -1,5 +1,6 @@
-// bench_program.hpp: what every benchmark does at its end: write its rows, and say what went wrong.
+// bench_program.hpp: what benchmarks share: where they run, their rows, and what went wrong.
 #pragma once
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -8,6 +9,14 @@
 #include "mapping/types/error.hpp"
 
 namespace roomradar::test {
+
+/// The name of this machine's processor.
+inline std::string processor() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name")) return line.substr(std::min(line.find(':') + 2, line.size()));
+  return "unknown processor";
+}
 
 /// The file of --json; an empty path: none was asked for. Throws Error if it cannot be written.
 template <typename Json>

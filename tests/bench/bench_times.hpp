@@ -1,6 +1,7 @@
-// bench_times.hpp: times that a thread spent computing, and their percentiles.
+// bench_times.hpp: times that a thread spent computing, and quantiles of what was measured.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <ctime>
 #include <vector>
@@ -14,12 +15,17 @@ inline double thread_ms() {
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
+/// Of nearest rank, part in 0..1; 0 of no values.
+inline double quantile(std::vector<double> values, double part) {
+  if (values.empty()) return 0.0;
+  const auto at = std::lround(part * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
 struct Times {
   std::vector<double> samples_ms;
-  [[nodiscard]] double percentile(double p) {
-    std::sort(samples_ms.begin(), samples_ms.end());
-    return samples_ms[static_cast<std::size_t>(p * static_cast<double>(samples_ms.size() - 1))];
-  }
+  [[nodiscard]] double percentile(double part) const { return quantile(samples_ms, part); }
 };
 
 }  // namespace roomradar::test

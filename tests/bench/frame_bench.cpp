@@ -172,7 +172,7 @@ nlohmann::json to_json(const StageSummary& summary) {
           {"max_ms", summary.max_ms}};
 }
 
-double median(test::Times times) { return times.samples_ms.empty() ? 0.0 : times.percentile(0.5); }
+double median(const test::Times& times) { return times.percentile(0.5); }
 
 void drop_if_due(Session& session, int frame) {
   if (frame % kDropEvery != 0) return;
@@ -248,7 +248,7 @@ nlohmann::json bench(const Scene& scene, const SavedMap& map, const std::vector<
           {"cpu_median_ms", median(cpu_ms)},
           {"stages", stages},
           {"motion_error_median_m", median(apart_m)},
-          {"motion_error_p95_m", apart_m.samples_ms.empty() ? 0.0 : apart_m.percentile(0.95)},
+          {"motion_error_p95_m", apart_m.percentile(0.95)},
           {"motion_error_median_deg", median(turned_deg)},
           {"moved_fraction", valid > 0.0 ? moved / valid : 0.0},
           {"contacts", contacts},

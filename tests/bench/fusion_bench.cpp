@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -40,13 +39,6 @@ struct Settings {
 };
 
 constexpr double kFinestJudged_m = 0.0099;
-
-double percentile(std::vector<double> values, double part) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1,
-                         static_cast<std::size_t>(part * static_cast<double>(values.size())))];
-}
 
 // Calls visit(frame) for `count` frames with a pose, `step` apart.
 template <typename Visit>
@@ -117,8 +109,8 @@ nlohmann::json row(const char* method, double resolution_m, const std::vector<do
   return {{"method", method},
           {"resolution_m", resolution_m},
           {"frames", times_ms.size()},
-          {"median_ms", percentile(times_ms, 0.5)},
-          {"p95_ms", percentile(times_ms, 0.95)}};
+          {"median_ms", test::quantile(times_ms, 0.5)},
+          {"p95_ms", test::quantile(times_ms, 0.95)}};
 }
 
 void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) {
@@ -159,19 +151,12 @@ void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) 
   ours["agree"] = agreement.agree;
   ours["occupied_kept"] = agreement.occupied_kept;
   ours["unknown_made_free"] = agreement.made_free;
-  ours["judged_median_ms"] = percentile(same_ms, 0.5);
-  ours["times_faster"] = percentile(reference_ms, 0.5) / percentile(same_ms, 0.5);
+  ours["judged_median_ms"] = test::quantile(same_ms, 0.5);
+  ours["times_faster"] = test::quantile(reference_ms, 0.5) / test::quantile(same_ms, 0.5);
   nlohmann::json theirs = row("insertPointCloud", resolution_m, reference_ms);
   theirs["agree"] = 1.0;
   show(ours);
   show(theirs);
-}
-
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown processor";
 }
 
 std::vector<double> numbers(const std::string& text) {
@@ -202,7 +187,7 @@ int run(int argc, char** argv) {
     }
   }
   nlohmann::json rows = nlohmann::json::array();
-  std::printf("%s, one core; compiler %s; %s\n", processor().c_str(), __VERSION__, ROOMRADAR_FLAGS);
+  std::printf("%s, one core; compiler %s; %s\n", test::processor().c_str(), __VERSION__, ROOMRADAR_FLAGS);
   for (const double resolution_m : settings.resolutions_m) bench(settings, resolution_m, rows);
   test::write_rows(settings.json, rows);
   return 0;

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <memory>
 
 #include "mapping/types/error.hpp"
@@ -60,14 +59,6 @@ Options parse(int argc, char** argv) {
     }
   }
   return options;
-}
-
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(": ") + 2);
-  }
-  return "unknown processor";
 }
 
 std::vector<std::optional<double>> exact_travels(const Mesh& sensor, const std::vector<Pose>& poses,
@@ -229,7 +220,7 @@ int run(int argc, char** argv) {
   } catch (const Error& error) {
     without_gl = error.what();
   }
-  std::printf("%s, %ld cores; %s; compiler %s, flags %s\n", processor().c_str(),
+  std::printf("%s, %ld cores; %s; compiler %s, flags %s\n", test::processor().c_str(),
               sysconf(_SC_NPROCESSORS_ONLN), context ? context->renderer().c_str() : "no GL", __VERSION__,
               ROOMRADAR_FLAGS);
   if (!context) std::printf("OpenGL's rows are left out: %s\n", without_gl.c_str());

@@ -92,9 +92,9 @@ Row measure_frames(const FrameScene& frame, const Meshes& meshes, int count, con
     }
   }
   for (const std::size_t shape : objects.shape) row.sensor_triangles += meshes[shape].triangles.size();
-  row.median_ms = quantile(wall_ms, 0.5);
-  row.p95_ms = quantile(wall_ms, 0.95);
-  row.cpu_median_ms = quantile(cpu_ms, 0.5);
+  row.median_ms = test::quantile(wall_ms, 0.5);
+  row.p95_ms = test::quantile(wall_ms, 0.95);
+  row.cpu_median_ms = test::quantile(cpu_ms, 0.5);
   add_errors(error_m, row);
   return row;
 }

@@ -31,8 +31,8 @@ std::optional<double> judge(const Contact& contact, const std::optional<double>&
 }
 
 void add_errors(std::vector<double> error_m, Row& row) {
-  row.error_median_m = quantile(error_m, 0.5);
-  row.error_max_m = quantile(std::move(error_m), 1.0);
+  row.error_median_m = test::quantile(error_m, 0.5);
+  row.error_max_m = test::quantile(std::move(error_m), 1.0);
 }
 
 std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<Pose>& poses,
@@ -64,18 +64,12 @@ std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<P
     Row& row = rows[m];
     row.method = methods[m].name;
     row.radar_px = methods[m].radar_px;
-    row.median_ms = quantile(samples[m].wall_ms, 0.5);
-    row.p95_ms = quantile(samples[m].wall_ms, 0.95);
-    row.cpu_median_ms = quantile(samples[m].cpu_ms, 0.5);
+    row.median_ms = test::quantile(samples[m].wall_ms, 0.5);
+    row.p95_ms = test::quantile(samples[m].wall_ms, 0.95);
+    row.cpu_median_ms = test::quantile(samples[m].cpu_ms, 0.5);
     add_errors(samples[m].error_m, row);
   }
   return rows;
-}
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(std::lround(q * static_cast<double>(values.size() - 1)))];
 }
 
 void write_json(const std::string& path, const std::vector<Row>& rows) {

@@ -36,8 +36,6 @@ void add_errors(std::vector<double> error_m, Row& row);
 std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<Pose>& poses,
                          const std::vector<std::optional<double>>& exact_m, int warm_up = 3);
 
-double quantile(std::vector<double> values, double q);
-
 /// @throws Error if the file cannot be written
 void write_json(const std::string& path, const std::vector<Row>& rows);
 

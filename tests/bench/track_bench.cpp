@@ -67,13 +67,6 @@ double kept_mb(const OdometrySnapshot& kept) {
   return static_cast<double>(bytes) / 1e6;
 }
 
-double percentile(std::vector<double> values, double part) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1,
-                         static_cast<std::size_t>(part * static_cast<double>(values.size())))];
-}
-
 /// Median length (m) of the difference between both trajectories' motions over `step` frames.
 double relative_error_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& truth,
                         std::size_t step) {
@@ -83,7 +76,7 @@ double relative_error_m(const std::vector<TimedPose>& estimate, const std::vecto
     const Eigen::Isometry3d found = estimate[i].T_world_camera.inverse() * estimate[i + step].T_world_camera;
     errors_m.push_back((there.inverse() * found).translation().norm());
   }
-  return percentile(errors_m, 0.5);
+  return test::quantile(errors_m, 0.5);
 }
 
 nlohmann::json bench_tracking(const std::string& name, const Settings& settings) {
@@ -133,11 +126,11 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
           {"rpe30_median_mm", known ? 1e3 * relative_error_m(estimate, truth, 30) : -1.0},
           {"furthest_m", furthest_m},
           {"inlier_mean", inliers / static_cast<double>(std::max<std::size_t>(times_ms.size(), 1))},
-          {"median_ms", percentile(times_ms, 0.5)},
-          {"p95_ms", percentile(times_ms, 0.95)},
-          {"thread_median_ms", percentile(cpu_ms, 0.5)},
-          {"thread_p95_ms", percentile(cpu_ms, 0.95)},
-          {"thread_max_ms", percentile(cpu_ms, 1.0)},
+          {"median_ms", test::quantile(times_ms, 0.5)},
+          {"p95_ms", test::quantile(times_ms, 0.95)},
+          {"thread_median_ms", test::quantile(cpu_ms, 0.5)},
+          {"thread_p95_ms", test::quantile(cpu_ms, 0.95)},
+          {"thread_max_ms", test::quantile(cpu_ms, 1.0)},
           {"optimise_ms", optimise_ms},
           {"kept_mb", kept_mb(odometry.snapshot())},
           {"peak_rss_mb", peak_rss_mb()}};
@@ -175,10 +168,10 @@ nlohmann::json bench_places(const std::string& name, const Settings& settings) {
           {"asked", asked},
           {"found", found},
           {"within_5cm_5deg", right},
-          {"error_median_mm", percentile(errors_mm, 0.5)},
-          {"error_max_mm", percentile(errors_mm, 1.0)},
-          {"median_ms", percentile(times_ms, 0.5)},
-          {"p95_ms", percentile(times_ms, 0.95)}};
+          {"error_median_mm", test::quantile(errors_mm, 0.5)},
+          {"error_max_mm", test::quantile(errors_mm, 1.0)},
+          {"median_ms", test::quantile(times_ms, 0.5)},
+          {"p95_ms", test::quantile(times_ms, 0.95)}};
 }
 
 Settings parse(int argc, char** argv) {

@@ -1,11 +1,17 @@
 // types_test.cpp: the vocabulary: cameras, noise, stage times.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <string>
 
+#include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/intrinsics.hpp"
+#include "mapping/types/number_text.hpp"
+#include "mapping/types/setting_rules.hpp"
 #include "mapping/types/stage_times.hpp"
 #include "mapping/types/validity.hpp"
 #include "tests/support/allocation_count.hpp"
@@ -121,6 +127,34 @@ TEST(StageTimes, TakeNoMoreMemoryHoweverManyFramesThereAre) {
   for (int i = 0; i < 100'000; ++i) times.add_ms("frame", 1e-3 * i);
   EXPECT_EQ(test::allocations, before);
   EXPECT_NEAR(times.summaries().at("frame").median_ms, 50.0, 0.15);
+}
+
+TEST(NumberText, IsTheShortestThatReadsBack) {
+  EXPECT_EQ(number_text(-1.0), "-1");
+  EXPECT_EQ(number_text(0.1), "0.1");
+  EXPECT_EQ(number_text(0.1F), "0.1");
+  EXPECT_EQ(number_text(1e-9), "1e-09");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "inf");
+  EXPECT_EQ(number_text(std::numeric_limits<int>::min()), "-2147483648");
+  for (const double longest : {-std::numeric_limits<double>::denorm_min(), -1.0 / 3e200, 1.0 / 3.0})
+    EXPECT_EQ(std::strtod(number_text(longest).c_str(), nullptr), longest);
+}
+
+TEST(SettingRules, SayWhatWasGivenHoweverSmall) {
+  const SettingRules require{"fusion"};
+  EXPECT_NO_THROW(require(true, "max_range_m", -1.0, "in 0..100 m"));
+  try {
+    require(false, "max_range_m", -1e-9, "in 0..100 m");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "fusion.max_range_m = -1e-09: must be in 0..100 m");
+  }
+}
+
+TEST(Cells, OfVoxelsBelowZeroRoundDown) {
+  for (const int edge : {1, 3, 8})
+    for (int voxel = -20; voxel <= 20; ++voxel)
+      EXPECT_EQ(floor_div(voxel, edge), static_cast<int>(std::floor(static_cast<double>(voxel) / edge)));
 }
 
 }  // namespace
