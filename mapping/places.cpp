@@ -61,9 +61,9 @@ Place describe_place(const Frame& frame, const Eigen::Isometry3d& T_world_camera
                  });
   // ORB needs 31 pixels of surroundings and OpenCV's pyramid some more.
   constexpr int kSmallest_px = 64;
-  place.patches = describe_patches(frame, config.patches);
+  place.patches = describe_patches(frame, std::min(config.patches, kMostDescribed));
   if (config.features > 0 && std::min(frame.colour.width, frame.colour.height) >= kSmallest_px) {
-    describe_features(frame, config.features, place);
+    describe_features(frame, std::min(config.features, kMostDescribed), place);
   }
   return place;
 }

@@ -30,9 +30,12 @@ struct Places {
   std::vector<Place> keyframes;
 };
 
+/// No view has more features, nor more patches: each is compared with each.
+inline constexpr int kMostDescribed = 10'000;
+
 struct PlaceConfig {
-  int features = 800;  ///< at most, a view
-  int patches = 800;   ///< at most, a view
+  int features = 800;  ///< at most, a view; up to kMostDescribed
+  int patches = 800;   ///< at most, a view; up to kMostDescribed
   int preview_width_px = 160;
 };
 

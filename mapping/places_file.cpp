@@ -62,6 +62,13 @@ SurfacePatch take_patch(BinaryReader& in) {
   return patch;
 }
 
+std::uint32_t take_count(BinaryReader& in, const char* what) {
+  const auto count = in.take<std::uint32_t>(what);
+  if (count > static_cast<std::uint32_t>(kMostDescribed))
+    in.fail("a view of " + std::to_string(count) + " " + what);
+  return count;
+}
+
 Place take_place(BinaryReader& in) {
   Place place;
   place.frame_index = in.take<std::int64_t>("frame index");
@@ -89,7 +96,7 @@ Place take_place(BinaryReader& in) {
   place.preview_depth_mm.resize(static_cast<int>(width), static_cast<int>(height));
   in.take(place.preview_depth_mm.pixels.data(), place.preview_depth_mm.pixels.size(), "preview depth");
 
-  const auto features = in.take<std::uint32_t>("number of features");
+  const std::uint32_t features = take_count(in, "features");
   in.require(features, 3 * sizeof(float) + sizeof(Descriptor), "features");
   place.points_camera.resize(features);
   place.descriptors.resize(features);
@@ -99,7 +106,7 @@ Place take_place(BinaryReader& in) {
   }
   for (Descriptor& bits : place.descriptors) in.take(bits.data(), bits.size(), "descriptors");
 
-  const auto patches = in.take<std::uint32_t>("number of patches");
+  const std::uint32_t patches = take_count(in, "patches");
   in.require(patches, 9 * sizeof(float) + 1 + sizeof(Descriptor), "patches");
   place.patches.reserve(patches);
   for (std::uint32_t i = 0; i < patches; ++i) place.patches.push_back(take_patch(in));

@@ -142,6 +142,23 @@ TEST(PlacesFile, APlaceThatNoMapReachesIsRefused) {
   }
 }
 
+TEST(PlacesFile, AViewOfMoreThanAnySearchComparesIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "crowded.bin";
+  const auto most = static_cast<std::size_t>(kMostDescribed);
+  for (const std::size_t count : {most, most + 1}) {
+    const std::string wanted = count == most ? "accepted" : "a view of 10001 ";
+    Places features = three_places(), patches = features;
+    features.keyframes.back().points_camera.resize(count, Eigen::Vector3f::Zero());
+    features.keyframes.back().descriptors.resize(count);
+    write_places(features, path);
+    EXPECT_NE(refusal(path).find(wanted), std::string::npos) << refusal(path);
+    patches.keyframes.back().patches.resize(count);
+    write_places(patches, path);
+    EXPECT_NE(refusal(path).find(wanted), std::string::npos) << refusal(path);
+  }
+}
+
 TEST(PlacesFile, SizesThatLieAreRefusedBeforeMemoryIsTaken) {
   // A file whose checksum is right and whose counts are not: 4 billion views, none of them there.
   const test::TemporaryFolder folder;
