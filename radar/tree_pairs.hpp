@@ -20,6 +20,7 @@ namespace roomradar {
 struct PairBox {
   Eigen::Vector3f centre, half;
   std::uint32_t first, count;  ///< as in TreeNode; count 0: an inner node
+  bool is_within_faces;        ///< all of it
 };
 struct PendingPair {
   PairBox object, scene;
@@ -131,8 +132,8 @@ inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
 }
 
 /// Goes through all pairs of leaves that key(object box, scene box) gives a finite number for, until leaf()
-/// returns -infinity. With PairOrder::kLeastFirst it ends where no key is less than what leaf() returned
-/// last.
+/// returns -infinity; not through those of which both lie within flat faces (see TriangleTree). With
+/// PairOrder::kLeastFirst it ends where no key is less than what leaf() returned last.
 template <PairOrder order, typename Key, typename Leaf>
 void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
@@ -146,6 +147,7 @@ void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const
                         (t.lpNorm<Eigen::Infinity>() + object.half_size().norm() + scene.half_size().norm());
   const auto is_later = [](const PendingPair& a, const PendingPair& b) { return a.key > b.key; };
   const auto push = [&](const PairBox& o, const PairBox& s) {
+    if (o.is_within_faces && s.is_within_faces) return;
     const float k = key(o, s);
     if (!(k < kNone)) return;
     pending.push_back({o, s, k});
@@ -153,8 +155,8 @@ void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const
   };
   pending.clear();
   const Eigen::Vector3f slack = Eigen::Vector3f::Constant(slack_m);
-  push({t, R_abs * object.half_size() + slack, 0, 0},
-       {Eigen::Vector3f::Zero(), scene.half_size() + slack, 0, 0});
+  push({t, R_abs * object.half_size() + slack, 0, 0, false},
+       {Eigen::Vector3f::Zero(), scene.half_size() + slack, 0, 0, false});
   float bound = kNone;
   while (!pending.empty()) {
     if constexpr (order == PairOrder::kLeastFirst) std::pop_heap(pending.begin(), pending.end(), is_later);
@@ -174,7 +176,8 @@ void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const
       PairBox box{{node.centre_x[i], node.centre_y[i], node.centre_z[i]},
                   {node.half_x[i], node.half_y[i], node.half_z[i]},
                   node.first[i],
-                  node.count[i]};
+                  node.count[i],
+                  (node.within_faces >> i & 1U) != 0};
       if (opens_object) {
         box.centre = R * box.centre + t;
         box.half = R_abs * box.half;

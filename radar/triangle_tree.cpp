@@ -231,9 +231,15 @@ void build_runs(const std::vector<Triangle>& triangles, const std::vector<Eigen:
   }
 }
 
-/// See TriangleTree::is_closed().
-bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices) {
-  // Vertices at one place get one number.
+/// A side of a triangle, 3 * triangle + the number of its first corner, on an edge between two places.
+struct Side {
+  std::uint64_t edge;
+  std::uint32_t side;
+  int sense;  // +1 or -1: which way it goes along the edge
+};
+
+/// A number for each vertex; those at one place have the same.
+std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& vertices) {
   std::vector<std::uint32_t> by_place(vertices.size());
   std::iota(by_place.begin(), by_place.end(), 0U);
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
@@ -245,6 +251,34 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
   std::vector<std::uint32_t> number(vertices.size(), 0);
   for (std::size_t i = 1; i < by_place.size(); ++i) {
     number[by_place[i]] = number[by_place[i - 1]] + (before(by_place[i - 1], by_place[i]) ? 1U : 0U);
+  }
+  return number;
+}
+
+/// Those of one edge next to each other.
+std::vector<Side> sides_of(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& number) {
+  std::vector<Side> sides;
+  sides.reserve(triangles.size() * 3);
+  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const std::uint64_t a = number[triangles[t][i]], b = number[triangles[t][(i + 1) % 3]];
+      if (a != b) sides.push_back({std::min(a, b) << 32U | std::max(a, b), 3 * t + i, a < b ? 1 : -1});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+    return a.edge != b.edge ? a.edge < b.edge : a.side < b.side;
+  });
+  return sides;
+}
+
+/// See TriangleTree::is_closed().
+bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
+                       const std::vector<std::uint32_t>& number, const std::vector<Side>& sides) {
+  int balance = 0;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    balance += sides[i].sense;
+    if (i + 1 < sides.size() && sides[i + 1].edge == sides[i].edge) continue;
+    if (balance != 0) return false;
   }
   // Parts that share no vertex are judged one by one: one that is inside out must not hide behind a larger
   // one.
@@ -258,26 +292,12 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
     part[part_of(number[t[0]])] = part_of(number[t[1]]);
     part[part_of(number[t[1]])] = part_of(number[t[2]]);
   }
-  // An edge counts +1 in one sense and -1 in the other.
-  std::vector<std::pair<std::uint64_t, int>> edges;
-  edges.reserve(triangles.size() * 3);
   std::vector<double> volume_m3(vertices.size(), 0.0);
   const Eigen::Vector3d about = vertices[triangles[0][0]].cast<double>();
   for (const Triangle& t : triangles) {
     std::array<Eigen::Vector3d, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) {
-      p[i] = vertices[t[i]].cast<double>() - about;
-      const std::uint64_t a = number[t[i]], b = number[t[(i + 1) % 3]];
-      if (a != b) edges.emplace_back(std::min(a, b) << 32U | std::max(a, b), a < b ? 1 : -1);
-    }
+    for (std::size_t i = 0; i < 3; ++i) p[i] = vertices[t[i]].cast<double>() - about;
     volume_m3[part_of(number[t[0]])] += p[0].dot(p[1].cross(p[2]));
-  }
-  std::sort(edges.begin(), edges.end());
-  int balance = 0;
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    balance += edges[i].second;
-    if (i + 1 < edges.size() && edges[i + 1].first == edges[i].first) continue;
-    if (balance != 0) return false;
   }
   bool encloses = false;
   for (const Triangle& t : triangles) {
@@ -287,6 +307,127 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
     encloses = true;
   }
   return encloses;
+}
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// The triangle beyond each side; kNone where there is not just one, facing the same way.
+std::vector<std::uint32_t> neighbours_of(std::size_t triangle_count, const std::vector<Side>& sides) {
+  std::vector<std::uint32_t> beyond(3 * triangle_count, kNone);
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end].edge == sides[i].edge) ++end;
+    if (end - i == 2 && sides[i].sense != sides[i + 1].sense) {
+      beyond[sides[i].side] = sides[i + 1].side / 3;
+      beyond[sides[i + 1].side] = sides[i].side / 3;
+    }
+    i = end;
+  }
+  return beyond;
+}
+
+/// Grows flat faces triangle by triangle.
+class FaceFinder {
+ public:
+  FaceFinder(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
+             const std::vector<Side>& sides, double flat_m)
+      : triangles_(triangles),
+        vertices_(vertices),
+        beyond_(neighbours_of(triangles.size(), sides)),
+        flat_m_(flat_m) {}
+
+  /// Whether each triangle lies within a face.
+  std::vector<bool> find() {
+    face_.assign(triangles_.size(), kNone);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+      if (face_[t] == kNone) grow_from(t);
+    std::vector<bool> within(triangles_.size());
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      const auto is_of_its_face = [&](std::uint32_t next) {
+        return next != kNone && face_[next] == face_[t];
+      };
+      within[t] = std::all_of(&beyond_[3 * t], &beyond_[3 * t] + 3, is_of_its_face);
+    }
+    return within;
+  }
+
+ private:
+  /// Of the triangles taken so far, weighted by area: the more there are, the less their rounding tilts it.
+  struct Plane {
+    Eigen::Vector3d area_m2 = Eigen::Vector3d::Zero(), moment_m3 = Eigen::Vector3d::Zero();
+    double weight_m2 = 0.0;
+
+    void add(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& area) {
+      area_m2 += area;
+      moment_m3 += area.norm() / 3.0 * (corners[0] + corners[1] + corners[2]);
+      weight_m2 += area.norm();
+    }
+    [[nodiscard]] bool holds(const std::array<Eigen::Vector3d, 3>& corners, double within_m) const {
+      const Eigen::Vector3d normal = area_m2.stableNormalized(), middle = moment_m3 / weight_m2;
+      return std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector3d& p) {
+        return std::abs(normal.dot(p - middle)) <= within_m;
+      });
+    }
+  };
+
+  const std::vector<Triangle>& triangles_;
+  const std::vector<Eigen::Vector3f>& vertices_;
+  const std::vector<std::uint32_t> beyond_;
+  const double flat_m_;
+  std::vector<std::uint32_t> face_, taken_;
+
+  [[nodiscard]] std::array<Eigen::Vector3d, 3> corners(std::uint32_t t) const {
+    const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
+      return vertices_[triangles_[t][i]].cast<double>();
+    };
+    return {corner(0), corner(1), corner(2)};
+  }
+  static Eigen::Vector3d area(const std::array<Eigen::Vector3d, 3>& p) {
+    return (p[1] - p[0]).cross(p[2] - p[0]);
+  }
+
+  void grow_from(std::uint32_t seed) {
+    constexpr double kSameWay = 0.99;  // cosine: slivers' normals are rough, those of folds are opposite
+    Plane plane;
+    plane.add(corners(seed), area(corners(seed)));
+    face_[seed] = seed;
+    taken_.assign(1, seed);
+    for (std::size_t at = 0; at < taken_.size(); ++at) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t next = beyond_[3 * taken_[at] + i];
+        if (next == kNone || face_[next] != kNone) continue;
+        const auto p = corners(next);
+        const Eigen::Vector3d a = area(p);
+        if (!(a.dot(plane.area_m2) > kSameWay * a.norm() * plane.area_m2.norm()) || !plane.holds(p, flat_m_))
+          continue;
+        plane.add(p, a);
+        face_[next] = seed;
+        taken_.push_back(next);
+      }
+    }
+    // The plane may have turned away from those that came first.
+    const bool is_flat = std::all_of(taken_.begin(), taken_.end(),
+                                     [&](std::uint32_t t) { return plane.holds(corners(t), 2.0 * flat_m_); });
+    if (!is_flat)
+      for (const std::uint32_t t : taken_) face_[t] = t;
+  }
+};
+
+/// Children come after their parents.
+void mark_faces(const std::vector<bool>& within, std::vector<TreeNode>& nodes) {
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    TreeNode& node = nodes[n];
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      bool is_within = true;
+      if (node.count[i] == 0) {
+        const TreeNode& child = nodes[node.first[i]];
+        is_within = child.within_faces == (1U << child.child_count) - 1U;
+      }
+      for (std::uint32_t t = node.first[i]; t < node.first[i] + node.count[i]; ++t)
+        is_within = is_within && within[t];
+      if (is_within) node.within_faces |= 1U << i;
+    }
+  }
 }
 
 std::uint64_t next_revision() {
@@ -334,7 +475,11 @@ void TriangleTree::build_by_place(const Mesh& mesh) {
   std::vector<Triangle> sorted(triangles_.size());
   for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = triangles_[order[i]];
   triangles_ = std::move(sorted);
-  is_closed_ = encloses_a_volume(triangles_, vertices_);
+  const std::vector<std::uint32_t> number = numbers_by_place(vertices_);
+  const std::vector<Side> sides = sides_of(triangles_, number);
+  is_closed_ = encloses_a_volume(triangles_, vertices_, number, sides);
+  if (is_closed_)
+    mark_faces(FaceFinder(triangles_, vertices_, sides, static_cast<double>(rounding_m_)).find(), nodes_);
 }
 
 void TriangleTree::build_in_order(const Mesh& mesh) {

@@ -21,19 +21,26 @@ struct alignas(32) TreeNode {
       first;  // of a leaf: its first triangle; else the child's place in nodes()
   std::array<std::uint32_t, kWidth> count;  // of a leaf: its triangles; 0: an inner child
   std::uint32_t child_count = 0;
+  std::uint32_t within_faces = 0;  // bit i: all triangles under box i lie within flat faces
 };
 
 /// A rigid mesh (a sensor object, a saved room) or one that lives a frame, on the processor's side. Vertices
 /// stay float, relative to the mesh's own double origin, so that nothing is lost far from zero. Triangles
 /// with an index past the last vertex or a vertex that is not finite are left out and counted; degenerate and
 /// duplicate ones stay. No GL. Reading is thread safe, building is not.
+///
+/// A triangle of a closed mesh lies within a flat face where no edge of its own is one of the shape's: beyond
+/// each lies another triangle of the same plane, as far as floats can say (twice rounding_m()). Where two
+/// shapes meet, or are nearest, an edge or a corner of one of them takes part: two triangles that both lie
+/// within flat faces have nothing to say to each other.
 class TriangleTree {
  public:
   /// Splits by place where the boxes get smallest: for meshes that stay. O(n log n). Finds out whether the
-  /// mesh is closed.
+  /// mesh is closed, and what of it lies within flat faces.
   void build_by_place(const Mesh& mesh);
   /// Runs of consecutive triangles: for meshes that live one frame (rows of a depth image already lie near
-  /// each other). O(n), no allocation once as many were held. is_closed() is not looked at and false.
+  /// each other). O(n), no allocation once as many were held. is_closed() is not looked at and false, as is
+  /// what lies within flat faces.
   void build_in_order(const Mesh& mesh);
 
   [[nodiscard]] bool empty() const { return triangles_.empty(); }

@@ -10,7 +10,8 @@
 //   solids:
 //           every piece of a path is followed by steps that the solids' distance allows; the thrown solids
 //           are taken 0.9 mm smaller all round, since meshes lie up to 0.5 mm inside of round solids
-//   time    of a frame with one body of some 6,300 triangles (12 for the cube), from the throw to rest
+//   time    of a frame with one body of some 6,300 triangles (12 for the cube), from the throw to rest; and
+//           of a board that falls flat on another, 12 triangles each and 10,800
 // Rooms, things, seeds and configs are fixed; changing them breaks comparison with old numbers.
 #include <algorithm>
 #include <array>
@@ -33,6 +34,7 @@
 #include "mapping/types/error.hpp"
 #include "physics_bench_scenes.hpp"
 #include "tests/bench/bench_program.hpp"
+#include "tests/radar/shapes.hpp"
 
 namespace roomradar::bench {
 namespace {
@@ -364,10 +366,49 @@ void measure_time(nlohmann::json& rows) {
   }
 }
 
+void measure_boards(nlohmann::json& rows) {
+  constexpr int kFalls = 10, kFrames = 120;
+  std::printf("time of a frame, a board falls flat on another, thread time\n%9s %8s %8s %8s %8s\n",
+              "triangles", "frames", "median", "p95", "max ms");
+  for (const int cells : {1, 30}) {
+    const Mesh board = shapes::box_of_cells({0.3F, 0.2F, 0.02F}, cells);
+    const Thing thing("board", board);
+    test::Times awake;
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    for (int fall = 0; fall < kFalls; ++fall) {
+      World world;
+      world.add(board, Touched::kObject);
+      Body body;
+      body.mass = thing.mass;
+      body.T_world_object.translation() = Vec3(0.03 * unit(random), 0.03 * unit(random), 0.06);
+      body.T_world_object.rotate(
+          Eigen::AngleAxisd(0.1 * unit(random), Vec3(unit(random), unit(random), 1.0).normalized()));
+      for (int frame = 0; frame < kFrames && !body.at_rest; ++frame) {
+        const double start = test::thread_ms();
+        (void)world.step(body, thing, kFrame_s, {});
+        awake.samples_ms.push_back(test::thread_ms() - start);
+      }
+      if (!body.at_rest || std::abs(body.T_world_object.translation().z() - 0.02) > 2e-3)
+        throw Error("board " + std::to_string(fall) + ": does not lie on the other after 4 s");
+    }
+    const double median = awake.percentile(0.5), p95 = awake.percentile(0.95), most = awake.percentile(1.0);
+    std::printf("%9zu %8zu %8.3f %8.3f %8.3f\n", thing.tree.triangle_count(), awake.samples_ms.size(), median,
+                p95, most);
+    rows.push_back({{"table", "boards"},
+                    {"triangles", thing.tree.triangle_count()},
+                    {"frames", awake.samples_ms.size()},
+                    {"median_ms", median},
+                    {"p95_ms", p95},
+                    {"max_ms", most}});
+  }
+}
+
 int run(int argc, char** argv) {
   const Options options = parse(argc, argv);
   nlohmann::json rows = nlohmann::json::array();
   if (options.wants("time")) measure_time(rows);
+  if (options.wants("time")) measure_boards(rows);
   if (options.wants("rest")) measure_rest(rows);
   if (options.wants("throws")) measure_throws(options.throws, rows);
   test::write_rows(options.json, rows);

@@ -203,6 +203,73 @@ TEST(NearField, NoMotionIsFreeForLongerThanItIs) {
   EXPECT_GT(stopped, 50);
 }
 
+/// Two boards, and the same with sides of many triangles.
+struct Boards {
+  Pair coarse{shapes::box({0.3F, 0.2F, 0.02F}), shapes::box({0.5F, 0.25F, 0.02F})};
+  Pair fine{shapes::box_of_cells({0.3F, 0.2F, 0.02F}, 13), shapes::box_of_cells({0.5F, 0.25F, 0.02F}, 11)};
+};
+
+TEST(NearField, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
+  Boards boards;
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<NearPoint> coarse, fine;
+  int near = 0, crossed = 0;
+  for (int i = 0; i < 400; ++i) {
+    // Over, across the border of, or in the other board; flat on each other, or tilted by up to 1 mm.
+    Eigen::Isometry3d T = at(0.4 * unit(random), 0.2 * unit(random), 0.02 + 0.0015 * unit(random));
+    T.rotate(Eigen::AngleAxisd(3.0 * unit(random), Vec3::UnitZ()));
+    if (i % 2 == 0) T.rotate(Eigen::AngleAxisd(0.005 * unit(random), Vec3(unit(random), 1, 0).normalized()));
+    const Kinds of_coarse = boards.coarse.near(T, 0.005, coarse), of_fine = boards.fine.near(T, 0.005, fine);
+    ASSERT_EQ(of_fine, of_coarse) << i;
+    crossed += of_coarse != 0;
+    ASSERT_EQ(fine.empty(), coarse.empty()) << i;
+    if (coarse.empty()) continue;
+    ++near;
+    EXPECT_NEAR(fine.front().gap_m, coarse.front().gap_m, 1e-7) << i;
+    EXPECT_GE(fine.front().gap_m, boards.coarse.distance_m(T) - 1e-7) << i;
+    // What holds up reaches as far, in each direction.
+    for (int k = 0; k < 8; ++k) {
+      const Vec3 out(std::cos(k * std::numbers::pi / 4), std::sin(k * std::numbers::pi / 4), 0.0);
+      const auto farthest = [&](const std::vector<NearPoint>& points) {
+        double most = -1.0;
+        for (const NearPoint& p : points)
+          if (p.normal_world.z() > 0.9) most = std::max(most, out.dot(p.point_world) - 20.0 * p.gap_m);
+        return most;
+      };
+      EXPECT_NEAR(farthest(fine), farthest(coarse), 1e-5) << i << ", " << k;
+    }
+  }
+  EXPECT_GT(near, 50);
+  EXPECT_GT(crossed, 50);
+}
+
+TEST(NearField, NoFaceOfManyTrianglesIsPassed) {
+  Boards boards;
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  constexpr double kKeep_m = 5e-4;
+  int stopped = 0;
+  for (int i = 0; i < 300; ++i) {
+    Eigen::Isometry3d T = at(0.3 * unit(random), 0.2 * unit(random), 0.05 + 0.03 * unit(random));
+    T.rotate(Eigen::AngleAxisd(3.0 * unit(random), Vec3::UnitZ()));
+    if (i % 2 == 0) T.rotate(Eigen::AngleAxisd(0.1 * unit(random), Vec3(unit(random), 1, 0).normalized()));
+    const double from_m = boards.coarse.distance_m(T);
+    if (from_m < 1e-3) continue;
+    const RigidMotion motion{Vec3(unit(random), unit(random), -2.0 + unit(random)),
+                             i % 3 == 0 ? Vec3::Zero() : Vec3(5.0 * Vec3(unit(random), unit(random), 0.1)),
+                             Vec3::Zero()};
+    const double free_s = boards.fine.free_time(T, motion, 0.1, kKeep_m).free_s;
+    ASSERT_GT(free_s, 0.0);
+    stopped += free_s < 0.1;
+    for (int k = 1; k <= 12; ++k) {
+      const double distance_m = boards.coarse.distance_m(pose_after(T, motion, free_s * k / 12.0));
+      ASSERT_GE(distance_m, std::min(kKeep_m, 0.5 * from_m) - 1e-6) << i;
+    }
+  }
+  EXPECT_GT(stopped, 100);
+}
+
 TEST(NearField, AStraightFallIsFreeUntilItsKeptDistance) {
   Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F));
   const RigidMotion fall{{0, 0, -2}, Vec3::Zero(), Vec3::Zero()};

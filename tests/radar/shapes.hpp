@@ -41,6 +41,30 @@ inline Mesh box(const Eigen::Vector3f& size_m) {
   return mesh;
 }
 
+/// The same, each side of cells x cells quads.
+inline Mesh box_of_cells(const Eigen::Vector3f& size_m, int cells) {
+  Mesh mesh;
+  const Eigen::Vector3f h = 0.5F * size_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int side : {-1, 1}) {
+      const auto at = [&](int i, int j) {
+        const auto part = [&](int k) {
+          return static_cast<float>(2 * k - cells) / static_cast<float>(cells);
+        };
+        Eigen::Vector3f p;
+        p[axis] = static_cast<float>(side) * h[axis];
+        p[(axis + 1) % 3] = part(i) * h[(axis + 1) % 3];
+        p[(axis + 2) % 3] = static_cast<float>(side) * part(j) * h[(axis + 2) % 3];
+        return p;
+      };
+      for (int i = 0; i < cells; ++i)
+        for (int j = 0; j < cells; ++j)
+          add_quad(mesh, at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+    }
+  }
+  return mesh;
+}
+
 /// Horizontal square at height z_m, facing +z.
 inline Mesh floor(float half_size_m, float z_m) {
   Mesh mesh;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <random>
 #include <set>
 #include <vector>
 
@@ -152,6 +153,74 @@ TEST(TriangleTree, VerticesAsFarApartAsFloatGoesAreATree) {
   TriangleTree tree;
   tree.build_by_place(mesh);
   EXPECT_EQ(tree.triangle_count(), 30U);
+}
+
+/// Numbers, in the tree's order, of the triangles under boxes that are said to lie within flat faces.
+std::set<std::uint32_t> within_faces(const TriangleTree& tree) {
+  std::set<std::uint32_t> within;
+  for (const TreeNode& node : tree.nodes())
+    for (std::uint32_t i = 0; i < node.child_count; ++i)
+      if ((node.within_faces >> i & 1U) != 0)
+        for (std::uint32_t t = 0; t < node.count[i]; ++t) within.insert(node.first[i] + t);
+  return within;
+}
+
+TEST(TriangleTree, NoEdgeOfTheShapeIsWithinAFlatFace) {
+  const Eigen::Vector3f half(0.15F, 0.1F, 0.05F);
+  const Mesh straight = shapes::box_of_cells(2.0F * half, 10);
+  std::mt19937 random(3);
+  for (int turn = 0; turn < 20; ++turn) {
+    Eigen::Matrix3f R = Eigen::Matrix3f::Identity();
+    if (turn > 0) R = shapes::random_rotation(random).toRotationMatrix().cast<float>();
+    Mesh box = straight;
+    for (Eigen::Vector3f& p : box.vertices) p = R * p;
+    TriangleTree tree;
+    tree.build_by_place(box);
+    ASSERT_TRUE(tree.is_closed());
+    const std::set<std::uint32_t> within = within_faces(tree);
+    EXPECT_GT(within.size(), tree.triangle_count() * 6 / 10) << turn;
+    for (const std::uint32_t t : within) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Eigen::Vector3f a = tree.vertices()[tree.triangles()[t][i]],
+                              b = tree.vertices()[tree.triangles()[t][(i + 1) % 3]];
+        const Eigen::Array3f middle = (R.transpose() * (0.5F * (a + b))).cwiseAbs().array();
+        EXPECT_LE(((middle - half.array()).abs() < 1e-5F).count(), 1) << turn;  // on one side of the box only
+      }
+    }
+  }
+}
+
+TEST(TriangleTree, ADentIsAShape) {
+  Mesh box = shapes::box_of_cells({0.3F, 0.2F, 0.1F}, 10);
+  Eigen::Vector3f dent = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& p : box.vertices)
+    if ((p - Eigen::Vector3f(0.0F, 0.0F, 0.05F)).norm() < 1e-6F) dent = p;
+  ASSERT_GT(dent.z(), 0.0F);
+  for (const float depth_m : {0.0F, 1e-6F, 1e-3F}) {
+    Mesh dented = box;
+    for (Eigen::Vector3f& p : dented.vertices)
+      if (p == dent) p.z() -= depth_m;
+    TriangleTree tree;
+    tree.build_by_place(dented);
+    ASSERT_TRUE(tree.is_closed());
+    int at_dent = 0;
+    for (const std::uint32_t t : within_faces(tree))
+      for (const std::uint32_t v : tree.triangles()[t]) at_dent += (tree.vertices()[v] - dent).norm() < 2e-3F;
+    EXPECT_EQ(at_dent > 0, depth_m == 0.0F) << depth_m;
+  }
+}
+
+TEST(TriangleTree, WhatIsCurvedOrOpenHasNothingWithinFlatFaces) {
+  TriangleTree tree;
+  tree.build_by_place(shapes::torus(64, 32, 0.1F, 0.03F, 0.0F));
+  EXPECT_TRUE(tree.is_closed());
+  EXPECT_TRUE(within_faces(tree).empty());
+  Mesh open = shapes::box_of_cells({0.3F, 0.2F, 0.1F}, 10);
+  open.triangles.pop_back();
+  tree.build_by_place(open);
+  EXPECT_TRUE(within_faces(tree).empty());
+  tree.build_in_order(shapes::box_of_cells({0.3F, 0.2F, 0.1F}, 10));
+  EXPECT_TRUE(within_faces(tree).empty());
 }
 
 TEST(TriangleTree, EveryBuildHasARevisionOfItsOwn) {
