@@ -97,7 +97,7 @@ int run(const CalibrateCommand& command) {
   SourceOptions options;
   options.as_recorded = true;  // not by a calibration that is there already
   const Interrupt interrupt;
-  const std::unique_ptr<FrameSource> source =
+  std::unique_ptr<FrameSource> source =
       ended_by_interrupt(open_source(command.source, command.frames, {}, options));
   BoardViews views;
   {
@@ -107,6 +107,7 @@ int run(const CalibrateCommand& command) {
                               [&](std::size_t found) { progress.step(std::to_string(found) + " views"); });
     });
   }
+  source.reset();  // a device does not go on sending
   report.frames_read = views.frames;
   const CalibrationFit fit =
       report.times.timed("fit", [&] { return calibrate(views, {.board = command.board}); });

@@ -85,6 +85,7 @@ HeldOutScore score_held_out(FrameSource& source, const Mesh& mesh, const std::ve
   Frame frame;
   for (ReadResult read = source.next(frame); read.status != ReadStatus::kEnd; read = source.next(frame)) {
     if (read.status != ReadStatus::kFrame) continue;
+    if (frame.index > T_world_camera.rbegin()->first) break;  // a live source would be recorded on
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end()) continue;
     depth_pass.render({&instance, 1}, frame.depth_camera, pose->second, mesh_m);

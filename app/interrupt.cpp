@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdint>
 #include <string_view>
@@ -29,8 +30,10 @@ void on_interrupt(int signal) {
     return;
   }
   asked = kToEnd;
+  const int errno_before = errno;
   const std::string_view sentence(said);
   static_cast<void>(::write(STDERR_FILENO, sentence.data(), sentence.size()) + 1);
+  errno = errno_before;
 }
 
 class EndedByInterrupt final : public FrameSource {

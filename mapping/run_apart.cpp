@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <optional>
@@ -45,8 +47,28 @@ void write_all(int to, std::string_view bytes) {
   }
 }
 
-/// Until the other end is closed; nothing if that takes longer than most_s.
-std::optional<std::string> read_all(int from, std::chrono::seconds most_s) {
+/// What an answer begins with: what it is, and its bytes after that.
+struct Head {
+  char kind;
+  std::uint64_t size_bytes;
+
+  [[nodiscard]] std::string bytes() const {
+    std::string all(1, kind);
+    return all.append(reinterpret_cast<const char*>(&size_bytes), sizeof size_bytes);
+  }
+  static constexpr std::size_t kBytes = 1 + sizeof(std::uint64_t);
+};
+
+bool is_whole(std::string_view answer) {
+  if (answer.size() < Head::kBytes) return false;
+  std::uint64_t size_bytes = 0;
+  std::memcpy(&size_bytes, answer.data() + 1, sizeof size_bytes);
+  return answer.size() - Head::kBytes >= size_bytes;
+}
+
+/// An answer, or what came of it until the other end was closed; nothing if that takes longer than most_s.
+/// Does not wait for the other end: another thread's child may hold it, too.
+std::optional<std::string> read_answer(int from, std::chrono::seconds most_s) {
   const auto end = std::chrono::steady_clock::now() + most_s;
   std::string bytes;
   std::array<char, 1U << 16U> buffer;
@@ -61,6 +83,7 @@ std::optional<std::string> read_all(int from, std::chrono::seconds most_s) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) return bytes;
     bytes.append(buffer.data(), static_cast<std::size_t>(count));
+    if (is_whole(bytes)) return bytes;
   }
 }
 
@@ -72,7 +95,9 @@ std::size_t taken_bytes() {
 }
 
 [[noreturn]] void be_child(const std::function<std::string()>& work, int to, unsigned most_s,
-                           std::size_t most_bytes) {
+                           std::size_t most_bytes, pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody else would end it
+  if (::getppid() != parent) _exit(1);
   for (const int number : {SIGINT, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) std::signal(number, SIG_DFL);
   const int nowhere = ::open("/dev/null", O_WRONLY);  // it may complain at length
   dup2(nowhere, STDOUT_FILENO);
@@ -86,11 +111,12 @@ std::size_t taken_bytes() {
   }
   try {
     const std::string answer = work();
-    write_all(to, {&kAnswer, 1});
+    write_all(to, Head{kAnswer, answer.size()}.bytes());
     write_all(to, answer);
   } catch (const Error& error) {
-    write_all(to, {&kError, 1});
-    write_all(to, error.what());
+    const std::string_view sentence = error.what();
+    write_all(to, Head{kError, sentence.size()}.bytes());
+    write_all(to, sentence);
   } catch (...) {
     _exit(1);  // most likely out of memory
   }
@@ -104,17 +130,18 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
   const auto fail = [&](const std::string& reason) { throw Error(complaint + " (" + reason + ")"); };
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) fail(std::string("no pipe can be made: ") + std::strerror(errno));
+  const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0) {
     ::close(ends[0]);
-    be_child(work, ends[1], most_s, most_bytes);
+    be_child(work, ends[1], most_s, most_bytes, parent);
   }
   const int fork_fault = errno;
   ::close(ends[1]);
   // One that waits for something takes no processor time; on a busy machine a second of that lasts longer.
   constexpr unsigned kWallPerProcessor = 10;
   std::optional<std::string> read =
-      child > 0 ? read_all(ends[0], std::chrono::seconds(kWallPerProcessor * most_s)) : std::string{};
+      child > 0 ? read_answer(ends[0], std::chrono::seconds(kWallPerProcessor * most_s)) : std::string{};
   if (!read) ::kill(child, SIGKILL);
   std::string answer = std::move(read).value_or(std::string{});
   ::close(ends[0]);
@@ -128,9 +155,9 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
     fail(took_long ? "it takes more than " + std::to_string(most_s) + " s, or too much memory"
                    : std::string("crashed: ") + strsignal(signal));
   }
-  if (status != 0 || answer.empty()) fail("it takes more memory than is allowed for it");
+  if (status != 0 || !is_whole(answer)) fail("it takes more memory than is allowed for it");
   const bool is_answer = answer.front() == kAnswer;
-  answer.erase(0, 1);
+  answer.erase(0, Head::kBytes);
   if (!is_answer) throw Error(answer);
   return answer;
 }

@@ -29,7 +29,9 @@ class FrameRangeSource final : public FrameSource {
   }
 
   ReadResult next(Frame& frame) override {
-    while (position_ <= last_) {
+    constexpr int kMostPassedOver = 15;  // of a device half a second: whoever reads may want to stop
+    for (int passed_over = 0; position_ <= last_; ++passed_over) {
+      if (passed_over == kMostPassedOver) return {ReadStatus::kSkipped, {}, true};
       ReadResult result = source_->next(frame);
       if (result.status == ReadStatus::kEnd) fail_outside(*source_, first_, last_, position_);
       if (result.waiting) return result;

@@ -185,6 +185,11 @@ void SpooledSource::capture() {
     const std::lock_guard lock(mutex_);
     failure_ = std::current_exception();
   }
+  std::unique_ptr<FrameSource> done;  // nothing more is wanted of it; a device does not go on sending
+  {
+    const std::lock_guard lock(mutex_);
+    if (at_end_) done = std::move(source_);
+  }
   changed_.notify_all();
 }
 

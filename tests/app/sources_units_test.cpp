@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <future>
 #include <limits>
 #include <thread>
 
@@ -194,6 +195,20 @@ TEST(FrameRange, IncludesBothEndsAndKeepsIndices) {
   }
 }
 
+TEST(FrameRange, WhoeverReadsCanStopBeforeItsFirstFrame) {
+  const auto source = limit_frames(std::make_unique<MadeSource>(60, false), 40, 41);
+  Frame frame;
+  int waited = 0;
+  ReadResult read = source->next(frame);
+  for (; read.waiting; read = source->next(frame)) {
+    EXPECT_EQ(read.status, ReadStatus::kSkipped);
+    ++waited;
+  }
+  EXPECT_EQ(waited, 2);
+  EXPECT_EQ(read.status, ReadStatus::kFrame);
+  EXPECT_EQ(frame.index, 40);
+}
+
 TEST(FrameRange, OutsideTheRecordingNamesItsLength) {
   EXPECT_TRUE(
       contains(error_of([] { limit_frames(std::make_unique<MadeSource>(10, true), 5, 10); }), "10 frames"));
@@ -281,6 +296,33 @@ TEST(SpooledSource, ASourceThatWaitsIsNoFrameAndHoldsNobody) {
   ASSERT_TRUE(source.seek(1));
   EXPECT_EQ(source.next(frame).status, ReadStatus::kFrame);
   EXPECT_EQ(frame.index, 1);
+}
+
+TEST(SpooledSource, LetsGoOfASourceThatHasEnded) {
+  class LetGo final : public FrameSource {
+   public:
+    explicit LetGo(std::promise<void> gone) : gone_(std::move(gone)) {}
+    LetGo(const LetGo&) = delete;
+    LetGo& operator=(const LetGo&) = delete;
+    ~LetGo() override { gone_.set_value(); }
+    ReadResult next(Frame& frame) override { return source_.next(frame); }
+    bool rewind() override { return false; }
+    [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
+    [[nodiscard]] std::string name() const override { return "device"; }
+
+   private:
+    MadeSource source_{5, false};
+    std::promise<void> gone_;
+  };
+  std::promise<void> gone;
+  std::future<void> is_gone = gone.get_future();
+  SpooledSource source(std::make_unique<LetGo>(std::move(gone)));
+  EXPECT_EQ(read_all(source).frames.size(), 5U);
+  EXPECT_EQ(is_gone.wait_for(std::chrono::seconds(20)), std::future_status::ready);
+  EXPECT_EQ(source.frame_count(), 5);
+  EXPECT_EQ(source.name(), "device");
+  ASSERT_TRUE(source.rewind());
+  EXPECT_EQ(read_all(source).frames.size(), 5U);
 }
 
 TEST(SpooledSource, AReaderThatIsSlowLosesNothing) {

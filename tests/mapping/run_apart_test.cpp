@@ -2,9 +2,13 @@
 #include "mapping/run_apart.hpp"
 
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <vector>
 
@@ -54,6 +58,49 @@ TEST(RunApart, ALoopWithoutAnEndIsASentence) {
     });
   });
   EXPECT_EQ(error, "file.obj: cannot be read (it takes more than 1 s, or too much memory)");
+}
+
+TEST(RunApart, DoesNotWaitForWhoeverElseHoldsThePipe) {
+  // As a child does that another thread has started meanwhile.
+  std::array<int, 2> held{};
+  ASSERT_EQ(pipe(held.data()), 0);
+  EXPECT_EQ(apart([&] {
+              if (fork() == 0) {
+                close(held[1]);
+                char end = 0;
+                static_cast<void>(read(held[0], &end, 1) + 1);  // until the test is over
+                _exit(0);
+              }
+              return std::string("done");
+            }),
+            "done");
+  close(held[0]);
+  close(held[1]);
+}
+
+TEST(RunApart, WorkEndsWithTheProcessThatWaitsForIt) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const pid_t waits = fork();
+  if (waits == 0) {
+    apart([&] {
+      static_cast<void>(write(ends[1], "w", 1) + 1);
+      pause();
+      return std::string();
+    });
+    _exit(0);
+  }
+  close(ends[1]);
+  char byte = 0;
+  ASSERT_EQ(read(ends[0], &byte, 1), 1);  // it works
+  kill(waits, SIGKILL);
+  int status = 0;
+  waitpid(waits, &status, 0);
+  constexpr int kPatience_ms = 20'000;
+  pollfd ended{ends[0], POLLIN, 0};
+  ASSERT_EQ(poll(&ended, 1, kPatience_ms), 1) << "it works on for nobody";
+  EXPECT_EQ(read(ends[0], &byte, 1), 0);
+  close(ends[0]);
 }
 
 TEST(RunApart, NothingIsChangedHere) {
