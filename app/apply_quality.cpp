@@ -21,6 +21,9 @@ void apply(const RunQuality& quality, SessionConfig& config) {
   foreground.hole_reach_px = whole.hole_reach_px / quality.depth_stride;
   foreground.weak_reach_px = whole.weak_reach_px / quality.depth_stride;
   foreground.min_region_px = std::max(1, whole.min_region_px / (quality.depth_stride * quality.depth_stride));
+  const DepthMeshConfig whole_mesh;
+  config.scene.mesh.stride_px = std::max(1, whole_mesh.stride_px / quality.depth_stride);
+  config.scene.mesh.skirt_gap_px = whole_mesh.skirt_gap_px / quality.depth_stride;
   config.scene.moved.deviation_sigmas = static_cast<float>(quality.mesh_sigmas);
   config.fine_mesh = quality.fine_mesh;
   config.radar = {.mode = quality.radar, .resolution_px = quality.radar_px};

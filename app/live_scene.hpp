@@ -39,10 +39,11 @@ class LiveScene {
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
   std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
-  /// From the next frame on. The rules must hold.
-  void set_fineness(const ForegroundConfig& foreground, const MovedSurfaceConfig& moved) {
-    config_.foreground = foreground;
-    config_.moved = moved;
+  /// All of it but what can be touched; from the next frame on. The rules must hold.
+  void set_fineness(const LiveSceneConfig& config) {
+    config_.foreground = config.foreground;
+    config_.moved = config.moved;
+    config_.mesh = config.mesh;
   }
   /// From the next frame on something else can be touched.
   void set_surfaces(SurfacePolicy surfaces);

@@ -63,8 +63,11 @@ bool LivingMap::is_due(const Frame& frame) {
 }
 
 void LivingMap::finish() {
+  if (has_failed_) throw Error("adopt: a change could not be worked into the map, which is half changed");
   if (!working_.valid()) return;
+  has_failed_ = true;  // unless get() returns
   room_ = working_.get();
+  has_failed_ = false;
   for (const LastingChange& change : pending_) {
     tracker_.forget(change);
     adopted_.push_back({change.kind, stamp_s_, frame_, change.box_world()});
@@ -74,6 +77,8 @@ void LivingMap::finish() {
 
 void LivingMap::watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
                       const Eigen::Isometry3d& T_world_camera) {
+  if (watched_frame_ == frame.index) return;
+  watched_frame_ = frame.index;
   tracker_.update(frame.depth_m, expected_depth_m, labels, frame.depth_camera, T_world_camera, frame.stamp_s);
   if (working_.valid()) return;
   if (pending_.empty())

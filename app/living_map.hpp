@@ -74,13 +74,15 @@ class LivingMap {
   /// Before a frame: whether the room has changed. Then the trees are to be taken from room().
   bool is_due(const Frame& frame);
   [[nodiscard]] ChangedRoom& room() { return room_; }
-  /// After a frame's foreground is known.
+  /// After a frame's foreground is known. A frame that is shown again, by its index, tells nothing new: what
+  /// moves stands still in it.
   void watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
              const Eigen::Isometry3d& T_world_camera);
 
   /// What was worked in so far, in the order of time.
   [[nodiscard]] const std::vector<AdoptedChange>& adopted() const { return adopted_; }
   /// Waits for a change that is being worked in, and takes it as if it were due: then the octree may be read.
+  /// Throws what went wrong while it was worked in, and Error from then on: the octree is half changed.
   void finish();
 
  private:
@@ -94,12 +96,14 @@ class LivingMap {
   bool keeps_up_unknown_ = false;
   double stamp_s_ = 0.0;  ///< of the frame now
   std::int64_t frame_ = 0;
+  std::optional<std::int64_t> watched_frame_;
   double next_look_s_ = 0.0;
   std::vector<LastingChange> pending_;  ///< settled, being measured or worked in
   std::vector<RegionView> views_;       ///< of them; filled up to view_count_, kept for the next ones
   int view_count_ = 0;
   int frames_left_ = 0;  ///< to the end of measuring, or to when the room is due
   std::future<ChangedRoom> working_;
+  bool has_failed_ = false;
   ChangedRoom room_;  ///< of the frames now
 
   void look_for_changes(double stamp_s);

@@ -70,9 +70,10 @@ int play(OpenedRun& run) {
     throw Error(command.source + ": there is not one readable frame" +
                 (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
   }
-  faults.attempt([&] { run.session->finish_adopting(); });
-  if (!command.save_map.empty())
-    faults.attempt([&] { save_changed(run.map, run.session->adopted().size(), command.save_map); });
+  faults.attempt([&] {
+    run.session->finish_adopting();
+    if (!command.save_map.empty()) save_changed(run.map, run.session->adopted().size(), command.save_map);
+  });
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped.count;
   run.report.results = results_of(totals, *run.session);

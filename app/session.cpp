@@ -15,7 +15,12 @@
 namespace roomradar {
 namespace {
 
-constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from an object than this do not push it
+constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from all of an object do not push it
+
+/// Of a ball about the middle of the object, which holds all of it.
+double radius_m(const VirtualObject& object) {
+  return 0.5 * object.model->shape.drawn.bounds().sizes().norm();
+}
 
 /// What moves an object that a user's hand holds: no weight, and it slides along what it meets.
 PhysicsConfig in_hand(PhysicsConfig config) {
@@ -105,7 +110,7 @@ void Session::set_quality(const RunQuality& quality) {
   const RadarConfig radar = config_.radar;
   roomradar::apply(quality, config_);
   if (!(config_.radar == radar)) set_radar(config_.radar);
-  scene_.set_fineness(config_.scene.foreground, config_.scene.moved);
+  scene_.set_fineness(config_.scene);
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config_.tracking_px;
 }
 
@@ -150,7 +155,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   result.static_triangles_drawn =
       times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
   result.foreground = times.timed("foreground", [&] { return scene_.find_moved(frame); });  // what moved?
-  if (living_map_)
+  if (living_map_ && tracking)    // not where the pose is partly a guess
     times.timed("changes", [&] {  // what came to stay, what is gone?
       living_map_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
     });
@@ -295,8 +300,8 @@ void Session::find_fine_regions() {
   if (!config_.fine_mesh) return;
   for (const auto& object : objects_) {
     if (object->in_room)
-      fine_regions_.push_back({object->body.T_world_object * object->model->middle,
-                               0.5 * object->model->shape.drawn.bounds().sizes().norm() + kAbout_m});
+      fine_regions_.push_back(
+          {object->body.T_world_object * object->model->middle, radius_m(*object) + kAbout_m});
   }
 }
 
@@ -338,7 +343,8 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
     if (config_.scene.surfaces == SurfacePolicy::kMap)
       push = push_directions({&scene_.moved_world().seen_world, &scene_.moved_world().inferred_world},
-                             object->body.T_world_object * object->model->middle, kNearbyReach_m);
+                             object->body.T_world_object * object->model->middle,
+                             radius_m(*object) + kNearbyReach_m);
     std::vector<SceneTree> scene = scene_without(object);
     const auto is_back = [](const SceneTree& surface) { return surface.kind == Touched::kInferredBack; };
     const auto back = std::find_if(scene.begin(), scene.end(), is_back);

@@ -127,8 +127,12 @@ class Session {
   /// As it was given, but for the policies that were changed since.
   [[nodiscard]] const SessionConfig& config() const { return config_; }
   [[nodiscard]] bool unknown_is_solid() const { return unknown_is_solid_; }
-  /// Drops over a surface in view that have found none yet.
-  [[nodiscard]] const std::vector<ScriptEvent>& waiting_drops() const { return waiting_; }
+  /// A drop over a surface in view that has found none yet.
+  struct WaitingDrop {
+    ScriptEvent drop;
+    std::int64_t try_at_frame;  ///< of those that were located
+  };
+  [[nodiscard]] const std::vector<WaitingDrop>& waiting_drops() const { return waiting_; }
   /// All that an object can touch, without itself; null: with every object in the room.
   [[nodiscard]] std::vector<SceneTree> scene_without(const VirtualObject* object) const;
   /// The camera that the picture was taken with, and its pose; nothing before the first frame that was
@@ -170,7 +174,8 @@ class Session {
   Frame reduced_;                                                   ///< the frame, where its depth is reduced
   double moved_fraction_ = 0.0;
   std::int64_t frames_ = 0;           ///< that were located
-  std::vector<ScriptEvent> waiting_;  ///< waiting_drops()
+  std::vector<WaitingDrop> waiting_;  ///< waiting_drops()
+  std::size_t last_shadow_ = 0;       ///< number of the object whose shadow was made last
   double last_stamp_s_ = 0.0;
   bool has_last_stamp_ = false;
 
@@ -228,8 +233,8 @@ class Session {
   void watch_for_colour(const Frame& frame);
   /// The picture of a frame whose place is not known.
   void show_camera_alone(const Frame& frame);
-  /// Makes one shadow anew: coarsely that of the object that has turned most since its own was made, or where
-  /// none has, in full that of one that has come to rest.
+  /// Makes one shadow anew, of the next object that has turned since its own was made, or has come to rest:
+  /// coarsely, and once it rests in full.
   void renew_a_shadow();
   void compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   VirtualObject& object_named(const std::string& name);

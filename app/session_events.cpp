@@ -52,7 +52,7 @@ void require_small_enough(const VirtualObject& object, const ScriptEvent& drop) 
   std::array<char, 240> text{};
   std::snprintf(
       text.data(), text.size(),
-      ": reaches %.3g m sideways from its origin, and only what reaches at most %.0f m is dropped in view. "
+      ": reaches %.3g m sideways from its middle, and only what reaches at most %.0f m is dropped in view. "
       "Meshes are in metres: give it a size (add NAME FILE size 0.2) or a place (drop NAME at X Y Z)",
       reach_m, kMostFootprint_m);
   throw Error(object.body.name + text.data());
@@ -91,8 +91,11 @@ void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg)
   const SweepResult free =
       sweep(radar_, {&object.model->shape.touched, object.body.T_world_object}, motion, 1.0, {scene, {}});
   if (free.status == SweepStatus::kInvalidInput || free.status == SweepStatus::kNoAnswer) return;
+  const Eigen::Vector3d origin_before = object.body.T_world_object.translation();
   object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
   make_orthonormal(object.body.T_world_object);
+  if (object.carried_to_world)  // its middle is wanted where it was
+    *object.carried_to_world += object.body.T_world_object.translation() - origin_before;
   object.body.at_rest = false;
 }
 
@@ -182,7 +185,7 @@ void Session::change_objects(const ScriptEvent& event) {
   if (event.action == Action::kTurn && !object.in_room) return;
   if (event.action == Action::kDrop && !event.position_world) require_small_enough(object, event);
   // Whatever else is said of an object now takes the place of a drop that it waits for.
-  std::erase_if(waiting_, [&](const ScriptEvent& waiting) { return waiting.name == event.name; });
+  std::erase_if(waiting_, [&](const WaitingDrop& waiting) { return waiting.drop.name == event.name; });
   if (event.R_world_object && event.position_world)
     object.body.T_world_object.linear() = *event.R_world_object;
   if (event.action != Action::kTurn) object.carried_to_world.reset();
@@ -195,7 +198,7 @@ void Session::change_objects(const ScriptEvent& event) {
       if (event.position_world) {
         put(*event.position_world + Eigen::Vector3d(0.0, 0.0, event.height_m - lowest_m(object)));
       } else {
-        waiting_.push_back(event);
+        waiting_.push_back({event, frames_});
       }
       break;
     case Action::kCarry:
@@ -218,17 +221,24 @@ void Session::change_objects(const ScriptEvent& event) {
 }
 
 void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  for (ScriptEvent& event : std::exchange(waiting_, {})) {
+  constexpr std::int64_t kAgainAfter_frames = 10;  // a search takes some 10 ms
+  for (WaitingDrop& waiting : std::exchange(waiting_, {})) {
+    if (frames_ < waiting.try_at_frame) {
+      waiting_.push_back(std::move(waiting));
+      continue;
+    }
+    ScriptEvent& event = waiting.drop;
     const VirtualObject& object = object_named(event.name);
     const Eigen::Matrix3d R_world_object = event.R_world_object.value_or(object.body.T_world_object.linear());
     const std::optional<Eigen::Vector3d> support_world =
         find_support(scene_.expected_depth_m(), frame.depth_camera, T_world_camera,
                      footprint_radius_m(object, R_world_object));
-    if (!support_world) {
-      waiting_.push_back(event);
+    if (!support_world) {  // and those that wait do not all search in the same frame
+      waiting.try_at_frame = frames_ + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());
+      waiting_.push_back(std::move(waiting));
       continue;
     }
-    event.position_world = support_world;
+    event.position_world = *support_world - level_to_middle(object, R_world_object);
     apply(event);
   }
 }

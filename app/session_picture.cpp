@@ -64,23 +64,20 @@ void Session::renew_a_shadow() {
   constexpr double kTurned_rad = 0.05;
   constexpr int kFine = 16, kCoarse = 8;  // 3 ms and 0.2 ms
   const bool may_be_fine = is_turn(0, config_.shadow_turns);
-  VirtualObject* most_turned = nullptr;
-  VirtualObject* coarse_at_rest = nullptr;
-  double turned_rad = kTurned_rad;
-  for (const auto& object : objects_) {
-    if (!object->in_room) continue;
-    const Eigen::AngleAxisd turn(object->shadow.R_world_object.transpose() *
-                                 object->body.T_world_object.linear());
-    if (object->body.at_rest && object->shadow.cells_across < kFine) coarse_at_rest = object.get();
-    if (!(turn.angle() > turned_rad)) continue;
-    turned_rad = turn.angle();
-    most_turned = object.get();
+  // In turn: one that turns on and on does not keep the others from theirs.
+  for (std::size_t i = 1; i <= objects_.size(); ++i) {
+    const std::size_t number = (last_shadow_ + i) % objects_.size();
+    VirtualObject& object = *objects_[number];
+    if (!object.in_room) continue;
+    const Eigen::Matrix3d& R_world_object = object.body.T_world_object.linear();
+    const bool has_turned =
+        Eigen::AngleAxisd(object.shadow.R_world_object.transpose() * R_world_object).angle() > kTurned_rad;
+    const bool gets_fine = object.body.at_rest && object.shadow.cells_across < kFine && may_be_fine;
+    if (!has_turned && !gets_fine) continue;
+    make_contact_shadow(object.model->surface, R_world_object, object.shadow, gets_fine ? kFine : kCoarse);
+    last_shadow_ = number;
+    return;
   }
-  const bool is_fine = most_turned == nullptr && coarse_at_rest != nullptr && may_be_fine;
-  VirtualObject* const renewed = is_fine ? coarse_at_rest : most_turned;
-  if (renewed != nullptr)
-    make_contact_shadow(renewed->model->surface, renewed->body.T_world_object.linear(), renewed->shadow,
-                        is_fine ? kFine : kCoarse);
 }
 
 void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {

@@ -83,8 +83,13 @@ double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_
   const Eigen::Matrix<double, 2, 3> R_level_object = R_world_object.topRows<2>();
   double squared_m2 = 0.0;
   for (const Eigen::Vector3d& corner : object.model->corners)
-    squared_m2 = std::max(squared_m2, (R_level_object * corner).squaredNorm());
+    squared_m2 = std::max(squared_m2, (R_level_object * (corner - object.model->middle)).squaredNorm());
   return std::sqrt(squared_m2);
+}
+
+Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {
+  const Eigen::Vector3d to_middle = R_world_object * object.model->middle;
+  return {to_middle.x(), to_middle.y(), 0.0};
 }
 
 Mesh object_mesh(const std::string& name_or_path, double size_m) {

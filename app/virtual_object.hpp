@@ -42,8 +42,11 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
 double lowest_m(const VirtualObject& object);
 double highest_m(const VirtualObject& object);
 
-/// How far it reaches sideways from its origin, turned like this, m.
+/// How far it reaches sideways from its middle, turned like this, m.
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
+/// From its origin to under or over its middle, turned like this, m in the world: a mesh's origin may lie at
+/// a corner, or outside.
+Eigen::Vector3d level_to_middle(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
 /// The coarsest mesh of the object that lies no farther than error_px off the full one, as the camera sees it
 /// at its nearest point.

@@ -168,7 +168,7 @@ void Player::drop_or_place(const Wish& wish, const Session& session, std::vector
   // On top of another object, if that is what was pointed at.
   const SurfaceHit& hit = pointed.object && pointed.name != chosen_ ? *pointed.object : *pointed.surface;
   ScriptEvent event = event_of(wish.kind == WishKind::kPlace ? Action::kPlace : Action::kDrop, chosen_);
-  event.position_world = hit.point_world;
+  event.position_world = hit.point_world - level_to_middle(*object, object->body.T_world_object.linear());
   event.height_m = wish.event.height_m;
   if (wish.kind == WishKind::kPlace) event.position_world->z() += kOverSurface_m - lowest_m(*object);
   events.push_back(event);
@@ -194,18 +194,20 @@ void Player::grab(const Wish& wish, const Session& session) {
   grabbed_.reset();
   if (!pointed.object) return;
   chosen_ = pointed.name;
+  const VirtualObject& object = *find_object(session, chosen_);
   grabbed_ = {chosen_, pointed.object->distance_m,
-              find_object(session, chosen_)->body.T_world_object.translation() - pointed.object->point_world,
-              false};
+              object.body.T_world_object * object.model->middle - pointed.object->point_world, false};
 }
 
 void Player::drag(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
-  if (!grabbed_ || !session.shown_view()) return;
+  const VirtualObject* object = grabbed_ ? find_object(session, grabbed_->name) : nullptr;
+  if (object == nullptr || !session.shown_view()) return;
   const Ray ray = ray_through(session.shown_view()->camera, session.shown_view()->T_world_view,
                               wish.pixel.x(), wish.pixel.y());
   const double distance_m = std::max(grabbed_->distance_m - wish.nearer_m, kNearest_m);
   ScriptEvent event = event_of(Action::kCarry, grabbed_->name);
-  event.position_world = ray.origin_world + distance_m * ray.direction_world + grabbed_->origin_from_point;
+  event.position_world = ray.origin_world + distance_m * ray.direction_world + grabbed_->middle_from_point -
+                         object->body.T_world_object.linear() * object->model->middle;
   events.push_back(event);
   grabbed_->is_carried = true;
 }

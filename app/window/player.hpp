@@ -45,7 +45,7 @@ class Player {
   struct Grabbed {
     std::string name;
     double distance_m = 0.0;                                      ///< of the grabbed point along its ray
-    Eigen::Vector3d origin_from_point = Eigen::Vector3d::Zero();  ///< world axes
+    Eigen::Vector3d middle_from_point = Eigen::Vector3d::Zero();  ///< world axes
     bool is_carried = false;
   };
   std::string chosen_;

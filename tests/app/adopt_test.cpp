@@ -57,6 +57,13 @@ class AdoptingSession {
     }
     return result;
   }
+  /// Shows the last frame so many times again, as a source does that is held.
+  void hold(int times) {
+    for (int i = 0; i < times; ++i) {
+      frame_.stamp_s += 1.0 / 30.0;
+      static_cast<void>(session.step(frame_, times_));
+    }
+  }
   void make_unknown_solid() { session.make_unknown_solid(times_); }
   void drop_pot(const Vector3d& above) {
     ScriptEvent event;
@@ -166,6 +173,19 @@ TEST(Adopt, AHandThatWavesAndAPersonWhoStandsForTwoSecondsAreNot) {
     SavedMap map = map_of("0");
     AdoptingSession run(map, view(std::string("frames=100&moving=") + moving), adopting(5.0));
     run.run(100);
+    run.session.finish_adopting();
+    EXPECT_TRUE(run.session.adopted().empty()) << moving;
+  }
+}
+
+TEST(Adopt, WhatMovesIsNotBecauseTheCameraIsHeld) {
+  for (const char* const moving : {"moving=hand", "crate=comes"}) {
+    SavedMap map = map_of("0");
+    AdoptingSession run(map, view(std::string("frames=100&") + moving), adopting(1.5));
+    std::size_t moved = 0;
+    for (int i = 0; i < 90 && moved < 150; ++i) moved = run.run(1).foreground.moved;
+    ASSERT_GE(moved, 150U) << moving;
+    run.hold(150);
     run.session.finish_adopting();
     EXPECT_TRUE(run.session.adopted().empty()) << moving;
   }

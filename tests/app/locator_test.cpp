@@ -215,6 +215,20 @@ TEST(Locator, IsLostBeforeAWallWithoutMarksAfterTheLensWasCovered) {
   EXPECT_FALSE(has_pose(bare.find(bare.seen_from(before_wall(-0.3)))));
 }
 
+TEST(Locator, DoesNotSlideOnAlongAWallWithoutMarks) {
+  const auto before_wall = [](double x) { return test::looking_at({x, 0.4, 1.2}, {x, 2.5, 0.4}); };
+  Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
+  bare.locator.T_world_camera = before_wall(0.3);
+  bare.locator.T_last_now.translation().x() = 0.01;  // as it was moved last, and is no more
+  Tracking found;
+  for (int i = 0; i < 60; ++i) {
+    found = bare.find(bare.seen_from(before_wall(0.3)));
+    ASSERT_TRUE(has_pose(found)) << i;
+  }
+  EXPECT_EQ(found.status, TrackStatus::kDegenerate);
+  EXPECT_LT(error_m(found, before_wall(0.3)), 0.03);
+}
+
 TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
   using namespace test;
   Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });

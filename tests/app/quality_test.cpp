@@ -75,6 +75,17 @@ TEST(Quality, NumbersThatAreNoneAreRefused) {
   EXPECT_THROW(require_valid(ScanQuality{.fuse_every = 0}), Error);
 }
 
+TEST(Quality, LengthsInPixelsAreOfWholeDepthImages) {
+  for (const int stride : {2, 4}) {
+    SessionConfig config;
+    apply(RunQuality{.depth_stride = stride}, config);
+    const SessionConfig usual;
+    EXPECT_EQ(config.scene.mesh.skirt_gap_px * stride, usual.scene.mesh.skirt_gap_px);
+    EXPECT_EQ(config.scene.mesh.stride_px, 1);  // of 2 whole pixels; 4 are as fine as it can be
+    EXPECT_EQ(config.scene.foreground.hole_reach_px * stride, usual.scene.foreground.hole_reach_px);
+  }
+}
+
 TEST(Quality, DefaultsChangeNothing) {
   // Each field's default is that of the config it sets: otherwise a run would not be what it was.
   SessionConfig config;
@@ -86,6 +97,8 @@ TEST(Quality, DefaultsChangeNothing) {
   EXPECT_EQ(config.scene.foreground.min_region_px, usual.scene.foreground.min_region_px);
   EXPECT_EQ(config.scene.foreground.hole_reach_px, usual.scene.foreground.hole_reach_px);
   EXPECT_EQ(config.scene.foreground.weak_reach_px, usual.scene.foreground.weak_reach_px);
+  EXPECT_EQ(config.scene.mesh.stride_px, usual.scene.mesh.stride_px);
+  EXPECT_EQ(config.scene.mesh.skirt_gap_px, usual.scene.mesh.skirt_gap_px);
   EXPECT_EQ(config.fine_mesh, usual.fine_mesh);
   EXPECT_EQ(config.radar, usual.radar);
   EXPECT_EQ(config.physics.max_step_s, usual.physics.max_step_s);

@@ -56,6 +56,12 @@ void let_a_drop_wait(Session& session, StageTimes& times) {
   static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
 }
 
+/// Frames of the floor until the pot is in the room: a drop that waits is not tried in each.
+void see_the_floor(Session& session, StageTimes& times) {
+  for (std::int64_t i = 1; i <= 12 && !session.objects().front()->in_room; ++i)
+    static_cast<void>(session.step(depth_only(i, kAtTheFloor), times));
+}
+
 /// A green picture, twice as fine as the depth.
 void give_colour(Frame& frame) {
   frame.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
@@ -202,7 +208,7 @@ TEST(Session, DropWaitsForAFrameThatShowsALevelSurface) {
   StageTimes times;
   let_a_drop_wait(session, times);
   EXPECT_FALSE(session.objects().front()->in_room);
-  static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
+  see_the_floor(session, times);
   EXPECT_TRUE(session.objects().front()->in_room);
   EXPECT_NEAR(session.objects().front()->body.T_world_object.translation().z(), 0.3,
               0.02);  // the drop's height
@@ -214,7 +220,7 @@ TEST(Session, ADropThatWaitsToTheEndIsSaid) {
   StageTimes times;
   let_a_drop_wait(session, times);
   for (const bool is_in_view : {false, true}) {
-    if (is_in_view) static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
+    if (is_in_view) see_the_floor(session, times);
     testing::internal::CaptureStdout();
     print_summary({}, session);
     const std::string said = testing::internal::GetCapturedStdout();
@@ -230,7 +236,7 @@ TEST(Session, ADropThatWaitsOutlivesATurnOfWhatIsNotInTheRoom) {
   ScriptEvent turn = event(Action::kTurn);
   turn.turn_world_deg = Eigen::Vector3d(0.0, 0.0, 30.0);
   session.apply(turn);
-  static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
+  see_the_floor(session, times);
   EXPECT_TRUE(session.objects().front()->in_room);
 }
 
@@ -240,8 +246,107 @@ TEST(Session, RemovedObjectDoesNotComeInByADropThatWaited) {
   StageTimes times;
   let_a_drop_wait(session, times);
   session.apply(event(Action::kRemove));
-  static_cast<void>(session.step(depth_only(1, kAtTheFloor), times));
+  see_the_floor(session, times);
   EXPECT_FALSE(session.objects().front()->in_room);
+}
+
+TEST(Session, DropsThatWaitAreNotTriedAllInOneFrame) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  for (const char* const name : {"one", "two", "three"}) {
+    ScriptEvent drop = event(Action::kAdd);
+    drop.name = name;
+    session.apply(drop);
+    drop.action = Action::kDrop;
+    session.apply(drop);
+  }
+  static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
+  const auto& waiting = session.waiting_drops();
+  ASSERT_EQ(waiting.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(waiting[i].try_at_frame, 10 + static_cast<std::int64_t>(i));
+  for (std::int64_t i = 1; i <= 13; ++i) {
+    static_cast<void>(session.step(depth_only(i, kAtTheFloor), times));
+    EXPECT_EQ(waiting.size(), i < 10 ? 3U : i > 12 ? 0U : static_cast<std::size_t>(12 - i)) << i;
+  }
+}
+
+/// A box whose origin is at a corner of its floor.
+Mesh box_about_its_corner(float size_m) {
+  Mesh box = shapes::box(Eigen::Vector3f::Constant(size_m));
+  for (Eigen::Vector3f& p : box.vertices) p += Eigen::Vector3f::Constant(0.5F * size_m);
+  return box;
+}
+
+TEST(Session, WhereAMeshHasItsOriginDoesNotMatterForADropInView) {
+  const SavedMap map = floor_map();
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const bool is_about_corner : {false, true}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    session.add_object(
+        "pot", is_about_corner ? box_about_its_corner(0.4F) : shapes::box(Eigen::Vector3f::Constant(0.4F)));
+    session.apply(event(Action::kDrop));
+    static_cast<void>(session.step(depth_only(0, kAtTheFloor), times));
+    const VirtualObject& object = *session.objects().front();
+    ASSERT_TRUE(object.in_room);
+    const Eigen::Vector3d now = object.body.T_world_object * object.model->middle;
+    if (is_about_corner) {
+      EXPECT_LT((now - middle).norm(), 1e-6);
+    }
+    middle = now;
+  }
+  // Its corner is 1.13 m from its origin, and 0.57 m from its middle.
+  Session session(map, by_recorded_poses());
+  session.add_object("pot", box_about_its_corner(0.8F));
+  EXPECT_NO_THROW(session.apply(event(Action::kDrop)));
+}
+
+TEST(Session, WhatIsTurnedWhileItIsCarriedTurnsAboutItsMiddle) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.add_object("pot", box_about_its_corner(0.2F));
+  const VirtualObject& object = *session.objects().front();
+  const auto middle = [&]() -> Eigen::Vector3d { return object.body.T_world_object * object.model->middle; };
+  ScriptEvent carry = event(Action::kCarry);
+  carry.position_world = Eigen::Vector3d(0.0, 0.0, 0.8);
+  session.apply(carry);
+  for (std::int64_t i = 0; i < 5; ++i) static_cast<void>(session.step(depth_only(i, kAtTheSky), times));
+  const Eigen::Vector3d before = middle();
+  ScriptEvent turn = event(Action::kTurn);
+  turn.turn_world_deg = Eigen::Vector3d(90.0, 0.0, 0.0);
+  session.apply(turn);
+  for (std::int64_t i = 5; i < 10; ++i) static_cast<void>(session.step(depth_only(i, kAtTheSky), times));
+  EXPECT_GT(Eigen::AngleAxisd(object.body.T_world_object.linear()).angle(), 1.5);
+  EXPECT_LT((middle() - before).norm(), 1e-3);
+}
+
+TEST(Session, OneThatSpinsOnAndOnDoesNotKeepTheOthersFromTheirShadows) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  for (const char* const name : {"rests", "spins"}) {
+    ScriptEvent add = event(Action::kAdd);
+    add.name = name;
+    session.apply(add);
+  }
+  ScriptEvent put = event(Action::kPlace);
+  put.name = "rests";
+  put.position_world = Eigen::Vector3d(0.0, 0.0, 0.001);
+  put.R_world_object = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  session.apply(put);
+  put = event(Action::kThrow);
+  put.name = "spins";
+  put.position_world = Eigen::Vector3d(0.5, 0.0, -5.0);  // it falls on and on, below the floor
+  put.spin_world_rad_s = Eigen::Vector3d(0.0, 0.0, 10.0);
+  session.apply(put);
+  for (std::int64_t i = 0; i < 40; ++i) static_cast<void>(session.step(in_colour(i, kAtTheFloor), times));
+  ASSERT_TRUE(session.objects()[0]->body.at_rest);
+  ASSERT_FALSE(session.objects()[1]->body.at_rest);
+  const VirtualObject& rests = *session.objects()[0];
+  EXPECT_EQ(rests.shadow.cells_across, 16);
+  EXPECT_TRUE(rests.shadow.R_world_object.isApprox(rests.body.T_world_object.linear(), 0.05));
 }
 
 /// Free space above z = 0, 3.8 m wide, with a floor where x < 0; nobody has seen what is below elsewhere.
@@ -601,7 +706,9 @@ TEST(VirtualObject, FootprintReachesToACorner) {
                              std::make_shared<const ObjectModel>(context, object_parts("plate", plate)));
   EXPECT_NEAR(footprint_radius_m(object, Eigen::Matrix3d::Identity()), 0.5, 1e-6);
   const Eigen::AngleAxisd on_edge(M_PI / 2.0, Eigen::Vector3d::UnitX());
-  EXPECT_NEAR(footprint_radius_m(object, on_edge.toRotationMatrix()), std::hypot(0.3, 0.1), 1e-6);
+  EXPECT_NEAR(footprint_radius_m(object, on_edge.toRotationMatrix()), 0.3, 1e-6);
+  EXPECT_LT((level_to_middle(object, on_edge.toRotationMatrix()) - Eigen::Vector3d(0.0, -0.1, 0.0)).norm(),
+            1e-6);
   EXPECT_NEAR(lowest_m(object), 0.1, 1e-6);
 }
 
