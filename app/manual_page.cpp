@@ -47,7 +47,7 @@ frame 200  surfaces skirt                    # holes, skirt, border or map
 frame 210  unknown solid                     # or free
 frame 220  radar sampled 64                  # exact or sampled; pixels
 frame 225  quality depth_stride 2 shadows off
-frame 230  camera hold                       # go, rewind, loop or stay
+frame 230  camera hold                       # go, rewind, loop, stay or resume
 frame 300  quit
 .fi
 .SH FILES

@@ -27,6 +27,9 @@ void control(PlaybackSource& source, CameraPlay camera) {
     case CameraPlay::kStay:
       source.set_at_end(camera == CameraPlay::kLoop ? AtEnd::kLoop : AtEnd::kStay);
       break;
+    case CameraPlay::kResume:
+      source.resume();
+      break;
   }
 }
 

@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -53,11 +54,12 @@ constexpr std::array<Word<FramePart>, 4> kFramePartWords = {{{"locate", FramePar
                                                              {"mesh", FramePart::kMesh},
                                                              {"physics", FramePart::kPhysics},
                                                              {"compose", FramePart::kCompose}}};
-constexpr std::array<Word<CameraPlay>, 5> kCameraPlays = {{{"hold", CameraPlay::kHold},
+constexpr std::array<Word<CameraPlay>, 6> kCameraPlays = {{{"hold", CameraPlay::kHold},
                                                            {"go", CameraPlay::kGo},
                                                            {"rewind", CameraPlay::kRewind},
                                                            {"loop", CameraPlay::kLoop},
-                                                           {"stay", CameraPlay::kStay}}};
+                                                           {"stay", CameraPlay::kStay},
+                                                           {"resume", CameraPlay::kResume}}};
 
 /// "add, place or drop"
 template <typename Value, std::size_t kCount>
@@ -321,11 +323,7 @@ Script read_script(const std::filesystem::path& path, LastLine last_line) {
 }
 
 std::string to_line(const ScriptEvent& event) {
-  const auto number = [](double value) {
-    std::array<char, 32> text{};  // the shortest that reads back to the same double
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    return " " + std::string(text.data(), end);
-  };
+  const auto number = [](double value) { return " " + number_text(value); };
   const auto vector = [&](const Eigen::Vector3d& v) { return number(v.x()) + number(v.y()) + number(v.z()); };
 
   const auto turned = [&] {

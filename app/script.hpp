@@ -40,6 +40,7 @@ enum class CameraPlay {
   kRewind,  ///< the source's first frame
   kLoop,    ///< at the end of the source its first frame follows
   kStay,    ///< at the end of the source its last frame is held
+  kResume,  ///< the source's next frame, 1/30 s later: there was a pause, and a device's clock went on
 };
 
 inline constexpr double kMaxTurn_deg = 3600.0;  ///< of one turn, about each axis
@@ -97,7 +98,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 220  radar sampled 64                 exact or sampled; pixels
 ///     frame 225  quality depth_stride 2 shadows off       what is not named is as usual; see quality.hpp
 ///     frame 226  quality from physics object_turns 4      from that part on; mesh, compose
-///     frame 230  camera hold                      this frame stays; go, rewind, loop, stay
+///     frame 230  camera hold                      this frame stays; go, rewind, loop, stay, resume
 ///     frame 300  quit
 ///
 /// What would begin inside another object begins on top of it, if the room is not in the way.

@@ -23,12 +23,13 @@ ReadResult PlaybackSource::next(Frame& frame) {
     if (result.status == ReadStatus::kEnd && at_end_ != AtEnd::kEnd) return repeat(frame);
   }
   if (result.status != ReadStatus::kFrame) return result;
-  if (last_stamp_s_ && (was_rewound_ || was_repeated_)) {
+  if (last_stamp_s_ && (anew_ > 0 || was_repeated_)) {
     const double following_s = *last_stamp_s_ + kFrame_s - frame.stamp_s;
     // A device's clock went on while a frame was held.
-    stamp_offset_s_ = was_rewound_ ? following_s : std::max(stamp_offset_s_, following_s);
+    stamp_offset_s_ = anew_ > 0 ? following_s : std::max(stamp_offset_s_, following_s);
   }
-  was_rewound_ = was_repeated_ = false;
+  anew_ = std::max(anew_ - 1, 0);
+  was_repeated_ = false;
   is_again_ = frame.index <= newest_index_;
   newest_index_ = std::max(newest_index_, frame.index);
   frame.stamp_s += stamp_offset_s_;
@@ -45,7 +46,7 @@ ReadResult PlaybackSource::repeat(Frame& frame) {
 
 bool PlaybackSource::rewind() {
   if (!source_->rewind()) return false;
-  was_rewound_ = true;
+  anew_ = std::max(anew_, 1);
   return true;
 }
 

@@ -23,7 +23,8 @@ constexpr std::string_view to_string(AtEnd at_end) {
 
 /// Passes the frames of the source within on. A frame that is repeated, or follows a rewind, is 1/30 s later
 /// than the one before, so that time goes on for whoever moves objects by it, and so is what follows repeated
-/// frames, unless the source's own clock went on by more meanwhile; index and pose stay the source's.
+/// frames, unless the source's own clock went on by more meanwhile, and what follows a pause; index and pose
+/// stay the source's.
 class PlaybackSource final : public FrameSource {
  public:
   PlaybackSource(std::unique_ptr<FrameSource> source, AtEnd at_end);
@@ -37,6 +38,8 @@ class PlaybackSource final : public FrameSource {
   /// From the next call on: the last frame is repeated, or not any more.
   void hold(bool is_held) { is_held_ = is_held; }
   void set_at_end(AtEnd at_end) { at_end_ = at_end; }
+  /// Nobody has read for a while and time stood still, but for the clock of a device.
+  void resume() { anew_ = 2; }  // one frame may have been read ahead before the pause
 
   [[nodiscard]] bool is_held() const { return is_held_; }
   [[nodiscard]] AtEnd at_end() const { return at_end_; }
@@ -53,7 +56,7 @@ class PlaybackSource final : public FrameSource {
   bool is_again_ = false;
   std::int64_t newest_index_ = -1;      ///< of all that were passed on
   std::optional<double> last_stamp_s_;  ///< as it was passed on
-  bool was_rewound_ = false;            ///< the next frame's stamp does not follow on the last one's
+  int anew_ = 0;                        ///< of so many frames the stamp does not follow on the last one's
   bool was_repeated_ = false;           ///< the last frame was passed on once more
   double stamp_offset_s_ = 0.0;         ///< added to the source's own
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <iterator>
+#include <new>
 
 #include "mapping/types/error.hpp"
 
@@ -31,6 +32,11 @@ std::vector<ScriptEvent> PlayHost::take_events() {
   ready_new_objects(wishes);
   std::vector<ScriptEvent> events = player_.events_of(wishes, session_);
   if (!player_.complaint().empty()) link_.say(player_.complaint());
+  if (is_live_ && link_.take_pause()) {
+    events.emplace_back();
+    events.back().action = Action::kCamera;
+    events.back().camera = CameraPlay::kResume;
+  }
   return events;
 }
 
@@ -42,6 +48,8 @@ void PlayHost::ready_new_objects(std::vector<Wish>& wishes) {
     try {
       parts_ = readying_.get();
       wishes.push_back(new_objects_.front());
+    } catch (const std::bad_alloc&) {
+      link_.say(new_objects_.front().event.mesh + ": there is not memory enough for it");
     } catch (const Error& fault) {
       link_.say(fault.what());
     }
@@ -67,7 +75,7 @@ void PlayHost::show(std::int64_t run_frame, double run_time_s, const Frame& fram
 }
 
 void PlayHost::say_if_a_drop_waits() {
-  const std::string waits = session_.waiting_drops().empty() ? "" : session_.waiting_drops().back().name;
+  const std::string waits = session_.waiting_drops().empty() ? "" : session_.waiting_drops().back().drop.name;
   if (!waits.empty() && waits != said_to_wait_)
     link_.say(waits + " waits for a level surface in view, to be dropped over it");
   said_to_wait_ = waits;

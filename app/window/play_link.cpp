@@ -35,6 +35,7 @@ void PlayLink::ask(Wish wish) {
 void PlayLink::set_paused(bool is_paused) {
   const std::lock_guard lock(mutex_);
   is_paused_ = is_paused;
+  was_paused_ = was_paused_ || is_paused;
   steps_ = 0;
   changed_.notify_all();
 }
@@ -124,6 +125,11 @@ bool PlayLink::wait_turn(double stamp_s, bool in_time, const std::function<void(
     return true;
   }
   return false;
+}
+
+bool PlayLink::take_pause() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(was_paused_, is_paused_);
 }
 
 bool PlayLink::is_closed() const {

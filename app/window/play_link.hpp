@@ -125,6 +125,8 @@ class PlayLink {
   /// `refresh` is called when other views are wanted. Returns false once the window was closed.
   bool wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh);
   [[nodiscard]] bool is_closed() const;
+  /// Whether it was paused since the last call.
+  bool take_pause();
   std::vector<Wish> take_wishes();
   [[nodiscard]] ViewsWanted wanted() const;
   /// Swaps `filled` with a snapshot whose allocations can be used again.
@@ -141,6 +143,7 @@ class PlayLink {
   Snapshot newest_;
   bool is_fresh_ = false;
   bool is_paused_ = false, is_closed_ = false, is_over_ = false;
+  bool was_paused_ = false;  ///< since take_pause()
   int steps_ = 0;
   double speed_ = 1.0;
   ViewsWanted wanted_;

@@ -97,6 +97,17 @@ TEST(PlaybackSource, TimeDoesNotGoOnTwiceWhereADevicesClockDoesWhileItsFrameIsHe
   EXPECT_NEAR(next_of(source, frame).stamp_s, 5.3, 1e-12);
 }
 
+TEST(PlaybackSource, TimeStandsStillInAPauseThoughADevicesClockGoesOn) {
+  PlaybackSource source = numbers(6, AtEnd::kEnd);
+  Frame frame;
+  const double before_s = next_of(source, frame).stamp_s;
+  // The next two come 0.2 and 0.3 s after it by the source's clock.
+  source.resume();
+  EXPECT_NEAR(next_of(source, frame).stamp_s, before_s + kFrame_s, 1e-12);
+  EXPECT_NEAR(next_of(source, frame).stamp_s, before_s + 2 * kFrame_s, 1e-12);
+  EXPECT_NEAR(next_of(source, frame).stamp_s, before_s + 2 * kFrame_s + 0.1, 1e-12);
+}
+
 TEST(PlaybackSource, SaysWhichFramesHadBeenThereBefore) {
   PlaybackSource source = numbers(6, AtEnd::kStay);
   Frame frame;

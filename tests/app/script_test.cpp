@@ -185,7 +185,7 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 quality depth_stride", "the line ends"},
       {"frame 1 quality speed 3", "there is nothing called \"speed\" to set"},
       {"frame 1 quality from nowhere", "unknown word 'nowhere'"},
-      {"frame 1 camera jump", "hold, go, rewind, loop or stay"},
+      {"frame 1 camera jump", "hold, go, rewind, loop, stay or resume"},
   };
   for (const auto& fault : faults) {
     const std::string message = message_of(add + fault.text);
