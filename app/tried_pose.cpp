@@ -55,17 +55,17 @@ bool is_certain(const TriedPose& finding) {
   // People stand before what is known, never behind it. Where the depth leaves a direction open, floorboards
   // repeat along it, and it is for the few edges to say that the pose is wrong.
   constexpr double kMostFarther = 0.12, kMostFartherOpen = 0.05;
-  // There half of some hundred patches may be alike in a wrong place, of which the depth says so, too: the
-  // one or the other has to be clear.
-  constexpr double kClearLook = 0.6, kClearDepth = 0.95;
+  // There two thirds of some hundred patches may be alike in a wrong place, of which the depth says so, too:
+  // the depth has to be clear, or both together.
+  constexpr double kClearTogether = 1.53, kClearDepth = 0.95;
   const Evidence& evidence = finding.evidence;
   const PatchProof& look = finding.look;
   if (!has_pose(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
       evidence.both < 0.2 * evidence.valid)
     return false;
   if (is_proven_by_look(finding)) {
-    const bool is_clear =
-        finding.tracking || look.alike_part() > kClearLook || evidence.alike_part() > kClearDepth;
+    const bool is_clear = finding.tracking || evidence.alike_part() > kClearDepth ||
+                          look.alike_part() + evidence.alike_part() > kClearTogether;
     return is_clear && fit_of(evidence) > 0.4 &&
            evidence.farther_part() < (finding.tracking ? kMostFarther : kMostFartherOpen);
   }

@@ -46,12 +46,15 @@ TEST(TriedPose, DepthAloneMustBeClear) {
   EXPECT_FALSE(is_certain(bare)) << "a direction is open";
 }
 
-TEST(TriedPose, WithADirectionOpenTheOneOrTheOtherIsClear) {
+TEST(TriedPose, WithADirectionOpenTheDepthOrBothTogetherAreClear) {
   // Half of a floor's boards are alike a board's width aside, where the depth says much the same.
   EXPECT_FALSE(is_certain(finding(kOpen, 50, 0.93)));
   EXPECT_TRUE(is_certain(finding(kFixed, 50, 0.93)));
   EXPECT_TRUE(is_certain(finding(kOpen, 65, 0.93)));
   EXPECT_TRUE(is_certain(finding(kOpen, 50, 0.96)));
+  // Two thirds of a rug's flowers are alike some flowers aside; a person before the view takes as much depth.
+  EXPECT_FALSE(is_certain(finding(kOpen, 70, 0.79)));
+  EXPECT_TRUE(is_certain(finding(kOpen, 71, 0.84)));
   EXPECT_FALSE(is_certain(finding(kOpen, 65, 0.90, 0.06))) << "edges stand where none is seen";
   EXPECT_TRUE(is_certain(finding(kFixed, 65, 0.90, 0.06)));
 }
