@@ -294,11 +294,10 @@ Tracking locate(Locator& locator, const Frame& frame, const Places& places, cons
     locator.T_last_now.setIdentity();
     return tracking;
   }
-  locator.T_last_now = locator.T_world_camera
-                           ? Eigen::Isometry3d(locator.T_world_camera->inverse() * tracking.T_world_camera)
-                           : Eigen::Isometry3d::Identity();
-  // What is not fixed by what is seen must not run on for ever with the speed it once had.
-  if (!tracking) locator.T_last_now = exp_twist(0.5 * log_twist(locator.T_last_now));
+  locator.T_last_now =
+      locator.T_world_camera
+          ? expected_motion(tracking, locator.T_world_camera->inverse() * tracking.T_world_camera)
+          : Eigen::Isometry3d::Identity();
   locator.T_world_camera = tracking.T_world_camera;
   return tracking;
 }

@@ -17,11 +17,6 @@ namespace {
 
 constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from all of an object do not push it
 
-/// Of a ball about the middle of the object, which holds all of it.
-double radius_m(const VirtualObject& object) {
-  return 0.5 * object.model->shape.drawn.bounds().sizes().norm();
-}
-
 /// What moves an object that a user's hand holds: no weight, and it slides along what it meets.
 PhysicsConfig in_hand(PhysicsConfig config) {
   config.gravity_world_mps2.setZero();
@@ -155,8 +150,8 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   result.static_triangles_drawn =
       times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
   result.foreground = times.timed("foreground", [&] { return scene_.find_moved(frame); });  // what moved?
-  if (living_map_ && tracking)    // not where the pose is partly a guess
-    times.timed("changes", [&] {  // what came to stay, what is gone?
+  if (living_map_ && tracking)  // what came to stay, what is gone? Not where the pose is partly a guess
+    times.timed("changes", [&] {
       living_map_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
     });
   moved_fraction_ =

@@ -51,7 +51,7 @@ const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
                           const Eigen::Isometry3d& T_world_camera, double error_px) {
   const Eigen::Vector3d middle_camera =
       T_world_camera.inverse() * (object.body.T_world_object * object.model->middle);
-  const double nearest_m = middle_camera.z() - 0.5 * object.model->shape.drawn.bounds().sizes().norm();
+  const double nearest_m = middle_camera.z() - radius_m(object);
   const double pixel_m = nearest_m / std::max(camera.fx_px, camera.fy_px);
   const GpuMesh* mesh = &object.model->shape.drawn;
   for (const DrawnLevel& level : object.model->levels)
@@ -77,6 +77,10 @@ double lowest_m(const VirtualObject& object) {
 
 double highest_m(const VirtualObject& object) {
   return farthest_m(object, object.body.T_world_object.linear().row(2));
+}
+
+double radius_m(const VirtualObject& object) {
+  return 0.5 * object.model->shape.drawn.bounds().sizes().norm();
 }
 
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {

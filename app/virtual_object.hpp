@@ -42,6 +42,8 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
 double lowest_m(const VirtualObject& object);
 double highest_m(const VirtualObject& object);
 
+/// Of a ball about its middle, which holds all of it, m.
+double radius_m(const VirtualObject& object);
 /// How far it reaches sideways from its middle, turned like this, m.
 double footprint_radius_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 /// From its origin to under or over its middle, turned like this, m in the world: a mesh's origin may lie at

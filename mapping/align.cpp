@@ -340,4 +340,8 @@ Tracking align(const LiveView& live, const ReferenceView& reference,
   return align(live, std::span<const PosedReference>(&one, 1), T_world_camera_guess, config);
 }
 
+Eigen::Isometry3d expected_motion(const Tracking& tracking, const Eigen::Isometry3d& T_last_now) {
+  return tracking ? T_last_now : exp_twist(0.5 * log_twist(T_last_now));
+}
+
 }  // namespace roomradar

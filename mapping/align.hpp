@@ -81,4 +81,8 @@ Tracking align(const LiveView& live, const ReferenceView& reference,
 Eigen::Isometry3d exp_twist(const Eigen::Matrix<double, 6, 1>& twist);
 Eigen::Matrix<double, 6, 1> log_twist(const Eigen::Isometry3d& T);
 
+/// What to expect after this motion, which tracking led to: the same, or half of it where not all was fixed
+/// by what was seen. That must not run on for ever with the speed it once had.
+Eigen::Isometry3d expected_motion(const Tracking& tracking, const Eigen::Isometry3d& T_last_now);
+
 }  // namespace roomradar

@@ -307,8 +307,7 @@ Tracking Odometry::track(const Frame& frame) {
     s.choose_keyframe(frame, tracking);
   }
   ++(tracking ? kept.counts.tracked : kept.counts.degenerate);
-  // What is not fixed by what is seen must not run on for ever with the speed it once had.
-  kept.T_last_next = tracking ? T_last_next : exp_twist(0.5 * log_twist(T_last_next));
+  kept.T_last_next = expected_motion(tracking, T_last_next);
   kept.T_world_last = tracking.T_world_camera;
   kept.last_moved_grey.resize(0, 0);
   if (tracking) {

@@ -62,10 +62,12 @@ SurfacePatch take_patch(BinaryReader& in) {
   return patch;
 }
 
-std::uint32_t take_count(BinaryReader& in, const char* what) {
+/// Of items that follow, all of them there.
+std::uint32_t take_count(BinaryReader& in, const char* what, std::size_t item_bytes) {
   const auto count = in.take<std::uint32_t>(what);
   if (count > static_cast<std::uint32_t>(kMostDescribed))
     in.fail("a view of " + std::to_string(count) + " " + what);
+  in.require(count, item_bytes, what);
   return count;
 }
 
@@ -96,8 +98,7 @@ Place take_place(BinaryReader& in) {
   place.preview_depth_mm.resize(static_cast<int>(width), static_cast<int>(height));
   in.take(place.preview_depth_mm.pixels.data(), place.preview_depth_mm.pixels.size(), "preview depth");
 
-  const std::uint32_t features = take_count(in, "features");
-  in.require(features, 3 * sizeof(float) + sizeof(Descriptor), "features");
+  const std::uint32_t features = take_count(in, "features", 3 * sizeof(float) + sizeof(Descriptor));
   place.points_camera.resize(features);
   place.descriptors.resize(features);
   for (Eigen::Vector3f& p : place.points_camera) {
@@ -106,8 +107,7 @@ Place take_place(BinaryReader& in) {
   }
   for (Descriptor& bits : place.descriptors) in.take(bits.data(), bits.size(), "descriptors");
 
-  const std::uint32_t patches = take_count(in, "patches");
-  in.require(patches, 9 * sizeof(float) + 1 + sizeof(Descriptor), "patches");
+  const std::uint32_t patches = take_count(in, "patches", 9 * sizeof(float) + 1 + sizeof(Descriptor));
   place.patches.reserve(patches);
   for (std::uint32_t i = 0; i < patches; ++i) place.patches.push_back(take_patch(in));
   return place;

@@ -36,7 +36,7 @@ struct FusingPass {
   std::int64_t frames_read = 0;                                     ///< in this pass
   StaticMap octree{0.01};
   std::vector<FusedFrame> fused;
-  bool stopped_for_memory = false;  ///< in this pass
+  bool stopped_for_memory = false;           ///< in this pass
   std::optional<GhostRevision> revision;     ///< while the octree is put right where they were
   std::optional<std::int64_t> ghost_voxels;  ///< once it is
 };

@@ -27,8 +27,8 @@ enum class Touched {
 };
 constexpr std::size_t kTouchedKinds = 6;
 
-/// Surfaces that nobody has seen are met from their outside only: they keep nothing in, so that what they came
-/// about, or was put behind them, can leave.
+/// Surfaces that nobody has seen are met from their outside only: they keep nothing in, so that what they
+/// came about, or was put behind them, can leave.
 constexpr bool is_one_sided(Touched touched) {
   return touched == Touched::kUnknownFrontier || touched == Touched::kInferredBack;
 }

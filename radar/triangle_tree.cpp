@@ -358,9 +358,10 @@ class FaceFinder {
     double weight_m2 = 0.0;
 
     void add(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& area) {
+      const double weight = area.norm();
       area_m2 += area;
-      moment_m3 += area.norm() / 3.0 * (corners[0] + corners[1] + corners[2]);
-      weight_m2 += area.norm();
+      moment_m3 += weight / 3.0 * (corners[0] + corners[1] + corners[2]);
+      weight_m2 += weight;
     }
     [[nodiscard]] bool holds(const std::array<Eigen::Vector3d, 3>& corners, double within_m) const {
       const Eigen::Vector3d normal = area_m2.stableNormalized(), middle = moment_m3 / weight_m2;
