@@ -8,6 +8,7 @@
 #include "app/calibration/calibrated_source.hpp"
 #include "app/session_folder.hpp"
 #include "app/sim/simulated_source.hpp"
+#include "app/sources/camera_rig.hpp"
 #include "app/sources/fakenect_replay.hpp"
 #include "app/sources/folder_source.hpp"
 #include "app/sources/kinect_source.hpp"
@@ -52,12 +53,29 @@ std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceO
   return open_folder(source, options);
 }
 
+/// Whether a folder's frames were freed of lens and depth errors before they were recorded.
+bool was_calibrated(const std::string& source) {
+  std::filesystem::path folder = source;
+  if (source.starts_with(kKinect)) {
+    const auto replayed = replayed_folder();
+    if (!replayed) return false;
+    folder = *replayed;
+  }
+  if (is_session_folder(folder)) return is_session_calibrated(folder);
+  return std::filesystem::exists(folder / "camera.json") &&
+         read_camera_file(folder / "camera.json").was_calibrated;
+}
+
 }  // namespace
 
 std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen) {
   if (!chosen.empty()) return chosen;
   const std::filesystem::path in_folder = std::filesystem::path(source) / "calibration.json";
   return std::filesystem::exists(in_folder) ? in_folder : std::filesystem::path{};
+}
+
+bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen) {
+  return !calibration_for(source, chosen).empty() || was_calibrated(source);
 }
 
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
@@ -70,6 +88,10 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
                 ": registered depth is seen from the colour camera, and a calibration is the depth camera's: "
                 "take ?depth=raw or ?depth=mm with it");
   std::unique_ptr<FrameSource> opened = open_whole(source, options);
+  if ((options.as_recorded || !used.empty()) && was_calibrated(source))
+    throw Error(source + ": its frames were freed of lens and depth errors before they were recorded; " +
+                (used.empty() ? "a calibration is made from frames as the device gives them"
+                              : used.string() + " would do so a second time: leave it out"));
   if (!used.empty()) opened = calibrated(std::move(opened), read_calibration(used));
   if (!frames) {
     if (!opened->frame_count() && !replayed_folder())

@@ -15,10 +15,15 @@ namespace roomradar {
 /// source's folder; empty: none.
 std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen);
 
+/// Whether frames that open_source gives are freed of lens and depth errors: by calibration_for's file, or
+/// before they were recorded. Throws Error as reading the recording's description of itself does.
+bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen);
+
 /// `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder with a recording or a
 /// recorded session, recognised by what is in it; only `frames` of it where given. With a calibration, or a
 /// file calibration.json in the folder, frames are as the calibrated cameras would have taken them. Throws
-/// Error saying what SOURCE can be if it is none of these, and whatever opening it or the calibration throws.
+/// Error saying what SOURCE can be if it is none of these, if its frames would be calibrated a second time,
+/// and whatever opening it or the calibration throws.
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});

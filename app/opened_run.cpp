@@ -171,7 +171,8 @@ void open_outputs(OpenedRun& run) {
 void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
   const RunCommand& command = run.command;
   if (command.record_session.empty()) return;
-  run.recorder.emplace(command.record_session, command, run.map.info);
+  run.recorder.emplace(command.record_session, command, run.map.info,
+                       gives_calibrated_frames(command.source, command.calibration));
   // As they were loaded: a user may ask for one before its turn.
   for (const ScriptEvent& event : run.script.events)
     if (event.action == Action::kAdd) run.recorder->write(run.recorder->with_mesh_kept(event), 0);

@@ -36,7 +36,8 @@ int run(const RecordCommand& command) {
   const std::unique_ptr<FrameSource> source =
       ended_by_interrupt(open_source(command.source, command.frames, command.calibration, options));
   const bool is_live = !source->rewind();
-  RecordingWriter writer(command.folder, command.format);
+  RecordingWriter writer(command.folder, command.format,
+                         gives_calibrated_frames(command.source, command.calibration));
   std::int64_t skipped = 0;
   DroppedFrames dropped;
   {

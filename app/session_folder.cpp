@@ -86,7 +86,8 @@ void require_can_become_session(const fs::path& folder) {
                 ": is not empty; a session is recorded to a folder of its own, name a new one");
 }
 
-SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map)
+SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map,
+                                 bool are_calibrated)
     : folder_(std::move(folder)) {
   std::error_code fault;
   fs::create_directories(folder_, fault);
@@ -95,6 +96,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
   Json json = {{"format", kFormat},
                {"format_version", kFormatVersion},
                {"source", command.source},
+               {"calibrated", are_calibrated},
                {"map", fs::absolute(command.map).lexically_normal().string()},
                {"map_sha256", checksum_of(map)},
                {"poses", to_string(command.poses)},
@@ -150,6 +152,14 @@ void SessionRecorder::write(const FrameFingerprint& fingerprint) {
 bool is_session_folder(const fs::path& folder) {
   std::error_code fault;
   return fs::is_regular_file(folder / kSettings, fault);
+}
+
+bool is_session_calibrated(const fs::path& folder) {
+  const Json json = read_settings(folder);
+  const auto said = json.find("calibrated");
+  if (said != json.end() && !said->is_boolean())
+    throw Error((folder / kSettings).string() + ": calibrated is not true or false");
+  return said != json.end() && said->get<bool>();
 }
 
 bool is_session_events(const fs::path& file) {

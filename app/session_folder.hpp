@@ -30,7 +30,9 @@ class SessionRecorder {
  public:
   /// Makes the folder, or takes an empty one. Throws Error if it holds anything, or cannot be written.
   /// @param map  as it was loaded; its checksums tell later whether it is still the same
-  SessionRecorder(std::filesystem::path folder, const RunCommand& command, const MapInfo& map);
+  /// @param are_calibrated  frames are freed of lens and depth errors
+  SessionRecorder(std::filesystem::path folder, const RunCommand& command, const MapInfo& map,
+                  bool are_calibrated);
 
   /// The source, which from now on is recorded as it is read, and can be read again.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
@@ -50,6 +52,9 @@ class SessionRecorder {
 
 /// Whether a folder holds a recorded session.
 bool is_session_folder(const std::filesystem::path& folder);
+/// Whether a session's frames were freed of lens and depth errors before they were recorded. Throws Error
+/// naming the file and the fault.
+bool is_session_calibrated(const std::filesystem::path& folder);
 /// Whether a file is the events of such a folder.
 bool is_session_events(const std::filesystem::path& file);
 

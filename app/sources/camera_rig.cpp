@@ -138,13 +138,20 @@ void write_json(const Json& root, const std::filesystem::path& path) {
 }
 
 CameraRig read_camera_file(const std::filesystem::path& path) {
-  return rig_from_json(parse_json_of_format(path, kFormat, kVersion), path.string());
+  const Json root = parse_json_of_format(path, kFormat, kVersion);
+  CameraRig rig = rig_from_json(root, path.string());
+  if (root.contains("calibrated")) {
+    if (!root["calibrated"].is_boolean()) throw Error(path.string() + ": calibrated is not true or false");
+    rig.was_calibrated = root["calibrated"].get<bool>();
+  }
+  return rig;
 }
 
 void write_camera_file(const CameraRig& rig, const std::filesystem::path& path) {
   Json root = json_of(rig);
   root["format"] = kFormat;
   root["version"] = kVersion;
+  if (rig.was_calibrated) root["calibrated"] = true;
   write_json(root, path);
 }
 

@@ -72,8 +72,8 @@ std::string_view to_string(RecordingFormat format) {
   return "unknown";
 }
 
-RecordingWriter::RecordingWriter(fs::path folder, RecordingFormat format)
-    : folder_(std::move(folder)), format_(format) {
+RecordingWriter::RecordingWriter(fs::path folder, RecordingFormat format, bool are_calibrated)
+    : folder_(std::move(folder)), format_(format), are_calibrated_(are_calibrated) {
   make_folder(folder_);
   std::error_code fault;
   if (!fs::is_empty(folder_, fault))
@@ -92,7 +92,7 @@ void RecordingWriter::write(const Frame& frame) {
     throw Error(where + "stamp " + fixed_6(frame.stamp_s) + " s is not later than the one before, " +
                 fixed_6(last_stamp_s_) + " s");
 
-  CameraRig rig{frame.depth_camera, {}, frame.T_colour_depth};
+  CameraRig rig{frame.depth_camera, {}, frame.T_colour_depth, are_calibrated_};
   if (frame.colour_camera.width_px > 0) rig.colour_camera = frame.colour_camera;
   if (!rig_) {
     rig_ = rig;

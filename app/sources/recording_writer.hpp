@@ -28,7 +28,8 @@ std::string_view to_string(RecordingFormat format);
 class RecordingWriter {
  public:
   /// Makes the folder, or takes an empty one. Throws Error if it holds anything or cannot be written.
-  RecordingWriter(std::filesystem::path folder, RecordingFormat format);
+  /// @param are_calibrated  frames are freed of lens and depth errors; camera.json says so
+  RecordingWriter(std::filesystem::path folder, RecordingFormat format, bool are_calibrated = false);
 
   /// Throws Error if a file cannot be written, if the cameras change, if the stamp does not advance, or if
   /// the images are not of the cameras' size.
@@ -47,6 +48,7 @@ class RecordingWriter {
 
   std::filesystem::path folder_;
   RecordingFormat format_;
+  bool are_calibrated_;
   std::optional<CameraRig> rig_;
   double last_stamp_s_ = 0.0;
   double left_out_s_ = 0.0;     // of long gaps, as kFakenect keeps none
