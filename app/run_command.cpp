@@ -1,10 +1,10 @@
 // run_command.cpp: roomradar run: augmented reality in a saved room.
 #include <cstdio>
-#include <exception>
 #include <string>
 #include <vector>
 
 #include "app/commands.hpp"
+#include "app/faults.hpp"
 #include "app/opened_run.hpp"
 #include "app/run_loop.hpp"
 #include "app/window/play_window.hpp"
@@ -31,31 +31,6 @@ nlohmann::json report_replay(const ReplayCheck& check) {
   std::fprintf(stderr, "\n");
   return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
 }
-
-/// What goes wrong while a run is played or put away. The rest of it is put away all the same.
-class Faults {
- public:
-  template <typename Act>
-  void attempt(const Act& act) {
-    try {
-      act();
-    } catch (const std::exception& error) {
-      if (first_.empty())
-        first_ = error.what();
-      else
-        std::fprintf(stderr, "roomradar: %s\n", error.what());
-    }
-  }
-  /// Empty: none.
-  [[nodiscard]] const std::string& first() const { return first_; }
-  /// Throws Error with the first of them; the others were said when they came.
-  void throw_first() const {
-    if (!first_.empty()) throw Error(first_);
-  }
-
- private:
-  std::string first_;
-};
 
 /// Plays, saves, reports and prints what the run came to; the exit status.
 int play(OpenedRun& run) {

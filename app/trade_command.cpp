@@ -1,7 +1,9 @@
 // trade_command.cpp: roomradar trade: what accuracy costs, measured.
+#include <algorithm>
 #include <cstdio>
 
 #include "app/commands.hpp"
+#include "app/faults.hpp"
 #include "app/interrupt.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
@@ -22,23 +24,49 @@
 namespace roomradar {
 namespace {
 
+TradeScale scale_of(const TradeCommand& command) { return command.quick ? kQuickScale : TradeScale{}; }
+
+/// Throws Error if more is said of the room than a scan in it would heed.
+void require_scan_room(const std::string& room, SimOptions options) {
+  const SimOptions usual;
+  const std::string said = sim_spec(options);
+  options.frames = usual.frames;
+  options.rate_hz = usual.rate_hz;
+  options.depth_camera = usual.depth_camera;
+  if (sim_spec(options) != said)
+    throw Error("trade: " + room +
+                ": how many frames there are, how fast and how wide, is the sweep's own; "
+                "leave out frames=, rate= and width=");
+}
+
+/// Throws Error if more is said of the room than a run in it would heed, or if it hides no surface.
+void require_run_room(const std::string& room, const SimOptions& options) {
+  SimOptions heeded;
+  heeded.room = options.room;
+  heeded.seed = options.seed;
+  if (sim_spec(heeded) != sim_spec(options))
+    throw Error("trade: " + room +
+                ": of a run's room only its name and seed can be chosen; leave out the rest, "
+                "or take --only prescan");
+  (void)make_scenario(make_scenario_room(options.room, options.seed), options.seed, 0);
+}
+
 /// A scene that cannot be measured in is said now, and not when the sweep comes to it.
 void require_scenes(const TradeCommand& command) {
+  const bool scans = command.only != "run" && !command.table1,
+             runs = command.only != "prescan" || command.table1;
   for (const std::string& room : command.rooms) {
     const SimOptions options = parse_sim_spec("sim:" + room);
-    if (command.only == "prescan" || command.table1) continue;
-    if (!options.with_colour || !options.registered_colour)
-      throw Error(
-          "trade: " + room +
-          ": pictures are judged in the depth camera's view; leave out colour=, or take --only prescan");
-    (void)make_scenario(make_scenario_room(options.room, options.seed), options.seed, 0);
+    if (scans) require_scan_room(room, options);
+    if (runs) require_run_room(room, options);
   }
-  for (const std::string& recording : command.recordings)
-    (void)frames_of_recording(recording, 2 * kFewestTradeFrames);
+  const TradeScale scale = scale_of(command);
+  const int read = std::max(scans ? scale.scan_frames : 0, runs ? scale.map_frames + scale.run_frames : 0);
+  for (const std::string& recording : command.recordings) (void)frames_of_recording(recording, read);
 }
 
 std::vector<TradeWork> works_of(const TradeCommand& command) {
-  const TradeScale scale = command.quick ? kQuickScale : TradeScale{};
+  const TradeScale scale = scale_of(command);
   std::vector<TradeWork> works;
   if (command.only != "run") works.push_back(prescan_work(command.rooms, command.recordings, scale));
   if (command.only != "prescan")
@@ -103,6 +131,14 @@ TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& sto
   return result;
 }
 
+/// "sim:table; sim:random?seed=2; kitchen"
+std::string scenes_of(const TradeCommand& command) {
+  std::string scenes;
+  for (const std::string& room : command.rooms) scenes += (scenes.empty() ? "sim:" : "; sim:") + room;
+  for (const std::string& recording : command.recordings) scenes += (scenes.empty() ? "" : "; ") + recording;
+  return scenes;
+}
+
 /// What a preset is, in a line.
 void print_preset(const TradeResult& result, std::size_t setting) {
   const SettingSummary& summary = result.summaries[setting];
@@ -139,7 +175,7 @@ nlohmann::json to_json(const TradeResult& result) {
 }
 
 int print_table1(const TradeCommand& command, Report report) {
-  const Table1 table = measure_table1(command.rooms.front(), command.quick ? kQuickScale : TradeScale{});
+  const Table1 table = measure_table1(command.rooms.front(), scale_of(command));
   report.renderer = table.renderer;
   report.results["table1"] = to_json(table);
   std::fputs(text_of(table).c_str(), stdout);
@@ -154,8 +190,7 @@ int run(const TradeCommand& command) {
     require_writable(path);
   Report report;
   report.command = "trade";
-  report.source = "simulated rooms";
-  for (const std::string& recording : command.recordings) report.source += "; " + recording;
+  report.source = scenes_of(command);
   report.settings = {{"rooms", command.rooms}, {"settings", command.settings}, {"repeats", command.repeats},
                      {"seed", command.seed},   {"time", command.time},         {"quick", command.quick},
                      {"only", command.only},   {"objects", command.objects}};
@@ -167,20 +202,21 @@ int run(const TradeCommand& command) {
   TradeCsv csv(command.csv, works);
   Stop stop;
   std::vector<TradeResult> results;
-  std::string faults;  // what was measured before them is written all the same
-  const auto add_fault = [&](const std::string& fault) { faults += (faults.empty() ? "" : "; ") + fault; };
+  Faults faults;  // what was measured before them is written all the same
   for (const TradeWork& work : works) {
     TradeResult result;
     if (!stop.asked())
       result = report.times.timed(work.name, [&] { return traded(work, command, stop, csv); });
-    if (!result.fault.empty()) add_fault(work.name + ": " + result.fault);
+    if (!result.fault.empty()) faults.add("trade: " + work.name + ": " + result.fault);
     if (!result.rows.empty())
       results.push_back(std::move(result));
     else if (result.fault.empty())
       std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
   }
-  if (results.empty())
-    throw Error("trade: " + (faults.empty() ? "stopped by Ctrl-C before anything was measured" : faults));
+  if (results.empty()) {
+    faults.throw_first();
+    throw Error("trade: stopped by Ctrl-C before anything was measured");
+  }
   for (const TradeResult& result : results) {
     print_presets(result);
     report.results[result.work.name] = to_json(result);
@@ -190,18 +226,11 @@ int run(const TradeCommand& command) {
     for (const std::string& setting : faults_of(result))
       std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
   }
-  const auto write = [&](const auto& output) {
-    try {
-      output();
-    } catch (const Error& error) {
-      add_fault(error.what());
-    }
-  };
-  write([&] {
+  faults.attempt([&] {
     for (const TradeResult& result : results)
       csv.write(result.work, result.summaries, result.usual, result.choice);
   });
-  write([&] {
+  faults.attempt([&] {
     write_trade_page(
         results,
         {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
@@ -210,22 +239,29 @@ int run(const TradeCommand& command) {
              " repeats in each scene" + (command.quick ? ", quick: few frames of small images" : "")},
         command.html);
   });
-  write([&] {
+  faults.attempt([&] {
     if (command.presets.empty()) return;
     if (results.size() < 2)
       throw Error(command.presets + ": not written: only " + results.front().work.name +
                   " was measured, and presets are of both");
+    for (const TradeResult& result : results)
+      if (result.was_cut_short)
+        throw Error(command.presets + ": not written: " + result.work.name +
+                    " was cut short, and presets are chosen from all that was asked for");
     write_presets(chosen_presets(results, {{"processor", machine.processor},
                                            {"renderer", machine.renderer},
                                            {"system", machine.system},
+                                           {"scenes", report.source},
+                                           {"settings", std::to_string(command.settings)},
+                                           {"repeats", std::to_string(command.repeats)},
                                            {"seed", std::to_string(command.seed)},
                                            {"compared_by", command.time},
                                            {"objects", std::to_string(command.objects)},
                                            {"scale", command.quick ? "quick" : "full"}}),
                   command.presets);
   });
-  write([&] { write_report(report, command.report); });
-  if (!faults.empty()) throw Error("trade: " + faults);
+  faults.attempt([&] { write_report(report, command.report); });
+  faults.throw_first();
   return 0;
 }
 

@@ -45,6 +45,14 @@ void mark_edges(const ObjectLayer& layer, const Occlusion& occlusion, MaskImage&
 
 }  // namespace
 
+PictureErrors& PictureErrors::operator+=(const PictureErrors& other) {
+  difference += other.difference;
+  object_pixels += other.object_pixels;
+  edge_difference += other.edge_difference;
+  edge_pixels += other.edge_pixels;
+  return *this;
+}
+
 PictureJudge::PictureJudge(const std::vector<Mesh>& objects) : drawer_(context_) {
   for (const Mesh& mesh : objects) objects_.push_back(object_of(context_, "judged", mesh, objects_));
 }
@@ -67,27 +75,21 @@ PictureErrors PictureJudge::errors_of(const JudgedPicture& judged, const Frame& 
   cast_shadows(frame.colour, frame.colour_camera, T_world_camera, true_depth_m, casters,
                config.shadow_strength, right_);
   lay_objects(layer_, true_depth_m, config.occlusion, occlusion_, right_);
-  double sum = 0.0;
-  std::size_t changed = 0;
-  for (std::size_t i = 0; i < right_.pixels.size(); ++i) {
-    sum += difference(right_.pixels[i], judged.picture.pixels[i]);
-    changed += difference(right_.pixels[i], frame.colour.pixels[i]) > 0.0 ? 1 : 0;
-  }
   PictureErrors errors;
-  if (changed > 0) errors.whole = sum / static_cast<double>(changed);
+  for (std::size_t i = 0; i < right_.pixels.size(); ++i) {
+    errors.difference += difference(right_.pixels[i], judged.picture.pixels[i]);
+    errors.object_pixels += difference(right_.pixels[i], frame.colour.pixels[i]) > 0.0 ? 1 : 0;
+  }
 
   mark_edges(layer_, occlusion_, edges_);
-  double edge_sum = 0.0;
-  std::size_t on_edge = 0;
   for (int y = 0; y < edges_.height; ++y) {
     for (int x = 0; x < edges_.width; ++x) {
       if (edges_.at(x, y) == 0) continue;
       const int u = occlusion_.rect.x + x, v = occlusion_.rect.y + y;
-      edge_sum += difference(right_.at(u, v), judged.picture.at(u, v));
-      ++on_edge;
+      errors.edge_difference += difference(right_.at(u, v), judged.picture.at(u, v));
+      ++errors.edge_pixels;
     }
   }
-  if (on_edge > 0) errors.at_edges = edge_sum / static_cast<double>(on_edge);
   return errors;
 }
 

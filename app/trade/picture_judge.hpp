@@ -1,6 +1,6 @@
 // picture_judge.hpp: how far a composed picture is from the one that the truth would give.
 #pragma once
-#include <limits>
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -24,14 +24,20 @@ struct JudgedPicture {
   std::vector<JudgedObject> objects;
 };
 
-/// How far a picture is from the right one: the colours' differences (0 to 1, mean of the channels).
+/// How far pictures are from the right ones: the colours' differences (0 to 1, mean of the channels), summed
+/// over all of them before they are divided: where an object is all but hidden, one picture alone says
+/// little.
 struct PictureErrors {
-  /// Summed over the whole picture, for each pixel in which the right one is not the camera's own; 0 where it
-  /// is so everywhere.
-  double whole = 0.0;
-  /// Mean over the pixels that lie within kEdgeBand_px of where the right picture begins to hide an object;
-  /// NaN where nothing does.
-  double at_edges = std::numeric_limits<double>::quiet_NaN();
+  double difference = 0.0;        ///< of all pixels
+  std::size_t object_pixels = 0;  ///< in which the right picture is not the camera's own
+  double edge_difference = 0.0;   ///< of the pixels near an edge
+  std::size_t edge_pixels = 0;    ///< within kEdgeBand_px of where the right picture begins to hide an object
+
+  PictureErrors& operator+=(const PictureErrors& other);
+  /// For each pixel of the objects; NaN where the right pictures show none.
+  [[nodiscard]] double whole() const { return difference / static_cast<double>(object_pixels); }
+  /// For each pixel near an edge; NaN where there is none.
+  [[nodiscard]] double at_edges() const { return edge_difference / static_cast<double>(edge_pixels); }
 };
 inline constexpr int kEdgeBand_px = 4;
 

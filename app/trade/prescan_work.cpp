@@ -88,7 +88,6 @@ std::array<double, 3> surface_errors(const ScanScene& scene, const PrescanResult
 }
 
 Readings measure(const ScanScene& scene, const Setting& setting) {
-  release_unused_memory();
   keep_large_blocks_apart();
   const std::size_t start_bytes = resident_bytes();
   PrescanConfig config;

@@ -50,28 +50,21 @@ std::vector<FigureName> figures() {
   return names;
 }
 
-/// Means over the true views; at edges of those that have any.
+/// Of all true views together.
 PictureErrors picture_errors(const RunScene& scene, const RunSetting& setting, const Mesh& object,
                              const RunFacts& facts) {
   PictureJudge judge(std::vector<Mesh>(static_cast<std::size_t>(setting.objects), object));
-  double whole = 0.0, at_edges = 0.0;
-  int views = 0, views_with_edges = 0;
+  PictureErrors errors;
   for (std::size_t i = 0; i < facts.pictures.size(); ++i) {
     const TrueView& view = scene.true_views[i];
     const Frame& frame = scene.frames[view.frame];
-    const PictureErrors errors = judge.errors_of(facts.pictures[i], frame, view.depth_m,
-                                                 scene.map.info.T_world_recorded * *frame.T_world_camera);
-    whole += errors.whole;
-    ++views;
-    if (!std::isfinite(errors.at_edges)) continue;
-    at_edges += errors.at_edges;
-    ++views_with_edges;
+    errors += judge.errors_of(facts.pictures[i], frame, view.depth_m,
+                              scene.map.info.T_world_recorded * *frame.T_world_camera);
   }
-  return {views > 0 ? whole / views : kNone, views_with_edges > 0 ? at_edges / views_with_edges : kNone};
+  return errors;
 }
 
 Readings measure(const RunScene& scene, const Setting& words) {
-  release_unused_memory();
   const RunSetting setting = run_setting_of(words);
   const Mesh object = object_mesh("teapot");
   const RunFacts facts = run_session(scene, setting, object);
@@ -89,8 +82,8 @@ Readings measure(const RunScene& scene, const Setting& words) {
   for (const double figure :
        {facts.moved_ms, facts.memory_mb, facts.dynamic_triangles, facts.static_triangles, facts.pose_error_m,
         1.0 - facts.located, contact.error_median_m, contact.error_p95_m, contact.passed, contact.false_stops,
-        contact.moved.error_median_m, contact.moved.error_p95_m, contact.moved.missed, picture.whole,
-        picture.at_edges, facts.object_age_ms})
+        contact.moved.error_median_m, contact.moved.error_p95_m, contact.moved.missed, picture.whole(),
+        picture.at_edges(), facts.object_age_ms})
     figures.push_back(figure);
   return figures;
 }

@@ -641,21 +641,42 @@ TEST(PictureJudge, SaysHowFarAnEdgeThatHidesAnObjectIsFromItsPlace) {
     return judge.errors_of(judged, scene.frame, true_depth_m, Eigen::Isometry3d::Identity());
   };
   const PictureErrors none = errors_of(right, scene.true_depth_m);
-  EXPECT_EQ(none.whole, 0.0);
-  EXPECT_EQ(none.at_edges, 0.0);
+  EXPECT_EQ(none.whole(), 0.0);
+  EXPECT_EQ(none.at_edges(), 0.0);
   const PictureErrors one = errors_of(off_by_one, scene.true_depth_m);
   const PictureErrors three = errors_of(off_by_three, scene.true_depth_m);
-  EXPECT_GT(one.at_edges, 0.02);
-  EXPECT_NEAR(three.at_edges / one.at_edges, 3.0, 1.0);
+  EXPECT_GT(one.at_edges(), 0.02);
+  EXPECT_NEAR(three.at_edges() / one.at_edges(), 3.0, 1.0);
   // An object that nothing hides, or of which nothing shows, begins to be hidden nowhere.
-  EXPECT_TRUE(std::isnan(errors_of(right, DepthImage(160, 120, 3.0F)).at_edges));
-  EXPECT_TRUE(std::isnan(errors_of(right, DepthImage(160, 120, 0.5F)).at_edges));
+  EXPECT_TRUE(std::isnan(errors_of(right, DepthImage(160, 120, 3.0F)).at_edges()));
+  EXPECT_TRUE(std::isnan(errors_of(right, DepthImage(160, 120, 0.5F)).at_edges()));
   // What is wrong elsewhere is not said of edges.
   JudgedPicture spoilt = right;
   spoilt.picture.at(3, 3) = {255, 255, 255};
   const PictureErrors elsewhere = errors_of(spoilt, scene.true_depth_m);
-  EXPECT_GT(elsewhere.whole, 0.0);
-  EXPECT_EQ(elsewhere.at_edges, 0.0);
+  EXPECT_GT(elsewhere.whole(), 0.0);
+  EXPECT_EQ(elsewhere.at_edges(), 0.0);
+}
+
+TEST(PictureJudge, WhatIsDrawnOverWhatHidesItCounts) {
+  const TwoSides scene;
+  const DepthImage before_it(160, 120, 0.5F), behind_it(160, 120, 3.0F);
+  const JudgedPicture shown = scene.shown(behind_it);
+  PictureJudge judge({scene.teapot});
+  const auto errors_of = [&](const DepthImage& true_depth_m) {
+    return judge.errors_of(shown, scene.frame, true_depth_m, Eigen::Isometry3d::Identity());
+  };
+  const PictureErrors over = errors_of(before_it);
+  EXPECT_GT(over.difference, 0.0);
+  EXPECT_EQ(over.object_pixels, 0U);
+  EXPECT_FALSE(std::isfinite(over.whole())) << "by itself it has no object's pixel to be divided by";
+  PictureErrors both = errors_of(behind_it);
+  ASSERT_GT(both.object_pixels, 100U);
+  EXPECT_EQ(both.difference, 0.0);
+  both += over;
+  EXPECT_EQ(both.whole(), over.difference / static_cast<double>(both.object_pixels));
+  EXPECT_FALSE(std::isfinite(PictureErrors{}.whole()));
+  EXPECT_FALSE(std::isfinite(PictureErrors{}.at_edges()));
 }
 
 TEST(TradeWorks, ASourceWithoutPosesIsRefusedBeforeAnythingIsMeasured) {
