@@ -195,7 +195,7 @@ void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
   const RunCommand recorded = read_session(command.source);
   const auto is_given = [&](const char* name) { return sub.count(name) > 0; };
   if (is_given("--calibration"))
-    throw CLI::ValidationError("--calibration: a recorded session's frames are calibrated already");
+    throw CLI::ValidationError("--calibration: a recorded session is played with the frames that it has");
   if (is_given("--frames"))
     throw CLI::ValidationError(
         "--frames: a recorded session is played from its first frame, which its events count from");
@@ -398,6 +398,7 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
   add_choice(*sub, "--poses", command.poses, kPoses,
              "find the frame's camera in the map (tracked), or take the recording's own pose");
   add_frames_option(*sub, command.frames);
+  add_calibration_option(*sub, command.calibration);
   sub->add_option("--cell", command.cell_m, "edge of the grid's cells, metres (0.1)")
       ->check(within(0.01, 10.0, "metres"))
       ->type_name("M");
@@ -428,8 +429,8 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
   one->needs(video);
   video->needs(one);
   add_report_option(*sub, command.report);
-  const std::vector<std::string> of_source{"--map",    "--reference", "--poses",
-                                           "--frames", "--cell",      "--picture"},
+  const std::vector<std::string> of_source{"--map",         "--reference", "--poses",  "--frames",
+                                           "--calibration", "--cell",      "--picture"},
       of_rooms{"--scenarios", "--seed", "--random-rooms", "--threads", "--maps",
                "--csv",       "--html", "--scenario",     "--video"},
       of_many{"--scenarios", "--threads", "--csv", "--html", "--report"};

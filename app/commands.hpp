@@ -119,6 +119,7 @@ struct FallthroughCommand {
   std::string reference;  ///< map whose surface is taken as the truth; empty: `map` itself
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
+  std::string calibration;
   double cell_m = 0.1;
   std::string picture;  ///< plan of the room
 

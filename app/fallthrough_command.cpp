@@ -14,6 +14,7 @@
 #include "app/fallthrough/totals.hpp"
 #include "app/fallthrough/trial.hpp"
 #include "app/fallthrough/trial_pictures.hpp"
+#include "app/faults.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
 
@@ -24,15 +25,14 @@ using Rooms = std::vector<std::unique_ptr<MappedRoom>>;
 
 /// Scenario after scenario under all policies; `threads` of them are made ready ahead.
 std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughCommand& command, int threads) {
-  const auto room_of = [&](int number) { return static_cast<std::size_t>(number) % rooms.size(); };
   std::deque<std::future<std::unique_ptr<PreparedScenario>>> ahead;
   int next = 0;
   const auto prepare_next = [&] {
-    const ScenarioRoom& room = rooms[room_of(next)]->scanned.simulated;
-    ahead.push_back(std::async(std::launch::async, [&room, seed = command.seed, number = next] {
+    const ScenarioTurn turn = turn_of(next++, rooms.size());
+    const ScenarioRoom& room = rooms[turn.room]->scanned.simulated;
+    ahead.push_back(std::async(std::launch::async, [&room, seed = command.seed, number = turn.number] {
       return std::make_unique<PreparedScenario>(room, seed, number);
     }));
-    ++next;
   };
   Progress progress("scenarios", command.scenarios);
   std::vector<ScenarioRow> rows;
@@ -41,8 +41,9 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughComm
     while (next < command.scenarios && ahead.size() < static_cast<std::size_t>(threads)) prepare_next();
     const std::unique_ptr<PreparedScenario> prepared = ahead.front().get();
     ahead.pop_front();
-    MappedRoom& room = *rooms[room_of(number)];
-    rows.push_back(row_of(prepared->scenario, room_of(number), room.scanned.title));
+    const std::size_t room_number = turn_of(number, rooms.size()).room;
+    MappedRoom& room = *rooms[room_number];
+    rows.push_back(row_of(prepared->scenario, number, room_number, room.scanned.title));
     // All have seen the frame before any is timed, and each is the first in turn.
     for (std::size_t i = 0; i < kPolicyCount; ++i)
       (void)show_frame(*prepared, 0, {.policy = kFallthroughPolicies[i].surfaces}, {}, *room.scenes[i]);
@@ -69,7 +70,7 @@ std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vect
       if (verdict.outcome == Outcome::kStoppedRight) continue;
       if (left-- == 0) break;
       MappedRoom& room = *rooms[row.room];
-      PreparedScenario prepared(room.scanned.simulated, seed, row.number);
+      PreparedScenario prepared(room.scanned.simulated, seed, turn_of(row.number, rooms.size()).number);
       char number[80];
       std::snprintf(number, sizeof number, "%+.1f cm; scenario %lld, ", 100.0 * verdict.error_m,
                     static_cast<long long>(row.number));
@@ -89,10 +90,11 @@ int replay(const FallthroughCommand& command, const RoomScan& scan) {
   require_writable(command.video);
   VideoWriter video(command.video, kReplayPicturesPerS);
   const std::vector<RoomChoice> choices = choose_rooms(command.random_rooms);
-  const std::vector<RoomChoice> one{choices[static_cast<std::size_t>(*command.scenario) % choices.size()]};
+  const ScenarioTurn turn = turn_of(*command.scenario, choices.size());
+  const std::vector<RoomChoice> one{choices[turn.room]};
   GlContext context;
   const Rooms rooms = map_rooms(context, one, scan, 1);
-  PreparedScenario prepared(rooms.front()->scanned.simulated, command.seed, *command.scenario);
+  PreparedScenario prepared(rooms.front()->scanned.simulated, command.seed, turn.number);
   CyberRadar radar;
   write_replay(prepared, *rooms.front(), radar, video);
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
@@ -138,10 +140,14 @@ int run(const FallthroughCommand& command) {
   report.results["scenarios"] = command.scenarios;
   report.results["policies"] = to_json(totals);
   report.results["failures"] = failures_of(rows);
-  write_csv(rows, command.csv);
-  if (!command.html.empty())
-    write_page(rows, about, picture_failures(rooms, rows, command.seed), command.html);
-  write_report(report, command.report);
+  Faults faults;
+  faults.attempt([&] { write_csv(rows, command.csv); });
+  faults.attempt([&] {
+    if (!command.html.empty())
+      write_page(rows, about, picture_failures(rooms, rows, command.seed), command.html);
+  });
+  faults.attempt([&] { write_report(report, command.report); });
+  faults.throw_first();
   return 0;
 }
 

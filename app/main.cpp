@@ -2,14 +2,19 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 
 #include "app/command_line.hpp"
+#include "mapping/types/error.hpp"
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to be said, not a death
   try {
     const roomradar::ParsedCommand command = roomradar::parse_command_line(argc, argv);
-    return command.work ? command.work() : command.exit_status;
+    const int status = command.work ? command.work() : command.exit_status;
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.flush())
+      throw roomradar::Error("stdout: not all that was to be said could be written; is the disk full?");
+    return status;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "roomradar: %s\n", error.what());
     return 1;

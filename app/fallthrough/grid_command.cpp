@@ -17,7 +17,7 @@ namespace {
 /// The first readable frame of the source, and where its camera stands in the map.
 Eigen::Isometry3d read_located(const FallthroughCommand& command, const SavedMap& map, GlContext& context,
                                Frame& frame) {
-  const auto source = open_source(command.source, command.frames);
+  const auto source = open_source(command.source, command.frames, command.calibration);
   ReadResult read = source->next(frame);
   while (read.status != ReadStatus::kFrame && read.status != ReadStatus::kEnd) read = source->next(frame);
   if (read.status == ReadStatus::kEnd) throw Error(source->name() + ": there is no readable frame");

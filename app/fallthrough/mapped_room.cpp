@@ -12,6 +12,7 @@
 #include "mapping/static_map.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/version.hpp"
 #include "mapping/unknown_surface.hpp"
 
 namespace roomradar {
@@ -28,12 +29,16 @@ SimOptions walk_of(const ScenarioRoom& room, const RoomScan& scan) {
   return walk;
 }
 
-/// Whether the folder holds the map that this walk gave an earlier run.
+/// Whether the folder holds the map that this walk gave an earlier run of this very program. Throws Error if
+/// it holds another room's map, which is not to be lost.
 bool is_scan_of(const std::filesystem::path& folder, const SimOptions& walk, const RoomScan& scan) {
   if (!std::filesystem::exists(folder)) return false;
   const MapInfo info = load_map_info(folder);
-  return info.source == sim_spec(walk) && info.frames_fused == walk.frames &&
-         info.resolution_m == scan.resolution_m;
+  if (info.source != sim_spec(walk))
+    throw Error(folder.string() + ": is the map of " + info.source +
+                ", where one of a walk round a simulated room would be kept; name another folder by --maps");
+  return info.frames_fused == walk.frames && info.resolution_m == scan.resolution_m &&
+         info.tool_version == kVersion;
 }
 
 void fuse_walk(const SimOptions& walk, const RoomScan& scan, const std::function<void()>& progress,

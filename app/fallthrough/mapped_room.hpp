@@ -1,5 +1,6 @@
 // mapped_room.hpp: simulated rooms with the maps that a prescan made of them.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -49,6 +50,18 @@ struct MappedRoom {
 
   MappedRoom(GlContext& context, ScannedRoom room);
 };
+
+/// Rooms take turns, and each counts its own scenarios: kinds of occluder, motions and shapes take turns by
+/// that count, and by the run's a room would meet some of them only.
+struct ScenarioTurn {
+  std::size_t room = 0;     ///< index among the rooms
+  std::int64_t number = 0;  ///< of the scenario in that room
+};
+/// Of the run's scenario `number`.
+inline ScenarioTurn turn_of(std::int64_t number, std::size_t rooms) {
+  const auto count = static_cast<std::int64_t>(rooms);
+  return {static_cast<std::size_t>(number % count), number / count};
+}
 
 /// Scans the rooms, `threads` at a time, and shows progress on stderr.
 std::vector<std::unique_ptr<MappedRoom>> map_rooms(GlContext& context, const std::vector<RoomChoice>& rooms,

@@ -11,9 +11,10 @@
 
 namespace roomradar {
 
-ScenarioRow row_of(const Scenario& scenario, std::size_t room, const std::string& room_title) {
+ScenarioRow row_of(const Scenario& scenario, std::int64_t number, std::size_t room,
+                   const std::string& room_title) {
   ScenarioRow row;
-  row.number = scenario.number;
+  row.number = number;
   row.room = room;
   row.room_title = room_title;
   row.occluder = scenario.occluder;

@@ -13,8 +13,8 @@ namespace roomradar {
 
 /// One scenario under all policies; what of it the tables and plots need.
 struct ScenarioRow {
-  std::int64_t number = 0;
-  std::size_t room = 0;  ///< index among the run's rooms
+  std::int64_t number = 0;  ///< of the run
+  std::size_t room = 0;     ///< index among the run's rooms
   std::string room_title;
   Occluder occluder = Occluder::kFurniture;
   bool occluder_moves = false;
@@ -24,7 +24,8 @@ struct ScenarioRow {
   double true_travel_m = 0.0;
   std::array<Trial, kPolicyCount> trials;
 };
-ScenarioRow row_of(const Scenario& scenario, std::size_t room, const std::string& room_title);
+ScenarioRow row_of(const Scenario& scenario, std::int64_t number, std::size_t room,
+                   const std::string& room_title);
 
 struct PolicyTotals {
   int passed = 0;

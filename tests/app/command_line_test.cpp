@@ -160,7 +160,8 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   EXPECT_NE(unseen.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos) << unseen.out;
 
   // What it was recorded with is in it, and is not to be done twice.
-  expect_fault(roomradar("run " + session.string() + " --calibration c.json"), 2, "calibrated already");
+  expect_fault(roomradar("run " + session.string() + " --calibration c.json"), 2,
+               "with the frames that it has");
   expect_fault(roomradar("run " + session.string() + " --frames 3:9"), 2, "from its first frame");
   expect_fault(roomradar("run " + session.string() + " --object teapot"), 2, "has its own objects");
 
@@ -393,7 +394,14 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   EXPECT_EQ(report["command"], "trade");
   EXPECT_EQ(report["prescan"]["measurements"], 3);
   expect_fault(roomradar("trade --quick --rooms 'table?colour=separate' --settings 1"), 1, "colour=");
+  expect_fault(roomradar("trade --rooms 'table?noise=3' --settings 1"), 1, "only its name and seed");
+  expect_fault(roomradar("trade --only prescan --rooms 'table?width=320' --settings 1"), 1, "width=");
   expect_fault(roomradar("trade --rooms attic --settings 2 --quick"), 1, "table");
+  const std::string half_posed = path("half_posed");
+  ASSERT_EQ(roomradar("record 'sim:table?frames=70&width=64&path=view' " + half_posed).status, 0);
+  shell("sed -i '68,$d' " + half_posed + "/groundtruth.txt");
+  expect_fault(roomradar("trade --only run --quick --rooms wall --settings 1 " + half_posed), 1,
+               "not all frames have poses");
   expect_fault(roomradar("trade --html " + path("none/trade.html")), 1, "none/trade.html");
   expect_fault(roomradar("trade --quick --only prescan " + path("none")), 1, "none");
   expect_fault(roomradar("trade --settings 0"), 2, "--settings");
@@ -530,6 +538,53 @@ TEST_F(CommandLine, CalibratingPassesOverACalibrationThatIsThere) {
                                        (folder_ / "new.json").string());
   EXPECT_EQ(calibrated.status, 1);
   EXPECT_EQ(calibrated.out.find("calibration.json"), std::string::npos) << calibrated.out;
+}
+
+TEST_F(CommandLine, ResultsThatAreLostOnTheirWayOutAreAFault) {
+  for (const std::string& command : {"map info " + map(), std::string("--help"), std::string("doctor")})
+    expect_fault(shell("(" ROOMRADAR_PROGRAM " " + command + " > /dev/full)"), 1, "stdout: ");
+}
+
+TEST_F(CommandLine, AMapOfOnesOwnIsNotTakenForAWalksAndReplaced) {
+  const fs::path maps = folder_ / "maps_of_mine";
+  fs::create_directories(maps);
+  fs::copy(map(), maps / "table-1", fs::copy_options::recursive);
+  expect_fault(roomradar("fallthrough --scenario 0 --video " + (folder_ / "never.avi").string() + " --maps " +
+                         maps.string()),
+               1, "is the map of sim:table");
+  EXPECT_EQ(roomradar("map verify " + (maps / "table-1").string()).status, 0);
+}
+
+TEST_F(CommandLine, FramesAreNotCalibratedASecondTime) {
+  const std::string raw = (folder_ / "as_taken").string(), freed = (folder_ / "freed").string(),
+                    copy = (folder_ / "freed_copy").string(), session = (folder_ / "freed_played").string(),
+                    file = (folder_ / "five_percent.json").string();
+  ASSERT_EQ(roomradar("record 'sim:table?frames=2&width=160' " + raw + " --format 7scenes").status, 0);
+  nlohmann::json calibration = nlohmann::json::parse(read_text(raw + "/camera.json"));
+  const nlohmann::json straight = {{"k1", 0}, {"k2", 0}, {"p1", 0}, {"p2", 0}, {"k3", 0}};
+  calibration["format"] = "roomradar calibration";
+  calibration["depth_lens"] = calibration["colour_lens"] = straight;
+  calibration["depth_correction"] = {
+      {"inverse_scale", 1.05}, {"columns", 0}, {"rows", 0}, {"offset_per_m", nlohmann::json::array()}};
+  std::ofstream(file) << calibration;
+  const std::string by_it = " --calibration " + file;
+
+  const Outcome recorded = roomradar("record " + raw + " " + freed + " --format 7scenes" + by_it);
+  ASSERT_EQ(recorded.status, 0) << recorded.out;
+  EXPECT_NE(read_text(freed + "/frame-000000.depth.png"), read_text(raw + "/frame-000000.depth.png"));
+  ASSERT_EQ(roomradar("record " + freed + " " + copy + " --format 7scenes").status, 0);
+  EXPECT_EQ(read_text(copy + "/frame-000000.depth.png"), read_text(freed + "/frame-000000.depth.png"));
+  (void)roomradar("run " + freed + " --map " + map() + " --record-session " + session);
+
+  for (const std::string& folder : {freed, copy, session}) {
+    const std::string out = (folder_ / "never").string();
+    expect_fault(roomradar("record " + folder + " " + out + by_it), 1, "before they were recorded");
+    expect_fault(roomradar("prescan " + folder + " --map " + out + by_it), 1, "before they were recorded");
+    expect_fault(roomradar("calibrate " + folder + " --square 0.06 --out " + out), 1,
+                 "before they were recorded");
+    EXPECT_FALSE(fs::exists(out));
+  }
+  EXPECT_EQ(roomradar("record " + raw + " " + (folder_ / "freed_too").string() + by_it).status, 0);
 }
 
 TEST_F(CommandLine, HoldingOutNoFrameIsSaid) {

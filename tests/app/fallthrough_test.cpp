@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <sstream>
+#include <utility>
 
 #include "app/fallthrough/canvas.hpp"
 #include "app/fallthrough/mapped_room.hpp"
@@ -30,7 +32,7 @@ TEST(Fallthrough, NothingPassesTheMapOfACoarseScanAndObjectsPassWithoutOne) {
   std::vector<ScenarioRow> rows;
   for (int number = 0; number < 12; ++number) {
     PreparedScenario prepared(room.scanned.simulated, 5, number);
-    rows.push_back(row_of(prepared.scenario, 0, room.scanned.title));
+    rows.push_back(row_of(prepared.scenario, number, 0, room.scanned.title));
     for (std::size_t i = 0; i < kPolicyCount; ++i) {
       double came_m = 0.0;
       bool is_over = false;
@@ -62,6 +64,20 @@ TEST(Fallthrough, NothingPassesTheMapOfACoarseScanAndObjectsPassWithoutOne) {
   for (const char* key : {"passed", "false_stops", "contact_error_median_m", "frame_median_ms"})
     for (const FallthroughPolicy& policy : kFallthroughPolicies)
       EXPECT_TRUE(json.at(std::string(policy.name)).contains(key)) << policy.name << " " << key;
+}
+
+TEST(Fallthrough, EveryRoomMeetsEveryKindOfOccluderMotionAndShape) {
+  constexpr std::int64_t kInTurn = 4 * 2 * 9;  // of a room's scenarios, no two are of the same kinds
+  for (const std::size_t rooms : {1U, 3U, 4U, 6U, 8U}) {
+    std::set<std::pair<std::size_t, std::int64_t>> met;
+    for (std::int64_t number = 0; number < kInTurn * static_cast<std::int64_t>(rooms); ++number) {
+      const ScenarioTurn turn = turn_of(number, rooms);
+      EXPECT_LT(turn.room, rooms);
+      EXPECT_LT(turn.number, kInTurn);
+      met.emplace(turn.room, turn.number);
+    }
+    EXPECT_EQ(met.size(), kInTurn * rooms);
+  }
 }
 
 ScenarioRow row_with(double error_m, Touched rested_on, double frame_ms) {
