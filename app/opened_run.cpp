@@ -134,6 +134,7 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
   if (command.adopt_after_s || has(run.script, Action::kAdopt)) {
     config.adopt.emplace();
     config.adopt->after_s = command.adopt_after_s;
+    config.adopt->surface = surface_config_of(run.map.info);
     // A device does not wait, unless it is to be repeated.
     config.adopt->wait = !run.is_live || !command.record_session.empty();
   }

@@ -132,31 +132,51 @@ void print_holes(const std::vector<Hole>& holes) {
   if (inside > kShown) std::printf("and %zu smaller ones\n", inside - kShown);
 }
 
-/// Where it fails the scan is not lost: says how to go on.
-void save(const PrescanCommand& command, const SavedMap& map, Checkpoints* checkpoints) {
-  try {
-    save_map(command.map, map);
-  } catch (const Error& error) {
-    if (!checkpoints || !checkpoints->has_any()) throw;
-    throw Error(std::string(error.what()) + " What was scanned is kept in " + checkpoints->folder().string() +
-                ", and the same command with --resume goes on from there");
-  }
-}
-
 constexpr const char* kStops =
     "\nroomradar: stops before the next frame, without a map; past the last frame it goes on to the map. "
     "Ctrl-C once more ends it at once\n";
 
-/// Throws Error that says how to go on.
-void stop(const std::string& map, Checkpoints* checkpoints) {
+struct StoppedByUser : Error {
+  using Error::Error;
+};
+
+/// Throws StoppedByUser that says how to go on.
+[[noreturn]] void stop(const std::string& map, Checkpoints* checkpoints) {
   const bool resumable = checkpoints && checkpoints->has_any();
-  throw Error(map + ": stopped by Ctrl-C; no map was saved" +
-              (resumable ? ", and the same command with --resume goes on from the last checkpoint" : ""));
+  throw StoppedByUser(
+      map + ": stopped by Ctrl-C; no map was saved" +
+      (resumable ? ", and the same command with --resume goes on from the last checkpoint" : ""));
 }
 
-/// The map is saved: the checkpoints go.
-void finish(Checkpoints& checkpoints) {
-  checkpoints.remove();
+/// Scans or saves; where that fails and the scan is not lost, says how to go on.
+template <typename Act>
+auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
+  try {
+    return act();
+  } catch (const StoppedByUser&) {
+    throw;
+  } catch (const Error& error) {
+    if (!start.checkpoints || !(start.keeps_frames || start.checkpoints->has_any())) throw;
+    throw Error(std::string(error.what()) + "\nroomradar: what was scanned is kept in " +
+                start.checkpoints->folder().string() +
+                ": the same command with --resume goes on from there; delete it to scan anew");
+  }
+}
+
+/// The beginning of a sentence.
+std::string stopped_for_memory(const PrescanCommand& command, bool keep_frames) {
+  return command.source + ": stopped by --max-memory " + std::to_string(std::llround(command.max_memory_mb)) +
+         ": " +
+         (keep_frames ? "its frames are kept, and the same command with --resume scans them anew; " : "");
+}
+
+/// There is a map, or there will be none: the checkpoints go, and the frames of a live scan with them, unless
+/// they are to be scanned anew.
+void finish(Checkpoints& checkpoints, bool keep_frames) {
+  if (keep_frames)
+    checkpoints.forget();
+  else
+    checkpoints.remove();
   if (checkpoints.failures() > 0)
     std::fprintf(stderr, "roomradar: %s: %lld checkpoints could not be written; is the disk full?\n",
                  checkpoints.folder().c_str(), static_cast<long long>(checkpoints.failures()));
@@ -188,8 +208,8 @@ int run(const PrescanCommand& command) {
   require_writable(command.report);
   ScanStart start = start_scan(command);
   if (start.is_done) {
-    std::printf("%s: holds %s already; there is nothing to resume\n", command.map.c_str(),
-                command.source.c_str());
+    std::printf("%s: holds %s already; there is nothing to resume (another recording needs another name)\n",
+                command.map.c_str(), command.source.c_str());
     return 0;
   }
   const std::unique_ptr<FrameSource>& source = start.source;
@@ -197,10 +217,14 @@ int run(const PrescanCommand& command) {
   if (!start.is_live) Interrupt::say(kStops);
   if (start.map) {
     config.resolution_m = start.map->octree.resolution_m();
-    if (config.resolution_m != command.quality.resolution_m)
-      std::fprintf(stderr, "%s: is added to, and keeps its cells of %g m\n", command.map.c_str(),
-                   config.resolution_m);
+    config.surface.max_deviation_m = surface_config_of(start.map->info).max_deviation_m;
     report.settings["resolution_m"] = config.resolution_m;
+    report.settings["deviation_m"] = config.surface.max_deviation_m;
+    if (config.resolution_m != command.quality.resolution_m ||
+        config.surface.max_deviation_m != static_cast<float>(command.quality.deviation_m))
+      std::fprintf(stderr, "%s: is added to, and keeps its cells of %g m and its --deviation of %g m\n",
+                   command.map.c_str(), config.resolution_m,
+                   static_cast<double>(config.surface.max_deviation_m));
   }
   announce_memory(*source, config, report);
 
@@ -226,10 +250,20 @@ int run(const PrescanCommand& command) {
     const bool ends_by_itself = start.is_live && stage == "track";
     if (!ends_by_itself && Interrupt::take()) stop(command.map, start.checkpoints.get());
   };
-  const PrescanResult scanned =
-      prescan(*source, config, report.times, show, {start.checkpoints.get(), std::move(start.map)});
+  const bool extends = start.map.has_value();
+  const PrescanResult scanned = or_say_what_is_kept(start, [&] {
+    return prescan(*source, config, report.times, show, {start.checkpoints.get(), std::move(start.map)});
+  });
   progress.reset();
-  report.times.timed("save", [&] { save(command, scanned.map, start.checkpoints.get()); });
+  const bool was_stopped = scanned.counts.stopped_for_memory;
+  const bool keep_frames = was_stopped && start.keeps_frames;
+  if (extends && was_stopped) {
+    if (start.checkpoints) finish(*start.checkpoints, keep_frames);
+    throw Error(stopped_for_memory(command, keep_frames) + command.map +
+                " is as it was, since the rest could not be added later; more memory adds it whole");
+  }
+  or_say_what_is_kept(start,
+                      [&] { report.times.timed("save", [&] { save_map(command.map, scanned.map); }); });
 
   report.frames_read = scanned.counts.frames_read;
   report.frames_skipped = scanned.counts.frames_skipped;
@@ -248,20 +282,18 @@ int run(const PrescanCommand& command) {
       not_scored = error.what();
     }
   }
-  if (start.checkpoints) finish(*start.checkpoints);  // a live scan's frames go with them
+  if (start.checkpoints) finish(*start.checkpoints, keep_frames);
   write_report(report, command.report);
   print_summary(command, scanned, held_out);
   print_holes(scanned.holes);
   if (!not_scored.empty())
     std::fprintf(stderr, "roomradar: %s: is saved; its held-out frames could not be compared with it: %s\n",
                  command.map.c_str(), not_scored.c_str());
-  if (!scanned.counts.stopped_for_memory) return not_scored.empty() ? 0 : 1;
-  std::fprintf(stderr,
-               "roomradar: %s: stopped by --max-memory %.0f: the map of the %lld frames that were fused is "
-               "saved and whole; a coarser --resolution or more memory takes in the rest\n",
-               command.source.c_str(), command.max_memory_mb,
-               static_cast<long long>(scanned.counts.frames_fused));
-  return 1;
+  if (!was_stopped) return not_scored.empty() ? 0 : 1;
+  throw Error(stopped_for_memory(command, keep_frames) + "the map of the " +
+              std::to_string(scanned.counts.frames_fused) + " frames that were fused is saved and whole; " +
+              (keep_frames ? "more memory takes in the rest"
+                           : "a coarser --resolution or more memory takes in the rest, from the beginning"));
 }
 
 }  // namespace roomradar

@@ -8,6 +8,7 @@
 #include "app/opened_run.hpp"
 #include "app/run_loop.hpp"
 #include "app/window/play_window.hpp"
+#include "mapping/coverage.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
 
@@ -16,7 +17,10 @@ namespace {
 
 /// The octree as the session has left it, with its surface made anew as a whole.
 void save_changed(SavedMap& map, std::size_t changes, const std::string& folder) {
-  if (changes > 0) map.mesh = extract_surface(map.octree);
+  if (changes > 0) {
+    map.mesh = extract_surface(map.octree, surface_config_of(map.info));
+    map.coverage_png = survey_coverage(map).picture_png;
+  }
   map.info.settings["adopted"] = std::to_string(changes);
   save_map(folder, map);
   std::printf("%s: saved with %zu changes\n", folder.c_str(), changes);

@@ -35,9 +35,10 @@ void require_no_live_scan(const fs::path& folder) {
 }
 
 /// Throws Error if the scan cannot even begin under the cap.
-void require_memory_to_begin(double cap_mb) {
+/// @param later_bytes  that are needed whatever is scanned
+void require_memory_to_begin(double cap_mb, double later_bytes = 0.0) {
   constexpr double kMB = 1e6, kToTrack_mb = 60.0, kSpare = 1.03;  // a process differs by 1 MB from run to run
-  const double least_mb = static_cast<double>(resident_bytes()) / kMB + kToTrack_mb;
+  const double least_mb = (static_cast<double>(resident_bytes()) + later_bytes) / kMB + kToTrack_mb;
   if (!(cap_mb > 0.0) || least_mb <= cap_mb) return;
   throw Error("--max-memory " + std::to_string(std::llround(cap_mb)) +
               ": is too little to begin with; give at least " +
@@ -69,6 +70,22 @@ bool holds(const MapInfo& map, const FrameSource& source) {
   return ("; " + map.source + "; ").find("; " + source.name() + "; ") != std::string::npos;
 }
 
+/// The source; null where it is a device that is not there any more, but frames of it are, to be resumed
+/// with.
+std::unique_ptr<FrameSource> open_or_say(const PrescanCommand& command, const SourceOptions& options,
+                                         const fs::path& spool) {
+  try {
+    return open_source(command.source, command.frames, command.calibration, options);
+  } catch (const Error& fault) {
+    if (!command.resume || !SpooledSource::has_frames(spool)) throw;
+    std::fprintf(
+        stderr,
+        "%s. The map is made of what was scanned before; --resume adds to it once the device is back\n",
+        fault.what());
+    return nullptr;
+  }
+}
+
 }  // namespace
 
 ScanStart start_scan(const PrescanCommand& command) {
@@ -83,11 +100,13 @@ ScanStart start_scan(const PrescanCommand& command) {
   fs::remove_all(done_beside(folder), ignored);
 
   const fs::path spool = folder / kSpool;
-  const bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
+  bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
   SourceOptions options;
   options.keep_all = true;
-  if (!spooled) start.source = open_source(command.source, command.frames, command.calibration, options);
-  require_memory_to_begin(command.max_memory_mb);
+  if (!spooled) start.source = open_or_say(command, options, spool);
+  const bool is_given_up = !spooled && !start.source;
+  spooled = spooled || is_given_up;
+  if (!extend) require_memory_to_begin(command.max_memory_mb);
   if (!command.resume) give_up_unfinished(folder);  // what follows it is there
   const bool live = spooled || !start.source->rewind();
   start.is_live = live && !spooled;
@@ -95,7 +114,8 @@ ScanStart start_scan(const PrescanCommand& command) {
   const std::string into = extend ? sha256_of_file(map / "map.json") : kNewMap;
   if (extend) {
     start.map = load_map(map);
-    require_memory_to_begin(command.max_memory_mb);
+    require_memory_to_begin(command.max_memory_mb,
+                            kSurfaceMemory * static_cast<double>(start.map->octree.memory_bytes()));
   }
   if (extend && !live && holds(start.map->info, *start.source) &&
       (!is_unfinished(folder) || identity_of(folder)["into"] != into)) {
@@ -104,6 +124,9 @@ ScanStart start_scan(const PrescanCommand& command) {
       unfinished.ensure_folder();  // nobody else is at work on it
       unfinished.remove();
     }
+    if (start.map->info.settings.contains(kStoppedSetting))
+      throw Error(map.string() + ": was stopped by --max-memory before all of " + start.source->name() +
+                  " was in it; scan that anew, without --resume, with more memory or a coarser --resolution");
     start.is_done = true;
     return start;
   }
@@ -128,7 +151,10 @@ ScanStart start_scan(const PrescanCommand& command) {
     start.checkpoints = std::make_unique<Checkpoints>(folder, identity, every_s);
     start.checkpoints->ensure_folder();  // nobody else may begin this map, from now on
   }
-  if (live && start.checkpoints) {
+  start.keeps_frames = live && start.checkpoints;
+  if (is_given_up) {
+    start.source = SpooledSource::again(spool);
+  } else if (start.keeps_frames) {
     start.source = SpooledSource::kept(std::move(start.source), spool);
   } else {
     start.source = make_rewindable(std::move(start.source));

@@ -321,6 +321,13 @@ bool Checkpoints::has_any() {
   return last_number_ > 0;
 }
 
+void Checkpoints::forget() {
+  reap(/*wait=*/true);
+  std::error_code ignored;
+  for (const std::int64_t number : numbers_in(folder_)) fs::remove_all(numbered(number), ignored);
+  last_number_ = 0;
+}
+
 void Checkpoints::remove() {
   reap(/*wait=*/true);
   if (lock_ < 0 && !fs::exists(folder_)) return;

@@ -61,6 +61,8 @@ class Checkpoints {
   [[nodiscard]] bool has_any();
   /// The work is done: the folder goes.
   void remove();
+  /// The work is to begin anew: the checkpoints go, and what their owner keeps beside them stays.
+  void forget();
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   /// Makes the folder and takes its lock now, for whoever puts files of its own beside the checkpoints.

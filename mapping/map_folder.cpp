@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -137,6 +138,19 @@ std::string extents(const Eigen::AlignedBox3d& box) {
 }
 
 }  // namespace
+
+SurfaceConfig surface_config_of(const MapInfo& info) {
+  SurfaceConfig config;
+  const auto said = info.settings.find(kDeviationSetting);
+  if (said == info.settings.end()) return config;
+  const char* const end = said->second.data() + said->second.size();
+  const auto parsed = std::from_chars(said->second.data(), end, config.max_deviation_m);
+  if (parsed.ec != std::errc() || parsed.ptr != end || !(config.max_deviation_m >= 0.0F) ||
+      !std::isfinite(config.max_deviation_m))
+    throw Error("map.json: settings: " + std::string(kDeviationSetting) + " is \"" +
+                said->second.substr(0, 40) + "\"; must be metres, 0 or more");
+  return config;
+}
 
 fs::path tidy_map_name(const fs::path& folder) {
   if (folder.empty()) throw Error("the map's folder has no name; give one, such as maps/kitchen");

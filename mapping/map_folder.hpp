@@ -9,12 +9,18 @@
 
 #include "mapping/places.hpp"
 #include "mapping/static_map.hpp"
+#include "mapping/surface.hpp"
 #include "mapping/trajectory.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
 inline constexpr int kMapFormatVersion = 1;
+
+// Of MapInfo::settings, what is asked for later.
+inline constexpr const char* kDeviationSetting = "deviation_m";  ///< SurfaceConfig::max_deviation_m
+inline constexpr const char* kStoppedSetting =
+    "stopped_for_memory";  ///< there: not all of the source is in it
 
 /// One file of the folder as map.json lists it.
 struct MapFile {
@@ -52,6 +58,10 @@ struct SavedMap {
   std::vector<TimedPose> trajectory;
   std::vector<std::uint8_t> coverage_png;  ///< a picture of what was seen; empty: none
 };
+
+/// How the map's surface is to be extracted anew: as closely as prescan was asked to, where its settings say
+/// so. Throws Error if they say what cannot be.
+SurfaceConfig surface_config_of(const MapInfo& info);
 
 /// The folder's name without `.`, `..` and a slash at its end. Throws Error if that is no name for a map.
 std::filesystem::path tidy_map_name(const std::filesystem::path& folder);

@@ -153,8 +153,7 @@ Registration register_maps(const SavedMap& a, const SavedMap& b, const Registrat
   return there;
 }
 
-SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b,
-                    const SurfaceConfig& surface) {
+SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b) {
   if (b.octree.resolution_m() < a.octree.resolution_m()) {
     StaticMap finer(b.octree.resolution_m(), a.octree.config());
     add_map(a.octree, Eigen::Isometry3d::Identity(), finer);
@@ -163,7 +162,7 @@ SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_
       a.info.settings["resolution_m"] = setting->second;
   }
   add_map(b.octree, T_a_b, a.octree);
-  a.mesh = extract_surface(a.octree, surface);
+  a.mesh = extract_surface(a.octree, surface_config_of(a.info));
   SavedMap session;
   session.info = b.info;
   session.places = b.places;

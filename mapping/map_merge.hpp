@@ -21,8 +21,8 @@ void append_session(SavedMap& map, const SavedMap& session);
 /// Where b's world stands in a's: b's surface must fit a and a's must fit b.
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config = {});
 
-/// Both in one, in a's world, with the finer resolution of the two; the surface is extracted anew.
-SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b,
-                    const SurfaceConfig& surface = {});
+/// Both in one, in a's world, with the finer resolution of the two; the surface is extracted anew, as
+/// closely as a's.
+SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b);
 
 }  // namespace roomradar

@@ -136,17 +136,19 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
   }
   blocks.push_back({Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
 
+  const auto is_held = [&](std::size_t i) { return held.empty() ? i == 0 : i < held.size() && held[i]; };
   std::vector<Measured> measured;
   std::vector<std::size_t> constraint_of;  // of the measured ones that are constraints, their numbers
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     const PoseConstraint& c = constraints[i];
-    if (c.a >= count) continue;
+    if (c.a >= count || (is_held(c.a) && is_held(c.b))) continue;  // nothing could move by it
     if (const auto m = usable(c.a, c.b, count, c.T_a_b, c.information, c.robust)) {
       measured.push_back(*m);
       constraint_of.push_back(i);
     }
   }
   for (const PoseAnchor& anchor : anchors) {
+    if (anchor.pose < count && is_held(anchor.pose)) continue;
     if (const auto m = usable(world, anchor.pose, count, anchor.T_world_camera, anchor.information, true))
       measured.push_back(*m);
   }
@@ -158,7 +160,6 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
   // What is tied, by whatever chain, to something that is held?
   std::vector<std::size_t> parent(count + 1);
   std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto is_held = [&](std::size_t i) { return held.empty() ? i == 0 : i < held.size() && held[i]; };
   for (std::size_t i = 0; i < count; ++i) {
     if (is_held(i)) parent[root_of(parent, i)] = root_of(parent, world);
   }

@@ -56,7 +56,7 @@ std::string describe(const PoseGraphResult& result);
 /// empty holds the first one. Poses that no chain of constraints ties to a held or anchored one stay where
 /// they are, and so do directions that nothing fixes; both are counted. Never throws; measurements with
 /// indices out of range, numbers that are not finite, or information that is not positive semidefinite are
-/// left out (residual_sigma -1).
+/// left out (residual_sigma -1), and so is what was measured between two that are held.
 PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_camera,
                                     const std::vector<PoseConstraint>& constraints,
                                     const std::vector<PoseAnchor>& anchors = {},

@@ -260,7 +260,9 @@ MapInfo describe_map(const Work& work, const FusingPass& pass, const std::vector
   info.frames_fused = static_cast<std::int64_t>(pass.fused.size());
   info.up_source = to_string(pass.found.up.source);
   info.settings = {{"resolution_m", std::to_string(work.config.resolution_m)},
+                   {kDeviationSetting, number_text(work.config.surface.max_deviation_m)},
                    {"poses", std::string(to_string(work.config.poses))}};
+  if (pass.counts.stopped_for_memory || pass.stopped_for_memory) info.settings[kStoppedSetting] = "yes";
   if (work.config.fuse_every > 1) info.settings["fuse_every"] = std::to_string(work.config.fuse_every);
   if (work.config.hold_out > 0) info.settings["hold_out"] = std::to_string(work.config.hold_out);
   if (work.config.poses == PoseOrigin::kRecorded)
@@ -328,9 +330,6 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   counts.stopped_for_memory |= pass.stopped_for_memory;
   counts.frames_tracked = static_cast<std::int64_t>(map.trajectory.size());
   counts.frames_lost = counts.frames_read - counts.frames_skipped - counts.frames_tracked;
-  counts.frames_held_out = std::count_if(map.trajectory.begin(), map.trajectory.end(), [&](const auto& pose) {
-    return is_held_out(pose.frame_index, config.hold_out);
-  });
   counts.frames_fused = static_cast<std::int64_t>(pass.fused.size());
   counts.ghost_voxels = pass.ghost_voxels.value_or(0);
   if (config.poses == PoseOrigin::kTracked) {

@@ -50,8 +50,7 @@ struct PrescanCounts {
   std::int64_t frames_skipped = 0;  ///< unreadable ones
   std::int64_t frames_tracked = 0;  ///< with a pose that is trusted
   std::int64_t frames_fused = 0;
-  std::int64_t frames_lost = 0;      ///< without one; not fused
-  std::int64_t frames_held_out = 0;  ///< tracked, and kept from the map to judge it
+  std::int64_t frames_lost = 0;  ///< without one; not fused
   std::int64_t keyframes = 0;
   std::int64_t loops_found = 0;
   std::int64_t ghost_voxels = 0;    ///< surface that later, or earlier, frames see through; taken out

@@ -129,6 +129,10 @@ bool SpooledSource::has_end(const fs::path& folder) {
   return fs::exists(folder / kList) && read_list(folder).at_end;
 }
 
+bool SpooledSource::has_frames(const fs::path& folder) {
+  return fs::exists(folder / kList) && !read_list(folder).entries.empty();
+}
+
 std::unique_ptr<SpooledSource> SpooledSource::again(const fs::path& folder) {
   if (!fs::exists(folder / kList)) throw Error((folder / kList).string() + ": there are no recorded frames");
   std::unique_ptr<SpooledSource> spooled(new SpooledSource(nullptr, folder, /*kept=*/true));
@@ -255,7 +259,11 @@ ReadResult SpooledSource::next(Frame& frame) {
   const Entry& entry = entries_[position];
   lock.unlock();
   changed_.notify_all();
-  return read_again(entry, position, frame);
+  try {
+    return read_again(entry, position, frame);
+  } catch (const Error& fault) {  // a power failure may leave a list that is ahead of its images
+    return {ReadStatus::kSkipped, fault.what()};
+  }
 }
 
 ReadResult SpooledSource::read_again(const Entry& entry, std::size_t position, Frame& frame) const {

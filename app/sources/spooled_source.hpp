@@ -42,6 +42,8 @@ class SpooledSource final : public FrameSource {
   static constexpr std::size_t kEveryFrame = std::numeric_limits<std::size_t>::max();
   /// Whether a spool is in the folder whose source had come to its end.
   static bool has_end(const std::filesystem::path& folder);
+  /// Whether there is a frame to be read again. Throws Error as has_end.
+  static bool has_frames(const std::filesystem::path& folder);
 
   /// What was spooled to `folder`, to its end or to where the process that did it was cut off; the folder is
   /// only read.

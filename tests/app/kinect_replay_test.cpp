@@ -131,6 +131,49 @@ TEST_F(KinectReplay, AScanOfADeviceCanHoldFramesOut) {
   EXPECT_FALSE(fs::exists(copy_.path() / "map.unfinished"));
 }
 
+TEST_F(KinectReplay, AScanOfADeviceThatIsStoppedForMemoryTakesInTheRestLater) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes memory of its own, by which a scan needs more to begin with";
+#endif
+  const fs::path map = copy_.path() / "map", unfinished = copy_.path() / "map.unfinished";
+  const std::string scan = fakenect(recording_) +
+                           "'" ROOMRADAR_PROGRAM "' prescan kinect:0 --resolution 0.04" +
+                           " --checkpoint-every 0.01 --map '" + map.string() + "'";
+  const Outcome too_little = shell(scan + " --max-memory 1");
+  const std::size_t at = too_little.rest.find("at least ");
+  ASSERT_NE(at, std::string::npos) << too_little.rest;
+  const std::string cap = std::to_string(std::stoi(too_little.rest.substr(at + 9)));
+  const Outcome stopped = shell(scan + " --max-memory " + cap);
+  EXPECT_EQ(stopped.status, 1) << stopped.rest;
+  EXPECT_TRUE(contains(stopped.rest, "stopped by --max-memory")) << stopped.rest;
+  EXPECT_TRUE(contains(stopped.rest, "--resume scans them anew")) << stopped.rest;
+  EXPECT_TRUE(fs::exists(map / "octree.ot"));
+  EXPECT_TRUE(fs::exists(unfinished / "spool" / "list.bin"));
+  const Outcome rest = shell(scan + " --resume");
+  EXPECT_EQ(rest.status, 0) << rest.rest;
+  const std::size_t count = rest.rest.find(" frames tracked");
+  ASSERT_NE(count, std::string::npos) << rest.rest;
+  const int tracked = std::stoi(rest.rest.substr(rest.rest.rfind("map: ", count) + 5));
+  EXPECT_GT(tracked, 8) << "those that were kept, and the device's once more: " << rest.rest;
+  EXPECT_FALSE(fs::exists(unfinished));
+}
+
+TEST_F(KinectReplay, AScanWhoseDeviceIsGoneForGoodBecomesAMap) {
+  const fs::path map = copy_.path() / "map", unfinished = copy_.path() / "map.unfinished";
+  const std::string scan =
+      "'" ROOMRADAR_PROGRAM "' prescan kinect:0 --resolution 0.04 --map '" + map.string() + "'";
+  pause_before(5, 60.0);
+  const Outcome killed = shell(fakenect(recording_) + "timeout -s KILL 8 " + scan);
+  EXPECT_EQ(killed.status, 128 + SIGKILL) << killed.rest;
+  ASSERT_TRUE(fs::exists(unfinished / "spool" / "list.bin")) << killed.rest;
+  EXPECT_EQ(shell(scan).status, 1) << "without --resume what was scanned would be lost";
+  const Outcome without = shell(scan + " --resume");
+  EXPECT_EQ(without.status, 0) << without.rest;
+  EXPECT_TRUE(contains(without.rest, "The map is made of what was scanned before")) << without.rest;
+  EXPECT_TRUE(contains(without.rest, "5 of 5 frames tracked")) << without.rest;
+  EXPECT_FALSE(fs::exists(unfinished));
+}
+
 TEST_F(KinectReplay, OneThatPausesIsWaitedForAndLosesNothing) {
   pause_before(4, 2.5);
   const Outcome outcome = replay(recording_);

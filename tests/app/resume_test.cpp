@@ -366,6 +366,35 @@ TEST_F(ResumeTest, StopsBeforeTheCapAndKeepsWhatItHas) {
   EXPECT_GE(info.frames_fused, 1);
   EXPECT_LT(info.frames_fused, 300);
   EXPECT_FALSE(fs::exists(unfinished()));
+  std::vector<std::string> more = scan_under("4000");
+  more.emplace_back("--resume");
+  EXPECT_EQ(run(more), 1);
+  EXPECT_NE(said().find("was stopped by --max-memory before all of"), std::string::npos) << said();
+}
+
+TEST_F(ResumeTest, AMapIsAddedToAsAWholeOrNotAtAllWhereMemoryIsShort) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the address sanitizer takes memory of its own, by which a scan needs more to begin with";
+#endif
+  const auto words = [&](const std::string& source, const std::vector<std::string>& rest) {
+    std::vector<std::string> all = {"prescan", source, "--map", map(), "--resolution", "0.03"};
+    all.insert(all.end(), rest.begin(), rest.end());
+    return all;
+  };
+  ASSERT_EQ(run(words("sim:table?frames=60&width=160", {"--deviation", "0.004"})), 0) << said();
+  const std::string json = text_of(map() / "map.json");
+  const std::string added = "sim:table?frames=300&width=320&noise=0.7";
+  EXPECT_EQ(run(words(added, {"--resume", "--max-memory", "1"})), 1);
+  const std::size_t at = said().find("at least ");
+  ASSERT_NE(at, std::string::npos) << said();
+  EXPECT_EQ(
+      run(words(added, {"--resume", "--max-memory", std::to_string(std::stoi(said().substr(at + 9)) + 10)})),
+      1);
+  EXPECT_NE(said().find("stopped by --max-memory"), std::string::npos) << said();
+  EXPECT_NE(said().find("keeps its cells of 0.03 m and its --deviation of 0.004 m"), std::string::npos)
+      << said();
+  EXPECT_EQ(text_of(map() / "map.json"), json);
+  EXPECT_FALSE(fs::exists(unfinished()));
 }
 
 }  // namespace

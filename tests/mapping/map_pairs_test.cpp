@@ -8,6 +8,7 @@
 #include "mapping/map_merge.hpp"
 #include "mapping/registration.hpp"
 #include "mapping/surface.hpp"
+#include "mapping/types/error.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
 
@@ -146,6 +147,22 @@ TEST_F(MapPairs, MergedWithAFinerMapItSaysTheFinerResolution) {
   const SavedMap merged = merge_maps(std::move(coarse), fine, Isometry3d::Identity());
   EXPECT_EQ(merged.octree.resolution_m(), fine.octree.resolution_m());
   EXPECT_EQ(merged.info.settings.at("resolution_m"), fine.info.settings.at("resolution_m"));
+}
+
+TEST_F(MapPairs, MergedItsSurfaceIsAsCloseAsTheFirstOnes) {
+  const auto triangles = [](const char* deviation_m) {
+    SavedMap first = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
+    if (*deviation_m != 0) first.info.settings[kDeviationSetting] = deviation_m;
+    return merge_maps(std::move(first), b(), kT_a_b).mesh.triangles.size();
+  };
+  const std::size_t usual = triangles("");
+  EXPECT_EQ(triangles("0.002"), usual);
+  EXPECT_LT(triangles("0.02"), usual * 3 / 4);
+  for (const char* impossible : {"", "-1", "nan", "inf", "2 mm", "1e99"}) {
+    MapInfo info;
+    info.settings[kDeviationSetting] = impossible;
+    EXPECT_THROW((void)surface_config_of(info), Error) << impossible;
+  }
 }
 
 TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {

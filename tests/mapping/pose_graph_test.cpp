@@ -182,7 +182,12 @@ TEST(PoseGraph, HeldPosesStayAndOthersMove) {
   poses[4] = c.truth[4];
   std::vector<bool> held(poses.size(), false);
   held[0] = held[4] = true;
-  EXPECT_EQ(optimise_pose_graph(poses, c.constraints, {}, held).status, PoseGraphStatus::kSolved);
+  std::vector<PoseConstraint> constraints = c.constraints;
+  constraints.push_back(
+      {.a = 0, .b = 4, .T_a_b = Eigen::Isometry3d::Identity()});  // wrong, and moves nothing
+  const PoseGraphResult result = optimise_pose_graph(poses, constraints, {}, held);
+  EXPECT_EQ(result.status, PoseGraphStatus::kSolved);
+  EXPECT_EQ(result.residual_sigma.back(), -1.0);
   EXPECT_EQ(poses[4].matrix(), c.truth[4].matrix());
   EXPECT_LT(worst_error_m(poses, c.truth), 1e-6);
 }
