@@ -206,7 +206,10 @@ Change describe_thing(ChangeKind kind, const std::vector<VoxelIndex>& thing, con
   change.box_world.max().array() += 0.5 * voxel_m;
 
   const Eigen::Isometry3d T_has_world = T_world_has.inverse(), T_lacks_world = T_world_lacks.inverse();
-  const Eigen::Array3d cells = (change.box_world.sizes().array() / voxel_m).round().max(1.0);
+  constexpr double kMostCells = 4e6;  // some seconds
+  const Eigen::Array3d voxels = change.box_world.sizes().array() / voxel_m;
+  const Eigen::Array3d cells =
+      (voxels / std::max(1.0, std::cbrt(voxels.prod() / kMostCells))).round().max(1.0);
   const Eigen::Vector3d step = (change.box_world.sizes().array() / cells).matrix();
   for (int z = 0; z < static_cast<int>(cells.z()); ++z)
     for (int y = 0; y < static_cast<int>(cells.y()); ++y)

@@ -2,13 +2,16 @@
 #include "mapping/map_merge.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "mapping/coverage.hpp"
+#include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
@@ -153,7 +156,34 @@ Registration register_maps(const SavedMap& a, const SavedMap& b, const Registrat
   return there;
 }
 
+namespace {
+
+/// Throws Error if a map, seen from the merged one, lies past the reach of cells of that size.
+void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map, double resolution_m) {
+  const Eigen::AlignedBox3d known = map.octree.counts().known_world;
+  if (known.isEmpty()) return;
+  const double reach_m = StaticMap(resolution_m).reach_m();
+  double farthest_m = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const auto corner = static_cast<Eigen::AlignedBox3d::CornerType>(i);
+    farthest_m = std::max(farthest_m, (T_merged_map * known.corner(corner)).cwiseAbs().maxCoeff());
+  }
+  if (farthest_m <= reach_m) return;
+  std::array<char, 200> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      ": reaches %.1f m from the merged map's origin, and at cells of %g m, the finer of the two, a "
+      "map reaches %.1f m; scan that one with coarser cells",
+      farthest_m, resolution_m, reach_m);
+  throw Error("the map of " + map.info.source + text.data());
+}
+
+}  // namespace
+
 SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b) {
+  const double finer_m = std::min(a.octree.resolution_m(), b.octree.resolution_m());
+  require_in_reach(a, Eigen::Isometry3d::Identity(), finer_m);
+  require_in_reach(b, T_a_b, finer_m);
   if (b.octree.resolution_m() < a.octree.resolution_m()) {
     StaticMap finer(b.octree.resolution_m(), a.octree.config());
     add_map(a.octree, Eigen::Isometry3d::Identity(), finer);

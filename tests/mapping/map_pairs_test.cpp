@@ -9,6 +9,7 @@
 #include "mapping/registration.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
 
@@ -147,6 +148,19 @@ TEST_F(MapPairs, MergedWithAFinerMapItSaysTheFinerResolution) {
   const SavedMap merged = merge_maps(std::move(coarse), fine, Isometry3d::Identity());
   EXPECT_EQ(merged.octree.resolution_m(), fine.octree.resolution_m());
   EXPECT_EQ(merged.info.settings.at("resolution_m"), fine.info.settings.at("resolution_m"));
+}
+
+TEST_F(MapPairs, WhatLiesPastTheReachOfTheFinerCellsIsRefusedInWords) {
+  SavedMap far, fine;
+  far.info.source = "corridor";
+  far.octree = StaticMap(0.01);
+  far.octree.add_evidence(MapLeaf{{7'000, 0, 0}, 8, -1.0F});
+  fine.octree = StaticMap(0.002);
+  fine.octree.add_evidence(MapLeaf{{0, 0, 0}, 8, -1.0F});
+  const std::string fault =
+      test::error_of([&] { (void)merge_maps(std::move(far), fine, Isometry3d::Identity()); });
+  EXPECT_NE(fault.find("the map of corridor: reaches 70.1 m"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("a map reaches 65.5 m"), std::string::npos) << fault;
 }
 
 TEST_F(MapPairs, MergedItsSurfaceIsAsCloseAsTheFirstOnes) {
