@@ -125,7 +125,7 @@ ScanStart start_scan(const PrescanCommand& command) {
       unfinished.remove();
     }
     if (start.map->info.settings.contains(kStoppedSetting))
-      throw Error(map.string() + ": was stopped by --max-memory before all of " + start.source->name() +
+      throw Error(map.string() + ": was stopped by --max-memory before all of " + start.map->info.source +
                   " was in it; scan that anew, without --resume, with more memory or a coarser --resolution");
     start.is_done = true;
     return start;

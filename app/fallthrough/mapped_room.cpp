@@ -23,9 +23,7 @@ SimOptions walk_of(const ScenarioRoom& room, const RoomScan& scan) {
   walk.frames = (walk.frames + scan.every - 1) / scan.every;
   walk.rate_hz /= scan.every;
   walk.with_colour = false;
-  walk.depth_camera = scaled(kKinectDepthCamera, scan.width_px / 640.0);
-  walk.depth_camera.width_px = scan.width_px;
-  walk.depth_camera.height_px = scan.width_px * 3 / 4;
+  walk.depth_camera = kinect_of_width(scan.width_px);
   return walk;
 }
 

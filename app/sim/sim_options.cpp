@@ -82,9 +82,7 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
     const int width_px = number<int>(key, value, "the image's width, 64 to 1920, a multiple of 4");
     if (width_px < 64 || width_px > 1920 || width_px % 4 != 0)
       refuse(key, value, "the image's width, 64 to 1920, a multiple of 4");
-    options.depth_camera = scaled(kKinectDepthCamera, width_px / 640.0);
-    options.depth_camera.width_px = width_px;
-    options.depth_camera.height_px = width_px * 3 / 4;
+    options.depth_camera = kinect_of_width(width_px);
   } else if (key == "colour") {
     if (value != "registered" && value != "separate" && value != "none")
       refuse(key, value, "registered, separate or none");
@@ -148,6 +146,13 @@ std::string_view to_string(CrateKind kind) {
       return "goes";
   }
   return "?";
+}
+
+Intrinsics kinect_of_width(int width_px) {
+  Intrinsics camera = scaled(kKinectDepthCamera, width_px / 640.0);
+  camera.width_px = width_px;
+  camera.height_px = width_px * 3 / 4;
+  return camera;
 }
 
 SimOptions parse_sim_spec(std::string_view spec) {

@@ -41,6 +41,9 @@ std::string_view to_string(CrateKind kind);  ///< as a spec has it: 0, 1, comes,
 /// The Kinect's depth camera at its full size.
 inline constexpr Intrinsics kKinectDepthCamera{640, 480, 585.0, 585.0, 320.0, 240.0};
 
+/// The same with images of another width, 4:3.
+Intrinsics kinect_of_width(int width_px);
+
 struct SimOptions {
   std::string room = "table";  ///< one of room_names(), kRandomRoom or kBoardRoom
   std::uint64_t seed = 1;      ///< of the camera's path, the movers' phase, the noise, and a random room

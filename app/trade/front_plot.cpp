@@ -75,7 +75,7 @@ std::string grid(const FrontPlot& plot, const Axis& x, const Axis& y) {
                   y.at(tick) + 4.0, tick);
   for (const double tick : x.ticks())
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" class=\"%s\"/>", x.at(tick),
-                  x.at(tick), y.from_px, y.to_px, plot.x_is_ratio && tick == 1.0 ? "grid one" : "grid") +
+                  x.at(tick), y.from_px, y.to_px, tick == 1.0 ? "grid one" : "grid") +
            format("<text x=\"%.1f\" y=\"%.1f\" class=\"tick middle\">%g</text>", x.at(tick), y.from_px + 16.0,
                   tick);
   return svg + format("<text x=\"%.1f\" y=\"18\" class=\"title\">", kLeft) + escaped(plot.title) + "</text>" +
@@ -131,7 +131,6 @@ std::string drawn(const PlotDot& dot, const Axis& x, const Axis& y) {
 std::string front_plot(const FrontPlot& plot) {
   std::vector<PlotDot> dots;
   std::vector<double> xs{1.0}, ys;
-  if (!plot.x_is_ratio) xs.clear();
   for (const PlotDot& dot : plot.dots) {
     if (!(std::isfinite(dot.x) && std::isfinite(dot.y) && dot.x > 0.0 && dot.y >= 0.0)) continue;
     dots.push_back(dot);

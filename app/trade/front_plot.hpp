@@ -17,7 +17,6 @@ struct PlotDot {
 
 struct FrontPlot {
   std::string title = {}, x_name = {}, y_name = {};
-  bool x_is_ratio = true;  ///< 1 is marked
   std::vector<PlotDot> dots = {};
 };
 

@@ -9,6 +9,7 @@
 #include "app/apply_quality.hpp"
 #include "app/held_out.hpp"
 #include "app/report.hpp"
+#include "app/sim/simulated_source.hpp"
 #include "app/sim/surface_score.hpp"
 #include "app/trade/kept_frames.hpp"
 #include "app/trade/measured_apart.hpp"

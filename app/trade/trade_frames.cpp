@@ -8,13 +8,6 @@
 
 namespace roomradar {
 
-Intrinsics kinect_of_width(int width_px) {
-  Intrinsics camera = scaled(kKinectDepthCamera, width_px / 640.0);
-  camera.width_px = width_px;
-  camera.height_px = width_px * 3 / 4;
-  return camera;
-}
-
 std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t count) {
   const std::unique_ptr<FrameSource> source = open_source(folder, {});
   std::vector<Frame> frames;

@@ -5,13 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "app/sim/sim_options.hpp"
 #include "mapping/types/frame.hpp"
 
 namespace roomradar {
-
-/// The Kinect's depth camera with images of another width, 4:3.
-Intrinsics kinect_of_width(int width_px);
 
 inline constexpr std::size_t kFewestTradeFrames = 30;
 

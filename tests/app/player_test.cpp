@@ -428,7 +428,7 @@ TEST(RecordedRun, AnObjectWhoseMeshCannotBeKeptDoesNotComeIn) {
   OpenedRun run(command);
   run.map = floor_map();
   run.session = std::make_unique<Session>(run.map, SessionConfig());
-  run.recorder.emplace(folder.path() / "session", command, run.map.info);
+  run.recorder.emplace(folder.path() / "session", command, run.map.info, /*are_calibrated=*/false);
   std::ofstream(folder.path() / "session" / "meshes") << "where the folder of meshes should be";
   PlayLink link;
   std::string said;
