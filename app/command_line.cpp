@@ -176,7 +176,7 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
       ->type_name("S");
   sub->add_option("--max-memory", command.max_memory_mb,
                   "stop before the process takes more than so many megabytes; what was fused so far\n"
-                  "is saved as a whole map, and the exit status is 1")
+                  "is saved as a whole map (one that is added to stays as it was), and the exit status is 1")
       ->check(within(1.0, 1e7, "megabytes"))
       ->type_name("MB");
   add_preset_options(*sub, command.preset, command.presets);

@@ -13,10 +13,12 @@
 #include "app/progress.hpp"
 #include "app/quality_json.hpp"
 #include "app/report.hpp"
+#include "app/sources/spooled_source.hpp"
 #include "app/unfinished_scan.hpp"
 #include "mapping/map_folder.hpp"
 #include "mapping/memory_use.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -148,6 +150,10 @@ struct StoppedByUser : Error {
       (resumable ? ", and the same command with --resume goes on from the last checkpoint" : ""));
 }
 
+bool holds_frames(const std::filesystem::path& spool) {
+  return !spool.empty() && SpooledSource::has_frames(spool);
+}
+
 /// Scans or saves; where that fails and the scan is not lost, says how to go on.
 template <typename Act>
 auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
@@ -156,7 +162,7 @@ auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
   } catch (const StoppedByUser&) {
     throw;
   } catch (const Error& error) {
-    if (!start.checkpoints || !(start.keeps_frames || start.checkpoints->has_any())) throw;
+    if (!start.checkpoints || !(start.checkpoints->has_any() || holds_frames(start.spool))) throw;
     throw Error(std::string(error.what()) + "\nroomradar: what was scanned is kept in " +
                 start.checkpoints->folder().string() +
                 ": the same command with --resume goes on from there; delete it to scan anew");
@@ -217,9 +223,14 @@ int run(const PrescanCommand& command) {
   if (!start.is_live) Interrupt::say(kStops);
   if (start.map) {
     config.resolution_m = start.map->octree.resolution_m();
-    config.surface.max_deviation_m = surface_config_of(start.map->info).max_deviation_m;
+    std::map<std::string, std::string>& kept = start.map->info.settings;
+    const bool is_asked_for = std::any_of(command.fixed.begin(), command.fixed.end(),
+                                          [](const auto& field) { return field.first == "deviation_m"; });
+    if (!is_asked_for && kept.contains(kDeviationSetting))
+      config.surface.max_deviation_m = surface_config_of(start.map->info).max_deviation_m;
+    kept[kDeviationSetting] = number_text(config.surface.max_deviation_m);
     report.settings["resolution_m"] = config.resolution_m;
-    report.settings["deviation_m"] = config.surface.max_deviation_m;
+    report.settings["deviation_m"] = nlohmann::json::parse(kept[kDeviationSetting]);
     if (config.resolution_m != command.quality.resolution_m ||
         config.surface.max_deviation_m != static_cast<float>(command.quality.deviation_m))
       std::fprintf(stderr, "%s: is added to, and keeps its cells of %g m and its --deviation of %g m\n",
@@ -256,18 +267,19 @@ int run(const PrescanCommand& command) {
   });
   progress.reset();
   const bool was_stopped = scanned.counts.stopped_for_memory;
-  const bool keep_frames = was_stopped && start.keeps_frames;
+  const bool keep_frames = was_stopped && !start.spool.empty();
+  report.frames_read = scanned.counts.frames_read;
+  report.frames_skipped = scanned.counts.frames_skipped;
+  report.results.update(results_of(scanned));
   if (extends && was_stopped) {
     if (start.checkpoints) finish(*start.checkpoints, keep_frames);
+    write_report(report, command.report);
     throw Error(stopped_for_memory(command, keep_frames) + command.map +
                 " is as it was, since the rest could not be added later; more memory adds it whole");
   }
   or_say_what_is_kept(start,
                       [&] { report.times.timed("save", [&] { save_map(command.map, scanned.map); }); });
 
-  report.frames_read = scanned.counts.frames_read;
-  report.frames_skipped = scanned.counts.frames_skipped;
-  report.results.update(results_of(scanned));
   std::optional<HeldOutScore> held_out;
   std::string not_scored;
   if (command.hold_out > 0) {

@@ -73,11 +73,13 @@ bool holds(const MapInfo& map, const FrameSource& source) {
 /// The source; null where it is a device that is not there any more, but frames of it are, to be resumed
 /// with.
 std::unique_ptr<FrameSource> open_or_say(const PrescanCommand& command, const SourceOptions& options,
-                                         const fs::path& spool) {
+                                         const fs::path& folder) {
   try {
     return open_source(command.source, command.frames, command.calibration, options);
   } catch (const Error& fault) {
-    if (!command.resume || !SpooledSource::has_frames(spool)) throw;
+    const bool has_its_frames = command.resume && SpooledSource::has_frames(folder / kSpool) &&
+                                identity_of(folder)["source"] == command.source;
+    if (!has_its_frames) throw;
     std::fprintf(
         stderr,
         "%s. The map is made of what was scanned before; --resume adds to it once the device is back\n",
@@ -103,7 +105,7 @@ ScanStart start_scan(const PrescanCommand& command) {
   bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
   SourceOptions options;
   options.keep_all = true;
-  if (!spooled) start.source = open_or_say(command, options, spool);
+  if (!spooled) start.source = open_or_say(command, options, folder);
   const bool is_given_up = !spooled && !start.source;
   spooled = spooled || is_given_up;
   if (!extend) require_memory_to_begin(command.max_memory_mb);
@@ -124,9 +126,12 @@ ScanStart start_scan(const PrescanCommand& command) {
       unfinished.ensure_folder();  // nobody else is at work on it
       unfinished.remove();
     }
-    if (start.map->info.settings.contains(kStoppedSetting))
-      throw Error(map.string() + ": was stopped by --max-memory before all of " + start.map->info.source +
-                  " was in it; scan that anew, without --resume, with more memory or a coarser --resolution");
+    const auto stopped = start.map->info.settings.find(kStoppedSetting);
+    if (stopped != start.map->info.settings.end() && stopped->second == start.source->name())
+      throw Error(
+          map.string() + ": was stopped by --max-memory before all of " + stopped->second +
+          " was in it; scan that anew with more memory or a coarser --resolution: without --resume, or "
+          "as another map");
     start.is_done = true;
     return start;
   }
@@ -150,11 +155,12 @@ ScanStart start_scan(const PrescanCommand& command) {
     if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
     start.checkpoints = std::make_unique<Checkpoints>(folder, identity, every_s);
     start.checkpoints->ensure_folder();  // nobody else may begin this map, from now on
+    start.checkpoints->require_same_work();
   }
-  start.keeps_frames = live && start.checkpoints;
+  if (live && start.checkpoints) start.spool = spool;
   if (is_given_up) {
     start.source = SpooledSource::again(spool);
-  } else if (start.keeps_frames) {
+  } else if (!start.spool.empty()) {
     start.source = SpooledSource::kept(std::move(start.source), spool);
   } else {
     start.source = make_rewindable(std::move(start.source));

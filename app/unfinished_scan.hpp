@@ -16,7 +16,7 @@ struct ScanStart {
   /// Rewinds; a live one is spooled beside the checkpoints, and ended by Ctrl-C.
   std::unique_ptr<FrameSource> source;
   bool is_live = false;         ///< goes on until Ctrl-C, unless frames were asked for
-  bool keeps_frames = false;    ///< of a live one, beside the checkpoints
+  std::filesystem::path spool;  ///< of a live one's frames, beside the checkpoints; empty: they go with it
   std::optional<SavedMap> map;  ///< to be extended by what the source shows
   bool is_done = false;         ///< to be resumed, but the map holds all of this recording
 };

@@ -193,9 +193,7 @@ void Checkpoints::ensure_folder() {
   sync_to_disk(folder_ / kWork);
 }
 
-std::optional<Checkpoint> Checkpoints::resume() {
-  if (!fs::exists(folder_)) return std::nullopt;
-  ensure_folder();
+void Checkpoints::require_same_work() const {
   const std::map<std::string, std::string> found = identity_of(folder_);
   for (const auto& [name, value] : identity_) {
     const auto was = found.find(name);
@@ -204,6 +202,12 @@ std::optional<Checkpoint> Checkpoints::resume() {
                       (was == found.end() ? "not set" : "\"" + was->second + "\"") + ", and now it is \"" +
                       value + "\"; resume it with the same, or delete the folder to begin anew");
   }
+}
+
+std::optional<Checkpoint> Checkpoints::resume() {
+  if (!fs::exists(folder_)) return std::nullopt;
+  ensure_folder();
+  require_same_work();
   for (const std::int64_t number : numbers_in(folder_)) {
     last_number_ = std::max(last_number_, number);
     try {

@@ -50,6 +50,9 @@ class Checkpoints {
   /// difference, or another process has it.
   std::optional<Checkpoint> resume();
 
+  /// Throws Error if the folder holds other work than `identity` says, naming the difference.
+  void require_same_work() const;
+
   /// Whether the time for a checkpoint has come and the last one is written.
   bool is_due();
   /// Whether it has come at the end of a stage, where a third of the time is enough; waits for the last one.

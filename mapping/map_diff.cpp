@@ -207,9 +207,8 @@ Change describe_thing(ChangeKind kind, const std::vector<VoxelIndex>& thing, con
 
   const Eigen::Isometry3d T_has_world = T_world_has.inverse(), T_lacks_world = T_world_lacks.inverse();
   constexpr double kMostCells = 4e6;  // some seconds
-  const Eigen::Array3d voxels = change.box_world.sizes().array() / voxel_m;
-  const Eigen::Array3d cells =
-      (voxels / std::max(1.0, std::cbrt(voxels.prod() / kMostCells))).round().max(1.0);
+  Eigen::Array3d cells = (change.box_world.sizes().array() / voxel_m).round().max(1.0);
+  while (cells.prod() > kMostCells) cells = (0.8 * cells).floor().max(1.0);
   const Eigen::Vector3d step = (change.box_world.sizes().array() / cells).matrix();
   for (int z = 0; z < static_cast<int>(cells.z()); ++z)
     for (int y = 0; y < static_cast<int>(cells.y()); ++y)

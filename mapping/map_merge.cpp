@@ -139,6 +139,9 @@ void append_session(SavedMap& map, const SavedMap& session) {
   map.places.keyframes.insert(map.places.keyframes.end(), session.places.keyframes.begin(),
                               session.places.keyframes.end());
   map.info.source += "; " + session.info.source;
+  if (const auto stopped = session.info.settings.find(kStoppedSetting);
+      stopped != session.info.settings.end())
+    map.info.settings.insert(*stopped);
   map.info.frames_read += session.info.frames_read;
   map.info.frames_fused += session.info.frames_fused;
 }

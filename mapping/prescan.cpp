@@ -262,7 +262,8 @@ MapInfo describe_map(const Work& work, const FusingPass& pass, const std::vector
   info.settings = {{"resolution_m", std::to_string(work.config.resolution_m)},
                    {kDeviationSetting, number_text(work.config.surface.max_deviation_m)},
                    {"poses", std::string(to_string(work.config.poses))}};
-  if (pass.counts.stopped_for_memory || pass.stopped_for_memory) info.settings[kStoppedSetting] = "yes";
+  if (pass.counts.stopped_for_memory || pass.stopped_for_memory)
+    info.settings[kStoppedSetting] = work.source.name();
   if (work.config.fuse_every > 1) info.settings["fuse_every"] = std::to_string(work.config.fuse_every);
   if (work.config.hold_out > 0) info.settings["hold_out"] = std::to_string(work.config.hold_out);
   if (work.config.poses == PoseOrigin::kRecorded)

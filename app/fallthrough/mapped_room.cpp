@@ -27,7 +27,7 @@ SimOptions walk_of(const ScenarioRoom& room, const RoomScan& scan) {
   return walk;
 }
 
-/// Whether the folder holds the map that this walk gave an earlier run of this very program. Throws Error if
+/// Whether the folder holds the map that this walk gave an earlier run of this version. Throws Error if
 /// it holds another room's map, which is not to be lost.
 bool is_scan_of(const std::filesystem::path& folder, const SimOptions& walk, const RoomScan& scan) {
   if (!std::filesystem::exists(folder)) return false;

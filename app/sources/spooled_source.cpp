@@ -145,6 +145,7 @@ void SpooledSource::take(Left left) {
   name_ = std::move(left.name);
   entries_.assign(std::make_move_iterator(left.entries.begin()), std::make_move_iterator(left.entries.end()));
   at_end_ = left.at_end;
+  left_ = entries_.size();
   if (entries_.empty()) return;
   stamp_offset_s_.reset();
   for (const Entry& entry : entries_) index_offset_ = std::max(index_offset_ + 1, entry.frame.index + 1);
@@ -261,7 +262,9 @@ ReadResult SpooledSource::next(Frame& frame) {
   changed_.notify_all();
   try {
     return read_again(entry, position, frame);
-  } catch (const Error& fault) {  // a power failure may leave a list that is ahead of its images
+  } catch (const Error& fault) {
+    // A power failure may leave a list that is ahead of its images. What this process wrote is to be there.
+    if (position >= left_) throw;
     return {ReadStatus::kSkipped, fault.what()};
   }
 }

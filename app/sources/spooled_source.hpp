@@ -97,6 +97,7 @@ class SpooledSource final : public FrameSource {
   mutable std::mutex mutex_;  ///< of what follows
   std::condition_variable changed_;
   std::size_t position_ = 0;
+  std::size_t left_ = 0;       ///< so many are of an earlier process
   std::deque<Entry> entries_;  ///< those that are there stay where they are
   bool at_end_ = false;
   bool stop_ = false;

@@ -34,9 +34,9 @@ struct PictureErrors {
   std::size_t edge_pixels = 0;    ///< within kEdgeBand_px of where the right picture begins to hide an object
 
   PictureErrors& operator+=(const PictureErrors& other);
-  /// For each pixel of the objects; NaN where the right pictures show none.
+  /// For each pixel of the objects; not finite where the right pictures show none.
   [[nodiscard]] double whole() const { return difference / static_cast<double>(object_pixels); }
-  /// For each pixel near an edge; NaN where there is none.
+  /// For each pixel near an edge; not finite where there is none.
   [[nodiscard]] double at_edges() const { return edge_difference / static_cast<double>(edge_pixels); }
 };
 inline constexpr int kEdgeBand_px = 4;

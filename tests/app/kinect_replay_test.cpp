@@ -154,7 +154,7 @@ TEST_F(KinectReplay, AScanOfADeviceThatIsStoppedForMemoryTakesInTheRestLater) {
   const std::size_t count = rest.rest.find(" frames tracked");
   ASSERT_NE(count, std::string::npos) << rest.rest;
   const int tracked = std::stoi(rest.rest.substr(rest.rest.rfind("map: ", count) + 5));
-  EXPECT_GT(tracked, 8) << "those that were kept, and the device's once more: " << rest.rest;
+  EXPECT_GE(tracked, 8) << "those that were kept, and maybe the device's once more: " << rest.rest;
   EXPECT_FALSE(fs::exists(unfinished));
 }
 
@@ -162,8 +162,11 @@ TEST_F(KinectReplay, AScanWhoseDeviceIsGoneForGoodBecomesAMap) {
   const fs::path map = copy_.path() / "map", unfinished = copy_.path() / "map.unfinished";
   const std::string scan =
       "'" ROOMRADAR_PROGRAM "' prescan kinect:0 --resolution 0.04 --map '" + map.string() + "'";
+  if (shell("'" ROOMRADAR_PROGRAM "' record kinect:0 '" + (copy_.path() / "real").string() + "' --frames 0:0")
+          .status == 0)
+    GTEST_SKIP() << "a Kinect is plugged in";
   pause_before(5, 60.0);
-  const Outcome killed = shell(fakenect(recording_) + "timeout -s KILL 8 " + scan);
+  const Outcome killed = shell(fakenect(recording_) + "timeout -s KILL 12 " + scan);
   EXPECT_EQ(killed.status, 128 + SIGKILL) << killed.rest;
   ASSERT_TRUE(fs::exists(unfinished / "spool" / "list.bin")) << killed.rest;
   EXPECT_EQ(shell(scan).status, 1) << "without --resume what was scanned would be lost";
