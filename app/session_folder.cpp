@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "app/quality_json.hpp"
+#include "app/sources/camera_rig_json.hpp"
 #include "app/sources/spooled_source.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/number_text.hpp"
@@ -155,11 +156,7 @@ bool is_session_folder(const fs::path& folder) {
 }
 
 bool is_session_calibrated(const fs::path& folder) {
-  const Json json = read_settings(folder);
-  const auto said = json.find("calibrated");
-  if (said != json.end() && !said->is_boolean())
-    throw Error((folder / kSettings).string() + ": calibrated is not true or false");
-  return said != json.end() && said->get<bool>();
+  return said_calibrated(read_settings(folder), (folder / kSettings).string());
 }
 
 bool is_session_events(const fs::path& file) {

@@ -102,12 +102,10 @@ ScanStart start_scan(const PrescanCommand& command) {
   fs::remove_all(done_beside(folder), ignored);
 
   const fs::path spool = folder / kSpool;
-  bool spooled = SpooledSource::has_end(spool);  // then the device is not needed any more
   SourceOptions options;
   options.keep_all = true;
-  if (!spooled) start.source = open_or_say(command, options, folder);
-  const bool is_given_up = !spooled && !start.source;
-  spooled = spooled || is_given_up;
+  if (!SpooledSource::has_end(spool)) start.source = open_or_say(command, options, folder);
+  const bool spooled = !start.source;  // all that there is: the device is not needed any more, or is gone
   if (!extend) require_memory_to_begin(command.max_memory_mb);
   if (!command.resume) give_up_unfinished(folder);  // what follows it is there
   const bool live = spooled || !start.source->rewind();
@@ -158,7 +156,7 @@ ScanStart start_scan(const PrescanCommand& command) {
     start.checkpoints->require_same_work();
   }
   if (live && start.checkpoints) start.spool = spool;
-  if (is_given_up) {
+  if (spooled) {
     start.source = SpooledSource::again(spool);
   } else if (!start.spool.empty()) {
     start.source = SpooledSource::kept(std::move(start.source), spool);

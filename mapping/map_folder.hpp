@@ -20,7 +20,7 @@ inline constexpr int kMapFormatVersion = 1;
 // Of MapInfo::settings, what is asked for later.
 inline constexpr const char* kDeviationSetting = "deviation_m";  ///< SurfaceConfig::max_deviation_m
 inline constexpr const char* kStoppedSetting =
-    "stopped_for_memory";  ///< there: not all of the source is in it
+    "stopped_for_memory";  ///< the source of which not all is in it
 
 /// One file of the folder as map.json lists it.
 struct MapFile {

@@ -140,10 +140,7 @@ void write_json(const Json& root, const std::filesystem::path& path) {
 CameraRig read_camera_file(const std::filesystem::path& path) {
   const Json root = parse_json_of_format(path, kFormat, kVersion);
   CameraRig rig = rig_from_json(root, path.string());
-  if (root.contains("calibrated")) {
-    if (!root["calibrated"].is_boolean()) throw Error(path.string() + ": calibrated is not true or false");
-    rig.was_calibrated = root["calibrated"].get<bool>();
-  }
+  rig.was_calibrated = said_calibrated(root, path.string());
   return rig;
 }
 

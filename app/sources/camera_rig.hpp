@@ -22,8 +22,7 @@ struct CameraRig {
 ///    "depth":  {"width_px": 640, "height_px": 480, "fx_px": 585, "fy_px": 585, "cx_px": 320, "cy_px": 240},
 ///    "colour": {... the same fields; left out where there is no colour},
 ///    "T_colour_depth": [[r, r, r, tx], [r, r, r, ty], [r, r, r, tz], [0, 0, 0, 1]],       (metres)
-///    "calibrated": true}                                    (left out where frames are as the device gave
-///    them)
+///    "calibrated": true}                           (left out where frames are as the device gave them)
 /// Throws Error naming the file, and the field where one is missing, of the wrong type or impossible.
 CameraRig read_camera_file(const std::filesystem::path& path);
 void write_camera_file(const CameraRig& rig, const std::filesystem::path& path);

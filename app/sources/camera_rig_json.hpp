@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/sources/camera_rig.hpp"
+#include "mapping/types/error.hpp"
 
 namespace roomradar {
 
@@ -19,6 +20,16 @@ void write_json(const nlohmann::json& root, const std::filesystem::path& path);
 const nlohmann::json& json_field(const nlohmann::json& object, const char* name, const std::string& where);
 /// The same, a number.
 double json_number(const nlohmann::json& object, const char* name, const std::string& where);
+
+/// Whether the frames that such a file is about were freed of lens and depth errors before they were
+/// recorded: its field "calibrated", false where it is left out. Throws Error as json_field.
+template <typename Json>
+bool said_calibrated(const Json& root, const std::string& where) {
+  const auto said = root.find("calibrated");
+  if (said == root.end()) return false;
+  if (!said->is_boolean()) throw Error(where + ": calibrated is not true or false");
+  return said->template get<bool>();
+}
 
 /// The fields depth, colour and T_colour_depth of camera.json. Throws Error as read_camera_file.
 CameraRig rig_from_json(const nlohmann::json& root, const std::string& where);
