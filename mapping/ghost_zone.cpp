@@ -97,6 +97,11 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
   for (const VoxelIndex& ghost : verdicts.ghosts) mark_near(ghost, &Marks::near_ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark_near(absent, &Marks::near_ghost);
   for (const VoxelIndex& still : verdicts.still) mark_near(still, &Marks::near_still);
+  for (const VoxelIndex& unseen : verdicts.unseen) {
+    const auto found = marks_.find(cell_code(brick_of(unseen)));
+    if (found != marks_.end()) found->second.unseen.set(offset_of(unseen));
+    mark_near(unseen, &Marks::near_unseen);
+  }
 }
 
 const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {
@@ -110,8 +115,11 @@ SampleFate GhostZone::fate_of(const SurfaceSample& sample) const {
   const std::size_t offset = offset_of(sample.voxel);
   if (marks->ghost.test(offset)) return SampleFate::kFree;
   if (marks->absent.test(offset)) return SampleFate::kUnknown;
-  if (!(sample.weight > 0.0F) && marks->near_ghost.test(offset) && !marks->near_still.test(offset))
-    return SampleFate::kUnknown;
+  const bool near_ghost = marks->near_ghost.test(offset);
+  const bool near_still = marks->near_still.test(offset);
+  const bool near_unseen = marks->near_unseen.test(offset);
+  if (!(sample.weight > 0.0F) && near_ghost && !near_still && !near_unseen) return SampleFate::kUnknown;
+  if (!near_ghost && (marks->unseen.test(offset) || (near_unseen && !near_still))) return SampleFate::kKeep;
   return marks->cells.test(cell_of(sample.voxel)) ? SampleFate::kForget : SampleFate::kKeep;
 }
 

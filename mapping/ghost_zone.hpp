@@ -17,8 +17,8 @@ class GhostZone {
   GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m);
 
   /// Free where it is seen through, unknown where it is absent, and the zone's other samples are measured
-  /// anew. An occupied voxel without a sample, which no look tells anything of, is unknown beside what moved
-  /// on unless it is as near to what is still there.
+  /// anew, but for those of surface that no frame would measure. An occupied voxel without a sample, which no
+  /// look tells anything of, is unknown beside what moved on unless it is as near to what is still there.
   [[nodiscard]] SampleFate fate_of(const SurfaceSample& sample) const;
   /// Whether any of the zone may be in the camera's image.
   [[nodiscard]] bool in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const;
@@ -35,6 +35,8 @@ class GhostZone {
     std::bitset<512> absent;
     std::bitset<512> near_ghost;
     std::bitset<512> near_still;
+    std::bitset<512> unseen;
+    std::bitset<512> near_unseen;
   };
   [[nodiscard]] const Marks* marks_of(const VoxelIndex& voxel) const;
 

@@ -306,6 +306,8 @@ GhostVotes::Verdicts GhostVotes::verdicts() const {
         verdicts.ghosts.push_back(voxel);
       else if (fates[next] == Fate::kAbsent)
         verdicts.absent.push_back(voxel);
+      else if (const Votes& v = votes_[next]; v.seen == 0 && v.through == 0 && v.glimpsed == 0)
+        verdicts.unseen.push_back(voxel);
       else if (votes_[next].occupied != 0)
         verdicts.still.push_back(voxel);
     }

@@ -52,7 +52,8 @@ class GhostVotes {
   struct Verdicts {
     std::vector<VoxelIndex> ghosts;  ///< of that, what is seen through
     std::vector<VoxelIndex> absent;  ///< of that, what is gone with nothing measured behind
-    std::vector<VoxelIndex> still;   ///< other surface that is occupied
+    std::vector<VoxelIndex> still;   ///< other surface that is occupied, and was looked at
+    std::vector<VoxelIndex> unseen;  ///< surface that no look measured, or saw through: of an earlier scan
   };
   /// Each in the octree's order.
   [[nodiscard]] Verdicts verdicts() const;

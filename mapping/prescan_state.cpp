@@ -64,7 +64,8 @@ void transfer(Archive& archive, FusedFrame& frame) {
 template <typename Archive>
 void transfer(Archive& archive, GhostRevision& revision) {
   GhostVotes::Verdicts& verdicts = revision.verdicts;
-  for (std::vector<VoxelIndex>* voxels : {&verdicts.ghosts, &verdicts.absent, &verdicts.still}) {
+  for (std::vector<VoxelIndex>* voxels :
+       {&verdicts.ghosts, &verdicts.absent, &verdicts.still, &verdicts.unseen}) {
     transfer(archive, *voxels);
     if constexpr (Archive::kReads) {
       static constexpr int kReach = 32768;  // of an octree's keys
@@ -85,7 +86,7 @@ constexpr const char* kOdometry = "odometry";
 constexpr const char* kOctree = "octree.ot";
 constexpr const char* kPlaces = "places.bin";
 constexpr std::string_view kMagic = "RRPRSCAN";
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 template <typename Archive>
 void transfer_state(Archive& archive, TrackingPass& pass) {

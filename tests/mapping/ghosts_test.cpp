@@ -187,6 +187,7 @@ TEST(Ghosts, OccupiedVoxelsWithoutASampleGoWithWhatTheyTouch) {
   GhostVotes::Verdicts verdicts;
   verdicts.absent = {{0, 0, 0}};
   verdicts.still = {{5, 0, 0}};
+  verdicts.unseen = {{0, 5, 0}};
   const GhostZone zone(verdicts, kResolution_m);
   const auto fate_at = [&](const VoxelIndex& voxel, float weight) {
     SurfaceSample sample;
@@ -198,7 +199,42 @@ TEST(Ghosts, OccupiedVoxelsWithoutASampleGoWithWhatTheyTouch) {
   EXPECT_EQ(fate_at({1, 1, 0}, 0.0F), SampleFate::kUnknown);
   EXPECT_EQ(fate_at({1, 1, 0}, 1.0F), SampleFate::kForget);  // to be measured anew
   EXPECT_EQ(fate_at({3, 0, 0}, 0.0F), SampleFate::kForget);  // near what is still there
+  EXPECT_EQ(fate_at({0, 3, 0}, 0.0F), SampleFate::kKeep);    // near what no frame of this scan tells of
+  EXPECT_EQ(fate_at({0, 5, 0}, 1.0F), SampleFate::kKeep);
   EXPECT_EQ(fate_at({40, 0, 0}, 0.0F), SampleFate::kKeep);
+}
+
+// The map holds an earlier scan; the frames of this one end beside what it sees through.
+TEST(Ghosts, SurfaceOfAnEarlierScanThatNoFrameMeasuresAnewStays) {
+  Scan scanned;
+  const Scene with_box = before_wall({-0.25, 1.85, -0.3}, {0.25, 2.0, 0.3});
+  for (const Frame& frame : record(20, [&](int) { return with_box; }))
+    ASSERT_EQ(scanned.map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+  const auto wall_beside = [&scanned] {
+    const auto vertices = surface_of(scanned.map);
+    return std::count_if(vertices.begin(), vertices.end(), [](const Eigen::Vector3d& v) {
+      return v.x() > 0.29 && v.x() < 0.35 && std::abs(v.z()) < 0.2 && std::abs(v.y() - 2.0) < 0.03;
+    });
+  };
+  const std::int64_t before = wall_beside();
+  ASSERT_GT(before, 30);
+
+  std::vector<Frame> frames;
+  std::vector<FusedFrame> fused;
+  for (int i = 0; i < 20; ++i) {  // the right border of the image is the plane x = 0.27 m
+    frames.push_back(exact_frame(wall(), kCamera, looking_at({0.27, 0.0, 0.0}, {0.27 - 1.1, 2.0, 0.0})));
+    frames.back().index = i;
+    test::add_depth_noise(frames.back(), 100U + static_cast<unsigned>(i));
+    const Eigen::Isometry3d T_world_camera = *frames.back().T_world_camera;
+    ASSERT_EQ(scanned.map.fuse(frames.back(), T_world_camera), FuseStatus::kFused);
+    fused.push_back({i, i, kCamera, T_world_camera});
+  }
+  FrameList source(frames);
+  StageTimes times;
+  GhostRevision revision = take_out_ghosts(source, fused, {}, scanned.map, times);
+  look_again(source, fused, revision, scanned.map, times);
+  EXPECT_GT(revision.voxels(), 100);  // the box
+  EXPECT_GE(wall_beside(), before);
 }
 
 TEST(Ghosts, NoDepthBesideSomethingNearerMayBeItsShadow) {
@@ -394,7 +430,8 @@ TEST(Ghosts, FramesThatDoNotFitTheirCameraSayNothing) {
   for (int i = 0; i < 5; ++i) votes.look(wrong, *wrong.T_world_camera);
   votes.look(Frame{}, Eigen::Isometry3d::Identity());
   EXPECT_TRUE(votes.verdicts().ghosts.empty());
-  EXPECT_FALSE(votes.verdicts().still.empty());
+  EXPECT_TRUE(votes.verdicts().still.empty());
+  EXPECT_FALSE(votes.verdicts().unseen.empty());
 }
 
 TEST(Ghosts, AnEmptyMapHasNone) {
