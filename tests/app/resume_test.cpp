@@ -282,7 +282,7 @@ TEST_F(ResumeTest, AFolderOfSomebodyElseUnderTheCheckpointsNameIsLeftAlone) {
 
 TEST_F(ResumeTest, ASecondScanOfTheMapIsRefusedBeforeTheFirstCheckpointToo) {
   const pid_t first =
-      start({"prescan", "sim:table?frames=100000&width=128", "--map", map(), "--checkpoint-every", "1000"});
+      start({"prescan", "sim:table?frames=5000&width=128", "--map", map(), "--checkpoint-every", "1000"});
   while (!fs::exists(unfinished() / "work.json")) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   for (const bool resume : {false, true}) {
     EXPECT_EQ(run(scan(map(), resume)), 1);
