@@ -34,7 +34,7 @@ struct [[nodiscard]] RigidPiece {
   Touched rests_on = Touched::kNothing;
 };
 
-/// The body's frame and the scratch of its motion; kept to allocate nothing.
+/// What a body touches while it moves; kept from piece to piece of a step.
 struct RigidScratch {
   std::vector<NearPoint> near;
   std::vector<SolverContact> contacts;
