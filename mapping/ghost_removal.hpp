@@ -21,8 +21,8 @@ struct FusedFrame {
 
 /// What moved on, out of the map, and how far the second look at where it was has come.
 struct GhostRevision {
-  GhostVotes::Verdicts verdicts;
-  std::uint64_t next = 0;  ///< the first of the fused frames that is not looked at again
+  GhostVotes::Verdicts verdicts;  ///< still and unseen: only what lies near the others
+  std::uint64_t next = 0;         ///< the first of the fused frames that is not looked at again
 
   [[nodiscard]] std::int64_t voxels() const {
     return static_cast<std::int64_t>(verdicts.ghosts.size() + verdicts.absent.size());

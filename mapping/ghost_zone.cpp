@@ -86,6 +86,7 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
   for (const VoxelIndex& ghost : verdicts.ghosts) mark(ghost, &Marks::ghost);
   for (const VoxelIndex& absent : verdicts.absent) mark(absent, &Marks::absent);
   const auto mark_near = [this](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
+    if (!reaches(voxel)) return;
     for (int z = -kNear; z <= kNear; ++z)
       for (int y = -kNear; y <= kNear; ++y)
         for (int x = -kNear; x <= kNear; ++x) {
@@ -102,6 +103,14 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
     if (found != marks_.end()) found->second.unseen.set(offset_of(unseen));
     mark_near(unseen, &Marks::near_unseen);
   }
+}
+
+bool GhostZone::reaches(const VoxelIndex& voxel) const {
+  for (int i = 0; i < 8; ++i) {
+    const VoxelIndex corner(i & 1 ? kNear : -kNear, i & 2 ? kNear : -kNear, i & 4 ? kNear : -kNear);
+    if (marks_.contains(cell_code(brick_of(voxel + corner)))) return true;
+  }
+  return false;
 }
 
 const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {

@@ -20,6 +20,8 @@ class GhostZone {
   /// anew, but for those of surface that no frame would measure. An occupied voxel without a sample, which no
   /// look tells anything of, is unknown beside what moved on unless it is as near to what is still there.
   [[nodiscard]] SampleFate fate_of(const SurfaceSample& sample) const;
+  /// Whether a voxel is so near that what it is may matter to the zone.
+  [[nodiscard]] bool reaches(const VoxelIndex& voxel) const;
   /// Whether any of the zone may be in the camera's image.
   [[nodiscard]] bool in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const;
 

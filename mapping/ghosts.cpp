@@ -97,6 +97,8 @@ void require_valid(const GhostConfig& c) {
   const SettingRules require{"ghosts"};
   require(c.margin_m > 0.0F && std::isfinite(c.margin_m), "margin_m", c.margin_m, "> 0");
   require(c.margin_per_m >= 0.0F && std::isfinite(c.margin_per_m), "margin_per_m", c.margin_per_m, ">= 0");
+  require(c.margin_voxels >= 0.0F && std::isfinite(c.margin_voxels), "margin_voxels", c.margin_voxels,
+          ">= 0");
   require(c.margin_sigmas >= 0.0F && std::isfinite(c.margin_sigmas), "margin_sigmas", c.margin_sigmas,
           ">= 0");
   require(c.window_radius_m >= 0.0F && c.window_radius_m <= 1.0F, "window_radius_m", c.window_radius_m,
@@ -147,6 +149,8 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   const auto cy = static_cast<float>(camera.cy_px);
   const auto width = static_cast<float>(depth_m.width);
   const auto height = static_cast<float>(depth_m.height);
+  const float least_margin_m =
+      std::max(config_.margin_m, config_.margin_voxels * static_cast<float>(resolution_m_));
 
   // Calls visit(position, centre in the camera frame, pixel) for the voxels in the image, nearer than that.
   const auto for_each_nearer = [&](float farthest_m, const auto& visit) {
@@ -200,9 +204,9 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
       return window_depth(windows_, x, y, radius_px);
     };
     const bool has_colour = i % kEveryColour == 0;
-    const auto margin_m = [this](float depth) {
+    const auto margin_m = [&, this](float depth) {
       return std::max(
-          {config_.margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
+          {least_margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
     };
     if (!(measured_m > 0.0F)) {
       if (is_hidden[cell_at(x / kHiddenCell_px, y / kHiddenCell_px)]) return;

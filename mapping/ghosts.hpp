@@ -19,6 +19,8 @@ struct GhostConfig {
   /// And by this more a metre of depth: a pose that is off by 1.7 degrees shifts a slanted surface by so
   /// much, and sensors other than the Kinect are noisier far away.
   float margin_per_m = 0.03F;
+  /// And by so many edges of the map's cells: what is measured lies up to one before or behind a sample.
+  float margin_voxels = 1.5F;
   /// ... in every pixel of a window of this radius at the sample's depth, so that a pose that is a little off
   /// does not see past the edges of static things.
   float window_radius_m = 0.03F;

@@ -260,6 +260,22 @@ TEST(Ghosts, AThinPoleStaysThoughThePosesAreACentimetreOff) {
   EXPECT_GE(occupied, 50);  // 1.2 m of it are in view: 60 voxels
 }
 
+// The middle of a coarse cell lies farther before the wall than noise, or a pose, would explain.
+TEST(Ghosts, AWallIsNoneHoweverCoarseTheCells) {
+  const auto frames = record(20, [](int) { return wall(); });
+  FrameList source(frames);
+  for (const double resolution_m : {0.03, 0.05, 0.07, 0.1, 0.15, 0.2}) {
+    StaticMap map(resolution_m);
+    std::vector<FusedFrame> fused;
+    for (const Frame& frame : frames) {
+      ASSERT_EQ(map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+      fused.push_back({frame.index, frame.index, kCamera, *frame.T_world_camera});
+    }
+    StageTimes times;
+    EXPECT_EQ(take_out_ghosts(source, fused, {}, map, times).voxels(), 0) << resolution_m;
+  }
+}
+
 TEST(Ghosts, WhatIsNeverSeenThroughIsLeftAsItIs) {
   const auto frames = record(12, [](int) { return before_wall({-0.1, 1.6, -0.1}, {0.1, 1.8, 0.1}); });
   const Scan scanned = scan(FrameList(frames));

@@ -44,7 +44,7 @@ FusingPass fusing_pass(int frames) {
   pass.T_world_found.translation() = Eigen::Vector3d(0.1, 0.2, 0.3);
   pass.ghost_voxels = 5;
   pass.stopped_for_memory = true;
-  pass.revision = GhostRevision{{{{1, -2, 3}}, {{4, 5, 6}, {7, 8, 9}}, {}}, 2};
+  pass.revision = GhostRevision{{{{1, -2, 3}}, {{4, 5, 6}, {7, 8, 9}}, {}, {{-7, 8, -9}}}, 2};
   for (int i = 0; i < frames; ++i) {
     const Frame frame = seen_from(pose(i));
     EXPECT_EQ(pass.octree.fuse(frame, pose(i)), FuseStatus::kFused);
