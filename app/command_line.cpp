@@ -324,6 +324,12 @@ void add_map(CLI::App& app, Arguments& arguments, std::function<int()>& work) {
   merge->add_option("--map", arguments.map_merge.map, "folder to save the map of both in")
       ->required()
       ->type_name("DIR");
+  merge
+      ->add_option("--deviation", arguments.map_merge.deviation_m,
+                   "how far its mesh with large triangles may lie from that with all, metres; 0 keeps all\n"
+                   "(as A was made)")
+      ->check(within(0.0, 1.0, "metres"))
+      ->type_name("M");
   add_report_option(*merge, arguments.map_merge.report);
   merge->callback([&] { work = [&arguments] { return run(arguments.map_merge); }; });
   CLI::App* diff = sub->add_subcommand(

@@ -75,6 +75,7 @@ struct MapMergeCommand {
   std::string a;
   std::string b;
   std::string map;
+  std::optional<double> deviation_m;  ///< of the surface of both; a's if not given
   std::string report;
 };
 struct MapDiffCommand {

@@ -10,6 +10,7 @@
 #include "mapping/map_diff.hpp"
 #include "mapping/map_merge.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 int run(const MapMergeCommand& command) {
@@ -21,6 +22,10 @@ int run(const MapMergeCommand& command) {
   require_writable(command.report);
   SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);
+  if (command.deviation_m) {
+    a.info.settings[kDeviationSetting] = number_text(*command.deviation_m);
+    report.settings["deviation_m"] = *command.deviation_m;
+  }
   if (a.info.files.at("octree.ot").sha256 == b.info.files.at("octree.ot").sha256)
     throw Error(command.b + ": is the same map as " + command.a +
                 "; joined with itself it would count everything it saw twice");

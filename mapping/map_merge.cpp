@@ -12,6 +12,7 @@
 
 #include "mapping/coverage.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -111,7 +112,7 @@ void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, Static
   });
   const Eigen::Isometry3d T_from_into = T_into_from.inverse();
   from.visit_samples([&](const SurfaceSample& sample) {
-    cover(box_of(sample.voxel, 1), [&](const VoxelIndex& voxel, int) {
+    const auto resample_at = [&](const VoxelIndex& voxel) {
       const Eigen::Vector3d p_into =
           (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * into.resolution_m();
       const Eigen::Vector3d p_from = T_from_into * p_into;
@@ -123,6 +124,11 @@ void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, Static
       resampled.voxel = voxel;
       resampled.distance_m = static_cast<float>(*distance_m);
       into.add_evidence(resampled);
+    };
+    cover(box_of(sample.voxel, 1), [&](const VoxelIndex& low, int edge) {
+      for (int z = 0; z < edge; ++z)
+        for (int y = 0; y < edge; ++y)
+          for (int x = 0; x < edge; ++x) resample_at(low + VoxelIndex(x, y, z));
     });
   });
 }
@@ -146,7 +152,9 @@ void append_session(SavedMap& map, const SavedMap& session) {
   map.info.frames_fused += session.info.frames_fused;
 }
 
-Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config) {
+namespace {
+
+Registration register_into(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config) {
   Registration there =
       register_to(a.octree, a.places, b.places, sample_surface(b.mesh, config.points), config);
   if (!there) return there;
@@ -159,7 +167,29 @@ Registration register_maps(const SavedMap& a, const SavedMap& b, const Registrat
   return there;
 }
 
+}  // namespace
+
+Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config) {
+  const Registration found = register_into(a, b, config);
+  if (found.status != RegistrationStatus::kNoOverlap) return found;
+  // Or a may be one corner of b.
+  Registration turned = register_into(b, a, config);
+  turned.T_a_b = turned.T_a_b.inverse();
+  return turned ? turned : found;
+}
+
 namespace {
+
+/// Throws Error if the cells of one would be so many of the other's that both are better scanned alike.
+void require_alike(const SavedMap& a, const SavedMap& b) {
+  constexpr double kMostTimes = 4.0;  // 64 cells for one
+  const double finer_m = std::min(a.octree.resolution_m(), b.octree.resolution_m());
+  const double coarser_m = std::max(a.octree.resolution_m(), b.octree.resolution_m());
+  if (coarser_m <= kMostTimes * finer_m * (1.0 + 1e-9)) return;
+  throw Error("the cells of one map are " + number_text(finer_m) + " m and of the other " +
+              number_text(coarser_m) + " m; to be joined they may differ by " + number_text(kMostTimes) +
+              " times: scan one of them anew");
+}
 
 /// Throws Error if a map, seen from the merged one, lies past the reach of cells of that size.
 void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map, double resolution_m) {
@@ -187,6 +217,7 @@ SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_
   const double finer_m = std::min(a.octree.resolution_m(), b.octree.resolution_m());
   require_in_reach(a, Eigen::Isometry3d::Identity(), finer_m);
   require_in_reach(b, T_a_b, finer_m);
+  require_alike(a, b);
   if (b.octree.resolution_m() < a.octree.resolution_m()) {
     StaticMap finer(b.octree.resolution_m(), a.octree.config());
     add_map(a.octree, Eigen::Isometry3d::Identity(), finer);

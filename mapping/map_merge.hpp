@@ -22,7 +22,8 @@ void append_session(SavedMap& map, const SavedMap& session);
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config = {});
 
 /// Both in one, in a's world, with the finer resolution of the two; the surface is extracted anew, as
-/// closely as a's. Throws Error if either lies past the reach of such cells.
+/// closely as a's. Throws Error if either lies past the reach of such cells, or has cells of more than
+/// four times the other's.
 SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_b);
 
 }  // namespace roomradar

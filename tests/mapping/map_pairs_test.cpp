@@ -110,6 +110,18 @@ TEST_F(MapPairs, ASmallPartOfALargeMapIsRegistered) {
   EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
 }
 
+TEST_F(MapPairs, ALargeMapIsRegisteredInASmallPartOfIt) {
+  SavedMap hall = scan(room(), 0.2, 1.2, kT_b_world, 1000);
+  const auto first = static_cast<std::uint32_t>(hall.mesh.vertices.size());
+  for (const Eigen::Vector3f& corner :
+       {Eigen::Vector3f(0, 30, 0), Eigen::Vector3f(60, 30, 0), Eigen::Vector3f(0, 90, 0)})
+    hall.mesh.vertices.push_back(corner);
+  hall.mesh.triangles.push_back({first, first + 1, first + 2});  // where a saw nothing
+  const Registration found = register_maps(a(), hall);
+  ASSERT_TRUE(found) << describe(found);
+  EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
+}
+
 TEST_F(MapPairs, AnotherRoomIsRefused) {
   // The same camera path, other walls, painted by other places.
   const Scene other = test::nearest_of(test::plane(Vector3d(0.3, 1.0, 0.0).normalized(), 1.6),
@@ -240,6 +252,51 @@ TEST_F(MapPairs, AFinerGridTakesEachVoxelOnce) {
       }
   EXPECT_GT(known, 4000);
   EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(MapPairs, AFinerGridTakesTheWholeOfEachSample) {
+  // A tilted plane, and what it is in cells of an half, a third and a quarter of the edge: no holes.
+  constexpr double kCoarse_m = 0.04;
+  const Vector3d normal = Vector3d(0.2, 0.3, 1.0).normalized();
+  StaticMap from(kCoarse_m);
+  for (int y = -12; y < 12; ++y)
+    for (int x = -12; x < 12; ++x)
+      for (int z = -12; z < 12; ++z) {
+        const Vector3d p = (Vector3d(x, y, z) + Vector3d::Constant(0.5)) * kCoarse_m;
+        const double distance_m = normal.dot(p);
+        if (std::abs(distance_m) > 3.0 * kCoarse_m) continue;
+        SurfaceSample sample;
+        sample.voxel = {x, y, z};
+        sample.distance_m = static_cast<float>(distance_m);
+        sample.weight = 4.0F;
+        sample.occupancy = Occupancy::kFree;
+        from.add_evidence(MapLeaf{sample.voxel, 1, -1.0F});
+        from.add_evidence(sample);
+      }
+  for (const int parts : {2, 3, 4}) {
+    StaticMap into(kCoarse_m / parts);
+    add_map(from, Isometry3d::Identity(), into);
+    int missing = 0, wrong = 0, all = 0;
+    for (double y = -0.3; y < 0.3; y += 0.01)
+      for (double x = -0.3; x < 0.3; x += 0.01) {
+        const Vector3d p(x, y, -(normal.x() * x + normal.y() * y) / normal.z());
+        const auto at = into.sample_at(p);
+        ++all;
+        missing += at ? 0 : 1;
+        wrong += at && std::abs(at->distance_m) > kCoarse_m / parts ? 1 : 0;
+      }
+    EXPECT_EQ(missing, 0) << parts << " of " << all;
+    EXPECT_EQ(wrong, 0) << parts;
+  }
+}
+
+TEST_F(MapPairs, CellsThatDifferByMoreThanFourTimesAreNotJoined) {
+  SavedMap coarse, fine;
+  coarse.octree = StaticMap(0.05);
+  fine.octree = StaticMap(0.01);
+  const std::string fault =
+      test::error_of([&] { (void)merge_maps(std::move(coarse), fine, Isometry3d::Identity()); });
+  EXPECT_NE(fault.find("are 0.01 m and of the other 0.05 m"), std::string::npos) << fault;
 }
 
 TEST_F(MapPairs, TwoScansOfOneRoomDoNotDiffer) {
