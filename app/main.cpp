@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <new>
 
 #include "app/command_line.hpp"
 #include "mapping/types/error.hpp"
@@ -15,6 +16,10 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.flush())
       throw roomradar::Error("stdout: not all that was to be said could be written; is the disk full?");
     return status;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(
+        stderr, "roomradar: memory ran out; close other programs, or take coarser cells or smaller images\n");
+    return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "roomradar: %s\n", error.what());
     return 1;

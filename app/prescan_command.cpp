@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <new>
 
 #include "app/apply_quality.hpp"
 #include "app/commands.hpp"
@@ -154,18 +155,24 @@ bool holds_frames(const std::filesystem::path& spool) {
   return !spool.empty() && SpooledSource::has_frames(spool);
 }
 
-/// Scans or saves; where that fails and the scan is not lost, says how to go on.
+/// Throws Error that says what went wrong and, where the scan is not lost, how to go on.
+[[noreturn]] void fail(const std::string& fault, const ScanStart& start) {
+  if (!start.checkpoints || !(start.checkpoints->has_any() || holds_frames(start.spool))) throw Error(fault);
+  throw Error(fault + "\nroomradar: what was scanned is kept in " + start.checkpoints->folder().string() +
+              ": the same command with --resume goes on from there; delete it to scan anew");
+}
+
+/// Scans or saves.
 template <typename Act>
 auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
   try {
     return act();
   } catch (const StoppedByUser&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    fail("memory ran out; close other programs, or give --max-memory", start);
   } catch (const Error& error) {
-    if (!start.checkpoints || !(start.checkpoints->has_any() || holds_frames(start.spool))) throw;
-    throw Error(std::string(error.what()) + "\nroomradar: what was scanned is kept in " +
-                start.checkpoints->folder().string() +
-                ": the same command with --resume goes on from there; delete it to scan anew");
+    fail(error.what(), start);
   }
 }
 

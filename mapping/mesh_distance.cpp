@@ -15,6 +15,20 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kReachesACube = 4.0F;  // a query looks into one to eight cubes
+// However short the reach: else a triangle would lie in countless cubes, or they be too small for a float.
+constexpr float kCubesASide = 8.0F, kCubesAcross = 1e5F;
+
+// Mean of the triangles' longest extents along an axis.
+float mean_side_m(const Mesh& mesh) {
+  double sum_m = 0.0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Eigen::Vector3f &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k];
+    const Eigen::Vector3f extents = a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c);
+    sum_m += static_cast<double>(extents.maxCoeff());
+  }
+  return mesh.triangles.empty() ? 0.0F
+                                : static_cast<float>(sum_m / static_cast<double>(mesh.triangles.size()));
+}
 
 std::uint64_t mixed(std::uint64_t code) { return code * 0x9E3779B97F4A7C15U; }
 // A hash is its upper bits. Tells cubes of one hash apart; two that it does not cost time, not truth.
@@ -25,8 +39,12 @@ std::uint32_t tag_of(std::uint64_t mixed_code) { return static_cast<std::uint32_
 SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
     : mesh_(mesh), reach_m_(reach_m), edge_m_(kReachesACube * reach_m) {
   if (!mesh.vertices.empty()) {
-    low_ = mesh.vertices.front();
-    for (const Eigen::Vector3f& vertex : mesh.vertices) low_ = low_.cwiseMin(vertex);
+    Eigen::Vector3f high = low_ = mesh.vertices.front();
+    for (const Eigen::Vector3f& vertex : mesh.vertices) {
+      low_ = low_.cwiseMin(vertex);
+      high = high.cwiseMax(vertex);
+    }
+    edge_m_ = std::max({edge_m_, mean_side_m(mesh) / kCubesASide, (high - low_).maxCoeff() / kCubesAcross});
   }
   struct Part {
     std::uint64_t mixed_code;

@@ -87,6 +87,23 @@ TEST(SurfaceNear, FindsWhatAskingEveryTriangleFinds) {
   EXPECT_GT(within, 100);
 }
 
+// A reach of a millionth of the triangles, and of less than a float tells apart: neither countless cubes nor
+// endless halving.
+TEST(SurfaceNear, AnswersWithinAReachThatIsNextToNothing) {
+  std::mt19937 random(3);
+  Mesh mesh = random_triangles(random);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const Eigen::Vector3f& corner : {Eigen::Vector3f(-20, 0, 3), {30, 0, 3}, {0, 40, 3}})
+    mesh.vertices.push_back(corner);
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  for (const float reach_m : {1e-5F, 1e-8F, 1e-30F}) {
+    const SurfaceNear surface(mesh, reach_m);
+    EXPECT_EQ(surface.distance_m(mesh.vertices.front()), 0.0F);
+    EXPECT_EQ(surface.distance_m(mesh.vertices.back()), 0.0F);
+    EXPECT_TRUE(std::isinf(surface.distance_m({0.0F, 10.0F, 3.1F})));
+  }
+}
+
 TEST(MeshDistance, AMeshIsOnItselfAndALiftedOneIsNot) {
   std::mt19937 random(4);
   Mesh mesh = random_triangles(random);
