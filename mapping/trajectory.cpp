@@ -3,13 +3,13 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -45,10 +45,10 @@ void write_trajectory(const std::filesystem::path& path, const std::vector<Timed
   for (const TimedPose& pose : trajectory) {
     const Eigen::Vector3d t = pose.T_world_camera.translation();
     const Eigen::Quaterniond q(pose.T_world_camera.linear());
-    std::array<char, 512> line{};  // a stamp may have 309 digits
-    std::snprintf(line.data(), line.size(), "%.9f %.12g %.12g %.12g %.12g %.12g %.12g %.12g\n", pose.stamp_s,
-                  t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
-    file << line.data();
+    file << fixed_text(pose.stamp_s, 9);
+    for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
+      file << ' ' << general_text(value, 12);
+    file << '\n';
   }
   file.flush();
   if (!file) throw Error(path.string() + ": the trajectory cannot be written; is the disk full?");

@@ -1,10 +1,11 @@
 // recording_writer.cpp: frames as files, one small function a format.
 #include "app/sources/recording_writer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
+#include <initializer_list>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "app/sources/image_file.hpp"
 #include "app/sources/kinect_units.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -20,14 +22,14 @@ namespace fs = std::filesystem;
 
 constexpr double kLongestGap_s = 30.0;  // in fakenect's form
 
-template <typename... Values>
-std::string formatted(const char* format, Values... values) {
-  std::array<char, 512> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
+std::string fixed_6(double value) { return fixed_text(value, 6); }
 
-std::string fixed_6(double value) { return formatted("%.6f", value); }
+/// A space before each.
+std::string spaced(std::initializer_list<double> values, int digits) {
+  std::string text;
+  for (const double value : values) text += ' ' + general_text(value, digits);
+  return text;
+}
 
 void make_folder(const fs::path& folder) {
   std::error_code fault;
@@ -132,20 +134,20 @@ void RecordingWriter::write_tum(const Frame& frame) {
     const Eigen::Vector3d t = frame.T_world_camera->translation();
     const Eigen::Quaterniond q(frame.T_world_camera->linear());
     add_line(pose_list_, folder_ / "groundtruth.txt",
-             stamp + formatted(" %.12g %.12g %.12g %.12g %.12g %.12g %.12g", t.x(), t.y(), t.z(), q.x(),
-                               q.y(), q.z(), q.w()),
+             stamp + spaced({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}, 12),
              "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n");
   }
   if (frame.down_camera) {
     const Eigen::Vector3d a = acceleration_at_rest_g(*frame.down_camera) * kStandardGravity_m_s2;
-    add_line(gravity_list_, folder_ / "accelerometer.txt",
-             stamp + formatted(" %.9g %.9g %.9g", a.x(), a.y(), a.z()),
+    add_line(gravity_list_, folder_ / "accelerometer.txt", stamp + spaced({a.x(), a.y(), a.z()}, 9),
              "# stamp_s ax ay az: m/s^2; x left, y up, z forward\n");
   }
 }
 
 void RecordingWriter::write_seven_scenes(const Frame& frame) {
-  const fs::path stem = folder_ / formatted("frame-%06lld", static_cast<long long>(frames_written_));
+  std::string number = std::to_string(frames_written_);
+  number.insert(0, 6 - std::min<std::size_t>(number.size(), 6), '0');
+  const fs::path stem = folder_ / ("frame-" + number);
   write_depth_file(frame.depth_m, DepthEncoding::kMillimetres, stem.string() + ".depth.png");
   if (frame.colour.empty())
     std::ofstream(stem.string() + ".color.none");  // tells it from an image that was lost
@@ -156,8 +158,8 @@ void RecordingWriter::write_seven_scenes(const Frame& frame) {
   const Eigen::Matrix4d matrix =
       frame.T_world_camera ? frame.T_world_camera->matrix() : Eigen::Matrix4d::Constant(std::nan(""));
   for (int row = 0; row < 4; ++row)
-    pose << formatted("%.12g\t%.12g\t%.12g\t%.12g\n", matrix(row, 0), matrix(row, 1), matrix(row, 2),
-                      matrix(row, 3));
+    for (int column = 0; column < 4; ++column)
+      pose << general_text(matrix(row, column), 12) << (column < 3 ? '\t' : '\n');
   pose.close();
   if (!pose)
     throw Error(pose_file.string() + ": cannot be written; is the disk full, or the folder read-only?");

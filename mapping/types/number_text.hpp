@@ -13,4 +13,19 @@ std::string number_text(Number value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
+/// With so many digits after the point (0..20), whatever the locale, as "%.6f" has it in the C locale.
+inline std::string fixed_text(double value, int digits) {
+  std::array<char, 340> text;  // the greatest double has 309 before it
+  return {text.data(),
+          std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, digits).ptr};
+}
+
+/// With so many digits that count (1..20), whatever the locale, as "%.6g" has it in the C locale.
+inline std::string general_text(double value, int digits) {
+  std::array<char, 40> text;
+  return {
+      text.data(),
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr};
+}
+
 }  // namespace roomradar

@@ -140,6 +140,16 @@ TEST(NumberText, IsTheShortestThatReadsBack) {
     EXPECT_EQ(std::strtod(number_text(longest).c_str(), nullptr), longest);
 }
 
+TEST(NumberText, HasTheDigitsThatAreAskedForWhateverTheLocale) {
+  EXPECT_EQ(fixed_text(1.5, 9), "1.500000000");
+  EXPECT_EQ(fixed_text(-0.0000004, 6), "-0.000000");
+  EXPECT_EQ(fixed_text(std::numeric_limits<double>::max(), 9).size(), 309U + 10U);
+  EXPECT_EQ(general_text(1.0 / 3.0, 12), "0.333333333333");
+  EXPECT_EQ(general_text(-1e-7, 12), "-1e-07");
+  EXPECT_EQ(general_text(std::nan(""), 12), "nan");
+  EXPECT_EQ(general_text(-std::numeric_limits<double>::max(), 20), "-1.7976931348623157081e+308");
+}
+
 TEST(SettingRules, SayWhatWasGivenHoweverSmall) {
   const SettingRules require{"fusion"};
   EXPECT_NO_THROW(require(true, "max_range_m", -1.0, "in 0..100 m"));
