@@ -1,6 +1,7 @@
 // playback_source.hpp: a source that can be held, wound back and repeated, with stamps that always go on.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -39,7 +40,11 @@ class PlaybackSource final : public FrameSource {
   void hold(bool is_held) { is_held_ = is_held; }
   void set_at_end(AtEnd at_end) { at_end_ = at_end; }
   /// Nobody has read for a while and time stood still, but for the clock of a device.
-  void resume() { anew_ = 2; }  // one frame may have been read ahead before the pause
+  void resume() {
+    anew_ = 2;  // one frame may have been read ahead before the pause
+    old_ = kOld;
+    least_offset_s_ = -std::numeric_limits<double>::infinity();
+  }
 
   [[nodiscard]] bool is_held() const { return is_held_; }
   [[nodiscard]] AtEnd at_end() const { return at_end_; }
@@ -49,6 +54,8 @@ class PlaybackSource final : public FrameSource {
   [[nodiscard]] bool is_again() const { return is_again_; }
 
  private:
+  static constexpr int kOld = 4;  // frames: a run reads one ahead, the spool of a session two, and one is new
+
   std::unique_ptr<FrameSource> source_;
   AtEnd at_end_;
   bool is_held_ = false;
@@ -58,9 +65,12 @@ class PlaybackSource final : public FrameSource {
   std::optional<double> last_stamp_s_;  ///< as it was passed on
   int anew_ = 0;                        ///< of so many frames the stamp does not follow on the last one's
   bool was_repeated_ = false;           ///< the last frame was passed on once more
+  int old_ = 0;                         ///< so many frames may be of before a pause, a hold or a rewind
   double stamp_offset_s_ = 0.0;         ///< added to the source's own
+  double least_offset_s_ = 0.0;         ///< as it was before that
 
   ReadResult repeat(Frame& frame);
+  void follow(double stamp_s, bool is_new_after_rewind);
 };
 
 }  // namespace roomradar

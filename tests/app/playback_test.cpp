@@ -108,6 +108,55 @@ TEST(PlaybackSource, TimeStandsStillInAPauseThoughADevicesClockGoesOn) {
   EXPECT_NEAR(next_of(source, frame).stamp_s, before_s + 2 * kFrame_s + 0.1, 1e-12);
 }
 
+/// Frames a thirtieth of a second apart; but from the fresh-th on a minute later, as from a device whose
+/// first `fresh` frames wait in a spool.
+class DeviceSource final : public FrameSource {
+ public:
+  explicit DeviceSource(int fresh) : fresh_(fresh) {}
+  ReadResult next(Frame& frame) override {
+    frame.index = next_++;
+    frame.stamp_s = static_cast<double>(frame.index) * kFrame_s + (frame.index >= fresh_ ? 60.0 : 0.0);
+    frame.depth_m = DepthImage(1, 1, static_cast<float>(frame.index));
+    return {ReadStatus::kFrame, {}};
+  }
+  bool rewind() override {
+    next_ = 0;
+    return true;
+  }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::nullopt; }
+  [[nodiscard]] std::string name() const override { return "a device"; }
+
+ private:
+  std::int64_t fresh_, next_ = 0;
+};
+
+TEST(PlaybackSource, FramesThatWaitedInASpoolDoNotBringThePauseBack) {
+  PlaybackSource source(std::make_unique<DeviceSource>(5), AtEnd::kEnd);
+  Frame frame;
+  for (int i = 0; i < 3; ++i) next_of(source, frame);
+  source.resume();
+  for (int i = 3; i < 9; ++i) EXPECT_NEAR(next_of(source, frame).stamp_s, i * kFrame_s, 1e-9) << i;
+}
+
+TEST(PlaybackSource, FramesThatWaitedInASpoolDoNotBringTheTimeOfAHoldTwice) {
+  PlaybackSource source(std::make_unique<DeviceSource>(5), AtEnd::kEnd);
+  Frame frame;
+  for (int i = 0; i < 3; ++i) next_of(source, frame);
+  source.hold(true);
+  for (int i = 0; i < 1800; ++i) next_of(source, frame);  // that minute
+  source.hold(false);
+  for (int i = 3; i < 9; ++i) EXPECT_NEAR(next_of(source, frame).stamp_s, 60.0 + i * kFrame_s, 1e-9) << i;
+}
+
+TEST(PlaybackSource, WhatADeviceSentSinceARewindFollowsOnWhatWasShownAgain) {
+  PlaybackSource source(std::make_unique<DeviceSource>(1802), AtEnd::kEnd);
+  Frame frame;
+  for (int i = 0; i < 1800; ++i) next_of(source, frame);
+  ASSERT_TRUE(source.rewind());  // a minute to show again, in which the device goes on
+  for (int i = 0; i < 1840; ++i)
+    ASSERT_NEAR(next_of(source, frame).stamp_s, (1800 + i) * kFrame_s, 1e-6) << i;
+}
+
 TEST(PlaybackSource, SaysWhichFramesHadBeenThereBefore) {
   PlaybackSource source = numbers(6, AtEnd::kStay);
   Frame frame;
