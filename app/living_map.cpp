@@ -53,6 +53,9 @@ LivingMap::~LivingMap() {
 bool LivingMap::is_due(const Frame& frame) {
   stamp_s_ = frame.stamp_s;
   frame_ = frame.index;
+  // Whether or not there is something to look at: later, somebody else may stand there.
+  if (asked_until_s_ && *asked_until_s_ == kNow) asked_until_s_ = stamp_s_ + kAskedFor_s;
+  if (asked_until_s_ && stamp_s_ > *asked_until_s_) asked_until_s_.reset();
   if (!working_.valid()) return false;
   --frames_left_;
   if (frames_left_ > 0) return false;
@@ -88,8 +91,6 @@ void LivingMap::watch(const Frame& frame, const DepthImage& expected_depth_m, co
 }
 
 void LivingMap::look_for_changes(double stamp_s) {
-  if (asked_until_s_ && *asked_until_s_ == kNow) asked_until_s_ = stamp_s + kAskedFor_s;
-  if (asked_until_s_ && stamp_s > *asked_until_s_) asked_until_s_.reset();
   const bool too_soon = stamp_s < next_look_s_ && stamp_s > next_look_s_ - kLookEvery_s;
   if (too_soon || (!asked_until_s_ && !config_.after_s)) return;
   next_look_s_ = stamp_s + kLookEvery_s;

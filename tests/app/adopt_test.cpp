@@ -57,6 +57,13 @@ class AdoptingSession {
     }
     return result;
   }
+  /// So many frames of which nobody knows where they were taken.
+  void run_lost(int frames) {
+    for (int i = 0; i < frames && source_.next(frame_).status == ReadStatus::kFrame; ++i) {
+      frame_.T_world_camera.reset();
+      static_cast<void>(session.step(frame_, times_));
+    }
+  }
   /// Shows the last frame so many times again, as a source does that is held.
   void hold(int times) {
     for (int i = 0; i < times; ++i) {
@@ -166,6 +173,18 @@ TEST(Adopt, WhatIsAskedForIsAdoptedAtOnce) {
   ask(run.session);
   run.run(15);
   EXPECT_EQ(run.session.adopted().size(), 1U);
+}
+
+TEST(Adopt, WhatWasAskedForWhileTheCameraWasLostIsNotDoneLater) {
+  SavedMap map = map_of("0");
+  SessionConfig config = adopting(1.5);
+  config.adopt->after_s.reset();
+  AdoptingSession run(map, view("frames=90&crate=comes"), config);
+  run.run(46);
+  ask(run.session);
+  run.run_lost(14);
+  run.run(30);
+  EXPECT_TRUE(run.session.adopted().empty()) << "nobody asked for what stands there by then";
 }
 
 TEST(Adopt, AHandThatWavesAndAPersonWhoStandsForTwoSecondsAreNot) {
