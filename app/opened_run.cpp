@@ -72,6 +72,16 @@ void require_can_save_map(const RunCommand& command, const Script& script) {
   require_can_become_map(command.save_map);
 }
 
+/// Poses of one world mean nothing in a map that was scanned without any.
+void require_recorded_world(const RunCommand& command, const MapInfo& info) {
+  const auto poses = info.settings.find("poses");
+  const bool is_known = poses == info.settings.end() || poses->second != to_string(PoseOrigin::kTracked) ||
+                        !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
+  if (command.poses == PoseOrigin::kTracked || is_known) return;
+  throw Error(command.map + ": was scanned without recorded poses, so nobody knows where those of " +
+              command.source + " are in it; take --poses tracked");
+}
+
 void require_budget_alone(const RunCommand& command, const Script& script) {
   if (command.budget_ms && has(script, Action::kQuality))
     throw Error(
@@ -90,6 +100,7 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
 /// The frames, as they come, and what was recorded of them if that is to be compared.
 std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
   const RunCommand& command = run.command;
+  require_recorded_world(command, run.map.info);
   std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
   run.is_live = !opened->rewind();  // a device has a count, too, where so many frames are asked for
   if (is_session_folder(command.source)) {

@@ -63,6 +63,11 @@ int play(OpenedRun& run) {
   print_summary(totals, *run.session);
   faults.throw_first();
   if (totals.located > 0 || run.was_quit) return 0;
+  if (command.poses == PoseOrigin::kRecorded) {
+    std::fprintf(stderr, "roomradar: %s: no frame has a pose of its own; take --poses tracked\n",
+                 command.source.c_str());
+    return 1;
+  }
   std::fprintf(stderr, "roomradar: %s: no frame shows where in %s the camera is; was that room mapped?\n",
                command.source.c_str(), command.map.c_str());
   return 1;

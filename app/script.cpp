@@ -18,7 +18,7 @@ namespace roomradar {
 namespace {
 
 constexpr std::size_t kMaxBytes = 1U << 26U;  // a day of dragging things about, recorded
-constexpr double kMaxCoordinate_m = 1000.0;   // farther away than any room
+constexpr double kMaxCoordinate_m = 1e8;      // of an object's origin, which may lie far from its mesh
 constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxSpin_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;

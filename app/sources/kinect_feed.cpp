@@ -104,6 +104,7 @@ class KinectFeed::Work {
           refused_ = error.what();
           return;
         }
+        if (!away_since_) tell(Outcome::kGone);
         if (stopped_within(config_.retry_s)) return;
         continue;
       }

@@ -160,15 +160,16 @@ void Player::add(const Wish& wish, const Session& session, std::vector<ScriptEve
 void Player::drop_or_place(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
   const VirtualObject* object = find_object(session, chosen_);
   const Pointed pointed = pointed_at(session, wish.pixel);
-  if (object == nullptr || !pointed.surface) {
-    complaint_ =
-        object == nullptr ? "there is no object to drop: choose one" : "there is no surface at that place";
+  // On top of another object, if that is what was pointed at.
+  const auto& hit = pointed.object && pointed.name != chosen_ ? pointed.object : pointed.surface;
+  if (object == nullptr || !hit) {
+    complaint_ = object == nullptr       ? "there is no object to drop: choose one"
+                 : !session.shown_view() ? "the camera is not located"
+                                         : "there is no surface at that place";
     return;
   }
-  // On top of another object, if that is what was pointed at.
-  const SurfaceHit& hit = pointed.object && pointed.name != chosen_ ? *pointed.object : *pointed.surface;
   ScriptEvent event = event_of(wish.kind == WishKind::kPlace ? Action::kPlace : Action::kDrop, chosen_);
-  event.position_world = hit.point_world - level_to_middle(*object, object->body.T_world_object.linear());
+  event.position_world = hit->point_world - level_to_middle(*object, object->body.T_world_object.linear());
   event.height_m = wish.event.height_m;
   if (wish.kind == WishKind::kPlace) event.position_world->z() += kOverSurface_m - lowest_m(*object);
   events.push_back(event);

@@ -512,11 +512,24 @@ TEST_F(CommandLine, AReportCannotBeAFolderNorAPictureAnythingButPng) {
   expect_fault(roomradar("fallthrough --scenario 1 --video " + (folder_ / "v.webm").string()), 1, ".mp4");
 }
 
+TEST_F(CommandLine, RecordedPosesAreNotTakenForThoseOfAMapThatKnowsNone) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path blind = broken_copy();
+  nlohmann::json info = nlohmann::json::parse(read_text(blind / "map.json"));
+  ASSERT_EQ(info["settings"]["poses"], "tracked");
+  for (int i = 0; i < 16; ++i) info["T_world_recorded"][i] = i % 5 == 0 ? 1.0 : 0.0;
+  std::ofstream(blind / "map.json") << info;
+  const std::string run = "run 'sim:table?frames=2&width=160' --map " + blind.string() + " --poses ";
+  expect_fault(roomradar(run + "recorded"), 1, "take --poses tracked");
+  EXPECT_EQ(roomradar(run + "tracked").status, 0);
+}
+
 TEST_F(CommandLine, AMapIsNotJoinedWithItself) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const std::string joined = " --map " + (folder_ / "unused").string();
   expect_fault(roomradar("map merge " + map() + " " + map() + joined), 1, "the same map");
   expect_fault(roomradar("map merge " + map() + " " + broken_copy().string() + joined), 1, "the same map");
+  expect_fault(roomradar("map merge " + map() + " " + map() + joined + " --deviation -1"), 2, "--deviation");
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
 }
 

@@ -161,7 +161,7 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 place pot 0 0 nan", "'nan' is not a finite number"},
       {"frame 1 place pot 0 0 1x", "'1x' is not a finite number"},
       {"frame 1 place pot 0 0 1 2", "'2' is too much"},
-      {"frame 1 place pot 0 0 5000", "'5000' is out of range"},
+      {"frame 1 place pot 0 0 5e8", "'5e8' is out of range"},
       {"frame 1 drop pot 0 0 1", "'at' is wanted"},
       {"frame 1 drop pot view height -1", "'-1' is out of range"},
       {"frame 1 drop pot view hight 1", "'hight' is too much"},
