@@ -1,6 +1,8 @@
 // adopt_test.cpp: a crate that comes and stays, or is taken away, in a simulated session; and what stays out.
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "app/session.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "mapping/surface.hpp"
@@ -28,7 +30,8 @@ SavedMap map_of(const std::string& crate) {
   return map;
 }
 
-SessionConfig adopting(double after_s) {
+/// @param after_s  none: only what is asked for
+SessionConfig adopting(std::optional<double> after_s) {
   SessionConfig config;
   config.poses = PoseOrigin::kRecorded;
   config.make_picture = false;
@@ -165,9 +168,7 @@ TEST(Adopt, SolidUnknownSpaceInsideACrateGoesWithIt) {
 
 TEST(Adopt, WhatIsAskedForIsAdoptedAtOnce) {
   SavedMap map = map_of("0");
-  SessionConfig config = adopting(1.5);
-  config.adopt->after_s.reset();
-  AdoptingSession run(map, view("frames=80&crate=comes"), config);
+  AdoptingSession run(map, view("frames=80&crate=comes"), adopting(std::nullopt));
   run.run(60);
   EXPECT_TRUE(run.session.adopted().empty()) << "nobody asked";
   ask(run.session);
@@ -177,9 +178,7 @@ TEST(Adopt, WhatIsAskedForIsAdoptedAtOnce) {
 
 TEST(Adopt, WhatWasAskedForWhileTheCameraWasLostIsNotDoneLater) {
   SavedMap map = map_of("0");
-  SessionConfig config = adopting(1.5);
-  config.adopt->after_s.reset();
-  AdoptingSession run(map, view("frames=90&crate=comes"), config);
+  AdoptingSession run(map, view("frames=90&crate=comes"), adopting(std::nullopt));
   run.run(46);
   ask(run.session);
   run.run_lost(14);

@@ -83,6 +83,16 @@ Scan scan(FrameList source, double pose_noise_m = 0.0) {
   return scan;
 }
 
+/// Fuses all frames at their own poses.
+std::vector<FusedFrame> fuse_all(const std::vector<Frame>& frames, StaticMap& map) {
+  std::vector<FusedFrame> fused;
+  for (const Frame& frame : frames) {
+    EXPECT_EQ(map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+    fused.push_back({frame.index, frame.index, frame.depth_camera, *frame.T_world_camera});
+  }
+  return fused;
+}
+
 // `count` frames from a camera that sways a little before the wall; scene_at(i) is what stands there.
 template <typename SceneAt>
 std::vector<Frame> record(int count, const SceneAt& scene_at, unsigned noise_seed = 1) {
@@ -208,8 +218,7 @@ TEST(Ghosts, OccupiedVoxelsWithoutASampleGoWithWhatTheyTouch) {
 TEST(Ghosts, SurfaceOfAnEarlierScanThatNoFrameMeasuresAnewStays) {
   Scan scanned;
   const Scene with_box = before_wall({-0.25, 1.85, -0.3}, {0.25, 2.0, 0.3});
-  for (const Frame& frame : record(20, [&](int) { return with_box; }))
-    ASSERT_EQ(scanned.map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
+  fuse_all(record(20, [&](int) { return with_box; }), scanned.map);
   const auto wall_beside = [&scanned] {
     const auto vertices = surface_of(scanned.map);
     return std::count_if(vertices.begin(), vertices.end(), [](const Eigen::Vector3d& v) {
@@ -220,15 +229,12 @@ TEST(Ghosts, SurfaceOfAnEarlierScanThatNoFrameMeasuresAnewStays) {
   ASSERT_GT(before, 30);
 
   std::vector<Frame> frames;
-  std::vector<FusedFrame> fused;
   for (int i = 0; i < 20; ++i) {  // the right border of the image is the plane x = 0.27 m
     frames.push_back(exact_frame(wall(), kCamera, looking_at({0.27, 0.0, 0.0}, {0.27 - 1.1, 2.0, 0.0})));
     frames.back().index = i;
     test::add_depth_noise(frames.back(), 100U + static_cast<unsigned>(i));
-    const Eigen::Isometry3d T_world_camera = *frames.back().T_world_camera;
-    ASSERT_EQ(scanned.map.fuse(frames.back(), T_world_camera), FuseStatus::kFused);
-    fused.push_back({i, i, kCamera, T_world_camera});
   }
+  const std::vector<FusedFrame> fused = fuse_all(frames, scanned.map);
   FrameList source(frames);
   StageTimes times;
   GhostRevision revision = take_out_ghosts(source, fused, {}, scanned.map, times);
@@ -266,11 +272,7 @@ TEST(Ghosts, AWallIsNoneHoweverCoarseTheCells) {
   FrameList source(frames);
   for (const double resolution_m : {0.03, 0.05, 0.07, 0.1, 0.15, 0.2}) {
     StaticMap map(resolution_m);
-    std::vector<FusedFrame> fused;
-    for (const Frame& frame : frames) {
-      ASSERT_EQ(map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
-      fused.push_back({frame.index, frame.index, kCamera, *frame.T_world_camera});
-    }
+    const std::vector<FusedFrame> fused = fuse_all(frames, map);
     StageTimes times;
     EXPECT_EQ(take_out_ghosts(source, fused, {}, map, times).voxels(), 0) << resolution_m;
   }
@@ -407,11 +409,7 @@ TEST(Ghosts, ASecondLookThatIsCutOffGoesOnToTheSameMap) {
     return i >= 15 ? before_wall({-0.2, 1.6, -0.2}, {0.2, 1.8, 0.2}) : wall();
   }));
   StaticMap map(kResolution_m);
-  std::vector<FusedFrame> fused;
-  for (const Frame& frame : source.frames()) {
-    ASSERT_EQ(map.fuse(frame, *frame.T_world_camera), FuseStatus::kFused);
-    fused.push_back({frame.index, frame.index, frame.depth_camera, *frame.T_world_camera});
-  }
+  const std::vector<FusedFrame> fused = fuse_all(source.frames(), map);
   StageTimes times;
   GhostRevision revision = take_out_ghosts(source, fused, {}, map, times);
   ASSERT_GT(revision.voxels(), 0);
