@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+#include <vector>
 
 #include "mapping/types/error.hpp"
 
@@ -18,6 +19,9 @@ namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kPartial = "partial";
+constexpr const char* kBefore = "before";
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what, int reason) {
   throw Error(path.string() + ": " + what + ": " + std::strerror(reason) +
@@ -32,9 +36,10 @@ fs::path beside(const fs::path& target, const char* word) {
   return parent_of(target) / (target.filename().string() + "." + word + "-" + std::to_string(::getpid()));
 }
 
-/// What processes that were killed while they wrote have left beside the target.
-void remove_abandoned(const fs::path& target) {
-  const std::string prefix = target.filename().string() + ".partial-";
+/// What processes that are gone have left beside the target, under such a word.
+std::vector<fs::path> abandoned(const fs::path& target, const std::string& word) {
+  const std::string prefix = target.filename().string() + "." + word + "-";
+  std::vector<fs::path> found;
   std::error_code fault;
   for (const fs::directory_entry& entry : fs::directory_iterator(parent_of(target), fault)) {
     const std::string name = entry.path().filename().string();
@@ -43,8 +48,19 @@ void remove_abandoned(const fs::path& target) {
     const char* const end = name.data() + name.size();
     const auto parsed = std::from_chars(name.data() + prefix.size(), end, owner);
     const bool named = parsed.ec == std::errc() && parsed.ptr == end && owner > 0;
-    if (named && ::kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), fault);
+    if (named && ::kill(owner, 0) != 0 && errno == ESRCH) found.push_back(entry.path());
   }
+  return found;
+}
+
+/// What was moved aside comes back where nothing took its place; all else that was abandoned goes.
+void clear_abandoned(const fs::path& target) {
+  if (const fs::path aside = set_aside_of(target); !aside.empty()) {
+    if (::rename(aside.c_str(), target.c_str()) != 0) fail(target, "cannot be brought back", errno);
+  }
+  std::error_code ignored;
+  for (const char* word : {kPartial, kBefore})
+    for (const fs::path& folder : abandoned(target, word)) fs::remove_all(folder, ignored);
 }
 
 }  // namespace
@@ -58,11 +74,11 @@ void sync_to_disk(const fs::path& path) {
   if (result != 0) fail(path, "does not reach the disk", reason);
 }
 
-PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_(beside(target, "partial")) {
+PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_(beside(target, kPartial)) {
   std::error_code fault;
   fs::create_directories(parent_of(target), fault);
   if (fault) fail(parent_of(target), "the folder cannot be made", fault.value());
-  remove_abandoned(target);
+  clear_abandoned(target);
   fs::remove_all(partial_, fault);  // of an earlier process with this number
   fs::create_directory(partial_, fault);
   if (fault) fail(partial_, "the folder cannot be made", fault.value());
@@ -84,7 +100,7 @@ void PartialFolder::put_in_place() {
     if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be put in place", errno);
     // A file system that cannot exchange: for a moment neither name is there, but one of them is whole at all
     // times.
-    const fs::path aside = beside(target_, "before");
+    const fs::path aside = beside(target_, kBefore);
     if (::rename(target_.c_str(), aside.c_str()) != 0) fail(target_, "cannot be moved aside", errno);
     if (::rename(partial_.c_str(), target_.c_str()) != 0) {
       const int reason = errno;
@@ -99,6 +115,12 @@ void PartialFolder::put_in_place() {
   } catch (
       const Error&) {  // it is in place; what is lost if the power fails now is the new name, not the map
   }
+}
+
+fs::path set_aside_of(const fs::path& target) {
+  if (fs::exists(fs::symlink_status(target))) return {};
+  const std::vector<fs::path> aside = abandoned(target, kBefore);
+  return aside.empty() ? fs::path() : aside.front();
 }
 
 std::string swap_mark_of(const fs::path& folder) {

@@ -13,8 +13,8 @@ void sync_to_disk(const std::filesystem::path& path);
 /// A new folder beside `target` (target.partial-PID), removed again unless it is put in place.
 class PartialFolder {
  public:
-  /// Makes it, and the folders above; those that processes left beside `target` when they were killed go.
-  /// Throws Error if that cannot be done.
+  /// Makes it, and the folders above. Those that processes left beside `target` when they were killed go, but
+  /// what set_aside_of() says is made `target` again. Throws Error if that cannot be done.
   explicit PartialFolder(const std::filesystem::path& target);
   ~PartialFolder();
   PartialFolder(const PartialFolder&) = delete;
@@ -30,6 +30,10 @@ class PartialFolder {
   std::filesystem::path target_;
   std::filesystem::path partial_;
 };
+
+/// Where `target` is as it was, if a process was killed while it exchanged it on a file system that can only
+/// rename: between two renames neither the old nor the new is there (target.before-PID). Else empty.
+std::filesystem::path set_aside_of(const std::filesystem::path& target);
 
 /// Which folder has a name now: another one after it was put in place anew. Empty if there is none.
 std::string swap_mark_of(const std::filesystem::path& folder);

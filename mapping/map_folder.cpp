@@ -219,6 +219,9 @@ namespace {
 
 MapInfo read_info(const fs::path& folder) {
   std::error_code fault;
+  if (const fs::path aside = set_aside_of(folder); !aside.empty())
+    fail(folder, "a save was killed while it took this map's place, and left it as " +
+                     aside.filename().string() + "; rename that to " + folder.filename().string());
   if (!fs::is_directory(folder, fault))
     fail(folder, "there is no such map folder; make one with `roomradar prescan`");
   const fs::path path = folder / kInfo;

@@ -17,6 +17,7 @@
 #include <string>
 #include <thread>
 
+#include "mapping/folder_swap.hpp"
 #include "mapping/mesh_file.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
@@ -69,6 +70,15 @@ std::string text_of(const fs::path& path) {
 }
 void put_text(const fs::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
+}
+
+/// The number of a process that has ended.
+pid_t gone_process() {
+  const pid_t gone = fork();
+  if (gone == 0) std::_Exit(0);
+  EXPECT_GT(gone, 0);
+  EXPECT_EQ(waitpid(gone, nullptr, 0), gone);
+  return gone;
 }
 
 class MapFolder : public ::testing::Test {
@@ -350,10 +360,7 @@ TEST_F(MapFolder, AFullDiskLeavesTheOldMapAndNothingElse) {
 }
 
 TEST_F(MapFolder, WhatAKilledProcessLeftBesideTheMapGoesAndALivingOnesStays) {
-  const pid_t gone = fork();
-  ASSERT_GE(gone, 0);
-  if (gone == 0) std::_Exit(0);
-  ASSERT_EQ(waitpid(gone, nullptr, 0), gone);
+  const pid_t gone = gone_process();
   const std::string beside = map_.string() + ".partial-";
   const std::vector<std::string> kept = {beside + std::to_string(getppid()), beside + "1x", beside};
   for (const std::string& folder : kept) fs::create_directory(folder);
@@ -361,6 +368,26 @@ TEST_F(MapFolder, WhatAKilledProcessLeftBesideTheMapGoesAndALivingOnesStays) {
   save_map(map_, room_);
   EXPECT_FALSE(fs::exists(beside + std::to_string(gone)));
   for (const std::string& folder : kept) EXPECT_TRUE(fs::exists(folder)) << folder;
+}
+
+TEST_F(MapFolder, WhatASaveKilledBetweenTwoRenamesSetAsideIsNamedAndBroughtBack) {
+  const fs::path aside = map_.string() + ".before-" + std::to_string(gone_process());
+  save_map(map_, room_);
+  fs::rename(map_, aside);
+  const std::string fault = error_of([&] { load_map(map_); });
+  EXPECT_NE(fault.find("rename"), std::string::npos) << fault;
+  EXPECT_NE(fault.find(aside.filename().string()), std::string::npos) << fault;
+  { const PartialFolder never_put_in_place(map_); }
+  EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
+
+  fs::create_directory(aside);  // killed after the second rename: the new one is there, and the old one goes
+  save_map(map_, room_);
+  EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
+  EXPECT_EQ(entries(), 1U);
+
+  const fs::path living = map_.string() + ".before-" + std::to_string(getppid());  // at it now
+  fs::rename(map_, living);
+  EXPECT_NE(error_of([&] { load_map(map_); }).find("no such map"), std::string::npos);
 }
 
 TEST_F(MapFolder, KilledAtAnyMomentOfSavingItIsTheOldMapOrTheNew) {
