@@ -81,8 +81,8 @@ struct RelocaliseConfig {
 
 /// Finds the frame's camera among the places: ORB matches vote for views, RANSAC over their 3D points gives a
 /// pose, alignment with the view's depth refines it, and the depth must agree. Where either side has no
-/// colour, the depth alone is tried against every preview, with a stricter test. Deterministic. Never throws
-/// for any frame.
+/// colour, the depth alone is tried against the 40 previews most like it, with a stricter test.
+/// Deterministic. Never throws for any frame.
 Relocalisation relocalise(const Frame& frame, const Places& places, const RelocaliseConfig& config = {});
 
 }  // namespace roomradar

@@ -1,6 +1,8 @@
 // relocalise.cpp: where in a known room a frame was taken.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -71,6 +73,36 @@ Proof prove_with_depth(const LiveView& live, const ReferenceView& live_reference
   proof.holds = back && back.inlier_fraction >= kMinAgreement && gap.translation().norm() < kMaxGap_m &&
                 angle_rad(gap) < kMaxGap_rad;
   return proof;
+}
+
+/// Positions of at most `count` places whose depth is most like the frame's, ray by ray. Alignment with the
+/// others, which begins where they were taken, would have next to nothing within its gate.
+std::vector<std::size_t> nearest_in_depth(const Frame& frame, const Places& places, std::size_t count) {
+  constexpr int kEvery_px = 8;  // of a preview
+  constexpr float kGate_m = 0.3F;
+  std::vector<std::pair<int, std::size_t>> unlike;
+  for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
+    const Place& place = places.keyframes[i];
+    int alike = 0;
+    for (int v = kEvery_px / 2; v < place.preview_camera.height_px; v += kEvery_px) {
+      for (int u = kEvery_px / 2; u < place.preview_camera.width_px; u += kEvery_px) {
+        const float place_m = 0.001F * static_cast<float>(place.preview_depth_mm.at(u, v));
+        const Eigen::Vector2d at =
+            project(frame.depth_camera, back_project(place.preview_camera, u, v, 1.0)).array().round();
+        const bool is_seen =
+            (at.array() >= 0.0).all() && at.x() < frame.depth_m.width && at.y() < frame.depth_m.height;
+        if (place_m == 0.0F || !is_seen) continue;
+        const float depth_m = frame.depth_m.at(static_cast<int>(at.x()), static_cast<int>(at.y()));
+        if (depth_m > 0.0F && std::abs(depth_m - place_m) < kGate_m) ++alike;
+      }
+    }
+    unlike.emplace_back(-alike, i);
+  }
+  const auto end = unlike.begin() + static_cast<std::ptrdiff_t>(std::min(count, unlike.size()));
+  std::partial_sort(unlike.begin(), end, unlike.end());
+  std::vector<std::size_t> nearest;
+  std::transform(unlike.begin(), end, std::back_inserter(nearest), [](const auto& of) { return of.second; });
+  return nearest;
 }
 
 /// A view that was proven to be where the frame was taken.
@@ -167,8 +199,9 @@ Relocalisation relocalise(const Frame& frame, const Places& places, const Reloca
       if (proof.holds) witnesses.push_back({i, match.inliers, proof});
     }
   } else {
+    constexpr std::size_t kMostByDepth = 40;  // each some milliseconds
     const ReferenceView live_reference = reference_of(pyramid, view);
-    for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
+    for (const std::size_t i : nearest_in_depth(frame, places, kMostByDepth)) {
       const Proof proof = prove_with_depth(live, live_reference, places.keyframes[i], view);
       if (proof.holds) witnesses.push_back({i, 0, proof});
     }

@@ -232,6 +232,21 @@ TEST(Relocalise, WithoutColourTheDepthDecides) {
   EXPECT_EQ(found.feature_inliers, 0);
 }
 
+TEST(Relocalise, WithoutColourItIsFoundAmongMoreViewsThanAreTried) {
+  // The only one that helps is the last of 130; the others look elsewhere.
+  Places places;
+  Place elsewhere = describe_place(painted(eye(0.0)), eye(0.0));
+  for (std::uint16_t& mm : elsewhere.preview_depth_mm.pixels) mm = static_cast<std::uint16_t>(mm + 1000);
+  places.keyframes.assign(129, elsewhere);
+  places.keyframes.push_back(three_places().keyframes[1]);
+  Frame frame = painted(eye(0.05));
+  frame.colour.resize(0, 0);
+  const Relocalisation found = relocalise(frame, without_features(places));
+  ASSERT_TRUE(found) << to_string(found.status);
+  EXPECT_EQ(found.keyframe, 129);
+  EXPECT_LT(error_m(found, eye(0.05)), 0.03);
+}
+
 TEST(Relocalise, SaysWhyItCannot) {
   EXPECT_EQ(relocalise(painted(eye(0.0)), {}).status, RelocalisationStatus::kNoPlaces);
   Frame dark = painted(eye(0.0));
