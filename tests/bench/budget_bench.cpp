@@ -9,11 +9,12 @@
 // once; in the last quarter both are gone. The scan has left a hole in the floor, the shadow of a chair, over
 // which some of them fall: objects under the floor are told apart by whether it is mapped where they went.
 // A row each: without a budget, and for each budget (33, 16). With
-// --each-step 1 rows for each step of the presets' front, without a budget, in turn with the default: the
-// ratios that the presets hold. Clock: what this thread computed, with OpenGL on this thread too (thread, for
-// machines that do other things), or the wall's. Scene, seeds and frames are fixed: changing them breaks
-// comparison with old numbers. The map is made once and kept in DIR (budget-bench-map).
+// --each-step 1 rows for each step of the presets' front, without a budget, in turn with the default, and the
+// ratios to it that the presets hold. Clock: what this thread computed, with OpenGL on this thread too
+// (thread, for machines that do other things), or the wall's. Scene, seeds and frames are fixed: changing
+// them breaks comparison with old numbers. The map is made once and kept in DIR (budget-bench-map).
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -295,6 +296,20 @@ nlohmann::json row_of(const std::string& name, Outcome& outcome, const Outcome* 
   return row;
 }
 
+// Of the frames under load, and of their parts, to those of another play.
+nlohmann::json ratios_of(Outcome& outcome, Outcome& other) {
+  const auto ratio = [](test::Times& times, test::Times& to, double fraction) {
+    return std::round(1e3 * times.percentile(fraction) / to.percentile(fraction)) / 1e3;
+  };
+  test::Times &frames = outcome.frame_ms[1], &to = other.frame_ms[1];
+  nlohmann::json row = {{"frame_ratio", ratio(frames, to, 0.5)},
+                        {"frame_p95_ratio", ratio(frames, to, 0.95)}};
+  for (std::size_t part = 0; part < kFrameParts; ++part)
+    row["part_ratios"][std::string(to_string(static_cast<FramePart>(part)))] =
+        ratio(outcome.part_ms[part], other.part_ms[part], 0.5);
+  return row;
+}
+
 void print_row(const nlohmann::json& row) {
   const auto ms = [&](const char* phase, const char* key) { return row[phase][key].get<double>(); };
   const auto part = [&](const char* name) { return row["parts_during"][name]["median_ms"].get<double>(); };
@@ -354,8 +369,12 @@ int run(int argc, char** argv) {
   add("no budget", usual);
   if (settings.each_step) {
     for (std::size_t step = 0; step < presets.front.size(); ++step) {
+      Outcome beside = play(settings, map, views, {}, nullptr, now_ms);
       Outcome outcome = play(settings, map, views, presets.front[step].run, nullptr, now_ms);
       add("step " + std::to_string(step), outcome);
+      rows.back()["ratios"] = ratios_of(outcome, beside);
+      std::printf("%12s   to the default beside it: %s\n", "", rows.back()["ratios"].dump().c_str());
+      std::fflush(stdout);
     }
   } else {
     for (const double budget_ms : settings.budgets_ms) {
