@@ -157,9 +157,12 @@ Eigen::Isometry3d place_in_world(const Odometry& odometry, const Whereabouts& fo
   if (!map) return level_rotation(found.up.up_world);
   constexpr std::size_t kPoints = 12'000;
   const std::vector<Eigen::Vector3d> surface = surface_of(found.places, kPoints);
-  const Registration placed = odometry.is_located()
-                                  ? judge_registration(map->octree, surface, Eigen::Isometry3d::Identity())
-                                  : register_to(map->octree, map->places, found.places, surface);
+  // Of a long scan that was recognised in the map and left it for other rooms, little lies in the map.
+  RegistrationConfig located;
+  located.min_overlap = 0.01;
+  const Registration placed =
+      odometry.is_located() ? judge_registration(map->octree, surface, Eigen::Isometry3d::Identity(), located)
+                            : register_to(map->octree, map->places, found.places, surface);
   if (!placed)
     throw Error(source + ": cannot be placed in the map that it is to be added to: " + describe(placed) +
                 "; the map is as it was. Begin where the map was scanned, or save as another map");

@@ -7,8 +7,10 @@
 
 #include "mapping/map_folder.hpp"
 #include "tests/support/error_of.hpp"
+#include "tests/support/exact_depth.hpp"
 #include "tests/support/kept_source.hpp"
 #include "tests/support/noisy_room.hpp"
+#include "tests/support/painted_frame.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar {
@@ -103,6 +105,35 @@ TEST(Prescan, AMapOfImagesOfAFewRowsIsReadAgain) {
     EXPECT_TRUE(verify_map(folder.path() / "slit").empty());
     EXPECT_EQ(load_map(folder.path() / "slit").places.keyframes.size(), map.places.keyframes.size());
   }
+}
+
+TEST(Prescan, ALongScanThatOnlyBeginsInTheMapIsAddedToIt) {
+  const auto along_a_wall = [](int frames) {
+    const test::Scene corridor = test::nearest_of(test::plane({0, 1, 0}, 0.9), test::plane({0, 0, 1}, 0.0));
+    std::vector<Frame> path;
+    for (int i = 0; i < frames; ++i) {
+      const double x_m = i < 10 ? 0.005 * i * i : 0.1 * i - 0.5;
+      const Eigen::Isometry3d eye = test::looking_at({x_m, 0.0, 0.7}, {x_m, 0.9, 0.4});
+      path.push_back(test::exact_frame(corridor, {160, 120, 146.0, 146.0, 79.5, 59.5}, eye));
+      path.back().T_world_camera.reset();
+      path.back().index = i;
+      path.back().stamp_s = i / 30.0;
+      test::paint(path.back(), eye);
+    }
+    return path;
+  };
+  PrescanConfig config;
+  config.resolution_m = 0.02;
+  StageTimes times;
+  test::KeptSource at_the_door(along_a_wall(4)), into_the_next_rooms(along_a_wall(150));
+  PrescanStart start{.map = prescan(at_the_door, config, times).map};
+  const PrescanResult longer = prescan(into_the_next_rooms, config, times, {}, std::move(start));
+  EXPECT_EQ(longer.counts.frames_fused, 150);
+  EXPECT_EQ(longer.map.trajectory.size(), 154U);
+  EXPECT_NEAR((longer.map.trajectory.back().T_world_camera.translation() -
+               longer.map.trajectory.front().T_world_camera.translation())
+                  .norm(),
+              14.4, 0.3);
 }
 
 }  // namespace
