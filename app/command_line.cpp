@@ -2,6 +2,7 @@
 #include "app/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -497,6 +498,8 @@ void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work)
   sub->callback([&, sub] {
     if (sub->count("--presets") > 0 && sub->count("--only") > 0)
       throw CLI::ValidationError("--presets: are of prescan and run, and --only leaves out one of them");
+    if (sub->count("--objects") > 0 && command.only == "prescan")
+      throw CLI::ValidationError("--objects: are of run, and --only leaves it out");
     if (command.table1) {
       if ((sub->count("--rooms") > 0 && command.rooms.size() > 1) || !command.recordings.empty())
         throw CLI::ValidationError("--table1: is of one simulated room; name one by --rooms");
@@ -507,6 +510,18 @@ void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work)
     }
     work = [&command] { return run(command); };
   });
+}
+
+/// CLI11 would read 010 as 8, and for a seed -1 as 18446744073709551615.
+void refuse_other_bases(CLI::App& app) {
+  const auto fault_of = [](const std::string& text) -> std::string {
+    const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (is_plain && (text.size() == 1 || !text.starts_with('0'))) return {};
+    return "must be a whole number without a zero before it, not " + text;
+  };
+  for (CLI::Option* option : app.get_options())
+    if (option->get_type_name() == "N") option->check(fault_of);
+  for (CLI::App* sub : app.get_subcommands({})) refuse_other_bases(*sub);
 }
 
 }  // namespace
@@ -539,6 +554,7 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
                           throw CLI::Success();
                         })
       ->group("");
+  refuse_other_bases(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -43,7 +43,7 @@ struct RunCommand {
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = false;  ///< kMap only: objects do not enter what the scan has not seen
   RunQuality quality;
-  FieldWords fixed;     ///< what of it was asked for by name; no preset and no budget changes that
+  FieldWords fixed;     ///< what of it was asked for by name; no preset, script or budget changes that
   std::string preset;   ///< name; empty: none
   std::string presets;  ///< file; empty: the program's own
   std::optional<double> budget_ms;      ///< of a frame

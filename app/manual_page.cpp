@@ -46,7 +46,7 @@ time 7     adopt                             # what stands still now in view bec
 frame 200  surfaces skirt                    # holes, skirt, border or map
 frame 210  unknown solid                     # or free
 frame 220  radar sampled 64                  # exact or sampled; pixels
-frame 225  quality depth_stride 2 shadows off
+frame 225  quality depth_stride 2 shadows off  # the rest as usual; what an option asks for stays
 frame 230  camera hold                       # go, rewind, loop, stay or resume
 frame 300  quit
 .fi

@@ -18,7 +18,7 @@ int run(const MapMergeCommand& command) {
   report.command = "map merge";
   report.source = command.a + ", " + command.b;
   report.settings = {{"a", command.a}, {"b", command.b}, {"map", command.map}};
-  require_can_become_map(command.map);
+  require_can_become_map(command.map, {command.report});
   require_writable(command.report);
   SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);

@@ -12,6 +12,7 @@
 #include "app/sources/fakenect_replay.hpp"
 #include "app/sources/folder_source.hpp"
 #include "app/sources/kinect_source.hpp"
+#include "mapping/prescan.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -99,6 +100,12 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
     return opened;
   }
   return limit_frames(std::move(opened), frames->first, frames->last);
+}
+
+void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source) {
+  if (knows_recorded_world(info)) return;
+  throw Error(map + ": was scanned without recorded poses, so nobody knows where those of " + source +
+              " are in it; take --poses tracked");
 }
 
 }  // namespace roomradar

@@ -7,6 +7,7 @@
 
 #include "app/sources/frame_range.hpp"
 #include "app/sources/source_options.hpp"
+#include "mapping/map_folder.hpp"
 #include "mapping/types/frame_source.hpp"
 
 namespace roomradar {
@@ -27,5 +28,9 @@ bool gives_calibrated_frames(const std::string& source, const std::filesystem::p
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});
+
+/// Poses of one world mean nothing in a map that was scanned without any. Throws Error if the map is such.
+/// @param map,source  names for the message
+void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source);
 
 }  // namespace roomradar

@@ -60,8 +60,11 @@ bool has(const Script& script, Action action) {
 
 Script script_of(const RunCommand& command) {
   if (command.script.empty()) return drop_over_view(command.object);
-  return read_script(command.script,
-                     is_session_events(command.script) ? LastLine::kMayBeCut : LastLine::kWhole);
+  Script script =
+      read_script(command.script, is_session_events(command.script) ? LastLine::kMayBeCut : LastLine::kWhole);
+  for (ScriptEvent& event : script.events)
+    if (event.action == Action::kQuality) set_fields(event.quality, command.fixed);
+  return script;
 }
 
 void require_can_save_map(const RunCommand& command, const Script& script) {
@@ -69,17 +72,8 @@ void require_can_save_map(const RunCommand& command, const Script& script) {
   if (!command.adopt_after_s && !has(script, Action::kAdopt))
     throw Error("--save-map " + command.save_map +
                 ": nothing would change in the map; add --adopt SECONDS, or an adopt event to the script");
-  require_can_become_map(command.save_map);
-}
-
-/// Poses of one world mean nothing in a map that was scanned without any.
-void require_recorded_world(const RunCommand& command, const MapInfo& info) {
-  const auto poses = info.settings.find("poses");
-  const bool is_known = poses == info.settings.end() || poses->second != to_string(PoseOrigin::kTracked) ||
-                        !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
-  if (command.poses == PoseOrigin::kTracked || is_known) return;
-  throw Error(command.map + ": was scanned without recorded poses, so nobody knows where those of " +
-              command.source + " are in it; take --poses tracked");
+  require_can_become_map(command.save_map, {command.report, command.frames_csv, command.video,
+                                            command.pictures, command.record_session});
 }
 
 void require_budget_alone(const RunCommand& command, const Script& script) {
@@ -100,7 +94,8 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
 /// The frames, as they come, and what was recorded of them if that is to be compared.
 std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
   const RunCommand& command = run.command;
-  require_recorded_world(command, run.map.info);
+  if (command.poses == PoseOrigin::kRecorded)
+    require_recorded_world(run.map.info, command.map, command.source);
   std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
   run.is_live = !opened->rewind();  // a device has a count, too, where so many frames are asked for
   if (is_session_folder(command.source)) {

@@ -217,12 +217,14 @@ int run(const PrescanCommand& command) {
   // Recorded poses may disagree with the depth by more than what tells a ghost from a wall; there it would
   // eat walls.
   config.remove_ghosts = command.poses == PoseOrigin::kTracked;
-  require_can_become_map(command.map);
+  require_can_become_map(command.map, {command.report});
   require_writable(command.report);
   ScanStart start = start_scan(command);
   if (start.is_done) {
     std::printf("%s: holds %s already; there is nothing to resume (another recording needs another name)\n",
                 command.map.c_str(), command.source.c_str());
+    report.results["held_already"] = true;
+    write_report(report, command.report);
     return 0;
   }
   const std::unique_ptr<FrameSource>& source = start.source;

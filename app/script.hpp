@@ -98,7 +98,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 200  surfaces skirt                   holes, skirt, border or map
 ///     frame 210  unknown solid                    or free
 ///     frame 220  radar sampled 64                 exact or sampled; pixels
-///     frame 225  quality depth_stride 2 shadows off       what is not named is as usual; see quality.hpp
+///     frame 225  quality depth_stride 2 shadows off       what is not named is as usual; options stay
 ///     frame 226  quality from physics object_turns 4      from that part on; mesh, compose
 ///     frame 230  camera hold                      this frame stays; go, rewind, loop, stay, resume
 ///     frame 300  quit

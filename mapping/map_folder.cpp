@@ -175,7 +175,18 @@ void require_contents_outside_maps(const fs::path& folder) {
   require_outside_maps(folder / "contents");
 }
 
-void require_can_become_map(const fs::path& folder) { require_replaceable(tidy_map_name(folder)); }
+void require_can_become_map(const fs::path& folder, std::initializer_list<fs::path> outputs) {
+  const fs::path map = tidy_map_name(folder);
+  require_replaceable(map);
+  const fs::path whole = fs::weakly_canonical(fs::absolute(map));
+  for (const fs::path& output : outputs) {
+    if (output.empty()) continue;
+    const fs::path path = fs::weakly_canonical(fs::absolute(output));
+    if (std::mismatch(whole.begin(), whole.end(), path.begin(), path.end()).first == whole.end())
+      fail(output, "would lie in " + map.string() +
+                       ", which is to be a map and holds nothing but that; choose another place");
+  }
+}
 
 void save_map(const fs::path& folder, const SavedMap& map) {
   const fs::path target = tidy_map_name(folder);

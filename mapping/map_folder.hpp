@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ inline constexpr int kMapFormatVersion = 1;
 
 // Of MapInfo::settings, what is asked for later.
 inline constexpr const char* kDeviationSetting = "deviation_m";  ///< SurfaceConfig::max_deviation_m
+inline constexpr const char* kPosesSetting = "poses";            ///< PoseOrigin, by its name
 inline constexpr const char* kStoppedSetting =
     "stopped_for_memory";  ///< the source of which not all is in it
 
@@ -72,9 +74,11 @@ void require_outside_maps(const std::filesystem::path& path);
 /// The same for what will be put into a folder, which may be a map's itself.
 void require_contents_outside_maps(const std::filesystem::path& folder);
 
-/// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it: a check to
+/// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it, or if one
+/// of `outputs`, the files and folders that are written besides (empty: none), would lie in it: a check to
 /// make before minutes of work.
-void require_can_become_map(const std::filesystem::path& folder);
+void require_can_become_map(const std::filesystem::path& folder,
+                            std::initializer_list<std::filesystem::path> outputs);
 
 /// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step:
 /// afterwards `folder` is the whole new map, or, after an Error, whatever it was before. Parent folders are

@@ -264,7 +264,7 @@ MapInfo describe_map(const Work& work, const FusingPass& pass, const std::vector
   info.up_source = to_string(pass.found.up.source);
   info.settings = {{"resolution_m", std::to_string(work.config.resolution_m)},
                    {kDeviationSetting, number_text(work.config.surface.max_deviation_m)},
-                   {"poses", std::string(to_string(work.config.poses))}};
+                   {kPosesSetting, std::string(to_string(work.config.poses))}};
   if (pass.counts.stopped_for_memory || pass.stopped_for_memory)
     info.settings[kStoppedSetting] = work.source.name();
   if (work.config.fuse_every > 1) info.settings["fuse_every"] = std::to_string(work.config.fuse_every);
@@ -280,6 +280,12 @@ MapInfo describe_map(const Work& work, const FusingPass& pass, const std::vector
 
 bool is_held_out(std::int64_t frame_index, std::int64_t hold_out) {
   return hold_out > 0 && frame_index % hold_out == hold_out / 2;
+}
+
+bool knows_recorded_world(const MapInfo& info) {
+  const auto poses = info.settings.find(kPosesSetting);
+  return (poses != info.settings.end() && poses->second == to_string(PoseOrigin::kRecorded)) ||
+         !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
 }
 
 std::string_view to_string(PoseOrigin poses) {

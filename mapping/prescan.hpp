@@ -27,6 +27,10 @@ enum class PoseOrigin {
 /// As the command line, the map and the reports call it.
 std::string_view to_string(PoseOrigin poses);
 
+/// Whether the map's T_world_recorded says where recorded poses are in it: it was scanned with such, or from
+/// a recording that had them.
+bool knows_recorded_world(const MapInfo& info);
+
 struct PrescanConfig {
   double resolution_m = 0.01;  ///< edge of the octree's smallest cells
   PoseOrigin poses = PoseOrigin::kTracked;

@@ -9,6 +9,7 @@
 #include "app/picture_file.hpp"
 #include "app/registered_maps.hpp"
 #include "app/report.hpp"
+#include "mapping/prescan.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {
@@ -44,10 +45,7 @@ Eigen::Isometry3d read_located(const FallthroughCommand& command, const SavedMap
 
 /// Whether the frames that both were made of came with poses in one world.
 bool share_recorded_world(const MapInfo& a, const MapInfo& b) {
-  const auto is_known = [](const MapInfo& info) {
-    return !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
-  };
-  return a.source == b.source && is_known(a) && is_known(b);
+  return a.source == b.source && knows_recorded_world(a) && knows_recorded_world(b);
 }
 
 /// The reference's surface in the map's world.
@@ -75,6 +73,7 @@ int run_grid(const FallthroughCommand& command) {
   require_png_name(command.picture);
   for (const std::string& path : {command.report, command.picture}) require_writable(path);
   const SavedMap map = load_map(command.map);
+  if (command.poses == PoseOrigin::kRecorded) require_recorded_world(map.info, command.map, command.source);
   const Mesh reference_world = reference_of(command, map, report);
   GlContext context;
   report.renderer = context.renderer();

@@ -9,6 +9,7 @@
 #include "app/progress.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "mapping/map_folder.hpp"
+#include "mapping/prescan.hpp"
 #include "mapping/static_map.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
@@ -44,6 +45,7 @@ void fuse_walk(const SimOptions& walk, const RoomScan& scan, const std::function
   SimulatedSource source(walk);
   map.octree = StaticMap(scan.resolution_m);
   map.info.source = sim_spec(walk);
+  map.info.settings[kPosesSetting] = to_string(PoseOrigin::kRecorded);
   Frame frame;
   while (source.next(frame).status == ReadStatus::kFrame) {
     ++map.info.frames_read;

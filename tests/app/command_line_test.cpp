@@ -212,13 +212,19 @@ TEST_F(CommandLine, ASessionThatWasCutOffReplaysToWhereItCame) {
 
   // Killed while the camera was held, and a frame past the end: it ends where the results do.
   const fs::path held = folder_ / "cut-held", script = folder_ / "held.txt";
-  std::ofstream(script) << "frame 0 add pot teapot\nframe 8 camera hold\nframe 40 quit\n";
+  std::ofstream(script) << "frame 0 add pot teapot\nframe 5 quality radar_px 32\nframe 8 camera hold\n"
+                           "frame 40 quit\n";
   ASSERT_EQ(
       roomradar("run 'sim:table?frames=12&width=160&path=view&seed=2' --poses recorded --at-end stay --map " +
-                map() + " --script " + script.string() + " --record-session " + held.string())
+                map() + " --shadows off --script " + script.string() + " --record-session " + held.string())
           .status,
       0);
   std::string events = read_text(held / "events.txt");
+  const std::size_t quality = events.find(" quality ");
+  ASSERT_NE(quality, std::string::npos) << events;
+  EXPECT_NE(events.substr(quality, events.find('\n', quality) - quality).find(" shadows off"),
+            std::string::npos)
+      << "what an option asks for stays: " << events;
   events.resize(events.find("frame 40 quit"));
   std::ofstream(held / "events.txt") << events;
   const Outcome ended = roomradar("run " + held.string());
@@ -409,6 +415,9 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   expect_fault(roomradar("trade --table1 --csv " + path("t.csv")), 2, "--csv");
   expect_fault(roomradar("trade --table1 --rooms table,wall"), 2, "--table1");
   expect_fault(roomradar("trade --repeats x"), 2, "--repeats");
+  expect_fault(roomradar("trade --seed 010"), 2, "without a zero before it, not 010");
+  expect_fault(roomradar("trade --seed -1"), 2, "must be a whole number");
+  expect_fault(roomradar("trade --only prescan --objects 5"), 2, "--objects");
   expect_fault(roomradar("trade --only both"), 2, "prescan");
 }
 
@@ -500,6 +509,22 @@ TEST_F(CommandLine, NothingElseIsPutIntoAMapsFolder) {
   EXPECT_EQ(roomradar("map verify " + map()).status, 0);
 }
 
+TEST_F(CommandLine, NothingElseIsPutIntoAFolderThatIsToBecomeAMap) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  const std::string soon = (folder_ / "soon").string(), rule = "which is to be a map";
+  fs::create_directory(soon);
+  expect_fault(roomradar("prescan " + source + " --map " + soon + "/ --report " + soon + "/r.json"), 1, rule);
+  expect_fault(
+      roomradar("map merge " + map() + " " + map() + " --map " + soon + " --report " + soon + "/r.json"), 1,
+      rule);
+  const std::string run = "run " + source + " --map " + map() + " --adopt 2 --save-map " + soon;
+  for (const char* output : {"--pictures", "--record-session", "--frames-csv", "--report", "--video"})
+    expect_fault(roomradar(run + " " + output + " " + soon + "/../soon/new.avi"), 1, rule);
+  expect_fault(roomradar(run + " --pictures " + soon), 1, rule);
+  EXPECT_TRUE(fs::is_empty(soon));
+}
+
 TEST_F(CommandLine, AReportCannotBeAFolderNorAPictureAnythingButPng) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const std::string diff = "map diff " + map() + " " + map();
@@ -521,6 +546,8 @@ TEST_F(CommandLine, RecordedPosesAreNotTakenForThoseOfAMapThatKnowsNone) {
   std::ofstream(blind / "map.json") << info;
   const std::string run = "run 'sim:table?frames=2&width=160' --map " + blind.string() + " --poses ";
   expect_fault(roomradar(run + "recorded"), 1, "take --poses tracked");
+  expect_fault(roomradar("fallthrough 'sim:table?width=160' --poses recorded --map " + blind.string()), 1,
+               "take --poses tracked");
   EXPECT_EQ(roomradar(run + "tracked").status, 0);
 }
 

@@ -340,7 +340,7 @@ TEST_F(ResumeTest, ARecordingIsKnownHoweverItsFolderIsSpelled) {
   const auto scan_as = [&](const fs::path& spelled, bool resume) {
     std::vector<std::string> arguments = {"prescan",      spelled, "--map",   map(),
                                           "--resolution", "0.04",  "--poses", "recorded"};
-    if (resume) arguments.emplace_back("--resume");
+    if (resume) arguments.insert(arguments.end(), {"--resume", "--report", temporary_.path() / "again.json"});
     return arguments;
   };
   ASSERT_EQ(run(scan_as(recording, false)), 0) << said();
@@ -348,6 +348,8 @@ TEST_F(ResumeTest, ARecordingIsKnownHoweverItsFolderIsSpelled) {
   for (const fs::path& spelled : {recording / "", recording / ".." / "walk", fs::relative(recording)}) {
     EXPECT_EQ(run(scan_as(spelled, true)), 0) << said();
     EXPECT_NE(said().find("nothing to resume"), std::string::npos) << spelled << ": " << said();
+    EXPECT_EQ(nlohmann::json::parse(text_of(temporary_.path() / "again.json"))["held_already"], true);
+    fs::remove(temporary_.path() / "again.json");
     EXPECT_EQ(text_of(map() / "map.json"), json) << spelled;
   }
 }

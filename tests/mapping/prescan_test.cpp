@@ -44,6 +44,7 @@ TEST(Prescan, ARecordedPoseThatNoMapReachesIsNone) {
     EXPECT_EQ(result.counts.frames_tracked, kFrames - 1) << away_m;
     EXPECT_EQ(result.counts.frames_lost, 1) << away_m;
     EXPECT_EQ(result.counts.frames_fused, kFrames - 1) << away_m;
+    EXPECT_TRUE(knows_recorded_world(result.map.info));
     ASSERT_FALSE(result.map.places.keyframes.empty());
     for (const Place& place : result.map.places.keyframes)
       EXPECT_LT(place.T_world_camera.translation().norm(), 3.0) << away_m;
@@ -68,6 +69,7 @@ TEST(Prescan, TrackedFramesAreComparedWithPosesOfAnyOrigin) {
   for (Frame& frame : frames) frame.T_world_camera->pretranslate(survey_m);
   const PrescanResult far = prescan_of(frames, PoseOrigin::kTracked);
   ASSERT_TRUE(near.counts.against_recorded && far.counts.against_recorded);
+  EXPECT_TRUE(knows_recorded_world(near.map.info));
   EXPECT_EQ(far.counts.against_recorded->poses, static_cast<std::size_t>(kFrames));
   EXPECT_NEAR(far.counts.against_recorded->max_m, near.counts.against_recorded->max_m, 1e-6);
   EXPECT_TRUE((far.map.info.T_world_recorded * Eigen::Translation3d(survey_m))
@@ -129,6 +131,7 @@ TEST(Prescan, ALongScanThatOnlyBeginsInTheMapIsAddedToIt) {
   PrescanStart start{.map = prescan(at_the_door, config, times).map};
   const PrescanResult longer = prescan(into_the_next_rooms, config, times, {}, std::move(start));
   EXPECT_EQ(longer.counts.frames_fused, 150);
+  EXPECT_FALSE(knows_recorded_world(longer.map.info));
   EXPECT_EQ(longer.map.trajectory.size(), 154U);
   EXPECT_NEAR((longer.map.trajectory.back().T_world_camera.translation() -
                longer.map.trajectory.front().T_world_camera.translation())
