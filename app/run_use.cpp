@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "app/virtual_object.hpp"
 #include "mapping/types/error.hpp"
@@ -114,14 +115,18 @@ std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<Virt
   return why;
 }
 
-FrameUseFile::FrameUseFile(const std::filesystem::path& path) : path_(path), file_(path, std::ios::trunc) {
+FrameUseFile::FrameUseFile(std::filesystem::path path) : path_(std::move(path)) {}
+
+void FrameUseFile::open() {
+  file_.open(path_, std::ios::trunc);
   file_ << "frame,room_triangles,views_drawn,room_drawn,room_asked_by_radar,valid_px,meshed_px,"
            "mesh_triangles,flat_cells,cut_cells,full_cells,why\n";
-  if (!file_.flush()) throw Error(path.string() + ": cannot be written; does its folder exist?");
+  if (!file_.flush()) throw Error(path_.string() + ": cannot be written; does its folder exist?");
 }
 
 void FrameUseFile::write(std::int64_t frame, const FrameUse& use,
                          std::span<const std::unique_ptr<VirtualObject>> objects) {
+  if (!file_.is_open()) open();
   std::string why = reasons_of(use, objects);
   std::replace(why.begin(), why.end(), '"', '\'');  // an object may be called anything
   file_ << frame << ',' << use.room_triangles << ',' << use.views_drawn << ',' << use.room_drawn << ','
@@ -130,6 +135,7 @@ void FrameUseFile::write(std::int64_t frame, const FrameUse& use,
 }
 
 void FrameUseFile::close() {
+  if (!file_.is_open()) return;
   file_.close();
   if (!file_) throw Error(path_.string() + ": cannot be written whole; is the disk full?");
 }

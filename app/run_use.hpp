@@ -56,14 +56,17 @@ std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<Virt
 /// A line of comma-separated values a frame that was located.
 class FrameUseFile {
  public:
+  /// Until the first frame the file is left as it was.
+  explicit FrameUseFile(std::filesystem::path path);
   /// Throws Error if the file cannot be written.
-  explicit FrameUseFile(const std::filesystem::path& path);
   void write(std::int64_t frame, const FrameUse& use,
              std::span<const std::unique_ptr<VirtualObject>> objects);
   /// Throws Error if not all of it could be written.
   void close();
 
  private:
+  void open();
+
   std::filesystem::path path_;
   std::ofstream file_;
 };

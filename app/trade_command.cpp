@@ -177,6 +177,8 @@ nlohmann::json to_json(const TradeResult& result) {
 int print_table1(const TradeCommand& command, Report report) {
   const Table1 table = measure_table1(command.rooms.front(), scale_of(command));
   report.renderer = table.renderer;
+  report.source = table.scene;
+  report.settings = {{"room", command.rooms.front()}, {"quick", command.quick}};
   report.results["table1"] = to_json(table);
   std::fputs(text_of(table).c_str(), stdout);
   write_report(report, command.report);

@@ -26,7 +26,7 @@ std::vector<double> error_ratios(const TradeWork& work, const SettingSummary& se
 
 double loss_of(const TradeWork& work, const SettingSummary& setting, const SettingSummary& usual) {
   const std::vector<double> ratios = error_ratios(work, setting, usual);
-  if (ratios.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (ratios.empty() || !setting.is_complete) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0.0;
   for (const double ratio : ratios) sum += std::log(ratio);
   return std::exp(sum / static_cast<double>(ratios.size()));

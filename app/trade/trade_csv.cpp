@@ -36,18 +36,22 @@ TradeCsv::TradeCsv(const std::filesystem::path& path, const std::vector<TradeWor
     for (const Knob& knob : work.knobs) add_once(knobs_, knob.name);
     for (const FigureName& figure : work.figures) add_once(figures_, figure.name);
   }
-  file_.open(path, std::ios::trunc);
+}
+
+void TradeCsv::open() {
+  file_.open(path_, std::ios::trunc);
   file_ << "row,work,setting,scene,repeat,rank,loss,time_ratio,least_ratio,most_ratio,default_before,default_"
            "after,"
            "fault";
   for (const std::string& name : knobs_) file_ << ',' << csv_field(name);
   for (const std::string& name : figures_) file_ << ',' << csv_field(name);
   file_ << std::endl;
-  if (!file_) throw Error(path.string() + ": cannot be written; does its folder exist, is the disk full?");
+  if (!file_) throw Error(path_.string() + ": cannot be written; does its folder exist, is the disk full?");
 }
 
 void TradeCsv::write_line(const std::vector<std::string>& start, const TradeWork& work,
                           const Setting& setting, const Readings& figures) {
+  if (!file_.is_open()) open();
   std::string line;
   for (const std::string& field : start) line += csv_field(field) + ",";
   for (const std::string& name : knobs_) {

@@ -15,10 +15,10 @@ std::string csv_field(const std::string& text);
 /// One header for all kinds of work; what a row has nothing to say of is empty.
 class TradeCsv {
  public:
-  /// Nothing is written for an empty path. Throws Error if the file cannot be written.
+  /// Nothing is written for an empty path, nor before the first line: what was there may be hours of work.
   TradeCsv(const std::filesystem::path& path, const std::vector<TradeWork>& works);
 
-  /// A measurement; it is on the disk afterwards.
+  /// A measurement; it is on the disk afterwards. Throws Error if the file cannot be written.
   void write(const TradeWork& work, const std::vector<Setting>& settings, const SweepRow& row);
   /// All measurements of each setting together, their loss, and what the setting is: front, default, a
   /// preset.
@@ -26,6 +26,7 @@ class TradeCsv {
              const PresetChoice& choice);
 
  private:
+  void open();
   void write_line(const std::vector<std::string>& start, const TradeWork& work, const Setting& setting,
                   const Readings& figures);
 

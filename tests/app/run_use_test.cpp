@@ -141,6 +141,11 @@ TEST_F(FrameUseInASession, WithoutTheMapsSurfacesAllOfTheDepthIsMeshed) {
 
 TEST(FrameUseFile, HasALineAFrameAndAFolderThatIsNotThereIsSaid) {
   const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "frames.csv") << "yesterday's\n";
+  FrameUseFile(folder.path() / "frames.csv").close();  // of a run without a frame
+  std::string kept;
+  std::getline(std::ifstream(folder.path() / "frames.csv"), kept);
+  EXPECT_EQ(kept, "yesterday's");
   FrameUseFile file(folder.path() / "frames.csv");
   FrameUse use;
   use.room_triangles = 10;
@@ -154,7 +159,7 @@ TEST(FrameUseFile, HasALineAFrameAndAFolderThatIsNotThereIsSaid) {
   std::getline(text, line);
   EXPECT_EQ(line, "7,10,1,4,0,0,0,0,0,0,0,\"the camera moved; nothing moved\"");
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(line.begin(), line.end(), ','));
-  EXPECT_THROW(FrameUseFile(folder.path() / "none" / "frames.csv"), Error);
+  EXPECT_THROW(FrameUseFile(folder.path() / "none" / "frames.csv").write(7, use, {}), Error);
 }
 
 }  // namespace

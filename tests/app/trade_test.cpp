@@ -340,6 +340,9 @@ TEST(Summaries, OfASceneThatOthersWereMeasuredInTooAreNotComplete) {
   const std::vector<SettingSummary> summaries = summarise(work, settings, rows);
   EXPECT_TRUE(summaries[0].is_complete);
   EXPECT_FALSE(summaries[1].is_complete);
+  EXPECT_EQ(loss_of(work, summaries[0], summaries[0]), 1.0);
+  EXPECT_TRUE(std::isnan(loss_of(work, summaries[1], summaries[0])))
+      << "its errors are of another scene than the default's";
 }
 
 SettingSummary summary_of(const Setting& setting, double time_ratio, double error_m) {
@@ -501,8 +504,10 @@ TEST(TradeFiles, CsvHasAllColumnsInEachLineAndThePageNeedsNothingElse) {
   result.rows = sweep(result.work, {result.settings, 2, 1}).rows;
   result.summaries = summarise(result.work, result.settings, result.rows);
   result.choice = choose_presets(result.work, result.summaries, 0);
+  std::ofstream(folder.path() / "rows.csv") << "yesterday's";
   {
     TradeCsv csv(folder.path() / "rows.csv", {result.work});
+    EXPECT_EQ(text_of(folder.path() / "rows.csv"), "yesterday's") << "nothing is measured yet";
     for (const SweepRow& row : result.rows) csv.write(result.work, result.settings, row);
     csv.write(result.work, result.summaries, 0, result.choice);
   }
@@ -534,7 +539,8 @@ TEST(TradeFiles, CsvHasAllColumnsInEachLineAndThePageNeedsNothingElse) {
   for (std::size_t at = 0; (at = page.find("<g><title>", at)) != std::string::npos; ++at) ++dots;
   EXPECT_EQ(dots, 4U);
   EXPECT_THROW(write_trade_page({result}, {}, folder.path() / "none" / "page.html"), Error);
-  EXPECT_THROW(TradeCsv(folder.path() / "none" / "rows.csv", {result.work}), Error);
+  TradeCsv nowhere(folder.path() / "none" / "rows.csv", {result.work});
+  EXPECT_THROW(nowhere.write(result.work, result.settings, result.rows.front()), Error);
 }
 
 // Small images and few frames: that figures are there and of the right size, not what they are.
