@@ -10,6 +10,7 @@
 #include "app/picture_file.hpp"
 #include "app/progress.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -183,14 +184,9 @@ void RunLoop::count_skipped(const std::string& fault) {
 
 /// The source's number of the frame; where it comes again, held or looped, with the run's beside it.
 std::string RunLoop::picture_name() {
-  const auto six_digits = [](std::int64_t number) {
-    char digits[24];
-    std::snprintf(digits, sizeof digits, "%06lld", static_cast<long long>(number));
-    return std::string(digits);
-  };
   const bool is_again = frame_.index <= last_picture_;
   last_picture_ = std::max(last_picture_, frame_.index);
-  return six_digits(frame_.index) + (is_again ? "-" + six_digits(run_frame_) : "");
+  return frame_number_text(frame_.index) + (is_again ? "-" + frame_number_text(run_frame_) : "");
 }
 
 void RunLoop::keep(const FrameResult& result) {

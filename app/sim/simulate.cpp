@@ -1,7 +1,6 @@
 // simulate.cpp: frames to the recording writer, truth to files of its own.
 #include "app/sim/simulate.hpp"
 
-#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +13,7 @@
 #include "mapping/mesh_file.hpp"
 #include "mapping/trajectory.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
@@ -68,8 +68,7 @@ void simulate(const std::filesystem::path& folder, const SimOptions& options, Re
   Frame frame;
   while (source.next(frame).status == ReadStatus::kFrame) {
     writer.write(frame);
-    char name[32];
-    std::snprintf(name, sizeof(name), "%06lld.png", static_cast<long long>(frame.index));
+    const std::string name = frame_number_text(frame.index) + ".png";
     write_depth_file(source.truth().depth_m, DepthEncoding::kTum, truth / "depth" / name);
     if (moves) {
       write_mask_file(source.truth().moved, truth / "moved" / name);

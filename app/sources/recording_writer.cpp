@@ -145,9 +145,7 @@ void RecordingWriter::write_tum(const Frame& frame) {
 }
 
 void RecordingWriter::write_seven_scenes(const Frame& frame) {
-  std::string number = std::to_string(frames_written_);
-  number.insert(0, 6 - std::min<std::size_t>(number.size(), 6), '0');
-  const fs::path stem = folder_ / ("frame-" + number);
+  const fs::path stem = folder_ / ("frame-" + frame_number_text(frames_written_));
   write_depth_file(frame.depth_m, DepthEncoding::kMillimetres, stem.string() + ".depth.png");
   if (frame.colour.empty())
     std::ofstream(stem.string() + ".color.none");  // tells it from an image that was lost

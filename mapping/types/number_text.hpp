@@ -1,7 +1,9 @@
 // number_text.hpp: a number as text that reads back as the same number.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstdint>
 #include <string>
 
 namespace roomradar {
@@ -26,6 +28,12 @@ inline std::string general_text(double value, int digits) {
   return {
       text.data(),
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr};
+}
+
+/// A frame's number in the names of files: six digits, more where it has more.
+inline std::string frame_number_text(std::int64_t number) {
+  std::string text = std::to_string(number);
+  return text.insert(0, 6 - std::min<std::size_t>(text.size(), 6), '0');
 }
 
 }  // namespace roomradar
