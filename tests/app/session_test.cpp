@@ -271,6 +271,20 @@ TEST(Session, DropsThatWaitAreNotTriedAllInOneFrame) {
   }
 }
 
+TEST(Session, NothingIsDroppedOntoASurfaceThatSomethingStandsBefore) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.apply(event(Action::kAdd));
+  session.apply(event(Action::kDrop));
+  Frame full = depth_only(0, kAtTheFloor);  // of somebody, over all of the floor
+  for (float& depth_m : full.depth_m.pixels) depth_m *= 0.6F;
+  static_cast<void>(session.step(full, times));
+  EXPECT_FALSE(session.objects().front()->in_room);
+  see_the_floor(session, times);
+  EXPECT_TRUE(session.objects().front()->in_room);
+}
+
 /// A box whose origin is at a corner of its floor.
 Mesh box_about_its_corner(float size_m) {
   Mesh box = shapes::box(Eigen::Vector3f::Constant(size_m));
