@@ -21,7 +21,7 @@ PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
   const Eigen::Vector3f size(static_cast<float>(shadow.columns) * shadow.cell_m,
                              static_cast<float>(shadow.rows) * shadow.cell_m, 1.1F * shadow.extent_m);
   const Eigen::Isometry3d T_camera_shadow =
-      T_world_camera.inverse() * Eigen::Translation3d(caster.T_world_object.translation());
+      T_world_camera.inverse() * Eigen::Translation3d(origin_world(shadow, caster.T_world_object));
   return pixels_of(Eigen::AlignedBox3f(low, low + size).cast<double>(), camera, T_camera_shadow, kNear_m);
 }
 
@@ -33,10 +33,10 @@ void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m, float strength,
                  ColourImage& picture) {
   const PixelRect rect = shadowed_pixels(caster, camera, T_world_camera);
-  // From pixel and depth straight to the shadow's axes, which are the world's with the object's origin.
+  // From pixel and depth straight to the shadow's axes, which are the world's with an origin of its own.
   const Eigen::Matrix3f R_world_camera = T_world_camera.linear().cast<float>();
   const Eigen::Vector3f camera_from_object_m =
-      (T_world_camera.translation() - caster.T_world_object.translation()).cast<float>();
+      (T_world_camera.translation() - origin_world(*caster.shadow, caster.T_world_object)).cast<float>();
   const Eigen::Vector3f step_x = R_world_camera.col(0) / static_cast<float>(camera.fx_px);
   for (int y = rect.y; y < rect.y + rect.height; ++y) {
     const Eigen::Vector3f ray_at_column_0 = R_world_camera * back_project(camera, 0.0, y, 1.0).cast<float>();

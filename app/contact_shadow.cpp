@@ -120,12 +120,16 @@ SurfacePoints spread_points(const Mesh& mesh) {
                                      static_cast<float>(is_past ? 1.0 - v : v) * (c - a));
     }
   }
+  Eigen::AlignedBox3f bounds;
+  for (const Eigen::Vector3f& p : spread.p_object_m) bounds.extend(p);
+  if (!bounds.isEmpty()) spread.middle_object_m = bounds.center().cast<double>();
   return spread;
 }
 
 void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_world_object,
                          ContactShadow& shadow, int cells_across) {
   shadow.R_world_object = R_world_object;
+  shadow.middle_object_m = object.middle_object_m;
   shadow.cells_across = cells_across;
   shadow.columns = shadow.rows = 0;
   shadow.clearances_m.clear();
@@ -170,6 +174,10 @@ void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_w
       }
     }
   }
+}
+
+Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3d& T_world_object) {
+  return T_world_object * shadow.middle_object_m - shadow.R_world_object * shadow.middle_object_m;
 }
 
 float sky_taken(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m) {

@@ -10,6 +10,7 @@ namespace roomradar {
 /// Points spread evenly over an object's surface, in its own frame: all that a shadow needs to know of it.
 struct SurfacePoints {
   std::vector<Eigen::Vector3f> p_object_m;
+  Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();  ///< of their box
 };
 
 /// Some 8,000 points, each standing for the same area; each triangle that has less area than that has one by
@@ -20,6 +21,7 @@ SurfacePoints spread_points(const Mesh& mesh);
 /// the world's (z up); the origin is the object's.
 struct ContactShadow {
   Eigen::Matrix3d R_world_object = Eigen::Matrix3d::Identity();  ///< that it was made for
+  Eigen::Vector3d middle_object_m = Eigen::Vector3d::Zero();     ///< of the object's box
   float x0_m = 0.0F, y0_m = 0.0F;  ///< centre of the first cell, relative to the object's origin
   float cell_m = 0.0F;
   int columns = 0, rows = 0;
@@ -38,6 +40,10 @@ struct ContactShadow {
 ///                      25 cm teapot is 1.5 cm, a shadow is soft
 void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_world_object,
                          ContactShadow& shadow, int cells_across = 16);
+
+/// Where the table's origin is for an object that stands so: turned a little from what the table was made
+/// for, the middle stays under the object, wherever in or outside the object its origin is.
+Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3d& T_world_object);
 
 /// Part of the sky taken from a real surface point; p_object_m = point minus the object's origin, world axes.
 /// Points above the object's bottom by more than some centimetres get none.

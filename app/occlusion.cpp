@@ -17,9 +17,12 @@ constexpr int kPastBand_taps = 3;  // they reach this far past the band
 
 int taps_each_way(int reach_px) { return (reach_px + kTapStep_px - 1) / kTapStep_px + kPastBand_taps; }
 
-/// The objects' depth at the pixels of `rect`; those that no object covers get that of a covered one nearby.
-void spread_object_depth(const ObjectLayer& layer, const PixelRect& rect, Image<float>& object_m) {
+/// The objects' depth at the pixels of `rect`, and which they cover; those that no object covers get the
+/// depth of a covered one nearby.
+void spread_object_depth(const ObjectLayer& layer, const PixelRect& rect, Image<float>& object_m,
+                         MaskImage& covered_mask) {
   object_m.resize(rect.width, rect.height);
+  covered_mask.resize(rect.width, rect.height);
   for (int y = 0; y < layer.rect.height; ++y) {
     float* row = object_m.row(y + layer.rect.y - rect.y) + (layer.rect.x - rect.x);
     for (int x = 0; x < layer.rect.width; ++x) {
@@ -34,6 +37,8 @@ void spread_object_depth(const ObjectLayer& layer, const PixelRect& rect, Image<
       row[x] = covered > 0.0F ? sum_m / covered : 0.0F;
     }
   }
+  std::transform(object_m.pixels.begin(), object_m.pixels.end(), covered_mask.pixels.begin(),
+                 [](float z_m) { return static_cast<std::uint8_t>(z_m > 0.0F ? 255 : 0); });
   int filled_rows = 0;
   for (int y = 0; y < rect.height; ++y) {
     float* row = object_m.row(y);
@@ -248,14 +253,16 @@ void agree_with_neighbours(const ColourImage& background, Occlusion& occlusion) 
   }
 }
 
-/// The mean over 3 x 3 pixels, the middle ones weighing more.
-void soften(Image<float>& hidden, Image<float>& softened) {
+/// The mean over 3 x 3 pixels, the middle ones weighing more. What no object covers has the depth of one that
+/// may be another: there the pixel itself counts.
+void soften(const Image<float>& hidden, const MaskImage& covered, Image<float>& softened) {
   softened.resize(hidden.width, hidden.height);
-  const auto at = [&](int x, int y) {
-    return hidden.at(std::clamp(x, 0, hidden.width - 1), std::clamp(y, 0, hidden.height - 1));
-  };
   for (int y = 0; y < hidden.height; ++y) {
     for (int x = 0; x < hidden.width; ++x) {
+      const float own = hidden.at(x, y);
+      const auto at = [&](int u, int v) {
+        return covered.contains(u, v) && covered.at(u, v) != 0 ? hidden.at(u, v) : own;
+      };
       float sum = 4.0F * at(x, y);
       sum += 2.0F * (at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1));
       sum += at(x - 1, y - 1) + at(x + 1, y - 1) + at(x - 1, y + 1) + at(x + 1, y + 1);
@@ -288,7 +295,7 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
                                   layer.rect.height + 2 * margin},
                                  background.width, background.height);
   occlusion.rect = rect;
-  spread_object_depth(layer, rect, occlusion.object_m);
+  spread_object_depth(layer, rect, occlusion.object_m, occlusion.covered);
 
   hide_by_depth(real_depth_m, config, occlusion);
   occlusion.front.resize(rect.width, rect.height);
@@ -302,7 +309,7 @@ void find_occlusion(const ColourImage& background, const DepthImage& real_depth_
     judge_alone(background, config.edge_reach_px, occlusion);
     agree_with_neighbours(background, occlusion);
   }
-  soften(occlusion.unsoftened, occlusion.hidden);
+  soften(occlusion.unsoftened, occlusion.covered, occlusion.hidden);
 }
 
 }  // namespace roomradar

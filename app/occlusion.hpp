@@ -25,6 +25,7 @@ struct Occlusion {
   ColourImage front;    ///< what hides it there, without what shows through at its edge
 
   Image<float> object_m, unsoftened;
+  MaskImage covered;             ///< by an object, in part at least
   Image<std::uint8_t> by_depth;  ///< 255: hidden
   MaskImage edges;
   Image<int> near_edges, near_hidden;  ///< sums over the neighbourhood

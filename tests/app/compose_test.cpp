@@ -68,6 +68,19 @@ TEST(Compose, ShowsTheObjectInFrontOfTheRoomAndHidesItBehind) {
   EXPECT_EQ(picture.at(33, 15), kRed);
 }
 
+TEST(Compose, AHiddenObjectLeavesNoOutlineWhereAnotherIsNearer) {
+  ObjectLayer layer = flat_layer({5, 10, 40, 20}, 0.0F, 1);
+  for (int y = 0; y < 20; ++y) {
+    std::fill_n(layer.depth_m.row(y), 10, 1.0F);
+    if (y > 3) std::fill_n(layer.depth_m.row(y) + 25, 15, 3.0F);  // its top rim is within rows of the other
+  }
+  const ColourImage picture = composed(DepthImage(64, 48, 2.0F), layer);
+  for (int y = 10; y < 30; ++y) {
+    for (int x = 5; x < 15; ++x) EXPECT_EQ(picture.at(x, y), kRed) << x << " " << y;
+    for (int x = 20; x < 60; ++x) EXPECT_EQ(picture.at(x, y), kGrey) << x << " " << y;
+  }
+}
+
 TEST(Compose, AnObjectOnASurfaceDoesNotFlickerWithItsNoise) {
   DepthImage real_depth_m(64, 48, 1.0F);
   for (std::size_t i = 0; i < real_depth_m.pixels.size(); ++i)
@@ -204,6 +217,32 @@ TEST(ContactShadow, NothingCastsNone) {
   broken.triangles[1][2] = 99;
   EXPECT_EQ(sky_taken(shadow_of(broken), {0, 0, -0.01F}), 0.0F);
   EXPECT_EQ(sky_taken(ContactShadow{}, {0, 0, 0}), 0.0F);
+}
+
+TEST(Compose, AShadowStaysUnderAnObjectThatTurnedALittleWhereverItsOriginIs) {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  T_world_camera.translation().z() = 1.0;
+  const Eigen::Vector3d middle_world(0.1, 0.05, 0.03);
+  const auto picture_of = [&](const Eigen::Vector3f& away_m) {
+    Mesh mesh = plate(0.1F, 0.0F);
+    for (Eigen::Vector3f& p : mesh.vertices) p += away_m;
+    const ContactShadow shadow = shadow_of(mesh);
+    ShadowCaster caster{&shadow, Eigen::Isometry3d::Identity()};
+    caster.T_world_object.linear() = (Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitZ()) *
+                                      Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitY()))
+                                         .toRotationMatrix();
+    caster.T_world_object.translation() =
+        middle_world - caster.T_world_object.linear() * away_m.cast<double>();
+    ColourImage picture;
+    cast_shadows(ColourImage(64, 48, kGrey), kCamera, T_world_camera, DepthImage(64, 48, 1.0F), {&caster, 1},
+                 1.0F, picture);
+    return picture;
+  };
+  const ColourImage about_its_middle = picture_of({0, 0, 0}), far_off = picture_of({2, -1, 0.5F});
+  EXPECT_LT(about_its_middle.at(38, 20).r, 40);
+  for (std::size_t i = 0; i < far_off.pixels.size(); ++i)
+    EXPECT_NEAR(far_off.pixels[i].r, about_its_middle.pixels[i].r, 3) << i;
 }
 
 TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
