@@ -1,5 +1,6 @@
 // snapshot.hpp: copies of what a session holds after a frame, for the window.
 #pragma once
+#include <chrono>
 #include <cstddef>
 #include <map>
 #include <memory>
@@ -25,9 +26,12 @@ class SnapshotMaker {
  private:
   std::shared_ptr<const Mesh> room_;
   std::uint64_t room_revision_ = 0;  ///< of the session's room when room_ was made; 0: of none yet
-  std::map<const VirtualObject*, std::shared_ptr<const Mesh>> object_meshes_;
+  std::map<std::shared_ptr<const ObjectModel>, std::shared_ptr<const Mesh>> object_meshes_;
   std::map<std::string, std::size_t, std::less<>> counted_;  ///< stages' samples before this frame
   CyberRadar radar_;
+  RadarPictures pictures_;
+  std::string pictures_of_;  ///< the object's name
+  std::chrono::steady_clock::time_point pictures_due_{};
 
   void fill_radar(const Session& session, const std::string& chosen, ShownRadar& shown);
 };
