@@ -103,7 +103,7 @@ enum class StepStatus {
 
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
-  int contacts = 0;                                   ///< surfaces met
+  int contacts = 0;                                   ///< kinds of surface met, at each stop anew
   std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by what was touched
   int queries = 0;                                    ///< of the radar along a direction
   /// Deepest overlap seen before it was resolved, by the shortest way out, >= 0.

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace roomradar {
@@ -175,10 +176,11 @@ void Piece::bounce() {
     scratch_.bodies[i]->velocity_world_mps = scratch_.others[i].velocity.linear_mps;
     scratch_.bodies[i]->spin_world_rad_s = scratch_.others[i].velocity.angular_rad_s;
   }
-  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
-    if (!(scratch_.contacts[i].impulse_mps > 0.0)) continue;
-    note_contact(scratch_.kinds[i], report_);
-  }
+  std::array<bool, kTouchedKinds> is_met{};  // each by any number of points
+  for (std::size_t i = 0; i < scratch_.contacts.size(); ++i)
+    if (scratch_.contacts[i].impulse_mps > 0.0) is_met[static_cast<std::size_t>(scratch_.kinds[i])] = true;
+  for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
+    if (is_met[kind]) note_contact(static_cast<Touched>(kind), report_);
 }
 
 /// Lets contacts be entered as fast as their gaps have room for, in dt_s.

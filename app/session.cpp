@@ -334,7 +334,7 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
     object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // more: it stalled
     if (!object->carried_to_world && !is_turn_to_move(number)) continue;
     const double waited_s = std::exchange(object->waited_s, 0.0);
-    object->in_unknown = object->in_unknown && is_in_unknown(*object);
+    if (!object->body.at_rest) object->in_unknown = object->in_unknown && is_in_unknown(*object);
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
     if (config_.scene.surfaces == SurfacePolicy::kMap)
       push = push_directions({&scene_.moved_world().seen_world, &scene_.moved_world().inferred_world},

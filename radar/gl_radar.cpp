@@ -129,6 +129,7 @@ void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneM
     return s.instance.mesh != nullptr && !s.instance.T_world_mesh.matrix().allFinite();
   };
   if (std::any_of(scene.begin(), scene.end(), has_bad_pose)) return;
+  forget_gl_errors();
   boxes_.build(scene);
   drawn_.clear();
   reaches_.clear();

@@ -105,7 +105,8 @@ std::span<const TileResult> LeastGap::read(std::size_t count) {
   const GLenum waited = glClientWaitSync(done, GL_SYNC_FLUSH_COMMANDS_BIT, kPatience_ns);
   glDeleteSync(done);
   const bool is_done = (waited == GL_ALREADY_SIGNALED || waited == GL_CONDITION_SATISFIED) &&
-                       glGetGraphicsResetStatus() == GL_NO_ERROR;
+                       glGetGraphicsResetStatus() == GL_NO_ERROR &&
+                       glGetError() == GL_NO_ERROR;  // out of memory for what was to be drawn
   // Without a context all of the above does nothing and says 0; the stamps tell old results from new.
   const std::span<const TileResult> results(host_results_, is_done ? count : 0);
   const bool are_new = std::all_of(results.begin(), results.end(),
