@@ -47,6 +47,8 @@ fs::path folder_of_links(const fs::path& folder, const std::vector<std::string>&
         throw Error((links / file).string() + ": cannot be made; is the disk full?");
       index << file << '\n';
     }
+    if (fs::exists(folder / "camera.json"))  // says, too, whether its frames were calibrated already
+      fs::create_symlink(fs::absolute(folder / "camera.json"), links / "camera.json");
     index.close();
     if (!index) throw Error(links.string() + ": cannot be written; is the disk full?");
     return links;

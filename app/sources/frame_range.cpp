@@ -24,7 +24,7 @@ std::string range_text(std::int64_t first, std::int64_t last) {
 class FrameRangeSource final : public FrameSource {
  public:
   FrameRangeSource(std::unique_ptr<FrameSource> source, std::int64_t first, std::int64_t last)
-      : source_(std::move(source)), first_(first), last_(last) {
+      : source_(std::move(source)), first_(first), last_(last), is_live_(!source_->frame_count()) {
     if (source_->seek(first_)) position_ = first_;
   }
 
@@ -35,8 +35,9 @@ class FrameRangeSource final : public FrameSource {
       ReadResult result = source_->next(frame);
       if (result.status == ReadStatus::kEnd) fail_outside(*source_, first_, last_, position_);
       if (result.waiting) return result;
-      // A live device counts frames that it dropped, which are not delivered.
-      const std::int64_t at = result.status == ReadStatus::kFrame ? frame.index : position_;
+      // A live device counts frames that it dropped, which are not delivered; what was recorded of it keeps
+      // their numbers, and is asked for by position.
+      const std::int64_t at = is_live_ && result.status == ReadStatus::kFrame ? frame.index : position_;
       position_ = at + 1;
       if (at >= first_ && at <= last_) return result;
     }
@@ -64,6 +65,7 @@ class FrameRangeSource final : public FrameSource {
   std::unique_ptr<FrameSource> source_;
   std::int64_t first_;
   std::int64_t last_;
+  bool is_live_;
   std::int64_t position_ = 0;
 };
 

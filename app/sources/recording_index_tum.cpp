@@ -124,7 +124,8 @@ std::optional<Eigen::Vector3d> down_at(double stamp_s, const std::vector<std::ve
 /// Sends both lists through the pairing in the order of their stamps.
 void associate(const std::vector<ListedImage>& depth, const std::vector<ListedImage>& colours,
                double tolerance_s, std::vector<RecordedFrame>& frames) {
-  StampPairing pairing({.tolerance_s = tolerance_s});
+  constexpr std::size_t kKept = 300;  // ten seconds of colour without depth
+  StampPairing pairing({.tolerance_s = tolerance_s, .colours_kept = kKept});
   std::size_t c = 0;
   const auto add_colours_until = [&](double stamp_s) {
     for (; c < colours.size() && colours[c].stamp_s <= stamp_s; ++c) {

@@ -10,7 +10,7 @@ void StampPairing::add_depth(std::int64_t depth, double stamp_s) { waiting_.push
 
 void StampPairing::add_colour(std::int64_t colour, double stamp_s) {
   colours_.push_back({colour, stamp_s});
-  if (colours_.size() > kColoursKept) colours_.pop_front();
+  if (colours_.size() > config_.colours_kept) colours_.pop_front();
 }
 
 std::optional<DepthColourPair> StampPairing::take() {

@@ -1,10 +1,15 @@
 // stamp_pairing.hpp: which colour image goes with which depth image: one rule for all sources.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
 
 namespace roomradar {
+
+/// How many colour images a StampPairing remembers while no depth image takes them; who keeps the images
+/// keeps as many.
+constexpr std::size_t kColoursKept = 8;
 
 struct PairingConfig {
   double tolerance_s = 0.020;  ///< farther apart is no pair; half a period at 30 Hz is 0.017
@@ -12,6 +17,8 @@ struct PairingConfig {
   /// its depth image is taken at once, since no other of either can be nearer: saves a live device up to a
   /// frame of waiting.
   double unbeatable_s = 0.0;
+  /// Colour images that are remembered while no depth image takes them: of a list, more than a device's.
+  std::size_t colours_kept = kColoursKept;
 };
 
 /// For devices that deliver at 30 Hz at most. Their recordings drop images, so a whole period apart may be
@@ -50,13 +57,9 @@ class StampPairing {
   };
   PairingConfig config_;
   std::deque<Stamped> waiting_;  // depth images, in the order of arrival
-  std::deque<Stamped> colours_;  // not taken, at most kColoursKept
+  std::deque<Stamped> colours_;  // not taken, at most colours_kept
   std::optional<double> last_depth_s_;
   bool finished_ = false;
 };
-
-/// How many colour images a StampPairing remembers while no depth image takes them; who keeps the images
-/// keeps as many.
-constexpr std::size_t kColoursKept = 8;
 
 }  // namespace roomradar

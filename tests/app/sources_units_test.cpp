@@ -16,6 +16,7 @@
 #include "app/sources/stamp_pairing.hpp"
 #include "mapping/types/error.hpp"
 #include "tests/app/sources_support.hpp"
+#include "tests/support/kept_source.hpp"
 
 namespace roomradar {
 namespace {
@@ -102,6 +103,21 @@ TEST(StampPairing, TakesTheNearerOfTheImagesBeforeAndAfter) {
   ASSERT_EQ(pairs.size(), 1U);
   EXPECT_EQ(pairs[0].colour, 1);
   EXPECT_NEAR(pairs[0].colour_after_depth_s, 0.004, 1e-12);
+}
+
+TEST(StampPairing, OfAListTheLastDepthImageBeforeAGapKeepsItsColour) {
+  for (const std::size_t kept : {kColoursKept, std::size_t{300}}) {
+    StampPairing pairing({.colours_kept = kept});
+    pairing.add_depth(0, 0.0);
+    for (std::int64_t i = 0; i < 30; ++i) pairing.add_colour(i, 0.005 + static_cast<double>(i) / 30.0);
+    pairing.add_depth(1, 1.0);
+    const auto pair = pairing.take();
+    ASSERT_TRUE(pair);
+    EXPECT_EQ(pair->colour.has_value(), kept > kColoursKept);
+    if (pair->colour) {
+      EXPECT_EQ(*pair->colour, 0);
+    }
+  }
 }
 
 TEST(StampPairing, UsesEachImageOnceAndNoneThatIsTooFar) {
@@ -192,6 +208,19 @@ TEST(FrameRange, IncludesBothEndsAndKeepsIndices) {
     if (knows) {
       EXPECT_EQ(read_all(*source).frames.size(), 3U);
     }
+  }
+}
+
+TEST(FrameRange, OfARecordedSessionIsByPositionWhateverItsFramesAreNumbered) {
+  std::vector<Frame> frames(10);
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].index = 400 + 2 * static_cast<std::int64_t>(i);
+  const auto source = limit_frames(std::make_unique<test::KeptSource>(std::move(frames)), 3, 6);
+  for (int reading = 0; reading < 2; ++reading) {
+    const auto all = read_all(*source);
+    ASSERT_EQ(all.frames.size(), 4U);
+    EXPECT_EQ(all.frames.front().index, 406);
+    EXPECT_EQ(all.frames.back().index, 412);
+    ASSERT_TRUE(source->rewind());
   }
 }
 
