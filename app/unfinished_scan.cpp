@@ -29,6 +29,8 @@ fs::path unfinished_beside(const fs::path& map) {
 
 void require_no_live_scan(const fs::path& folder) {
   if (!fs::exists(folder / kSpool)) return;
+  if (fs::exists(folder / "work.json"))
+    Checkpoints(folder, {}, 0.0).ensure_folder();  // nobody is at work on it
   throw Error(folder.string() +
               ": holds a live scan that was cut off; go on with it by --resume, or delete "
               "the folder to begin anew");
