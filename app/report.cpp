@@ -55,6 +55,9 @@ nlohmann::json to_json(const Report& report) {
 
 void require_writable(const std::filesystem::path& path) {
   if (path.empty()) return;
+  std::error_code fault;
+  const bool is_pipe_or_device = std::filesystem::is_other(path, fault);
+  if (is_pipe_or_device && access(path.c_str(), W_OK) == 0) return;
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
     throw Error(path.string() + ": cannot be written: its folder is not there or not writable");

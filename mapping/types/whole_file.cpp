@@ -33,7 +33,10 @@ bool reaches_disk(const fs::path& path) {
 
 WholeFile::WholeFile(const fs::path& target) : target_(target) {
   std::error_code fault;
-  if (fs::is_symlink(target, fault) && fs::exists(target, fault)) target_ = fs::canonical(target, fault);
+  if (fs::is_symlink(target, fault) && fs::exists(target, fault)) {
+    const fs::path real = fs::canonical(target, fault);
+    if (!fault) target_ = real;  // none has the pipe behind /dev/stdout
+  }
   const bool is_plain = !fs::exists(target_, fault) || fs::is_regular_file(target_, fault);
   partial_ = target_;
   if (is_plain) partial_ += ".partial-" + std::to_string(::getpid());

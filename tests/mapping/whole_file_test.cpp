@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <string>
 
@@ -83,6 +84,17 @@ TEST(WholeFile, ALinkStaysOneAndADeviceIsWrittenAsItComes) {
   if (fs::exists("/dev/full")) {
     EXPECT_NE(test::error_of([] { write("/dev/full", "x"); }).find("/dev/full"), std::string::npos);
   }
+}
+
+TEST(WholeFile, APipeByItsNameIsWrittenAsItComes) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  write("/proc/self/fd/" + std::to_string(ends[1]), "through");  // as /dev/stdout: a link to what has no path
+  std::array<char, 16> text{};
+  EXPECT_EQ(read(ends[0], text.data(), text.size()), 7);
+  EXPECT_STREQ(text.data(), "through");
+  close(ends[0]);
+  close(ends[1]);
 }
 
 TEST(WholeFile, AFolderThatIsNotThereIsSaid) {
