@@ -22,6 +22,9 @@ constexpr double kUsb2_mbit_s = 480.0;
 constexpr GLint kLeastTexture_px = 4096;
 
 Finding judge_one(const KinectOnUsb& kinect) {
+  if (!kinect.has_camera)
+    return {Health::kBad, "a Kinect's motor or microphones are on USB, its cameras are not",
+            "plug in its own power supply; if it is in, unplug the Kinect and plug it in again"};
   const std::string name = kinect.model + " at " + kinect.node.string();
   if (!kinect.may_open && kinect.model == kKinectForWindows)  // which Debian's rule does not name
     return {Health::kBad, name + ": this user may not open it",
@@ -69,7 +72,7 @@ std::vector<Finding> judge_kinects(const std::vector<KinectOnUsb>& on_usb, int s
   if (on_usb.empty() && sees == 0)
     findings.push_back({Health::kMissing, "no Kinect is plugged in",
                         "plug it into USB and into its own power supply; recordings and sim: need none"});
-  else if (seen_by_libfreenect >= 0 && sees < on_usb.size())
+  else if (seen_by_libfreenect >= 0 && sees < on_usb.size() && on_usb.front().has_camera)
     findings.push_back({Health::kBad,
                         "of " + std::to_string(on_usb.size()) + " Kinects on the bus libfreenect sees " +
                             std::to_string(sees),

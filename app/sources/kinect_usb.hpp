@@ -12,6 +12,9 @@ constexpr const char* kKinectForWindows = "Kinect for Windows";
 
 /// The camera of a Kinect v1, one of the three devices behind its plug.
 struct KinectOnUsb {
+  /// False: no camera is on the bus, but a motor or microphones are. USB alone powers the motor, the supply
+  /// the rest. Then nothing below is known.
+  bool has_camera = true;
   std::string model;  ///< one of the above
   int bus = 0;
   double speed_mbit_s = 0.0;   ///< 480 where all is well; 0: not known

@@ -97,6 +97,16 @@ TEST(Doctor, CamerasWithoutAMotorLackPower) {
   EXPECT_TRUE(says(judge_kinects(bus.kinects(), 1), Health::kBad, "power supply"));
 }
 
+TEST(Doctor, AMotorWithoutCamerasLacksPower) {
+  for (const char* const companion : {"02b0", "02c2"}) {
+    const Bus bus;
+    bus.plug_in("3-1.1", companion, 6);
+    const std::vector<Finding> findings = judge_kinects(bus.kinects(), 0);
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_TRUE(says(findings, Health::kBad, "power supply"));
+  }
+}
+
 TEST(Doctor, NoKinectIsNoIllness) {
   const Bus bus;
   EXPECT_TRUE(bus.kinects().empty());
