@@ -59,9 +59,9 @@ void require_writable(const std::filesystem::path& path) {
   const bool is_pipe_or_device = std::filesystem::is_other(path, fault);
   if (is_pipe_or_device && access(path.c_str(), W_OK) == 0) return;
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-  if (!std::filesystem::is_directory(folder) || access(folder.c_str(), W_OK) != 0)
+  if (!std::filesystem::is_directory(folder, fault) || access(folder.c_str(), W_OK) != 0)
     throw Error(path.string() + ": cannot be written: its folder is not there or not writable");
-  if (std::filesystem::is_directory(path))
+  if (std::filesystem::is_directory(path, fault))
     throw Error(path.string() + ": cannot be written: a folder has that name; give the name of a file");
   require_outside_maps(path);
 }

@@ -178,11 +178,13 @@ void require_contents_outside_maps(const fs::path& folder) {
 void require_can_become_map(const fs::path& folder, std::initializer_list<fs::path> outputs) {
   const fs::path map = tidy_map_name(folder);
   require_replaceable(map);
-  const fs::path whole = fs::weakly_canonical(fs::absolute(map));
+  std::error_code ignored;  // what cannot be found out is refused where it is written
+  const fs::path whole = fs::weakly_canonical(fs::absolute(map), ignored);
   for (const fs::path& output : outputs) {
     if (output.empty()) continue;
-    const fs::path path = fs::weakly_canonical(fs::absolute(output));
-    if (std::mismatch(whole.begin(), whole.end(), path.begin(), path.end()).first == whole.end())
+    const fs::path path = fs::weakly_canonical(fs::absolute(output), ignored);
+    if (!whole.empty() &&
+        std::mismatch(whole.begin(), whole.end(), path.begin(), path.end()).first == whole.end())
       fail(output, "would lie in " + map.string() +
                        ", which is to be a map and holds nothing but that; choose another place");
   }
