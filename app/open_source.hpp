@@ -7,10 +7,11 @@
 
 #include "app/sources/frame_range.hpp"
 #include "app/sources/source_options.hpp"
-#include "mapping/map_folder.hpp"
 #include "mapping/types/frame_source.hpp"
 
 namespace roomradar {
+
+struct MapInfo;
 
 /// The calibration file that frames of a source are seen with: the one chosen, else calibration.json in the
 /// source's folder; empty: none.

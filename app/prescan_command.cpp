@@ -158,9 +158,10 @@ bool holds_frames(const std::filesystem::path& spool) {
 /// Throws Error that says what went wrong and, where the scan is not lost, how to go on.
 [[noreturn]] void fail(const std::string& fault, const ScanStart& start) {
   const bool is_kept = start.checkpoints && (start.checkpoints->has_any() || holds_frames(start.spool));
-  if (start.checkpoints && !is_kept)
-    start.checkpoints->remove();  // a spool without a frame would bar the name
-  if (!is_kept) throw Error(fault);
+  if (!is_kept) {
+    if (start.checkpoints) start.checkpoints->remove();  // a spool without a frame would bar the name
+    throw Error(fault);
+  }
   throw Error(fault + "\nroomradar: what was scanned is kept in " + start.checkpoints->folder().string() +
               ": the same command with --resume goes on from there; delete it to scan anew");
 }

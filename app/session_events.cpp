@@ -19,6 +19,15 @@ namespace {
 
 constexpr double kTouching_m = 1e-6;
 
+/// The room's depth where nothing that moved is before it, and might stand on it; else 0.
+DepthImage seen_room_depth_m(const LiveScene& scene) {
+  DepthImage depth_m = scene.expected_depth_m();
+  const MaskImage& moved = scene.moved_mask();
+  for (std::size_t i = 0; i < std::min(moved.pixels.size(), depth_m.pixels.size()); ++i)
+    if (moved.pixels[i] != 0) depth_m.pixels[i] = 0.0F;
+  return depth_m;
+}
+
 bool overlap(CyberRadar& radar, NearField& field, const TreeInstance& a, const TreeInstance& b) {
   const SceneTree a_of_scene{a, Touched::kObject}, b_of_scene{b, Touched::kObject};
   const RadarScene scene_a{{&a_of_scene, 1}, {}}, scene_b{{&b_of_scene, 1}, {}};
@@ -221,11 +230,7 @@ void Session::change_objects(const ScriptEvent& event) {
 }
 
 void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  constexpr std::int64_t kAgainAfter_frames = 10;       // a search takes some 10 ms
-  DepthImage room_depth_m = scene_.expected_depth_m();  // what moved may stand on the surface behind it
-  const MaskImage& moved = scene_.moved_mask();
-  for (std::size_t i = 0; i < std::min(moved.pixels.size(), room_depth_m.pixels.size()); ++i)
-    if (moved.pixels[i] != 0) room_depth_m.pixels[i] = 0.0F;
+  constexpr std::int64_t kAgainAfter_frames = 10;  // a search takes some 10 ms
   for (WaitingDrop& waiting : std::exchange(waiting_, {})) {
     if (frames_ < waiting.try_at_frame) {
       waiting_.push_back(std::move(waiting));
@@ -234,8 +239,9 @@ void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_wor
     ScriptEvent& event = waiting.drop;
     const VirtualObject& object = object_named(event.name);
     const Eigen::Matrix3d R_world_object = event.R_world_object.value_or(object.body.T_world_object.linear());
-    const std::optional<Eigen::Vector3d> support_world = find_support(
-        room_depth_m, frame.depth_camera, T_world_camera, footprint_radius_m(object, R_world_object));
+    const std::optional<Eigen::Vector3d> support_world =
+        find_support(seen_room_depth_m(scene_), frame.depth_camera, T_world_camera,
+                     footprint_radius_m(object, R_world_object));
     if (!support_world) {  // and those that wait do not all search in the same frame
       waiting.try_at_frame = frames_ + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());
       waiting_.push_back(std::move(waiting));

@@ -27,10 +27,11 @@ fs::path unfinished_beside(const fs::path& map) {
   return map.parent_path() / (map.filename().string() + ".unfinished");
 }
 
+bool is_unfinished(const fs::path& folder) { return fs::exists(folder / "work.json"); }
+
 void require_no_live_scan(const fs::path& folder) {
   if (!fs::exists(folder / kSpool)) return;
-  if (fs::exists(folder / "work.json"))
-    Checkpoints(folder, {}, 0.0).ensure_folder();  // nobody is at work on it
+  if (is_unfinished(folder)) Checkpoints(folder, {}, 0.0).ensure_folder();  // nobody is at work on it
   throw Error(folder.string() +
               ": holds a live scan that was cut off; go on with it by --resume, or delete "
               "the folder to begin anew");
@@ -56,8 +57,6 @@ void give_up_unfinished(const fs::path& folder) {
                folder.c_str());
   unfinished.remove();
 }
-
-bool is_unfinished(const fs::path& folder) { return fs::exists(folder / "work.json"); }
 
 bool is_to_extend(bool resume, const fs::path& folder, const fs::path& map) {
   if (!resume) return false;

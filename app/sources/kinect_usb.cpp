@@ -89,9 +89,9 @@ std::vector<KinectOnUsb> kinects_on_usb(const fs::path& sys_devices, const fs::p
     kinect.kernel_driver = kernel_driver_of(device);
     kinects.push_back(kinect);
   }
-  if (kinects.empty() && companions) kinects.emplace_back().has_camera = false;
   for (KinectOnUsb& kinect : kinects)
     if (kinects.size() == 1) kinect.has_power = companions;  // of several it is not known whose they are
+  if (kinects.empty() && companions) kinects.emplace_back().has_camera = false;
   std::sort(kinects.begin(), kinects.end(),
             [](const KinectOnUsb& a, const KinectOnUsb& b) { return a.node < b.node; });
   return kinects;

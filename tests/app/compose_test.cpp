@@ -45,6 +45,14 @@ Mesh plate(float half_m, float z_m) {
   return mesh;
 }
 
+/// A camera that looks straight down from 1 m above a table at z = 0.
+Eigen::Isometry3d over_the_table() {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+  T_world_camera.translation().z() = 1.0;
+  return T_world_camera;
+}
+
 ContactShadow shadow_of(const Mesh& mesh,
                         const Eigen::Matrix3d& R_world_object = Eigen::Matrix3d::Identity()) {
   ContactShadow shadow;
@@ -220,9 +228,7 @@ TEST(ContactShadow, NothingCastsNone) {
 }
 
 TEST(Compose, AShadowStaysUnderAnObjectThatTurnedALittleWhereverItsOriginIs) {
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  T_world_camera.translation().z() = 1.0;
+  const Eigen::Isometry3d T_world_camera = over_the_table();
   const Eigen::Vector3d middle_world(0.1, 0.05, 0.03);
   const auto picture_of = [&](const Eigen::Vector3f& away_m) {
     Mesh mesh = plate(0.1F, 0.0F);
@@ -246,10 +252,7 @@ TEST(Compose, AShadowStaysUnderAnObjectThatTurnedALittleWhereverItsOriginIs) {
 }
 
 TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
-  // The camera looks straight down from 1 m above a table at z = 0.
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
-  T_world_camera.translation().z() = 1.0;
+  const Eigen::Isometry3d T_world_camera = over_the_table();
   const ContactShadow shadow = shadow_of(plate(0.1F, 0.0F));
   ShadowCaster caster{&shadow, Eigen::Isometry3d::Identity()};
   caster.T_world_object.translation() = Eigen::Vector3d(0.2, 0.1, 0.03);
