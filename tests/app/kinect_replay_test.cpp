@@ -166,7 +166,7 @@ TEST_F(KinectReplay, AScanWhoseDeviceIsGoneForGoodBecomesAMap) {
           .status == 0)
     GTEST_SKIP() << "a Kinect is plugged in";
   pause_before(5, 60.0);
-  const Outcome killed = shell(fakenect(recording_) + "timeout -s KILL 12 " + scan);
+  const Outcome killed = shell(fakenect(recording_) + "timeout -s KILL 25 " + scan);
   EXPECT_EQ(killed.status, 128 + SIGKILL) << killed.rest;
   ASSERT_TRUE(fs::exists(unfinished / "spool" / "list.bin")) << killed.rest;
   EXPECT_EQ(shell(scan).status, 1) << "without --resume what was scanned would be lost";
@@ -188,14 +188,14 @@ TEST_F(KinectReplay, OneThatPausesIsWaitedForAndLosesNothing) {
 }
 
 TEST_F(KinectReplay, AReaderThatLeavesInALongPauseDoesNotWaitForItsEnd) {
-  pause_before(4, 300.0);  // five times as long as the test may take
+  pause_before(4, 3000.0);  // ten times as long as the shell may take
   const Outcome outcome = replay(recording_, "3");
   EXPECT_EQ(outcome.status, 0) << outcome.rest;
   EXPECT_EQ(outcome.frames.size(), 3U);
 }
 
 TEST_F(KinectReplay, CtrlCEndsARecordingInALongPauseAndKeepsWhatWasWritten) {
-  pause_before(4, 300.0);
+  pause_before(4, 3000.0);
   const fs::path to = copy_.path() / "again", script = copy_.path() / "script";
   test::write_text(script, "'" ROOMRADAR_PROGRAM "' record kinect:0 '" + to.string() +
                                "' --format tum & pid=$!\n"

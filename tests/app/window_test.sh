@@ -17,7 +17,7 @@ trap 'kill $(jobs -p) 2> /dev/null || true; wait; rm -rf "$work"' EXIT
 fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" "$work/session/events.txt" >&2 || true; exit 1; }
 # until WORDS... : tries a command for as long as a slow machine may need.
 until_true() {
-  for _ in $(seq 400); do
+  for _ in $(seq 1800); do
     "$@" && return
     kill -0 "$player" 2> /dev/null || fail "the window is gone, while waiting for: $*"
     sleep 0.1
@@ -33,7 +33,7 @@ shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$
 "$program" prescan 'sim:table?frames=40&width=160' --map "$work/map" --resolution 0.03 > "$work/log" 2>&1 || fail prescan
 
 Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp -noreset 3> "$work/display" > /dev/null 2>&1 &
-for _ in $(seq 100); do [[ -s $work/display ]] && break; sleep 0.1; done
+for _ in $(seq 600); do [[ -s $work/display ]] && break; sleep 0.1; done
 DISPLAY=:$(cat "$work/display")
 export DISPLAY
 
