@@ -2,13 +2,13 @@
 #include "app/presets.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "app/quality_json.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
@@ -85,20 +85,6 @@ FrontStep front_step_of(const Json& json, const std::string& where) {
           figures_of(member(json, "figures"), where + ": figures")};
 }
 
-std::string text_of(const fs::path& path) {
-  std::error_code fault;
-  if (!fs::is_regular_file(path, fault))
-    throw Error(path.string() + ": no such file; a file of presets is wanted");
-  const std::uintmax_t bytes = fs::file_size(path, fault);
-  if (fault || bytes > kMaxBytes)
-    throw Error(path.string() + ": is longer than 1 MiB; that is no file of presets");
-  std::ifstream file(path, std::ios::binary);
-  std::string text(static_cast<std::size_t>(bytes), '\0');
-  if (!file || !file.read(text.data(), static_cast<std::streamsize>(bytes)))
-    throw Error(path.string() + ": cannot be read");
-  return text;
-}
-
 }  // namespace
 
 Presets presets_of(std::string_view text, const std::string& where) {
@@ -128,7 +114,9 @@ Presets presets_of(std::string_view text, const std::string& where) {
   return presets;
 }
 
-Presets read_presets(const fs::path& path) { return presets_of(text_of(path), path.string()); }
+Presets read_presets(const fs::path& path) {
+  return presets_of(read_bytes(path, "a file of presets", kMaxBytes), path.string());
+}
 
 void write_presets(const Presets& presets, const fs::path& path) {
   Json json = {{"format", kFormat}, {"format_version", kFormatVersion}, {"made_by", presets.made_by}};

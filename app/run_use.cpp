@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/virtual_object.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 
 namespace roomradar {
 namespace {
@@ -121,7 +121,7 @@ void FrameUseFile::open() {
   file_.open(path_, std::ios::trunc);
   file_ << "frame,room_triangles,views_drawn,room_drawn,room_asked_by_radar,valid_px,meshed_px,"
            "mesh_triangles,flat_cells,cut_cells,full_cells,why\n";
-  if (!file_.flush()) throw Error(path_.string() + ": cannot be written; does its folder exist?");
+  require_written(file_.flush(), path_);
 }
 
 void FrameUseFile::write(std::int64_t frame, const FrameUse& use,
@@ -137,7 +137,7 @@ void FrameUseFile::write(std::int64_t frame, const FrameUse& use,
 void FrameUseFile::close() {
   if (!file_.is_open()) return;
   file_.close();
-  if (!file_) throw Error(path_.string() + ": cannot be written whole; is the disk full?");
+  require_written(file_, path_);
 }
 
 }  // namespace roomradar

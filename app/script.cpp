@@ -6,12 +6,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <numbers>
-#include <system_error>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/number_text.hpp"
 
 namespace roomradar {
@@ -301,16 +300,7 @@ Script parse_script(std::string_view text, std::string_view where) {
 }
 
 Script read_script(const std::filesystem::path& path, LastLine last_line) {
-  std::error_code fault;
-  if (!std::filesystem::is_regular_file(path, fault))
-    throw Error(path.string() + ": no such file; --script wants a text file with one event a line");
-  const std::uintmax_t bytes = std::filesystem::file_size(path, fault);
-  if (fault || bytes > kMaxBytes)
-    throw Error(path.string() + ": is longer than 64 MiB; that is no events file");
-  std::ifstream file(path, std::ios::binary);
-  std::string text(static_cast<std::size_t>(bytes), '\0');
-  if (!file || !file.read(text.data(), static_cast<std::streamsize>(bytes)))
-    throw Error(path.string() + ": cannot be read");
+  std::string text = read_bytes(path, "a text file with one event a line", kMaxBytes);
   if (last_line == LastLine::kMayBeCut) text.resize(text.rfind('\n') + 1);  // npos + 1 is 0
 
   Script script = parse_script(text, path.string());

@@ -14,6 +14,7 @@
 #include "app/sources/camera_rig_json.hpp"
 #include "app/sources/spooled_source.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/number_text.hpp"
 
 namespace roomradar {
@@ -38,12 +39,8 @@ std::string checksum_of(const MapInfo& map) {
 
 Json read_settings(const fs::path& folder) {
   const fs::path path = folder / kSettings;
-  std::error_code fault;
-  const std::uintmax_t bytes = fs::file_size(path, fault);
-  if (fault) throw Error(path.string() + ": there is no recorded session: " + fault.message());
-  if (bytes > kMaxSettingsBytes) throw Error(path.string() + ": is longer than 1 MiB; that is no session's");
-  std::ifstream file(path);
-  Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
+  Json json = Json::parse(read_bytes(path, "the settings of a recorded session", kMaxSettingsBytes), nullptr,
+                          /*allow_exceptions=*/false);
   if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
     throw Error(path.string() + ": is not the settings of a recorded session, or is damaged");
   if (!json.contains("format_version") || !json["format_version"].is_number_integer())
@@ -71,10 +68,6 @@ Value choice_of(const Json& json, const char* key, std::initializer_list<Value> 
   for (const Value value : values)
     if (to_string(value) == word) return value;
   throw Error((folder / kSettings).string() + ": " + key + " \"" + word + "\" is not known");
-}
-
-void require_written(const std::ofstream& file, const fs::path& path) {
-  if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
 }
 
 }  // namespace
@@ -106,9 +99,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
                {"quality", to_json(command.quality)},
                {"at_end", to_string(command.at_end)}};
   if (command.adopt_after_s) json["adopt_s"] = *command.adopt_after_s;
-  std::ofstream settings(folder_ / kSettings);
-  settings << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n' << std::flush;
-  require_written(settings, folder_ / kSettings);
+  write_bytes(folder_ / kSettings, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   events_.open(folder_ / kEvents);
   events_ << "# events of " << command.source << ", as they were applied\n" << std::flush;
   require_written(events_, folder_ / kEvents);

@@ -2,9 +2,9 @@
 #include "mapping/binary_file.hpp"
 
 #include <cmath>
-#include <fstream>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 
 namespace roomradar {
 namespace {
@@ -15,18 +15,6 @@ std::uint64_t fnv1a(std::string_view bytes) {
   std::uint64_t hash = 14695981039346656037ULL;
   for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
   return hash;
-}
-
-std::string read_whole(const std::filesystem::path& path) {
-  std::error_code fault;
-  const auto size = std::filesystem::file_size(path, fault);
-  if (fault) throw Error(path.string() + ": cannot be read: " + fault.message());
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(size, '\0');
-  if (!file || !file.read(bytes.data(), static_cast<std::streamsize>(size))) {
-    throw Error(path.string() + ": cannot be read");
-  }
-  return bytes;
 }
 
 }  // namespace
@@ -47,14 +35,11 @@ void write_binary(const std::filesystem::path& path, std::string_view magic, std
   put(out, version);
   out.append(body);
   put(out, fnv1a(out));
-  std::ofstream file(path, std::ios::binary | std::ios::trunc);
-  file.write(out.data(), static_cast<std::streamsize>(out.size()));
-  file.close();
-  if (!file) throw Error(path.string() + ": cannot be written; is the disk full or the folder read-only?");
+  write_bytes(path, out);
 }
 
 std::string read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version) {
-  std::string bytes = read_whole(path);
+  std::string bytes = read_bytes(path, "a file that begins with " + std::string(magic));
   BinaryReader in(bytes, path);
   if (!bytes.starts_with(magic)) in.fail("not a file of this kind, which begins with " + std::string(magic));
   std::string beginning(magic.size(), '\0');

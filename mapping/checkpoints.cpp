@@ -13,7 +13,6 @@
 #include <charconv>
 #include <csignal>
 #include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <thread>
@@ -22,6 +21,7 @@
 #include "mapping/folder_swap.hpp"
 #include "mapping/sha256.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/version.hpp"
 
 namespace roomradar {
@@ -43,19 +43,11 @@ constexpr std::uintmax_t kMaxJsonBytes = 16U << 20U;
   throw Error(path.string() + ": " + fault);
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) fail(path, "cannot be written; is the disk full?");
-}
-
 Json read_json(const fs::path& path) {
   std::error_code fault;
-  if (!fs::is_regular_file(fs::symlink_status(path, fault)) || fs::file_size(path, fault) > kMaxJsonBytes)
-    fail(path, "is missing, or is no description of a checkpoint");
-  std::ifstream file(path, std::ios::binary);
-  Json json = Json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (fs::is_symlink(path, fault)) fail(path, "is a link; a checkpoint has no such");
+  Json json = Json::parse(read_bytes(path, "a checkpoint's description", kMaxJsonBytes), nullptr,
+                          /*allow_exceptions=*/false);
   if (json.is_discarded() || !json.is_object())
     fail(path,
          "is damaged" + std::string(path.filename() == kWork ? "; delete the folder to begin anew" : ""));
@@ -188,7 +180,7 @@ void Checkpoints::ensure_folder() {
   if (fault) fail(folder_, "the folder cannot be made: " + fault.message());
   take_lock();
   if (fs::exists(folder_ / kWork)) return;
-  write_text(folder_ / kWorkWriting, Json{{"work", identity_}}.dump(2) + "\n");
+  write_bytes(folder_ / kWorkWriting, Json{{"work", identity_}}.dump(2) + "\n");
   fs::rename(folder_ / kWorkWriting, folder_ / kWork);
   sync_to_disk(folder_ / kWork);
 }
@@ -284,7 +276,7 @@ void Checkpoints::write_numbered(std::int64_t number, const std::string& stage,
   Json manifest{{"stage", stage}, {"files", Json::object()}};
   for (const fs::path& file : files_below(into))
     manifest["files"][file.generic_string()] = description_of(into, file, previous, before);
-  write_text(into / kManifest, manifest.dump(1) + "\n");
+  write_bytes(into / kManifest, manifest.dump(1) + "\n");
   sync_new_files(folder_, on_disk_until_);
   fs::remove_all(numbered(number));  // damaged, or of a count that began anew
   fs::rename(into, numbered(number));

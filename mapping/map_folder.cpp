@@ -18,6 +18,7 @@
 #include "mapping/mesh_file.hpp"
 #include "mapping/sha256.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/version.hpp"
 #include "mapping/types/whole_file.hpp"
 
@@ -66,13 +67,6 @@ void require_replaceable(const fs::path& folder) {
          std::string("exists and has no ") + kInfo + ", so it is no map; choose another name for the map");
 }
 
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.flush();
-  if (!file) fail(path, "cannot be written; is the disk full?");
-}
-
 // Size and checksum; nothing if they are as map.json says. A file that no memory can hold is not read
 // through.
 std::optional<std::string> fault_of(const fs::path& path, const MapFile& expected) {
@@ -108,11 +102,8 @@ void require_parts(const MapInfo& info, const fs::path& where) {
 }
 
 std::vector<std::uint8_t> read_picture(const fs::path& path) {
-  if (fs::file_size(path) > kMaxPictureBytes) fail(path, "is larger than 64 MB, so it is no map's picture");
-  std::ifstream file(path, std::ios::binary);
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) fail(path, "cannot be read; may you read it?");
-  return bytes;
+  const std::string bytes = read_bytes(path, "a map's picture", kMaxPictureBytes);
+  return {bytes.begin(), bytes.end()};
 }
 
 StaticMap read_octree(const fs::path& folder, const MapInfo& info) {
@@ -207,7 +198,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   write_places(map.places, partial.path() / kPlaces);
   write_trajectory(partial.path() / kTrajectory, map.trajectory);
   if (!map.coverage_png.empty())
-    write_text(partial.path() / kCoverage, {map.coverage_png.begin(), map.coverage_png.end()});
+    write_bytes(partial.path() / kCoverage, std::string(map.coverage_png.begin(), map.coverage_png.end()));
 
   MapInfo info = map.info;
   info.format_version = kMapFormatVersion;
@@ -223,7 +214,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   if (!map.coverage_png.empty()) parts.emplace_back(kCoverage);
   for (const std::string& part : parts)
     info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
-  write_text(partial.path() / kInfo, to_json(info));
+  write_bytes(partial.path() / kInfo, to_json(info));
 
   partial.put_in_place();
 }
@@ -242,12 +233,7 @@ MapInfo read_info(const fs::path& folder) {
   if (!fs::exists(status)) fail(path, "is missing, so the folder is no map");
   if (!fs::is_regular_file(status))
     fail(path, "is no file of its own (a link, or a folder); a map has no such");
-  if (fs::file_size(path, fault) > kMaxInfoBytes)
-    fail(path, "is larger than 1 MB, so it is no description of a map");
-  std::ifstream file(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) fail(path, "cannot be read; may you read it?");
-  MapInfo info = parse_map_info(text, path.string());
+  MapInfo info = parse_map_info(read_bytes(path, "a map's description", kMaxInfoBytes), path.string());
   require_parts(info, path);
   return info;
 }
@@ -329,7 +315,7 @@ void export_map(const fs::path& folder, const fs::path& path) {
     }
     std::ifstream in(folder / part, std::ios::binary);
     WholeFile out(path);
-    if (!(out.stream() << in.rdbuf())) fail(path, "cannot be written; is the disk full?");
+    require_written(out.stream() << in.rdbuf(), path);
     out.put_in_place();
     return 0;
   });

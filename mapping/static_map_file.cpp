@@ -3,18 +3,17 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 #include "mapping/room_octree.hpp"
 #include "mapping/static_map.hpp"
 #include "mapping/static_map_octree.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
@@ -151,8 +150,7 @@ class PlainWriter {
 // Numbers one after the other from bytes that may end anywhere.
 class ByteReader {
  public:
-  ByteReader(const std::filesystem::path& path, std::vector<char> bytes)
-      : path_(path), bytes_(std::move(bytes)) {}
+  ByteReader(const std::filesystem::path& path, std::string bytes) : path_(path), bytes_(std::move(bytes)) {}
 
   template <typename Value>
   Value get() {
@@ -175,21 +173,9 @@ class ByteReader {
 
  private:
   const std::filesystem::path& path_;
-  std::vector<char> bytes_;
+  std::string bytes_;
   std::size_t at_ = 0;
 };
-
-std::vector<char> read_bytes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file || std::filesystem::is_directory(path)) fail(path, "cannot be opened");
-  const std::streamoff size = file.tellg();
-  if (size < 0) fail(path, "cannot be read");
-  std::vector<char> bytes(static_cast<std::size_t>(size));
-  file.seekg(0);
-  file.read(bytes.data(), size);
-  if (!file) fail(path, "cannot be read");
-  return bytes;
-}
 
 struct Header {
   std::uint64_t nodes = 0;
@@ -338,7 +324,7 @@ void StaticMap::write_bt(const std::filesystem::path& path) const {
 }
 
 StaticMap StaticMap::read_ot(const std::filesystem::path& path, const FusionConfig& config) {
-  ByteReader bytes(path, read_bytes(path));
+  ByteReader bytes(path, read_bytes(path, "an octree file"));
   const Header header = read_header(path, bytes);
   auto octree = std::make_unique<Octree>(header.resolution_m, config);
   if (header.nodes > 0) {

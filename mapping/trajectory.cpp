@@ -9,6 +9,7 @@
 #include <string>
 
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/number_text.hpp"
 
 namespace roomradar {
@@ -40,18 +41,16 @@ MatchedPoints matched_points(const std::vector<TimedPose>& estimate, const std::
 }  // namespace
 
 void write_trajectory(const std::filesystem::path& path, const std::vector<TimedPose>& trajectory) {
-  std::ofstream file(path);
-  file << "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n";
+  std::string text = "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n";
   for (const TimedPose& pose : trajectory) {
     const Eigen::Vector3d t = pose.T_world_camera.translation();
     const Eigen::Quaterniond q(pose.T_world_camera.linear());
-    file << fixed_text(pose.stamp_s, 9);
+    text += fixed_text(pose.stamp_s, 9);
     for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
-      file << ' ' << general_text(value, 12);
-    file << '\n';
+      text += ' ' + general_text(value, 12);
+    text += '\n';
   }
-  file.flush();
-  if (!file) throw Error(path.string() + ": the trajectory cannot be written; is the disk full?");
+  write_bytes(path, text);
 }
 
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& path) {

@@ -23,7 +23,7 @@ function(roomradar_use_precompiled directory)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target ${targets})
     get_target_property(type ${target} TYPE)
-    if(type MATCHES "STATIC|EXECUTABLE")
+    if(type MATCHES "STATIC|EXECUTABLE")  # a plugin is position independent, which these headers are not
       get_target_property(linked ${target} LINK_LIBRARIES)
       if("GTest::gtest" IN_LIST linked)
         target_precompile_headers(${target} REUSE_FROM precompiled_tests)

@@ -1,7 +1,6 @@
 // simulate.cpp: frames to the recording writer, truth to files of its own.
 #include "app/sim/simulate.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -13,17 +12,11 @@
 #include "mapping/mesh_file.hpp"
 #include "mapping/trajectory.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/number_text.hpp"
 
 namespace roomradar {
 namespace {
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
-}
 
 std::string description(const SimOptions& options) {
   nlohmann::ordered_json json;
@@ -61,7 +54,7 @@ void simulate(const std::filesystem::path& folder, const SimOptions& options, Re
   for (const char* const masks : {"moved", "mover", "revealed"})
     if (moves && !fault) std::filesystem::create_directories(truth / masks, fault);
   if (fault) throw Error(truth.string() + ": cannot be made: " + fault.message());
-  write_text(truth / "sim.json", description(options));
+  write_bytes(truth / "sim.json", description(options));
   write_mesh(room_mesh(source.room()), truth / "room.ply");
 
   std::vector<TimedPose> trajectory;

@@ -3,17 +3,16 @@
 
 #include <Eigen/SVD>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "app/sources/camera_rig_json.hpp"
 #include "app/sources/parse_numbers.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/whole_file.hpp"
 
 namespace roomradar {
@@ -27,17 +26,7 @@ constexpr std::uintmax_t kLargestFile_bytes = 1 << 20;
 }  // namespace
 
 std::string read_json_text(const std::filesystem::path& path) {
-  std::error_code fault;
-  const std::uintmax_t size = std::filesystem::file_size(path, fault);
-  if (fault) throw Error(path.string() + ": cannot be read: " + fault.message());
-  if (size > kLargestFile_bytes)
-    throw Error(path.string() + ": has " + std::to_string(size) +
-                " bytes, too many for a file about cameras");
-  std::ifstream file(path);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw Error(path.string() + ": cannot be read");
-  return text.str();
+  return read_bytes(path, "a file about cameras", kLargestFile_bytes);
 }
 
 const Json& json_field(const Json& object, const char* name, const std::string& where) {

@@ -9,6 +9,7 @@
 #include "app/sources/recording_index.hpp"
 #include "app/sources/temporary_folder.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 
 namespace roomradar {
 namespace {
@@ -39,18 +40,17 @@ std::string fault_of(const fs::path& file, std::uintmax_t pixel_bytes) {
 fs::path folder_of_links(const fs::path& folder, const std::vector<std::string>& files) {
   const fs::path links = make_temporary_folder();
   try {
-    std::ofstream index(links / "INDEX.txt");
+    std::string index;
     for (const std::string& file : files) {
       std::error_code failed;
       fs::create_symlink(fs::absolute(folder / file), links / file, failed);
       if (failed && failed != std::errc::file_exists)  // a list may name a file twice
         throw Error((links / file).string() + ": cannot be made; is the disk full?");
-      index << file << '\n';
+      index += file + '\n';
     }
     if (fs::exists(folder / "camera.json"))  // says, too, whether its frames were calibrated already
       fs::create_symlink(fs::absolute(folder / "camera.json"), links / "camera.json");
-    index.close();
-    if (!index) throw Error(links.string() + ": cannot be written; is the disk full?");
+    write_bytes(links / "INDEX.txt", index);
     return links;
   } catch (...) {
     std::error_code ignored;

@@ -4,62 +4,45 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <span>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "app/sources/image_header.hpp"
 #include "app/sources/kinect_units.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 
 namespace roomradar {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
 constexpr std::uintmax_t kLargestFile_bytes = std::uintmax_t{1} << 30;
 
-Bytes read_bytes(const std::filesystem::path& path) {
-  std::error_code fault;
-  const std::uintmax_t size = std::filesystem::file_size(path, fault);
-  if (fault) {
-    const bool is_missing =
-        fault == std::errc::no_such_file_or_directory || fault == std::errc::not_a_directory;
-    throw Error(path.string() + ": " + (is_missing ? "is missing" : "cannot be read: " + fault.message()));
-  }
-  if (size > kLargestFile_bytes)
-    throw Error(path.string() + ": has " + std::to_string(size) + " bytes, too many for an image");
-  Bytes bytes(static_cast<std::size_t>(size));
-  std::ifstream file(path, std::ios::binary);
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
-    throw Error(path.string() + ": cannot be read to its end");
-  return bytes;
+std::string read_image_bytes(const std::filesystem::path& path) {
+  return read_bytes(path, "an image", kLargestFile_bytes);
 }
 
-void write_bytes(const void* data, std::size_t size, const std::string& header,
-                 const std::filesystem::path& path) {
-  std::ofstream file(path, std::ios::binary);
-  file << header;
-  file.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
-  file.close();
-  if (!file) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
+std::span<const std::uint8_t> span_of(const std::string& bytes) {
+  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
 }
 
 void write_png(const cv::Mat& image, const std::filesystem::path& path) {
-  Bytes bytes;
+  std::vector<std::uint8_t> bytes;
   // OpenCV's own choice of compression is its fastest: naming any level turns on slower filters (14, not 7
   // ms).
   if (!cv::imencode(".png", image, bytes)) throw Error(path.string() + ": cannot be encoded as PNG");
-  write_bytes(bytes.data(), bytes.size(), "", path);
+  write_bytes(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 /// Decodes to `type` (an OpenCV type), the size that the header says.
-cv::Mat decode(const Bytes& bytes, int flags, int type, const ImageHeader& header, const std::string& name) {
+cv::Mat decode(const std::string& bytes, int flags, int type, const ImageHeader& header,
+               const std::string& name) {
   cv::Mat image;
   try {
-    image = cv::imdecode(bytes, flags);
+    image = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<char*>(bytes.data())),
+                         flags);
   } catch (const cv::Exception& fault) {
     throw Error(name + ": cannot be decoded: " + fault.err);
   }
@@ -71,8 +54,8 @@ cv::Mat decode(const Bytes& bytes, int flags, int type, const ImageHeader& heade
 
 cv::Mat decode_16_bit_png(const std::filesystem::path& path) {
   const std::string name = path.string();
-  const Bytes bytes = read_bytes(path);
-  const ImageHeader header = read_image_header(bytes, name);
+  const std::string bytes = read_image_bytes(path);
+  const ImageHeader header = read_image_header(span_of(bytes), name);
   if (header.kind != ImageKind::kPng || header.bits != 16 || header.channels != 1)
     throw Error(name + ": is a " + to_string(header) + "; depth must be a 16 bit grey PNG");
   return decode(bytes, cv::IMREAD_UNCHANGED, CV_16UC1, header, name);
@@ -80,12 +63,12 @@ cv::Mat decode_16_bit_png(const std::filesystem::path& path) {
 
 void read_kinect_raw(const std::filesystem::path& path, DepthImage& depth_m) {
   const std::string name = path.string();
-  const Bytes bytes = read_bytes(path);
-  const ImageHeader header = read_image_header(bytes, name);
+  const std::string bytes = read_image_bytes(path);
+  const ImageHeader header = read_image_header(span_of(bytes), name);
   if (header.kind != ImageKind::kPgm || header.bits != 16)
     throw Error(name + ": is a " + to_string(header) + "; raw Kinect depth must be a 16 bit PGM");
   depth_m.resize(header.width_px, header.height_px);
-  const std::uint8_t* raw = bytes.data() + header.pixels_at;
+  const std::uint8_t* raw = span_of(bytes).data() + header.pixels_at;
   for (float& pixel : depth_m.pixels) {
     pixel = raw_depth_m(static_cast<std::uint16_t>(raw[0] | raw[1] << 8));
     raw += 2;
@@ -116,8 +99,8 @@ void read_depth_file(const std::filesystem::path& path, DepthEncoding encoding, 
 
 void read_colour_file(const std::filesystem::path& path, ColourImage& colour) {
   const std::string name = path.string();
-  const Bytes bytes = read_bytes(path);
-  const ImageHeader header = read_image_header(bytes, name);
+  const std::string bytes = read_image_bytes(path);
+  const ImageHeader header = read_image_header(span_of(bytes), name);
   if (header.kind == ImageKind::kPpm && header.bits == 8) {
     colour.resize(header.width_px, header.height_px);
     std::memcpy(colour.pixels.data(), bytes.data() + header.pixels_at, colour.pixels.size() * sizeof(Rgb));
@@ -147,15 +130,17 @@ void write_depth_file(const DepthImage& depth_m, DepthEncoding encoding, const s
   }
   if (!is_raw) return write_png(image, path);
   static_assert(std::endian::native == std::endian::little, "raw Kinect depth is little-endian on disk");
-  write_bytes(image.data, image.total() * image.elemSize(),
-              "P5 " + std::to_string(image.cols) + " " + std::to_string(image.rows) + " 65535\n", path);
+  std::string bytes = "P5 " + std::to_string(image.cols) + " " + std::to_string(image.rows) + " 65535\n";
+  bytes.append(reinterpret_cast<const char*>(image.data), image.total() * image.elemSize());
+  write_bytes(path, bytes);
 }
 
 void write_colour_file(const ColourImage& colour, const std::filesystem::path& path) {
-  if (path.extension() == ".ppm")
-    return write_bytes(colour.pixels.data(), colour.pixels.size() * sizeof(Rgb),
-                       "P6 " + std::to_string(colour.width) + " " + std::to_string(colour.height) + " 255\n",
-                       path);
+  if (path.extension() == ".ppm") {
+    std::string bytes = "P6 " + std::to_string(colour.width) + " " + std::to_string(colour.height) + " 255\n";
+    bytes.append(reinterpret_cast<const char*>(colour.pixels.data()), colour.pixels.size() * sizeof(Rgb));
+    return write_bytes(path, bytes);
+  }
   const cv::Mat red_first(colour.height, colour.width, CV_8UC3, const_cast<Rgb*>(colour.pixels.data()));
   cv::Mat blue_first;
   cv::cvtColor(red_first, blue_first, cv::COLOR_RGB2BGR);

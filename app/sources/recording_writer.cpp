@@ -13,6 +13,7 @@
 #include "app/sources/image_file.hpp"
 #include "app/sources/kinect_units.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/number_text.hpp"
 
 namespace roomradar {
@@ -44,7 +45,7 @@ void add_line(std::ofstream& list, const fs::path& path, const std::string& line
     list << heading;
   }
   list << line << '\n' << std::flush;  // whole lines on disk, whatever happens to the program
-  if (!list) throw Error(path.string() + ": cannot be written; is the disk full, or the folder read-only?");
+  require_written(list, path);
 }
 
 bool same_cameras(const CameraRig& a, const CameraRig& b) {
@@ -151,16 +152,13 @@ void RecordingWriter::write_seven_scenes(const Frame& frame) {
     std::ofstream(stem.string() + ".color.none");  // tells it from an image that was lost
   else
     write_colour_file(frame.colour, stem.string() + ".color.png");
-  const fs::path pose_file = stem.string() + ".pose.txt";
-  std::ofstream pose(pose_file);
+  std::string pose;
   const Eigen::Matrix4d matrix =
       frame.T_world_camera ? frame.T_world_camera->matrix() : Eigen::Matrix4d::Constant(std::nan(""));
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
-      pose << general_text(matrix(row, column), 12) << (column < 3 ? '\t' : '\n');
-  pose.close();
-  if (!pose)
-    throw Error(pose_file.string() + ": cannot be written; is the disk full, or the folder read-only?");
+      pose += general_text(matrix(row, column), 12) + (column < 3 ? '\t' : '\n');
+  write_bytes(stem.string() + ".pose.txt", pose);
 }
 
 void RecordingWriter::write_fakenect(const Frame& frame) {
@@ -188,10 +186,7 @@ void RecordingWriter::write_fakenect(const Frame& frame) {
                                                     static_cast<std::int16_t>(std::lround(counts.y())),
                                                     static_cast<std::int16_t>(std::lround(counts.z()))};
     const fs::path file = folder_ / ("a-" + stamps + ".dump");
-    std::ofstream dump(file, std::ios::binary);
-    dump.write(reinterpret_cast<const char*>(tilt_state.data()), sizeof tilt_state);
-    dump.close();
-    if (!dump) throw Error(file.string() + ": cannot be written; is the disk full, or the folder read-only?");
+    write_bytes(file, {reinterpret_cast<const char*>(tilt_state.data()), sizeof tilt_state});
     add_line(depth_list_, index_file, file.filename().string());
   }
   const auto add_depth = [&] {
@@ -214,8 +209,7 @@ void RecordingWriter::close() {
   for (std::ofstream* list : {&depth_list_, &colour_list_, &pose_list_, &gravity_list_}) {
     if (!list->is_open()) continue;
     list->close();
-    if (!*list)
-      throw Error(folder_.string() + ": the lists cannot be written to their end; is the disk full?");
+    require_written(*list, folder_);
   }
 }
 

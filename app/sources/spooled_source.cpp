@@ -13,6 +13,7 @@
 #include "app/sources/temporary_folder.hpp"
 #include "mapping/types/byte_archive.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
@@ -65,9 +66,7 @@ void SpooledSource::transfer_entry(Archive& archive, Entry& entry) {
 
 SpooledSource::Left SpooledSource::read_list(const fs::path& folder) {
   const fs::path path = folder / kList;
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) throw Error(path.string() + ": cannot be read, so the live scan that was cut off is lost");
+  const std::string bytes = read_bytes(path, "the list of a live scan's frames");
   ByteReader list(bytes, path.string());
   std::string magic(kMagic.size(), '\0');
   list.raw(magic.data(), magic.size());
@@ -121,7 +120,7 @@ std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> 
     spooled->list_.open(path, std::ios::binary);
     spooled->list_ << head.bytes() << std::flush;
   }
-  if (!spooled->list_) throw Error(path.string() + ": cannot be written; is the disk full?");
+  require_written(spooled->list_, path);
   return spooled;
 }
 
@@ -159,7 +158,7 @@ void SpooledSource::append(Entry* entry) {
   const auto size = static_cast<std::uint32_t>(bytes.bytes().size());
   list_.write(reinterpret_cast<const char*>(&size), sizeof size);
   list_ << bytes.bytes() << std::flush;
-  if (!list_) throw Error((folder_ / kList).string() + ": cannot be written; is the disk full?");
+  require_written(list_, folder_ / kList);
 }
 
 void SpooledSource::stop_capture() {

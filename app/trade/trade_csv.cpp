@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 
 namespace roomradar {
 namespace {
@@ -46,7 +46,7 @@ void TradeCsv::open() {
   for (const std::string& name : knobs_) file_ << ',' << csv_field(name);
   for (const std::string& name : figures_) file_ << ',' << csv_field(name);
   file_ << std::endl;
-  if (!file_) throw Error(path_.string() + ": cannot be written; does its folder exist, is the disk full?");
+  require_written(file_, path_);
 }
 
 void TradeCsv::write_line(const std::vector<std::string>& start, const TradeWork& work,
@@ -66,7 +66,7 @@ void TradeCsv::write_line(const std::vector<std::string>& start, const TradeWork
   }
   line.back() = '\n';
   file_ << line << std::flush;
-  if (!file_) throw Error(path_.string() + ": cannot be written whole; is the disk full?");
+  require_written(file_, path_);
 }
 
 void TradeCsv::write(const TradeWork& work, const std::vector<Setting>& settings, const SweepRow& row) {

@@ -88,10 +88,13 @@ TEST(Presets, UnknownNameListsThoseThatThereAre) {
 
 TEST(Presets, HugeOrMissingFilesAreRefused) {
   const test::TemporaryFolder folder;
-  EXPECT_NE(test::error_of([&] { read_presets(folder.path() / "none"); }).find("no such file"),
+  EXPECT_NE(test::error_of([&] {
+              read_presets(folder.path() / "none");
+            }).find("is missing; wanted a file of presets"),
             std::string::npos);
   std::ofstream(folder.path() / "huge") << std::string((1U << 20U) + 1U, ' ');
-  EXPECT_NE(test::error_of([&] { read_presets(folder.path() / "huge"); }).find("1 MiB"), std::string::npos);
+  EXPECT_NE(test::error_of([&] { read_presets(folder.path() / "huge"); }).find("too many"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -324,7 +324,7 @@ TEST_F(MapFolder, AbsurdNumbersAreRefused) {
   with("\"settings\": {", "\"settings\": {\"a\": [1], ", "\"a\" is not text");
   with("\"T_world_recorded\": [", "\"T_world_recorded\": [1, ", "16 numbers");
   put_text(map_ / "map.json", std::string(2U << 20U, ' '));
-  expect_fault("map.json", "larger than 1 MB");
+  expect_fault("map.json", "too many for a map's description");
   put_text(map_ / "map.json", std::string(500'000, '['));
   expect_fault("map.json", "not JSON");
   put_text(map_ / "map.json", "[]");
