@@ -16,17 +16,23 @@ BlockUnits::BlockUnits(double resolution_m, const FusionConfig& config)
 BlockOctree::BlockOctree(double resolution_m, const FusionConfig& config)
     : resolution_m_(resolution_m), units_(resolution_m, config) {}
 
-std::size_t count_nodes(const BlockOctree& tree, Slot node, unsigned depth) {
-  if (node.is_unknown()) return 0;
-  std::size_t nodes = 1;
-  if (!node.is_block()) return nodes;
+SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth) {
+  if (node.is_unknown()) return {};
+  SubtreeSize size{.nodes = 1};
+  if (!node.is_block()) return size;
   if (depth < kLeafDepth - 1) {
-    for (const Slot child : tree.inner(node).slots) nodes += count_nodes(tree, child, depth + 1);
+    size.bytes += sizeof(InnerBlock);
+    for (const Slot child : tree.inner(node).slots) {
+      const SubtreeSize below = size_of(tree, child, depth + 1);
+      size.nodes += below.nodes;
+      size.bytes += below.bytes;
+    }
   } else {
     const LeafBlock& block = tree.leaves(node);
-    for (unsigned i = 0; i < 8; ++i) nodes += block.holds(i) ? 1 : 0;
+    size.bytes += sizeof(LeafBlock) + (block.coloured != 0 ? sizeof(ColourBlock) : 0);
+    for (unsigned i = 0; i < 8; ++i) size.nodes += block.holds(i) ? 1 : 0;
   }
-  return nodes;
+  return size;
 }
 
 }  // namespace roomradar

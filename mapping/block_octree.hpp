@@ -169,8 +169,12 @@ class BlockOctree {
   BlockPool<ColourBlock> colours_;
 };
 
-/// The nodes at and below a node that OctoMap would have: its file forms store these.
-std::size_t count_nodes(const BlockOctree& tree, Slot node, unsigned depth);
+struct SubtreeSize {
+  std::size_t nodes = 0;  ///< that OctoMap would have: its file forms store these
+  std::size_t bytes = 0;  ///< of the blocks that they lie in, colours included
+};
+/// Of a node and all below it.
+SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth);
 
 inline void forget_sample(LeafBlock& block, unsigned i) {
   block.weight[i] = 0;

@@ -314,8 +314,9 @@ MapCounts StaticMap::counts() const {
     }
   });
   visit_samples([&](const SurfaceSample&) { ++counts.sampled_leaves; });
-  counts.nodes = count_nodes(tree, tree.root, 0);
-  counts.memory_bytes = memory_bytes();
+  const SubtreeSize size = size_of(tree, tree.root, 0);
+  counts.nodes = size.nodes;
+  counts.memory_bytes = size.bytes;
   return counts;
 }
 

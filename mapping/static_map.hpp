@@ -60,7 +60,7 @@ struct MapCounts {
   std::size_t free_leaves = 0;
   std::size_t sampled_leaves = 0;  ///< finest leaves with a signed distance, of any occupancy
   std::size_t nodes = 0;
-  std::size_t memory_bytes = 0;     ///< of the octree's nodes and child tables
+  std::size_t memory_bytes = 0;     ///< of the blocks that the nodes lie in; the map alone decides it
   Eigen::AlignedBox3d known_world;  ///< of all free and occupied leaves; empty if there are none
   Eigen::AlignedBox3d occupied_world;
 };

@@ -309,7 +309,7 @@ void StaticMap::write_ot(const std::filesystem::path& path) const {
   const BlockOctree& tree = octree_->tree;
   write_stream(path, [&](std::ostream& stream) {
     stream << kFirstLine << "\n#\nid " << RoomOcTree::kTreeType << "\nsize "
-           << count_nodes(tree, tree.root, 0) << "\nres " << tree.resolution_m() << "\ndata\n";
+           << size_of(tree, tree.root, 0).nodes << "\nres " << tree.resolution_m() << "\ndata\n";
     if (!tree.root.is_unknown()) NodeWriter(tree, stream).write(tree.root, 0);
   });
 }

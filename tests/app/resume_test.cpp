@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -169,6 +170,44 @@ TEST_F(ResumeTest, TheMapThatIsThereStaysUntilTheNewOneIsWhole) {
   ASSERT_EQ(run(scan(map(), true)), 0) << said();
   EXPECT_NE(text_of(map() / "map.json"), before);
   EXPECT_EQ(run({"map", "verify", map()}), 0) << said();
+}
+
+TEST_F(ResumeTest, KilledAtAnyMomentThereIsTheOldMapOrTheNew) {
+  const fs::path old = temporary_.path() / "old", uncut = temporary_.path() / "uncut";
+  ASSERT_EQ(run({"prescan", "sim:table?frames=10&width=128&seed=5", "--map", old, "--resolution", "0.08"}),
+            0);
+  const auto begun = std::chrono::steady_clock::now();
+  ASSERT_EQ(run(scan(uncut, false)), 0) << said();
+  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - begun;
+  const std::string old_info = text_of(old / "map.json"), new_info = text_of(uncut / "map.json");
+  fs::copy(old, map());
+
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  int resumed = 0, replaced = 0;
+  for (int killed = 0; killed < (std::getenv("ROOMRADAR_LONG_TESTS") != nullptr ? 100 : 8);) {
+    const bool resume = newest() > 0;
+    const pid_t child = start(scan(map(), resume));
+    std::this_thread::sleep_for(share(random) * whole);
+    kill(child, SIGKILL);
+    const int status = status_of(child);
+    ASSERT_TRUE(status == 0 || status == 128 + SIGKILL) << said();
+    killed += status == 0 ? 0 : 1;
+    resumed += resume ? 1 : 0;
+    EXPECT_EQ(verify_map(map()), std::vector<std::string>{});
+    const std::string info = text_of(map() / "map.json");
+    ASSERT_TRUE(info == old_info || info == new_info) << killed << " killed";
+    if (info == old_info) continue;
+    expect_very_same_map(map(), uncut);
+    ++replaced;
+    fs::remove_all(map());
+    fs::copy(old, map());
+  }
+  RecordProperty("resumed", resumed);
+  RecordProperty("replaced", replaced);
+  ASSERT_EQ(run(scan(map(), newest() > 0)), 0) << said();
+  expect_very_same_map(map(), uncut);
+  EXPECT_GT(resumed, 0);
 }
 
 TEST_F(ResumeTest, OtherSettingsAreRefusedAndADamagedCheckpointIsPassedOver) {

@@ -50,6 +50,7 @@ void expect_equal(const StaticMap& a, const StaticMap& b) {
   EXPECT_EQ(counts_a.nodes, counts_b.nodes);
   EXPECT_EQ(counts_a.free_leaves, counts_b.free_leaves);
   EXPECT_EQ(counts_a.occupied_leaves, counts_b.occupied_leaves);
+  EXPECT_EQ(counts_a.memory_bytes, counts_b.memory_bytes);
 }
 
 TEST(StaticMap, BeforeAWallIsFreeTheWallOccupiedTheRestUnknown) {
