@@ -254,7 +254,7 @@ TEST(Extremes, CellsFromTwoMillimetresToTwentyCentimetres) {
               "surface within 1 mm and an eighth of a cell (median), a cell (95 %)",
               text("%.2f mm median, ", 1e3 * error.median) + text("%.1f at 95 %%; ", 1e3 * error.p95) +
                   text("%.0f occupied leaves, ", static_cast<double>(counts.occupied_leaves)) +
-                  text("%.1f MB", static_cast<double>(counts.memory_bytes) / 1e6));
+                  text("%.2f MB", static_cast<double>(counts.memory_bytes) / 1e6));
   }
 }
 
