@@ -30,7 +30,7 @@ fs::path unfinished_beside(const fs::path& map) {
 bool is_unfinished(const fs::path& folder) { return fs::exists(folder / "work.json"); }
 
 void require_no_live_scan(const fs::path& folder) {
-  if (!fs::exists(folder / kSpool)) return;
+  if (!SpooledSource::has_frames(folder / kSpool)) return;
   if (is_unfinished(folder)) Checkpoints(folder, {}, 0.0).ensure_folder();  // nobody is at work on it
   throw Error(folder.string() +
               ": holds a live scan that was cut off; go on with it by --resume, or delete "

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -54,8 +53,7 @@ void write_trajectory(const std::filesystem::path& path, const std::vector<Timed
 }
 
 std::vector<TimedPose> read_trajectory(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file) throw Error(path.string() + ": cannot be opened");
+  std::istringstream file(read_bytes(path, "a trajectory"));
   std::vector<TimedPose> trajectory;
   std::string line;
   for (int line_number = 1; std::getline(file, line); ++line_number) {

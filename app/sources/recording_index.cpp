@@ -2,19 +2,21 @@
 #include "app/sources/recording_index.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <regex>
+#include <sstream>
 #include <string>
 
 #include "app/sources/parse_numbers.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 
 namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uintmax_t kLargestPose_bytes = 1U << 16U;
 constexpr double kNominalRate_hz = 30.0;  // of recordings without stamps
 
 struct NumberedFiles {
@@ -160,8 +162,7 @@ void pair_up(StampPairing& pairing, const std::vector<ListedImage>& colours,
 
 std::optional<Eigen::Isometry3d> read_pose_file(const fs::path& path) {
   const std::string name = path.string();
-  std::ifstream file(path);
-  if (!file) throw Error(name + ": cannot be opened");
+  std::istringstream file(read_bytes(path, "a 4 x 4 pose", kLargestPose_bytes));
   Eigen::Matrix4d matrix;
   int count = 0;
   for (std::string line; std::getline(file, line);) {

@@ -3,6 +3,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,11 +12,14 @@
 #include "app/sources/recording_index.hpp"
 #include "app/sources/stamp_pairing.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 
 namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kLargestList_bytes = std::uintmax_t{1} << 30;  // weeks
 
 /// d-1313283822.781270-3018607296.pgm: kind, the recorder's time of day, the device's stamp.
 struct IndexLine {
@@ -55,8 +59,7 @@ void read_tilt_state(const fs::path& path, std::optional<Eigen::Vector3d>& down_
 
 RecordingIndex index_fakenect(const fs::path& folder) {
   const fs::path index_file = folder / "INDEX.txt";
-  std::ifstream lines(index_file);
-  if (!lines) throw Error(index_file.string() + ": cannot be opened");
+  std::istringstream lines(read_bytes(index_file, "a list of files", kLargestList_bytes));
 
   RecordingIndex index{DepthEncoding::kKinectRaw, NominalRig::kKinect, {}};
   std::vector<ListedImage> colours;

@@ -1,9 +1,9 @@
 // recording_index_tum.cpp: the lists of a TUM RGB-D recording, associated by stamp.
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -12,21 +12,22 @@
 #include "app/sources/recording_index.hpp"
 #include "app/sources/stamp_pairing.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 
 namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kSameStamp_s = 2e-6;        // stamps are written to 1 us
+constexpr std::uintmax_t kLargestList_bytes = std::uintmax_t{1} << 30;  // weeks
+constexpr double kSameStamp_s = 2e-6;                                   // stamps are written to 1 us
 constexpr double kLongestPoseGap_s = 0.050;  // a hand-held camera's path is not straight for longer
 constexpr double kGravityWithin_s = 0.050;
 
 /// Calls use(words, where) for each line that is neither empty nor a comment; `where` names file and line.
 void for_each_line(const fs::path& path,
                    const std::function<void(const std::vector<std::string_view>&, const std::string&)>& use) {
-  std::ifstream file(path);
-  if (!file) throw Error(path.string() + ": cannot be opened");
+  std::istringstream file(read_bytes(path, "a list of stamps", kLargestList_bytes));
   int line_number = 0;
   for (std::string line; std::getline(file, line);) {
     ++line_number;

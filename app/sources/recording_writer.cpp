@@ -138,8 +138,13 @@ void RecordingWriter::write_tum(const Frame& frame) {
              stamp + spaced({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}, 12),
              "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n");
   }
-  if (frame.down_camera) {
-    const Eigen::Vector3d a = acceleration_at_rest_g(*frame.down_camera) * kStandardGravity_m_s2;
+  // What is not known is written as none, else the reader takes that of a frame nearby.
+  if (frame.down_camera || wrote_gravity_) {
+    wrote_gravity_ = true;
+    const Eigen::Vector3d a =
+        frame.down_camera
+            ? Eigen::Vector3d(acceleration_at_rest_g(*frame.down_camera) * kStandardGravity_m_s2)
+            : Eigen::Vector3d::Zero();
     add_line(gravity_list_, folder_ / "accelerometer.txt", stamp + spaced({a.x(), a.y(), a.z()}, 9),
              "# stamp_s ax ay az: m/s^2; x left, y up, z forward\n");
   }

@@ -31,6 +31,13 @@ fs::path colour_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".colour.png");
 }
 
+/// One without a whole beginning was cut off, by a full disk or a kill, before there was a frame.
+bool has_list(const fs::path& folder) {
+  std::error_code fault;
+  const std::uintmax_t bytes = fs::file_size(folder / kList, fault);
+  return !fault && bytes > kMagic.size();
+}
+
 /// All of the frame but its images.
 Frame without_images(const Frame& frame) {
   Frame rest;
@@ -64,6 +71,19 @@ void SpooledSource::transfer_entry(Archive& archive, Entry& entry) {
   transfer(archive, frame.down_camera);
 }
 
+/// One that is damaged stands for a frame that cannot be read.
+SpooledSource::Entry SpooledSource::entry_of(std::string_view bytes, const fs::path& list) {
+  Entry entry;
+  try {
+    ByteReader reader(bytes, list.string());
+    transfer_entry(reader, entry);
+    reader.require_end();
+  } catch (const Error& damage) {
+    return {{}, damage.what()};
+  }
+  return entry;
+}
+
 SpooledSource::Left SpooledSource::read_list(const fs::path& folder) {
   const fs::path path = folder / kList;
   const std::string bytes = read_bytes(path, "the list of a live scan's frames");
@@ -74,19 +94,19 @@ SpooledSource::Left SpooledSource::read_list(const fs::path& folder) {
   Left left;
   transfer(list, left.name);
   left.sound_bytes = bytes.size() - list.left();
-  try {
-    while (list.left() > 0 && !left.at_end) {
-      std::uint32_t size = 0;
-      transfer(list, size);
-      list.require(size, 1);
-      Entry entry;
-      if (size > 0) transfer_entry(list, entry);
-      left.at_end = size == 0;
-      if (size > 0) left.entries.push_back(std::move(entry));
-      left.sound_bytes = bytes.size() - list.left();
+  while (!left.at_end) {
+    // An entry that is cut short was being written when the process was killed: its frame was never used.
+    std::uint32_t size = 0;
+    if (list.left() < sizeof size) break;
+    transfer(list, size);
+    if (list.left() < size) break;
+    left.at_end = size == 0;
+    if (left.at_end && list.left() > 0) {  // zeros that a power failure left where entries should be
+      left.at_end = false;
+      break;
     }
-  } catch (const Error&) {
-    // The process was killed while it wrote this entry: its frame was never used.
+    if (size > 0) left.entries.push_back(entry_of(list.take(size), path));
+    left.sound_bytes = bytes.size() - list.left();
   }
   return left;
 }
@@ -108,7 +128,7 @@ std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> 
   std::unique_ptr<SpooledSource> spooled(new SpooledSource(std::move(source), folder, /*kept=*/true));
   spooled->most_ahead_ = most_ahead;
   const fs::path path = folder / kList;
-  if (fs::exists(path)) {
+  if (has_list(folder)) {
     Left left = read_list(folder);
     fs::resize_file(path, left.sound_bytes);
     spooled->take(std::move(left));
@@ -119,17 +139,16 @@ std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> 
     transfer(head, spooled->name_);
     spooled->list_.open(path, std::ios::binary);
     spooled->list_ << head.bytes() << std::flush;
+    if (!spooled->list_) fs::remove(path, fault);  // no frame is lost with it, and it would bar the folder
   }
   require_written(spooled->list_, path);
   return spooled;
 }
 
-bool SpooledSource::has_end(const fs::path& folder) {
-  return fs::exists(folder / kList) && read_list(folder).at_end;
-}
+bool SpooledSource::has_end(const fs::path& folder) { return has_list(folder) && read_list(folder).at_end; }
 
 bool SpooledSource::has_frames(const fs::path& folder) {
-  return fs::exists(folder / kList) && !read_list(folder).entries.empty();
+  return has_list(folder) && !read_list(folder).entries.empty();
 }
 
 std::unique_ptr<SpooledSource> SpooledSource::again(const fs::path& folder) {

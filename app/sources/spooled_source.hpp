@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -73,6 +74,7 @@ class SpooledSource final : public FrameSource {
   };
   template <typename Archive>
   static void transfer_entry(Archive& archive, Entry& entry);
+  static Entry entry_of(std::string_view bytes, const std::filesystem::path& list);
   static Left read_list(const std::filesystem::path& folder);
 
   SpooledSource(std::unique_ptr<FrameSource> source, std::filesystem::path folder, bool kept);

@@ -45,6 +45,13 @@ class ByteReader {
   void require(std::uint64_t count, std::size_t item_bytes) const {
     if (count > bytes_.size() / item_bytes) fail("is cut short");
   }
+  /// The next bytes, passed over.
+  std::string_view take(std::size_t count) {
+    require(count, 1);
+    const std::string_view taken = bytes_.substr(0, count);
+    bytes_.remove_prefix(count);
+    return taken;
+  }
   void require_end() const {
     if (!bytes_.empty()) fail("has bytes after its end");
   }

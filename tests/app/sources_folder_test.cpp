@@ -165,6 +165,21 @@ TEST(RecordingRoundTrip, FakenectDoesNotKeepAGravityThatIsNotKnownAnyMore) {
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(all.frames[i].down_camera.has_value(), i == 1 || i == 4) << i;
 }
 
+TEST(RecordingRoundTrip, TumDoesNotGiveAFrameTheGravityOfItsNeighbour) {
+  const TemporaryFolder folder;
+  RecordingWriter writer(folder.path(), RecordingFormat::kTum);
+  for (int i = 0; i < 4; ++i) {
+    Frame frame = some_frame(i);
+    frame.stamp_s = 100.0 + i / 30.0;
+    if (i == 1 || i == 2) frame.down_camera.reset();
+    writer.write(frame);
+  }
+  writer.close();
+  const auto all = read_all(*open_folder(folder.path()));
+  ASSERT_EQ(all.frames.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(all.frames[i].down_camera.has_value(), i == 0 || i == 3) << i;
+}
+
 TEST(RecordingRoundTrip, FramesAmongOthersThatCameWithoutColourComeBackWithout) {
   for (const auto format : {RecordingFormat::kTum, RecordingFormat::kSevenScenes}) {
     const TemporaryFolder folder;

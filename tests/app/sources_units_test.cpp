@@ -15,6 +15,7 @@
 #include "app/sources/spooled_source.hpp"
 #include "app/sources/stamp_pairing.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/file_bytes.hpp"
 #include "tests/app/sources_support.hpp"
 #include "tests/support/kept_source.hpp"
 
@@ -432,6 +433,55 @@ TEST(SpooledSource, KeptGoesOnInALaterProcess) {
   EXPECT_EQ(read_all(*source).frames.size(), 5U);
   ASSERT_TRUE(source->rewind());
   EXPECT_EQ(read_all(*source).frames.size(), 5U);
+}
+
+/// The list of three frames that were spooled to their end.
+std::string list_of_three(const std::filesystem::path& folder) {
+  (void)read_all(*SpooledSource::kept(std::make_unique<MadeSource>(3, false), folder));
+  return read_bytes(folder / "list.bin", "a list");
+}
+
+TEST(SpooledSource, AnEntryThatIsDamagedIsOneFrameThatCannotBeRead) {
+  const test::TemporaryFolder parent;
+  const std::filesystem::path folder = parent.path() / "spool";
+  std::string list = list_of_three(folder);
+  const std::size_t head_bytes = 8 + 8 + MadeSource(3, false).name().size();
+  const std::size_t entry_bytes = (list.size() - head_bytes - 4) / 3;     // the end has 4
+  const std::size_t width_at = head_bytes + entry_bytes + 4 + 8 + 3 * 8;  // after size, fault, index, stamps
+  list.replace(width_at, 4, "\xff\xff\xff\xff");  // of the second frame's depth camera
+  write_bytes(folder / "list.bin", list);
+  const auto all = read_all(*SpooledSource::kept(nullptr, folder));
+  ASSERT_EQ(all.faults.size(), 1U);
+  EXPECT_TRUE(contains(all.faults[0], "list.bin")) << all.faults[0];
+  ASSERT_EQ(all.frames.size(), 2U);
+  EXPECT_EQ(all.frames[1].index, 2);
+}
+
+TEST(SpooledSource, ZerosThatAPowerFailureLeavesAreNoEnd) {
+  const test::TemporaryFolder parent;
+  const std::filesystem::path folder = parent.path() / "spool";
+  const std::string list = list_of_three(folder);
+  ASSERT_TRUE(SpooledSource::has_end(folder));
+  write_bytes(folder / "list.bin", list.substr(0, list.size() - 4) + std::string(64, '\0'));
+  EXPECT_FALSE(SpooledSource::has_end(folder));
+  const auto source = SpooledSource::kept(std::make_unique<MadeSource>(2, false), folder);
+  EXPECT_EQ(read_all(*source).frames.size(), 5U) << "the zeros are written over";
+  EXPECT_TRUE(SpooledSource::has_end(folder));
+  EXPECT_EQ(read_all(*SpooledSource::kept(nullptr, folder)).frames.size(), 5U);
+}
+
+TEST(SpooledSource, AListThatWasCutOffInItsHeadHoldsNoFrameAndIsBegunAnew) {
+  const test::TemporaryFolder parent;
+  for (const char* head : {"", "RRSPO"}) {
+    const std::filesystem::path folder = parent.path() / ("spool" + std::string(head));
+    std::filesystem::create_directories(folder);
+    write_bytes(folder / "list.bin", head);
+    EXPECT_FALSE(SpooledSource::has_end(folder));
+    EXPECT_FALSE(SpooledSource::has_frames(folder));
+    EXPECT_EQ(read_all(*SpooledSource::kept(std::make_unique<MadeSource>(2, false), folder)).frames.size(),
+              2U);
+    EXPECT_TRUE(SpooledSource::has_end(folder));
+  }
 }
 
 TEST(SpooledSource, AnImageThatIsNotItsCamerasIsNamed) {
