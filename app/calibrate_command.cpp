@@ -8,6 +8,7 @@
 #include "app/calibration/calibration_plot.hpp"
 #include "app/calibration/median.hpp"
 #include "app/commands.hpp"
+#include "app/faults.hpp"
 #include "app/interrupt.hpp"
 #include "app/open_source.hpp"
 #include "app/picture_file.hpp"
@@ -62,7 +63,7 @@ void print_fit(const BoardViews& views, const CalibrationFit& fit, const Summary
               1e3 * shift.y(), 1e3 * shift.z(), 1e3 * fit.sigmas.shift_m,
               Eigen::AngleAxisd(found.rig.T_colour_depth.linear()).angle() * 180.0 / M_PI,
               fit.sigmas.turn_rad * 180.0 / M_PI);
-  std::printf("depth scale %.4f\n", found.depth_correction.inverse_scale);
+  std::printf("inverse depth scale %.4f\n", found.depth_correction.inverse_scale);
   std::printf("held-out views      before      after  (medians)\n");
   std::printf("corners, RMS     %7.3f px %7.3f px\n", before.colour_px, after.colour_px);
   std::printf("depth, bias      %7.2f mm %7.2f mm\n", 1e3 * before.depth_bias_m, 1e3 * after.depth_bias_m);
@@ -90,6 +91,7 @@ int run(const CalibrateCommand& command) {
                      {"rows", command.board.rows},
                      {"square_m", command.board.square_m},
                      {"calibration", command.calibration}};
+  if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
   require_valid(command.board);
   require_png_name(command.plot);
   for (const std::string& path : {command.calibration, command.plot, command.report}) require_writable(path);
@@ -111,8 +113,6 @@ int run(const CalibrateCommand& command) {
   report.frames_read = views.frames;
   const CalibrationFit fit =
       report.times.timed("fit", [&] { return calibrate(views, {.board = command.board}); });
-  write_calibration(fit.calibration, command.calibration);
-  if (!command.plot.empty()) write_png(calibration_plot(views, fit), command.plot);
 
   const Summary before = summary_of(fit.before, fit.held_out);
   const Summary after = summary_of(fit.after, fit.held_out);
@@ -123,7 +123,13 @@ int run(const CalibrateCommand& command) {
                     {"inverse_depth_scale", fit.calibration.depth_correction.inverse_scale},
                     {"before", to_json(before)},
                     {"after", to_json(after)}};
-  write_report(report, command.report);
+  Faults faults;
+  faults.attempt([&] { write_calibration(fit.calibration, command.calibration); });
+  faults.attempt([&] {
+    if (!command.plot.empty()) write_png(calibration_plot(views, fit), command.plot);
+  });
+  faults.attempt([&] { write_report(report, command.report); });
+  faults.throw_first();
   return 0;
 }
 

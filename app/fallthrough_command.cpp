@@ -1,7 +1,10 @@
 // fallthrough_command.cpp: roomradar fallthrough: the same hidden-surface scenarios under each policy.
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <deque>
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <thread>
@@ -17,14 +20,30 @@
 #include "app/faults.hpp"
 #include "app/progress.hpp"
 #include "app/report.hpp"
+#include "mapping/map_folder.hpp"
+#include "mapping/types/error.hpp"
 
 namespace roomradar {
 namespace {
 
 using Rooms = std::vector<std::unique_ptr<MappedRoom>>;
 
-/// Scenario after scenario under all policies; `threads` of them are made ready ahead.
-std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughCommand& command, int threads) {
+/// Makes the folder that is to keep the rooms' maps; an empty name is fine. Throws Error if that cannot be,
+/// or if it has none and none can be written.
+void require_folder_of_maps(const std::filesystem::path& folder) {
+  if (folder.empty()) return;
+  require_contents_outside_maps(folder);
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault) throw Error(folder.string() + ": the folder cannot be made: " + fault.message());
+  if (access(folder.c_str(), W_OK) != 0 && std::filesystem::is_empty(folder, fault))
+    throw Error(folder.string() + ": no map can be kept there: the folder is not writable");
+}
+
+/// Scenario after scenario under all policies; `threads` of them are made ready ahead. Ends at the first
+/// fault, with the rows that were done.
+std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughCommand& command, int threads,
+                                       Faults& faults) {
   std::deque<std::future<std::unique_ptr<PreparedScenario>>> ahead;
   int next = 0;
   const auto prepare_next = [&] {
@@ -37,22 +56,26 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughComm
   Progress progress("scenarios", command.scenarios);
   std::vector<ScenarioRow> rows;
   CyberRadar radar;
-  for (int number = 0; number < command.scenarios; ++number) {
+  const auto run_scenario = [&](int number) {
     while (next < command.scenarios && ahead.size() < static_cast<std::size_t>(threads)) prepare_next();
     const std::unique_ptr<PreparedScenario> prepared = ahead.front().get();
     ahead.pop_front();
     const std::size_t room_number = turn_of(number, rooms.size()).room;
     MappedRoom& room = *rooms[room_number];
-    rows.push_back(row_of(prepared->scenario, number, room_number, room.scanned.title));
+    ScenarioRow row = row_of(prepared->scenario, number, room_number, room.scanned.title);
     // All have seen the frame before any is timed, and each is the first in turn.
     for (std::size_t i = 0; i < kPolicyCount; ++i)
       (void)show_frame(*prepared, 0, {.policy = kFallthroughPolicies[i].surfaces}, {}, *room.scenes[i]);
     for (std::size_t k = 0; k < kPolicyCount; ++k) {
       const std::size_t i = (static_cast<std::size_t>(number) + k) % kPolicyCount;
-      rows.back().trials[i] = run_trial(*prepared, room, i, radar);
+      row.trials[i] = run_trial(*prepared, room, i, radar);
     }
+    rows.push_back(std::move(row));
     progress.step(room.scanned.title);
-  }
+  };
+  faults.attempt([&] {
+    for (int number = 0; number < command.scenarios; ++number) run_scenario(number);
+  });
   return rows;
 }
 
@@ -113,34 +136,38 @@ int run(const FallthroughCommand& command) {
   RoomScan scan;
   scan.maps = command.maps;
   for (const std::string& path : {command.report, command.csv, command.html}) require_writable(path);
+  require_folder_of_maps(command.maps);
   if (command.scenario) return replay(command, scan);
-  Report report;
-  report.command = "fallthrough";
-  report.source = "simulated rooms";
-  report.settings = {{"scenarios", command.scenarios},
-                     {"seed", command.seed},
-                     {"random_rooms", command.random_rooms},
-                     {"resolution_m", scan.resolution_m}};
   const int threads = command.threads > 0
                           ? command.threads
                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  Report report;
+  report.command = "fallthrough";
+  report.source = "simulated rooms";
+  report.settings = {
+      {"scenarios", command.scenarios},    {"seed", command.seed}, {"random_rooms", command.random_rooms},
+      {"resolution_m", scan.resolution_m}, {"maps", command.maps}, {"threads", threads}};
 
   GlContext context;
   report.renderer = context.renderer();
   const Rooms rooms = report.times.timed(
       "prescan", [&] { return map_rooms(context, choose_rooms(command.random_rooms), scan, threads); });
+  Faults faults;  // what was done before them is written all the same
   const std::vector<ScenarioRow> rows =
-      report.times.timed("scenarios", [&] { return run_scenarios(rooms, command, threads); });
+      report.times.timed("scenarios", [&] { return run_scenarios(rooms, command, threads, faults); });
+  if (rows.empty()) faults.throw_first();
 
+  const int done = static_cast<int>(rows.size());
   const auto totals = totals_of(rows);
-  const std::string about = std::to_string(command.scenarios) + " scenarios, seed " +
-                            std::to_string(command.seed) + ", " + std::to_string(rooms.size()) + " rooms, " +
-                            context.renderer();
-  std::printf("%s\n%s", about.c_str(), table_of(totals, command.scenarios).c_str());
-  report.results["scenarios"] = command.scenarios;
+  const std::string about = std::to_string(done) +
+                            (done < command.scenarios ? " of " + std::to_string(command.scenarios) : "") +
+                            " scenarios, seed " + std::to_string(command.seed) + ", " +
+                            std::to_string(rooms.size()) + " rooms, " + context.renderer();
+  std::printf("%s\n%s", about.c_str(), table_of(totals, done).c_str());
+  report.results["scenarios"] = done;
   report.results["policies"] = to_json(totals);
   report.results["failures"] = failures_of(rows);
-  Faults faults;
+  if (!faults.first().empty()) report.results["fault"] = faults.first();
   faults.attempt([&] { write_csv(rows, command.csv); });
   faults.attempt([&] {
     if (!command.html.empty())

@@ -22,8 +22,8 @@ int main(int argc, char** argv) {
         stderr, "roomradar: memory ran out; close other programs, or take coarser cells or smaller images\n");
     return 1;
   } catch (const std::filesystem::filesystem_error& error) {
-    std::fprintf(stderr, "roomradar: %s: %s; name another, or mend the links and rights on the way there\n",
-                 error.path1().c_str(), error.code().message().c_str());
+    std::fprintf(stderr, "roomradar: %s: cannot be used: %s\n", error.path1().c_str(),
+                 error.code().message().c_str());
     return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "roomradar: %s\n", error.what());

@@ -175,7 +175,7 @@ auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
     throw;
   } catch (const std::bad_alloc&) {
     fail("memory ran out; close other programs, or give --max-memory", start);
-  } catch (const Error& error) {
+  } catch (const std::exception& error) {  // the libraries' too
     fail(error.what(), start);
   }
 }
@@ -308,9 +308,9 @@ int run(const PrescanCommand& command) {
     }
   }
   if (start.checkpoints) finish(*start.checkpoints, keep_frames);
-  write_report(report, command.report);
   print_summary(command, scanned, held_out);
   print_holes(scanned.holes);
+  write_report(report, command.report);
   if (!not_scored.empty())
     std::fprintf(stderr, "roomradar: %s: is saved; its held-out frames could not be compared with it: %s\n",
                  command.map.c_str(), not_scored.c_str());

@@ -14,12 +14,14 @@
 namespace roomradar {
 namespace {
 
-/// The source's next frame; where it fails, what was written before is whole, and said to be there.
-ReadResult read(FrameSource& source, RecordingWriter& writer, const std::string& folder, Frame& frame) {
+/// Takes the source's next frame over; where that fails, what was written before is whole, and said to be
+/// there.
+ReadResult take_over(FrameSource& source, RecordingWriter& writer, const std::string& folder, Frame& frame) {
   try {
-    return source.next(frame);
+    const ReadResult result = source.next(frame);
+    if (result.status == ReadStatus::kFrame && !result.waiting) writer.write(frame);
+    return result;
   } catch (const Error& error) {
-    writer.close();
     if (writer.frames_written() == 0) throw;
     throw Error(std::string(error.what()) + ". The " + std::to_string(writer.frames_written()) +
                 " frames before that are whole, in " + folder);
@@ -44,7 +46,7 @@ int run(const RecordCommand& command) {
     Progress progress("recording", source->frame_count());
     Frame frame;
     for (;;) {
-      const ReadResult result = read(*source, writer, command.folder, frame);
+      const ReadResult result = take_over(*source, writer, command.folder, frame);
       if (result.status == ReadStatus::kEnd) break;
       if (result.waiting) continue;
       if (result.status == ReadStatus::kSkipped) {
@@ -52,7 +54,6 @@ int run(const RecordCommand& command) {
         progress.step("skipped: " + result.fault);
         continue;
       }
-      writer.write(frame);
       dropped.see(frame.index, writer.frames_written() + skipped);
       progress.step();
     }

@@ -2,8 +2,10 @@
 #include "app/fallthrough/grid_command.hpp"
 
 #include <cstdio>
+#include <string_view>
 
 #include "app/fallthrough/recording_grid.hpp"
+#include "app/faults.hpp"
 #include "app/locator.hpp"
 #include "app/open_source.hpp"
 #include "app/picture_file.hpp"
@@ -43,9 +45,14 @@ Eigen::Isometry3d read_located(const FallthroughCommand& command, const SavedMap
   return tracking.T_world_camera;
 }
 
-/// Whether the frames that both were made of came with poses in one world.
-bool share_recorded_world(const MapInfo& a, const MapInfo& b) {
-  return a.source == b.source && knows_recorded_world(a) && knows_recorded_world(b);
+/// A map's source without the ", frames A:B" of limit_frames(). Several sources stay as they are: their poses
+/// are in several worlds.
+std::string_view recording_of(std::string_view source) {
+  constexpr std::string_view kFrames = ", frames ";
+  const std::size_t at = source.rfind(kFrames);
+  if (at == std::string_view::npos || source.find("; ") != std::string_view::npos) return source;
+  const std::string_view range = source.substr(at + kFrames.size());
+  return range.find_first_not_of("0123456789:") == std::string_view::npos ? source.substr(0, at) : source;
 }
 
 /// The reference's surface in the map's world.
@@ -92,8 +99,11 @@ int run_grid(const FallthroughCommand& command) {
               table_of(grid).c_str());
   report.settings = {{"map", command.map},
                      {"reference", command.reference.empty() ? command.map : command.reference},
+                     {"poses", to_string(command.poses)},
                      {"cell_m", config.cell_m},
                      {"radius_m", config.radius_m}};
+  if (!command.calibration.empty()) report.settings["calibration"] = command.calibration;
+  if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
   report.results["frame"] = frame.index;
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     nlohmann::json& policy = report.results["policies"][std::string(kFallthroughPolicies[i].name)];
@@ -109,9 +119,18 @@ int run_grid(const FallthroughCommand& command) {
                                                 {"rested_on", rested_on}};
     }
   }
-  if (!command.picture.empty()) write_png(draw_plan(grid), command.picture);
-  write_report(report, command.report);
+  Faults faults;
+  faults.attempt([&] {
+    if (!command.picture.empty()) write_png(draw_plan(grid), command.picture);
+  });
+  faults.attempt([&] { write_report(report, command.report); });
+  faults.throw_first();
   return 0;
+}
+
+bool share_recorded_world(const MapInfo& a, const MapInfo& b) {
+  return recording_of(a.source) == recording_of(b.source) && knows_recorded_world(a) &&
+         knows_recorded_world(b);
 }
 
 }  // namespace roomradar

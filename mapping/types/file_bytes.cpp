@@ -35,6 +35,8 @@ void write_bytes(const fs::path& path, std::string_view bytes) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
+  std::error_code ignored;
+  if (!file && fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
   require_written(file, path);
 }
 

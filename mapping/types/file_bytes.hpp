@@ -18,7 +18,7 @@ namespace roomradar {
                                      std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
 
 /// Makes them the file `path`, in place of what it held. Not in one step: see WholeFile for that.
-/// @throws Error naming the file if not all of them could be written
+/// @throws Error naming the file if not all of them could be written; half of it is not left
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
 /// After writing to `path` as it comes: throws Error naming the file if `stream` has failed.

@@ -8,13 +8,16 @@
 #include <sstream>
 #include <utility>
 
+#include "app/commands.hpp"
 #include "app/fallthrough/canvas.hpp"
+#include "app/fallthrough/grid_command.hpp"
 #include "app/fallthrough/mapped_room.hpp"
 #include "app/fallthrough/page.hpp"
 #include "app/fallthrough/totals.hpp"
 #include "app/fallthrough/trial.hpp"
 #include "app/fallthrough/trial_pictures.hpp"
 #include "mapping/types/error.hpp"
+#include "tests/support/error_of.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar {
@@ -136,6 +139,44 @@ TEST(FallthroughFiles, CsvHasALineAScenarioAndPolicyAndThePageNeedsNothingElse) 
   EXPECT_NE(page.find("1 of " + std::to_string(kPolicyCount) + " are shown"), std::string::npos);
   EXPECT_EQ(page.find("nan "), std::string::npos);
   EXPECT_THROW(write_page(rows, "", {}, folder.path() / "none" / "page.html"), Error);
+}
+
+TEST(FallthroughFiles, AFolderForMapsThatCannotBeIsNamedBeforeTheWork) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "file") << "no folder";
+  std::filesystem::create_directory(folder.path() / "map");
+  std::ofstream(folder.path() / "map" / "map.json") << "{}";
+  const auto fault_of = [](const std::filesystem::path& maps) {
+    FallthroughCommand command;
+    command.maps = maps.string();
+    const std::string fault = test::error_of([&] { (void)run(command); });
+    EXPECT_NE(fault.find(maps.string()), std::string::npos) << fault;
+    return fault;
+  };
+  for (const char* maps : {"file", "file/maps"})
+    EXPECT_NE(fault_of(folder.path() / maps).find("cannot be made"), std::string::npos) << maps;
+  for (const char* maps : {"map", "map/maps"})
+    EXPECT_NE(fault_of(folder.path() / maps).find("lies in the folder of a map"), std::string::npos) << maps;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "map" / "maps"));
+}
+
+TEST(FallthroughGrid, MapsOfDifferentFramesOfOneRecordingShareItsWorld) {
+  const auto share = [](const std::string& a, const std::string& b, const char* poses_of_b = "recorded") {
+    MapInfo info_a, info_b;
+    info_a.source = a;
+    info_a.settings[kPosesSetting] = "recorded";
+    info_b.source = b;
+    info_b.settings[kPosesSetting] = poses_of_b;
+    return share_recorded_world(info_a, info_b);
+  };
+  EXPECT_TRUE(share("/r/kitchen", "/r/kitchen"));
+  EXPECT_TRUE(share("/r/kitchen", "/r/kitchen, frames 400:499"));
+  EXPECT_TRUE(share("/r/kitchen, frames 0:299", "/r/kitchen, frames 400:499"));
+  EXPECT_FALSE(share("/r/kitchen, frames 0:299", "/r/office, frames 0:299"));
+  EXPECT_FALSE(share("/r/kitchen", "/r/kitchen, frames of today"));
+  EXPECT_FALSE(share("/r/kitchen", "/r/office; /r/kitchen, frames 0:299"));
+  EXPECT_FALSE(share("/r/kitchen; /r/office, frames 0:9", "/r/kitchen; /r/office, frames 0:19"));
+  EXPECT_FALSE(share("/r/kitchen", "/r/kitchen, frames 0:299", "tracked"));
 }
 
 TEST(FallthroughCanvas, TrianglesCoverTheirPixelsAndWhatIsOutsideIsLeftOut) {
