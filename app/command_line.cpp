@@ -465,6 +465,7 @@ void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work)
   sub->add_option("SOURCE", command.recordings,
                   "folders with recordings that have poses, beside the simulated rooms");
   sub->add_option("--rooms", command.rooms, "simulated rooms, with commas between them (table,random?seed=2)")
+      ->allow_extra_args(false)  // what follows is a recording
       ->delimiter(',')
       ->type_name("LIST");
   sub->add_option("--only", command.only, "of prescan and run")->check(CLI::IsMember({"prescan", "run"}));
@@ -492,7 +493,10 @@ void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work)
       ->type_name("FILE");
   sub->add_option("--html", command.html, "write one page with the fronts as plots, and tables")
       ->type_name("FILE");
-  sub->add_option("--presets", command.presets, "write fast, balanced, accurate and the front, for --preset")
+  sub->add_option("--presets", command.presets,
+                  "write fast, balanced, accurate and the front, for --preset and --budget-ms: what a "
+                  "setting saves of "
+                  "the objects' motion is that of so many --objects")
       ->type_name("FILE");
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {

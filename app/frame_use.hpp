@@ -16,6 +16,7 @@ struct FrameUse {
   std::size_t room_asked = 0;  ///< its triangles that CyberRadar looked at one by one, in all queries
   std::size_t valid_px = 0;    ///< pixels with live depth
   std::size_t meshed_px = 0;   ///< of these, those that moved; without a map's surfaces all
+  bool knows_moved = true;     ///< false without a map's surfaces
   std::size_t mesh_triangles = 0;
   CellCounts cells;  ///< of 4 x 4 pixels, of the mesh of what moved; without a map's surfaces none
 };

@@ -76,8 +76,13 @@ void require_can_save_map(const RunCommand& command, const Script& script) {
                                             command.pictures, command.record_session});
 }
 
-void require_budget_alone(const RunCommand& command, const Script& script) {
-  if (command.budget_ms && has(script, Action::kQuality))
+void require_one_quality(const RunCommand& command, const Script& script) {
+  if (!has(script, Action::kQuality)) return;
+  if (!command.preset.empty())
+    throw Error(
+        "--preset: the script or the session has quality events, and what these do not name is as usual from "
+        "there on, not as in the preset; leave out one of them");
+  if (command.budget_ms)
     throw Error(
         "--budget-ms: the script or the session has quality events of its own, and each would undo the "
         "other; leave out one of them");
@@ -206,7 +211,7 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
   require_contents_outside_maps(command.pictures);
   run.script = script_of(command);
   require_can_save_map(command, run.script);
-  require_budget_alone(command, run.script);
+  require_one_quality(command, run.script);
   if (!command.record_session.empty()) require_can_become_session(command.record_session);
   run.map = load_map(command.map);
   say_if_up_is_not_known(run.map.info, command.map);

@@ -2,6 +2,7 @@
 #include "app/run_use.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -103,11 +104,12 @@ void print_use(const RunUse& use) {
 
 std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<VirtualObject>> objects) {
   std::string why = use.views_drawn > 0 ? "the camera moved" : "the camera stands, the last view is kept";
+  if (!use.knows_moved) return why + "; what moved is not known without a map's surfaces, and all is meshed";
   if (use.meshed_px == 0) return why + "; nothing moved";
-  char share[64];
-  std::snprintf(share, sizeof share, "; %.2g %% of the depth moved",
-                100.0 * share_of(use.meshed_px, use.valid_px));
-  why += share;
+  const double percent = 100.0 * share_of(use.meshed_px, use.valid_px);
+  std::array<char, 64> share{};
+  std::snprintf(share.data(), share.size(), "; %.*f %% of the depth moved", percent < 1.0 ? 2 : 0, percent);
+  why += share.data();
   for (const auto& object : objects)
     if (object->fine_cells > 0)
       why += "; as fine as the image near " + object->body.name + " (" + std::to_string(object->fine_cells) +

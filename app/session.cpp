@@ -320,6 +320,7 @@ FrameUse Session::use_of(const ForegroundCounts& foreground, const LiveScene::Ro
     use.room_drawn = (scene_.room_drawn().triangles - drawn.triangles) / use.views_drawn;
   use.room_asked = static_cast<std::size_t>(static_triangles_asked() - asked);
   use.valid_px = foreground.valid;
+  use.knows_moved = has_map;
   use.meshed_px = has_map ? foreground.moved : foreground.valid;
   use.mesh_triangles = scene_.moved_triangles();
   if (has_map) use.cells = scene_.moved_cells().counts;

@@ -115,6 +115,12 @@ Outcome scan_and_run(const SimOptions& options, const Alter& alter) {
         static_cast<double>(std::max<std::size_t>(static_cast<std::size_t>(result.foreground.valid), 1)) /
         kLive;
   }
+  // On a rough surface it may rock for another second or two.
+  Frame& last = live.back();
+  for (int i = 0; i < 60 && !pot.body.at_rest; ++i) {
+    last.stamp_s += 1.0 / 30.0;
+    session.step(last, times);
+  }
   outcome.at_rest = pot.in_room && pot.body.at_rest;
   outcome.fell_m = began_m - height_m();
   double gap_m = 1.0;

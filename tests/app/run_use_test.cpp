@@ -110,6 +110,13 @@ TEST_F(FrameUseInASession, WhatMovedIsCountedByPixelsAndCellsAndWhyItIsFine) {
   EXPECT_GT(hand.cells.flat + hand.cells.cut, 100U);
   EXPECT_LT(hand.cells.full, 10U);
   EXPECT_EQ(reasons(hand), "the camera stands, the last view is kept; 12 % of the depth moved");
+  FrameUse use = hand;
+  use.meshed_px = use.valid_px;
+  EXPECT_EQ(reasons(use), "the camera stands, the last view is kept; 100 % of the depth moved");
+  use.meshed_px = 1;
+  EXPECT_EQ(reasons(use), "the camera stands, the last view is kept; 0.01 % of the depth moved");
+  use.knows_moved = false;
+  EXPECT_NE(reasons(use).find("what moved is not known"), std::string::npos);
 
   put_a_pot(0.8, 0.0);
   const FrameUse fine = step();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <ctime>
+#include <numeric>
 #include <vector>
 
 namespace roomradar::test {
@@ -26,6 +27,11 @@ inline double quantile(std::vector<double> values, double part) {
 struct Times {
   std::vector<double> samples_ms;
   [[nodiscard]] double percentile(double part) const { return quantile(samples_ms, part); }
+  /// 0 of none.
+  [[nodiscard]] double mean() const {
+    const double sum = std::accumulate(samples_ms.begin(), samples_ms.end(), 0.0);
+    return samples_ms.empty() ? 0.0 : sum / static_cast<double>(samples_ms.size());
+  }
 };
 
 }  // namespace roomradar::test
