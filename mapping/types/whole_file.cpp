@@ -2,9 +2,11 @@
 #include "mapping/types/whole_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <system_error>
@@ -29,6 +31,17 @@ bool reaches_disk(const fs::path& path) {
   return synced;
 }
 
+/// Of stdout and stderr the one that goes to the file; -1 if none does.
+int stream_of_process(const fs::path& path) {
+  struct stat file {
+  }, stream{};
+  if (::stat(path.c_str(), &file) != 0) return -1;
+  for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO})
+    if (::fstat(descriptor, &stream) == 0 && stream.st_dev == file.st_dev && stream.st_ino == file.st_ino)
+      return descriptor;
+  return -1;
+}
+
 }  // namespace
 
 WholeFile::WholeFile(const fs::path& target) : target_(target) {
@@ -38,10 +51,13 @@ WholeFile::WholeFile(const fs::path& target) : target_(target) {
     if (!fault) target_ = real;  // none has the pipe behind /dev/stdout
   }
   const bool is_plain = !fs::exists(target_, fault) || fs::is_regular_file(target_, fault);
+  if (is_plain) stream_of_process_ = stream_of_process(target_);
+  const bool goes_on = stream_of_process_ >= 0;
   partial_ = target_;
-  if (is_plain) partial_ += ".partial-" + std::to_string(::getpid());
+  if (is_plain && !goes_on) partial_ += ".partial-" + std::to_string(::getpid());
+  if (goes_on) std::fflush(nullptr);
   errno = 0;
-  stream_.open(partial_, std::ios::binary | std::ios::trunc);
+  stream_.open(partial_, std::ios::binary | (goes_on ? std::ios::app : std::ios::trunc));
   if (!stream_) fail(target, std::strerror(errno));
 }
 
@@ -56,6 +72,7 @@ void WholeFile::put_in_place() {
   errno = 0;
   stream_.close();
   if (!stream_) fail(target_, errno != 0 ? std::strerror(errno) : "not all of it was taken");
+  if (stream_of_process_ >= 0) ::lseek(stream_of_process_, 0, SEEK_END);  // it has a place of its own
   if (partial_ == target_) return;
   std::error_code fault;
   if (fs::exists(target_, fault) && !reaches_disk(partial_)) fail(target_, std::strerror(errno));

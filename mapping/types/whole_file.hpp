@@ -7,7 +7,7 @@ namespace roomradar {
 
 /// A file that is written beside `target` (target.partial-PID) and takes its place when it is whole; until
 /// then, and after any fault, `target` is what it was. What is no plain file (a pipe, a device) is written as
-/// it comes.
+/// it comes; a file that stdout or stderr goes to is written on, in line with what these say.
 class WholeFile {
  public:
   /// Throws Error, with the system's reason, if nothing can be written there.
@@ -26,7 +26,8 @@ class WholeFile {
 
  private:
   std::filesystem::path target_;
-  std::filesystem::path partial_;  ///< the target itself, if that is no plain file
+  std::filesystem::path partial_;  ///< the target itself, if that is not to be replaced
+  int stream_of_process_ = -1;     ///< that goes to the target, too; -1: none
   std::ofstream stream_;
 };
 

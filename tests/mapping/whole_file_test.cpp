@@ -1,6 +1,7 @@
 // whole_file_test.cpp: what a file was it stays, until the whole of the new one is there.
 #include "mapping/types/whole_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -8,6 +9,8 @@
 
 #include <array>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include "tests/support/error_of.hpp"
@@ -101,6 +104,31 @@ TEST(WholeFile, AFolderThatIsNotThereIsSaid) {
   const test::TemporaryFolder folder;
   const std::string error = test::error_of([&] { write(folder.path() / "no" / "r.json", "x"); });
   EXPECT_NE(error.find("No such file"), std::string::npos) << error;
+}
+
+TEST(WholeFile, AFileThatStdoutGoesToIsWrittenOn) {
+  const test::TemporaryFolder folder;
+  const fs::path path = folder.path() / "log";
+  std::ofstream(path) << "before\n";
+  for (const int more : {O_APPEND, 0}) {  // >> and a descriptor at the end of it
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      const int file = open(path.c_str(), O_WRONLY | more);
+      lseek(file, 0, SEEK_END);
+      dup2(file, STDOUT_FILENO);
+      std::printf("a\n");
+      write("/dev/stdout", "report\n");
+      std::printf("b\n");
+      std::fflush(stdout);
+      std::_Exit(0);
+    }
+    int status = -1;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(text_of(path), "before\na\nreport\nb\na\nreport\nb\n");
+  EXPECT_EQ(entries(folder.path()), 1);
 }
 
 }  // namespace
