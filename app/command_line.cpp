@@ -495,8 +495,7 @@ void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work)
       ->type_name("FILE");
   sub->add_option("--presets", command.presets,
                   "write fast, balanced, accurate and the front, for --preset and --budget-ms: what a "
-                  "setting saves of "
-                  "the objects' motion is that of so many --objects")
+                  "setting saves of the objects' motion is that of so many --objects")
       ->type_name("FILE");
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {

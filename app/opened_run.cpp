@@ -32,6 +32,7 @@ nlohmann::json settings_of(const RunCommand& command) {
                              {"save_map", command.save_map}};
   settings.update(to_json(command.quality));
   if (!command.preset.empty()) settings["preset"] = command.preset;
+  if (!command.presets.empty()) settings["presets"] = command.presets;
   if (command.budget_ms) settings["budget_ms"] = *command.budget_ms;
   if (command.adopt_after_s) settings["adopt_s"] = *command.adopt_after_s;
   if (!command.calibration.empty()) settings["calibration"] = command.calibration;

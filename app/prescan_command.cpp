@@ -93,9 +93,10 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
     std::printf("trajectory against the recorded poses: RMSE %.1f mm, at most %.1f mm\n",
                 1e3 * counts.against_recorded->rmse_m, 1e3 * counts.against_recorded->max_m);
   if (held_out && held_out->frames == 0)
-    std::printf("no frame was held out: --hold-out %lld means frame %lld and every %lldth after it\n",
-                static_cast<long long>(command.hold_out), static_cast<long long>(command.hold_out / 2),
-                static_cast<long long>(command.hold_out));
+    std::printf(
+        "no frame was held out that has a pose: --hold-out %lld means frame %lld and every %lldth after it\n",
+        static_cast<long long>(command.hold_out), static_cast<long long>(command.hold_out / 2),
+        static_cast<long long>(command.hold_out));
   else if (held_out && held_out->cover == 0.0)
     std::printf("%lld frames held out: the mesh is nowhere in their view\n",
                 static_cast<long long>(held_out->frames));
@@ -208,6 +209,8 @@ int run(const PrescanCommand& command) {
   report.source = command.source;
   report.settings = {{"map", command.map}, {"poses", to_string(command.poses)}};
   report.settings.update(to_json(command.quality));
+  if (!command.preset.empty()) report.settings["preset"] = command.preset;
+  if (!command.presets.empty()) report.settings["presets"] = command.presets;
   if (command.hold_out > 0) report.settings["hold_out"] = command.hold_out;
   if (command.max_memory_mb > 0.0) report.settings["max_memory_mb"] = command.max_memory_mb;
   if (!command.calibration.empty()) report.settings["calibration"] = command.calibration;

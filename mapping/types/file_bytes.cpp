@@ -33,10 +33,11 @@ std::string read_bytes(const fs::path& path, std::string_view what, std::uintmax
 
 void write_bytes(const fs::path& path, std::string_view bytes) {
   std::ofstream file(path, std::ios::binary | std::ios::trunc);
+  const bool was_opened = file.is_open();
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
   std::error_code ignored;
-  if (!file && fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
+  if (was_opened && !file && fs::is_regular_file(path, ignored)) fs::remove(path, ignored);
   require_written(file, path);
 }
 

@@ -2,6 +2,7 @@
 #include "mapping/types/file_bytes.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <string>
@@ -53,6 +54,16 @@ TEST(FileBytes, WhatCannotBeWrittenIsNamed) {
   EXPECT_TRUE(test::error_of([&] {
                 write_bytes(nowhere, "b");
               }).starts_with(nowhere.string() + ": cannot be written"));
+  const fs::path kept = folder.path() / "kept";
+  write_bytes(kept, "old");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit none{0, before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);  // nothing can be opened
+  const std::string fault = test::error_of([&] { write_bytes(kept, "new"); });
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_TRUE(fault.starts_with(kept.string())) << fault;
+  EXPECT_EQ(read_bytes(kept, "a file"), "old");
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   EXPECT_TRUE(
       test::error_of([&] { write_bytes("/dev/full", "b"); }).starts_with("/dev/full: cannot be written"));
