@@ -15,8 +15,20 @@ constexpr double kNotMade = 0.02;
 constexpr int kMostNotMade_frames = 17;  // turns of pictures and objects are no longer than that
 constexpr double kMostStrain = 1.5, kStrainKept = 0.9;  // two frames of some ten that were cut on their way
 
+/// Of the objects in the room, those that a frame moves, where it moves any.
+double moved_share(int objects, int turns) { return std::max(1.0 / std::max(objects, 1), 1.0 / turns); }
+
+/// A few objects that take many turns are not as small a part of themselves as many are.
+double part_ratio(const BudgetStep& step, std::size_t part, const FrameLoad& load) {
+  const double measured = step.ratios[part];
+  if (part != index_of(FramePart::kPhysics) || step.objects == 0) return measured;
+  return measured * moved_share(load.moving + load.resting, step.object_turns) /
+         moved_share(step.objects, step.object_turns);
+}
+
 double part_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
-  return state.scales[part] * state.front[step].ratios[part] * usual_ms(static_cast<FramePart>(part), load);
+  return state.scales[part] * part_ratio(state.front[step], part, load) *
+         usual_ms(static_cast<FramePart>(part), load);
 }
 
 /// What is left of a frame from a part on.

@@ -15,6 +15,8 @@ struct BudgetStep {
   /// Times of its parts over those with the default quality; 0: such a part is not made in this run.
   std::array<double, kFrameParts> ratios{1.0, 1.0, 1.0, 1.0};
   bool alternates = false;  ///< no frame both moves the objects and makes a picture
+  int object_turns = 1;     ///< of so many frames that move objects, an object is moved in one ...
+  int objects = 0;          ///< ... and so many were there when the ratios were measured; 0: not known
 };
 
 struct BudgetConfig {

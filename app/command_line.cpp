@@ -494,8 +494,7 @@ void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work)
   sub->add_option("--html", command.html, "write one page with the fronts as plots, and tables")
       ->type_name("FILE");
   sub->add_option("--presets", command.presets,
-                  "write fast, balanced, accurate and the front, for --preset and --budget-ms: what a "
-                  "setting saves of the objects' motion is that of so many --objects")
+                  "write fast, balanced, accurate and the front, for --preset and --budget-ms")
       ->type_name("FILE");
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {

@@ -78,10 +78,19 @@ std::array<double, kFrameParts> ratios_of(const Json& json, const std::string& w
   return ratios;
 }
 
+int count_of(const Json& json, const std::string& where) {
+  constexpr double kMost = 1e6;
+  const double count = number_of(json, where);
+  if (!(count >= 0.0 && count <= kMost && count == std::floor(count)))
+    throw Error(where + " = " + json.dump() + ": must be a whole number, at most 1000000");
+  return static_cast<int>(count);
+}
+
 FrontStep front_step_of(const Json& json, const std::string& where) {
-  require_object(json, {"run", "part_ratios", "figures"}, where);
+  require_object(json, {"run", "part_ratios", "objects", "figures"}, where);
   return {run_quality_of(member(json, "run"), where + ": run"),
           ratios_of(member(json, "part_ratios"), where + ": part_ratios"),
+          json.contains("objects") ? count_of(json["objects"], where + ": objects") : 0,
           figures_of(member(json, "figures"), where + ": figures")};
 }
 
@@ -129,7 +138,10 @@ void write_presets(const Presets& presets, const fs::path& path) {
     Json ratios;
     for (std::size_t part = 0; part < kFrameParts; ++part)
       ratios[std::string(to_string(static_cast<FramePart>(part)))] = step.part_ratios[part];
-    json["front"].push_back({{"run", to_json(step.run)}, {"part_ratios", ratios}, {"figures", step.figures}});
+    json["front"].push_back({{"run", to_json(step.run)},
+                             {"part_ratios", ratios},
+                             {"objects", step.objects},
+                             {"figures", step.figures}});
   }
   WholeFile file(path);
   file.stream() << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';

@@ -26,6 +26,8 @@ struct FrontStep {
   RunQuality run;
   /// Median time of each FramePart over that with the default quality, measured beside it; > 0.
   std::array<double, kFrameParts> part_ratios{1.0, 1.0, 1.0, 1.0};
+  /// In the room when these were measured, for objects that take turns to be moved; 0: not known.
+  int objects = 0;
   Figures figures;
 };
 
@@ -40,7 +42,7 @@ struct Presets {
 ///     {"format": "roomradar presets", "format_version": 1, "made_by": {"machine": "...", ...},
 ///      "presets": {"fast": {"scan": {"resolution_m": 0.02}, "run": {"depth_stride": 2}, "figures":
 ///      {"frame_ratio": 0.4}}}, "front": [{"run": {}, "part_ratios": {"locate": 1, "mesh": 1, "physics": 1,
-///      "compose": 1}, "figures": {}}]}
+///      "compose": 1}, "objects": 50, "figures": {}}]}
 ///
 /// Settings that are left out are the default's. Throws Error "FILE: ..." for what is not this: cut short, of
 /// another version, longer than 1 MiB, a key that is not known, a value out of its rule.

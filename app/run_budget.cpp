@@ -15,7 +15,9 @@ namespace {
 std::vector<BudgetStep> steps_of(const std::vector<FrontStep>& front, bool has_picture) {
   std::vector<BudgetStep> steps;
   for (const FrontStep& step : front) {
-    steps.push_back({step.part_ratios, has_picture && step.run.picture_turns > 1});
+    const bool alternates = has_picture && step.run.picture_turns > 1;
+    const int turns = alternates ? std::max(step.run.object_turns / 2, 1) : step.run.object_turns;
+    steps.push_back({step.part_ratios, alternates, turns, step.objects});
     if (!has_picture) steps.back().ratios[index_of(FramePart::kCompose)] = 0.0;
   }
   return steps;
@@ -27,7 +29,7 @@ bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
     return std::tie(q.depth_stride, q.mesh_sigmas, q.fine_mesh);
   };
   const auto of_physics = [](const RunQuality& q) {
-    return std::tie(q.radar, q.radar_px, q.object_turns, q.physics_step_s);
+    return std::tuple(q.radar, q.radar_px, q.object_turns, q.physics_step_s, q.picture_turns > 1);
   };
   const auto of_compose = [](const RunQuality& q) {
     return std::tie(q.object_error_px, q.soft_edges, q.shadows, q.shadow_turns, q.picture_turns);

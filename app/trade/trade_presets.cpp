@@ -48,7 +48,9 @@ double part_ratio(const TradeResult& result, std::size_t setting, const std::vec
 
 FrontStep step_of(const TradeResult& run, std::size_t setting) {
   FrontStep step;
-  step.run = run_setting_of(run.settings[setting]).quality;
+  const RunSetting made = run_setting_of(run.settings[setting]);
+  step.run = made.quality;
+  step.objects = made.objects;
   const auto set = [&](FramePart part, const std::vector<std::string>& stages) {
     step.part_ratios[index_of(part)] = part_ratio(run, setting, stages);
   };

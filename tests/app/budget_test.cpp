@@ -224,6 +224,25 @@ TEST(Budget, APartThatIsNotMadeIsNotForeseen) {
               with.spread * usual_ms(FramePart::kPhysics, kCalm), 1e-9);
 }
 
+TEST(Budget, WhatTurnsSaveDependsOnHowManyObjectsTakeThem) {
+  // Physics alone, in turns of 4 frames.
+  const auto physics_ms = [](int measured_objects, double ratio, int objects) {
+    std::vector<BudgetStep> front(1);
+    front.front().ratios = {0.0, 0.0, ratio, 0.0};
+    front.front().object_turns = 4;
+    front.front().objects = measured_objects;
+    const BudgetState state = start_budget(front, {});
+    const FrameLoad load{.moving = objects};
+    return foreseen_ms(state, 0, load) / (state.spread * usual_ms(FramePart::kPhysics, load));
+  };
+  EXPECT_NEAR(physics_ms(1, 1.0, 1), 1.0, 1e-12);
+  EXPECT_NEAR(physics_ms(1, 1.0, 100), 0.25, 1e-12) << "a frame moves a quarter of many";
+  EXPECT_NEAR(physics_ms(50, 0.25, 50), 0.25, 1e-12);
+  EXPECT_NEAR(physics_ms(50, 0.25, 2), 0.5, 1e-12) << "one of two";
+  EXPECT_NEAR(physics_ms(50, 0.25, 0), 1.0, 1e-12);
+  EXPECT_NEAR(physics_ms(0, 0.3, 7), 0.3, 1e-12) << "not known: as measured";
+}
+
 TEST(RunBudget, TakesTheFrontFromWhatIsAskedForOnAndKeepsWhatIsFixed) {
   Presets presets;
   for (const int stride : {1, 2, 4}) {

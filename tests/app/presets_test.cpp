@@ -25,7 +25,7 @@ TEST(Presets, WrittenAndReadTheyAreTheSame) {
   presets.made_by = {{"machine", "two cores"}};
   presets.presets["fast"] = {{.resolution_m = 0.02}, {.depth_stride = 2}, {{"frame_ratio", 1.0 / 3.0}}};
   presets.front.resize(2);
-  presets.front[1] = {{.radar = RadarMode::kSampled}, {0.5, 0.25, 1.5, 1.0}, {{"contact_error_m", 0.001}}};
+  presets.front[1] = {{.radar = RadarMode::kSampled}, {0.5, 0.25, 1.5, 1.0}, 5, {{"contact_error_m", 0.001}}};
   const auto path = folder.path() / "presets.json";
   write_presets(presets, path);
   const Presets again = read_presets(path);
@@ -36,6 +36,7 @@ TEST(Presets, WrittenAndReadTheyAreTheSame) {
   ASSERT_EQ(again.front.size(), 2U);
   EXPECT_EQ(again.front[1].run, presets.front[1].run);
   EXPECT_EQ(again.front[1].part_ratios, presets.front[1].part_ratios);
+  EXPECT_EQ(again.front[1].objects, 5);
   EXPECT_EQ(again.front[1].figures, presets.front[1].figures);
 }
 
@@ -66,6 +67,8 @@ TEST(Presets, WhatIsWrongIsNamed) {
             "p.json: fast: figures: a: is not a number");
   EXPECT_EQ(fault_of_text(begin + R"(, "front": [{}, {"part_ratios": {"mesh": 0}}]})"),
             "p.json: front[1]: part_ratios: mesh = 0: must be > 0, at most 1000");
+  EXPECT_EQ(fault_of_text(begin + R"(, "front": [{"objects": 1.5}]})"),
+            "p.json: front[0]: objects = 1.5: must be a whole number, at most 1000000");
   EXPECT_EQ(fault_of_text(begin + R"(, "front": {}})"), "p.json: front: is not a list, or longer than 1000");
   EXPECT_EQ(fault_of_text(begin + R"(, "made_by": {"machine": 2}})"),
             "p.json: made_by: machine: is not text");

@@ -477,6 +477,7 @@ TEST(Presets, AFrontSaysWhatAPartTakesInTheFramesThatHaveIt) {
   EXPECT_EQ(ratios[index_of(FramePart::kMesh)], 0.5);
   EXPECT_EQ(ratios[index_of(FramePart::kCompose)], 0.5);
   EXPECT_EQ(ratios[index_of(FramePart::kPhysics)], 1.0);
+  EXPECT_EQ(presets.front[1].objects, 1);
   EXPECT_EQ(presets.front[1].figures.at("time_ratio"), 0.5);
   // A preset that something else pushed off the front is a step all the same.
   TradeResult pushed = run_result();
