@@ -23,7 +23,7 @@ std::vector<BudgetStep> steps_of(const std::vector<FrontStep>& front, bool has_p
   return steps;
 }
 
-/// Whether a part is made alike with both.
+/// Whether a part is made alike with both, in the frames that have it.
 bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
   const auto of_mesh = [](const RunQuality& q) {
     return std::tie(q.depth_stride, q.mesh_sigmas, q.fine_mesh);
@@ -32,7 +32,7 @@ bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
     return std::tuple(q.radar, q.radar_px, q.object_turns, q.physics_step_s, q.picture_turns > 1);
   };
   const auto of_compose = [](const RunQuality& q) {
-    return std::tie(q.object_error_px, q.soft_edges, q.shadows, q.shadow_turns, q.picture_turns);
+    return std::tie(q.object_error_px, q.soft_edges, q.shadows, q.shadow_turns);
   };
   switch (part) {
     case FramePart::kLocate:
