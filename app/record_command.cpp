@@ -19,7 +19,7 @@ namespace {
 ReadResult take_over(FrameSource& source, RecordingWriter& writer, const std::string& folder, Frame& frame) {
   try {
     const ReadResult result = source.next(frame);
-    if (result.status == ReadStatus::kFrame && !result.waiting) writer.write(frame);
+    if (result.status == ReadStatus::kFrame) writer.write(frame);
     return result;
   } catch (const Error& error) {
     if (writer.frames_written() == 0) throw;

@@ -40,12 +40,13 @@ void require_no_live_scan(const fs::path& folder) {
 /// Throws Error if the scan cannot even begin under the cap.
 /// @param later_bytes  that are needed whatever is scanned
 void require_memory_to_begin(double cap_mb, double later_bytes = 0.0) {
-  constexpr double kMB = 1e6, kToTrack_mb = 60.0, kSpare = 1.03;  // a process differs by 1 MB from run to run
+  constexpr double kMB = 1e6, kToTrack_mb = 60.0;
+  constexpr double kSpare_mb = 8.0;  // processes differ in how much of their libraries is in memory
   const double least_mb = (static_cast<double>(resident_bytes()) + later_bytes) / kMB + kToTrack_mb;
   if (!(cap_mb > 0.0) || least_mb <= cap_mb) return;
   throw Error("--max-memory " + std::to_string(std::llround(cap_mb)) +
               ": is too little to begin with; give at least " +
-              std::to_string(std::llround(std::ceil(kSpare * least_mb))));
+              std::to_string(std::llround(std::ceil(least_mb + kSpare_mb))));
 }
 
 /// A scan that was cut off, and is not to be resumed: what can be read again may go.
