@@ -1,16 +1,9 @@
-// apply_quality.cpp: qualities to configs.
+// apply_quality.cpp: run quality to session config.
 #include "app/apply_quality.hpp"
 
 #include <algorithm>
 
 namespace roomradar {
-
-void apply(const ScanQuality& quality, PrescanConfig& config) {
-  config.resolution_m = quality.resolution_m;
-  config.surface.max_deviation_m = static_cast<float>(quality.deviation_m);
-  config.odometry.view.finest_width_px = quality.tracking_px;
-  config.fuse_every = quality.fuse_every;
-}
 
 void apply(const RunQuality& quality, SessionConfig& config) {
   config.depth_stride = quality.depth_stride;

@@ -1,13 +1,11 @@
-// apply_quality.hpp: what a quality means to the parts of a scan and of a run.
+// apply_quality.hpp: sets a session's configuration by a run quality.
 #pragma once
 #include "app/quality.hpp"
 #include "app/session.hpp"
-#include "mapping/prescan.hpp"
 
 namespace roomradar {
 
-/// Sets what the quality is about, and nothing else. A default quality makes of a default config the same.
-void apply(const ScanQuality& quality, PrescanConfig& config);
+/// Sets the fields that the quality decides, and no others. A default quality leaves a default config unchanged.
 void apply(const RunQuality& quality, SessionConfig& config);
 
 }  // namespace roomradar

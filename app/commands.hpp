@@ -7,11 +7,10 @@
 
 #include "app/calibration/board_views.hpp"
 #include "app/quality.hpp"
+#include "app/run_options.hpp"
 #include "app/sources/frame_range.hpp"
-#include "app/sources/playback_source.hpp"
 #include "app/sources/recording_writer.hpp"
-#include "dynamic/surface_policy.hpp"
-#include "mapping/prescan.hpp"
+#include "mapping/types/pose_origin.hpp"
 
 namespace roomradar {
 
@@ -29,33 +28,6 @@ struct PrescanCommand {
   bool resume = false;              ///< go on with a scan that was cut off, or with a map that is there
   double checkpoint_every_s = 2.5;  ///< 0: none
   double max_memory_mb = 0.0;       ///< of the process, 10^6 bytes; 0: no cap
-  std::string report;
-};
-
-struct RunCommand {
-  std::string source;
-  std::string map;
-  PoseOrigin poses = PoseOrigin::kTracked;
-  std::optional<FrameRange> frames;
-  std::string calibration;        ///< file of the cameras and their errors; empty: what the source says
-  std::string object = "teapot";  ///< built in, or a mesh file
-  std::string script;             ///< events file; empty: the object is dropped over a level surface in view
-  SurfacePolicy surfaces = SurfacePolicy::kMap;
-  bool unknown_is_solid = false;  ///< kMap only: objects do not enter what the scan has not seen
-  RunQuality quality;
-  FieldWords fixed;     ///< what of it was asked for by name; no preset, script or budget changes that
-  std::string preset;   ///< name; empty: none
-  std::string presets;  ///< file; empty: the program's own
-  std::optional<double> budget_ms;      ///< of a frame
-  std::optional<double> adopt_after_s;  ///< none: only what the script asks for, if it does
-  AtEnd at_end = AtEnd::kEnd;           ///< what follows the source's last frame
-  bool window = false;
-  std::string record_session;  ///< folder for frames, events and settings; empty: none
-  std::string save_map;        ///< folder for the map as it is at the end; empty: it is not saved
-  std::string video;
-  std::string pictures;  ///< folder for composed frames as PNG
-  std::int64_t pictures_every = 10;
-  std::string frames_csv;  ///< file with a line a frame: how much of room and depth it needed, and why
   std::string report;
 };
 

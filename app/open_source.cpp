@@ -12,7 +12,7 @@
 #include "app/sources/fakenect_replay.hpp"
 #include "app/sources/folder_source.hpp"
 #include "app/sources/kinect_source.hpp"
-#include "mapping/prescan.hpp"
+#include "mapping/map_folder.hpp"
 #include "mapping/types/error.hpp"
 
 namespace roomradar {

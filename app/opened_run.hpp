@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "app/commands.hpp"
+#include "app/run_options.hpp"
 #include "app/interrupt.hpp"
 #include "app/report.hpp"
 #include "app/run_budget.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <new>
 
-#include "app/apply_quality.hpp"
+#include "app/apply_scan_quality.hpp"
 #include "app/commands.hpp"
 #include "app/held_out.hpp"
 #include "app/interrupt.hpp"

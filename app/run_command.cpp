@@ -19,7 +19,7 @@ namespace {
 void save_changed(SavedMap& map, std::size_t changes, const std::string& folder) {
   if (changes > 0) {
     map.mesh = extract_surface(map.octree, surface_config_of(map.info));
-    map.coverage_png = survey_coverage(map).picture_png;
+    map.coverage_png = survey_coverage(map.octree, map.mesh, map.trajectory).picture_png;
   }
   map.info.settings["adopted"] = std::to_string(changes);
   save_map(folder, map);

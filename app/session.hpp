@@ -22,7 +22,7 @@
 #include "app/script.hpp"
 #include "app/virtual_object.hpp"
 #include "mapping/map_folder.hpp"
-#include "mapping/prescan.hpp"
+#include "mapping/types/pose_origin.hpp"
 #include "mapping/types/stage_times.hpp"
 #include "mapping/unknown_surface.hpp"
 #include "radar/cyber_radar.hpp"

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "app/commands.hpp"
+#include "app/run_options.hpp"
 #include "app/script.hpp"
 #include "app/session_fingerprint.hpp"
 #include "mapping/map_folder.hpp"

@@ -6,12 +6,12 @@
 
 namespace roomradar {
 
-Coverage survey_coverage(const SavedMap& map) {
-  const Frontier frontier = find_frontier(map.octree);
+Coverage survey_coverage(const StaticMap& octree, const Mesh& mesh, const std::vector<TimedPose>& trajectory) {
+  const Frontier frontier = find_frontier(octree);
   Coverage coverage;
-  coverage.holes = find_holes(map.octree, map.mesh, frontier);
+  coverage.holes = find_holes(octree, mesh, frontier);
   coverage.picture_png =
-      encode_png(draw_coverage(map.octree, map.mesh, frontier, coverage.holes, map.trajectory));
+      encode_png(draw_coverage(octree, mesh, frontier, coverage.holes, trajectory));
   return coverage;
 }
 

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "mapping/holes.hpp"
-#include "mapping/map_folder.hpp"
+#include "mapping/static_map.hpp"
+#include "mapping/trajectory.hpp"
+#include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
@@ -13,7 +15,7 @@ struct Coverage {
   std::vector<std::uint8_t> picture_png;  ///< as draw_coverage draws it
 };
 
-/// Of a finished map: its octree, mesh and trajectory. Some tenths of a second for a room.
-Coverage survey_coverage(const SavedMap& map);
+/// Finds the holes of a finished map and draws its coverage. Takes some tenths of a second for a room.
+Coverage survey_coverage(const StaticMap& octree, const Mesh& mesh, const std::vector<TimedPose>& trajectory);
 
 }  // namespace roomradar

@@ -19,6 +19,7 @@
 #include "mapping/sha256.hpp"
 #include "mapping/types/error.hpp"
 #include "mapping/types/file_bytes.hpp"
+#include "mapping/types/pose_origin.hpp"
 #include "mapping/types/version.hpp"
 #include "mapping/types/whole_file.hpp"
 
@@ -129,6 +130,12 @@ std::string extents(const Eigen::AlignedBox3d& box) {
 }
 
 }  // namespace
+
+bool knows_recorded_world(const MapInfo& info) {
+  const auto poses = info.settings.find(kPosesSetting);
+  return (poses != info.settings.end() && poses->second == to_string(PoseOrigin::kRecorded)) ||
+         !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
+}
 
 SurfaceConfig surface_config_of(const MapInfo& info) {
   SurfaceConfig config;

@@ -61,6 +61,10 @@ struct SavedMap {
   std::vector<std::uint8_t> coverage_png;  ///< a picture of what was seen; empty: none
 };
 
+/// Tells whether T_world_recorded relates recorded poses to the map: the scan used recorded poses, or its
+/// recording had them.
+bool knows_recorded_world(const MapInfo& info);
+
 /// How the map's surface is to be extracted anew: as closely as prescan was asked to, where its settings say
 /// so. Throws Error if they say what cannot be.
 SurfaceConfig surface_config_of(const MapInfo& info);

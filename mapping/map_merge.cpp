@@ -234,7 +234,7 @@ SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_
   session.trajectory = b.trajectory;
   for (TimedPose& pose : session.trajectory) pose.T_world_camera = T_a_b * pose.T_world_camera;
   append_session(a, session);
-  a.coverage_png = survey_coverage(a).picture_png;
+  a.coverage_png = survey_coverage(a.octree, a.mesh, a.trajectory).picture_png;
   return a;
 }
 

@@ -282,16 +282,6 @@ bool is_held_out(std::int64_t frame_index, std::int64_t hold_out) {
   return hold_out > 0 && frame_index % hold_out == hold_out / 2;
 }
 
-bool knows_recorded_world(const MapInfo& info) {
-  const auto poses = info.settings.find(kPosesSetting);
-  return (poses != info.settings.end() && poses->second == to_string(PoseOrigin::kRecorded)) ||
-         !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
-}
-
-std::string_view to_string(PoseOrigin poses) {
-  return poses == PoseOrigin::kTracked ? "tracked" : "recorded";
-}
-
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
                       const PrescanProgress& progress, PrescanStart start) {
   const double reach_m = start.map ? start.map->octree.reach_m() : StaticMap(config.resolution_m).reach_m();
@@ -355,7 +345,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   }
 
   // What was not seen?
-  Coverage coverage = times.timed("coverage", [&] { return survey_coverage(map); });
+  Coverage coverage = times.timed("coverage", [&] { return survey_coverage(map.octree, map.mesh, map.trajectory); });
   map.coverage_png = std::move(coverage.picture_png);
   result.holes = std::move(coverage.holes);
   return result;

@@ -5,7 +5,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "mapping/ghosts.hpp"
 #include "mapping/holes.hpp"
@@ -14,22 +13,11 @@
 #include "mapping/surface.hpp"
 #include "mapping/trajectory.hpp"
 #include "mapping/types/frame_source.hpp"
+#include "mapping/types/pose_origin.hpp"
 #include "mapping/types/stage_times.hpp"
 #include "mapping/up_direction.hpp"
 
 namespace roomradar {
-
-enum class PoseOrigin {
-  kTracked,   ///< found by odometry from depth and colour
-  kRecorded,  ///< taken from the recording; frames without one are not fused
-};
-
-/// As the command line, the map and the reports call it.
-std::string_view to_string(PoseOrigin poses);
-
-/// Whether the map's T_world_recorded says where recorded poses are in it: it was scanned with such, or from
-/// a recording that had them.
-bool knows_recorded_world(const MapInfo& info);
 
 struct PrescanConfig {
   double resolution_m = 0.01;  ///< edge of the octree's smallest cells

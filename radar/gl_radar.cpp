@@ -130,7 +130,7 @@ void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneM
   };
   if (std::any_of(scene.begin(), scene.end(), has_bad_pose)) return;
   forget_gl_errors();
-  boxes_.build(scene);
+  build(boxes_, scene);
   drawn_.clear();
   reaches_.clear();
   batch_.clear();

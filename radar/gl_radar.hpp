@@ -15,7 +15,7 @@
 #include "radar/mask_cache.hpp"
 #include "radar/radar_pictures.hpp"
 #include "radar/radar_volume.hpp"
-#include "radar/scene_boxes.hpp"
+#include "radar/scene_mesh.hpp"
 #include "radar/tile_atlas.hpp"
 #include "radar/tile_draws.hpp"
 

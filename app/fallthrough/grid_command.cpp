@@ -11,8 +11,8 @@
 #include "app/picture_file.hpp"
 #include "app/registered_maps.hpp"
 #include "app/report.hpp"
-#include "mapping/prescan.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/pose_origin.hpp"
 
 namespace roomradar {
 namespace {

@@ -9,10 +9,10 @@
 #include "app/progress.hpp"
 #include "app/sim/simulated_source.hpp"
 #include "mapping/map_folder.hpp"
-#include "mapping/prescan.hpp"
 #include "mapping/static_map.hpp"
 #include "mapping/surface.hpp"
 #include "mapping/types/error.hpp"
+#include "mapping/types/pose_origin.hpp"
 #include "mapping/types/version.hpp"
 #include "mapping/unknown_surface.hpp"
 

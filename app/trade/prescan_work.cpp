@@ -6,7 +6,7 @@
 #include <limits>
 #include <memory>
 
-#include "app/apply_quality.hpp"
+#include "app/apply_scan_quality.hpp"
 #include "app/held_out.hpp"
 #include "app/report.hpp"
 #include "app/sim/simulated_source.hpp"

@@ -97,7 +97,8 @@ TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {
 }
 
 TEST(Coverage, ASurveyHasTheFrontiersHolesAndAPicture) {
-  const Coverage coverage = survey_coverage(wall_seen(30));
+  const SavedMap scan = wall_seen(30);
+  const Coverage coverage = survey_coverage(scan.octree, scan.mesh, scan.trajectory);
   ASSERT_FALSE(coverage.holes.empty());  // a view of one wall has an outer border
   EXPECT_TRUE(std::all_of(coverage.holes.begin(), coverage.holes.end(),
                           [](const Hole& hole) { return hole.kind == HoleKind::kOuterBorder; }));
