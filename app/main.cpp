@@ -6,8 +6,8 @@
 #include <iostream>
 #include <new>
 
-#include "app/command_line.hpp"
-#include "mapping/types/error.hpp"
+#include "app/commands/command_line.hpp"
+#include "mapping/types/system/error.hpp"
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to be said, not a death

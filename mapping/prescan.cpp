@@ -10,16 +10,16 @@
 #include <string>
 #include <utility>
 
-#include "mapping/checkpoints.hpp"
-#include "mapping/coverage.hpp"
-#include "mapping/ghost_removal.hpp"
-#include "mapping/map_merge.hpp"
-#include "mapping/memory_use.hpp"
+#include "mapping/coverage/coverage.hpp"
+#include "mapping/coverage/observed_area.hpp"
+#include "mapping/map/map_merge.hpp"
+#include "mapping/map/registration.hpp"
+#include "mapping/octree/memory_use.hpp"
 #include "mapping/prescan_state.hpp"
-#include "mapping/registration.hpp"
-#include "mapping/seen_area.hpp"
-#include "mapping/types/error.hpp"
-#include "mapping/types/number_text.hpp"
+#include "mapping/revision/ghost_removal.hpp"
+#include "mapping/storage/checkpoints.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
@@ -345,7 +345,8 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   }
 
   // What was not seen?
-  Coverage coverage = times.timed("coverage", [&] { return survey_coverage(map.octree, map.mesh, map.trajectory); });
+  Coverage coverage =
+      times.timed("coverage", [&] { return survey_coverage(map.octree, map.mesh, map.trajectory); });
   map.coverage_png = std::move(coverage.picture_png);
   result.holes = std::move(coverage.holes);
   return result;

@@ -6,16 +6,16 @@
 #include <optional>
 #include <string>
 
-#include "mapping/ghosts.hpp"
-#include "mapping/holes.hpp"
-#include "mapping/map_folder.hpp"
-#include "mapping/odometry.hpp"
-#include "mapping/surface.hpp"
-#include "mapping/trajectory.hpp"
+#include "mapping/coverage/holes.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/odometry/odometry.hpp"
+#include "mapping/odometry/up_direction.hpp"
+#include "mapping/revision/ghosts.hpp"
+#include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/frame_source.hpp"
 #include "mapping/types/pose_origin.hpp"
-#include "mapping/types/stage_times.hpp"
-#include "mapping/up_direction.hpp"
+#include "mapping/types/system/stage_times.hpp"
+#include "mapping/types/trajectory.hpp"
 
 namespace roomradar {
 

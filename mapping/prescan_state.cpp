@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <string>
 
-#include "mapping/binary_file.hpp"
-#include "mapping/odometry_checkpoint.hpp"
-#include "mapping/types/byte_archive.hpp"
+#include "mapping/odometry/odometry_checkpoint.hpp"
+#include "mapping/storage/binary_file.hpp"
+#include "mapping/types/serialize.hpp"
 
 namespace roomradar {
 

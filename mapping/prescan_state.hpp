@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "mapping/checkpoints.hpp"
-#include "mapping/ghost_removal.hpp"
 #include "mapping/prescan.hpp"
+#include "mapping/revision/ghost_removal.hpp"
+#include "mapping/storage/checkpoints.hpp"
 
 namespace roomradar {
 

@@ -11,8 +11,8 @@
 
 #include "app/calibration/board_pose.hpp"
 #include "app/calibration/median.hpp"
-#include "mapping/types/error.hpp"
-#include "mapping/types/number_text.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {

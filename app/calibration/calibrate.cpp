@@ -16,7 +16,7 @@
 #include "app/calibration/board_pose.hpp"
 #include "app/calibration/median.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "app/sources/camera_rig_json.hpp"
-#include "mapping/types/error.hpp"
+#include "app/sources/formats/camera_rig_json.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {

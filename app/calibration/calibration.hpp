@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/sources/camera_rig.hpp"
+#include "app/sources/formats/camera_rig.hpp"
 #include "mapping/types/lens.hpp"
 
 namespace roomradar {

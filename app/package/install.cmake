@@ -2,29 +2,24 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(libraries types mapping radar dynamic sources)
-set(targets roomradar_options roomradar_warnings)
-foreach(name IN LISTS libraries)
-  set_target_properties(roomradar_${name} PROPERTIES EXPORT_NAME ${name})
-  list(APPEND targets roomradar_${name})
-endforeach()
+get_property(targets GLOBAL PROPERTY roomradar_libraries)
+list(APPEND targets roomradar_options roomradar_warnings)
 set_target_properties(roomradar_options PROPERTIES EXPORT_NAME options)
 set_target_properties(roomradar_warnings PROPERTIES EXPORT_NAME warnings)
 
 # The program.
 install(TARGETS roomradar COMPONENT program)
 install(FILES ${PROJECT_BINARY_DIR}/roomradar.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
-install(FILES app/presets.json DESTINATION ${CMAKE_INSTALL_DATADIR}/roomradar COMPONENT program)
+install(FILES app/quality/presets.json DESTINATION ${CMAKE_INSTALL_DATADIR}/roomradar COMPONENT program)
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 
 # The libraries: find_package(roomradar), then link roomradar::mapping, ::radar, ::dynamic or ::sources.
 install(TARGETS ${targets} EXPORT roomradar COMPONENT development)
 set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/roomradar)
-install(DIRECTORY mapping radar dynamic DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY app/sources DESTINATION ${header_dir}/app COMPONENT development FILES_MATCHING PATTERN "*.hpp")
-install(FILES ${PROJECT_BINARY_DIR}/generated/mapping/types/version.hpp
-  DESTINATION ${header_dir}/mapping/types COMPONENT development)
+install(DIRECTORY mapping radar dynamic app DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+install(FILES ${PROJECT_BINARY_DIR}/generated/mapping/types/system/version.hpp
+  DESTINATION ${header_dir}/mapping/types/system COMPONENT development)
 set(config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/roomradar)
 install(EXPORT roomradar NAMESPACE roomradar:: FILE roomradar-targets.cmake DESTINATION ${config_dir} COMPONENT development)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/roomradar-config.cmake.in ${PROJECT_BINARY_DIR}/roomradar-config.cmake

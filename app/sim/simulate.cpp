@@ -5,15 +5,15 @@
 #include <string>
 #include <vector>
 
-#include "app/sim/room.hpp"
-#include "app/sim/room_mesh.hpp"
-#include "app/sim/simulated_source.hpp"
-#include "app/sources/image_file.hpp"
-#include "mapping/mesh_file.hpp"
-#include "mapping/trajectory.hpp"
-#include "mapping/types/error.hpp"
-#include "mapping/types/file_bytes.hpp"
-#include "mapping/types/number_text.hpp"
+#include "app/sim/room/room.hpp"
+#include "app/sim/room/room_mesh.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "app/sources/formats/image_file.hpp"
+#include "mapping/mesh/mesh_file.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/format_number.hpp"
+#include "mapping/types/trajectory.hpp"
 
 namespace roomradar {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <functional>
 
-#include "app/sim/sim_options.hpp"
-#include "app/sources/recording_writer.hpp"
+#include "app/sim/sensor/sim_options.hpp"
+#include "app/sources/recordings/recording_writer.hpp"
 
 namespace roomradar {
 

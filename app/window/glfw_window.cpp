@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "app/window/key_meant.hpp"
-#include "mapping/types/error.hpp"
+#include "app/window/link/key_meant.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {

@@ -5,14 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "app/window/look.hpp"
-#include "app/window/model_view.hpp"
-#include "app/window/picture_pane.hpp"
-#include "app/window/play_link.hpp"
-#include "app/window/radar_pane.hpp"
-#include "app/window/side_panel.hpp"
-#include "app/window/timing_pane.hpp"
-#include "app/window/window_layout.hpp"
+#include "app/window/link/ui_channel.hpp"
+#include "app/window/panes/model_view.hpp"
+#include "app/window/panes/picture_pane.hpp"
+#include "app/window/panes/radar_pane.hpp"
+#include "app/window/panes/side_panel.hpp"
+#include "app/window/panes/theme.hpp"
+#include "app/window/panes/timing_pane.hpp"
+#include "app/window/panes/window_layout.hpp"
 
 namespace roomradar {
 

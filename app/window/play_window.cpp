@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "app/window/glfw_window.hpp"
-#include "app/window/look.hpp"
+#include "app/window/panes/theme.hpp"
 #include "app/window/play_ui.hpp"
 
 namespace roomradar {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/window/play_link.hpp"
+#include "app/window/link/ui_channel.hpp"
 
 namespace roomradar {
 

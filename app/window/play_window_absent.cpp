@@ -1,6 +1,6 @@
 // play_window_absent.cpp: in the place of the window where GLFW or Dear ImGui were not there to build it.
 #include "app/window/play_window.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "mapping/types/error.hpp"
-#include "mapping/types/number_text.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar::test {
 

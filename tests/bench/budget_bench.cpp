@@ -24,15 +24,15 @@
 #include <string>
 #include <vector>
 
-#include "app/apply_quality.hpp"
-#include "app/quality_json.hpp"
-#include "app/run_budget.hpp"
-#include "app/session.hpp"
-#include "app/sim/simulated_source.hpp"
-#include "app/surface_hit.hpp"
-#include "mapping/map_folder.hpp"
+#include "app/physics/ray_hit.hpp"
+#include "app/quality/quality_json.hpp"
+#include "app/run/run_budget.hpp"
+#include "app/session/apply_quality.hpp"
+#include "app/session/session.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "mapping/map/map_folder.hpp"
 #include "mapping/prescan.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/support/exact_depth.hpp"

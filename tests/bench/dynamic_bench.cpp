@@ -10,15 +10,15 @@
 #include <utility>
 #include <vector>
 
-#include "app/sim/counter_random.hpp"
-#include "dynamic/change_tracker.hpp"
-#include "dynamic/foreground.hpp"
+#include "app/sim/solids/counter_random.hpp"
+#include "dynamic/foreground/change_tracker.hpp"
+#include "dynamic/foreground/foreground.hpp"
 #include "mapping/types/depth_noise.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/bench/dynamic_bench_foreground.hpp"
 #include "tests/bench/dynamic_bench_mesh.hpp"
-#include "tests/dynamic/foreground_judge.hpp"
+#include "tests/dynamic/foreground/foreground_judge.hpp"
 
 namespace roomradar::test {
 namespace {

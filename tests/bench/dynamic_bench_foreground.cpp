@@ -8,15 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "app/session.hpp"
-#include "app/sources/folder_source.hpp"
-#include "app/sources/frame_range.hpp"
+#include "app/session/session.hpp"
+#include "app/sources/formats/frame_range.hpp"
+#include "app/sources/recordings/folder_source.hpp"
+#include "mapping/octree/static_map.hpp"
 #include "mapping/prescan.hpp"
-#include "mapping/static_map.hpp"
-#include "mapping/surface.hpp"
-#include "radar/depth_pass.hpp"
-#include "tests/dynamic/foreground_judge.hpp"
-#include "tests/dynamic/foreground_views.hpp"
+#include "mapping/surface/surface_extraction.hpp"
+#include "radar/depth/depth_pass.hpp"
+#include "tests/dynamic/foreground/foreground_judge.hpp"
+#include "tests/dynamic/foreground/foreground_views.hpp"
 #include "tests/support/recordings.hpp"
 
 namespace roomradar::test {

@@ -6,12 +6,12 @@
 #include <random>
 #include <string>
 
-#include "dynamic/depth_mesh.hpp"
-#include "dynamic/moved_surface.hpp"
+#include "dynamic/surface/depth_mesh.hpp"
+#include "dynamic/surface/dynamic_surface.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "radar/triangle_tree.hpp"
+#include "radar/geometry/triangle_tree.hpp"
 #include "tests/bench/bench_times.hpp"
-#include "tests/dynamic/foreground_judge.hpp"
+#include "tests/dynamic/foreground/foreground_judge.hpp"
 #include "tests/dynamic/mesh_raster.hpp"
 
 namespace roomradar::test {

@@ -23,13 +23,13 @@
 #include <utility>
 #include <vector>
 
-#include "app/report.hpp"
-#include "app/session.hpp"
-#include "app/sim/simulated_source.hpp"
-#include "app/sources/frame_range.hpp"
-#include "mapping/map_folder.hpp"
-#include "mapping/types/error.hpp"
-#include "mapping/types/stage_times.hpp"
+#include "app/cli/report.hpp"
+#include "app/session/session.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "app/sources/formats/frame_range.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/stage_times.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/bench/frame_bench_pipe.hpp"

@@ -7,8 +7,8 @@
 #include <optional>
 #include <string>
 
-#include "app/open_source.hpp"
-#include "mapping/map_folder.hpp"
+#include "app/cli/open_source.hpp"
+#include "mapping/map/map_folder.hpp"
 #include "mapping/prescan.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/frame_bench_pipe.hpp"

@@ -21,9 +21,9 @@
 #include <string>
 #include <vector>
 
-#include "app/sources/folder_source.hpp"
-#include "mapping/static_map.hpp"
-#include "mapping/types/error.hpp"
+#include "app/sources/recordings/folder_source.hpp"
+#include "mapping/octree/static_map.hpp"
+#include "mapping/types/system/error.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 

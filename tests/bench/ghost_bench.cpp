@@ -20,13 +20,13 @@
 #include <unordered_set>
 #include <vector>
 
-#include "app/sim/camera_path.hpp"
-#include "app/sim/movers.hpp"
-#include "app/sim/simulated_source.hpp"
+#include "app/sim/sensor/camera_path.hpp"
+#include "app/sim/sensor/movers.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/prescan.hpp"
-#include "mapping/types/cell_code.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/voxel_key.hpp"
 #include "tests/bench/bench_program.hpp"
 
 namespace roomradar {

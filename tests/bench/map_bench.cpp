@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "app/report.hpp"
-#include "app/sim/simulated_source.hpp"
-#include "app/sim/surface_score.hpp"
+#include "app/cli/report.hpp"
+#include "app/sim/scenarios/surface_score.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/prescan.hpp"
 #include "tests/bench/bench_program.hpp"
 

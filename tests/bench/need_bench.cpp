@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "app/sim/counter_random.hpp"
-#include "dynamic/moved_surface.hpp"
+#include "app/sim/solids/counter_random.hpp"
+#include "dynamic/surface/dynamic_surface.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "radar/cyber_radar.hpp"
-#include "radar/depth_pass.hpp"
-#include "radar/triangle_tree.hpp"
+#include "radar/depth/depth_pass.hpp"
+#include "radar/exact/cyber_radar.hpp"
+#include "radar/geometry/triangle_tree.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 

@@ -23,15 +23,15 @@
 #include <random>
 #include <string>
 
-#include "app/live_scene.hpp"
-#include "app/placement.hpp"
-#include "app/rigid_motion.hpp"
-#include "app/sim/room_mesh.hpp"
-#include "app/sim/simulated_source.hpp"
-#include "app/sim/solid_distance.hpp"
-#include "app/teapot.hpp"
+#include "app/objects/teapot.hpp"
+#include "app/physics/placement.hpp"
+#include "app/physics/rigid_motion.hpp"
+#include "app/session/frame_scene.hpp"
+#include "app/sim/room/room_mesh.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "app/sim/solids/solid_distance.hpp"
 #include "bench_times.hpp"
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 #include "physics_bench_scenes.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/radar/shapes.hpp"

@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "app/rigid_motion.hpp"
+#include "app/physics/rigid_motion.hpp"
 
 namespace roomradar::bench {
 

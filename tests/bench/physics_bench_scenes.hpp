@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "app/mass_properties.hpp"
-#include "app/physics.hpp"
+#include "app/physics/mass_properties.hpp"
+#include "app/physics/physics.hpp"
 #include "mapping/types/mesh.hpp"
-#include "radar/cyber_radar.hpp"
-#include "radar/near_field.hpp"
+#include "radar/exact/cyber_radar.hpp"
+#include "radar/motion/proximity.hpp"
 
 namespace roomradar::bench {
 

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <memory>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 #include "radar_bench_objects.hpp"
 #include "radar_bench_rows.hpp"
 #include "tests/bench/bench_program.hpp"

@@ -1,8 +1,8 @@
 // radar_bench_methods.cpp: our modes and the peers behind one call.
 #include "radar_bench_methods.hpp"
 
-#include "radar/gl_radar.hpp"
-#include "radar/gpu_mesh.hpp"
+#include "radar/batch/gl_radar.hpp"
+#include "radar/gl/gpu_mesh.hpp"
 
 namespace roomradar::bench {
 namespace {

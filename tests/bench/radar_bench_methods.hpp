@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "radar/contact.hpp"
-#include "radar/cyber_radar.hpp"
-#include "radar/gl_context.hpp"
+#include "radar/exact/cyber_radar.hpp"
+#include "radar/geometry/contact.hpp"
+#include "radar/gl/gl_context.hpp"
 #include "radar_bench_peers.hpp"
 #include "radar_bench_poses.hpp"
 #include "radar_bench_shapes.hpp"

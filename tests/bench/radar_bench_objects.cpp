@@ -9,9 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "radar/gl_radar.hpp"
-#include "radar/gpu_mesh.hpp"
-#include "radar/scene_boxes.hpp"
+#include "radar/batch/gl_radar.hpp"
+#include "radar/exact/scene_boxes.hpp"
+#include "radar/gl/gpu_mesh.hpp"
 #include "tests/bench/bench_times.hpp"
 #include "tests/support/exact_travel.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/published_objects.hpp"
+#include "app/objects/published_objects.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/mesh.hpp"

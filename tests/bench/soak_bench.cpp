@@ -16,15 +16,15 @@
 #include <string>
 #include <vector>
 
-#include "app/report.hpp"
-#include "app/session.hpp"
-#include "app/sim/simulated_source.hpp"
-#include "app/virtual_object.hpp"
-#include "mapping/map_folder.hpp"
-#include "mapping/memory_use.hpp"
+#include "app/cli/report.hpp"
+#include "app/objects/virtual_object.hpp"
+#include "app/session/session.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/octree/memory_use.hpp"
 #include "mapping/prescan.hpp"
-#include "mapping/types/error.hpp"
-#include "mapping/types/stage_times.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/stage_times.hpp"
 #include "tests/bench/bench_program.hpp"
 
 namespace roomradar {

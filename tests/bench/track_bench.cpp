@@ -18,11 +18,11 @@
 #include <string>
 #include <vector>
 
-#include "app/sim/simulated_source.hpp"
-#include "app/sources/folder_source.hpp"
-#include "mapping/odometry.hpp"
-#include "mapping/odometry_snapshot.hpp"
-#include "mapping/trajectory.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "app/sources/recordings/folder_source.hpp"
+#include "mapping/odometry/odometry.hpp"
+#include "mapping/odometry/odometry_snapshot.hpp"
+#include "mapping/types/trajectory.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/bench/bench_times.hpp"
 

@@ -25,11 +25,11 @@
 #include <string>
 #include <vector>
 
-#include "app/open_source.hpp"
-#include "app/picture_file.hpp"
-#include "app/sim/room.hpp"
-#include "app/sources/folder_source.hpp"
-#include "app/sources/recording_writer.hpp"
+#include "app/cli/open_source.hpp"
+#include "app/media/picture_file.hpp"
+#include "app/sim/room/room.hpp"
+#include "app/sources/recordings/folder_source.hpp"
+#include "app/sources/recordings/recording_writer.hpp"
 #include "bench_times.hpp"
 #include "tests/bench/bench_program.hpp"
 #include "tests/support/recordings.hpp"

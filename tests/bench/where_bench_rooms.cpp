@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <numbers>
 
-#include "app/sim/camera_path.hpp"
-#include "app/sim/counter_random.hpp"
-#include "app/sim/room.hpp"
+#include "app/sim/room/room.hpp"
+#include "app/sim/sensor/camera_path.hpp"
+#include "app/sim/solids/counter_random.hpp"
 #include "bench_times.hpp"
-#include "mapping/mesh_distance.hpp"
-#include "mapping/registration.hpp"
+#include "mapping/map/registration.hpp"
+#include "mapping/mesh/mesh_distance.hpp"
 
 namespace roomradar {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "app/live_scene.hpp"
-#include "app/locator.hpp"
-#include "app/sim/simulated_source.hpp"
-#include "mapping/map_folder.hpp"
+#include "app/session/frame_scene.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "mapping/localization/locator.hpp"
+#include "mapping/map/map_folder.hpp"
 #include "mapping/prescan.hpp"
 
 namespace roomradar {

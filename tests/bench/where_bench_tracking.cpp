@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/sim/camera_path.hpp"
-#include "app/sim/counter_random.hpp"
-#include "app/sim/room.hpp"
+#include "app/sim/room/room.hpp"
+#include "app/sim/sensor/camera_path.hpp"
+#include "app/sim/solids/counter_random.hpp"
 #include "bench_times.hpp"
-#include "mapping/trajectory.hpp"
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/trajectory.hpp"
 
 namespace roomradar {
 namespace {

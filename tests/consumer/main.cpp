@@ -4,8 +4,8 @@
 #include <exception>
 #include <vector>
 
-#include "mapping/map_folder.hpp"
-#include "radar/cyber_radar.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "radar/exact/cyber_radar.hpp"
 
 namespace {
 

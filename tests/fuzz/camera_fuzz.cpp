@@ -1,8 +1,8 @@
 // camera_fuzz.cpp: camera.json, camera-intrinsics.txt, calibration.json and map.json, by the first byte.
 #include "app/calibration/calibration.hpp"
-#include "app/sources/camera_rig.hpp"
-#include "app/sources/recording_index.hpp"
-#include "mapping/map_info_json.hpp"
+#include "app/sources/formats/camera_rig.hpp"
+#include "app/sources/recordings/recording_index.hpp"
+#include "mapping/map/map_info_json.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roomradar::test {

@@ -1,5 +1,5 @@
 // image_fuzz.cpp: depth and colour images, by the first byte.
-#include "app/sources/image_file.hpp"
+#include "app/sources/formats/image_file.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,8 +1,8 @@
 // map_fuzz.cpp: the parts of a map folder, by the first byte, as they are read after their checksums matched.
-#include "mapping/mesh_file.hpp"
-#include "mapping/places.hpp"
-#include "mapping/static_map.hpp"
-#include "mapping/trajectory.hpp"
+#include "mapping/localization/keyframe_database.hpp"
+#include "mapping/mesh/mesh_file.hpp"
+#include "mapping/octree/static_map.hpp"
+#include "mapping/types/trajectory.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 namespace {

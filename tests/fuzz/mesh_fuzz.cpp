@@ -1,5 +1,5 @@
 // mesh_fuzz.cpp: meshes of virtual objects, in the format that the first byte stands for.
-#include "mapping/mesh_file.hpp"
+#include "mapping/mesh/mesh_file.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

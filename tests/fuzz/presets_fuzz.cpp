@@ -1,5 +1,5 @@
 // presets_fuzz.cpp: presets files.
-#include "app/presets.hpp"
+#include "app/quality/presets.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

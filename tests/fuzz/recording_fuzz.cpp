@@ -1,6 +1,6 @@
 // recording_fuzz.cpp: folders with recordings of every kind, their lists and their images.
-#include "app/sources/fakenect_replay.hpp"
-#include "app/sources/folder_source.hpp"
+#include "app/sources/kinect/fakenect_replay.hpp"
+#include "app/sources/recordings/folder_source.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,7 +1,7 @@
 // script_fuzz.cpp: events files, simulated rooms' names and frame ranges: what a user writes.
-#include "app/script.hpp"
-#include "app/sim/sim_options.hpp"
-#include "app/sources/frame_range.hpp"
+#include "app/session/script.hpp"
+#include "app/sim/sensor/sim_options.hpp"
+#include "app/sources/formats/frame_range.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,5 +1,5 @@
 // session_fuzz.cpp: folders of recorded sessions: settings, events, frames, results.
-#include "app/session_folder.hpp"
+#include "app/cli/session_folder.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

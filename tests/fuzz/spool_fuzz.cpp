@@ -1,5 +1,5 @@
 // spool_fuzz.cpp: the list of a live scan that was cut off.
-#include "app/sources/spooled_source.hpp"
+#include "app/sources/recordings/spooled_source.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

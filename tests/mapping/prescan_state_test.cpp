@@ -7,12 +7,12 @@
 #include <random>
 #include <string>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace roomradar {
+namespace roomradar::prescan_state_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -132,4 +132,4 @@ TEST(PrescanState, BrokenBytesAreRefusedOrHarmless) {
 }
 
 }  // namespace
-}  // namespace roomradar
+}  // namespace roomradar::prescan_state_test

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "mapping/map_folder.hpp"
+#include "mapping/map/map_folder.hpp"
 #include "tests/support/error_of.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/kept_source.hpp"
@@ -13,7 +13,7 @@
 #include "tests/support/painted_frame.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace roomradar {
+namespace roomradar::prescan_test {
 namespace {
 
 constexpr int kFrames = 6;
@@ -140,4 +140,4 @@ TEST(Prescan, ALongScanThatOnlyBeginsInTheMapIsAddedToIt) {
 }
 
 }  // namespace
-}  // namespace roomradar
+}  // namespace roomradar::prescan_test

@@ -13,9 +13,9 @@
 #include <utility>
 #include <vector>
 
-#include "radar/cyber_radar.hpp"
-#include "radar/radar_scene.hpp"
-#include "radar/triangle_tree.hpp"
+#include "radar/exact/cyber_radar.hpp"
+#include "radar/geometry/radar_scene.hpp"
+#include "radar/geometry/triangle_tree.hpp"
 #include "tests/support/exact_travel.hpp"
 
 namespace roomradar {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar::test {
 

@@ -10,7 +10,7 @@
 #include "tests/radar/shapes.hpp"
 #include "tests/support/exact_travel.hpp"
 
-namespace roomradar {
+namespace roomradar::exact_clearance_test {
 namespace {
 
 Eigen::Isometry3d at(double x, double y, double z) {
@@ -129,4 +129,4 @@ TEST(ExactEncloses, ThingsInAHollowAreNotInside) {
 }
 
 }  // namespace
-}  // namespace roomradar
+}  // namespace roomradar::exact_clearance_test

@@ -10,7 +10,7 @@
 
 #include "tests/radar/shapes.hpp"
 
-namespace roomradar {
+namespace roomradar::exact_gap_test {
 namespace {
 
 /// The same question put another way: object + t z and scene meet where t z is a convex mix of the nine
@@ -139,4 +139,4 @@ TEST(ExactGap, BesideIsNothing) {
 }
 
 }  // namespace
-}  // namespace roomradar
+}  // namespace roomradar::exact_gap_test

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 
 namespace roomradar {
 namespace {

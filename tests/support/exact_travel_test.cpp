@@ -7,10 +7,10 @@
 #include <limits>
 #include <optional>
 
-#include "mapping/types/error.hpp"
+#include "mapping/types/system/error.hpp"
 #include "tests/radar/shapes.hpp"
 
-namespace roomradar {
+namespace roomradar::exact_travel_test {
 namespace {
 
 const Eigen::Vector3d kDown(0, 0, -1);
@@ -179,4 +179,4 @@ TEST(ExactTravel, BadArgumentsAreRefused) {
 }
 
 }  // namespace
-}  // namespace roomradar
+}  // namespace roomradar::exact_travel_test

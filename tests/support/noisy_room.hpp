@@ -3,8 +3,8 @@
 #include <numbers>
 #include <vector>
 
-#include "mapping/odometry.hpp"
-#include "mapping/trajectory.hpp"
+#include "mapping/odometry/odometry.hpp"
+#include "mapping/types/trajectory.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
 

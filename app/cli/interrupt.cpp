@@ -1,0 +1,80 @@
+// interrupt.cpp: one flag that a signal handler may set.
+#include "app/cli/interrupt.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+
+namespace roomradar {
+namespace {
+
+enum Asked { kNothing, kToEnd, kEnds };
+// Set by a signal handler, taken by whichever thread reads the source.
+std::atomic<int> asked = kNothing;
+static_assert(std::atomic<int>::is_always_lock_free);
+constexpr const char* kEndsWithWhatItHas =
+    "\nroomradar: takes no more frames and ends with those it has; Ctrl-C once more ends it at once\n";
+std::atomic<const char*> said = kEndsWithWhatItHas;
+static_assert(std::atomic<const char*>::is_always_lock_free);
+
+/// Calls only what a signal handler may call.
+void on_interrupt(int signal) {
+  if (asked != kNothing) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+    return;
+  }
+  asked = kToEnd;
+  const int errno_before = errno;
+  const std::string_view sentence(said);
+  static_cast<void>(::write(STDERR_FILENO, sentence.data(), sentence.size()) + 1);
+  errno = errno_before;
+}
+
+class EndedByInterrupt final : public FrameSource {
+ public:
+  explicit EndedByInterrupt(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+
+  ReadResult next(Frame& frame) override {
+    at_end_ = at_end_ || Interrupt::take();
+    return at_end_ ? ReadResult{ReadStatus::kEnd, {}} : source_->next(frame);
+  }
+  bool rewind() override { return source_->rewind(); }
+  bool seek(std::int64_t index) override { return source_->seek(index); }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return source_->frame_count(); }
+  [[nodiscard]] std::string name() const override { return source_->name(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  bool at_end_ = false;
+};
+
+}  // namespace
+
+Interrupt::Interrupt() {
+  asked = kNothing;
+  said = kEndsWithWhatItHas;
+  std::signal(SIGINT, on_interrupt);
+}
+
+Interrupt::~Interrupt() { std::signal(SIGINT, SIG_DFL); }
+
+void Interrupt::say(const char* sentence) { said = sentence; }
+
+bool Interrupt::take() {
+  int to_end = kToEnd;
+  return asked.compare_exchange_strong(to_end, kEnds);
+}
+
+bool Interrupt::is_asked() { return asked == kToEnd; }
+
+std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source) {
+  return std::make_unique<EndedByInterrupt>(std::move(source));
+}
+
+}  // namespace roomradar

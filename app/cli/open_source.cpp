@@ -1,0 +1,111 @@
+// open_source.cpp: tells the kinds of source apart by their names.
+#include "app/cli/open_source.hpp"
+
+#include <charconv>
+#include <filesystem>
+#include <utility>
+
+#include "app/calibration/calibrated_source.hpp"
+#include "app/cli/session_folder.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "app/sources/formats/camera_rig.hpp"
+#include "app/sources/kinect/fakenect_replay.hpp"
+#include "app/sources/kinect/kinect_source.hpp"
+#include "app/sources/recordings/folder_source.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::string_view kKinect = "kinect:";
+constexpr std::string_view kSim = "sim:";
+constexpr std::string_view kRegistered = "?depth=registered";
+
+/// kinect:N[?depth=raw|mm|registered]
+std::unique_ptr<FrameSource> open_kinect_named(const std::string& source, SourceOptions options) {
+  int device = -1;
+  const char* begin = source.data() + kKinect.size();
+  const char* end = source.data() + source.size();
+  const auto parsed = std::from_chars(begin, end, device);
+  const std::string_view rest(parsed.ptr, static_cast<std::size_t>(end - parsed.ptr));
+  if (rest == "?depth=mm")
+    options.kinect_depth = KinectDepth::kMillimetres;
+  else if (rest == kRegistered)
+    options.kinect_depth = KinectDepth::kRegistered;
+  const bool is_known = rest.empty() || rest == "?depth=raw" || options.kinect_depth != KinectDepth::kRaw;
+  if (parsed.ec != std::errc() || !is_known || device < 0)
+    throw Error(
+        source +
+        ": must be kinect:N with N the number of the device, from 0, and maybe ?depth=raw (as it "
+        "measures), ?depth=mm (made millimetres by libfreenect) or ?depth=registered (and seen from its "
+        "colour camera)");
+  return open_kinect(device, options);
+}
+
+std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceOptions& options) {
+  if (source.starts_with(kKinect)) return open_kinect_named(source, options);
+  if (source.starts_with(kSim)) return std::make_unique<SimulatedSource>(parse_sim_spec(source));
+  if (!std::filesystem::exists(source))
+    throw Error(source +
+                ": no such folder. A source is a folder with a recording (7-Scenes, TUM RGB-D, fakenect), " +
+                "kinect:N for a device, or sim:ROOM for the simulated one");
+  if (is_session_folder(source)) return open_session_frames(source);
+  return open_folder(source, options);
+}
+
+/// Whether a folder's frames were freed of lens and depth errors before they were recorded.
+bool was_calibrated(const std::string& source) {
+  std::filesystem::path folder = source;
+  if (source.starts_with(kKinect)) {
+    const auto replayed = replayed_folder();
+    if (!replayed) return false;
+    folder = *replayed;
+  }
+  if (is_session_folder(folder)) return is_session_calibrated(folder);
+  return std::filesystem::exists(folder / "camera.json") &&
+         read_camera_file(folder / "camera.json").was_calibrated;
+}
+
+}  // namespace
+
+std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen) {
+  if (!chosen.empty()) return chosen;
+  const std::filesystem::path in_folder = std::filesystem::path(source) / "calibration.json";
+  return std::filesystem::exists(in_folder) ? in_folder : std::filesystem::path{};
+}
+
+bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen) {
+  return !calibration_for(source, chosen).empty() || was_calibrated(source);
+}
+
+std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
+                                         const std::filesystem::path& calibration,
+                                         const SourceOptions& options) {
+  const std::filesystem::path used = options.as_recorded ? calibration : calibration_for(source, calibration);
+  const bool is_registered = source.starts_with(kKinect) && source.ends_with(kRegistered);
+  if (is_registered && (options.as_recorded || !used.empty()))
+    throw Error(source +
+                ": registered depth is seen from the colour camera, and a calibration is the depth camera's: "
+                "take ?depth=raw or ?depth=mm with it");
+  std::unique_ptr<FrameSource> opened = open_whole(source, options);
+  if ((options.as_recorded || !used.empty()) && was_calibrated(source))
+    throw Error(source + ": its frames were freed of lens and depth errors before they were recorded; " +
+                (used.empty() ? "a calibration is made from frames as the device gives them"
+                              : used.string() + " would do so a second time: leave it out"));
+  if (!used.empty()) opened = calibrated(std::move(opened), read_calibration(used));
+  if (!frames) {
+    if (!opened->frame_count() && !replayed_folder())
+      options.say(opened->name() + ": goes on until Ctrl-C, pressed once");
+    return opened;
+  }
+  return limit_frames(std::move(opened), frames->first, frames->last);
+}
+
+void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source) {
+  if (knows_recorded_world(info)) return;
+  throw Error(map + ": was scanned without recorded poses, so nobody knows where those of " + source +
+              " are in it; take --poses tracked");
+}
+
+}  // namespace roomradar

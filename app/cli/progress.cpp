@@ -1,0 +1,88 @@
+// progress.cpp: draws the bar or the line.
+#include "app/cli/progress.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace roomradar {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr int kBarWidth = 30;
+constexpr auto kRedrawEvery = std::chrono::milliseconds(100);
+constexpr auto kLineEvery = std::chrono::seconds(5);
+constexpr auto kRateOver = std::chrono::seconds(3);
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+}  // namespace
+
+std::string progress_line(const ProgressState& state, bool with_bar) {
+  std::string line = state.what;
+  const bool has_total = state.total && *state.total > 0;
+  if (with_bar && has_total) {
+    const auto filled = static_cast<std::size_t>(
+        std::clamp<std::int64_t>(kBarWidth * state.done / *state.total, 0, kBarWidth));
+    line += " [" + std::string(filled, '#') + std::string(kBarWidth - filled, ' ') + "]";
+  }
+  line += " " + std::to_string(state.done);
+  if (has_total) line += "/" + std::to_string(*state.total);
+  if (state.per_s > 0.0) {
+    char text[48];
+    std::snprintf(text, sizeof(text), ", %.1f/s", state.per_s);
+    line += text;
+    if (has_total && state.done < *state.total && !state.is_over) {
+      const double left_s = std::ceil(static_cast<double>(*state.total - state.done) / state.per_s);
+      const auto whole_s = static_cast<long long>(std::min(left_s, 3.6e6));
+      std::snprintf(text, sizeof(text), ", %lld:%02lld left", whole_s / 60, whole_s % 60);
+      line += text;
+    }
+  }
+  return state.note.empty() ? line : line + ", " + state.note;
+}
+
+Progress::Progress(std::string what, std::optional<std::int64_t> total)
+    : state_{std::move(what), 0, total, 0.0, {}, false},
+      is_terminal_(isatty(STDERR_FILENO) != 0),
+      started_(Clock::now()),
+      shown_(started_),
+      counted_(started_) {}
+
+Progress::~Progress() {
+  if (state_.done > 0) show(/*last=*/true);
+}
+
+void Progress::step(const std::string& note) {
+  ++state_.done;
+  state_.note = note;
+  const Time now = Clock::now();
+  if (now - shown_ < (is_terminal_ ? Clock::duration(kRedrawEvery) : kLineEvery)) return;
+  shown_ = now;
+  // Of at least a second, but for the first time.
+  if (state_.per_s == 0.0 || now - counted_ >= std::chrono::seconds(1))
+    state_.per_s = static_cast<double>(state_.done - counted_from_) / seconds(now - counted_);
+  if (now - counted_ >= kRateOver) {
+    counted_ = now;
+    counted_from_ = state_.done;
+  }
+  show(/*last=*/false);
+}
+
+void Progress::show(bool last) {
+  // In the end the rate is that of the whole.
+  if (last) {
+    state_.is_over = true;
+    state_.per_s = static_cast<double>(state_.done) / std::max(seconds(Clock::now() - started_), 1e-6);
+  }
+  std::fprintf(stderr, "%s%s%s", is_terminal_ ? "\r" : "", progress_line(state_, is_terminal_).c_str(),
+               is_terminal_ ? "\033[K" : "");
+  if (last || !is_terminal_) std::fputc('\n', stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,213 @@
+// session_folder.cpp: writes and reads recorded sessions.
+#include "app/cli/session_folder.hpp"
+
+#include <array>
+#include <cinttypes>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "app/quality/quality_json.hpp"
+#include "app/sources/formats/camera_rig_json.hpp"
+#include "app/sources/recordings/spooled_source.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/format_number.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;  // as qualities have it: what is nested deeply must not be copied
+
+constexpr const char* kSettings = "session.json";
+constexpr const char* kEvents = "events.txt";
+constexpr const char* kFrames = "frames";
+constexpr const char* kMeshes = "meshes";
+constexpr const char* kResults = "results.txt";
+constexpr const char* kFormat = "roomradar session";
+constexpr int kFormatVersion = 2;
+constexpr std::uintmax_t kMaxSettingsBytes = 1U << 20U;
+
+std::string checksum_of(const MapInfo& map) {
+  const auto found = map.files.find("octree.ot");
+  return found == map.files.end() ? "" : found->second.sha256;
+}
+
+Json read_settings(const fs::path& folder) {
+  const fs::path path = folder / kSettings;
+  Json json = Json::parse(read_bytes(path, "the settings of a recorded session", kMaxSettingsBytes), nullptr,
+                          /*allow_exceptions=*/false);
+  if (!json.is_object() || !json.contains("format") || json["format"] != kFormat)
+    throw Error(path.string() + ": is not the settings of a recorded session, or is damaged");
+  if (!json.contains("format_version") || !json["format_version"].is_number_integer())
+    throw Error(path.string() + ": does not say its format version; is it damaged?");
+  if (json["format_version"] != kFormatVersion)
+    throw Error(path.string() + ": is of format version " + json["format_version"].dump() +
+                ", and this program reads version " + std::to_string(kFormatVersion));
+  return json;
+}
+
+/// Seconds of --adopt; Error if they are none.
+double adopt_seconds(const Json& value, const fs::path& folder) {
+  constexpr double kMost_s = 86400.0;
+  const double seconds = value.is_number() ? value.get<double>() : -1.0;
+  if (!(seconds > 0.0 && seconds <= kMost_s))
+    throw Error((folder / kSettings).string() + ": adopt_s = " + number_text(seconds) +
+                ": must be seconds, up to a day");
+  return seconds;
+}
+
+template <typename Value>
+Value choice_of(const Json& json, const char* key, std::initializer_list<Value> values,
+                const fs::path& folder) {
+  const auto word = json.at(key).get<std::string>();
+  for (const Value value : values)
+    if (to_string(value) == word) return value;
+  throw Error((folder / kSettings).string() + ": " + key + " \"" + word + "\" is not known");
+}
+
+}  // namespace
+
+void require_can_become_session(const fs::path& folder) {
+  require_contents_outside_maps(folder);
+  std::error_code fault;
+  if (fs::exists(folder, fault) && (!fs::is_empty(folder, fault) || fault))
+    throw Error(folder.string() +
+                ": is not empty; a session is recorded to a folder of its own, name a new one");
+}
+
+SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map,
+                                 bool are_calibrated)
+    : folder_(std::move(folder)) {
+  std::error_code fault;
+  fs::create_directories(folder_, fault);
+  if (fault) throw Error(folder_.string() + ": the folder cannot be made: " + fault.message());
+  require_can_become_session(folder_);
+  Json json = {{"format", kFormat},
+               {"format_version", kFormatVersion},
+               {"source", command.source},
+               {"calibrated", are_calibrated},
+               {"map", fs::absolute(command.map).lexically_normal().string()},
+               {"map_sha256", checksum_of(map)},
+               {"poses", to_string(command.poses)},
+               {"surfaces", to_string(command.surfaces)},
+               {"unknown_is_solid", command.unknown_is_solid},
+               {"quality", to_json(command.quality)},
+               {"at_end", to_string(command.at_end)}};
+  if (command.adopt_after_s) json["adopt_s"] = *command.adopt_after_s;
+  write_bytes(folder_ / kSettings, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  events_.open(folder_ / kEvents);
+  events_ << "# events of " << command.source << ", as they were applied\n" << std::flush;
+  require_written(events_, folder_ / kEvents);
+  results_.open(folder_ / kResults);
+  results_ << "# frame, fingerprint of the objects, fingerprint of the picture (0: none was made)\n"
+           << std::flush;
+  require_written(results_, folder_ / kResults);
+}
+
+std::unique_ptr<FrameSource> SessionRecorder::recorded(std::unique_ptr<FrameSource> source) const {
+  constexpr std::size_t kAhead = 2;  // a run shows the newest frame, also after a pause
+  return SpooledSource::kept(std::move(source), folder_ / kFrames, kAhead);
+}
+
+ScriptEvent SessionRecorder::with_mesh_kept(ScriptEvent event) {
+  if (event.action != Action::kAdd || event.mesh == "teapot") return event;
+  const fs::path original = event.mesh;
+  const std::string name = "mesh-" + std::to_string(++meshes_) + original.extension().string();
+  std::error_code fault;
+  fs::create_directories(folder_ / kMeshes, fault);
+  if (!fault) fs::copy_file(original, folder_ / kMeshes / name, fault);
+  if (fault) throw Error((folder_ / kMeshes / name).string() + ": cannot be copied: " + fault.message());
+  event.mesh = std::string(kMeshes) + "/" + name;
+  return event;
+}
+
+void SessionRecorder::write(ScriptEvent event, std::int64_t run_frame) {
+  event.frame = run_frame;
+  event.time_s.reset();
+  events_ << to_line(event) << '\n' << std::flush;
+  require_written(events_, folder_ / kEvents);
+}
+
+void SessionRecorder::write(const FrameFingerprint& fingerprint) {
+  std::array<char, 80> line{};
+  std::snprintf(line.data(), line.size(), "%" PRId64 " %016" PRIx64 " %016" PRIx64 "\n",
+                fingerprint.run_frame, fingerprint.objects, fingerprint.picture);
+  results_ << line.data() << std::flush;
+  require_written(results_, folder_ / kResults);
+}
+
+bool is_session_folder(const fs::path& folder) {
+  std::error_code fault;
+  return fs::is_regular_file(folder / kSettings, fault);
+}
+
+bool is_session_calibrated(const fs::path& folder) {
+  return said_calibrated(read_settings(folder), (folder / kSettings).string());
+}
+
+bool is_session_events(const fs::path& file) {
+  return file.filename() == kEvents && is_session_folder(file.parent_path());
+}
+
+RunCommand read_session(const fs::path& folder) {
+  const Json json = read_settings(folder);
+  RunCommand command;
+  command.source = folder.string();
+  command.script = (folder / kEvents).string();
+  try {
+    command.map = json.at("map").get<std::string>();
+    command.poses = choice_of(json, "poses", {PoseOrigin::kTracked, PoseOrigin::kRecorded}, folder);
+    command.surfaces = choice_of(
+        json, "surfaces",
+        {SurfacePolicy::kMap, SurfacePolicy::kBorder, SurfacePolicy::kSkirt, SurfacePolicy::kHoles}, folder);
+    command.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
+    command.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
+    command.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
+    if (json.contains("adopt_s")) command.adopt_after_s = adopt_seconds(json["adopt_s"], folder);
+  } catch (const Json::exception& fault) {
+    throw Error((folder / kSettings).string() + ": is damaged: " + fault.what());
+  }
+  return command;
+}
+
+std::unique_ptr<FrameSource> open_session_frames(const fs::path& folder) {
+  return SpooledSource::again(folder / kFrames);
+}
+
+std::string map_difference(const fs::path& folder, const MapInfo& map) {
+  const Json settings = read_settings(folder);
+  const auto recorded = settings.find("map_sha256");
+  if (recorded == settings.end() || *recorded == "" || *recorded == checksum_of(map)) return {};
+  return folder.string() + ": was recorded in a map that was another one than this; results will differ";
+}
+
+ReplayCheck::ReplayCheck(const fs::path& folder) {
+  std::ifstream file(folder / kResults);
+  for (std::string line; std::getline(file, line) && !file.eof();) {  // a last line that was cut says nothing
+    FrameFingerprint fingerprint;
+    if (std::sscanf(line.c_str(), "%" SCNd64 " %" SCNx64 " %" SCNx64, &fingerprint.run_frame,
+                    &fingerprint.objects, &fingerprint.picture) == 3)
+      recorded_.push_back(fingerprint);
+  }
+}
+
+void ReplayCheck::compare(const FrameFingerprint& fingerprint) {
+  if (next_ == recorded_.size()) return;  // the recording was cut off
+  const FrameFingerprint& recorded = recorded_[next_++];
+  const bool both_pictures = recorded.picture != 0 && fingerprint.picture != 0;
+  const bool is_same = recorded.run_frame == fingerprint.run_frame &&
+                       recorded.objects == fingerprint.objects &&
+                       (!both_pictures || recorded.picture == fingerprint.picture);
+  if (is_same) {
+    ++same_;
+  } else if (different_++ == 0) {
+    first_different_ = recorded.run_frame;
+  }
+}
+
+}  // namespace roomradar

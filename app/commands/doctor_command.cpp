@@ -1,0 +1,35 @@
+// doctor_command.cpp: roomradar doctor: says what of the set-up works, and what to do about the rest.
+#include <cstdio>
+#include <cstdlib>
+
+#include "app/commands/commands.hpp"
+#include "app/commands/doctor.hpp"
+#include "app/sources/kinect/fakenect_replay.hpp"
+#include "app/sources/kinect/kinect_source.hpp"
+
+namespace roomradar {
+
+int run(const DoctorCommand& /*command*/) {
+  const auto replayed = replayed_folder();
+  std::vector<Finding> findings;
+  if (replayed)
+    findings.push_back(judge_replay(*replayed));
+  else
+    findings = judge_kinects(kinects_on_usb(), count_kinects());
+  findings.push_back(judge_renderer());
+  const char* path = std::getenv("PATH");
+  findings.push_back(judge_fakenect(path ? path : ""));
+
+  bool is_well = true;
+  for (const Finding& finding : findings) {
+    const char* mark = finding.health == Health::kGood  ? "good"
+                       : finding.health == Health::kBad ? "BAD"
+                                                        : "-";
+    std::printf("%-5s %s\n", mark, finding.what.c_str());
+    if (!finding.what_to_do.empty()) std::printf("      %s\n", finding.what_to_do.c_str());
+    is_well = is_well && finding.health != Health::kBad;
+  }
+  return is_well ? 0 : 1;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,181 @@
+// fallthrough_command.cpp: roomradar fallthrough: the same hidden-surface scenarios under each policy.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <deque>
+#include <filesystem>
+#include <future>
+#include <memory>
+#include <thread>
+
+#include "app/cli/deferred_errors.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/report.hpp"
+#include "app/commands/commands.hpp"
+#include "app/commands/grid_command.hpp"
+#include "app/evaluation/fallthrough/mapped_room.hpp"
+#include "app/evaluation/fallthrough/page.hpp"
+#include "app/evaluation/fallthrough/replay.hpp"
+#include "app/evaluation/fallthrough/totals.hpp"
+#include "app/evaluation/fallthrough/trial.hpp"
+#include "app/evaluation/fallthrough/trial_pictures.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+using Rooms = std::vector<std::unique_ptr<MappedRoom>>;
+
+/// Makes the folder that is to keep the rooms' maps; an empty name is fine. Throws Error if that cannot be,
+/// or if it has none and none can be written.
+void require_folder_of_maps(const std::filesystem::path& folder) {
+  if (folder.empty()) return;
+  require_contents_outside_maps(folder);
+  std::error_code fault;
+  std::filesystem::create_directories(folder, fault);
+  if (fault) throw Error(folder.string() + ": the folder cannot be made: " + fault.message());
+  if (access(folder.c_str(), W_OK) != 0 && std::filesystem::is_empty(folder, fault))
+    throw Error(folder.string() + ": no map can be kept there: the folder is not writable");
+}
+
+/// Scenario after scenario under all policies; `threads` of them are made ready ahead. Ends at the first
+/// fault, with the rows that were done.
+std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughCommand& command, int threads,
+                                       Faults& faults) {
+  std::deque<std::future<std::unique_ptr<PreparedScenario>>> ahead;
+  int next = 0;
+  const auto prepare_next = [&] {
+    const ScenarioTurn turn = turn_of(next++, rooms.size());
+    const ScenarioRoom& room = rooms[turn.room]->scanned.simulated;
+    ahead.push_back(std::async(std::launch::async, [&room, seed = command.seed, number = turn.number] {
+      return std::make_unique<PreparedScenario>(room, seed, number);
+    }));
+  };
+  Progress progress("scenarios", command.scenarios);
+  std::vector<ScenarioRow> rows;
+  CyberRadar radar;
+  const auto run_scenario = [&](int number) {
+    while (next < command.scenarios && ahead.size() < static_cast<std::size_t>(threads)) prepare_next();
+    const std::unique_ptr<PreparedScenario> prepared = ahead.front().get();
+    ahead.pop_front();
+    const std::size_t room_number = turn_of(number, rooms.size()).room;
+    MappedRoom& room = *rooms[room_number];
+    ScenarioRow row = row_of(prepared->scenario, number, room_number, room.scanned.title);
+    // All have seen the frame before any is timed, and each is the first in turn.
+    for (std::size_t i = 0; i < kPolicyCount; ++i)
+      (void)show_frame(*prepared, 0, {.policy = kFallthroughPolicies[i].surfaces}, {}, *room.scenes[i]);
+    for (std::size_t k = 0; k < kPolicyCount; ++k) {
+      const std::size_t i = (static_cast<std::size_t>(number) + k) % kPolicyCount;
+      row.trials[i] = run_trial(*prepared, room, i, radar);
+    }
+    rows.push_back(std::move(row));
+    progress.step(room.scanned.title);
+  };
+  faults.attempt([&] {
+    for (int number = 0; number < command.scenarios; ++number) run_scenario(number);
+  });
+  return rows;
+}
+
+/// Each policy's failures, as far as `most` go, those of the last policies first.
+std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vector<ScenarioRow>& rows,
+                                             std::uint64_t seed) {
+  constexpr std::size_t kMostOfMaps = 24, kMostOfOthers = 4;
+  std::vector<FailurePicture> pictures;
+  CyberRadar radar;
+  for (std::size_t i = kPolicyCount; i-- > 0;) {
+    const bool is_map = kFallthroughPolicies[i].surfaces == SurfacePolicy::kMap;
+    std::size_t left = is_map ? kMostOfMaps : kMostOfOthers;
+    for (const ScenarioRow& row : rows) {
+      const Verdict& verdict = row.trials[i].verdict;
+      if (verdict.outcome == Outcome::kStoppedRight) continue;
+      if (left-- == 0) break;
+      MappedRoom& room = *rooms[row.room];
+      PreparedScenario prepared(room.scanned.simulated, seed, turn_of(row.number, rooms.size()).number);
+      char number[80];
+      std::snprintf(number, sizeof number, "%+.1f cm; scenario %lld, ", 100.0 * verdict.error_m,
+                    static_cast<long long>(row.number));
+      pictures.push_back({std::string(kFallthroughPolicies[i].name) + ": " +
+                              std::string(to_string(verdict.outcome)) + ", " + number + row.room_title +
+                              ", " + std::string(to_string(row.shape)) + " behind " +
+                              std::string(to_string(row.occluder)) +
+                              ", rested on: " + std::string(to_string(row.trials[i].rested_on)),
+                          picture_of_trial(prepared, room, i, radar)});
+    }
+  }
+  return pictures;
+}
+
+/// One scenario alone: only its room is scanned.
+int replay(const FallthroughCommand& command, const RoomScan& scan) {
+  require_writable(command.video);
+  VideoWriter video(command.video, kReplayPicturesPerS);
+  const std::vector<RoomChoice> choices = choose_rooms(command.random_rooms);
+  const ScenarioTurn turn = turn_of(*command.scenario, choices.size());
+  const std::vector<RoomChoice> one{choices[turn.room]};
+  GlContext context;
+  const Rooms rooms = map_rooms(context, one, scan, 1);
+  PreparedScenario prepared(rooms.front()->scanned.simulated, command.seed, turn.number);
+  CyberRadar radar;
+  write_replay(prepared, *rooms.front(), radar, video);
+  for (std::size_t i = 0; i < kPolicyCount; ++i) {
+    const Trial trial = run_trial(prepared, *rooms.front(), i, radar);
+    std::printf("%-11s %-10s %+7.1f mm, rested on: %s\n", std::string(kFallthroughPolicies[i].name).c_str(),
+                std::string(to_string(trial.verdict.outcome)).c_str(), 1e3 * trial.verdict.error_m,
+                std::string(to_string(trial.rested_on)).c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int run(const FallthroughCommand& command) {
+  if (!command.source.empty()) return run_grid(command);
+  RoomScan scan;
+  scan.maps = command.maps;
+  for (const std::string& path : {command.report, command.csv, command.html}) require_writable(path);
+  require_folder_of_maps(command.maps);
+  if (command.scenario) return replay(command, scan);
+  const int threads = command.threads > 0
+                          ? command.threads
+                          : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  Report report;
+  report.command = "fallthrough";
+  report.source = "simulated rooms";
+  report.settings = {
+      {"scenarios", command.scenarios},    {"seed", command.seed}, {"random_rooms", command.random_rooms},
+      {"resolution_m", scan.resolution_m}, {"maps", command.maps}, {"threads", threads}};
+
+  GlContext context;
+  report.renderer = context.renderer();
+  const Rooms rooms = report.times.timed(
+      "prescan", [&] { return map_rooms(context, choose_rooms(command.random_rooms), scan, threads); });
+  Faults faults;  // what was done before them is written all the same
+  const std::vector<ScenarioRow> rows =
+      report.times.timed("scenarios", [&] { return run_scenarios(rooms, command, threads, faults); });
+  if (rows.empty()) faults.throw_first();
+
+  const int done = static_cast<int>(rows.size());
+  const auto totals = totals_of(rows);
+  const std::string about = std::to_string(done) +
+                            (done < command.scenarios ? " of " + std::to_string(command.scenarios) : "") +
+                            " scenarios, seed " + std::to_string(command.seed) + ", " +
+                            std::to_string(rooms.size()) + " rooms, " + context.renderer();
+  std::printf("%s\n%s", about.c_str(), table_of(totals, done).c_str());
+  report.results["scenarios"] = done;
+  report.results["policies"] = to_json(totals);
+  report.results["failures"] = failures_of(rows);
+  if (!faults.first().empty()) report.results["fault"] = faults.first();
+  faults.attempt([&] { write_csv(rows, command.csv); });
+  faults.attempt([&] {
+    if (!command.html.empty())
+      write_page(rows, about, picture_failures(rooms, rows, command.seed), command.html);
+  });
+  faults.attempt([&] { write_report(report, command.report); });
+  faults.throw_first();
+  return 0;
+}
+
+}  // namespace roomradar

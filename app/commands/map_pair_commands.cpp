@@ -1,0 +1,81 @@
+// map_pair_commands.cpp: roomradar map merge|diff: two maps of one room.
+#include <cstdio>
+#include <utility>
+
+#include "app/cli/registered_maps.hpp"
+#include "app/cli/report.hpp"
+#include "app/commands/commands.hpp"
+#include "app/media/map_picture.hpp"
+#include "app/media/picture_file.hpp"
+#include "mapping/map/map_diff.hpp"
+#include "mapping/map/map_merge.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
+
+namespace roomradar {
+int run(const MapMergeCommand& command) {
+  Report report;
+  report.command = "map merge";
+  report.source = command.a + ", " + command.b;
+  report.settings = {{"a", command.a}, {"b", command.b}, {"map", command.map}};
+  require_can_become_map(command.map, {command.report});
+  require_writable(command.report);
+  SavedMap a = load_map(command.a);
+  const SavedMap b = load_map(command.b);
+  if (command.deviation_m) {
+    a.info.settings[kDeviationSetting] = number_text(*command.deviation_m);
+    report.settings["deviation_m"] = *command.deviation_m;
+  }
+  if (a.info.files.at("octree.ot").sha256 == b.info.files.at("octree.ot").sha256)
+    throw Error(command.b + ": is the same map as " + command.a +
+                "; joined with itself it would count everything it saw twice");
+  const Registration found = require_registered(a, b, command.a, command.b, report);
+  const SavedMap both = report.times.timed("merge", [&] { return merge_maps(std::move(a), b, found.T_a_b); });
+  report.times.timed("save", [&] { save_map(command.map, both); });
+  report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree.memory_bytes()}};
+  write_report(report, command.report);
+  std::printf("%s: %zu triangles, %zu places\n", command.map.c_str(), both.mesh.triangles.size(),
+              both.places.keyframes.size());
+  return 0;
+}
+
+int run(const MapDiffCommand& command) {
+  Report report;
+  report.command = "map diff";
+  report.source = command.a + ", " + command.b;
+  report.settings = {{"a", command.a}, {"b", command.b}};
+  require_writable(command.report);
+  require_png_name(command.picture);
+  require_writable(command.picture);
+  const SavedMap a = load_map(command.a);
+  const SavedMap b = load_map(command.b);
+  // A map that `run --save-map` made from another has its views, and so its world.
+  const bool one_world = !a.places.keyframes.empty() &&
+                         a.info.files.at("places.bin").sha256 == b.info.files.at("places.bin").sha256;
+  const Eigen::Isometry3d T_a_b = one_world ? Eigen::Isometry3d::Identity()
+                                            : require_registered(a, b, command.a, command.b, report).T_a_b;
+  const std::vector<Change> changes =
+      report.times.timed("diff", [&] { return diff_maps(a.octree, b.octree, T_a_b); });
+
+  nlohmann::json rows = nlohmann::json::array();
+  if (!changes.empty())
+    std::printf("%-8s  %7s %7s %7s  %6s %6s %6s  %7s\n", "", "x m", "y m", "z m", "size x", "y", "z m",
+                "litres");
+  for (const Change& change : changes) {
+    const Eigen::Vector3d &at = change.position_world, size = change.box_world.sizes();
+    std::printf("%-8s  %7.2f %7.2f %7.2f  %6.2f %6.2f %6.2f  %7.1f\n", to_string(change.kind).data(), at.x(),
+                at.y(), at.z(), size.x(), size.y(), size.z(), 1e3 * change.volume_m3);
+    rows.push_back({{"kind", to_string(change.kind)},
+                    {"position_m", to_json(at)},
+                    {"size_m", to_json(size)},
+                    {"area_m2", change.area_m2},
+                    {"volume_m3", change.volume_m3}});
+  }
+  if (changes.empty()) std::printf("nothing appeared, nothing vanished\n");
+  report.results["changes"] = std::move(rows);
+  if (!command.picture.empty()) write_png(draw_changes(a.mesh, changes), command.picture);
+  write_report(report, command.report);
+  return 0;
+}
+
+}  // namespace roomradar

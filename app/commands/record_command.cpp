@@ -1,0 +1,72 @@
+// record_command.cpp: roomradar record: a source's frames as a folder that can be read again.
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "app/cli/interrupt.hpp"
+#include "app/cli/open_source.hpp"
+#include "app/cli/progress.hpp"
+#include "app/commands/commands.hpp"
+#include "app/run/dropped_frames.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Takes the source's next frame over; where that fails, what was written before is whole, and said to be
+/// there.
+ReadResult take_over(FrameSource& source, RecordingWriter& writer, const std::string& folder, Frame& frame) {
+  try {
+    const ReadResult result = source.next(frame);
+    if (result.status == ReadStatus::kFrame) writer.write(frame);
+    return result;
+  } catch (const Error& error) {
+    if (writer.frames_written() == 0) throw;
+    throw Error(std::string(error.what()) + ". The " + std::to_string(writer.frames_written()) +
+                " frames before that are whole, in " + folder);
+  }
+}
+
+}  // namespace
+
+int run(const RecordCommand& command) {
+  require_contents_outside_maps(command.folder);
+  SourceOptions options;
+  options.keep_all = true;
+  const Interrupt interrupt;
+  const std::unique_ptr<FrameSource> source =
+      ended_by_interrupt(open_source(command.source, command.frames, command.calibration, options));
+  const bool is_live = !source->rewind();
+  RecordingWriter writer(command.folder, command.format,
+                         gives_calibrated_frames(command.source, command.calibration));
+  std::int64_t skipped = 0;
+  DroppedFrames dropped;
+  {
+    Progress progress("recording", source->frame_count());
+    Frame frame;
+    for (;;) {
+      const ReadResult result = take_over(*source, writer, command.folder, frame);
+      if (result.status == ReadStatus::kEnd) break;
+      if (result.waiting) continue;
+      if (result.status == ReadStatus::kSkipped) {
+        ++skipped;
+        progress.step("skipped: " + result.fault);
+        continue;
+      }
+      dropped.see(frame.index, writer.frames_written() + skipped);
+      progress.step();
+    }
+  }
+  writer.close();
+  if (writer.frames_written() == 0) throw Error(command.source + ": there is not one readable frame");
+  std::printf("%s: %lld frames written as %s, %lld skipped\n", command.folder.c_str(),
+              static_cast<long long>(writer.frames_written()), std::string(to_string(command.format)).c_str(),
+              static_cast<long long>(skipped));
+  if (is_live && dropped.count > 0)  // they came while the disk was behind
+    std::printf("%lld of the device's frames in between are not in it; is the disk fast enough?\n",
+                static_cast<long long>(dropped.count));
+  return 0;
+}
+
+}  // namespace roomradar

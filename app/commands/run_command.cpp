@@ -1,0 +1,89 @@
+// run_command.cpp: roomradar run: augmented reality in a saved room.
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "app/cli/deferred_errors.hpp"
+#include "app/commands/commands.hpp"
+#include "app/run/opened_run.hpp"
+#include "app/run/run_loop.hpp"
+#include "app/window/play_window.hpp"
+#include "mapping/coverage/coverage.hpp"
+#include "mapping/surface/surface_extraction.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+/// The octree as the session has left it, with its surface made anew as a whole.
+void save_changed(SavedMap& map, std::size_t changes, const std::string& folder) {
+  if (changes > 0) {
+    map.mesh = extract_surface(map.octree, surface_config_of(map.info));
+    map.coverage_png = survey_coverage(map.octree, map.mesh, map.trajectory).picture_png;
+  }
+  map.info.settings["adopted"] = std::to_string(changes);
+  save_map(folder, map);
+  std::printf("%s: saved with %zu changes\n", folder.c_str(), changes);
+}
+
+/// Says on stderr how a replay compares with what was recorded.
+nlohmann::json report_replay(const ReplayCheck& check) {
+  std::fprintf(stderr, "replay: %lld of %lld frames the same as recorded",
+               static_cast<long long>(check.same()), static_cast<long long>(check.recorded()));
+  if (check.different() > 0)
+    std::fprintf(stderr, ", the first that is not: %lld", static_cast<long long>(check.first_different()));
+  std::fprintf(stderr, "\n");
+  return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
+}
+
+/// Plays, saves, reports and prints what the run came to; the exit status.
+int play(OpenedRun& run) {
+  const RunCommand& command = run.command;
+  const RunTotals& totals = run.totals;
+  Faults faults;
+  faults.attempt([&] { play_to_end(run); });
+  if (run.video) faults.attempt([&] { run.video->close(); });
+  if (run.frames_csv) faults.attempt([&] { run.frames_csv->close(); });
+  if (totals.read == totals.skipped) {
+    faults.throw_first();
+    throw Error(command.source + ": there is not one readable frame" +
+                (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
+  }
+  faults.attempt([&] {
+    run.session->finish_adopting();
+    if (!command.save_map.empty()) save_changed(run.map, run.session->adopted().size(), command.save_map);
+  });
+  run.report.frames_read = totals.read;
+  run.report.frames_skipped = totals.skipped + totals.dropped.count;
+  run.report.results = results_of(totals, *run.session);
+  if (run.budget) run.report.results["budget"] = run.budget->report();
+  if (run.check) run.report.results["replay"] = report_replay(*run.check);
+  if (!faults.first().empty()) run.report.results["fault"] = faults.first();
+  faults.attempt([&] { write_report(run.report, command.report); });
+  print_summary(totals, *run.session);
+  faults.throw_first();
+  if (totals.located > 0 || run.was_quit) return 0;
+  if (command.poses == PoseOrigin::kRecorded) {
+    std::fprintf(stderr, "roomradar: %s: no frame has a pose of its own; take --poses tracked\n",
+                 command.source.c_str());
+    return 1;
+  }
+  std::fprintf(stderr, "roomradar: %s: no frame shows where in %s the camera is; was that room mapped?\n",
+               command.source.c_str(), command.map.c_str());
+  return 1;
+}
+
+/// @param link  to the window; null: there is none
+int run_frames(const RunCommand& command, PlayLink* link) { return play(*open_run(command, link)); }
+
+}  // namespace
+
+int run(const RunCommand& command) {
+  if (!command.window) return run_frames(command, nullptr);
+  std::vector<std::string> meshes;
+  if (command.object != "teapot") meshes.push_back(command.object);
+  return run_in_window("roomradar - " + command.source, meshes, command.budget_ms,
+                       [&](PlayLink& link) { return run_frames(command, &link); });
+}
+
+}  // namespace roomradar

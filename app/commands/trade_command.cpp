@@ -1,0 +1,270 @@
+// trade_command.cpp: roomradar trade: what accuracy costs, measured.
+#include <algorithm>
+#include <cstdio>
+
+#include "app/cli/deferred_errors.hpp"
+#include "app/cli/interrupt.hpp"
+#include "app/cli/progress.hpp"
+#include "app/cli/report.hpp"
+#include "app/commands/commands.hpp"
+#include "app/evaluation/pareto/greedy_search.hpp"
+#include "app/evaluation/pareto/sample_settings.hpp"
+#include "app/evaluation/trade/machine.hpp"
+#include "app/evaluation/trade/prescan_work.hpp"
+#include "app/evaluation/trade/run_work.hpp"
+#include "app/evaluation/trade/table1.hpp"
+#include "app/evaluation/trade/trade_csv.hpp"
+#include "app/evaluation/trade/trade_frames.hpp"
+#include "app/evaluation/trade/trade_page.hpp"
+#include "app/evaluation/trade/trade_presets.hpp"
+#include "app/sim/scenarios/scenarios.hpp"
+#include "app/sim/sensor/sim_options.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+TradeScale scale_of(const TradeCommand& command) { return command.quick ? kQuickScale : TradeScale{}; }
+
+/// Throws Error if more is said of the room than a scan in it would heed.
+void require_scan_room(const std::string& room, SimOptions options) {
+  const SimOptions usual;
+  const std::string said = sim_spec(options);
+  options.frames = usual.frames;
+  options.rate_hz = usual.rate_hz;
+  options.depth_camera = usual.depth_camera;
+  if (sim_spec(options) != said)
+    throw Error("trade: " + room +
+                ": how many frames there are, how fast and how wide, is the sweep's own; "
+                "leave out frames=, rate= and width=");
+}
+
+/// Throws Error if more is said of the room than a run in it would heed, or if it hides no surface.
+void require_run_room(const std::string& room, const SimOptions& options) {
+  SimOptions heeded;
+  heeded.room = options.room;
+  heeded.seed = options.seed;
+  if (sim_spec(heeded) != sim_spec(options))
+    throw Error("trade: " + room +
+                ": of a run's room only its name and seed can be chosen; leave out the rest, "
+                "or take --only prescan");
+  (void)make_scenario(make_scenario_room(options.room, options.seed), options.seed, 0);
+}
+
+/// A scene that cannot be measured in is said now, and not when the sweep comes to it.
+void require_scenes(const TradeCommand& command) {
+  const bool scans = command.only != "run" && !command.table1,
+             runs = command.only != "prescan" || command.table1;
+  for (const std::string& room : command.rooms) {
+    const SimOptions options = parse_sim_spec("sim:" + room);
+    if (scans) require_scan_room(room, options);
+    if (runs) require_run_room(room, options);
+  }
+  const TradeScale scale = scale_of(command);
+  const int read = std::max(scans ? scale.scan_frames : 0, runs ? scale.map_frames + scale.run_frames : 0);
+  for (const std::string& recording : command.recordings) (void)frames_of_recording(recording, read);
+}
+
+std::vector<TradeWork> works_of(const TradeCommand& command) {
+  const TradeScale scale = scale_of(command);
+  std::vector<TradeWork> works;
+  if (command.only != "run") works.push_back(prescan_work(command.rooms, command.recordings, scale));
+  if (command.only != "prescan")
+    works.push_back(run_work(command.rooms, command.recordings, scale, command.objects));
+  for (TradeWork& work : works)
+    if (command.time == "cpu") work.time = place_of(work, "cpu_ms");
+  return works;
+}
+
+/// Ctrl-C once is remembered: what is measured so far is the result.
+class Stop {
+ public:
+  Stop() {
+    Interrupt::say(
+        "\nroomradar: stops here: the scenes that are done are the result. Ctrl-C once more ends it at "
+        "once\n");
+  }
+  bool asked() { return was_asked_ = was_asked_ || Interrupt::take(); }
+
+ private:
+  Interrupt interrupt_;
+  bool was_asked_ = false;
+};
+
+TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& stop, TradeCsv& csv) {
+  TradeResult result{.work = work};
+  result.usual = 0;
+  const std::size_t on_ladder = command.settings / 3;
+  const auto rows = (1 + command.settings) * work.scenes.size() * static_cast<std::size_t>(command.repeats);
+  Progress progress(work.name, static_cast<std::int64_t>(rows));
+  const auto measure = [&](const std::vector<Setting>& settings) {
+    const std::size_t before = result.settings.size();
+    result.settings.insert(result.settings.end(), settings.begin(), settings.end());
+    SweepWatch watch;
+    watch.is_stopped = [&] { return stop.asked(); };
+    const auto of_all = [before](SweepRow row) {  // named among all settings, not these alone
+      row.setting += before;
+      return row;
+    };
+    watch.on_row = [&](const SweepRow& made) {
+      const SweepRow row = of_all(made);
+      csv.write(work, result.settings, row);
+      char note[64];
+      std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
+      progress.step(row.fault.empty() ? note : row.fault);
+    };
+    SweptRows made = sweep(work, {settings, command.repeats, command.seed}, watch);
+    for (SweepRow& row : made.rows) result.rows.push_back(of_all(std::move(row)));
+    result.fault = std::move(made.fault);
+    result.summaries = summarise(work, result.settings, result.rows);
+  };
+  std::vector<Setting> drawn = draw_settings(work.knobs, command.settings - on_ladder, command.seed);
+  drawn.insert(drawn.begin(), usual_setting(work.knobs));
+  measure(drawn);
+  if (result.rows.empty()) return result;
+  if (result.fault.empty() && !stop.asked()) {
+    const std::vector<Setting> ladder = ladder_settings(work, result.summaries, result.usual, on_ladder);
+    if (!ladder.empty()) measure(ladder);
+  }
+  result.choice = choose_presets(work, result.summaries, result.usual);
+  result.was_cut_short = stop.asked() || !result.fault.empty();
+  return result;
+}
+
+/// "sim:table; sim:random?seed=2; kitchen"
+std::string scenes_of(const TradeCommand& command) {
+  std::string scenes;
+  for (const std::string& room : command.rooms) scenes += (scenes.empty() ? "sim:" : "; sim:") + room;
+  for (const std::string& recording : command.recordings) scenes += (scenes.empty() ? "" : "; ") + recording;
+  return scenes;
+}
+
+/// What a preset is, in a line.
+void print_preset(const TradeResult& result, std::size_t setting) {
+  const SettingSummary& summary = result.summaries[setting];
+  std::printf("%-8s %-22s time x %5.2f (%.2f to %.2f), loss %5.2f: %s\n", result.work.name.c_str(),
+              names_of(setting, result.usual, result.choice, "=").c_str(), summary.time_ratio,
+              summary.least_ratio, summary.most_ratio,
+              loss_of(result.work, summary, result.summaries[result.usual]),
+              describe(result.work.knobs, summary.setting).c_str());
+}
+
+void print_presets(const TradeResult& result) {
+  for (std::size_t i = 0; i < result.summaries.size(); ++i)
+    if (!names_of(i, result.usual, result.choice, "").empty()) print_preset(result, i);
+}
+
+nlohmann::json result_json(const TradeResult& result) {
+  nlohmann::json settings = nlohmann::json::array();
+  for (std::size_t i = 0; i < result.summaries.size(); ++i) {
+    const SettingSummary& summary = result.summaries[i];
+    nlohmann::json row = {{"setting", describe(result.work.knobs, summary.setting)},
+                          {"names", names_of(i, result.usual, result.choice, " ")},
+                          {"measurements", summary.rows},
+                          {"time_ratio", summary.time_ratio},
+                          {"loss", loss_of(result.work, summary, result.summaries[result.usual])}};
+    for (std::size_t f = 0; f < result.work.figures.size(); ++f)
+      row[result.work.figures[f].name] = summary.figures[f];
+    settings.push_back(std::move(row));
+  }
+  return {{"measurements", result.rows.size()},
+          {"settings", settings},
+          {"front", result.choice.front},
+          {"cut_short", result.was_cut_short},
+          {"not_measured", faults_of(result)}};
+}
+
+int print_table1(const TradeCommand& command, Report report) {
+  const Table1 table = measure_table1(command.rooms.front(), scale_of(command));
+  report.renderer = table.renderer;
+  report.source = table.scene;
+  report.settings = {{"room", command.rooms.front()}, {"quick", command.quick}};
+  report.results["table1"] = to_json(table);
+  std::fputs(text_of(table).c_str(), stdout);
+  write_report(report, command.report);
+  return 0;
+}
+
+}  // namespace
+
+int run(const TradeCommand& command) {
+  for (const std::string& path : {command.csv, command.html, command.presets, command.report})
+    require_writable(path);
+  Report report;
+  report.command = "trade";
+  report.source = scenes_of(command);
+  report.settings = {{"rooms", command.rooms}, {"settings", command.settings}, {"repeats", command.repeats},
+                     {"seed", command.seed},   {"time", command.time},         {"quick", command.quick},
+                     {"only", command.only},   {"objects", command.objects}};
+  require_scenes(command);
+  if (command.table1) return print_table1(command, std::move(report));
+  const Machine machine = this_machine();
+  report.renderer = machine.renderer;
+  const std::vector<TradeWork> works = works_of(command);
+  TradeCsv csv(command.csv, works);
+  Stop stop;
+  std::vector<TradeResult> results;
+  Faults faults;  // what was measured before them is written all the same
+  for (const TradeWork& work : works) {
+    TradeResult result;
+    if (!stop.asked())
+      result = report.times.timed(work.name, [&] { return traded(work, command, stop, csv); });
+    if (!result.fault.empty()) faults.add("trade: " + work.name + ": " + result.fault);
+    if (!result.rows.empty())
+      results.push_back(std::move(result));
+    else if (result.fault.empty())
+      std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
+  }
+  if (results.empty()) {
+    faults.throw_first();
+    throw Error("trade: stopped by Ctrl-C before anything was measured");
+  }
+  for (const TradeResult& result : results) {
+    print_presets(result);
+    report.results[result.work.name] = result_json(result);
+    if (result.was_cut_short)
+      std::fprintf(stderr, "roomradar: %s: cut short: not everything that was asked for was measured\n",
+                   result.work.name.c_str());
+    for (const std::string& setting : faults_of(result))
+      std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
+  }
+  faults.attempt([&] {
+    for (const TradeResult& result : results)
+      csv.write(result.work, result.summaries, result.usual, result.choice);
+  });
+  faults.attempt([&] {
+    write_trade_page(
+        results,
+        {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
+             machine.system,
+         "seed " + std::to_string(command.seed) + ", " + std::to_string(command.repeats) +
+             " repeats in each scene" + (command.quick ? ", quick: few frames of small images" : "")},
+        command.html);
+  });
+  faults.attempt([&] {
+    if (command.presets.empty()) return;
+    if (results.size() < 2)
+      throw Error(command.presets + ": not written: only " + results.front().work.name +
+                  " was measured, and presets are of both");
+    for (const TradeResult& result : results)
+      if (result.was_cut_short)
+        throw Error(command.presets + ": not written: " + result.work.name +
+                    " was cut short, and presets are chosen from all that was asked for");
+    write_presets(chosen_presets(results, {{"processor", machine.processor},
+                                           {"renderer", machine.renderer},
+                                           {"system", machine.system},
+                                           {"scenes", report.source},
+                                           {"settings", std::to_string(command.settings)},
+                                           {"repeats", std::to_string(command.repeats)},
+                                           {"seed", std::to_string(command.seed)},
+                                           {"compared_by", command.time},
+                                           {"objects", std::to_string(command.objects)},
+                                           {"scale", command.quick ? "quick" : "full"}}),
+                  command.presets);
+  });
+  faults.attempt([&] { write_report(report, command.report); });
+  faults.throw_first();
+  return 0;
+}
+
+}  // namespace roomradar

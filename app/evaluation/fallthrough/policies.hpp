@@ -1,0 +1,23 @@
+// policies.hpp: the ways to decide what an object can touch that the fall-through test compares.
+#pragma once
+#include <array>
+#include <string_view>
+
+#include "dynamic/surface/surface_policy.hpp"
+
+namespace roomradar {
+
+struct FallthroughPolicy {
+  std::string_view name;  ///< in tables and reports
+  SurfacePolicy surfaces = SurfacePolicy::kMap;
+  bool unknown_solid = false;  ///< also the border of what nobody has seen
+};
+
+/// The first is what the others' cost is compared with.
+inline constexpr std::array kFallthroughPolicies{
+    FallthroughPolicy{"holes", SurfacePolicy::kHoles}, FallthroughPolicy{"skirt", SurfacePolicy::kSkirt},
+    FallthroughPolicy{"border", SurfacePolicy::kBorder}, FallthroughPolicy{"map", SurfacePolicy::kMap},
+    FallthroughPolicy{"map+unknown", SurfacePolicy::kMap, /*unknown_solid=*/true}};
+inline constexpr std::size_t kPolicyCount = kFallthroughPolicies.size();
+
+}  // namespace roomradar

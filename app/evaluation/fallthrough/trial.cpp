@@ -1,0 +1,100 @@
+// trial.cpp: steps of a frame each, until the radar says stop.
+#include "app/evaluation/fallthrough/trial.hpp"
+
+#include <algorithm>
+
+#include "dynamic/surface/reduced_depth.hpp"
+#include "mapping/types/system/stage_times.hpp"
+
+namespace roomradar {
+
+namespace {
+
+/// The frame itself where nothing is to be reduced.
+const Frame& reduced_by(int stride, const Frame& frame, Frame& reduced) {
+  stride = usable_stride(frame.depth_camera, stride);
+  if (stride == 1) return frame;
+  reduce_depth(frame, stride, reduced);
+  return reduced;
+}
+
+}  // namespace
+
+const Frame& ScenarioFrames::at(int number) {
+  if (scenario_.occluder_velocity_world.isZero()) number = 0;
+  const auto [entry, is_new] = frames_.try_emplace(number);
+  if (is_new) render_scenario(scenario_, room_, number, /*noise_scale=*/1.0, entry->second);
+  return entry->second;
+}
+
+PreparedScenario::PreparedScenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number)
+    : scenario(make_scenario(room, seed, number)), frames(scenario, room.room) {
+  object.build_by_place(scenario.object_mesh);
+  frames.at(0);
+}
+
+Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
+                const WatchTrial& watch) {
+  return run_trial(prepared, *room.scenes[policy], {.policy = kFallthroughPolicies[policy].surfaces}, radar,
+                   watch);
+}
+
+double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
+                  std::span<const FineRegion> about_objects, LiveScene& scene) {
+  const Scenario& scenario = prepared.scenario;
+  Frame reduced;
+  const Frame& frame = reduced_by(how.depth_stride, prepared.frames.at(number), reduced);
+  const bool has_map = how.policy == SurfacePolicy::kMap;
+  if (has_map && number == 0) {  // the foreground remembers one frame; not that of another scenario
+    scene.render_expected(frame.depth_camera, scenario.T_world_camera);
+    scene.find_moved(frame);
+  }
+  const auto start = std::chrono::steady_clock::now();
+  if (has_map) {
+    scene.render_expected(frame.depth_camera, scenario.T_world_believed);
+    scene.find_moved(frame);
+  }
+  if (!how.fine_mesh) about_objects = {};
+  scene.mesh_moved(frame, scenario.T_world_believed, about_objects);
+  return ms_since(start);
+}
+
+Trial run_trial(PreparedScenario& prepared, LiveScene& scene, const TrialSurfaces& how, CyberRadar& radar,
+                const WatchTrial& watch) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double kAbout_m = 0.02;  // as a session has it
+  const Scenario& scenario = prepared.scenario;
+  const bool is_still = scenario.occluder_velocity_world.isZero();
+  Trial trial;
+  std::vector<SceneTree> surfaces;
+  FineRegion about_object{scenario.T_world_object.translation(), scenario.object.reach_m + kAbout_m};
+  double query_ms = 0.0;
+  int frame_number = 0;
+  for (bool stopped = false; !stopped && trial.travelled_m < scenario.limit_m; ++frame_number) {
+    about_object.centre_world =
+        scenario.T_world_object.translation() + trial.travelled_m * scenario.direction_world;
+    if (frame_number == 0 || !is_still) {
+      const double made_ms = show_frame(prepared, frame_number, how, {&about_object, 1}, scene);
+      surfaces = scene.surfaces();
+      if (frame_number == 0) trial.frame_ms = made_ms;
+    }
+    const double from_m = trial.travelled_m;
+    const double next_m = std::min(step_m(scenario), scenario.limit_m - from_m);
+    const Eigen::Isometry3d T_world_object =
+        Eigen::Translation3d(from_m * scenario.direction_world) * scenario.T_world_object;
+    const auto start = Clock::now();
+    const Contact contact =
+        radar.query({{&prepared.object, T_world_object}, scenario.direction_world, next_m}, {surfaces, {}});
+    query_ms += ms_since(start);
+    stopped = static_cast<bool>(contact);
+    trial.travelled_m += stopped ? std::max(0.0, contact.travel_m) : next_m;
+    if (stopped) trial.rested_on = contact.touched;
+    const bool is_last = stopped || trial.travelled_m >= scenario.limit_m;
+    if (watch) watch({frame_number, surfaces, from_m, trial.travelled_m, is_last});
+  }
+  trial.frame_ms += query_ms / frame_number;
+  trial.verdict = judge(scenario, trial.travelled_m);
+  return trial;
+}
+
+}  // namespace roomradar

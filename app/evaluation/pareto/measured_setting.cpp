@@ -1,0 +1,14 @@
+// trade_work.cpp: figures by name.
+#include "app/evaluation/pareto/measured_setting.hpp"
+
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+
+std::size_t place_of(const TradeWork& work, const std::string& figure) {
+  for (std::size_t i = 0; i < work.figures.size(); ++i)
+    if (work.figures[i].name == figure) return i;
+  throw Error(work.name + ": nothing called " + figure + " is measured");
+}
+
+}  // namespace roomradar

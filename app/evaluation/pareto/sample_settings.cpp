@@ -1,0 +1,86 @@
+// draw_settings.cpp: single turns, and mixtures by columns of ranks.
+#include "app/evaluation/pareto/sample_settings.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "app/sim/solids/counter_random.hpp"
+
+namespace roomradar {
+namespace {
+
+std::vector<std::size_t> shuffled(std::size_t count, CounterRandom& random) {
+  std::vector<std::size_t> order(count);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = count; i > 1; --i)
+    std::swap(order[i - 1], order[static_cast<std::size_t>(random.uniform() * static_cast<double>(i))]);
+  return order;
+}
+
+std::vector<Setting> single_turns(const std::vector<Knob>& knobs, CounterRandom& random) {
+  std::vector<Setting> turns;
+  const Setting usual = usual_setting(knobs);
+  for (std::size_t k = 0; k < knobs.size(); ++k) {
+    for (std::size_t word = 0; word < knobs[k].words.size(); ++word) {
+      if (word == knobs[k].usual) continue;
+      turns.push_back(usual);
+      turns.back()[k] = word;
+    }
+  }
+  std::vector<Setting> mixed;
+  for (const std::size_t i : shuffled(turns.size(), random)) mixed.push_back(turns[i]);
+  return mixed;
+}
+
+/// Mixture i of n is about as slow as i / n says: a knob's words are given out in the order of that,
+/// disturbed.
+std::vector<Setting> mixtures(const std::vector<Knob>& knobs, std::size_t count, CounterRandom& random) {
+  constexpr double kDisturbance = 0.35;  // of the whole scale, to each side
+  std::vector<Setting> settings(count, usual_setting(knobs));
+  for (std::size_t k = 0; k < knobs.size(); ++k) {
+    if (knobs[k].is_load) continue;
+    std::vector<std::pair<double, std::size_t>> slowness;
+    for (std::size_t i = 0; i < count; ++i)
+      slowness.emplace_back(
+          static_cast<double>(i) / static_cast<double>(count) + random.uniform(-kDisturbance, kDisturbance),
+          i);
+    std::sort(slowness.begin(), slowness.end());
+    for (std::size_t rank = 0; rank < count; ++rank)
+      settings[slowness[rank].second][k] = rank * knobs[k].words.size() / count;
+  }
+  return settings;
+}
+
+}  // namespace
+
+std::vector<Setting> draw_settings(const std::vector<Knob>& knobs, std::size_t count, std::uint64_t seed) {
+  constexpr int kRounds = 20;  // of mixtures, until enough of them are new
+  CounterRandom random(seed, 0);
+  std::vector<Setting> settings = single_turns(knobs, random);
+  const Setting usual = usual_setting(knobs);
+  const auto is_later = [&](const Setting& turn) { return !has_usual_load(knobs, turn) || usual < turn; };
+  const auto words_away = [&](const Setting& turn) {
+    std::size_t away = 0;
+    for (std::size_t k = 0; k < turn.size(); ++k)
+      away += turn[k] < usual[k] ? usual[k] - turn[k] : turn[k] - usual[k];
+    return away;
+  };
+  std::stable_sort(settings.begin(), settings.end(), [&](const Setting& a, const Setting& b) {
+    return std::pair(is_later(a), words_away(a)) < std::pair(is_later(b), words_away(b));
+  });
+  settings.resize(std::min(settings.size(), 2 * count / 3));
+  const std::size_t wanted = count - settings.size();
+  for (int round = 0; round < kRounds && settings.size() < count; ++round) {
+    for (Setting& mixture : mixtures(knobs, wanted, random)) {
+      const bool is_new =
+          mixture != usual && std::find(settings.begin(), settings.end(), mixture) == settings.end();
+      if (is_new && settings.size() < count) settings.push_back(std::move(mixture));
+    }
+  }
+  std::vector<Setting> in_random_order;
+  for (const std::size_t i : shuffled(settings.size(), random)) in_random_order.push_back(settings[i]);
+  return in_random_order;
+}
+
+}  // namespace roomradar

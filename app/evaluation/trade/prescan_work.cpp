@@ -1,0 +1,180 @@
+// prescan_work.cpp: one scan in a process of its own: its time, its memory, its errors.
+#include "app/evaluation/trade/prescan_work.hpp"
+
+#include <Eigen/SVD>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "app/cli/apply_scan_quality.hpp"
+#include "app/cli/report.hpp"
+#include "app/evaluation/held_out.hpp"
+#include "app/evaluation/trade/kept_frames.hpp"
+#include "app/evaluation/trade/measured_sandboxed.hpp"
+#include "app/evaluation/trade/trade_frames.hpp"
+#include "app/sim/scenarios/surface_score.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "mapping/octree/memory_use.hpp"
+#include "mapping/prescan.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::int64_t kHoldOut = 7;  // has no factor in common with any fuse_every
+constexpr double kSpacing_m = 0.01;   // of the points on the mesh
+
+struct ScanScene {
+  std::string name;
+  std::vector<Frame> frames;
+  std::unique_ptr<Room> room;         // null: a recording
+  std::vector<Eigen::Vector3d> seen;  // of the room's surface
+};
+
+std::vector<FigureName> scan_figures() {
+  using Kind = FigureKind;
+  return {{"scan_ms_per_frame", "whole scan, ms a frame", 1.0, Kind::kTime},
+          {"cpu_ms", "processor, all threads, ms a frame", 1.0, Kind::kTime},
+          {"track_ms", "track, ms", 1.0, Kind::kTime},
+          {"fuse_ms", "fuse, ms", 1.0, Kind::kTime},
+          {"surface_ms", "surface, ms", 1.0, Kind::kTime},
+          {"memory_mb", "memory of the process at its peak, MB", 1.0, Kind::kMemory},
+          {"octree_mb", "octree, MB", 1.0, Kind::kFact},
+          {"triangles", "triangles", 1.0, Kind::kFact},
+          {"surface_error_median_m", "surface error, median, mm", 1e3, Kind::kError, 0.0002},
+          {"surface_error_p95_m", "surface error, 95 %, mm", 1e3, Kind::kError, 0.001},
+          {"surface_missing", "surface that was seen and is not in the mesh, %", 1e2, Kind::kError, 0.005},
+          {"trajectory_error_m", "trajectory error (ATE), mm", 1e3, Kind::kError, 0.001},
+          {"frames_lost", "frames lost, %", 1e2, Kind::kError, 0.01}};
+}
+
+double median_of(const std::map<std::string, StageSummary>& stages, const char* stage) {
+  const auto found = stages.find(stage);
+  return found == stages.end() ? kNotMeasured : found->second.median_ms;
+}
+
+/// From the map's world to the room's: the mean over all poses of what turns and shifts a pose onto the true
+/// one. (Positions alone would leave a turn about a straight way open.)
+Eigen::Isometry3d T_room_map_of(const std::vector<TimedPose>& trajectory, const std::vector<Frame>& frames) {
+  Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
+  for (const TimedPose& pose : trajectory) {
+    const Eigen::Isometry3d& T_room_camera =
+        *frames[static_cast<std::size_t>(pose.frame_index)].T_world_camera;
+    turns += T_room_camera.linear() * pose.T_world_camera.linear().transpose();
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turns, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Isometry3d T_room_map = Eigen::Isometry3d::Identity();
+  T_room_map.linear() = svd.matrixU() * svd.matrixV().transpose();
+  Eigen::Vector3d shifts = Eigen::Vector3d::Zero();
+  for (const TimedPose& pose : trajectory)
+    shifts += frames[static_cast<std::size_t>(pose.frame_index)].T_world_camera->translation() -
+              T_room_map.linear() * pose.T_world_camera.translation();
+  T_room_map.translation() = shifts / static_cast<double>(trajectory.size());
+  return T_room_map;
+}
+
+/// Median and 95 % of the error, and what is missing.
+std::array<double, 3> surface_errors(const ScanScene& scene, const PrescanResult& scanned,
+                                     FrameSource& source) {
+  if (!scene.room) {
+    const HeldOutScore score = score_held_out(source, scanned.map.mesh, scanned.map.trajectory, kHoldOut);
+    if (score.pixels == 0) return {kNotMeasured, kNotMeasured, kNotMeasured};
+    return {score.cover > 0.0 ? score.median_m : kNotMeasured, kNotMeasured, 1.0 - score.cover};
+  }
+  const SurfaceScore score =
+      score_surface(scanned.map.mesh, T_room_map_of(scanned.map.trajectory, scene.frames), *scene.room,
+                    scene.seen, kSpacing_m);
+  return {score.error_median_m, score.error_p95_m, 1.0 - score.cover};
+}
+
+Readings measure(const ScanScene& scene, const Setting& setting) {
+  keep_large_blocks_apart();
+  const std::size_t start_bytes = resident_bytes();
+  PrescanConfig config;
+  apply(scan_quality_of(setting), config);
+  if (!scene.room) config.hold_out = kHoldOut;
+  KeptFrames source(scene.frames, scene.name);
+  StageTimes times;
+  const auto start = std::chrono::steady_clock::now();
+  const double cpu_before_ms = process_cpu_ms();
+  const PrescanResult scanned = prescan(source, config, times);
+  const double scan_ms = ms_since(start) - source.spent_ms();
+  const double cpu_ms = process_cpu_ms() - cpu_before_ms;
+  const double memory_mb = peak_growth_mb(start_bytes);
+
+  const auto stages = times.summaries();
+  const auto frames = static_cast<double>(scene.frames.size());
+  const PrescanCounts& counts = scanned.counts;
+  const auto [median_m, p95_m, missing] = surface_errors(scene, scanned, source);
+  return {scan_ms / frames,
+          cpu_ms / frames,
+          median_of(stages, "track"),
+          median_of(stages, "fuse"),
+          median_of(stages, "surface"),
+          memory_mb,
+          static_cast<double>(scanned.map.octree.memory_bytes()) / 1e6,
+          static_cast<double>(scanned.map.mesh.triangles.size()),
+          median_m,
+          p95_m,
+          missing,
+          counts.against_recorded ? counts.against_recorded->rmse_m : kNotMeasured,
+          static_cast<double>(counts.frames_lost) / frames};
+}
+
+std::shared_ptr<const ScanScene> open_room(const std::string& spec, const TradeScale& scale) {
+  auto scene = std::make_shared<ScanScene>();
+  SimOptions options = parse_sim_spec("sim:" + spec);
+  options.frames = scale.scan_frames;
+  options.rate_hz = scale.scan_rate_hz;
+  options.depth_camera = kinect_of_width(scale.scan_px);
+  scene->name = sim_spec(options);
+  SimulatedSource source(options);
+  SeenSurface seen;
+  for (Frame frame; source.next(frame).status == ReadStatus::kFrame;) {
+    seen.add(frame, source.truth());
+    scene->frames.push_back(frame);
+  }
+  scene->seen = seen.points();
+  scene->room = std::make_unique<Room>(source.room());
+  return scene;
+}
+
+std::shared_ptr<const ScanScene> open_recording(const std::string& folder, const TradeScale& scale) {
+  auto scene = std::make_shared<ScanScene>();
+  scene->name = folder;
+  scene->frames = frames_of_recording(folder, scale.scan_frames);
+  return scene;
+}
+
+}  // namespace
+
+std::vector<Knob> scan_knobs() {
+  return {{"resolution_m", {"0.04", "0.028", "0.02", "0.014", "0.01", "0.007"}, 4},
+          {"deviation_m", {"0.008", "0.004", "0.002", "0.001", "0.0005"}, 2},
+          {"tracking_px", {"160", "320", "640"}, 1},
+          {"fuse_every", {"6", "4", "3", "2", "1"}, 4}};
+}
+
+ScanQuality scan_quality_of(const Setting& setting) {
+  ScanQuality quality;
+  const std::vector<Knob> knobs = scan_knobs();
+  for (std::size_t i = 0; i < knobs.size(); ++i)
+    set_field(quality, knobs[i].name, knobs[i].words[setting[i]]);
+  return quality;
+}
+
+TradeWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
+                       const TradeScale& scale) {
+  TradeWork work{.name = "prescan", .knobs = scan_knobs(), .figures = scan_figures(), .scenes = rooms};
+  work.scenes.insert(work.scenes.end(), recordings.begin(), recordings.end());
+  work.open = [rooms, recordings, scale](std::size_t number) -> Measure {
+    const auto scene = number < rooms.size() ? open_room(rooms[number], scale)
+                                             : open_recording(recordings[number - rooms.size()], scale);
+    return [scene](const Setting& setting) {
+      return measured_apart("prescan of " + scene->name, [&] { return measure(*scene, setting); });
+    };
+  };
+  return work;
+}
+
+}  // namespace roomradar

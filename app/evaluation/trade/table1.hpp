@@ -1,0 +1,38 @@
+// table1.hpp: the published radar's table of frame rates beside what this machine does.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/evaluation/trade/trade_scale.hpp"
+
+namespace roomradar {
+
+/// One size of virtual object ("sensor object").
+struct Table1Row {
+  int published_polygons = 0;
+  double published_ms = 0.0;  ///< a frame of the published application, on its own GPU
+  std::size_t triangles = 0;  ///< ours
+  double frame_median_ms = 0.0, frame_p95_ms = 0.0;
+  double radar_median_ms = 0.0;    ///< all questions to the radar of a frame
+  double static_triangles = 0.0;   ///< of the room, drawn in a frame
+  double dynamic_triangles = 0.0;  ///< of what moved, meshed in a frame
+};
+
+struct Table1 {
+  std::string renderer;
+  std::string scene;
+  std::vector<Table1Row> rows;
+  double contact_error_median_m = 0.0, contact_error_p95_m = 0.0;
+  int contacts = 0;
+  double passed = 0.0;  ///< part that fell through
+};
+
+/// Maps a simulated room, runs in it with each of published_objects(), and drops and pushes other objects
+/// onto its hidden surfaces. Throws Error as a session does.
+Table1 measure_table1(const std::string& room, const TradeScale& scale);
+
+std::string text_of(const Table1& table);
+nlohmann::json to_json(const Table1& table);
+
+}  // namespace roomradar

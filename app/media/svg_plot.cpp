@@ -1,0 +1,101 @@
+// svg_plot.cpp: axes, lines and cells, written number by number.
+#include "app/media/svg_plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace roomradar {
+namespace {
+
+template <typename... Numbers>
+std::string format(const char* text, Numbers... numbers) {
+  char line[256];
+  std::snprintf(line, sizeof line, text, numbers...);
+  return line;
+}
+
+}  // namespace
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char letter : text) {
+    switch (letter) {
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '&':
+        safe += "&amp;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += letter;
+    }
+  }
+  return safe;
+}
+
+std::string percent_plot(const std::string& title, const std::string& x_name, double x_least, double x_most,
+                         const std::vector<PlotLine>& lines) {
+  constexpr double kLeft = 44.0, kTop = 28.0, kWide = 400.0, kHigh = 220.0;
+  const auto at_x = [&](double x) {
+    const double part = std::log(std::max(x, x_least) / x_least) / std::log(x_most / x_least);
+    return kLeft + kWide * std::min(part, 1.0);
+  };
+  const auto at_y = [&](double percent) { return kTop + kHigh * (1.0 - percent / 100.0); };
+  std::string svg = "<svg viewBox=\"0 0 580 296\" width=\"580\" height=\"296\" role=\"img\">";
+  svg += "<text x=\"44\" y=\"16\" class=\"t\">" + escaped(title) + "</text>";
+  for (int percent = 0; percent <= 100; percent += 25)
+    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" class=\"g\"/>", kLeft, kLeft + kWide,
+                  at_y(percent), at_y(percent)) +
+           format("<text x=\"%.1f\" y=\"%.1f\" class=\"n e\">%d %%</text>", kLeft - 4.0, at_y(percent) + 4.0,
+                  percent);
+  for (double decade = std::pow(10.0, std::ceil(std::log10(x_least) - 1e-9)); decade <= x_most * 1.0001;
+       decade *= 10.0)
+    svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" class=\"g\"/>", at_x(decade),
+                  at_x(decade), kTop, kTop + kHigh) +
+           format("<text x=\"%.1f\" y=\"%.1f\" class=\"n m\">%g</text>", at_x(decade), kTop + kHigh + 15.0,
+                  decade);
+  svg += format("<text x=\"%.1f\" y=\"%.1f\" class=\"n m\">", kLeft + 0.5 * kWide, kTop + kHigh + 32.0) +
+         escaped(x_name) + "</text>";
+  double legend_y = kTop + 12.0;
+  bool is_dashed = false;
+  for (const PlotLine& line : lines) {
+    is_dashed = !is_dashed;  // every second one: what lies under it shows
+    svg += "<polyline fill=\"none\" stroke-width=\"2\"";
+    if (is_dashed) svg += " stroke-dasharray=\"7 7\"";
+    svg += " stroke=\"" + line.colour + "\" points=\"";
+    for (const auto& [x, percent] : line.points) svg += format("%.1f,%.1f ", at_x(x), at_y(percent));
+    svg += "\"/>" + format("<rect x=\"456\" y=\"%.1f\" width=\"14\" height=\"4\" fill=\"", legend_y - 6.0) +
+           line.colour + "\"/>" + format("<text x=\"476\" y=\"%.1f\" class=\"n\">", legend_y) +
+           escaped(line.name) + "</text>";
+    legend_y += 18.0;
+  }
+  return svg + "</svg>\n";
+}
+
+std::string share_cells(const ShareTable& table) {
+  std::string html = "<table class=\"cells\"><caption>" + escaped(table.title) + "</caption><tr><th></th>";
+  for (const std::string& column : table.columns) html += "<th>" + escaped(column) + "</th>";
+  html += "</tr>\n";
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    html += "<tr><th>" + escaped(table.rows[row]) + "</th>";
+    for (const double share : table.share[row]) {
+      if (std::isnan(share)) {
+        html += "<td>–</td>";
+        continue;
+      }
+      html += format("<td style=\"background:rgba(214,40,40,%.2f)\">%.*f %%</td>", 0.75 * share,
+                     share > 0.0 && share < 0.01 ? 1 : 0, 100.0 * share);
+    }
+    html += "</tr>\n";
+  }
+  return html + "</table>\n";
+}
+
+}  // namespace roomradar

@@ -1,0 +1,156 @@
+// video_writer.cpp: pictures to a video file through OpenCV, with the checks that OpenCV leaves out.
+#include "app/media/video_writer.hpp"
+
+#include <unistd.h>
+
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::int64_t kFramesBetweenSpaceChecks = 15;
+// An encoder's buffers and the file's index must still fit.
+constexpr std::uintmax_t kMinFreeBytes = 4U << 20U;
+
+std::vector<std::string> codecs_for(const std::string& extension) {
+  if (extension == ".mp4") return {"avc1", "mp4v"};
+  if (extension == ".avi") return {"MJPG"};
+  if (extension == ".mkv") return {"mp4v", "MJPG"};
+  return {};
+}
+
+/// What is written until the video is whole; its extension tells the encoder what it is to be.
+std::filesystem::path partial_of(const std::filesystem::path& target) {
+  std::error_code fault;
+  if (std::filesystem::exists(target, fault) && !std::filesystem::is_regular_file(target, fault))
+    return target;  // a pipe or a device
+  std::filesystem::path partial = target;
+  partial.replace_extension(".partial-" + std::to_string(::getpid()) + target.extension().string());
+  return partial;
+}
+
+}  // namespace
+
+struct VideoWriter::State {
+  std::filesystem::path path;     // of the whole video
+  std::filesystem::path partial;  // what is written
+  double frames_per_s = 30.0;
+  std::vector<std::string> codecs;
+  cv::VideoWriter writer;
+  cv::Mat bgr;
+  int width_px = 0;
+  int height_px = 0;
+  std::int64_t frames_written = 0;
+  double start_s = 0.0;  ///< stamp of the video's first picture
+  double last_stamp_s = -std::numeric_limits<double>::infinity();
+  bool is_closed = false;
+
+  void open() {
+    for (const std::string& codec : codecs) {
+      const int fourcc = cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]);
+      const cv::Size size(width_px & ~1, height_px & ~1);
+      if (writer.open(partial.string(), cv::CAP_FFMPEG, fourcc, frames_per_s, size)) return;
+    }
+    throw Error(path.string() +
+                ": no video can be made here; may the folder be written, and is OpenCV built with FFmpeg?");
+  }
+
+  void require_space() const {
+    std::error_code fault;
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    const std::filesystem::space_info space = std::filesystem::space(folder, fault);
+    if (!fault && space.available < kMinFreeBytes)
+      throw Error(path.string() + ": the disk is full; make room or choose another folder");
+  }
+};
+
+VideoWriter::VideoWriter(std::filesystem::path path, double frames_per_s)
+    : state_(std::make_unique<State>()) {
+  state_->codecs = codecs_for(path.extension().string());
+  if (state_->codecs.empty()) throw Error(path.string() + ": a video's name ends in .mp4, .avi or .mkv");
+  if (!(frames_per_s >= 1.0 && frames_per_s <= 240.0))
+    throw Error(path.string() + ": " + number_text(frames_per_s) + " frames a second: must be in 1..240");
+  std::error_code fault;
+  if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), fault))
+    throw Error(path.string() + ": its folder does not exist; make it first");
+  if (std::filesystem::is_directory(path, fault))
+    throw Error(path.string() + ": is a folder, not a video file");
+  if (std::filesystem::is_symlink(path, fault) && std::filesystem::exists(path, fault))
+    path = std::filesystem::canonical(path, fault);
+  state_->partial = partial_of(path);
+  state_->path = std::move(path);
+  state_->frames_per_s = frames_per_s;
+}
+
+VideoWriter::~VideoWriter() {
+  try {
+    close();
+  } catch (const Error&) {  // what there is stays beside
+  }
+}
+
+std::int64_t VideoWriter::frames_written() const { return state_->frames_written; }
+
+void VideoWriter::write(const ColourImage& picture) {
+  State& s = *state_;
+  if (s.is_closed) throw Error(s.path.string() + ": the video is finished; nothing can be added");
+  if (picture.width < 2 || picture.height < 2)
+    throw Error(s.path.string() + ": a video's picture needs 2 x 2 pixels");
+  if (s.frames_written == 0) {
+    s.width_px = picture.width;
+    s.height_px = picture.height;
+    s.require_space();
+    s.open();
+  }
+  if (s.frames_written % kFramesBetweenSpaceChecks == 0) s.require_space();
+  cv::Mat rgb(picture.height, picture.width, CV_8UC3, const_cast<Rgb*>(picture.pixels.data()));
+  if (picture.width != s.width_px || picture.height != s.height_px)
+    cv::resize(rgb, rgb, cv::Size(s.width_px, s.height_px), 0.0, 0.0, cv::INTER_AREA);
+  cv::cvtColor(rgb(cv::Rect(0, 0, s.width_px & ~1, s.height_px & ~1)), s.bgr, cv::COLOR_RGB2BGR);
+  s.writer.write(s.bgr);
+  ++s.frames_written;
+}
+
+void VideoWriter::write_at(const ColourImage& picture, double stamp_s) {
+  constexpr double kJump_s = 1.0;
+  State& s = *state_;
+  const bool is_next = stamp_s >= s.last_stamp_s && stamp_s <= s.last_stamp_s + kJump_s;
+  if (!is_next) s.start_s = stamp_s - static_cast<double>(s.frames_written) / s.frames_per_s;
+  s.last_stamp_s = stamp_s;
+  const auto place =
+      is_next ? static_cast<std::int64_t>((stamp_s - s.start_s) * s.frames_per_s + 0.5) : s.frames_written;
+  while (s.frames_written <= place) write(picture);
+}
+
+void VideoWriter::close() {
+  State& s = *state_;
+  if (std::exchange(s.is_closed, true) || s.frames_written == 0) return;
+  s.writer.release();
+  if (s.partial == s.path) return;  // a pipe or a device: what went through it cannot be asked
+  // OpenCV does not say when a write failed, so the file is asked: one that was cut short has no index, or
+  // fewer frames.
+  cv::VideoCapture reader(s.partial.string(), cv::CAP_FFMPEG);
+  const double frames_held = reader.isOpened() ? reader.get(cv::CAP_PROP_FRAME_COUNT) : 0.0;
+  if (frames_held + 1.5 < static_cast<double>(s.frames_written))
+    throw Error(s.path.string() + ": could be written with " +
+                std::to_string(static_cast<long>(std::max(frames_held, 0.0))) + " of " +
+                std::to_string(s.frames_written) + " frames only, see " + s.partial.string() +
+                "; is the disk full?");
+  std::error_code fault;
+  std::filesystem::rename(s.partial, s.path, fault);
+  if (fault)
+    throw Error(s.path.string() + ": cannot be written: " + fault.message() + "; the video is in " +
+                s.partial.string());
+}
+
+}  // namespace roomradar

@@ -1,0 +1,108 @@
+// contact_solver.cpp: projected Gauss-Seidel over the contacts of one body with what stands and with others.
+#include "app/physics/contact_solver.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+constexpr int kMostRounds = 80;
+constexpr double kSettled_mps = 1e-9;
+constexpr std::size_t kMostContacts = 32;
+
+struct Effective {
+  Vec3 x, y;                        // across the normal
+  double normal, along_x, along_y;  // kg
+};
+
+}  // namespace
+
+double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2) {
+  return 0.5 * (velocity.linear_mps.squaredNorm() +
+                velocity.angular_rad_s.dot(inertia_m2 * velocity.angular_rad_s));
+}
+
+Eigen::Vector3d slip_at(const SolverContact& contact, const Velocity& velocity,
+                        std::span<const SolverOther> others) {
+  const Vec3 own = velocity_at(velocity, contact.arm_m);
+  if (contact.other >= others.size()) return own;
+  return own - velocity_at(others[contact.other].velocity, contact.other_arm_m);
+}
+
+void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& inertia_m2,
+                    const Rubbing& rubbing, Velocity& velocity, std::span<SolverOther> others) {
+  contacts = contacts.first(std::min(contacts.size(), kMostContacts));
+  if (contacts.empty()) return;
+  const Eigen::Matrix3d inverse = inertia_m2.inverse();
+  std::array<Effective, kMostContacts> effective;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    SolverContact& contact = contacts[i];
+    contact.impulse_mps = 0.0;
+    contact.rub_mps.setZero();
+    const auto mass_along = [&](const Vec3& direction) {
+      const Vec3 lever = contact.arm_m.cross(direction);
+      double yields = 1.0 + lever.dot(inverse * lever);
+      if (contact.other < others.size()) {
+        const SolverOther& other = others[contact.other];
+        const Vec3 other_lever = contact.other_arm_m.cross(direction);
+        yields += other.gives * (1.0 + other_lever.dot(other.inverse_inertia_m2 * other_lever));
+      }
+      return 1.0 / yields;
+    };
+    Effective& e = effective[i];
+    e.x = contact.normal.unitOrthogonal();
+    e.y = contact.normal.cross(e.x);
+    e.normal = mass_along(contact.normal);
+    e.along_x = mass_along(e.x);
+    e.along_y = mass_along(e.y);
+  }
+  const auto apply = [&](const SolverContact& contact, const Vec3& impulse) {
+    velocity.linear_mps += impulse;
+    velocity.angular_rad_s += inverse * contact.arm_m.cross(impulse);
+    if (contact.other >= others.size()) return;
+    SolverOther& other = others[contact.other];
+    other.velocity.linear_mps -= other.gives * impulse;
+    other.velocity.angular_rad_s -=
+        other.gives * other.inverse_inertia_m2 * contact.other_arm_m.cross(impulse);
+  };
+  Vec3 held_back = Vec3::Zero();  // angular impulse of rolling
+  for (int round = 0; round < kMostRounds; ++round) {
+    double change_mps = 0.0;
+    if (rubbing.rolling > 0.0) {
+      double limit = 0.0;
+      for (const SolverContact& contact : contacts) limit += contact.impulse_mps * contact.arm_m.norm();
+      limit *= rubbing.rolling;
+      Vec3 wanted = held_back - inertia_m2 * velocity.angular_rad_s;
+      const double size = wanted.norm();
+      if (size > limit) wanted *= limit / size;
+      velocity.angular_rad_s += inverse * (wanted - held_back);
+      held_back = wanted;
+    }
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      SolverContact& contact = contacts[i];
+      const Effective& e = effective[i];
+      const double enters_mps = contact.leaves_mps - slip_at(contact, velocity, others).dot(contact.normal);
+      const double impulse = std::max(contact.impulse_mps + e.normal * enters_mps, 0.0);
+      const double more = impulse - contact.impulse_mps;
+      contact.impulse_mps = impulse;
+      apply(contact, more * contact.normal);
+
+      const Vec3 slip = slip_at(contact, velocity, others);
+      Vec3 rub = contact.rub_mps - e.along_x * slip.dot(e.x) * e.x - e.along_y * slip.dot(e.y) * e.y;
+      const double most = rubbing.friction * contact.impulse_mps;
+      const double size = rub.norm();
+      if (size > most) rub *= most / size;
+      const Vec3 more_rub = rub - contact.rub_mps;
+      contact.rub_mps = rub;
+      apply(contact, more_rub);
+      change_mps = std::max({change_mps, std::abs(more), more_rub.lpNorm<Eigen::Infinity>()});
+    }
+    if (change_mps < kSettled_mps) return;
+  }
+}
+
+}  // namespace roomradar

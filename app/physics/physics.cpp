@@ -1,0 +1,434 @@
+// physics.cpp: move a virtual object by what the radar answers.
+#include "app/physics/physics.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "app/physics/rigid_motion.hpp"
+#include "mapping/types/system/config_check.hpp"
+#include "mapping/types/system/stage_times.hpp"
+#include "radar/exact/cyber_radar.hpp"
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+constexpr double kShortest_m = 1e-13;  // less than this is no motion
+constexpr double kGrazing = 0.05;  // cosine below which a margin is not measured along the motion any more
+constexpr double kDoubtful_m = 0.003;  // deeper overlap along gravity: the way out may be sideways
+
+bool is_finite(const Body& body) {
+  return body.T_world_object.matrix().allFinite() && body.velocity_world_mps.allFinite() &&
+         body.spin_world_rad_s.allFinite() && body.mass.centre_object.allFinite() &&
+         body.mass.inertia_m2.allFinite();
+}
+
+/// Whether the radar's answer can be built on. A normal that is missing or does not face the object is
+/// replaced by the direction back, in place.
+bool make_usable(Contact& contact, const Vec3& direction) {
+  if (contact.status == ContactStatus::kInvalidInput || contact.status == ContactStatus::kNoAnswer)
+    return false;
+  if (!contact) return true;
+  // An overlap may be deeper than the radar looked.
+  const bool has_lower = std::isfinite(contact.lower_m) || contact.status == ContactStatus::kOverlap;
+  if (!std::isfinite(contact.travel_m) || !has_lower) return false;
+  const double length = contact.normal_world.norm();
+  const bool faces_object =
+      std::isfinite(length) && length > 0.5 && contact.normal_world.dot(direction) < -1e-3 * length;
+  contact.normal_world = faces_object ? Vec3(contact.normal_world / length) : Vec3(-direction);
+  return true;
+}
+
+/// One call of advance: the body, the radar, and what is reported.
+class Stepper {
+ public:
+  Stepper(Body& body, const BodyProbe& probe, const PhysicsConfig& config, StepReport& report)
+      : body_(body), probe_(probe), config_(config), report_(report) {
+    const double g = config.gravity_world_mps2.norm();
+    if (g > 0.0) down_ = config.gravity_world_mps2 / g;
+  }
+
+  /// Looks below, and moves out of surfaces that came into the body, by the shortest way among gravity's and
+  /// the given.
+  void leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world);
+
+  /// Whether what leave_overlaps saw below still holds the body up, within the noise.
+  [[nodiscard]] bool is_held_up() const;
+  /// Whether another body, which it touched when it came to rest, is not where it was.
+  [[nodiscard]] bool has_lost_a_neighbour() const;
+
+  /// One piece of motion, and perhaps rest.
+  void move(double dt_s);
+
+  void wake();
+  [[nodiscard]] bool failed() const { return report_.status == StepStatus::kHeld; }
+
+ private:
+  struct Way {
+    double depth_m = 0.0;  // 0: no overlap
+    Vec3 direction = Vec3::Zero();
+    Contact contact;
+  };
+
+  /// Without turning, from surface to surface along the radar's directions; whether one held it up.
+  bool slide(double dt_s);
+  Contact ask(const Vec3& direction, double distance_m);
+  /// Whether what seems to be in the body only lies between its parts, as in a handle: it crosses none.
+  [[nodiscard]] bool is_in_a_hollow(const Way& way);
+  static Way overlap_in(const Contact& contact, const Vec3& direction);
+  void hold();
+  void collide(const Contact& contact, Vec3& remaining);
+  void linger(double dt_s, bool is_balanced);
+
+  Body& body_;
+  const BodyProbe& probe_;
+  const PhysicsConfig& config_;
+  StepReport& report_;
+  Vec3 down_ = Vec3::Zero();
+  Contact below_;                 // along gravity, before any motion
+  std::optional<Kinds> crossed_;  // by what, before any motion, once that was asked
+  std::optional<Push> push_;
+  RigidScratch scratch_;
+  std::array<Vec3, 2> met_normals_;
+  int met_count_ = 0;
+};
+
+Contact Stepper::ask(const Vec3& direction, double distance_m) {
+  ++report_.queries;
+  Contact contact = probe_.travel(body_.T_world_object, direction, distance_m);
+  if (!make_usable(contact, direction)) hold();
+  return contact;
+}
+
+void Stepper::hold() {
+  report_.status = StepStatus::kHeld;
+  body_.velocity_world_mps.setZero();
+  body_.spin_world_rad_s.setZero();
+}
+
+void Stepper::wake() {
+  if (!body_.at_rest) return;
+  report_.woke = true;
+  body_.at_rest = false;
+}
+
+Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) {
+  if (contact.status != ContactStatus::kOverlap) return {};
+  return {std::max(-contact.travel_m, 0.0), direction, contact};
+}
+
+bool Stepper::is_in_a_hollow(const Way& way) {
+  constexpr double kTouching_m = 1e-6;
+  const Touched kind = way.contact.touched;
+  if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind)) return false;
+  if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, scratch_.near);
+  return (*crossed_ & bit_of(kind)) == 0;
+}
+
+void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world) {
+  Way way;
+  const auto consider = [&](const Way& other) {
+    if (!(other.depth_m > 0.0) || (way.depth_m > 0.0 && other.depth_m >= way.depth_m)) return;
+    if (!is_in_a_hollow(other)) way = other;
+  };
+  const auto look = [&](const Vec3& direction) {
+    if (!failed()) consider(overlap_in(ask(direction, config_.contact_margin_m), direction));
+  };
+  if (!down_.isZero()) {
+    below_ = ask(down_, config_.wake_gap_m + 2.0 * config_.contact_margin_m);
+    consider(overlap_in(below_, down_));
+  }
+  for (const Vec3& direction : push_directions_world)
+    if (direction.allFinite() && direction.norm() > 0.5) look(direction.normalized());
+  // A wall that grazes the body's side looks deep along gravity: look sideways before jumping on top of it.
+  if (way.depth_m > kDoubtful_m && way.direction == down_) {
+    const Vec3 across = down_.unitOrthogonal();
+    const Vec3 other_across = down_.cross(across);
+    for (const Vec3& direction : {across, Vec3(-across), other_across, Vec3(-other_across)}) look(direction);
+  }
+  if (failed() || way.depth_m <= 0.0) return;
+
+  report_.deepest_overlap_m = std::max(report_.deepest_overlap_m, way.depth_m);
+  if (way.contact.touched == Touched::kStatic)
+    report_.deepest_static_overlap_m = std::max(report_.deepest_static_overlap_m, way.depth_m);
+  if (way.depth_m <= (body_.at_rest ? config_.wake_overlap_m : config_.overlap_allowed_m)) return;
+
+  wake();
+  const double push_m = std::min(way.depth_m + config_.contact_margin_m, config_.push_out_mps * dt_s);
+  if (is_moving_surface(way.contact.touched)) {
+    const bool is_out_at_once = way.direction == down_ && way.depth_m <= push_m;
+    if (!is_out_at_once)
+      push_ = Push{way.contact.point_world, -way.direction, push_m / dt_s, way.contact.touched};
+    if (way.direction != down_) return;
+  }
+  // What stands behind stops the push: the body is squeezed, and the next call asks again.
+  const Contact behind = ask(-way.direction, push_m + config_.contact_margin_m);
+  if (failed()) return;
+  double free_m = push_m;
+  if (behind.status == ContactStatus::kContact)
+    free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
+  if (behind.status == ContactStatus::kOverlap && behind.touched == Touched::kStatic) free_m = 0.0;
+  body_.T_world_object.translation() -= std::min(push_m, free_m) * way.direction;
+  const double inward_mps = body_.velocity_world_mps.dot(way.direction);
+  if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction;
+}
+
+bool Stepper::is_held_up() const {
+  if (down_.isZero()) return true;
+  return below_ && below_.lower_m <= config_.wake_gap_m + config_.contact_margin_m;
+}
+
+bool Stepper::has_lost_a_neighbour() const {
+  return std::any_of(body_.leans.begin(), body_.leans.end(), [&](const Body::Leant& leant) {
+    const bool is_there = std::any_of(probe_.others.begin(), probe_.others.end(),
+                                      [&](const OtherBody& other) { return other.body == leant.on; });
+    return !is_there || strayed_m(*leant.on, leant.T_world_other) > config_.wake_moved_m;
+  });
+}
+
+/// Takes out what goes into the surface, of the velocity by restitution and friction, of the motion that
+/// remains wholly; where two surfaces are met, along their crease; where three are, all of it.
+void Stepper::collide(const Contact& contact, Vec3& remaining) {
+  const Vec3& normal = contact.normal_world;
+  Vec3& velocity = body_.velocity_world_mps;
+  const double into_mps = -velocity.dot(normal);
+  Vec3 along = velocity + into_mps * normal;
+  double kept = 1.0;
+  if (into_mps > 0.0) {
+    const double speed = along.norm();
+    kept = speed > 0.0 ? std::max(1.0 - config_.friction * into_mps / speed, 0.0) : 0.0;
+    const double back_mps = into_mps > config_.bounce_mps ? config_.restitution * into_mps : 0.0;
+    along *= kept;
+    velocity = along + back_mps * normal;
+  }
+  remaining -= std::min(remaining.dot(normal), 0.0) * normal;
+  remaining *= kept;
+
+  for (int i = 0; i < met_count_; ++i) {
+    const Vec3& other = met_normals_[static_cast<std::size_t>(i)];
+    if (remaining.dot(other) >= -1e-9) continue;
+    const Vec3 crease = other.cross(normal);
+    const double length2 = crease.squaredNorm();
+    const bool is_corner = met_count_ == 2 || length2 < 1e-6;
+    const auto on_crease = [&](const Vec3& v) -> Vec3 {
+      return is_corner ? Vec3::Zero() : Vec3(crease * (crease.dot(v) / length2));
+    };
+    remaining = on_crease(remaining);
+    if (velocity.dot(other) < 0.0) velocity = on_crease(velocity);
+    break;
+  }
+  if (met_count_ < 2) met_normals_[static_cast<std::size_t>(met_count_++)] = normal;
+  note_contact(contact.touched, report_);
+}
+
+/// Counts time on a support, from where the body first lingered; there for long enough, it is at rest. What
+/// is not balanced has to stay for longer: it may be about to tip.
+void Stepper::linger(double dt_s, bool is_balanced) {
+  constexpr double kLongerUnbalanced = 4.0;
+  if (body_.lingered_s <= 0.0 || !(strayed_m(body_, body_.lingers_at) <= config_.rest_drift_m)) {
+    body_.lingers_at = body_.T_world_object;
+    body_.lingered_s = 0.0;
+  }
+  body_.lingered_s += dt_s;
+  if (body_.lingered_s < config_.rest_after_s * (is_balanced ? 1.0 : kLongerUnbalanced)) return;
+  body_.at_rest = true;
+  body_.leans.clear();
+  for (const Body* other : scratch_.bodies) body_.leans.push_back({other, other->T_world_object});
+  body_.lingered_s = 0.0;  // whoever sets it in motion again has not lingered
+  body_.velocity_world_mps.setZero();
+  body_.spin_world_rad_s.setZero();
+}
+
+void Stepper::move(double dt_s) {
+  const RigidPiece piece = move_rigidly(body_, dt_s, probe_, config_, push_, scratch_, report_);
+  if (piece.crosses) {
+    if (slide(piece.left_s)) linger(dt_s, /*is_balanced=*/true);
+    return;
+  }
+  if (piece.is_held_up) {
+    body_.rests_on = piece.rests_on;
+    if (!push_) linger(dt_s, piece.is_balanced);
+  } else {
+    body_.rests_on = Touched::kNothing;
+  }
+}
+
+bool Stepper::slide(double dt_s) {
+  body_.spin_world_rad_s.setZero();
+  body_.velocity_world_mps += config_.gravity_world_mps2 * dt_s;
+  const double speed_mps = body_.velocity_world_mps.norm();
+  if (speed_mps > config_.max_speed_mps) body_.velocity_world_mps *= config_.max_speed_mps / speed_mps;
+
+  auto position = body_.T_world_object.translation();
+  Vec3 remaining = body_.velocity_world_mps * dt_s;
+  bool is_supported = false;
+  body_.rests_on = Touched::kNothing;
+  met_count_ = 0;
+  for (int slide = 0; slide < config_.max_slides; ++slide) {
+    const double distance_m = remaining.norm();
+    if (distance_m < kShortest_m) break;
+    const Vec3 direction = remaining / distance_m;
+    const Contact contact = ask(direction, distance_m + config_.contact_margin_m / kGrazing);
+    if (failed()) return false;
+    // The gap is kept across the surface; seen along a grazing motion it is longer.
+    const double steepness = std::max(-contact.normal_world.dot(direction), kGrazing);
+    const double free_m = contact ? contact.lower_m - config_.contact_margin_m / steepness : contact.lower_m;
+    if (free_m >= distance_m) {
+      position += remaining;
+      break;
+    }
+    const Vec3 moved = std::max(free_m, 0.0) * direction;
+    position += moved;
+    if (!contact) break;  // the radar did not look farther
+    remaining -= moved;
+    if (contact.normal_world.dot(down_) < -kSupportCosine) {
+      is_supported = true;
+      body_.rests_on = contact.touched;
+    }
+    collide(contact, remaining);
+  }
+  return is_supported;
+}
+
+}  // namespace
+
+void require_valid(const PhysicsConfig& config) {
+  const SettingRules require{"physics"};
+  const auto require_positive = [&](const char* name, double value) {
+    require(std::isfinite(value) && value > 0.0, name, value, "> 0");
+  };
+  const auto require_not_negative = [&](const char* name, double value) {
+    require(std::isfinite(value) && value >= 0.0, name, value, ">= 0");
+  };
+  require(config.gravity_world_mps2.allFinite(), "gravity_world_mps2", config.gravity_world_mps2.norm(),
+          "finite");
+  require(config.restitution >= 0.0 && config.restitution <= 1.0, "restitution", config.restitution,
+          "in 0..1");
+  require_not_negative("bounce_mps", config.bounce_mps);
+  require_not_negative("friction", config.friction);
+  require_not_negative("rolling", config.rolling);
+  require_positive("contact_margin_m", config.contact_margin_m);
+  require_positive("max_step_s", config.max_step_s);
+  require_positive("max_advance_s", config.max_advance_s);
+  require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,
+          "at most 1000 max_step_s");
+  require(config.max_slides >= 1 && config.max_slides <= 64, "max_slides", config.max_slides, "in 1..64");
+  require_positive("rest_drift_m", config.rest_drift_m);
+  require_positive("rest_after_s", config.rest_after_s);
+  require_positive("wake_gap_m", config.wake_gap_m);
+  require_positive("wake_moved_m", config.wake_moved_m);
+  require_positive("wake_overlap_m", config.wake_overlap_m);
+  require_not_negative("overlap_allowed_m", config.overlap_allowed_m);
+  require_positive("push_out_mps", config.push_out_mps);
+  require_positive("max_speed_mps", config.max_speed_mps);
+  require_positive("max_spin_rad_s", config.max_spin_rad_s);
+}
+
+BodyProbe probe_of(CyberRadar& radar, NearField& field, const TriangleTree& object, const RadarScene& scene,
+                   double* spent_ms) {
+  struct Spent {
+    double* spent_ms;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    ~Spent() {
+      if (spent_ms != nullptr) *spent_ms += ms_since(start);
+    }
+  };
+  BodyProbe probe;
+  probe.travel = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const Vec3& direction,
+                               double distance_m) {
+    const Spent spent{spent_ms};
+    return radar.query({{&object, T_world_object}, direction, distance_m}, scene);
+  };
+  probe.near = [&, spent_ms](const Eigen::Isometry3d& T_world_object, double reach_m, Kinds left_out,
+                             std::vector<NearPoint>& points) {
+    const Spent spent{spent_ms};
+    return field.near({&object, T_world_object}, scene, reach_m, left_out, points);
+  };
+  probe.free_time = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
+                                  double duration_s, double keep_m, Kinds left_out) {
+    const Spent spent{spent_ms};
+    return field.free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out);
+  };
+  return probe;
+}
+
+StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
+                   std::span<const Eigen::Vector3d> push_directions_world) {
+  StepReport report;
+  if (!std::isfinite(dt_s) || dt_s < 0.0 || !is_finite(body)) {
+    report.status = StepStatus::kInvalid;
+    return report;
+  }
+  if (dt_s == 0.0) return report;
+  dt_s = std::min(dt_s, config.max_advance_s);
+
+  Stepper stepper(body, probe, config, report);
+  stepper.leave_overlaps(dt_s, push_directions_world);
+  if (stepper.failed()) return report;
+  const bool is_still = body.velocity_world_mps.isZero() && body.spin_world_rad_s.isZero();
+  if (body.at_rest && is_still && stepper.is_held_up() && !stepper.has_lost_a_neighbour()) return report;
+  stepper.wake();
+
+  constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two pieces of 1/60 s, not three
+  const int pieces = std::max(static_cast<int>(std::ceil(dt_s / config.max_step_s - kOver)), 1);
+  for (int piece = 0; piece < pieces && !body.at_rest && !stepper.failed(); ++piece)
+    stepper.move(dt_s / pieces);
+  return report;
+}
+
+bool is_swallowed(const Body& body, double dt_s, const TravelQuery& back, const PhysicsConfig& config,
+                  std::span<const Eigen::Vector3d> push_directions_world) {
+  const double most_m = config.push_out_mps * dt_s + config.wake_overlap_m;
+  bool is_deep = false;
+  const auto is_shallow = [&](const Vec3& direction) {
+    const Contact contact = back(body.T_world_object, direction, config.contact_margin_m);
+    if (contact.status != ContactStatus::kOverlap) return false;
+    is_deep = true;
+    return -contact.travel_m <= most_m;
+  };
+  const double g = config.gravity_world_mps2.norm();
+  if (g > 0.0 && is_shallow(config.gravity_world_mps2 / g)) return false;
+  if (std::any_of(push_directions_world.begin(), push_directions_world.end(), is_shallow)) return false;
+  return is_deep;
+}
+
+PushDirections push_directions(std::initializer_list<const Mesh*> moving_world,
+                               const Eigen::Vector3d& centre_world, double reach_m,
+                               const Eigen::Vector3d& up_world) {
+  Vec3 nearest = Vec3::Zero();
+  Vec3 sum = Vec3::Zero();
+  double nearest_m2 = reach_m * reach_m;
+  std::size_t count = 0;
+  for (const Mesh* mesh : moving_world) {
+    const Vec3 centre = centre_world - mesh->origin;
+    for (const Eigen::Vector3f& vertex : mesh->vertices) {
+      const Vec3 offset = vertex.cast<double>() - centre;
+      const double distance_m2 = offset.squaredNorm();
+      if (!(distance_m2 <= reach_m * reach_m)) continue;  // NaN is not near either
+      sum += offset;
+      ++count;
+      if (distance_m2 <= nearest_m2) {
+        nearest_m2 = distance_m2;
+        nearest = offset;
+      }
+    }
+  }
+  PushDirections result;
+  if (count == 0) return result;
+  for (const Vec3& offset : {nearest, Vec3(sum / static_cast<double>(count))}) {
+    const Vec3 level = offset - offset.dot(up_world) * up_world;
+    const double length = level.norm();
+    if (length < 0.2 * offset.norm() || length < 1e-6) continue;  // straight above or below: gravity's affair
+    const Vec3 direction = level / length;
+    if (result.count == 1 && direction.dot(result.direction_world[0]) > 0.97) continue;
+    result.direction_world[static_cast<std::size_t>(result.count++)] = direction;
+  }
+  return result;
+}
+
+}  // namespace roomradar

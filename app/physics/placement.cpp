@@ -1,0 +1,277 @@
+// placement.cpp: find a level surface in view, on a grid of heights seen from above.
+#include "app/physics/placement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "mapping/types/system/config_check.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr float kUnseen = -std::numeric_limits<float>::infinity();
+
+/// What is seen from above: the height of the topmost surface in each cell of a level grid about what is
+/// seen, with `margin` more cells, unseen ones, on each side; no cells where nothing is.
+class HeightGrid {
+ public:
+  HeightGrid(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+             const PlacementConfig& config, int margin)
+      : cell_m_(config.cell_m), origin_world_(T_world_camera.translation()) {
+    struct Seen {
+      int i, j;  // of the cell: 0 below the camera, until the grid is laid
+      float height_m;
+    };
+    std::vector<Seen> points;
+    // Of a row as many pixels as the farthest cells need; of a column more, for floors are seen at a slant.
+    constexpr double kOfCell = 0.75;
+    const double apart_px = kOfCell * cell_m_ * camera.fx_px / config.max_range_m;
+    const int across = static_cast<int>(std::clamp(apart_px, 1.0, static_cast<double>(camera.width_px)));
+    const int down = std::max(across / 2, 1);
+    points.reserve(depth_m.pixels.size() / static_cast<std::size_t>(across * down));
+    const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
+    const Eigen::Vector3f step = R.col(0) / static_cast<float>(camera.fx_px);
+    const auto per_m = static_cast<float>(1.0 / cell_m_);
+    const auto nearest_m = static_cast<float>(config.min_range_m),
+               farthest_m = static_cast<float>(config.max_range_m);
+    // A wide lens sees farther sideways.
+    const int most = static_cast<int>(std::ceil(1.5 * config.max_range_m / cell_m_));
+    Eigen::AlignedBox2i seen;
+    for (int y = 0; y < camera.height_px; y += down) {
+      const Eigen::Vector3f row = R * back_project(camera, 0.0, y, 1.0).cast<float>();
+      for (int x = 0; x < camera.width_px; x += across) {
+        const float z_m = depth_m.at(x, y);
+        if (!(z_m >= nearest_m && z_m <= farthest_m)) continue;
+        const Eigen::Vector3f p = z_m * (row + static_cast<float>(x) * step);
+        const int i = static_cast<int>(std::floor(p.x() * per_m + 0.5F));
+        const int j = static_cast<int>(std::floor(p.y() * per_m + 0.5F));
+        if (std::max(std::abs(i), std::abs(j)) > most) continue;
+        points.push_back({i, j, p.z()});
+        seen.extend(Eigen::Vector2i(i, j));
+      }
+    }
+    if (points.empty()) return;
+
+    // A square about what is seen.
+    half_ = (seen.sizes().maxCoeff() + 1) / 2 + margin;
+    size_ = 2 * half_ + 1;
+    const Eigen::Vector2i middle = seen.min() + seen.sizes() / 2;
+    origin_world_.head<2>() += cell_m_ * middle.cast<double>();
+    const std::size_t cells = static_cast<std::size_t>(size_) * static_cast<std::size_t>(size_);
+    std::vector<float> highest_m(cells, kUnseen);
+    std::vector<float> sum_m(cells, 0.0F);
+    std::vector<int> count(cells, 0);
+    const auto cell_of = [&](const Seen& point) {
+      return index(point.i - middle.x() + half_, point.j - middle.y() + half_);
+    };
+    for (const Seen& point : points)
+      highest_m[cell_of(point)] = std::max(highest_m[cell_of(point)], point.height_m);
+    // The mean of the topmost layer rather than its highest point, which is the noisiest.
+    const auto layer_m = static_cast<float>(2.0 * config.flatness_m);
+    for (const Seen& point : points) {
+      const std::size_t cell = cell_of(point);
+      if (point.height_m < highest_m[cell] - layer_m) continue;
+      sum_m[cell] += point.height_m;
+      ++count[cell];
+    }
+    top_m_.assign(cells, kUnseen);
+    for (std::size_t cell = 0; cell < cells; ++cell)
+      if (count[cell] > 0) top_m_[cell] = sum_m[cell] / static_cast<float>(count[cell]);
+  }
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
+  }
+  /// Above the camera's height (m), usually negative; kUnseen where nothing is. Row by row: where something
+  /// is seen, cells up to the margin away can be reached from here.
+  [[nodiscard]] const float* top_m(int i, int j) const { return &top_m_[index(i, j)]; }
+  [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {
+    return origin_world_ + Eigen::Vector3d((i - half_) * cell_m_, (j - half_) * cell_m_, height_m);
+  }
+
+ private:
+  double cell_m_;
+  Eigen::Vector3d origin_world_;  // above the middle cell, at the camera's height
+  int half_ = 0;
+  int size_ = 0;
+  std::vector<float> top_m_;
+};
+
+/// The cells of a grid that an object covers, from its middle.
+struct FootprintCells {
+  struct Cell {
+    std::ptrdiff_t away;  // in the grid
+    double x_m, y_m;
+    float most_rise_m;  // against the middle, of a surface on which the object can stand
+  };
+  std::vector<Cell> cells;                            // from the rim inwards: there an edge shows first
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();  // sums of 1, x, y by 1, x, y
+};
+
+double steepest_of(const PlacementConfig& config) {
+  return std::tan(config.max_tilt_deg * std::numbers::pi / 180.0);
+}
+
+FootprintCells cells_under(double radius_cells, int grid_size, const PlacementConfig& config) {
+  FootprintCells footprint;
+  const int reach = static_cast<int>(std::floor(radius_cells));
+  for (int j = -reach; j <= reach; ++j) {
+    for (int i = -reach; i <= reach; ++i) {
+      if (i * i + j * j > radius_cells * radius_cells) continue;
+      const Eigen::Vector3d row(1.0, i * config.cell_m, j * config.cell_m);
+      footprint.moments += row * row.transpose();
+      footprint.cells.push_back(
+          {static_cast<std::ptrdiff_t>(j) * grid_size + i, row.y(), row.z(),
+           static_cast<float>(2.0 * config.flatness_m + steepest_of(config) * row.tail<2>().norm())});
+    }
+  }
+  std::stable_sort(footprint.cells.begin(), footprint.cells.end(),
+                   [](const auto& a, const auto& b) { return a.most_rise_m > b.most_rise_m; });
+  return footprint;
+}
+
+struct Footprint {
+  bool is_level = false;
+  double height_m = 0.0;  // of the fitted plane at the middle
+};
+
+/// Fits z = a + b x + c y to the tops under the footprint, and tells whether an object can stand there.
+/// @param top_m  of the middle, in a grid whose margin is as wide as the footprint reaches
+Footprint footprint_at(const float* top_m, const FootprintCells& footprint, const PlacementConfig& config) {
+  const float middle_m = *top_m;
+  if (middle_m == kUnseen) return {};
+  const auto all = static_cast<double>(footprint.cells.size());
+  const int most_unseen = static_cast<int>(std::min((1.0 - config.min_seen) * all, all - 3.0));
+  if (most_unseen < 0) return {};  // too few cells for a plane
+  Eigen::Matrix3d moments = footprint.moments;
+  double rises_m = 0.0, x_rises_m2 = 0.0, y_rises_m2 = 0.0;
+  int unseen = 0;
+  for (const FootprintCells::Cell& cell : footprint.cells) {
+    const float cell_top_m = top_m[cell.away];
+    if (cell_top_m == kUnseen) {
+      if (++unseen > most_unseen) return {};
+      const Eigen::Vector3d row(1.0, cell.x_m, cell.y_m);
+      moments -= row * row.transpose();
+      continue;
+    }
+    const float rise_m = cell_top_m - middle_m;
+    if (std::abs(rise_m) > cell.most_rise_m) return {};  // an edge: no need to fit
+    rises_m += rise_m;
+    x_rises_m2 += cell.x_m * rise_m;
+    y_rises_m2 += cell.y_m * rise_m;
+  }
+  const Eigen::Vector3d plane = moments.ldlt().solve(Eigen::Vector3d(rises_m, x_rises_m2, y_rises_m2));
+  if (!plane.allFinite() || plane.tail<2>().norm() > steepest_of(config)) return {};
+
+  for (const FootprintCells::Cell& cell : footprint.cells) {
+    const float cell_top_m = top_m[cell.away];
+    if (cell_top_m == kUnseen) continue;
+    const double off_m = cell_top_m - middle_m - plane[0] - plane[1] * cell.x_m - plane[2] * cell.y_m;
+    if (std::abs(off_m) > config.flatness_m) return {};
+  }
+  return {true, middle_m + plane[0]};
+}
+
+/// Distance (cells, chamfer 1 and sqrt 2) of each place to the nearest one that is none.
+std::vector<float> distance_inside(const std::vector<char>& is_place, int size) {
+  constexpr float kDiagonal = std::numbers::sqrt2_v<float>;
+  std::vector<float> distance(is_place.size());
+  const auto at = [&](int i, int j) -> float {
+    const bool is_inside = i >= 0 && j >= 0 && i < size && j < size;
+    return is_inside ? distance[static_cast<std::size_t>(j) * static_cast<std::size_t>(size) +
+                                static_cast<std::size_t>(i)]
+                     : 0.0F;
+  };
+  const auto sweep = [&](int begin, int end, int step) {
+    for (int j = begin; j != end; j += step) {
+      for (int i = begin; i != end; i += step) {
+        float& here = distance[static_cast<std::size_t>(j) * static_cast<std::size_t>(size) +
+                               static_cast<std::size_t>(i)];
+        here = std::min({here, at(i - step, j) + 1.0F, at(i, j - step) + 1.0F,
+                         at(i - step, j - step) + kDiagonal, at(i + step, j - step) + kDiagonal});
+      }
+    }
+  };
+  for (std::size_t cell = 0; cell < is_place.size(); ++cell) distance[cell] = is_place[cell] ? 1e9F : 0.0F;
+  sweep(0, size, 1);
+  sweep(size - 1, -1, -1);
+  return distance;
+}
+
+/// 1 in the middle of the picture, falling towards its edge; 0 outside.
+double centrality(const Eigen::Vector3d& p_camera, const Intrinsics& camera) {
+  if (p_camera.z() <= 0.0) return 0.0;
+  const Eigen::Vector2d p = project(camera, p_camera);
+  const double u = 2.0 * (p.x() + 0.5) / camera.width_px - 1.0;
+  const double v = 2.0 * (p.y() + 0.5) / camera.height_px - 1.0;
+  if (std::abs(u) > 1.0 || std::abs(v) > 1.0) return 0.0;
+  return std::exp(-2.0 * (u * u + v * v));
+}
+
+}  // namespace
+
+void require_valid(const PlacementConfig& config) {
+  const SettingRules rules{"placement"};
+  const auto require = [&](const char* name, double value, double lowest, double highest) {
+    rules(value >= lowest && value <= highest, name, value,
+          ("in " + std::to_string(lowest) + ".." + std::to_string(highest)).c_str());
+  };
+  require("cell_m", config.cell_m, 0.005, 0.1);
+  require("max_tilt_deg", config.max_tilt_deg, 0.0, 60.0);
+  require("flatness_m", config.flatness_m, 0.0, 0.2);
+  require("min_seen", config.min_seen, 0.0, 1.0);
+  require("room_to_spare_m", config.room_to_spare_m, 0.0, 1.0);
+  require("min_range_m", config.min_range_m, 0.0, 10.0);
+  require("max_range_m", config.max_range_m, config.min_range_m, 10.0);
+  require("table_below_camera_m", config.table_below_camera_m, 0.0, 10.0);
+}
+
+std::optional<Eigen::Vector3d> find_support(const DepthImage& depth_m, const Intrinsics& camera,
+                                            const Eigen::Isometry3d& T_world_camera,
+                                            double footprint_radius_m, const PlacementConfig& config) {
+  require_valid(config);
+  if (!(footprint_radius_m > 0.0 && footprint_radius_m <= kMostFootprint_m)) return std::nullopt;
+  if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px)
+    return std::nullopt;
+  if (!T_world_camera.matrix().allFinite()) return std::nullopt;
+
+  const double radius_cells = (footprint_radius_m + config.room_to_spare_m) / config.cell_m;
+  const HeightGrid grid(depth_m, camera, T_world_camera, config, static_cast<int>(radius_cells));
+  const FootprintCells footprint = cells_under(radius_cells, grid.size(), config);
+  std::vector<char> is_place(static_cast<std::size_t>(grid.size()) * static_cast<std::size_t>(grid.size()),
+                             0);
+  for (int j = 0; j < grid.size(); ++j)
+    for (int i = 0; i < grid.size(); ++i)
+      is_place[grid.index(i, j)] = footprint_at(grid.top_m(i, j), footprint, config).is_level;
+
+  const std::vector<float> inside_cells = distance_inside(is_place, grid.size());
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  constexpr double kAmple_m = 0.15;      // more room than this is no better
+  constexpr double kFloorIsWorth = 0.2;  // as a place for things, against a table
+  double best_worth = 0.0;
+  std::optional<Eigen::Vector2i> best;
+  for (int j = 0; j < grid.size(); ++j) {
+    for (int i = 0; i < grid.size(); ++i) {
+      if (!is_place[grid.index(i, j)]) continue;
+      const double height_m = *grid.top_m(i, j);
+      const double room = std::min(inside_cells[grid.index(i, j)] * config.cell_m / kAmple_m, 1.0);
+      const double worth = centrality(T_camera_world * grid.point_world(i, j, height_m), camera) *
+                           (0.2 + 0.8 * room) *
+                           (height_m >= -config.table_below_camera_m ? 1.0 : kFloorIsWorth);
+      if (worth > best_worth) {
+        best_worth = worth;
+        best = Eigen::Vector2i(i, j);
+      }
+    }
+  }
+  if (!best) return std::nullopt;
+  const Footprint found = footprint_at(grid.top_m(best->x(), best->y()), footprint, config);
+  return grid.point_world(best->x(), best->y(), found.height_m);
+}
+
+}  // namespace roomradar

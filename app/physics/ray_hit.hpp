@@ -1,0 +1,30 @@
+// surface_hit.hpp: where a ray meets a mesh: what a user points at.
+#pragma once
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "mapping/types/intrinsics.hpp"
+#include "radar/geometry/radar_scene.hpp"
+
+namespace roomradar {
+
+struct SurfaceHit {
+  double distance_m = 0.0;  ///< from the ray's origin
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, turned to face the origin
+};
+
+struct Ray {
+  Eigen::Vector3d origin_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction_world = Eigen::Vector3d::UnitZ();  ///< unit
+};
+
+/// The ray from the camera through image coordinates (u, v); pixel (0, 0) is centred at (0, 0).
+Ray ray_through(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, double u_px, double v_px);
+
+/// The first triangle that the ray meets, from either side, no farther away than reach_m. Nothing for a null
+/// or empty mesh, or a ray that is not finite. Möller and Trumbore, Fast, minimum storage ray-triangle
+/// intersection, 1997, in double.
+std::optional<SurfaceHit> surface_hit(const TreeInstance& mesh, const Ray& ray, double reach_m);
+
+}  // namespace roomradar

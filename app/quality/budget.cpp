@@ -1,0 +1,198 @@
+// budget.cpp: foresees the parts of a frame by what they took lately, and picks a setting that has time.
+#include "app/quality/budget.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace roomradar {
+namespace {
+
+constexpr double kMostSpread = 2.0;
+constexpr double kQuantile = 0.95, kQuantileStep = 0.02;
+constexpr std::int64_t kLongAgo = -1'000'000;
+constexpr double kNotMade = 0.02;
+constexpr int kMostNotMade_frames = 17;  // turns of pictures and objects are no longer than that
+constexpr double kMostStrain = 1.5, kStrainKept = 0.9;  // two frames of some ten that were cut on their way
+
+/// Of the objects in the room, those that a frame moves, where it moves any.
+double moved_share(int objects, int turns) { return std::max(1.0 / std::max(objects, 1), 1.0 / turns); }
+
+/// A few objects that take many turns are not as small a part of themselves as many are.
+double part_ratio(const BudgetStep& step, std::size_t part, const FrameLoad& load) {
+  const double measured = step.ratios[part];
+  if (part != index_of(FramePart::kPhysics) || step.objects == 0) return measured;
+  return measured * moved_share(load.moving + load.resting, step.object_turns) /
+         moved_share(step.objects, step.object_turns);
+}
+
+double part_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
+  return state.scales[part] * part_ratio(state.front[step], part, load) *
+         usual_ms(static_cast<FramePart>(part), load);
+}
+
+/// What is left of a frame from a part on.
+double rest_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
+  std::array<double, kFrameParts> ms{};
+  for (; part < kFrameParts; ++part) ms[part] = part_ms(state, step, part, load);
+  double& physics_ms = ms[index_of(FramePart::kPhysics)];
+  double& compose_ms = ms[index_of(FramePart::kCompose)];
+  if (state.front[step].alternates) (physics_ms < compose_ms ? physics_ms : compose_ms) = 0.0;
+  return state.spread * std::accumulate(ms.begin(), ms.end(), 0.0);
+}
+
+/// The most accurate step from one on in which the rest of the frame has time; where none has, the one that
+/// takes least.
+std::size_t step_in_time(const BudgetState& state, const BudgetConfig& config, std::size_t from,
+                         std::size_t first_part, const FrameLoad& load, double elapsed_ms) {
+  std::size_t best = from;
+  double best_ms = elapsed_ms + rest_ms(state, from, first_part, load);
+  for (std::size_t step = from + 1; step < state.front.size(); ++step) {
+    const double ms = elapsed_ms + rest_ms(state, step, first_part, load);
+    if (ms < best_ms) {
+      best = step;
+      best_ms = ms;
+    }
+    if (ms <= config.down_to * config.budget_ms) break;
+  }
+  return best;
+}
+
+/// Whether a frame with this step leaves so much of the budget that it is worth going back to.
+bool has_time(const BudgetState& state, const BudgetConfig& config, std::size_t step, const FrameLoad& load) {
+  return rest_ms(state, step, 0, load) < config.back_below * config.budget_ms;
+}
+
+/// The most accurate of the steps before the settled one that would have time: perhaps not the next, for what
+/// one step gains in a part it may lose in another. The settled one if none has.
+std::size_t most_accurate_in_time(const BudgetState& state, const BudgetConfig& config,
+                                  const FrameLoad& load) {
+  std::size_t step = 0;
+  while (step < state.settled && !has_time(state, config, step, load)) ++step;
+  return step;
+}
+
+/// Half of the way back to it, or farther where the steps there have no time: what is foreseen may be wrong.
+std::size_t half_way_back(const BudgetState& state, const BudgetConfig& config, std::size_t with_time,
+                          const FrameLoad& load) {
+  std::size_t step = state.settled - (state.settled - with_time + 1) / 2;
+  while (step > with_time && !has_time(state, config, step, load)) --step;
+  return step;
+}
+
+/// The step that the frames to come begin with.
+void settle(BudgetState& state, const BudgetConfig& config, const FrameLoad& load) {
+  const std::size_t before = state.settled;
+  const std::size_t with_time = most_accurate_in_time(state, config, load);
+  state.calm_frames = with_time < before ? state.calm_frames + 1 : 0;
+  if (rest_ms(state, before, 0, load) > config.budget_ms) {
+    state.settled = with_time < before ? half_way_back(state, config, with_time, load)
+                                       : step_in_time(state, config, before, 0, load, 0.0);
+  } else if (state.strain > kMostStrain) {  // foreseen it has time, and then it has not
+    state.settled = std::min(before + 1, state.front.size() - 1);
+  } else if (state.calm_frames >= state.patience_frames) {
+    state.settled = half_way_back(state, config, with_time, load);
+    state.calm_frames = 0;
+    state.went_back_at = state.frame;
+  }
+  if (state.settled > before) {
+    state.calm_frames = 0;
+    state.strain = 0.0;
+    if (state.frame - state.went_back_at < config.regret_frames) {
+      state.patience_frames = std::min(2 * state.patience_frames, config.most_patience_frames);
+      state.went_back_at = kLongAgo;  // regretted once
+    }
+  }
+  if (state.frame - state.went_back_at == 2 * config.regret_frames)
+    state.patience_frames = std::max(state.patience_frames / 2, config.patience_frames);
+  state.strain *= kStrainKept;
+}
+
+double median_of(std::array<double, 3> values) {
+  std::sort(values.begin(), values.end());
+  return values[1];
+}
+
+}  // namespace
+
+double usual_ms(FramePart part, const FrameLoad& load) {
+  // Estimates for 640 x 480 and teapots: a fifth of the image moved costs 2 ms more than nothing; an object
+  // that moves 0.2 ms, one that rests 0.05; each drawn 0.1 ms.
+  switch (part) {
+    case FramePart::kLocate:
+      return 6.0;
+    case FramePart::kMesh:
+      return 0.3 + 10.0 * load.moved_fraction;
+    case FramePart::kPhysics:
+      return 0.1 + 0.2 * load.moving + 0.05 * load.resting;
+    case FramePart::kCompose:
+      return 2.0 + 0.1 * (load.moving + load.resting);
+    case FramePart::kDone:
+      break;
+  }
+  return 0.0;
+}
+
+BudgetState start_budget(std::vector<BudgetStep> front, const BudgetConfig& config, std::size_t step) {
+  BudgetState state;
+  for (std::array<double, 3>& lately : state.lately) lately.fill(1.0);
+  state.front = std::move(front);
+  state.settled = state.step = step;
+  state.patience_frames = config.patience_frames;
+  return state;
+}
+
+double foreseen_ms(const BudgetState& state, std::size_t step, const FrameLoad& load) {
+  return rest_ms(state, step, 0, load);
+}
+
+std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config, FramePart part,
+                                  const FrameLoad& load, double elapsed_ms) {
+  const std::size_t before = state.step, first = index_of(part);
+  if (part == FramePart::kLocate) {
+    settle(state, config, load);
+    state.step = state.settled;
+  } else if (elapsed_ms + rest_ms(state, state.step, first, load) > config.budget_ms) {
+    state.step = step_in_time(state, config, state.step, first, load, elapsed_ms);
+    state.calm_frames = 0;
+    if (state.step != before) state.strain += 1.0;
+  }
+  state.steps[first] = state.step;
+  state.foreseen_ms[first] = part_ms(state, state.step, first, load);
+  state.load = load;
+  state.begun = first + 1;
+  return state.step == before ? std::nullopt : std::optional(state.step);
+}
+
+void learn(BudgetState& state, const BudgetConfig& config, const std::array<double, kFrameParts>& parts_ms) {
+  double took_ms = 0.0, foreseen = 0.0;
+  for (std::size_t part = 0; part < state.begun; ++part) {
+    if (!(state.foreseen_ms[part] > 0.0)) continue;
+    if (!(parts_ms[part] > kNotMade * state.foreseen_ms[part])) {
+      if (++state.not_made_frames[part] > kMostNotMade_frames && state.scales[part] > 1.0)
+        state.scales[part] += config.decay * (1.0 - state.scales[part]);
+      continue;
+    }
+    state.not_made_frames[part] = 0;
+    took_ms += parts_ms[part];
+    foreseen += state.foreseen_ms[part];
+    // What moved is meshed from the depth image that the frame began with.
+    const bool is_mixed = part == index_of(FramePart::kMesh) && state.steps[part] != state.steps[0];
+    if (is_mixed) continue;
+    const double at_one_ms = state.foreseen_ms[part] / state.scales[part];
+    std::array<double, 3>& lately = state.lately[part];
+    lately = {parts_ms[part] / at_one_ms, lately[0], lately[1]};
+    const double scale = median_of(lately);  // one accident is none
+    state.scales[part] +=
+        (scale > state.scales[part] ? config.attack : config.decay) * (scale - state.scales[part]);
+  }
+  if (foreseen > 0.0) {
+    const bool is_above = took_ms > state.spread * foreseen;
+    state.spread += kQuantileStep * (is_above ? kQuantile : kQuantile - 1.0);
+    state.spread = std::clamp(state.spread, 1.0, kMostSpread);
+  }
+  state.begun = 0;
+  ++state.frame;
+}
+
+}  // namespace roomradar

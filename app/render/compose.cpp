@@ -1,0 +1,180 @@
+// compose.cpp: put the virtual objects into the camera's picture.
+#include "app/render/compose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "mapping/types/system/config_check.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Pixels that may show the space in which the shadow is tabulated.
+PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
+                          const Eigen::Isometry3d& T_world_camera) {
+  const ContactShadow& shadow = *caster.shadow;
+  if (shadow.covered.empty()) return {};
+  constexpr double kNear_m = 0.05;
+  const Eigen::Vector3f low(shadow.x0_m, shadow.y0_m, shadow.bottom_m - shadow.extent_m);
+  const Eigen::Vector3f size(static_cast<float>(shadow.columns) * shadow.cell_m,
+                             static_cast<float>(shadow.rows) * shadow.cell_m, 1.1F * shadow.extent_m);
+  const Eigen::Isometry3d T_camera_shadow =
+      T_world_camera.inverse() * Eigen::Translation3d(origin_world(shadow, caster.T_world_object));
+  return pixels_of(Eigen::AlignedBox3f(low, low + size).cast<double>(), camera, T_camera_shadow, kNear_m);
+}
+
+std::uint8_t to_byte(float value) {
+  return static_cast<std::uint8_t>(std::clamp(value + 0.5F, 0.0F, 255.0F));
+}
+
+void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
+                 const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m, float strength,
+                 ColourImage& picture) {
+  const PixelRect rect = shadowed_pixels(caster, camera, T_world_camera);
+  // From pixel and depth straight to the shadow's axes, which are the world's with an origin of its own.
+  const Eigen::Matrix3f R_world_camera = T_world_camera.linear().cast<float>();
+  const Eigen::Vector3f camera_from_object_m =
+      (T_world_camera.translation() - origin_world(*caster.shadow, caster.T_world_object)).cast<float>();
+  const Eigen::Vector3f step_x = R_world_camera.col(0) / static_cast<float>(camera.fx_px);
+  for (int y = rect.y; y < rect.y + rect.height; ++y) {
+    const Eigen::Vector3f ray_at_column_0 = R_world_camera * back_project(camera, 0.0, y, 1.0).cast<float>();
+    const float* depth_m = real_depth_m.row(y);
+    Rgb* pixels = picture.row(y);
+    for (int x = rect.x; x < rect.x + rect.width; ++x) {
+      if (!(depth_m[x] > 0.0F)) continue;
+      const Eigen::Vector3f ray = ray_at_column_0 + static_cast<float>(x) * step_x;
+      const float taken = sky_taken(*caster.shadow, camera_from_object_m + depth_m[x] * ray);
+      if (taken <= 0.0F) continue;
+      const float left = 1.0F - strength * taken;
+      Rgb& pixel = pixels[x];
+      pixel = {to_byte(left * static_cast<float>(pixel.r)), to_byte(left * static_cast<float>(pixel.g)),
+               to_byte(left * static_cast<float>(pixel.b))};
+    }
+  }
+}
+
+void lay_over(const ObjectLayer& layer, const Occlusion& occlusion, ColourImage& picture) {
+  const float part_a_sample = 1.0F / static_cast<float>(layer.samples * layer.samples);
+  for (int y = 0; y < layer.rect.height; ++y) {
+    for (int x = 0; x < layer.rect.width; ++x) {
+      float r = 0.0F, g = 0.0F, b = 0.0F, covered = 0.0F;
+      for (int j = 0; j < layer.samples; ++j) {
+        const std::size_t first = layer.depth_m.index(x * layer.samples, y * layer.samples + j);
+        for (std::size_t k = first; k < first + static_cast<std::size_t>(layer.samples); ++k) {
+          if (!(layer.depth_m.pixels[k] > 0.0F)) continue;
+          const Rgb& colour = layer.colour.pixels[k];
+          r += static_cast<float>(colour.r);
+          g += static_cast<float>(colour.g);
+          b += static_cast<float>(colour.b);
+          covered += part_a_sample;
+        }
+      }
+      if (covered == 0.0F) continue;
+      const int u = layer.rect.x + x - occlusion.rect.x, v = layer.rect.y + y - occlusion.rect.y;
+      const float hidden = occlusion.hidden.at(u, v);
+      const Rgb& front = occlusion.front.at(u, v);
+      const float object_part = (1.0F - hidden) * part_a_sample;  // of each covered sub-pixel
+      const float front_part = hidden * covered;
+      const float beside_part = 1.0F - covered;
+      Rgb& pixel = picture.at(layer.rect.x + x, layer.rect.y + y);
+      const auto mixed = [&](float object, std::uint8_t before, std::uint8_t beside) {
+        return to_byte(object_part * object + front_part * static_cast<float>(before) +
+                       beside_part * static_cast<float>(beside));
+      };
+      pixel = {mixed(r, front.r, pixel.r), mixed(g, front.g, pixel.g), mixed(b, front.b, pixel.b)};
+    }
+  }
+}
+
+template <typename Pixel>
+void require_size(const char* what, const Image<Pixel>& image, int width_px, int height_px) {
+  if (image.width == width_px && image.height == height_px) return;
+  throw Error(std::string("compose: ") + what + " is " + std::to_string(image.width) + " x " +
+              std::to_string(image.height) + " pixels, wanted are " + std::to_string(width_px) + " x " +
+              std::to_string(height_px));
+}
+
+}  // namespace
+
+void require_valid(const ComposeConfig& config) {
+  require_valid(config.occlusion);
+  const SettingRules require{"compose"};
+  const auto is_length = [](float value_m) { return value_m >= 0.0F && value_m <= 1.0F; };
+  require(is_length(config.shadow_strength), "shadow_strength", config.shadow_strength, "in 0..1");
+}
+
+PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
+                            const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
+                            const OcclusionConfig& config) {
+  const int margin = occlusion_margin_px(config);
+  const bool has_objects = layer.rect.width > 0 && layer.rect.height > 0;
+  PixelRect rect = has_objects ? PixelRect{layer.rect.x - margin, layer.rect.y - margin,
+                                           layer.rect.width + 2 * margin, layer.rect.height + 2 * margin}
+                               : PixelRect{};
+  for (const ShadowCaster& caster : casters)
+    if (caster.shadow != nullptr) rect = united(rect, shadowed_pixels(caster, camera, T_world_camera));
+  return clamped(rect, camera.width_px, camera.height_px);
+}
+
+void cast_shadows(const ColourImage& background, const Intrinsics& camera,
+                  const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
+                  std::span<const ShadowCaster> casters, float strength, ColourImage& picture) {
+  require_size("the background", background, camera.width_px, camera.height_px);
+  require_size("the real depth", real_depth_m, camera.width_px, camera.height_px);
+  picture.width = background.width;
+  picture.height = background.height;
+  picture.pixels = background.pixels;
+  for (const ShadowCaster& caster : casters)
+    if (caster.shadow != nullptr)
+      cast_shadow(caster, camera, T_world_camera, real_depth_m, strength, picture);
+}
+
+void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
+                 Occlusion& occlusion, ColourImage& picture) {
+  require_size("the real depth", real_depth_m, picture.width, picture.height);
+  if (layer.rect.width <= 0 || layer.rect.height <= 0) return;
+  if (!(clamped(layer.rect, picture.width, picture.height) == layer.rect))
+    throw Error("compose: the objects' layer reaches past the picture");
+  require_size("the layer's colour", layer.colour, layer.rect.width * layer.samples,
+               layer.rect.height * layer.samples);
+  require_size("the layer's depth", layer.depth_m, layer.rect.width * layer.samples,
+               layer.rect.height * layer.samples);
+  find_occlusion(picture, real_depth_m, layer, config, occlusion);
+  lay_over(layer, occlusion, picture);
+}
+
+void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture) {
+  picture.resize(depth_m.width, depth_m.height, Rgb{24, 26, 30});
+  constexpr int kReach_px = 2;  // a wider baseline than the neighbours': quantised depth has stairs
+  for (int y = 0; y < depth_m.height; ++y) {
+    for (int x = 0; x < depth_m.width; ++x) {
+      const float z_m = depth_m.at(x, y);
+      if (!(z_m > 0.0F)) continue;
+      // Slope along an axis from the sides that belong to the same surface.
+      const auto slope = [&](int dx, int dy) {
+        float rise_m = 0.0F;
+        int span = 0;
+        for (const int side : {-kReach_px, kReach_px}) {
+          const int xx = x + side * dx, yy = y + side * dy;
+          if (!depth_m.contains(xx, yy)) continue;
+          const float other_m = depth_m.at(xx, yy);
+          if (!(other_m > 0.0F) || std::abs(other_m - z_m) > 0.03F * z_m * kReach_px) continue;
+          rise_m += side > 0 ? other_m - z_m : z_m - other_m;
+          span += kReach_px;
+        }
+        return span > 0 ? rise_m / static_cast<float>(span) : 0.0F;
+      };
+      const Eigen::Vector3f normal(slope(1, 0) * static_cast<float>(camera.fx_px) / z_m,
+                                   slope(0, 1) * static_cast<float>(camera.fy_px) / z_m, -1.0F);
+      const Eigen::Vector3f ray = back_project(camera, x, y, 1.0).cast<float>();
+      const float facing = std::abs(normal.normalized().dot(ray.normalized()));
+      const float nearness = 1.0F / (1.0F + 0.04F * z_m * z_m);
+      const std::uint8_t grey = to_byte(235.0F * (0.2F + 0.8F * facing) * nearness);
+      picture.at(x, y) = {grey, grey, grey};
+    }
+  }
+}
+
+}  // namespace roomradar

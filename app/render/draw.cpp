@@ -1,0 +1,196 @@
+// draw.cpp: draw the virtual objects as a camera sees them.
+#include "app/render/draw.hpp"
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "mapping/types/system/error.hpp"
+#include "radar/depth/depth_pass.hpp"
+#include "radar/gl/gl_program.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kNear_m = 0.05;
+constexpr int kMaxSupersampled_px = 80'000;  // a quarter of a 640 x 480 picture
+
+constexpr const char* kVertexShader = R"(#version 450 core
+layout(location = 0) in vec3 p_local;
+layout(location = 1) in vec3 normal_local;
+layout(location = 2) in vec3 colour_srgb;
+layout(location = 0) uniform mat4 clip_from_local;
+layout(location = 1) uniform mat4 eye_from_local;  // world axes, the camera at 0
+layout(location = 2) uniform vec4 plain_srgb;      // w 1: instead of the vertices' colours
+out vec3 p_eye;
+out vec3 normal_eye;
+out vec3 albedo;
+void main() {
+  gl_Position = clip_from_local * vec4(p_local, 1.0);
+  p_eye = (eye_from_local * vec4(p_local, 1.0)).xyz;
+  normal_eye = mat3(eye_from_local) * normal_local;
+  albedo = mix(colour_srgb, plain_srgb.rgb, plain_srgb.a);
+  albedo *= albedo;  // a gamma of 2 stands for sRGB's: no powers a pixel
+}
+)";
+
+// A lit room: light from all sides that is stronger from above, one broad lamp, and its reflection in the
+// glaze. Highlight: Blinn's, normalised. Reflection at grazing angles: Schlick's approximation of Fresnel's
+// law.
+constexpr const char* kFragmentShader = R"(#version 450 core
+in vec3 p_eye;
+in vec3 normal_eye;
+in vec3 albedo;
+layout(location = 3) uniform vec3 up;
+layout(location = 4) uniform vec3 to_light;
+layout(location = 5) uniform vec2 exposure_gloss;
+layout(location = 6) uniform bool has_normals;
+out vec4 colour;
+const vec3 sky = vec3(0.80, 0.83, 0.88);
+const vec3 ground = vec3(0.26, 0.23, 0.20);
+const vec3 lamp = vec3(0.85, 0.80, 0.72);
+void main() {
+  vec3 to_eye = normalize(-p_eye);
+  vec3 facet = normalize(cross(dFdx(p_eye), dFdy(p_eye)));
+  if (dot(facet, to_eye) < 0.0) facet = -facet;
+  vec3 n = has_normals && dot(normal_eye, normal_eye) > 0.0 ? normalize(normal_eye) : facet;
+  if (dot(n, facet) < 0.0) n = -n;  // the inside of an open mesh
+  vec3 ambient = mix(ground, sky, 0.5 + 0.5 * dot(n, up));
+  float lambert = max(dot(n, to_light), 0.0);
+  vec3 halfway = normalize(to_light + to_eye);
+  float highlight = max(dot(n, halfway), 0.0);  // to the 64th
+  highlight *= highlight; highlight *= highlight; highlight *= highlight;
+  highlight *= highlight; highlight *= highlight; highlight *= highlight;
+  highlight *= 2.5 * step(0.0, dot(n, to_light));
+  float away = 1.0 - max(dot(n, to_eye), 0.0);
+  float fresnel = 0.04 + 0.96 * away * away * away * away * away;
+  vec3 mirrored = mix(ground, sky, smoothstep(-0.3, 0.6, dot(reflect(-to_eye, n), up)));
+  vec3 light = albedo * (ambient * 0.75 + lamp * lambert * 0.75)
+             + exposure_gloss.y * (lamp * highlight + fresnel * mirrored);
+  light *= exposure_gloss.x;
+  colour = vec4(sqrt(light / (1.0 + 0.15 * light)), 1.0);
+}
+)";
+
+}  // namespace
+
+struct ObjectDrawer::State {
+  unsigned program = 0;
+  unsigned framebuffer = 0;
+  std::array<unsigned, 2> textures{};  // colour, depth
+  int width_px = 0;
+  int height_px = 0;
+  int most_px = 0;  ///< that a texture may have along a side
+
+  void fit(int wanted_width_px, int wanted_height_px) {
+    if (wanted_width_px <= width_px && wanted_height_px <= height_px) return;
+    const int wide_px = std::max(wanted_width_px, width_px);
+    const int high_px = std::max(wanted_height_px, height_px);
+    width_px = height_px = 0;  // until they are there
+    glDeleteTextures(2, textures.data());
+    glCreateTextures(GL_TEXTURE_2D, 2, textures.data());
+    glTextureStorage2D(textures[0], 1, GL_RGBA8, wide_px, high_px);
+    glTextureStorage2D(textures[1], 1, GL_DEPTH_COMPONENT32F, wide_px, high_px);
+    glNamedFramebufferTexture(framebuffer, GL_COLOR_ATTACHMENT0, textures[0], 0);
+    glNamedFramebufferTexture(framebuffer, GL_DEPTH_ATTACHMENT, textures[1], 0);
+    require_drawn("virtual objects");
+    width_px = wide_px;
+    height_px = high_px;
+  }
+};
+
+ObjectDrawer::ObjectDrawer(GlContext& /*context*/) : state_(std::make_unique<State>()) {
+  state_->program = make_program("virtual objects", kVertexShader, kFragmentShader);
+  glCreateFramebuffers(1, &state_->framebuffer);
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &state_->most_px);
+}
+
+ObjectDrawer::~ObjectDrawer() {
+  glDeleteFramebuffers(1, &state_->framebuffer);
+  glDeleteTextures(2, state_->textures.data());
+  glDeleteProgram(state_->program);
+}
+
+void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics& camera,
+                         const Eigen::Isometry3d& T_world_camera, const Lighting& lighting,
+                         ObjectLayer& layer) {
+  PixelRect rect;
+  for (const DrawnObject& object : objects)
+    rect = united(rect, pixels_of(object.instance, camera, T_world_camera, kNear_m));
+  layer.rect = clamped(rect, camera.width_px, camera.height_px);
+  const bool fits_twice = 2 * std::max(layer.rect.width, layer.rect.height) <= state_->most_px;
+  layer.samples = fits_twice && layer.rect.width * layer.rect.height <= kMaxSupersampled_px ? 2 : 1;
+  const int width = layer.rect.width * layer.samples;
+  const int height = layer.rect.height * layer.samples;
+  layer.colour.resize(width, height);
+  layer.depth_m.resize(width, height);
+  if (width == 0 || height == 0) return;
+
+  forget_gl_errors();
+  state_->fit(width, height);
+  glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer);
+  glViewport(0, 0, width, height);
+  glDisable(GL_SCISSOR_TEST);
+  glDisable(GL_BLEND);
+  glFrontFace(GL_CW);  // image rows run down, framebuffer rows run up
+  glCullFace(GL_BACK);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  const std::array<GLfloat, 4> black{};
+  const GLfloat infinitely_far = 0.0F;
+  glClearNamedFramebufferfv(state_->framebuffer, GL_COLOR, 0, black.data());
+  glClearNamedFramebufferfv(state_->framebuffer, GL_DEPTH, 0, &infinitely_far);
+
+  glUseProgram(state_->program);
+  const Eigen::Vector3f up = lighting.up_world.normalized().cast<float>();
+  const Eigen::Vector3f to_light = lighting.to_key_light_world.normalized().cast<float>();
+  glUniform3fv(3, 1, up.data());
+  glUniform3fv(4, 1, to_light.data());
+  glUniform2f(5, lighting.exposure, lighting.gloss);
+
+  const Intrinsics fine_camera = scaled(camera, layer.samples);
+  const PixelRect fine_rect{layer.rect.x * layer.samples, layer.rect.y * layer.samples, width, height};
+  const Eigen::Matrix4d clip_from_world =
+      clip_from_camera(fine_camera, kNear_m, fine_rect) * T_world_camera.inverse().matrix();
+  for (const DrawnObject& object : objects) {
+    if (object.instance.mesh == nullptr) continue;
+    const GpuMesh& mesh = *object.instance.mesh;
+    const Eigen::Matrix4d clip = clip_from_local(object.instance, clip_from_world);
+    const Eigen::Matrix4f clip_float = clip.cast<float>();
+    // Relative to the camera in double first, so that a room far from zero keeps its digits.
+    Eigen::Isometry3d eye = object.instance.T_world_mesh * Eigen::Translation3d(mesh.origin());
+    eye.translation() -= T_world_camera.translation();
+    const Eigen::Matrix4f eye_float = eye.matrix().cast<float>();
+    const auto part = [](std::uint8_t byte) { return static_cast<float>(byte) / 255.0F; };
+    glUniformMatrix4fv(0, 1, GL_FALSE, clip_float.data());
+    glUniformMatrix4fv(1, 1, GL_FALSE, eye_float.data());
+    glUniform4f(2, part(object.colour.r), part(object.colour.g), part(object.colour.b),
+                mesh.has_colours() ? 0.0F : 1.0F);
+    glUniform1i(6, mesh.has_normals() ? 1 : 0);
+    object.is_closed ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
+    mesh.draw(clip);
+  }
+  require_drawn("virtual objects");  // before others forget what went wrong
+  glFlush();
+}
+
+void ObjectDrawer::finish(ObjectLayer& layer) {
+  const int width = layer.colour.width, height = layer.colour.height;
+  if (width == 0 || height == 0) return;
+  glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, layer.colour.pixels.data());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, layer.depth_m.pixels.data());
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  require_drawn("virtual objects");
+  for (float& depth_m : layer.depth_m.pixels)
+    depth_m = depth_from_buffer(depth_m, static_cast<float>(kNear_m));
+}
+
+}  // namespace roomradar

@@ -1,0 +1,17 @@
+// lost_spans.cpp: from when to when a run did not know where the camera was, told as it happens.
+#include "app/run/lost_spans.hpp"
+
+namespace roomradar {
+
+std::string LostSpans::add(std::int64_t frame_index, bool is_located) {
+  const bool was_lost = !spans.empty() && spans.back().until < 0;
+  if (is_located != was_lost) return {};
+  if (!is_located) {
+    spans.push_back({frame_index, -1});
+    return "frame " + std::to_string(frame_index) + ": where the camera is in the map is not known";
+  }
+  spans.back().until = frame_index;
+  return "frame " + std::to_string(frame_index) + ": the camera is found again";
+}
+
+}  // namespace roomradar

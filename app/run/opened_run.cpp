@@ -1,0 +1,233 @@
+// opened_run.cpp: opens what a run needs, in the order in which faults are to be told.
+#include "app/run/opened_run.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "app/cli/open_source.hpp"
+#include "app/quality/quality_json.hpp"
+#include "app/session/apply_quality.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/odometry/up_direction.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kVideoFramesPerS = 30.0;
+
+nlohmann::json settings_of(const RunCommand& command) {
+  nlohmann::json settings = {{"map", command.map},
+                             {"poses", to_string(command.poses)},
+                             {"object", command.object},
+                             {"script", command.script},
+                             {"surfaces", to_string(command.surfaces)},
+                             {"unknown", command.unknown_is_solid ? "solid" : "free"},
+                             {"at_end", to_string(command.at_end)},
+                             {"window", command.window},
+                             {"record_session", command.record_session},
+                             {"save_map", command.save_map}};
+  settings.update(to_json(command.quality));
+  if (!command.preset.empty()) settings["preset"] = command.preset;
+  if (!command.presets.empty()) settings["presets"] = command.presets;
+  if (command.budget_ms) settings["budget_ms"] = *command.budget_ms;
+  if (command.adopt_after_s) settings["adopt_s"] = *command.adopt_after_s;
+  if (!command.calibration.empty()) settings["calibration"] = command.calibration;
+  if (command.frames) settings["frames"] = {command.frames->first, command.frames->last};
+  return settings;
+}
+
+/// Without a script, the object falls onto the best level surface that the camera sees.
+Script drop_over_view(const std::string& object) {
+  ScriptEvent add;
+  add.frame = 0;
+  add.action = Action::kAdd;
+  add.name = "object";
+  add.mesh = object;
+  ScriptEvent drop;
+  drop.frame = 0;
+  drop.action = Action::kDrop;
+  drop.name = add.name;
+  return {{add, drop}};
+}
+
+bool has(const Script& script, Action action) {
+  return std::any_of(script.events.begin(), script.events.end(),
+                     [action](const ScriptEvent& event) { return event.action == action; });
+}
+
+Script script_of(const RunCommand& command) {
+  if (command.script.empty()) return drop_over_view(command.object);
+  Script script =
+      read_script(command.script, is_session_events(command.script) ? LastLine::kMayBeCut : LastLine::kWhole);
+  for (ScriptEvent& event : script.events)
+    if (event.action == Action::kQuality) set_fields(event.quality, command.fixed);
+  return script;
+}
+
+void require_can_save_map(const RunCommand& command, const Script& script) {
+  if (command.save_map.empty()) return;
+  if (!command.adopt_after_s && !has(script, Action::kAdopt))
+    throw Error("--save-map " + command.save_map +
+                ": nothing would change in the map; add --adopt SECONDS, or an adopt event to the script");
+  require_can_become_map(command.save_map, {command.report, command.frames_csv, command.video,
+                                            command.pictures, command.record_session});
+}
+
+void require_one_quality(const RunCommand& command, const Script& script) {
+  if (!has(script, Action::kQuality)) return;
+  if (!command.preset.empty())
+    throw Error(
+        "--preset: the script or the session has quality events, and what these do not name is as usual from "
+        "there on, not as in the preset; leave out one of them");
+  if (command.budget_ms)
+    throw Error(
+        "--budget-ms: the script or the session has quality events of its own, and each would undo the "
+        "other; leave out one of them");
+}
+
+void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
+  if (info.up_source != to_string(UpSource::kNone)) return;
+  std::fprintf(stderr,
+               "roomradar: %s: which way is up was not known when the room was scanned; objects fall the way "
+               "that was down for its first camera\n",
+               folder.c_str());
+}
+
+/// The frames, as they come, and what was recorded of them if that is to be compared.
+std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
+  const RunCommand& command = run.command;
+  if (command.poses == PoseOrigin::kRecorded)
+    require_recorded_world(run.map.info, command.map, command.source);
+  std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
+  run.is_live = !opened->rewind();  // a device has a count, too, where so many frames are asked for
+  if (is_session_folder(command.source)) {
+    run.check.emplace(command.source);
+    if (const std::string fault = map_difference(command.source, run.map.info); !fault.empty())
+      std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
+  }
+  // A session that was cut off has no event that ends it: it goes as far as there are results.
+  if (run.check && !has(run.script, Action::kQuit)) run.last_frame = run.check->last_frame();
+  run.interrupt.emplace();
+  return opened;
+}
+
+void open_budget(OpenedRun& run, bool has_picture) {
+  const RunCommand& command = run.command;
+  if (!command.budget_ms) return;
+  const std::filesystem::path path = presets_file(command.presets);
+  std::vector<FrontStep> front = front_for(read_presets(path), command.quality, command.fixed);
+  if (front.size() < 2)
+    std::fprintf(stderr,
+                 "roomradar: %s has nothing faster than what is asked for: --budget-ms changes nothing\n",
+                 path.c_str());
+  run.budget = std::make_unique<RunBudget>(std::move(front), *command.budget_ms, has_picture);
+}
+
+bool makes_picture(const RunCommand& command, bool has_window) {
+  return has_window || !command.video.empty() || !command.pictures.empty();
+}
+
+SessionConfig config_of(const OpenedRun& run, bool has_picture) {
+  const RunCommand& command = run.command;
+  SessionConfig config;
+  config.poses = command.poses;
+  config.scene.surfaces = command.surfaces;
+  apply(command.quality, config);
+  config.make_picture = has_picture;
+  config.measure_penetration = !command.report.empty();
+  if (run.budget)
+    config.watch = [budget = run.budget.get()](FramePart part, const FrameLoad& load) {
+      return budget->before(part, load);
+    };
+  if (command.adopt_after_s || has(run.script, Action::kAdopt)) {
+    config.adopt.emplace();
+    config.adopt->after_s = command.adopt_after_s;
+    config.adopt->surface = surface_config_of(run.map.info);
+    // A device does not wait, unless it is to be repeated.
+    config.adopt->wait = !run.is_live || !command.record_session.empty();
+  }
+  return config;
+}
+
+void make_unknown_solid(Session& session, StageTimes& times) {
+  const auto start = std::chrono::steady_clock::now();
+  session.make_unknown_solid(times);
+  std::fprintf(stderr, "unknown space: %zu triangles round it, made in %.1f s with %.0f MB\n",
+               session.unknown().mesh_world.triangles.size(), ms_since(start) / 1e3,
+               static_cast<double>(session.unknown().memory_bytes) / 1e6);
+}
+
+void open_session(OpenedRun& run, bool has_picture) {
+  run.session = std::make_unique<Session>(run.map, config_of(run, has_picture), &run.map.octree);
+  run.report.renderer = run.session->renderer();
+  std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
+  if (run.command.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
+  // Objects are loaded now, so that a wrong mesh is said before the first frame and not when its turn comes.
+  for (const ScriptEvent& event : run.script.events)
+    if (event.action == Action::kAdd) run.session->apply(event);
+}
+
+void open_outputs(OpenedRun& run) {
+  const RunCommand& command = run.command;
+  if (!command.video.empty()) run.video = std::make_unique<VideoWriter>(command.video, kVideoFramesPerS);
+  if (command.pictures.empty()) return;
+  std::error_code failed;
+  std::filesystem::create_directories(command.pictures, failed);
+  if (failed) throw Error(command.pictures + ": the folder cannot be made: " + failed.message());
+}
+
+/// Recorded on their way from now on, if that is wanted.
+void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
+  const RunCommand& command = run.command;
+  if (command.record_session.empty()) return;
+  run.recorder.emplace(command.record_session, command, run.map.info,
+                       gives_calibrated_frames(command.source, command.calibration));
+  // As they were loaded: a user may ask for one before its turn.
+  for (const ScriptEvent& event : run.script.events)
+    if (event.action == Action::kAdd) run.recorder->write(run.recorder->with_mesh_kept(event), 0);
+  frames = run.recorder->recorded(std::move(frames));
+}
+
+void play_frames(OpenedRun& run, std::unique_ptr<FrameSource> frames) {
+  auto played = std::make_unique<PlaybackSource>(std::move(frames), run.command.at_end);
+  run.playback = played.get();
+  run.source = ended_by_interrupt(std::move(played));
+}
+
+}  // namespace
+
+std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
+  auto opened = std::make_unique<OpenedRun>(command);
+  OpenedRun& run = *opened;
+  run.report.command = "run";
+  run.report.source = command.source;
+  run.report.settings = settings_of(command);
+  require_writable(command.report);
+  require_writable(command.frames_csv);
+  require_outside_maps(command.video);
+  require_contents_outside_maps(command.pictures);
+  run.script = script_of(command);
+  require_can_save_map(command, run.script);
+  require_one_quality(command, run.script);
+  if (!command.record_session.empty()) require_can_become_session(command.record_session);
+  run.map = load_map(command.map);
+  say_if_up_is_not_known(run.map.info, command.map);
+  const bool has_picture = makes_picture(command, link != nullptr);
+  std::unique_ptr<FrameSource> frames = open_frames(run);
+  open_budget(run, has_picture);
+  open_session(run, has_picture);
+  open_outputs(run);
+  if (!command.frames_csv.empty()) run.frames_csv.emplace(command.frames_csv);
+  record_frames(run, frames);  // last: a run that cannot be opened leaves no folder in the next one's way
+  play_frames(run, std::move(frames));
+  if (link != nullptr)
+    run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, run.is_live);
+  return opened;
+}
+
+}  // namespace roomradar

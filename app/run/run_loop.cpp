@@ -1,0 +1,210 @@
+// run_loop.cpp: before each frame what is due, then the frame, then what it came to.
+#include "app/run/run_loop.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/cli/progress.hpp"
+#include "app/media/picture_file.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
+
+namespace roomradar {
+namespace {
+
+void control(PlaybackSource& source, CameraPlay camera) {
+  switch (camera) {
+    case CameraPlay::kHold:
+    case CameraPlay::kGo:
+      source.hold(camera == CameraPlay::kHold);
+      break;
+    case CameraPlay::kRewind:
+      if (!source.rewind()) throw Error(source.name() + ": a live device cannot go back to its first frame");
+      break;
+    case CameraPlay::kLoop:
+    case CameraPlay::kStay:
+      source.set_at_end(camera == CameraPlay::kLoop ? AtEnd::kLoop : AtEnd::kStay);
+      break;
+    case CameraPlay::kResume:
+      source.resume();
+      break;
+  }
+}
+
+/// The composed picture, and what moved as the depth camera saw it.
+void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& name) {
+  if (!session.picture().empty()) write_png(session.picture(), name.string() + ".png");
+  if (result.status == FrameStatus::kDone)
+    write_png(session.scene().moved_mask(), name.string() + ".moved.png");
+}
+
+class RunLoop {
+ public:
+  explicit RunLoop(OpenedRun& run) : run_(run), progress_("running", run.source->frame_count()) {}
+
+  /// The next frame of the source into frame_, and whether there is one to be played.
+  enum class Next { kFrame, kSkipped, kEnd };
+  Next read();
+  void perform_due();
+  void step();
+
+  void play() {
+    const auto is_past_end = [&] { return run_.last_frame && run_frame_ > *run_.last_frame; };
+    for (; !run_.was_quit && !is_past_end(); ++run_frame_) {
+      const Next next = read();
+      if (next == Next::kEnd) break;
+      if (next == Next::kSkipped) continue;
+      perform_due();
+      if (!run_.was_quit) step();
+    }
+    if (run_.recorder && !run_.was_quit) run_.recorder->write(ScriptEvent{}, run_frame_);  // it says to quit
+  }
+
+ private:
+  OpenedRun& run_;
+  Progress progress_;
+  Frame frame_;
+  std::size_t next_event_ = 0;
+  std::int64_t run_frame_ = 0;
+  double run_time_s_ = 0.0;
+  std::int64_t last_picture_ = -1;  ///< the farthest of the source's frames that has one
+
+  std::string picture_name();
+  void perform(const ScriptEvent& event, bool is_from_script);
+  ScriptEvent apply(const ScriptEvent& event);
+  void record(const ScriptEvent& event);
+  void perform_users(const std::vector<ScriptEvent>& events);
+  void end_budget();
+  void count_skipped(const std::string& fault);
+  void keep(const FrameResult& result);
+};
+
+RunLoop::Next RunLoop::read() {
+  RunTotals& totals = run_.totals;
+  ReadResult read;
+  do {  // what a live source waits for it says itself
+    read = run_.report.times.timed("read", [&] { return run_.source->next(frame_); });
+  } while (read.waiting && !(run_.host && run_.host->is_closed()));
+  if (read.status == ReadStatus::kEnd || read.waiting) return Next::kEnd;
+  ++totals.read;
+  if (read.status == ReadStatus::kSkipped) {
+    count_skipped(read.fault);
+    return Next::kSkipped;
+  }
+  if (totals.read - totals.skipped == 1) totals.first_stamp_s = frame_.stamp_s;
+  totals.dropped.see(frame_.index, totals.read);
+  run_time_s_ = frame_.stamp_s - totals.first_stamp_s;
+  return Next::kFrame;
+}
+
+void RunLoop::perform_due() {
+  if (run_.host && !run_.host->wait_turn(frame_))
+    perform(ScriptEvent{}, /*is_from_script=*/false);  // it says to quit
+  const std::vector<ScriptEvent>& events = run_.script.events;
+  for (;
+       !run_.was_quit && next_event_ < events.size() && is_due(events[next_event_], run_frame_, run_time_s_);
+       ++next_event_)
+    perform(events[next_event_], /*is_from_script=*/true);
+  if (run_.host && !run_.was_quit) perform_users(run_.host->take_events());
+}
+
+void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
+  if (event.action == Action::kAdd && is_from_script)
+    return;  // it was added, and recorded, before the first frame
+  record(apply(event));
+}
+
+/// As it is to be recorded.
+ScriptEvent RunLoop::apply(const ScriptEvent& event) {
+  const ScriptEvent kept = run_.recorder ? run_.recorder->with_mesh_kept(event) : event;
+  if (event.action == Action::kQuit) run_.was_quit = true;
+  if (event.action == Action::kCamera) control(*run_.playback, event.camera);
+  if (event.action == Action::kRadar && run_.budget) run_.budget->keep(event.radar);
+  if (event.action == Action::kAdd)
+    run_.session->add_object(event.name, run_.host->take_parts());
+  else
+    run_.session->apply(event);
+  return kept;
+}
+
+void RunLoop::record(const ScriptEvent& event) {
+  if (run_.recorder) run_.recorder->write(event, run_frame_);
+}
+
+void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {
+  std::set<std::string> not_made;
+  for (const ScriptEvent& event : events) {
+    if (not_made.contains(event.name)) continue;
+    ScriptEvent applied;
+    try {
+      applied = apply(event);
+    } catch (const Error& fault) {
+      run_.host->complain(fault.what());
+      if (event.action == Action::kAdd) not_made.insert(event.name);
+      continue;
+    }
+    record(applied);  // one that cannot be ends the run: it would be replayed to something else
+  }
+}
+
+void RunLoop::step() {
+  const FrameResult result = run_.session->step(frame_, run_.report.times);
+  if (result.status == FrameStatus::kBadFrame) {
+    count_skipped(run_.command.source + ": frame " + std::to_string(frame_.index) + ": " +
+                  std::string(result.fault) + "; it is passed over");
+    return;
+  }
+  end_budget();
+  run_.totals.add(result, *run_.session);
+  const bool is_located = result.status == FrameStatus::kDone;
+  const std::string news = run_.totals.lost.add(frame_.index, is_located);
+  if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
+  if (run_.host) run_.host->show(run_frame_, run_time_s_, frame_, result);
+  keep(result);
+  progress_.step(is_located ? "located" : "not located");
+}
+
+/// What the frame was made with is recorded, so that a replay makes it so without a clock.
+void RunLoop::end_budget() {
+  if (!run_.budget) return;
+  for (const ScriptEvent& event : run_.budget->end_frame())
+    if (run_.recorder) run_.recorder->write(event, run_frame_);
+  const std::string news = run_.budget->news();
+  if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
+  if (run_.host) run_.host->say_given_up(run_.budget->given_up());
+}
+
+void RunLoop::count_skipped(const std::string& fault) {
+  ++run_.totals.skipped;
+  run_.totals.last_fault = fault;
+}
+
+/// The source's number of the frame; where it comes again, held or looped, with the run's beside it.
+std::string RunLoop::picture_name() {
+  const bool is_again = frame_.index <= last_picture_;
+  last_picture_ = std::max(last_picture_, frame_.index);
+  return frame_number_text(frame_.index) + (is_again ? "-" + frame_number_text(run_frame_) : "");
+}
+
+void RunLoop::keep(const FrameResult& result) {
+  const Session& session = *run_.session;
+  if (run_.recorder || run_.check) {
+    const FrameFingerprint fingerprint = fingerprint_of(run_frame_, session);
+    if (run_.recorder) run_.recorder->write(fingerprint);
+    if (run_.check) run_.check->compare(fingerprint);
+  }
+  if (run_.video) run_.video->write_at(session.picture(), run_time_s_);
+  if (run_.frames_csv && result.status == FrameStatus::kDone)
+    run_.frames_csv->write(frame_.index, result.use, session.objects());
+  if (!run_.command.pictures.empty() && run_frame_ % run_.command.pictures_every == 0)
+    write_pictures(session, result, std::filesystem::path(run_.command.pictures) / picture_name());
+}
+
+}  // namespace
+
+void play_to_end(OpenedRun& run) { RunLoop(run).play(); }
+
+}  // namespace roomradar

@@ -1,0 +1,105 @@
+// run_results.cpp: sums, lists and sentences about a run.
+#include "app/run/run_results.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <numbers>
+
+#include "app/cli/report.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Where it was put: it is free to go where nobody has seen what is there, until it has come out.
+const char* note_on(const VirtualObject& object) {
+  if (!object.began_in_unknown) return "";
+  return object.in_unknown ? "; was put into unknown space, and a part of it still is there"
+                           : "; was put into unknown space, and came out of it";
+}
+
+}  // namespace
+
+nlohmann::json results_of(const RunTotals& totals, const Session& session) {
+  nlohmann::json objects = nlohmann::json::array();
+  for (const auto& object : session.objects()) {
+    const Eigen::Matrix3d R_world_object = object->body.T_world_object.linear();
+    const Eigen::Quaterniond q(R_world_object);
+    const double turned_deg = Eigen::AngleAxisd(object->R_world_put.transpose() * R_world_object).angle() *
+                              (180.0 / std::numbers::pi);
+    objects.push_back({{"name", object->body.name},
+                       {"in_room", object->in_room},
+                       {"at_rest", object->body.at_rest},
+                       {"rests_on", to_string(object->body.rests_on)},
+                       {"began_in_unknown", object->began_in_unknown},
+                       {"position_m", to_json(object->body.T_world_object.translation())},
+                       {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
+                       {"turned_deg", turned_deg}});
+  }
+  nlohmann::json adopted = nlohmann::json::array();
+  for (const AdoptedChange& change : session.adopted())
+    adopted.push_back({{"change", to_string(change.kind)},
+                       {"time_s", change.stamp_s - totals.first_stamp_s},
+                       {"frame", change.frame},
+                       {"position_m", to_json(change.box_world.center())},
+                       {"size_m", to_json(change.box_world.sizes())}});
+  nlohmann::json lost = nlohmann::json::array();
+  for (const LostSpan& span : totals.lost.spans)
+    lost.push_back({{"from_frame", span.from}, {"until_frame", span.until}});
+  nlohmann::json contacts_by_kind = nlohmann::json::object();
+  for (std::size_t kind = 1; kind < kTouchedKinds; ++kind)
+    contacts_by_kind[std::string(to_string(static_cast<Touched>(kind)))] = totals.contacts_by_kind[kind];
+  nlohmann::json results = {
+      {"frames_located", totals.located},
+      {"frames_degenerate", totals.degenerate},
+      {"lost", lost},
+      {"frames_dropped", totals.dropped.count},
+      {"moved_fraction_mean", totals.per_frame(totals.moved_fraction)},
+      {"moved_fraction_max", totals.max_moved_fraction},
+      {"dynamic_triangles_mean", totals.per_frame(totals.dynamic_triangles)},
+      {"inferred_triangles_mean", totals.per_frame(totals.inferred_triangles)},
+      {"static_triangles_drawn_mean", totals.per_frame(totals.static_triangles)},
+      {"contacts", totals.contacts},
+      {"contacts_by_kind", contacts_by_kind},
+      {"unknown_triangles", session.unknown().mesh_world.triangles.size()},
+      {"unknown_mb", static_cast<double>(session.unknown().memory_bytes) / 1e6},
+      {"deepest_penetration_m", totals.deepest_penetration_m},
+      {"needed", to_json(totals.use)},
+      {"objects", objects},
+      {"adopted", adopted},
+  };
+  if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;
+  return results;
+}
+
+void print_summary(const RunTotals& totals, const Session& session) {
+  std::printf(
+      "located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
+      static_cast<long long>(totals.located), static_cast<long long>(totals.read),
+      100.0 * totals.per_frame(totals.moved_fraction), totals.per_frame(totals.dynamic_triangles));
+  print_use(totals.use);
+  for (const AdoptedChange& change : session.adopted()) {
+    const Eigen::Vector3d p = change.box_world.center(), size = change.box_world.sizes();
+    std::printf("adopted at %.1f s: what %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
+                change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
+                p.x(), p.y(), p.z(), size.x(), size.y(), size.z());
+  }
+  const auto waits = [&](const std::string& name) {
+    return std::any_of(session.waiting_drops().begin(), session.waiting_drops().end(),
+                       [&](const Session::WaitingDrop& waiting) { return waiting.drop.name == name; });
+  };
+  for (const auto& object : session.objects()) {
+    const Eigen::Vector3d p = object->body.T_world_object.translation();
+    if (!object->in_room)
+      std::printf(
+          "%s: not in the room%s\n", object->body.name.c_str(),
+          waits(object->body.name) ? "; its drop waits yet for a level surface in view that has space" : "");
+    else
+      std::printf(
+          "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),
+          object->body.at_rest ? "at rest" : "moving", p.x(), p.y(), p.z(),
+          object->body.rests_on == Touched::kUnknownFrontier ? ", on the border of unknown space" : "",
+          note_on(*object));
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,59 @@
+// run_results.hpp: what a run came to, for its report and for the user.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "app/run/dropped_frames.hpp"
+#include "app/run/lost_spans.hpp"
+#include "app/run/run_use.hpp"
+#include "app/session/session.hpp"
+
+namespace roomradar {
+
+/// Sums over the frames of a run, as the report wants them.
+struct RunTotals {
+  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0;
+  std::array<std::int64_t, kTouchedKinds> contacts_by_kind{};
+  double moved_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
+  double max_moved_fraction = 0.0;
+  double deepest_penetration_m = 0.0;
+  double first_stamp_s = 0.0;
+  std::string last_fault;
+  LostSpans lost;
+  DroppedFrames dropped;
+  RunUse use;
+
+  void add(const FrameResult& frame, const Session& session) {
+    if (frame.status != FrameStatus::kDone) return;
+    ++located;
+    use.add(frame.use, session.objects());
+    if (frame.tracking == TrackStatus::kDegenerate) ++degenerate;
+    contacts += frame.contacts;
+    for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
+      contacts_by_kind[kind] += frame.contacts_by_kind[kind];
+    const double fraction = frame.foreground.valid > 0 ? static_cast<double>(frame.foreground.moved) /
+                                                             static_cast<double>(frame.foreground.valid)
+                                                       : 0.0;
+    moved_fraction += fraction;
+    max_moved_fraction = std::max(max_moved_fraction, fraction);
+    dynamic_triangles += static_cast<double>(frame.dynamic_triangles);
+    inferred_triangles += static_cast<double>(frame.inferred_triangles);
+    static_triangles += static_cast<double>(frame.static_triangles_drawn);
+    deepest_penetration_m = std::max(deepest_penetration_m, frame.deepest_penetration_m);
+  }
+  [[nodiscard]] double per_frame(double sum) const {
+    return located > 0 ? sum / static_cast<double>(located) : 0.0;
+  }
+};
+
+/// The run's own keys of the report.
+nlohmann::json results_of(const RunTotals& totals, const Session& session);
+
+/// A few lines on stdout.
+void print_summary(const RunTotals& totals, const Session& session);
+
+}  // namespace roomradar

@@ -1,0 +1,32 @@
+// apply_quality.cpp: run quality to session config.
+#include "app/session/apply_quality.hpp"
+
+#include <algorithm>
+
+namespace roomradar {
+
+void apply(const RunQuality& quality, SessionConfig& config) {
+  config.depth_stride = quality.depth_stride;
+  config.tracking_px = quality.tracking_px;
+  // What is said in pixels is said of whole depth images.
+  const ForegroundConfig whole;
+  ForegroundConfig& foreground = config.scene.foreground;
+  foreground.hole_reach_px = whole.hole_reach_px / quality.depth_stride;
+  foreground.weak_reach_px = whole.weak_reach_px / quality.depth_stride;
+  foreground.min_region_px = std::max(1, whole.min_region_px / (quality.depth_stride * quality.depth_stride));
+  const DepthMeshConfig whole_mesh;
+  config.scene.mesh.stride_px = std::max(1, whole_mesh.stride_px / quality.depth_stride);
+  config.scene.mesh.skirt_gap_px = whole_mesh.skirt_gap_px / quality.depth_stride;
+  config.scene.moved.deviation_sigmas = static_cast<float>(quality.mesh_sigmas);
+  config.fine_mesh = quality.fine_mesh;
+  config.radar = {.mode = quality.radar, .resolution_px = quality.radar_px};
+  config.physics.max_step_s = quality.physics_step_s;
+  config.object_turns = quality.object_turns;
+  config.object_error_px = quality.object_error_px;
+  config.picture.occlusion.edge_reach_px = quality.soft_edges ? OcclusionConfig{}.edge_reach_px : 0;
+  config.picture.shadow_strength = quality.shadows ? ComposeConfig{}.shadow_strength : 0.0F;
+  config.shadow_turns = quality.shadow_turns;
+  config.picture_turns = quality.picture_turns;
+}
+
+}  // namespace roomradar

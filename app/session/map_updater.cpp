@@ -1,0 +1,143 @@
+// living_map.cpp: from what settled to a changed room: found, measured, worked in, due.
+#include "app/session/map_updater.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "mapping/surface/surface_update.hpp"
+#include "mapping/types/system/config_check.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kLookEvery_s = 0.25;
+constexpr double kAskedFor_s = 1.0;
+constexpr double kRegionCell_m = 0.03;  // what is within one to two of a change's points is measured anew
+// A change that is hidden while it is measured waits for so many times the frames that it takes.
+constexpr int kPatience = 10;
+
+bool holds_samples(const StaticMap& octree) {
+  bool any = false;
+  octree.visit_samples([&any](const SurfaceSample&) { any = true; });
+  return any;
+}
+
+}  // namespace
+
+void require_valid(const AdoptConfig& config) {
+  const SettingRules require{"adopt"};
+  if (config.after_s)
+    require(*config.after_s > 0.0 && *config.after_s <= 86400.0, "after_s", *config.after_s, "in 0..86400 s");
+  require(config.asked_after_s > 0.0 && config.asked_after_s <= 60.0, "asked_after_s", config.asked_after_s,
+          "in 0..60 s");
+  require(config.views >= 2 && config.views <= 100, "views", config.views, "in 2..100");
+  require(config.apply_after_frames >= 1, "apply_after_frames", config.apply_after_frames, ">= 1");
+}
+
+LivingMap::LivingMap(StaticMap& octree, const Mesh& mesh, const AdoptConfig& config)
+    : octree_(octree), config_(config), tracker_(config.tracker), room_{mesh, {}, {}, {}} {
+  require_valid(config);
+  if (!holds_samples(octree))
+    throw Error(
+        "adopt: the map's octree holds no surface, so nothing can be added to it or carved from it; scan the "
+        "room with `roomradar prescan`, or run without --adopt");
+  views_.resize(static_cast<std::size_t>(config.views));
+}
+
+LivingMap::~LivingMap() {
+  if (working_.valid()) working_.wait();
+}
+
+bool LivingMap::is_due(const Frame& frame) {
+  stamp_s_ = frame.stamp_s;
+  frame_ = frame.index;
+  // Whether or not there is something to look at: later, somebody else may stand there.
+  if (asked_until_s_ && *asked_until_s_ == kNow) asked_until_s_ = stamp_s_ + kAskedFor_s;
+  if (asked_until_s_ && stamp_s_ > *asked_until_s_) asked_until_s_.reset();
+  if (!working_.valid()) return false;
+  --frames_left_;
+  if (frames_left_ > 0) return false;
+  const bool may_be_late = !config_.wait;
+  if (may_be_late && working_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  finish();
+  return true;
+}
+
+void LivingMap::finish() {
+  if (has_failed_) throw Error("adopt: a change could not be worked into the map, which is half changed");
+  if (!working_.valid()) return;
+  has_failed_ = true;  // unless get() returns
+  room_ = working_.get();
+  has_failed_ = false;
+  for (const LastingChange& change : pending_) {
+    tracker_.forget(change);
+    adopted_.push_back({change.kind, stamp_s_, frame_, change.box_world()});
+  }
+  pending_.clear();
+}
+
+void LivingMap::watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
+                      const Eigen::Isometry3d& T_world_camera) {
+  if (watched_frame_ == frame.index) return;
+  watched_frame_ = frame.index;
+  tracker_.update(frame.depth_m, expected_depth_m, labels, frame.depth_camera, T_world_camera, frame.stamp_s);
+  if (working_.valid()) return;
+  if (pending_.empty())
+    look_for_changes(frame.stamp_s);
+  else
+    measure(frame, expected_depth_m, T_world_camera);
+}
+
+void LivingMap::look_for_changes(double stamp_s) {
+  const bool too_soon = stamp_s < next_look_s_ && stamp_s > next_look_s_ - kLookEvery_s;
+  if (too_soon || (!asked_until_s_ && !config_.after_s)) return;
+  next_look_s_ = stamp_s + kLookEvery_s;
+  double after_s = config_.after_s.value_or(config_.asked_after_s);
+  if (asked_until_s_) after_s = std::min(after_s, config_.asked_after_s);
+  pending_ = tracker_.settled(after_s);
+  if (pending_.empty()) return;
+  asked_until_s_.reset();
+  view_count_ = 0;
+  frames_left_ = kPatience * config_.views;
+}
+
+void LivingMap::measure(const Frame& frame, const DepthImage& expected_depth_m,
+                        const Eigen::Isometry3d& T_world_camera) {
+  std::erase_if(pending_, [&](const LastingChange& change) {
+    return tracker_.still_true(change) < static_cast<double>(config_.tracker.min_steady_fraction);
+  });
+  const bool in_view = std::any_of(pending_.begin(), pending_.end(), [&](const LastingChange& change) {
+    return tracker_.seen_now(change) >= static_cast<double>(config_.tracker.min_seen_fraction);
+  });
+  if (in_view) {
+    RegionView& view = views_[static_cast<std::size_t>(view_count_++)];
+    view.frame = frame;
+    view.expected_depth_m = expected_depth_m;
+    view.T_world_camera = T_world_camera;
+  }
+  if (view_count_ == config_.views && !pending_.empty()) {
+    frames_left_ = config_.apply_after_frames;
+    working_ = std::async(std::launch::async, [this] { return work_in(); });
+    return;
+  }
+  if (--frames_left_ <= 0) pending_.clear();
+}
+
+ChangedRoom LivingMap::work_in() const {
+  ChangedRoom room{room_.mesh, {}, {}, {}};
+  for (const LastingChange& change : pending_) {
+    const WorldRegion region(change.points_world, kRegionCell_m);
+    const Eigen::AlignedBox3d box_world = renew_region(octree_, region, views_);
+    renew_surface(octree_, box_world, config_.surface, room.mesh);
+  }
+  room.tree.build_by_place(room.mesh);
+  if (keeps_up_unknown_) {
+    room.unknown = unknown_surface(octree_, room.mesh);
+    room.unknown_tree.build_by_place(room.unknown.mesh_world);
+  }
+  return room;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,109 @@
+// session_picture.cpp: what a session shows: the camera's picture with the objects and their shadows in it.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <vector>
+
+#include "app/session/session.hpp"
+
+namespace roomradar {
+namespace {
+
+/// A camera's pose after_s after it was at T_world_now, moving on as it moved for dt_s until then; no farther
+/// than that motion, either way. Without a time to go by it stands, and so it does after a jump: the source
+/// went back, or the pose was found anew.
+Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eigen::Isometry3d& T_world_now,
+                              double dt_s, double after_s) {
+  constexpr double kJump_m = 0.3, kJump_rad = 0.3;
+  if (!(dt_s > 0.0) || after_s == 0.0) return T_world_now;
+  const double part = std::clamp(after_s / dt_s, -1.0, 1.0);
+  const Eigen::Isometry3d T_before_now = T_world_before.inverse() * T_world_now;
+  const Eigen::AngleAxisd turn(T_before_now.linear());
+  if (!(T_before_now.translation().norm() < kJump_m && turn.angle() < kJump_rad)) return T_world_now;
+  Eigen::Isometry3d T_now_then = Eigen::Isometry3d::Identity();
+  T_now_then.linear() = Eigen::AngleAxisd(part * turn.angle(), turn.axis()).toRotationMatrix();
+  T_now_then.translation() = part * T_before_now.linear().transpose() * T_before_now.translation();
+  return T_world_now * T_now_then;
+}
+
+}  // namespace
+
+void Session::keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
+  if (frame.colour.empty()) return;
+  const Eigen::Isometry3d T_world_then =
+      T_world_before_ ? pose_beside(*T_world_before_, T_world_camera, dt_s, frame.colour_after_depth_s)
+                      : T_world_camera;
+  colour_view_ = {frame.colour_camera, T_world_then * frame.T_colour_depth.inverse()};
+  background_ = frame.colour;
+}
+
+void Session::watch_for_colour(const Frame& frame) {
+  frames_without_colour_ =
+      frame.colour.empty() ? std::min(frames_without_colour_ + 1, kColourLasts_frames + 1) : 0;
+  if (frames_without_colour_ > kColourLasts_frames) colour_view_.reset();
+}
+
+Session::ShownView Session::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  if (colour_view_) return *colour_view_;
+  shade_depth(frame.depth_m, frame.depth_camera, background_);
+  return {frame.depth_camera, T_world_camera};
+}
+
+void Session::show_camera_alone(const Frame& frame) {
+  shown_view_.reset();
+  if (!frame.colour.empty()) {
+    picture_ = frame.colour;
+    colour_view_.reset();  // older, and from where nobody knows
+  } else if (colour_view_) {
+    picture_ = background_;
+  } else if (frames_without_colour_ > kColourLasts_frames || picture_.empty()) {
+    shade_depth(frame.depth_m, frame.depth_camera, picture_);
+  }
+}
+
+void Session::renew_a_shadow() {
+  constexpr double kTurned_rad = 0.05;
+  constexpr int kFine = 16, kCoarse = 8;  // 3 ms and 0.2 ms
+  const bool may_be_fine = is_turn(0, config_.shadow_turns);
+  // In turn: one that turns on and on does not keep the others from theirs.
+  for (std::size_t i = 1; i <= objects_.size(); ++i) {
+    const std::size_t number = (last_shadow_ + i) % objects_.size();
+    VirtualObject& object = *objects_[number];
+    if (!object.in_room) continue;
+    const Eigen::Matrix3d& R_world_object = object.body.T_world_object.linear();
+    const bool has_turned =
+        Eigen::AngleAxisd(object.shadow.R_world_object.transpose() * R_world_object).angle() > kTurned_rad;
+    const bool gets_fine = object.body.at_rest && object.shadow.cells_across < kFine && may_be_fine;
+    if (!has_turned && !gets_fine) continue;
+    make_contact_shadow(object.model->surface, R_world_object, object.shadow, gets_fine ? kFine : kCoarse);
+    last_shadow_ = number;
+    return;
+  }
+}
+
+void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  shown_view_ = view_of(frame, T_world_camera);
+  const auto& [camera, T_world_view] = *shown_view_;
+
+  const bool has_shadows = config_.picture.shadow_strength > 0.0F;
+  std::vector<DrawnObject> drawn;
+  std::vector<ShadowCaster> casters;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    drawn.push_back({.instance = {&drawn_mesh(*object, camera, T_world_view, config_.object_error_px),
+                                  object->body.T_world_object},
+                     .is_closed = object->model->shape.touched.is_closed()});
+    if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
+  }
+  drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // goes on beside real depth and shadows
+
+  if (has_shadows) renew_a_shadow();
+  real_depth_m_.resize(camera.width_px, camera.height_px);
+  const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
+  if (rect.width > 0 && rect.height > 0) scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);
+  cast_shadows(background_, camera, T_world_view, real_depth_m_, casters, config_.picture.shadow_strength,
+               picture_);
+  drawer_.finish(layer_);
+  lay_objects(layer_, real_depth_m_, config_.picture.occlusion, occlusion_, picture_);
+}
+
+}  // namespace roomradar

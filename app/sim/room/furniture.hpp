@@ -1,0 +1,44 @@
+// furniture.hpp: pieces of a room, each put down at a pose; z = 0 is the floor or board below.
+#pragma once
+#include <cstdint>
+
+#include "app/sim/room/room.hpp"
+
+namespace roomradar {
+
+/// Upright pose at a point with a turn about z.
+Eigen::Isometry3d standing_at(double x_m, double y_m, double z_m, double yaw_rad = 0.0);
+
+/// Adds a solid given in the frame of a piece that stands at T_world_piece.
+void add(Room& room, const Eigen::Isometry3d& T_world_piece, Solid solid_piece, const Material& material);
+
+/// Floor, ceiling and four walls, 10 cm thick, round the room's interior, with skirting boards.
+void add_shell(Room& room, const Material& floor, const Material& wall, const Material& ceiling);
+
+/// A thin framed picture flat on a wall. Pose: the middle of the picture's back on the wall; x to the
+/// viewer's right, z up, so that -y points into the room.
+void add_picture(Room& room, const Eigen::Isometry3d& T_world_picture, double width_m, double height_m,
+                 const Material& picture, const Material& frame);
+
+void add_table(Room& room, const Eigen::Isometry3d& T_world_table, const Eigen::Vector3d& size_m,
+               const Material& material);
+/// Looks along +y, seat at 0.45 m, back up to 0.9 m.
+void add_chair(Room& room, const Eigen::Isometry3d& T_world_chair, const Material& wood,
+               const Material& cushion);
+/// Front towards -y, open, with boards `shelves` levels high and books and boxes on them by seed.
+void add_shelf(Room& room, const Eigen::Isometry3d& T_world_shelf, const Eigen::Vector3d& size_m, int levels,
+               const Material& wood, std::uint32_t seed);
+/// Closed cupboard with two doors, front towards -y.
+void add_cupboard(Room& room, const Eigen::Isometry3d& T_world_cupboard, const Eigen::Vector3d& size_m,
+                  const Material& wood);
+/// Seat towards -y.
+void add_sofa(Room& room, const Eigen::Isometry3d& T_world_sofa, double width_m, const Material& fabric,
+              const Material& pillow);
+/// Lying books, the largest below, each turned a little.
+void add_book_pile(Room& room, const Eigen::Isometry3d& T_world_pile, int books, std::uint32_t seed);
+void add_mug(Room& room, const Eigen::Isometry3d& T_world_mug, const Material& material);
+void add_cactus(Room& room, const Eigen::Isometry3d& T_world_pot);
+void add_fruit_plate(Room& room, const Eigen::Isometry3d& T_world_plate);
+void add_floor_lamp(Room& room, const Eigen::Isometry3d& T_world_lamp);
+
+}  // namespace roomradar

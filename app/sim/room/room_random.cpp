@@ -1,0 +1,219 @@
+// room_random.cpp: a room of drawn size, with drawn furniture where it finds a place, and things on it.
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <utility>
+
+#include "app/sim/room/furniture.hpp"
+#include "app/sim/room/rooms.hpp"
+#include "app/sim/solids/angles.hpp"
+#include "app/sim/solids/counter_random.hpp"
+#include "app/sim/solids/solid_distance.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A room on its way: what is kept free in it, and the numbers that it is drawn from.
+struct Furnishing {
+  Room room;
+  std::vector<Solid> kept_free;
+  CounterRandom random;
+  std::uint32_t next_look = 1000;
+
+  Material material(Pattern pattern, double darkest = 0.35) {
+    const double light = random.uniform(darkest, 0.95), warm = random.uniform(-0.12, 0.12);
+    const auto part = [](double of) { return static_cast<std::uint8_t>(255.0 * std::clamp(of, 0.0, 1.0)); };
+    const Rgb first{part(light + warm), part(light), part(light - warm)};
+    const Rgb second{part(0.65 * (light + warm)), part(0.65 * light), part(0.65 * (light - warm))};
+    return {pattern, first, second, ++next_look, static_cast<float>(random.uniform(0.4, 0.7))};
+  }
+  std::uint32_t look() { return ++next_look; }
+
+  /// Puts a piece down unless it would touch anything but what it stands on.
+  bool try_add(const std::function<void(Room&)>& put_down) {
+    constexpr double kLift_m = 0.002, kGap_m = 0.001;
+    Room piece;
+    put_down(piece);
+    std::vector<Solid> lifted = piece.solids;
+    for (Solid& solid : lifted) solid.T_world_solid.pretranslate(Vector3d(0, 0, kLift_m));
+    const auto world = Eigen::Isometry3d::Identity();
+    if (clearance_m(room.solids, lifted, world, kGap_m) < kGap_m) return false;
+    if (clearance_m(kept_free, piece.solids, world, kGap_m) < kGap_m) return false;
+    room.solids.insert(room.solids.end(), piece.solids.begin(), piece.solids.end());
+    room.materials.insert(room.materials.end(), piece.materials.begin(), piece.materials.end());
+    return true;
+  }
+};
+
+/// Small things on a level board of this size, whose middle is at `board`.
+void put_things_on(Furnishing& f, const Eigen::Isometry3d& T_world_board, double wide_m, double deep_m,
+                   int count) {
+  constexpr double kMargin_m = 0.16;
+  for (int i = 0; i < count; ++i) {
+    const double x = f.random.uniform(-1.0, 1.0) * std::max(0.0, 0.5 * wide_m - kMargin_m);
+    const double y = f.random.uniform(-1.0, 1.0) * std::max(0.0, 0.5 * deep_m - kMargin_m);
+    const Eigen::Isometry3d T_world_thing =
+        T_world_board * standing_at(x, y, 0.0, f.random.uniform(0.0, kTurn_rad));
+    const double kind = f.random.uniform();
+    const std::uint32_t look = f.look();
+    const Material paper = f.material(Pattern::kPoster), tiles = f.material(Pattern::kTiles);
+    const double size_z = f.random.uniform(0.03, 0.28), size_y = f.random.uniform(0.05, 0.2),
+                 size_x = f.random.uniform(0.06, 0.24);
+    const Vector3d size(size_x, size_y, size_z);
+    const int books = 1 + static_cast<int>(4.0 * f.random.uniform());
+    f.try_add([&](Room& room) {
+      if (kind < 0.25) {
+        add_book_pile(room, T_world_thing, books, look);
+      } else if (kind < 0.45) {
+        add_mug(room, T_world_thing, tiles);
+      } else if (kind < 0.55) {
+        add_cactus(room, T_world_thing);
+      } else if (kind < 0.65) {
+        add_fruit_plate(room, T_world_thing);
+      } else {
+        add(room, T_world_thing, box({0, 0, 0.5 * size.z()}, size), paper);
+      }
+    });
+  }
+}
+
+/// In the middle: a table with chairs, a sofa with a low table, or crates. Says where things may stand.
+void furnish_middle(Furnishing& f) {
+  const double kind = f.random.uniform(), yaw_rad = f.random.uniform(-0.3, 0.3);
+  const Material wood = f.material(Pattern::kWood), cloth = f.material(Pattern::kFabric);
+  const double board_z = f.random.uniform(0.68, 0.78), board_y = f.random.uniform(0.7, 0.95),
+               board_x = f.random.uniform(1.0, 1.7);
+  Vector3d board_m(board_x, board_y, board_z);
+  if (kind >= 0.5)
+    board_m = {f.random.uniform(0.6, 1.1), f.random.uniform(0.5, 0.7), f.random.uniform(0.35, 0.5)};
+  const double middle_y = f.random.uniform(-0.15, 0.15), middle_x = f.random.uniform(-0.3, 0.3);
+  const Eigen::Isometry3d T_world_middle = standing_at(middle_x, middle_y, 0.0, yaw_rad);
+  const Eigen::Isometry3d T_world_board = T_world_middle * standing_at(0, 0, board_m.z());
+  f.room.focus_world = T_world_board * Vector3d(0.0, -0.5 * board_m.y() + 0.2, 0.0);
+  if (kind < 0.75) {
+    f.try_add([&](Room& room) { add_table(room, T_world_middle, board_m, wood); });
+  } else {
+    f.try_add([&](Room& room) {
+      add(room, T_world_middle, box({0, 0, 0.5 * board_m.z()}, board_m), f.material(Pattern::kPlanks));
+    });
+  }
+  f.kept_free.push_back(cylinder(f.room.focus_world + Vector3d(0, 0, 0.001), 0.13, 0.65));
+  put_things_on(f, T_world_board, board_m.x(), board_m.y(), 9);
+  if (kind < 0.5) {
+    for (const double side : {-1.0, 1.0})
+      for (double x = -0.5 * board_m.x() + 0.35; x < 0.5 * board_m.x(); x += 0.62) {
+        if (f.random.uniform() < 0.2) continue;
+        const double turn_rad = f.random.uniform(-0.3, 0.3), away_m = f.random.uniform(0.1, 0.35),
+                     aside_m = f.random.uniform(-0.05, 0.05);
+        const Eigen::Isometry3d T_world_chair =
+            T_world_middle * standing_at(x + aside_m, side * (0.5 * board_m.y() + away_m), 0.0,
+                                         (side > 0.0 ? std::numbers::pi : 0.0) + turn_rad);
+        f.try_add([&](Room& room) { add_chair(room, T_world_chair, wood, cloth); });
+      }
+  } else if (kind < 0.75) {
+    f.try_add([&](Room& room) {
+      const Material cushions = f.material(Pattern::kFabric);
+      const double wide_m = f.random.uniform(1.7, 2.1);
+      add_sofa(room, T_world_middle * standing_at(0.0, 0.5 * board_m.y() + 0.75, 0.0, 0.0), wide_m, cloth,
+               cushions);
+    });
+  } else {
+    for (int i = 0; i < 3; ++i) {
+      const double size_z = f.random.uniform(0.2, 0.7), size_y = f.random.uniform(0.25, 0.5),
+                   size_x = f.random.uniform(0.25, 0.6);
+      const Vector3d size(size_x, size_y, size_z);
+      const double turn_rad = f.random.uniform(0.0, kTurn_rad), y = f.random.uniform(-0.8, 0.8),
+                   x = f.random.uniform(-1.2, 1.2);
+      const Eigen::Isometry3d T_world_crate = standing_at(x, y, 0.0, turn_rad);
+      const Material planks = f.material(Pattern::kPlanks);
+      f.try_add([&](Room& room) { add(room, T_world_crate, box({0, 0, 0.5 * size.z()}, size), planks); });
+    }
+  }
+}
+
+/// One drawn piece of furniture or picture at a drawn place of a wall. Walls are numbered as they are turned:
+/// a quarter turn each; -y of the wall's frame looks into the room.
+void furnish_wall(Furnishing& f, int wall) {
+  const Vector3d half = 0.5 * (f.room.interior_max_world - f.room.interior_min_world);
+  const bool along_x = wall % 2 == 0;
+  const double length_m = along_x ? half.x() : half.y(), away_m = along_x ? half.y() : half.x();
+  const double width_m = f.random.uniform(0.6, 1.5),
+               shift_m = f.random.uniform(-1.0, 1.0) * (length_m - 0.5 * width_m - 0.05);
+  const Eigen::Isometry3d T_world_wall =
+      standing_at(0, 0, 0, -0.5 * std::numbers::pi * wall) * standing_at(shift_m, away_m, 0);
+  const double kind = f.random.uniform(), high_m = f.random.uniform(0.4, 1.9);
+  const Material wood = f.material(Pattern::kWood), cloth = f.material(Pattern::kFabric),
+                 paper = f.material(Pattern::kPoster);
+  const std::uint32_t look = f.look();
+  constexpr double kGap_m = 0.01;  // between a piece and the wall
+  const auto before_wall = [&](double deep_m) {
+    return T_world_wall * standing_at(0, -0.5 * deep_m - kGap_m, 0);
+  };
+  if (kind < 0.3) {
+    const int levels = std::max(1, static_cast<int>(high_m / 0.36));
+    if (f.try_add([&](Room& room) {
+          add_shelf(room, before_wall(0.3), {width_m, 0.3, std::max(high_m, 0.5)}, levels, wood, look);
+        }) &&
+        high_m < 1.2)
+      put_things_on(f, before_wall(0.3) * standing_at(0, 0, std::max(high_m, 0.5)), width_m, 0.33, 3);
+  } else if (kind < 0.5) {
+    const double top_m = std::min(high_m + 0.2, 1.1);
+    if (f.try_add([&](Room& room) { add_cupboard(room, before_wall(0.45), {width_m, 0.4, top_m}, wood); }))
+      put_things_on(f, before_wall(0.45) * standing_at(0, 0, top_m), width_m, 0.4, 4);
+  } else if (kind < 0.62) {
+    const double deep_m = f.random.uniform(0.4, 0.6), top_m = f.random.uniform(0.45, 0.78);
+    if (f.try_add([&](Room& room) { add_table(room, before_wall(deep_m), {width_m, deep_m, top_m}, wood); }))
+      put_things_on(f, before_wall(deep_m) * standing_at(0, 0, top_m), width_m, deep_m, 4);
+  } else if (kind < 0.7) {
+    f.try_add([&](Room& room) { add_floor_lamp(room, before_wall(0.4)); });
+  } else if (kind < 0.78) {
+    f.try_add([&](Room& room) { add_chair(room, before_wall(0.5), wood, cloth); });
+  } else {
+    f.try_add([&](Room& room) {
+      add_picture(room, T_world_wall * standing_at(0, -kGap_m, 1.5), 0.7 * width_m, 0.55 * width_m, paper,
+                  wood);
+    });
+  }
+}
+
+}  // namespace
+
+// What is drawn is drawn into names, one after the other: the order of a call's arguments is the compiler's.
+Room make_random_room(std::uint64_t seed) {
+  Furnishing f{{}, {}, CounterRandom(seed, 0x726f6f6d)};
+  Room& room = f.room;
+  room.name = kRandomRoom;
+  const double half_y = f.random.uniform(2.3, 2.8), half_x = f.random.uniform(2.5, 3.2);
+  const Vector3d half(half_x, half_y, 0.0);
+  room.interior_min_world = -half;
+  room.interior_max_world = half + Vector3d(0, 0, f.random.uniform(2.4, 2.8));
+  const std::array floors{Pattern::kPlanks, Pattern::kTiles, Pattern::kStone};
+  const Material ceiling = f.material(Pattern::kPlaster, 0.7), walls = f.material(Pattern::kPlaster, 0.6),
+                 floor = f.material(floors[static_cast<std::size_t>(3.0 * f.random.uniform())]);
+  add_shell(room, floor, walls, ceiling);
+
+  room.walk_centre_world = {0.0, 0.0, 1.5};
+  room.walk_half_m = {half.x() - 1.05, half.y() - 1.0};
+  // A lane between the middle and one wall, for who walks and what rolls.
+  const double lane_y = (f.random.uniform() < 0.5 ? -1.0 : 1.0) * (half.y() - 0.95);
+  room.person_from_world = {-0.35 * half.x(), lane_y, 0.0};
+  room.person_to_world = {0.35 * half.x(), lane_y, 0.0};
+  room.ball_from_world = room.person_from_world;
+  room.ball_to_world = room.person_to_world;
+  constexpr double kLane_m = 0.42;
+  f.kept_free.push_back(box({0.0, lane_y, 1.0}, {0.7 * half.x() + 2.0 * kLane_m, 2.0 * kLane_m, 1.99}));
+
+  furnish_middle(f);
+  const int pieces = 10 + static_cast<int>(8.0 * f.random.uniform());
+  for (int i = 0; i < pieces; ++i) furnish_wall(f, i % 4);
+
+  room.view_azimuth_rad = -0.5 * std::numbers::pi;
+  room.lamps = {{{-0.4 * half.x(), 0.0, room.interior_max_world.z() - 0.2}, 2.4F, 0.25},
+                {{0.4 * half.x(), 0.3, room.interior_max_world.z() - 0.2}, 2.4F, 0.25}};
+  return std::move(f.room);
+}
+
+}  // namespace roomradar

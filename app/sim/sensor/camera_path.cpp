@@ -1,0 +1,159 @@
+// camera_path.cpp: an ellipse or a stand, with the sway of a walking or standing person on it.
+#include "app/sim/sensor/camera_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "app/sim/solids/angles.hpp"
+#include "app/sim/solids/counter_random.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3d;
+
+double at(const Sway& sway, double t_s) {
+  return sway.amplitude * std::sin(kTurn_rad * sway.rate_hz * t_s + sway.phase_rad);
+}
+
+template <std::size_t N>
+double at(const std::array<Sway, N>& sways, double t_s) {
+  double sum = 0.0;
+  for (const Sway& sway : sways) sum += at(sway, t_s);
+  return sum;
+}
+
+/// Ramanujan's second approximation, wrong by less than 1e-5 of the length for our ellipses.
+double ellipse_length_m(const Eigen::Vector2d& half_m) {
+  const double a = half_m.x(), b = half_m.y();
+  const double h = (a - b) * (a - b) / ((a + b) * (a + b));
+  return std::numbers::pi * (a + b) * (1.0 + 3.0 * h / (10.0 + std::sqrt(4.0 - 3.0 * h)));
+}
+
+/// Time for once round such that a whole number of rounds fills the duration at a walking speed, if one does.
+double loop_time_s(double length_m, double duration_s) {
+  constexpr double kSpeed_m_s = 0.42;
+  constexpr double kFastest_m_s = 0.5;  // leaves room for the sway below 0.6
+  const double rounds = std::max(1.0, std::round(kSpeed_m_s * duration_s / length_m));
+  const double speed_m_s = rounds * length_m / duration_s;
+  return speed_m_s <= kFastest_m_s ? duration_s / rounds : length_m / kSpeed_m_s;
+}
+
+CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, std::uint64_t draw,
+                     double duration_s) {
+  CounterRandom random(hash_of(seed, 0x70617468), draw);
+  const auto sway = [&random](double amplitude, double low_hz, double high_hz) {
+    return Sway{amplitude * random.uniform(0.7, 1.0), random.uniform(low_hz, high_hz),
+                random.uniform(0.0, kTurn_rad)};
+  };
+  constexpr double kDegree_rad = std::numbers::pi / 180.0;
+  CameraPath path;
+  path.kind = kind;
+  if (kind == CameraPathKind::kScan) {
+    path.centre_world = room.walk_centre_world + Vector3d(0, 0, random.uniform(-0.05, 0.1));
+    path.half_m = room.walk_half_m * random.uniform(0.92, 1.0);
+    path.start_rad = random.uniform(0.0, kTurn_rad);
+    path.loop_s =
+        loop_time_s(ellipse_length_m(path.half_m), duration_s) * (random.uniform() < 0.5 ? -1.0 : 1.0);
+    path.target_world = {room.walk_centre_world.x(), room.walk_centre_world.y(), 0.8};
+    path.target_sway = {sway(0.35, 0.07, 0.09), sway(0.3, 0.06, 0.08), sway(0.4, 0.09, 0.11)};
+    for (std::size_t axis = 0; axis < 2; ++axis)
+      path.position_sway[axis] = {sway(0.02, 0.15, 0.25), sway(0.008, 0.8, 1.0), Sway{}};
+    path.position_sway[2] = {sway(0.12, 0.07, 0.1), sway(0.006, 1.7, 2.0), sway(0.01, 0.3, 0.4)};
+    path.turn_sway = {{{sway(0.8 * kDegree_rad, 0.4, 0.6), sway(0.15 * kDegree_rad, 1.7, 2.0)},
+                       {sway(0.8 * kDegree_rad, 0.4, 0.6), sway(0.15 * kDegree_rad, 1.7, 2.0)},
+                       {sway(1.5 * kDegree_rad, 0.2, 0.3), sway(0.15 * kDegree_rad, 0.8, 1.0)}}};
+    return path;
+  }
+  if (kind == CameraPathKind::kSwing) {
+    const Vector3d before(std::cos(room.view_azimuth_rad), std::sin(room.view_azimuth_rad), 0.0);
+    const Vector3d aside(-before.y(), before.x(), 0.0);
+    path.centre_world = room.focus_world + 1.5 * before;
+    path.target_world = room.focus_world;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double near_and_far_m = 0.75 * std::abs(before[static_cast<Eigen::Index>(axis)]);
+      const double to_the_side_m = 0.9 * std::abs(aside[static_cast<Eigen::Index>(axis)]);
+      path.position_sway[axis] = {sway(near_and_far_m, 0.028, 0.036), sway(to_the_side_m, 0.05, 0.065),
+                                  sway(axis == 2 ? 0.7 : 0.0, 0.075, 0.095)};
+      path.target_sway[axis] = sway(0.4, 0.06, 0.085);
+    }
+    path.turn_sway[2] = {sway(30.0 * kDegree_rad, 0.045, 0.06), Sway{}};
+    return path;
+  }
+  const double distance_m = random.uniform(1.25, 1.7);
+  const double elevation_rad = random.uniform(25.0, 40.0) * kDegree_rad;
+  const double azimuth_rad = room.view_azimuth_rad + random.uniform(-0.4, 0.4);
+  path.centre_world =
+      room.focus_world + distance_m * Vector3d(std::cos(elevation_rad) * std::cos(azimuth_rad),
+                                               std::cos(elevation_rad) * std::sin(azimuth_rad),
+                                               std::sin(elevation_rad));
+  path.target_world = room.focus_world + Vector3d(0, 0, 0.05);
+  path.target_sway = {sway(0.02, 0.1, 0.2), sway(0.02, 0.1, 0.2), sway(0.01, 0.1, 0.2)};
+  for (auto& sways : path.position_sway)
+    sways = {sway(0.02, 0.12, 0.2), sway(0.006, 0.3, 0.5), sway(0.0015, 0.8, 1.2)};
+  for (auto& sways : path.turn_sway)
+    sways = {sway(0.5 * kDegree_rad, 0.2, 0.3), sway(0.15 * kDegree_rad, 0.8, 1.2)};
+  return path;
+}
+
+double clearance_m(const Room& room, const CameraPath& path, double duration_s) {
+  double least_m = std::numeric_limits<double>::infinity();
+  constexpr double kLongest_s = 1800.0;  // of a longer walk the rest goes the same ways
+  const double last_s = std::min(duration_s, kLongest_s);
+  const int samples = std::max(static_cast<int>(last_s * 5.0), 20);
+  for (int i = 0; i <= samples; ++i) {
+    const Vector3d p_world = T_world_camera_at(path, last_s * i / samples).translation();
+    least_m = std::min(least_m, signed_distance_m(room, p_world));
+  }
+  return least_m;
+}
+
+}  // namespace
+
+CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s) {
+  constexpr double kClearance_m = 0.52;  // the samples are dense enough to miss less than 2 cm
+  CameraPath best;
+  double best_clearance_m = -std::numeric_limits<double>::infinity();
+  for (std::uint64_t draw = 0; draw < 64 && best_clearance_m < kClearance_m; ++draw) {
+    const CameraPath path = draw_path(room, kind, seed, draw, duration_s);
+    const double clear_m = clearance_m(room, path, duration_s);
+    if (clear_m <= best_clearance_m) continue;
+    best = path;
+    best_clearance_m = clear_m;
+  }
+  return best;
+}
+
+Eigen::Isometry3d looking_at(const Vector3d& eye_world, const Vector3d& target_world) {
+  const Vector3d z = (target_world - eye_world).normalized();
+  const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();  // level; y = z cross x looks down
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.linear() << x, z.cross(x), z;
+  T_world_camera.translation() = eye_world;
+  return T_world_camera;
+}
+
+Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s) {
+  // The second sine evens out the speed: more angle where the ellipse is narrow.
+  const double a = path.half_m.x(), b = path.half_m.y();
+  const double phase_rad = path.start_rad + kTurn_rad * t_s / path.loop_s;
+  const double evenness = a + b > 0.0 ? (a - b) / (2.0 * (a + b)) : 0.0;
+  const double angle_rad = phase_rad + evenness * std::sin(2.0 * phase_rad);
+  Vector3d position_world =
+      path.centre_world + Vector3d(a * std::cos(angle_rad), b * std::sin(angle_rad), 0.0);
+  Vector3d target_world = path.target_world;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    position_world[static_cast<Eigen::Index>(axis)] += at(path.position_sway[axis], t_s);
+    target_world[static_cast<Eigen::Index>(axis)] += at(path.target_sway[axis], t_s);
+  }
+  Eigen::Isometry3d T_world_camera = looking_at(position_world, target_world);
+  for (int axis = 0; axis < 3; ++axis)
+    T_world_camera.linear() *=
+        Eigen::AngleAxisd(at(path.turn_sway[static_cast<std::size_t>(axis)], t_s), Vector3d::Unit(axis))
+            .toRotationMatrix();
+  return T_world_camera;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,158 @@
+// kinect_depth.cpp: shadow, noise, dropouts and quantisation of a structured-light depth camera.
+#include "app/sim/sensor/kinect_depth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/sim/solids/counter_random.hpp"
+#include "mapping/types/depth_noise.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kKinectWidth_px = 640.0;
+constexpr double kSubpixels = 8.0;  // disparity steps in a pixel
+
+/// Baseline times focal length of the full-size image, in px m: disparity = this / depth.
+double disparity_scale(const Intrinsics& camera) {
+  return camera.fx_px * kKinectWidth_px / camera.width_px * kKinectBaseline_m;
+}
+
+/// Noise that is alike over about one lattice cell, as the Kinect's correlation window makes it: independent
+/// Gaussians on a lattice, interpolated, and scaled back to variance 1.
+struct PatchNoise {
+  static constexpr int kCell_px = 3;
+  int columns = 0;
+  const std::vector<float>* lattice = nullptr;
+
+  [[nodiscard]] float at(int x, int y) const {
+    // Half a cell off the pixels, so that no pixel lies on a lattice point and all weights are of similar
+    // size.
+    const float gx = (static_cast<float>(x) + 0.5F) / kCell_px;
+    const float gy = (static_cast<float>(y) + 0.5F) / kCell_px;
+    const int cx = static_cast<int>(gx);
+    const int cy = static_cast<int>(gy);
+    const float ax = gx - static_cast<float>(cx);
+    const float ay = gy - static_cast<float>(cy);
+    const float* at_00 =
+        lattice->data() + static_cast<std::size_t>(cy) * static_cast<std::size_t>(columns) + cx;
+    const float* at_01 = at_00 + columns;
+    const float sum =
+        (1 - ay) * ((1 - ax) * at_00[0] + ax * at_00[1]) + ay * ((1 - ax) * at_01[0] + ax * at_01[1]);
+    const float variance = ((1 - ax) * (1 - ax) + ax * ax) * ((1 - ay) * (1 - ay) + ay * ay);
+    return sum / std::sqrt(variance);
+  }
+};
+
+PatchNoise make_patch_noise(const Intrinsics& camera, std::uint64_t key, std::vector<float>& lattice) {
+  PatchNoise noise;
+  noise.columns = camera.width_px / PatchNoise::kCell_px + 2;
+  const int rows = camera.height_px / PatchNoise::kCell_px + 2;
+  lattice.resize(static_cast<std::size_t>(noise.columns) * static_cast<std::size_t>(rows));
+  for (std::size_t i = 0; i < lattice.size(); ++i) lattice[i] = gaussian(mixed(key + i));
+  noise.lattice = &lattice;
+  return noise;
+}
+
+}  // namespace
+
+PlanePoint<double> ray_of(const PixelRays& rays, int x, int y) {
+  if (rays.empty()) return {static_cast<double>(x), static_cast<double>(y)};
+  return {rays.at(x, y).x, rays.at(x, y).y};
+}
+
+double reported_m(const DepthFaults& faults, int x, int y, double depth_m) {
+  if (faults.inverse_offset_per_m.empty()) return depth_m;
+  return faults.inverse_scale / (1.0 / depth_m - faults.inverse_offset_per_m.at(x, y));
+}
+
+void render_exact(std::span<const Solid> solids, const ViewCaster& view, const Intrinsics& camera,
+                  const PixelRays& rays, ExactView& exact) {
+  exact.depth_m.resize(camera.width_px, camera.height_px);
+  exact.solid.resize(camera.width_px, camera.height_px, -1);
+  exact.cosine.resize(camera.width_px, camera.height_px);
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = 0; x < camera.width_px; ++x) {
+      const PlanePoint<double> ray = ray_of(rays, x, y);
+      const PixelHit hit = view.cast(ray.x, ray.y);
+      exact.depth_m.at(x, y) = static_cast<float>(hit.depth_m);
+      exact.solid.at(x, y) = hit.solid;
+      if (hit.solid < 0) continue;
+      const Vector3d p_solid = view.local_point(hit.solid, ray.x, ray.y, hit.depth_m);
+      const Vector3d to_camera = view.local_point(hit.solid, ray.x, ray.y, 0.0) - p_solid;
+      const Vector3d normal = normal_local(solids[static_cast<std::size_t>(hit.solid)], p_solid);
+      exact.cosine.at(x, y) =
+          static_cast<float>(std::clamp(normal.dot(to_camera) / to_camera.norm(), 0.0, 1.0));
+    }
+}
+
+double quantisation_step_m(const Intrinsics& camera, double depth_m) {
+  return depth_m * depth_m / (kSubpixels * disparity_scale(camera));
+}
+
+double quantised_depth_m(const Intrinsics& camera, double depth_m) {
+  const double scale = kSubpixels * disparity_scale(camera);
+  return scale / std::max(std::round(scale / depth_m), 1.0);
+}
+
+void measure_depth(std::span<const Solid> solids, std::span<const float> infrared, const ViewCaster& view,
+                   const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                   const DepthFaults& faults, double noise_scale, std::uint64_t seed,
+                   std::int64_t frame_index, KinectScratch& scratch, DepthImage& depth_m) {
+  // Light that returns, relative to a white surface at 1 m: below this nothing is recognised. White paper is
+  // seen to beyond the range, black plastic (0.05) to some 3 m, and a wall at 4 m up to 82 degrees from its
+  // normal.
+  constexpr double kFaintest = 0.005;
+  constexpr double kRaggedness = 0.25;
+  // The surface itself must not count as standing before itself.
+  constexpr double kShadowMargin_m = 0.003;
+
+  const std::uint64_t key = hash_of(seed, static_cast<std::uint64_t>(frame_index), 0x6b696e65);
+  const PatchNoise patch_noise = make_patch_noise(camera, mixed(key), scratch.lattice);
+  const Eigen::Isometry3d T_world_projector = T_world_camera * Eigen::Translation3d(kKinectBaseline_m, 0, 0);
+  scratch.projector.prepare(solids, camera, T_world_projector);
+  const double disparity_px_m = camera.fx_px * kKinectBaseline_m;
+
+  depth_m.resize(camera.width_px, camera.height_px);
+  for (int y = 0; y < camera.height_px; ++y)
+    for (int x = 0; x < camera.width_px; ++x) {
+      int solid = exact.solid.at(x, y);
+      if (solid < 0) continue;
+      const double theta = std::min(std::acos(exact.cosine.at(x, y)), 1.4835F);
+
+      const std::uint64_t pixel_key = mixed(key + exact.depth_m.index(x, y));
+      const double sigma_px = noise_scale * camera.width_px / kKinectWidth_px *
+                              (0.8 + 0.035 * theta / (0.5 * std::numbers::pi - theta));
+      const double aside_x = sigma_px * gaussian(mixed(pixel_key + 1));
+      const double aside_y = sigma_px * gaussian(mixed(pixel_key + 2));
+      const int nearest_x = std::clamp(static_cast<int>(std::lround(x + aside_x)), 0, camera.width_px - 1);
+      const int nearest_y = std::clamp(static_cast<int>(std::lround(y + aside_y)), 0, camera.height_px - 1);
+      const PlanePoint<double> ray = ray_of(faults.rays, x, y);
+      const double u = ray.x + aside_x;
+      const double v = ray.y + aside_y;
+      solid = exact.solid.at(nearest_x, nearest_y);
+      if (solid < 0) continue;
+      double z = view.depth_of(solid, u, v);
+      if (z <= 0.0) z = exact.depth_m.at(nearest_x, nearest_y);  // just beside the solid's outline
+
+      const float cosine = exact.cosine.at(nearest_x, nearest_y);
+      const double ragged = 1.0 + kRaggedness * gaussian(mixed(pixel_key + 3));
+      if (infrared[static_cast<std::size_t>(solid)] * cosine / (z * z) < kFaintest * ragged) continue;
+      if (scratch.projector.is_blocked(u - disparity_px_m / z, v, z - kShadowMargin_m)) continue;
+
+      z = reported_m(faults, x, y, z);
+      const double sigma_m = noise_scale * depth_sigma_m(static_cast<float>(z), std::acos(cosine));
+      const double step_m = quantisation_step_m(camera, z);
+      const double before_quantising_m = std::sqrt(std::max(sigma_m * sigma_m - step_m * step_m / 12.0, 0.0));
+      const double noisy_m = z + before_quantising_m * patch_noise.at(x, y);
+      if (noisy_m < kKinectNearest_m) continue;
+      const double reported_m = quantised_depth_m(camera, noisy_m);
+      if (reported_m < kKinectNearest_m || reported_m > kKinectFarthest_m) continue;
+      depth_m.at(x, y) = static_cast<float>(reported_m);
+    }
+}
+
+}  // namespace roomradar

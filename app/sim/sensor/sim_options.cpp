@@ -1,0 +1,225 @@
+// sim_options.cpp: reads and checks what to simulate.
+#include "app/sim/sensor/sim_options.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "app/sim/room/room.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr MoverKind kAllMovers[] = {MoverKind::kHand, MoverKind::kBall, MoverKind::kPerson};
+constexpr Pace kAllPaces[] = {Pace::kSteady, Pace::kSlow, Pace::kWaits, Pace::kLeaves};
+constexpr CrateKind kAllCrates[] = {CrateKind::kNone, CrateKind::kStays, CrateKind::kComes, CrateKind::kGoes};
+constexpr CameraPathKind kAllPaths[] = {CameraPathKind::kScan, CameraPathKind::kView, CameraPathKind::kSwing};
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t to = std::min(text.find(separator, from), text.size());
+    parts.push_back(text.substr(from, to - from));
+    from = to + 1;
+  }
+  return parts;
+}
+
+void append_with_comma(std::string& list, std::string_view one, std::string_view comma) {
+  if (!list.empty()) list += comma;
+  list += one;
+}
+
+[[noreturn]] void refuse(std::string_view key, std::string_view value, const std::string& wanted) {
+  throw Error("sim: " + std::string(key) + " = '" + std::string(value) + "': must be " + wanted);
+}
+
+template <typename Number>
+Number number(std::string_view key, std::string_view value, const std::string& wanted) {
+  Number result{};
+  const auto [end, fault] = std::from_chars(value.data(), value.data() + value.size(), result);
+  if (fault != std::errc{} || end != value.data() + value.size()) refuse(key, value, wanted);
+  return result;
+}
+
+void set_option(SimOptions& options, std::string_view key, std::string_view value) {
+  if (key == "seed") {
+    options.seed = number<std::uint64_t>(key, value, "a whole number, 0 or more");
+  } else if (key == "frames") {
+    options.frames = number<std::int64_t>(key, value, "a whole number, 1 or more");
+  } else if (key == "rate") {
+    options.rate_hz = number<double>(key, value, "frames a second, such as 30");
+  } else if (key == "noise") {
+    options.noise_scale = number<double>(key, value, "0 (off), 1 (a Kinect's) or another factor up to 10");
+  } else if (key == "path") {
+    const auto* const found = std::find_if(std::begin(kAllPaths), std::end(kAllPaths),
+                                           [&](CameraPathKind kind) { return to_string(kind) == value; });
+    if (found == std::end(kAllPaths)) refuse(key, value, "scan, view or swing");
+    options.path = *found;
+  } else if (key == "moving") {
+    for (const std::string_view one : split(value, ',')) {
+      const auto* const found = std::find_if(std::begin(kAllMovers), std::end(kAllMovers),
+                                             [&](MoverKind kind) { return to_string(kind) == one; });
+      if (found == std::end(kAllMovers)) refuse(key, one, "some of hand, ball, person, with commas between");
+      options.movers.push_back(*found);
+    }
+  } else if (key == "crate") {
+    const auto* const found = std::find_if(std::begin(kAllCrates), std::end(kAllCrates),
+                                           [&](CrateKind kind) { return to_string(kind) == value; });
+    if (found == std::end(kAllCrates)) refuse(key, value, "0, 1, comes or goes");
+    options.crate = *found;
+  } else if (key == "faults") {
+    if (value != "0" && value != "1") refuse(key, value, "0 or 1");
+    options.faults = value == "1";
+  } else if (key == "pace") {
+    const auto* const found = std::find_if(std::begin(kAllPaces), std::end(kAllPaces),
+                                           [&](Pace pace) { return to_string(pace) == value; });
+    if (found == std::end(kAllPaces)) refuse(key, value, "steady, slow, waits or leaves");
+    options.pace = *found;
+  } else if (key == "width") {
+    const int width_px = number<int>(key, value, "the image's width, 64 to 1920, a multiple of 4");
+    if (width_px < 64 || width_px > 1920 || width_px % 4 != 0)
+      refuse(key, value, "the image's width, 64 to 1920, a multiple of 4");
+    options.depth_camera = kinect_of_width(width_px);
+  } else if (key == "colour") {
+    if (value != "registered" && value != "separate" && value != "none")
+      refuse(key, value, "registered, separate or none");
+    options.registered_colour = value != "separate";
+    options.with_colour = value != "none";
+  } else {
+    throw Error("sim: no option is called '" + std::string(key) +
+                "'; known are: seed, frames, rate, path, moving, pace, noise, crate, faults, width, colour");
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(CameraPathKind kind) {
+  switch (kind) {
+    case CameraPathKind::kScan:
+      return "scan";
+    case CameraPathKind::kView:
+      return "view";
+    case CameraPathKind::kSwing:
+      return "swing";
+  }
+  return "?";
+}
+
+std::string_view to_string(MoverKind kind) {
+  switch (kind) {
+    case MoverKind::kHand:
+      return "hand";
+    case MoverKind::kBall:
+      return "ball";
+    case MoverKind::kPerson:
+      return "person";
+  }
+  return "?";
+}
+
+std::string_view to_string(Pace pace) {
+  switch (pace) {
+    case Pace::kSteady:
+      return "steady";
+    case Pace::kSlow:
+      return "slow";
+    case Pace::kWaits:
+      return "waits";
+    case Pace::kLeaves:
+      return "leaves";
+  }
+  return "?";
+}
+
+std::string_view to_string(CrateKind kind) {
+  switch (kind) {
+    case CrateKind::kNone:
+      return "0";
+    case CrateKind::kStays:
+      return "1";
+    case CrateKind::kComes:
+      return "comes";
+    case CrateKind::kGoes:
+      return "goes";
+  }
+  return "?";
+}
+
+Intrinsics kinect_of_width(int width_px) {
+  Intrinsics camera = scaled(kKinectDepthCamera, width_px / 640.0);
+  camera.width_px = width_px;
+  camera.height_px = width_px * 3 / 4;
+  return camera;
+}
+
+SimOptions parse_sim_spec(std::string_view spec) {
+  constexpr std::string_view kScheme = "sim:";
+  if (!spec.starts_with(kScheme))
+    throw Error("'" + std::string(spec) +
+                "' does not start with sim:; write sim:ROOM or sim:ROOM?seed=1&frames=300");
+  spec.remove_prefix(kScheme.size());
+  const std::size_t question = std::min(spec.find('?'), spec.size());
+  SimOptions options;
+  options.room = std::string(spec.substr(0, question));
+  if (question < spec.size())
+    for (const std::string_view pair : split(spec.substr(question + 1), '&')) {
+      const std::size_t equals = pair.find('=');
+      if (equals == std::string_view::npos)
+        throw Error("sim: '" + std::string(pair) +
+                    "' is no key=value; write for example sim:table?seed=1&frames=300");
+      set_option(options, pair.substr(0, equals), pair.substr(equals + 1));
+    }
+  require_valid(options);
+  return options;
+}
+
+std::string sim_spec(const SimOptions& options) {
+  const SimOptions usual;
+  std::string spec = "sim:" + options.room;
+  char separator = '?';
+  const auto say = [&](const std::string& key, const std::string& value) {
+    spec.append(1, separator).append(key).append("=").append(value);
+    separator = '&';
+  };
+  if (options.seed != usual.seed) say("seed", std::to_string(options.seed));
+  if (options.frames != usual.frames) say("frames", std::to_string(options.frames));
+  if (options.rate_hz != usual.rate_hz) say("rate", number_text(options.rate_hz));
+  if (options.path != usual.path) say("path", std::string(to_string(options.path)));
+  std::string moving;
+  for (const MoverKind kind : options.movers) append_with_comma(moving, to_string(kind), ",");
+  if (!moving.empty()) say("moving", moving);
+  if (options.crate != usual.crate) say("crate", std::string(to_string(options.crate)));
+  if (options.pace != usual.pace) say("pace", std::string(to_string(options.pace)));
+  if (options.noise_scale != usual.noise_scale) say("noise", number_text(options.noise_scale));
+  if (options.depth_camera.width_px != usual.depth_camera.width_px)
+    say("width", std::to_string(options.depth_camera.width_px));
+  if (options.faults) say("faults", "1");
+  if (!options.with_colour)
+    say("colour", "none");
+  else if (!options.registered_colour)
+    say("colour", "separate");
+  return spec;
+}
+
+void require_valid(const SimOptions& options) {
+  require_room(options.room);
+  if (options.frames < 1 || options.frames > 100'000'000)
+    refuse("frames", std::to_string(options.frames), "a whole number, 1 to 100000000");
+  if (!(options.rate_hz >= 0.1 && options.rate_hz <= 1000.0))
+    refuse("rate", number_text(options.rate_hz), "frames a second, 0.1 to 1000");
+  if (!(options.noise_scale >= 0.0 && options.noise_scale <= 10.0))
+    refuse("noise", number_text(options.noise_scale), "0 (off), 1 (a Kinect's) or another factor up to 10");
+  if (options.faults && options.registered_colour && options.with_colour)
+    refuse("faults", "1",
+           "said together with colour=separate or colour=none: registering needs what it takes away");
+  for (std::size_t i = 0; i < options.movers.size(); ++i)
+    if (std::find(options.movers.begin(), options.movers.begin() + static_cast<std::ptrdiff_t>(i),
+                  options.movers[i]) != options.movers.begin() + static_cast<std::ptrdiff_t>(i))
+      refuse("moving", to_string(options.movers[i]), "named once");
+  require_valid(options.depth_camera, "sim: depth camera");
+}
+
+}  // namespace roomradar

@@ -1,0 +1,271 @@
+// simulated_source.cpp: one frame of the simulated Kinect, from time to pixels.
+#include "app/sim/sensor/simulated_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/sim/room/room.hpp"
+#include "app/sim/room/surface_appearance.hpp"
+#include "app/sim/sensor/camera_path.hpp"
+#include "app/sim/sensor/kinect_depth.hpp"
+#include "app/sim/sensor/mover_shadow.hpp"
+#include "app/sim/sensor/movers.hpp"
+#include "app/sim/solids/counter_random.hpp"
+#include "app/sim/solids/view_caster.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The Kinect's colour camera stands 2.5 cm along the depth camera's +x and sees a little wider.
+constexpr double kColourOffset_m = 0.025;
+constexpr double kColourFocal = 525.0 / 585.0;
+/// A crate that is not there stands so far below the floor, where nothing sees it.
+constexpr double kAway_m = 100.0;
+
+Rgb dimmed(Rgb colour, float factor) {
+  const auto dim = [factor](std::uint8_t of) {
+    return static_cast<std::uint8_t>(static_cast<float>(of) * factor);
+  };
+  return factor < 1.0F ? Rgb{dim(colour.r), dim(colour.g), dim(colour.b)} : colour;
+}
+
+}  // namespace
+
+struct SimulatedSource::State {
+  explicit State(const SimOptions& chosen)
+      : options(chosen),
+        room(make_room(chosen.room, chosen.crate == CrateKind::kStays, chosen.seed)),
+        room_look(room, finest_texel_m(chosen)) {
+    const double duration_s = static_cast<double>(options.frames) / options.rate_hz;
+    path = plan_camera_path(room, options.path, options.seed, duration_s);
+    const Vector3d viewer_world =
+        plan_camera_path(room, CameraPathKind::kView, options.seed, duration_s).centre_world;
+    std::vector<Material> materials;
+    for (std::size_t i = 0; i < options.movers.size(); ++i) {
+      movers.push_back(
+          plan_mover(options.movers[i], room, viewer_world, options.seed, options.pace, duration_s));
+      append_solids(movers.back(), 0.0, solids);
+      materials.insert(materials.end(), movers.back().materials.begin(), movers.back().materials.end());
+      mover_of_solid.resize(solids.size(), static_cast<std::uint8_t>(i + 1));
+    }
+    if (crate_changes()) {
+      crate = crate_in(room);
+      solids.push_back(crate);
+      materials.push_back(crate_material());
+      mover_of_solid.push_back(static_cast<std::uint8_t>(options.movers.size() + 1));
+    }
+    mover_look.emplace(room, solids, materials, finest_texel_m(options));
+    for (const Material& material : room.materials) infrared.push_back(material.infrared);
+    for (const Material& material : materials) infrared.push_back(material.infrared);
+
+    colour_camera = options.depth_camera;
+    if (!options.registered_colour) {
+      colour_camera.fx_px *= kColourFocal;
+      colour_camera.fy_px *= kColourFocal;
+      T_colour_depth.translation().x() = -kColourOffset_m;
+    }
+    T_colour_depth_true = T_colour_depth;
+    if (options.faults) add_faults();
+  }
+
+  void add_faults() {
+    const Intrinsics& depth_camera = options.depth_camera;
+    const SensorFaults faults = sensor_faults(depth_camera, colour_camera, T_colour_depth);
+    T_colour_depth_true = faults.T_colour_depth;
+    depth_faults.rays = pixel_rays(faults.depth_camera, faults.depth_lens, depth_camera);
+    colour_rays = pixel_rays(faults.colour_camera, faults.colour_lens, colour_camera);
+    depth_faults.inverse_scale = faults.inverse_depth_scale;
+    depth_faults.inverse_offset_per_m.resize(depth_camera.width_px, depth_camera.height_px);
+    for (int y = 0; y < depth_camera.height_px; ++y)
+      for (int x = 0; x < depth_camera.width_px; ++x)
+        depth_faults.inverse_offset_per_m.at(x, y) =
+            static_cast<float>(inverse_depth_offset_per_m(depth_camera, x, y));
+  }
+
+  /// Two pixels' width at 1 m is as fine as anything is looked at from.
+  static double finest_texel_m(const SimOptions& options) { return 1.6 / options.depth_camera.fx_px; }
+
+  void place_solids(std::int64_t index) {
+    const double t_s = static_cast<double>(index) / options.rate_hz;
+    solids.assign(room.solids.begin(), room.solids.end());
+    for (const Mover& mover : movers) append_solids(mover, t_s, solids);
+    if (crate_changes()) {
+      const bool second_half = 2 * index >= options.frames;
+      crate_is_there = second_half == (options.crate == CrateKind::kComes);
+      solids.push_back(crate);
+      if (!crate_is_there) solids.back().T_world_solid.pretranslate(Vector3d(0, 0, -kAway_m));
+    }
+    shadow.prepare(std::span<const Solid>(solids).subspan(room.solids.size()));
+  }
+  [[nodiscard]] bool crate_changes() const {
+    return options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
+  }
+  void fill_truth();
+  void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
+                   ColourImage& colour) const;
+
+  SimOptions options;
+  Room room;
+  SurfaceLook room_look;
+  std::optional<SurfaceLook> mover_look;
+  CameraPath path;
+  std::vector<Mover> movers;
+  std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover of the solids behind the room's
+  std::vector<float> infrared;
+  Solid crate;  ///< one that comes or goes, where it stands while it is there
+  bool crate_is_there = false;
+  Intrinsics colour_camera;
+  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();       ///< as frames say
+  Eigen::Isometry3d T_colour_depth_true = Eigen::Isometry3d::Identity();  ///< as it is
+  DepthFaults depth_faults;
+  PixelRays colour_rays;
+  std::int64_t next_index = 0;
+
+  std::vector<Solid> solids;  ///< the room's, then the movers', at the time of the current frame
+  MoverShadow shadow;
+  ViewCaster depth_view, colour_view, crate_view;
+  ExactView depth_exact, colour_exact;
+  KinectScratch scratch;
+  SimTruth truth;
+};
+
+void SimulatedSource::State::fill_truth() {
+  const int width_px = options.depth_camera.width_px, height_px = options.depth_camera.height_px;
+  truth.depth_m.resize(width_px, height_px);
+  truth.moved.resize(width_px, height_px);
+  truth.mover.resize(width_px, height_px);
+  truth.revealed.resize(width_px, height_px);
+  const bool crate_went = options.crate == CrateKind::kGoes && !crate_is_there;
+  if (crate_went) crate_view.prepare({&crate, 1}, options.depth_camera, truth.T_world_camera);
+  for (std::size_t i = 0; i < truth.depth_m.pixels.size(); ++i) {
+    const float depth_m = depth_exact.depth_m.pixels[i];
+    if (depth_m >= static_cast<float>(kKinectNearest_m) && depth_m <= static_cast<float>(kKinectFarthest_m))
+      truth.depth_m.pixels[i] = depth_m;
+    if (crate_went) {
+      const auto x = static_cast<int>(i) % width_px, y = static_cast<int>(i) / width_px;
+      const PlanePoint<double> ray = ray_of(depth_faults.rays, x, y);
+      const double crate_m = crate_view.depth_of(0, ray.x, ray.y);
+      if (crate_m > 0.0 && (depth_m == 0.0F || crate_m < depth_m)) truth.revealed.pixels[i] = 255;
+    }
+    const auto moving = depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room.solids.size());
+    if (moving < 0) continue;
+    // A crate that goes is the room's until then.
+    if (options.crate == CrateKind::kGoes && mover_of_solid[static_cast<std::size_t>(moving)] > movers.size())
+      continue;
+    truth.moved.pixels[i] = 255;
+    truth.mover.pixels[i] = mover_of_solid[static_cast<std::size_t>(moving)];
+  }
+}
+
+void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
+                                         ColourImage& colour) const {
+  colour.resize(colour_camera.width_px, colour_camera.height_px);
+  const auto noise_scale = static_cast<float>(options.noise_scale);
+  for (int y = 0; y < colour.height; ++y)
+    for (int x = 0; x < colour.width; ++x) {
+      const int seen = exact.solid.at(x, y);
+      if (seen < 0) continue;
+      const auto index = static_cast<std::size_t>(seen);
+      const double depth_m = exact.depth_m.at(x, y);
+      const Vector3d p_solid = colour_rays.empty() ? view.local_point(seen, x, y, depth_m)
+                                                   : view.local_point(seen, colour_rays.at(x, y).x,
+                                                                      colour_rays.at(x, y).y, depth_m);
+      const Vector3d normal_solid = normal_local(solids[index], p_solid);
+      const double cosine = std::max(exact.cosine.at(x, y), 0.2F);
+      const double footprint_m = depth_m / (colour_camera.fx_px * cosine);
+      Rgb& pixel = colour.at(x, y);
+      const Eigen::Isometry3d& T_world_solid = solids[index].T_world_solid;
+      if (index < room.solids.size()) {
+        pixel = room_look.shade(index, p_solid, normal_solid, footprint_m, T_world_solid);
+        if (solids.size() > room.solids.size())
+          pixel = dimmed(pixel,
+                         shadow.factor(room, T_world_solid * p_solid, T_world_solid.linear() * normal_solid));
+      } else {
+        pixel =
+            mover_look->shade(index - room.solids.size(), p_solid, normal_solid, footprint_m, T_world_solid);
+      }
+      if (noise_scale == 0.0F) continue;
+      const std::uint64_t pixel_key = mixed(key + colour.index(x, y));
+      const float brightness = 1.6F * noise_scale * gaussian(pixel_key);
+      const auto noisy = [brightness](std::uint8_t of) {
+        return static_cast<std::uint8_t>(
+            std::clamp(static_cast<float>(of) + brightness + 0.5F, 0.0F, 255.0F));
+      };
+      pixel = {noisy(pixel.r), noisy(pixel.g), noisy(pixel.b)};
+    }
+}
+
+SimulatedSource::SimulatedSource(const SimOptions& options) {
+  require_valid(options);
+  state_ = std::make_unique<State>(options);
+}
+
+SimulatedSource::~SimulatedSource() = default;
+
+ReadResult SimulatedSource::next(Frame& frame) {
+  State& s = *state_;
+  if (s.next_index >= s.options.frames) return {ReadStatus::kEnd, {}};
+  const std::int64_t index = s.next_index++;
+  look(index, T_world_camera_at(s.path, static_cast<double>(index) / s.options.rate_hz), frame);
+  return {ReadStatus::kFrame, {}};
+}
+
+void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_camera, Frame& frame) {
+  State& s = *state_;
+  const double t_s = static_cast<double>(index) / s.options.rate_hz;
+  s.place_solids(index);
+  s.depth_view.prepare(s.solids, s.options.depth_camera, T_world_camera);
+  render_exact(s.solids, s.depth_view, s.options.depth_camera, s.depth_faults.rays, s.depth_exact);
+  s.truth.T_world_camera = T_world_camera;
+  s.fill_truth();
+  if (s.options.noise_scale > 0.0) {
+    measure_depth(s.solids, s.infrared, s.depth_view, s.depth_exact, s.options.depth_camera, T_world_camera,
+                  s.depth_faults, s.options.noise_scale, s.options.seed, index, s.scratch, frame.depth_m);
+  } else {
+    frame.depth_m = s.truth.depth_m;
+    for (int y = 0; y < frame.depth_m.height; ++y)
+      for (int x = 0; x < frame.depth_m.width; ++x) {
+        float& z_m = frame.depth_m.at(x, y);
+        if (z_m > 0.0F) z_m = static_cast<float>(reported_m(s.depth_faults, x, y, z_m));
+      }
+  }
+
+  const std::uint64_t colour_key = hash_of(s.options.seed, static_cast<std::uint64_t>(index), 0x636f6c);
+  if (!s.options.with_colour) {
+    frame.colour = {};
+  } else if (s.options.registered_colour) {
+    s.fill_colour(s.depth_view, s.depth_exact, colour_key, frame.colour);
+  } else {
+    s.colour_view.prepare(s.solids, s.colour_camera, T_world_camera * s.T_colour_depth_true.inverse());
+    render_exact(s.solids, s.colour_view, s.colour_camera, s.colour_rays, s.colour_exact);
+    s.fill_colour(s.colour_view, s.colour_exact, colour_key, frame.colour);
+  }
+
+  frame.index = index;
+  frame.stamp_s = t_s;
+  frame.depth_camera = s.options.depth_camera;
+  frame.colour_camera = s.options.with_colour ? s.colour_camera : Intrinsics{};
+  frame.T_colour_depth = s.T_colour_depth;
+  frame.T_world_camera = T_world_camera;
+  frame.down_camera = T_world_camera.linear().transpose() * -Vector3d::UnitZ();
+}
+
+bool SimulatedSource::rewind() {
+  state_->next_index = 0;
+  return true;
+}
+
+bool SimulatedSource::seek(std::int64_t index) {
+  if (index < 0 || index >= state_->options.frames) return false;
+  state_->next_index = index;
+  return true;
+}
+
+std::optional<std::int64_t> SimulatedSource::frame_count() const { return state_->options.frames; }
+std::string SimulatedSource::name() const { return sim_spec(state_->options); }
+const SimTruth& SimulatedSource::truth() const { return state_->truth; }
+const Room& SimulatedSource::room() const { return state_->room; }
+
+}  // namespace roomradar

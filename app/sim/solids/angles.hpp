@@ -1,0 +1,9 @@
+// angles.hpp: a full turn.
+#pragma once
+#include <numbers>
+
+namespace roomradar {
+
+inline constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+
+}  // namespace roomradar

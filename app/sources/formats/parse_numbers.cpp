@@ -1,0 +1,38 @@
+// parse_numbers.cpp: words and numbers by std::from_chars, which knows no locale.
+#include "app/sources/formats/parse_numbers.hpp"
+
+#include <charconv>
+#include <limits>
+
+namespace roomradar {
+
+std::vector<std::string_view> split_words(std::string_view line) {
+  constexpr std::string_view kBlank = " \t\r";
+  std::vector<std::string_view> words;
+  for (std::size_t start = line.find_first_not_of(kBlank); start != std::string_view::npos;) {
+    const std::size_t end = line.find_first_of(kBlank, start);
+    words.push_back(line.substr(start, end == std::string_view::npos ? end : end - start));
+    start = line.find_first_not_of(kBlank, end);
+  }
+  return words;
+}
+
+std::optional<double> parse_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  if (word.find("#IND") != std::string_view::npos || word.find("#QNAN") != std::string_view::npos ||
+      word.find("#INF") != std::string_view::npos)
+    return std::numeric_limits<double>::quiet_NaN();
+  double value = 0.0;
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (fault != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<std::int64_t> parse_whole_number(std::string_view word) {
+  std::int64_t value = 0;
+  const auto [end, fault] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (fault != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace roomradar

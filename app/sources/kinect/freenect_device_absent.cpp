@@ -1,0 +1,20 @@
+// freenect_device_absent.cpp: stands in for freenect_device.cpp where the program is built without
+// libfreenect.
+#include "app/sources/kinect/fakenect_replay.hpp"
+#include "app/sources/kinect/freenect_device.hpp"
+#include "app/sources/kinect/kinect_source.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+
+std::unique_ptr<KinectDevice> open_freenect(const KinectWish& wish) {
+  throw Error("kinect:" + std::to_string(wish.number) +
+              ": this program was built without Kinect; configure it with -DROOMRADAR_WITH_KINECT=ON and "
+              "libfreenect-dev");
+}
+
+int count_kinects() { return -1; }
+
+std::optional<std::filesystem::path> replayed_folder() { return std::nullopt; }
+
+}  // namespace roomradar

@@ -1,0 +1,97 @@
+// play_host.cpp: between two frames, and after each.
+#include "app/window/link/play_host.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <new>
+
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kSaidAfterFrames = 30;  // that an object is still awaited
+
+/// Throws Error naming the mesh file and the fault.
+ObjectParts parts_of(const ScriptEvent& add) {
+  return object_parts(add.mesh, object_mesh(add.mesh, add.size_m.value_or(0.0)));
+}
+
+}  // namespace
+
+bool PlayHost::wait_turn(const Frame& frame) {
+  const bool in_time = !is_live_ || source_.is_again();
+  return link_.wait_turn(frame.stamp_s, in_time, [this] {
+    if (run_frame_ >= 0) publish();
+  });
+}
+
+std::vector<ScriptEvent> PlayHost::take_events() {
+  std::vector<Wish> wishes = link_.take_wishes();
+  ready_new_objects(wishes);
+  std::vector<ScriptEvent> events = player_.events_of(wishes, session_);
+  if (!player_.complaint().empty()) link_.say(player_.complaint());
+  if (is_live_ && link_.take_pause()) {
+    events.emplace_back();
+    events.back().action = Action::kCamera;
+    events.back().camera = CameraPlay::kResume;
+  }
+  return events;
+}
+
+void PlayHost::ready_new_objects(std::vector<Wish>& wishes) {
+  const auto is_new = [](const Wish& wish) { return wish.kind == WishKind::kNew; };
+  std::copy_if(wishes.begin(), wishes.end(), std::back_inserter(new_objects_), is_new);
+  std::erase_if(wishes, is_new);
+  if (readying_.valid() && readying_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    try {
+      parts_ = readying_.get();
+      wishes.push_back(new_objects_.front());
+    } catch (const std::bad_alloc&) {
+      link_.say(new_objects_.front().event.mesh + ": there is not memory enough for it");
+    } catch (const Error& fault) {
+      link_.say(fault.what());
+    }
+    new_objects_.pop_front();
+  }
+  if (readying_.valid()) {
+    if (++frames_waited_ == kSaidAfterFrames)
+      link_.say("reading " + new_objects_.front().event.mesh + " ...");
+  } else if (!new_objects_.empty()) {
+    frames_waited_ = 0;
+    readying_ = std::async(std::launch::async, parts_of, new_objects_.front().event);
+  }
+}
+
+void PlayHost::show(std::int64_t run_frame, double run_time_s, const Frame& frame,
+                    const FrameResult& result) {
+  run_frame_ = run_frame;
+  run_time_s_ = run_time_s;
+  source_frame_ = frame.index;
+  result_ = result;
+  say_if_a_drop_waits();
+  publish();
+}
+
+void PlayHost::say_if_a_drop_waits() {
+  const std::string waits = session_.waiting_drops().empty() ? "" : session_.waiting_drops().back().drop.name;
+  if (!waits.empty() && waits != said_to_wait_)
+    link_.say(waits + " waits for a level surface in view, to be dropped over it");
+  said_to_wait_ = waits;
+}
+
+void PlayHost::publish() {
+  filled_.run_frame = run_frame_;
+  filled_.run_time_s = run_time_s_;
+  filled_.source_frame = source_frame_;
+  filled_.chosen = player_.chosen();
+  filled_.is_held = source_.is_held();
+  filled_.is_repeating = source_.is_repeating();
+  filled_.at_end = source_.at_end();
+  filled_.given_up = given_up_;
+  maker_.fill(session_, result_, times_, link_.wanted(), filled_);
+  link_.publish(filled_);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,241 @@
+// player.cpp: from pixels to places.
+#include "app/window/link/player.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace roomradar {
+namespace {
+
+constexpr double kReach_m = 50.0;
+constexpr double kOverSurface_m = 0.002;  // a placed object is let down so far: touching would be overlap
+constexpr double kThrownFrom_m = 0.35;    // before the camera
+constexpr double kNearest_m = 0.25;       // what is carried does not come nearer
+constexpr double kFastest_mps = 15.0;
+
+const VirtualObject* find_object(const Session& session, const std::string& name) {
+  const auto found = std::find_if(session.objects().begin(), session.objects().end(),
+                                  [&](const auto& object) { return object->body.name == name; });
+  return found == session.objects().end() ? nullptr : found->get();
+}
+
+ScriptEvent event_of(Action action, const std::string& name) {
+  ScriptEvent event;
+  event.action = action;
+  event.name = name;
+  return event;
+}
+
+/// What is carried and let go between two frames is carried in the one, or it would stay where it is, and let
+/// go in the next: that, and what is said of the object after it, is taken out of the events.
+std::vector<ScriptEvent> take_held_back(std::vector<ScriptEvent>& events) {
+  std::set<std::string> carried, let_go;
+  std::vector<ScriptEvent> now, later;
+  for (ScriptEvent& event : events) {
+    if (event.action == Action::kCarry) carried.insert(event.name);
+    if (event.action == Action::kRelease && carried.contains(event.name)) let_go.insert(event.name);
+    (let_go.contains(event.name) ? later : now).push_back(std::move(event));
+  }
+  events = std::move(now);
+  return later;
+}
+
+}  // namespace
+
+Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel) {
+  Pointed pointed;
+  if (!session.shown_view()) return pointed;
+  const Ray ray =
+      ray_through(session.shown_view()->camera, session.shown_view()->T_world_view, pixel.x(), pixel.y());
+  double reach_m = kReach_m;
+  for (const SceneTree& surface : session.scene_without(nullptr)) {
+    if (surface.kind != Touched::kStatic && surface.kind != Touched::kDynamic) continue;  // not seen
+    const auto hit = surface_hit(surface.instance, ray, reach_m);
+    if (!hit) continue;
+    pointed.surface = hit;
+    reach_m = hit->distance_m;
+  }
+  for (const auto& object : session.objects()) {
+    if (!object->in_room) continue;
+    const auto hit = surface_hit({&object->model->shape.touched, object->body.T_world_object}, ray, reach_m);
+    if (!hit) continue;
+    pointed.object = hit;
+    pointed.name = object->body.name;
+    reach_m = hit->distance_m;
+  }
+  return pointed;
+}
+
+Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, const Eigen::Vector2d& way_px) {
+  constexpr double kTurn_deg_per_px = 0.5;
+  // A camera that looks straight down sees nothing go to the side that turns about the vertical.
+  constexpr double kLeastUpright = 0.3;
+  const Eigen::Vector3d right = R_world_view.col(0), up = -R_world_view.col(1);
+  const Eigen::Vector3d upright =
+      std::abs(up.z()) > kLeastUpright ? Eigen::Vector3d(0.0, 0.0, std::copysign(1.0, up.z())) : up;
+  // What is near lies along -z of the camera's axes: about x it goes along y, down; about -y along x, right.
+  return kTurn_deg_per_px * (way_px.x() * upright + way_px.y() * right);
+}
+
+std::vector<ScriptEvent> Player::events_of(std::span<const Wish> wishes, const Session& session) {
+  std::vector<ScriptEvent> events = std::exchange(held_back_, {});
+  complaint_.clear();
+  choose_if_none(session);
+  for (const Wish& wish : wishes) {
+    switch (wish.kind) {
+      case WishKind::kEvent:
+        events.push_back(wish.event);
+        break;
+      case WishKind::kDrop:
+      case WishKind::kPlace:
+        drop_or_place(wish, session, events);
+        break;
+      case WishKind::kThrow:
+        throw_chosen(wish, session, events);
+        break;
+      case WishKind::kGrab:
+        grab(wish, session);
+        break;
+      case WishKind::kDrag:
+        drag(wish, session, events);
+        break;
+      case WishKind::kLetGo:
+        let_go(wish, session, events);
+        break;
+      case WishKind::kTurn: {
+        const std::string& name = grabbed_ ? grabbed_->name : chosen_;
+        if (name.empty()) break;
+        events.push_back(wish.event);
+        events.back().action = Action::kTurn;
+        events.back().name = name;
+        break;
+      }
+      case WishKind::kChoose:
+        if (find_object(session, wish.event.name) != nullptr) chosen_ = wish.event.name;
+        break;
+      case WishKind::kNew:
+        add(wish, session, events);
+        break;
+      case WishKind::kRemove:
+        if (!chosen_.empty()) events.push_back(event_of(Action::kRemove, chosen_));
+        if (grabbed_ && grabbed_->name == chosen_) grabbed_.reset();
+        break;
+      case WishKind::kReset:
+        for (const auto& object : session.objects())  // a drop that one outside of the room waits for, too
+          events.push_back(event_of(Action::kRemove, object->body.name));
+        if (!chosen_.empty()) events.push_back(event_of(Action::kDrop, chosen_));
+        grabbed_.reset();
+        break;
+    }
+  }
+  held_back_ = take_held_back(events);
+  return events;
+}
+
+void Player::choose_if_none(const Session& session) {
+  if (find_object(session, chosen_) != nullptr) return;
+  chosen_ = session.objects().empty() ? "" : session.objects().front()->body.name;
+}
+
+void Player::add(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+  const std::string& mesh = wish.event.mesh;
+  // A word of a script, and no other object's.
+  std::string stem = mesh.substr(mesh.find_last_of('/') + 1);
+  stem = stem.substr(0, stem.find('.'));
+  for (char& letter : stem)
+    if (std::isspace(static_cast<unsigned char>(letter)) != 0 || letter == '#') letter = '_';
+  if (stem.empty()) stem = "object";
+  std::string name = stem;
+  for (int number = 2; find_object(session, name) != nullptr; ++number) name = stem + std::to_string(number);
+  ScriptEvent event = event_of(Action::kAdd, name);
+  event.mesh = mesh;
+  event.size_m = wish.event.size_m;
+  events.push_back(event);
+  events.push_back(event_of(Action::kDrop, name));
+  chosen_ = name;
+}
+
+void Player::drop_or_place(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+  const VirtualObject* object = find_object(session, chosen_);
+  const Pointed pointed = pointed_at(session, wish.pixel);
+  // On top of another object, if that is what was pointed at.
+  const auto& hit = pointed.object && pointed.name != chosen_ ? pointed.object : pointed.surface;
+  if (object == nullptr || !hit) {
+    complaint_ = object == nullptr       ? "there is no object to drop: choose one"
+                 : !session.shown_view() ? "the camera is not located"
+                                         : "there is no surface at that place";
+    return;
+  }
+  ScriptEvent event = event_of(wish.kind == WishKind::kPlace ? Action::kPlace : Action::kDrop, chosen_);
+  event.position_world = hit->point_world - level_to_middle(*object, object->body.T_world_object.linear());
+  event.height_m = wish.event.height_m;
+  if (wish.kind == WishKind::kPlace) event.position_world->z() += kOverSurface_m - lowest_m(*object);
+  events.push_back(event);
+}
+
+void Player::throw_chosen(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+  const VirtualObject* object = find_object(session, chosen_);
+  if (object == nullptr || !session.shown_view()) {
+    complaint_ = "there is nothing to throw, or the camera is not located";
+    return;
+  }
+  const Ray ray = ray_through(session.shown_view()->camera, session.shown_view()->T_world_view,
+                              wish.pixel.x(), wish.pixel.y());
+  ScriptEvent event = event_of(Action::kThrow, chosen_);
+  event.position_world = ray.origin_world + kThrownFrom_m * ray.direction_world -
+                         object->body.T_world_object.linear() * object->model->middle;
+  event.velocity_world_mps = std::min(wish.speed_mps, kFastest_mps) * ray.direction_world;
+  events.push_back(event);
+}
+
+void Player::grab(const Wish& wish, const Session& session) {
+  const Pointed pointed = pointed_at(session, wish.pixel);
+  grabbed_.reset();
+  if (!pointed.object) return;
+  chosen_ = pointed.name;
+  const VirtualObject& object = *find_object(session, chosen_);
+  grabbed_ = {chosen_, pointed.object->distance_m,
+              object.body.T_world_object * object.model->middle - pointed.object->point_world, false};
+}
+
+void Player::drag(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+  const VirtualObject* object = grabbed_ ? find_object(session, grabbed_->name) : nullptr;
+  if (object == nullptr || !session.shown_view()) return;
+  const Ray ray = ray_through(session.shown_view()->camera, session.shown_view()->T_world_view,
+                              wish.pixel.x(), wish.pixel.y());
+  const double distance_m = std::max(grabbed_->distance_m - wish.nearer_m, kNearest_m);
+  ScriptEvent event = event_of(Action::kCarry, grabbed_->name);
+  event.position_world = ray.origin_world + distance_m * ray.direction_world + grabbed_->middle_from_point -
+                         object->body.T_world_object.linear() * object->model->middle;
+  events.push_back(event);
+  grabbed_->is_carried = true;
+}
+
+void Player::let_go(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+  if (!grabbed_) {
+    if (!wish.was_dragged) drop_or_place(wish, session, events);
+    return;
+  }
+  const Grabbed grabbed = *grabbed_;
+  grabbed_.reset();
+  if (!grabbed.is_carried) return;
+  ScriptEvent event = event_of(Action::kRelease, grabbed.name);
+  if (session.shown_view()) {
+    // As fast as the mouse was, at the distance at which it was held.
+    constexpr double kLately_s = 0.05;
+    const auto& [camera, T_world_view] = *session.shown_view();
+    const Eigen::Vector2d before = wish.pixel - kLately_s * wish.pixel_velocity_s;
+    const double distance_m = std::max(grabbed.distance_m - wish.nearer_m, kNearest_m);
+    const Eigen::Vector3d way =
+        distance_m * (ray_through(camera, T_world_view, wish.pixel.x(), wish.pixel.y()).direction_world -
+                      ray_through(camera, T_world_view, before.x(), before.y()).direction_world);
+    const double speed_mps = way.norm() / kLately_s;
+    if (std::isfinite(speed_mps) && speed_mps > 0.0)
+      event.velocity_world_mps = way / kLately_s * std::min(1.0, kFastest_mps / speed_mps);
+  }
+  events.push_back(event);
+}
+
+}  // namespace roomradar

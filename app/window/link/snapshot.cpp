@@ -1,0 +1,86 @@
+// snapshot.cpp: what the window shows of a session.
+#include "app/window/link/snapshot.hpp"
+
+#include <algorithm>
+
+namespace roomradar {
+namespace {
+
+constexpr double kLooksAhead_m = 0.3;
+constexpr int kMostShown_px = 256;   // a pane has no more
+constexpr double kMoves_mps = 0.15;  // slower than this an object is asked about along gravity
+
+/// The mesh as the radar and the renderer hold it, without normals and colours.
+Mesh mesh_of(const TriangleTree& tree) {
+  Mesh mesh;
+  mesh.origin = tree.origin();
+  mesh.vertices.assign(tree.vertices().begin(), tree.vertices().end());
+  mesh.triangles.assign(tree.triangles().begin(), tree.triangles().end());
+  return mesh;
+}
+
+}  // namespace
+
+void SnapshotMaker::fill(const Session& session, const FrameResult& result, const StageTimes& times,
+                         const ViewsWanted& wanted, Snapshot& shown) {
+  shown.result = result;
+  shown.view = session.shown_view();
+  shown.picture = session.picture();
+  shown.stages_ms.clear();
+  times.visit_newest([&](const std::string& stage, std::size_t count, float newest_ms) {
+    auto& before = counted_[stage];
+    if (count > before) shown.stages_ms.emplace_back(stage, newest_ms);
+    before = count;
+  });
+
+  shown.objects.clear();
+  for (const auto& object : session.objects()) {
+    auto& mesh = object_meshes_[object->model];
+    if (!mesh) mesh = std::make_shared<const Mesh>(mesh_of(object->model->shape.touched));
+    shown.objects.push_back({object->body.name, mesh, object->body.T_world_object,
+                             object->model->shape.drawn.bounds(), object->body.velocity_world_mps,
+                             object->in_room, object->body.at_rest, object->carried_to_world.has_value(),
+                             object->body.rests_on});
+  }
+  shown.surfaces = session.config().scene.surfaces;
+  shown.unknown_is_solid = session.unknown_is_solid();
+  shown.radar = session.config().radar;
+
+  const TriangleTree& room = session.room().touched;
+  if (room_revision_ != 0 && room_revision_ != room.revision())
+    room_ = std::make_shared<const Mesh>(mesh_of(room));  // something was adopted
+  room_revision_ = room.revision();
+  shown.room = room_;
+  shown.seen_world = wanted.models ? session.scene().moved_world().seen_world : Mesh{};
+  shown.inferred_world = wanted.models ? session.scene().moved_world().inferred_world : Mesh{};
+  shown.shown_radar = {};
+  if (wanted.radar) fill_radar(session, shown.chosen, shown.shown_radar);
+}
+
+void SnapshotMaker::fill_radar(const Session& session, const std::string& chosen, ShownRadar& shown) {
+  const auto found =
+      std::find_if(session.objects().begin(), session.objects().end(),
+                   [&](const auto& object) { return object->in_room && object->body.name == chosen; });
+  if (found == session.objects().end()) return;
+  const VirtualObject& object = **found;
+  const Eigen::Vector3d& velocity = object.body.velocity_world_mps;
+  const bool moves = velocity.norm() > kMoves_mps;
+  shown.direction_world =
+      moves ? velocity.normalized() : session.config().physics.gravity_world_mps2.normalized();
+  const RadarQuery query{
+      {&object.model->shape.touched, object.body.T_world_object}, shown.direction_world, kLooksAhead_m};
+  const std::vector<SceneTree> scene = session.scene_without(&object);
+  shown.contact = radar_.query(query, {scene, {}});
+  // Of a fine mesh they take longer than the frame: a tenth of the time is theirs.
+  const auto begun = std::chrono::steady_clock::now();
+  if (begun >= pictures_due_ || pictures_of_ != chosen) {
+    const int resolution_px = std::min(session.config().radar.resolution_px, kMostShown_px);
+    pictures_ = radar_pictures(query, {scene, {}}, resolution_px);
+    pictures_of_ = chosen;
+    const auto end = std::chrono::steady_clock::now();
+    pictures_due_ = end + 9 * (end - begun);
+  }
+  shown.pictures = pictures_;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,39 @@
+// snapshot.hpp: copies of what a session holds after a frame, for the window.
+#pragma once
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/session/session.hpp"
+#include "app/window/link/ui_channel.hpp"
+#include "mapping/types/system/stage_times.hpp"
+#include "radar/exact/cyber_radar.hpp"
+
+namespace roomradar {
+
+class SnapshotMaker {
+ public:
+  /// @param room  the saved room's mesh, copied once
+  explicit SnapshotMaker(const Mesh& room) : room_(std::make_shared<const Mesh>(room)) {}
+
+  /// Fills what `shown` has of the session, for the object `shown.chosen`; its allocations are used again.
+  void fill(const Session& session, const FrameResult& result, const StageTimes& times,
+            const ViewsWanted& wanted, Snapshot& shown);
+
+ private:
+  std::shared_ptr<const Mesh> room_;
+  std::uint64_t room_revision_ = 0;  ///< of the session's room when room_ was made; 0: of none yet
+  std::map<std::shared_ptr<const ObjectModel>, std::shared_ptr<const Mesh>> object_meshes_;
+  std::map<std::string, std::size_t, std::less<>> counted_;  ///< stages' samples before this frame
+  CyberRadar radar_;
+  RadarPictures pictures_;
+  std::string pictures_of_;  ///< the object's name
+  std::chrono::steady_clock::time_point pictures_due_{};
+
+  void fill_radar(const Session& session, const std::string& chosen, ShownRadar& shown);
+};
+
+}  // namespace roomradar

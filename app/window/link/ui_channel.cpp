@@ -1,0 +1,175 @@
+// play_link.cpp: one mutex, one condition.
+#include "app/window/link/ui_channel.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "app/cli/interrupt.hpp"
+
+namespace roomradar {
+namespace {
+
+/// Of a mouse that moves faster than frames come, only the newest place counts, and turns add up to one.
+/// False: the next is a wish of its own.
+bool merge(Wish& last, const Wish& next) {
+  if (last.kind != next.kind) return false;
+  if (next.kind == WishKind::kDrag) {
+    last = next;
+    return true;
+  }
+  if (next.kind != WishKind::kTurn) return false;
+  const Eigen::Vector3d turn_world_deg = last.event.turn_world_deg + next.event.turn_world_deg;
+  if (turn_world_deg.cwiseAbs().maxCoeff() > kMaxTurn_deg) return false;
+  last.event.turn_world_deg = turn_world_deg;
+  return true;
+}
+
+}  // namespace
+
+void PlayLink::ask(Wish wish) {
+  const std::lock_guard lock(mutex_);
+  if (is_paused_ && wish.kind != WishKind::kGrab) message_ = "paused: it happens with the next frame";
+  if (wishes_.empty() || !merge(wishes_.back(), wish)) wishes_.push_back(std::move(wish));
+}
+
+void PlayLink::set_paused(bool is_paused) {
+  const std::lock_guard lock(mutex_);
+  is_paused_ = is_paused;
+  was_paused_ = was_paused_ || is_paused;
+  steps_ = 0;
+  changed_.notify_all();
+}
+
+bool PlayLink::is_paused() const {
+  const std::lock_guard lock(mutex_);
+  return is_paused_;
+}
+
+void PlayLink::step() {
+  const std::lock_guard lock(mutex_);
+  ++steps_;
+  changed_.notify_all();
+}
+
+void PlayLink::set_speed(double speed) {
+  const std::lock_guard lock(mutex_);
+  speed_ = speed;
+  last_turn_.reset();
+  changed_.notify_all();
+}
+
+void PlayLink::want(const ViewsWanted& views) {
+  const std::lock_guard lock(mutex_);
+  if (views == wanted_) return;
+  wanted_ = views;
+  wants_changed_ = true;
+  changed_.notify_all();
+}
+
+bool PlayLink::take(Snapshot& shown) {
+  const std::lock_guard lock(mutex_);
+  if (!is_fresh_) return false;
+  std::swap(newest_, shown);
+  is_fresh_ = false;
+  return true;
+}
+
+std::string PlayLink::take_message() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(message_, {});
+}
+
+void PlayLink::close() {
+  const std::lock_guard lock(mutex_);
+  is_closed_ = true;
+  changed_.notify_all();
+}
+
+bool PlayLink::is_over() const {
+  const std::lock_guard lock(mutex_);
+  return is_over_;
+}
+
+bool PlayLink::wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh) {
+  constexpr double kCatchUp_s = 0.2;  // what was missed by more is not made up for
+  constexpr std::chrono::milliseconds kLookUp{200};
+  std::unique_lock lock(mutex_);
+  while (!is_closed_) {
+    if (wants_changed_) {
+      wants_changed_ = false;
+      lock.unlock();
+      refresh();
+      lock.lock();
+      continue;
+    }
+    if (is_paused_ && steps_ == 0) {
+      last_turn_.reset();
+      changed_.wait_for(lock, kLookUp);
+      if (Interrupt::is_asked()) break;  // nobody reads the source, which would say so
+      continue;
+    }
+    const Clock::time_point now = Clock::now();
+    Clock::time_point due = now;
+    if (in_time && last_turn_ && steps_ == 0) {
+      const double wait_s = std::clamp((stamp_s - last_turn_->first) / speed_, 0.0, 1.0);
+      due = last_turn_->second +
+            std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
+    }
+    if (now < due) {
+      changed_.wait_until(lock, due);
+      continue;
+    }
+    if (now - due > std::chrono::duration<double>(kCatchUp_s)) due = now;
+    last_turn_ = {stamp_s, due};
+    steps_ = std::max(steps_ - 1, 0);
+    return true;
+  }
+  return false;
+}
+
+bool PlayLink::take_pause() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(was_paused_, is_paused_);
+}
+
+bool PlayLink::is_closed() const {
+  const std::lock_guard lock(mutex_);
+  return is_closed_;
+}
+
+std::vector<Wish> PlayLink::take_wishes() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(wishes_, {});
+}
+
+ViewsWanted PlayLink::wanted() const {
+  const std::lock_guard lock(mutex_);
+  return wanted_;
+}
+
+void PlayLink::publish(Snapshot& filled) {
+  {
+    const std::lock_guard lock(mutex_);
+    std::swap(newest_, filled);
+    is_fresh_ = true;
+  }
+  wake_();
+}
+
+void PlayLink::say(std::string message) {
+  {
+    const std::lock_guard lock(mutex_);
+    message_ = std::move(message);
+  }
+  wake_();
+}
+
+void PlayLink::finish() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  wake_();
+}
+
+}  // namespace roomradar

@@ -1,0 +1,126 @@
+// picture_pane.cpp: shows the picture, marks the chosen object, and turns mouse into wishes.
+#include "app/window/panes/picture_pane.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "app/window/link/player.hpp"
+#include "app/window/panes/annotate.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kDragFrom_px = 4.0;  // of the window; less is a click
+constexpr double kWheel_m = 0.04;
+
+}  // namespace
+
+void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Fonts& fonts,
+                       double drop_height_m) {
+  look::begin_pane("picture", area, look::kGround);
+  const Area image = fitted(area, texture_.width(), texture_.height());
+  pixel_.reset();
+  if (!image.empty()) {
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    draw->AddImage(texture_.id(), {image.x, image.y}, {image.x + image.width, image.y + image.height});
+    const double scale = image.width / static_cast<double>(texture_.width());
+    ImGui::SetCursorScreenPos({image.x, image.y});
+    ImGui::InvisibleButton("mouse", {image.width, image.height},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const ImVec2 mouse = ImGui::GetMousePos();
+    const Eigen::Vector2d pixel((mouse.x - image.x) / scale - 0.5, (mouse.y - image.y) / scale - 0.5);
+    const bool is_here = ImGui::IsItemHovered() || ImGui::IsItemActive();
+    if (is_here) pixel_ = pixel;
+    if (is_here || is_down_) press_and_drag(pixel, drop_height_m);  // what is held may be let go elsewhere
+    if (is_here) turn(shown);
+    mark_chosen(*draw, shown, image, scale, fonts);
+    std::array<char, 96> text{};
+    std::snprintf(text.data(), text.size(), "frame %lld   %.1f s", static_cast<long long>(shown.source_frame),
+                  shown.run_time_s);
+    draw->AddText(fonts.small, fonts.small->FontSize, {image.x + look::px(11.0F), image.y + look::px(9.0F)},
+                  IM_COL32(0, 0, 0, 160), text.data());
+    draw->AddText(fonts.small, fonts.small->FontSize, {image.x + look::px(10.0F), image.y + look::px(8.0F)},
+                  look::kText, text.data());
+  }
+  look::end_pane();
+}
+
+void PicturePane::leave() {
+  pixel_.reset();
+  if (!is_down_) return;
+  is_down_ = false;
+  Wish wish;
+  wish.kind = WishKind::kLetGo;
+  wish.was_dragged = true;
+  wish.pixel = lately_.back().pixel;
+  wish.nearer_m = nearer_m_;
+  link_.ask(wish);
+}
+
+void PicturePane::press_and_drag(const Eigen::Vector2d& pixel, double drop_height_m) {
+  const ImVec2 mouse = ImGui::GetMousePos();
+  const Eigen::Vector2d at(mouse.x, mouse.y);
+  const double now_s = ImGui::GetTime();
+  Wish wish;
+  wish.pixel = pixel;
+  wish.event.height_m = drop_height_m;
+  if (ImGui::IsItemActive() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
+    is_down_ = true;
+    was_dragged_ = ImGui::GetIO().KeyShift;  // a click with Shift places at once
+    pressed_at_ = at;
+    nearer_m_ = 0.0;
+    lately_.fill({now_s, pixel});
+    wish.kind = ImGui::GetIO().KeyShift ? WishKind::kPlace : WishKind::kGrab;
+    link_.ask(wish);
+    return;
+  }
+  if (!is_down_) return;
+  if (now_s - lately_.back().time_s > 0.01) {
+    std::rotate(lately_.begin(), lately_.begin() + 1, lately_.end());
+    lately_.back() = {now_s, pixel};
+  }
+  const float wheel = ImGui::GetIO().MouseWheel;
+  nearer_m_ -= kWheel_m * static_cast<double>(wheel);
+  const bool moved = (at - pressed_at_).norm() > kDragFrom_px || wheel != 0.0F;
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+    was_dragged_ = was_dragged_ || moved;
+    if (!was_dragged_ || ImGui::GetIO().KeyShift) return;
+    const ImVec2 way = ImGui::GetIO().MouseDelta;
+    if (way.x == 0.0F && way.y == 0.0F && wheel == 0.0F) return;
+    wish.kind = WishKind::kDrag;
+  } else {
+    is_down_ = false;
+    wish.kind = WishKind::kLetGo;
+    wish.was_dragged = was_dragged_;
+    wish.pixel_velocity_s = velocity_px_s();
+  }
+  wish.nearer_m = nearer_m_;
+  link_.ask(wish);
+}
+
+Eigen::Vector2d PicturePane::velocity_px_s() const {
+  constexpr double kLately_s = 0.12;
+  const double now_s = ImGui::GetTime();
+  for (const Sample& sample : lately_) {
+    if (now_s - sample.time_s > kLately_s) continue;
+    const double dt_s = lately_.back().time_s - sample.time_s;
+    // A mouse that has rested before it was let go does not throw.
+    if (dt_s < 0.015 || now_s - lately_.back().time_s > 0.06) break;
+    return (lately_.back().pixel - sample.pixel) / dt_s;
+  }
+  return Eigen::Vector2d::Zero();
+}
+
+void PicturePane::turn(const Snapshot& shown) {
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Right) || !shown.view) return;
+  const ImVec2 way = ImGui::GetIO().MouseDelta;
+  if (way.x == 0.0F && way.y == 0.0F) return;
+  Wish wish;
+  wish.kind = WishKind::kTurn;
+  wish.event.turn_world_deg =
+      turn_of_drag_world_deg(shown.view->T_world_view.linear(), Eigen::Vector2d(way.x, way.y));
+  link_.ask(wish);
+}
+
+}  // namespace roomradar

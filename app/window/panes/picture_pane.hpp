@@ -1,0 +1,46 @@
+// picture_pane.hpp: the camera's picture with the virtual objects, and the mouse in it.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+
+#include "app/window/link/ui_channel.hpp"
+#include "app/window/panes/gl_texture.hpp"
+#include "app/window/panes/theme.hpp"
+#include "app/window/panes/window_layout.hpp"
+
+namespace roomradar {
+
+class PicturePane {
+ public:
+  explicit PicturePane(PlayLink& link) : link_(link) {}
+
+  /// A new snapshot has come.
+  void upload(const Snapshot& shown) { texture_.upload(shown.picture); }
+  void draw(const Area& area, const Snapshot& shown, const look::Fonts& fonts, double drop_height_m);
+  /// It is not drawn now: what the mouse held is let go.
+  void leave();
+
+  /// Where the mouse is in the picture, pixels; nothing if it is elsewhere.
+  [[nodiscard]] const std::optional<Eigen::Vector2d>& pixel() const { return pixel_; }
+
+ private:
+  PlayLink& link_;
+  GlTexture texture_{/*smooth=*/true};
+  std::optional<Eigen::Vector2d> pixel_;
+  bool is_down_ = false, was_dragged_ = false;
+  Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();  ///< of the window
+  double nearer_m_ = 0.0;
+  struct Sample {
+    double time_s = 0.0;
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+  };
+  std::array<Sample, 8> lately_{};  ///< where the mouse was, oldest first
+
+  void press_and_drag(const Eigen::Vector2d& pixel, double drop_height_m);
+  void turn(const Snapshot& shown);
+  [[nodiscard]] Eigen::Vector2d velocity_px_s() const;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,22 @@
+// radar_pane.hpp: R, M and L of the chosen object as pictures.
+#pragma once
+#include "app/window/link/ui_channel.hpp"
+#include "app/window/panes/gl_texture.hpp"
+#include "app/window/panes/theme.hpp"
+#include "app/window/panes/window_layout.hpp"
+
+namespace roomradar {
+
+class RadarPane {
+ public:
+  void upload(const ShownRadar& radar);
+  void draw(const Area& area, const ShownRadar& radar, const look::Fonts& fonts);
+
+ private:
+  GlTexture range_{false}, mask_{false}, lookat_{false};
+  ColourImage coloured_;
+  int least_x_ = -1, least_y_ = -1;  ///< the pixel of min L
+  float least_m_ = 0.0F;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,172 @@
+// side_panel.cpp: the panel at the right.
+#include "app/window/panes/side_panel.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "app/window/panes/annotate.hpp"
+
+namespace roomradar {
+namespace {
+
+Wish wish_of(Action action) {
+  Wish wish;
+  wish.event.action = action;
+  return wish;
+}
+
+void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings, const look::Fonts& fonts) {
+  look::heading("OBJECTS", fonts);
+  for (const ShownObject& object : shown.objects) {
+    ImGui::PushID(object.name.c_str());
+    const bool is_chosen = object.name == shown.chosen;
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    if (ImGui::Selectable("##choose", is_chosen, 0, {0.0F, look::px(34.0F)})) {
+      Wish wish;
+      wish.kind = WishKind::kChoose;
+      wish.event.name = object.name;
+      link.ask(wish);
+    }
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const ImU32 dot = !object.in_room     ? look::kLine
+                      : object.is_carried ? look::kWarn
+                      : object.at_rest    ? look::kGood
+                                          : look::kAccent;
+    draw->AddCircleFilled({at.x + look::px(8.0F), at.y + look::px(17.0F)}, look::px(4.5F), dot);
+    draw->AddText({at.x + look::px(20.0F), at.y + look::px(1.0F)}, look::kText, object.name.c_str());
+    draw->AddText(fonts.small, fonts.small->FontSize, {at.x + look::px(20.0F), at.y + look::px(18.0F)},
+                  look::kDim, what_it_does(object).c_str());
+    ImGui::PopID();
+  }
+  const auto ask = [&](WishKind kind) {
+    Wish wish;
+    wish.kind = kind;
+    link.ask(wish);
+  };
+  const float half = look::px(128.0F);
+  if (look::button("Remove", "Del", false, {half, 0.0F}, !shown.objects.empty())) ask(WishKind::kRemove);
+  ImGui::SameLine();
+  if (look::button("Reset", "R", false, {half, 0.0F}, !shown.objects.empty())) ask(WishKind::kReset);
+  ImGui::SetNextItemWidth(half);
+  const auto short_name = [](const std::string& mesh) { return mesh.substr(mesh.find_last_of('/') + 1); };
+  if (ImGui::BeginCombo("##mesh", short_name(settings.meshes[settings.mesh]).c_str())) {
+    for (std::size_t i = 0; i < settings.meshes.size(); ++i) {  // two files may share a name
+      ImGui::PushID(static_cast<int>(i));
+      if (ImGui::Selectable("##file", i == settings.mesh)) settings.mesh = i;
+      ImGui::PopID();
+      ImGui::SameLine(0.0F, 0.0F);
+      ImGui::TextUnformatted(short_name(settings.meshes[i]).c_str());
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::SameLine();
+  if (look::button("Add", "A", false, {half, 0.0F})) link.ask(new_object_wish(settings));
+  ImGui::PushItemWidth(-1.0F);
+  ImGui::SliderFloat("##size", &settings.new_size_m, 0.0F, 0.6F,
+                     settings.new_size_m < 0.001F ? "new: its own size" : "new: %.2f m long",
+                     ImGuiSliderFlags_AlwaysClamp);  // typed numbers too
+  ImGui::SliderFloat("##height", &settings.drop_height_m, 0.0F, 1.0F, "drop from %.2f m",
+                     ImGuiSliderFlags_AlwaysClamp);
+  ImGui::SliderFloat("##speed", &settings.throw_speed_mps, 0.5F, 10.0F, "throw at %.1f m/s",
+                     ImGuiSliderFlags_AlwaysClamp);
+  ImGui::PopItemWidth();
+}
+
+void draw_policies(const Snapshot& shown, PlayLink& link, PlaySettings& settings, const look::Fonts& fonts) {
+  constexpr std::array<SurfacePolicy, 4> kPolicies = {SurfacePolicy::kMap, SurfacePolicy::kBorder,
+                                                      SurfacePolicy::kSkirt, SurfacePolicy::kHoles};
+  look::heading("WHAT CAN BE TOUCHED", fonts);
+  constexpr std::array<const char*, 4> kWords = {"map", "border", "skirt", "holes"};
+  const auto lit = std::find(kPolicies.begin(), kPolicies.end(), shown.surfaces) - kPolicies.begin();
+  const int surfaces = look::segments("surfaces", kWords.data(), 4, static_cast<int>(lit));
+  if (surfaces >= 0) link.ask(surfaces_wish(kPolicies[static_cast<std::size_t>(surfaces)]));
+
+  look::heading("SPACE THAT NOBODY HAS SEEN IS", fonts);
+  constexpr std::array<const char*, 2> kUnknown = {"free", "solid"};
+  const int unknown = look::segments("unknown", kUnknown.data(), 2, shown.unknown_is_solid ? 1 : 0);
+  if (unknown >= 0) link.ask(unknown_wish(unknown == 1));
+
+  look::heading("RADAR", fonts);
+  constexpr std::array<const char*, 2> kModes = {"exact", "sampled"};
+  RadarConfig radar = shown.radar;
+  const int mode = look::segments("mode", kModes.data(), 2, radar.mode == RadarMode::kSampled ? 1 : 0);
+  if (mode >= 0) {
+    radar.mode = mode == 1 ? RadarMode::kSampled : RadarMode::kExact;
+    link.ask(radar_wish(radar));
+  }
+  if (!ImGui::IsAnyItemActive()) settings.radar_px = radar.resolution_px;
+  ImGui::SetNextItemWidth(-1.0F);
+  ImGui::SliderInt("##px", &settings.radar_px, 8, 256, "%d pixels", ImGuiSliderFlags_AlwaysClamp);
+  if (ImGui::IsItemDeactivatedAfterEdit()) {
+    radar.resolution_px = settings.radar_px;
+    link.ask(radar_wish(radar));
+  }
+}
+
+void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
+  look::heading("THIS FRAME", fonts);
+  const FrameResult& result = shown.result;
+  const double moved = result.foreground.valid > 0 ? 100.0 * static_cast<double>(result.foreground.moved) /
+                                                         static_cast<double>(result.foreground.valid)
+                                                   : 0.0;
+  ImGui::PushFont(fonts.small);
+  const auto row = [](const char* name, const char* format, auto... values) {
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), format, values...);
+    ImGui::TextDisabled("%s", name);
+    ImGui::SameLine(look::px(130.0F));
+    ImGui::TextUnformatted(text.data());
+  };
+  row("moved pixels", "%.1f %%", moved);
+  row("triangles of it", "%zu + %zu behind", result.dynamic_triangles, result.inferred_triangles);
+  row("room triangles", "%zu drawn", result.static_triangles_drawn);
+  row("contacts", "%d", result.contacts);
+  if (!shown.given_up.empty()) ImGui::TextWrapped("to keep the budget: %s", shown.given_up.c_str());
+  ImGui::PopFont();
+}
+
+}  // namespace
+
+Wish new_object_wish(const PlaySettings& settings) {
+  Wish wish;
+  wish.kind = WishKind::kNew;
+  wish.event.mesh = settings.meshes[settings.mesh];
+  if (settings.new_size_m >= 0.001F) wish.event.size_m = static_cast<double>(settings.new_size_m);
+  return wish;
+}
+
+Wish surfaces_wish(SurfacePolicy surfaces) {
+  Wish wish = wish_of(Action::kSurfaces);
+  wish.event.surfaces = surfaces;
+  return wish;
+}
+
+Wish unknown_wish(bool is_solid) {
+  Wish wish = wish_of(Action::kUnknown);
+  wish.event.unknown_is_solid = is_solid;
+  return wish;
+}
+
+Wish radar_wish(const RadarConfig& radar) {
+  Wish wish = wish_of(Action::kRadar);
+  wish.event.radar = radar;
+  return wish;
+}
+
+Wish camera_wish(CameraPlay camera) {
+  Wish wish = wish_of(Action::kCamera);
+  wish.event.camera = camera;
+  return wish;
+}
+
+void draw_side_panel(const Area& area, const Snapshot& shown, PlayLink& link, PlaySettings& settings,
+                     const look::Fonts& fonts) {
+  look::begin_pane("side", area, look::kPanel, /*scrolls=*/true);
+  draw_objects(shown, link, settings, fonts);
+  draw_policies(shown, link, settings, fonts);
+  draw_frame_facts(shown, fonts);
+  look::end_pane();
+}
+
+}  // namespace roomradar

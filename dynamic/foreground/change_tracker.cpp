@@ -1,0 +1,370 @@
+// change_tracker.cpp: points on what changed, looked up frame by frame, and the things that they make up.
+#include "dynamic/foreground/change_tracker.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/config_check.hpp"
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr float kNearest_m = 0.2F;  // no sensor measures nearer
+constexpr double kLongestStep_s = 0.5;
+// A sighting that contradicts a point weighs as much as two that confirm it: at its rim, where the pixel may
+// be the background's, a thing that stays is missed in one frame out of four.
+constexpr int kContradiction = 2, kConfirmation = 1, kMostDoubt = 7;
+constexpr float kFarApart_m = 4.0F;  // pixels of the sampling grid are spacing_m apart at this depth
+constexpr int kAllRound = 7;         // of the eight cells round one in a flat surface
+constexpr float kNothing_m = std::numeric_limits<float>::quiet_NaN();
+
+std::uint8_t bit_of(LastingKind kind) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(kind)); }
+
+}  // namespace
+
+struct ChangeTracker::View {
+  const DepthImage& depth_m;
+  const DepthImage& expected_m;
+  const LabelImage& labels;
+  float fx, fy, cx, cy;
+  Eigen::Matrix3f R_camera_world;
+  Eigen::Vector3f t_camera_world;  // of points relative to the tracker's origin
+  int stride_px;                   // of the sampling grid
+  int grid_width;
+
+  [[nodiscard]] Eigen::Vector3f to_camera(const Eigen::Vector3f& p) const {
+    return R_camera_world * p + t_camera_world;
+  }
+  [[nodiscard]] Eigen::Vector3f from_camera(const Eigen::Vector3f& p_camera) const {
+    return R_camera_world.transpose() * (p_camera - t_camera_world);
+  }
+  [[nodiscard]] Eigen::Vector3f back_projected(int x, int y, float z) const {
+    return {(static_cast<float>(x) - cx) / fx * z, (static_cast<float>(y) - cy) / fy * z, z};
+  }
+};
+
+namespace {
+
+// How much farther than z the image is at (x, y), or at one of the pixels round it if it agrees better there:
+// a point between two pixels, or on an edge, is seen in one of them. NaN where nothing is measured.
+float beyond(const DepthImage& depth_m, int x, int y, float z) {
+  float best = kNothing_m;
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth_m.height - 1); ++v) {
+    const float* row = depth_m.row(v);
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, depth_m.width - 1); ++u)
+      if (row[u] > 0.0F && !(std::abs(row[u] - z) >= std::abs(best))) best = row[u] - z;
+  }
+  return best;
+}
+
+// Whether the foreground says so of (x, y) or of a pixel beside it.
+bool is_labelled(const LabelImage& labels, int x, int y, PixelLabel label) {
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, labels.height - 1); ++v) {
+    const PixelLabel* row = labels.row(v);
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, labels.width - 1); ++u)
+      if (row[u] == label) return true;
+  }
+  return false;
+}
+
+float tolerance_m(const ChangeTrackerConfig& config, float z) {
+  const float sensor = depth_sigma_m(z);
+  const float pose = config.pose_sigma_m + config.pose_sigma_per_m * z;
+  return config.agree_sigmas * std::sqrt(sensor * sensor + pose * pose);
+}
+
+}  // namespace
+
+std::string_view to_string(LastingKind kind) { return kind == LastingKind::kCame ? "came" : "went"; }
+
+Eigen::AlignedBox3d LastingChange::box_world() const {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& p : points_world) box.extend(p);
+  return box;
+}
+
+void require_valid(const ChangeTrackerConfig& config) {
+  const SettingRules require{"change_tracker"};
+  const auto part = [](float value) { return value >= 0.0F && value <= 1.0F; };
+  require(config.spacing_m >= 0.002F && config.spacing_m <= 1.0F, "spacing_m", config.spacing_m,
+          "in 0.002..1");
+  require(config.agree_sigmas > 0.0F && config.agree_sigmas < 1e3F, "agree_sigmas", config.agree_sigmas,
+          "in 0..1000");
+  require(config.pose_sigma_m >= 0.0F && config.pose_sigma_m < 1.0F, "pose_sigma_m", config.pose_sigma_m,
+          "in 0..1");
+  require(config.pose_sigma_per_m >= 0.0F && config.pose_sigma_per_m < 1.0F, "pose_sigma_per_m",
+          config.pose_sigma_per_m, "in 0..1");
+  require(config.own_reach_m >= 0.0F && std::isfinite(config.own_reach_m), "own_reach_m", config.own_reach_m,
+          ">= 0");
+  require(config.link_m >= config.spacing_m && config.link_m <= 1.0F, "link_m", config.link_m,
+          "at least spacing_m, and at most 1");
+  require(config.min_cells >= 1, "min_cells", config.min_cells, ">= 1");
+  require(part(config.min_steady_fraction), "min_steady_fraction", config.min_steady_fraction, "in 0..1");
+  require(part(config.min_core_fraction), "min_core_fraction", config.min_core_fraction, "in 0..1");
+  require(part(config.min_seen_fraction), "min_seen_fraction", config.min_seen_fraction, "in 0..1");
+  require(config.forget_after_s > 0.0F, "forget_after_s", config.forget_after_s, "> 0");
+  require(config.max_points >= 1 && config.max_points <= 10'000'000, "max_points",
+          static_cast<double>(config.max_points), "in 1..10000000");
+}
+
+ChangeTracker::ChangeTracker(const ChangeTrackerConfig& config) : config_(config) {
+  require_valid(config);
+  points_.reserve(config.max_points);
+  cell_of_.reserve(config.max_points);
+  cells_.reserve(config.max_points);
+  things_.reserve(config.max_points);
+  table_.reserve(4 * config.max_points);
+}
+
+void ChangeTracker::update(const DepthImage& depth_m, const DepthImage& expected_depth_m,
+                           const LabelImage& labels, const Intrinsics& camera,
+                           const Eigen::Isometry3d& T_world_camera, double stamp_s) {
+  assert(depth_m.width == expected_depth_m.width && depth_m.height == expected_depth_m.height);
+  assert(depth_m.width == labels.width && depth_m.height == labels.height);
+  if (!has_origin_) {
+    origin_world_ = T_world_camera.translation();
+    if (std::isfinite(stamp_s)) last_stamp_s_ = stamp_s;
+    has_origin_ = true;
+  }
+  const double passed_s = stamp_s - last_stamp_s_;
+  const double dt_s = passed_s > 0.0 ? std::min(passed_s, kLongestStep_s) : 0.0;  // nothing by a NaN
+  if (std::isfinite(stamp_s)) last_stamp_s_ = stamp_s;
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  const double focal_px = std::min(camera.fx_px, camera.fy_px);
+  const int stride_px = std::max(static_cast<int>(focal_px * config_.spacing_m / kFarApart_m), 1);
+  const View view{depth_m,
+                  expected_depth_m,
+                  labels,
+                  static_cast<float>(camera.fx_px),
+                  static_cast<float>(camera.fy_px),
+                  static_cast<float>(camera.cx_px),
+                  static_cast<float>(camera.cy_px),
+                  T_camera_world.linear().cast<float>(),
+                  (T_camera_world * origin_world_).cast<float>(),
+                  stride_px,
+                  (depth_m.width + stride_px - 1) / stride_px};
+  const int grid_height = (depth_m.height + stride_px - 1) / stride_px;
+  covered_.assign(static_cast<std::size_t>(view.grid_width) * static_cast<std::size_t>(grid_height), 0);
+  std::erase_if(points_, [&](Point& point) { return !review(view, static_cast<float>(dt_s), point); });
+  add_points(view);
+}
+
+bool ChangeTracker::review(const View& view, float dt_s, Point& point) {
+  const Eigen::Vector3f p_camera = view.to_camera(point.position);
+  const float z = p_camera.z();
+  point.as_it_was = false;
+  point.unseen_s += dt_s;
+  const bool may_stay_unseen = point.unseen_s < config_.forget_after_s;
+  if (!(z > kNearest_m)) return may_stay_unseen;
+  const float u_px = view.fx * p_camera.x() / z + view.cx;
+  const float v_px = view.fy * p_camera.y() / z + view.cy;
+  const auto right = static_cast<float>(view.depth_m.width) - 0.5F;
+  const auto bottom = static_cast<float>(view.depth_m.height) - 0.5F;
+  if (!(u_px > -0.5F && v_px > -0.5F && u_px < right && v_px < bottom)) return may_stay_unseen;
+  const int x = static_cast<int>(u_px + 0.5F);
+  const int y = static_cast<int>(v_px + 0.5F);
+  const float tolerance = tolerance_m(config_, z);
+  const bool came = point.kind == LastingKind::kCame;
+
+  const float live_here = view.depth_m.at(x, y);
+  const float live = came ? beyond(view.depth_m, x, y, z) : live_here > 0.0F ? live_here - z : kNothing_m;
+  // NaN, hidden by something else, or, of what went, by anything.
+  if (!(live >= (came ? -config_.own_reach_m : -tolerance))) return may_stay_unseen;
+  const float model = beyond(view.expected_m, x, y, z);
+  const bool in_model = std::abs(model) <= tolerance;
+  const bool in_sight = std::abs(live) <= tolerance;
+
+  // What came is to be seen and not yet in the model; what went, not seen and still in the model.
+  // The foreground knows more of edges and noise: what it takes for static is.
+  bool holds = came ? in_sight && !in_model : !in_sight && in_model;
+  if (!came && model < -tolerance) return may_stay_unseen;  // the model has something before it here
+  if (holds && !is_labelled(view.labels, x, y, came ? PixelLabel::kMoved : PixelLabel::kRevealed)) {
+    if (view.labels.at(x, y) == PixelLabel::kNotKnown) return may_stay_unseen;
+    holds = false;
+  }
+  point.unseen_s = 0.0F;
+  if (!holds) {
+    point.doubt = static_cast<std::uint8_t>(point.doubt + kContradiction);
+    return point.doubt <= kMostDoubt;
+  }
+  point.as_it_was = true;
+  point.steady_s += dt_s;
+  point.doubt = static_cast<std::uint8_t>(std::max(point.doubt - kConfirmation, 0));
+  if (came && std::abs(live_here - z) <= tolerance && live_here > 0.0F) {
+    // The mean of all sightings, along the rays.
+    if (point.sightings < std::numeric_limits<std::uint16_t>::max()) ++point.sightings;
+    const float share = (live_here - z) / (z * static_cast<float>(point.sightings));
+    point.position = view.from_camera(p_camera * (1.0F + share));
+  }
+  cover(view, point.kind, u_px, v_px, z);
+  return true;
+}
+
+void ChangeTracker::cover(const View& view, LastingKind kind, float u_px, float v_px, float depth_m) {
+  const auto stride = static_cast<float>(view.stride_px);
+  const float reach_px = 0.5F * config_.spacing_m * view.fx / depth_m;
+  const int last_column = view.grid_width - 1;
+  const int last_row = static_cast<int>(covered_.size()) / view.grid_width - 1;
+  // Points of the grid within reach_px of the point, along rows and columns.
+  const int left = std::max(static_cast<int>(std::ceil((u_px - reach_px) / stride)), 0);
+  const int right = std::min(static_cast<int>(std::floor((u_px + reach_px) / stride)), last_column);
+  const int top = std::max(static_cast<int>(std::ceil((v_px - reach_px) / stride)), 0);
+  const int bottom = std::min(static_cast<int>(std::floor((v_px + reach_px) / stride)), last_row);
+  for (int row = top; row <= bottom; ++row) {
+    std::uint8_t* covered =
+        covered_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(view.grid_width);
+    for (int column = left; column <= right; ++column) covered[column] |= bit_of(kind);
+  }
+}
+
+void ChangeTracker::add_points(const View& view) {
+  std::size_t place = 0;
+  for (int y = 0; y < view.depth_m.height; y += view.stride_px) {
+    const PixelLabel* labels = view.labels.row(y);
+    for (int x = 0; x < view.depth_m.width; x += view.stride_px, ++place) {
+      if (labels[x] != PixelLabel::kMoved && labels[x] != PixelLabel::kRevealed) continue;
+      const LastingKind kind = labels[x] == PixelLabel::kMoved ? LastingKind::kCame : LastingKind::kWent;
+      if ((covered_[place] & bit_of(kind)) != 0) continue;
+      const float z = kind == LastingKind::kCame ? view.depth_m.at(x, y) : view.expected_m.at(x, y);
+      if (!(z > kNearest_m)) continue;
+      if (points_.size() >= config_.max_points) return;
+      Point point;
+      point.position = view.from_camera(view.back_projected(x, y, z));
+      point.id = next_id_++;
+      point.kind = kind;
+      points_.push_back(point);
+      cover(view, kind, static_cast<float>(x), static_cast<float>(y), z);
+    }
+  }
+}
+
+std::uint32_t ChangeTracker::find_cell(std::uint64_t code) const {
+  const std::size_t mask = table_.size() - 1;
+  for (std::size_t at = (code * 0x9E37'79B9'7F4A'7C15U) >> 32U & mask;; at = (at + 1) & mask)
+    if (table_[at] == kNone || cells_[table_[at]].code == code) return static_cast<std::uint32_t>(at);
+}
+
+std::uint32_t ChangeTracker::thing_of(std::uint32_t cell) {
+  while (cells_[cell].joined_to != cell) {
+    cells_[cell].joined_to = cells_[cells_[cell].joined_to].joined_to;
+    cell = cells_[cell].joined_to;
+  }
+  return cell;
+}
+
+void ChangeTracker::sort_into_cells(LastingKind kind, float seconds) {
+  std::size_t places = 64;
+  while (places < 2 * points_.size()) places *= 2;
+  table_.assign(places, kNone);
+  cells_.clear();
+  cell_of_.assign(points_.size(), kNone);
+  const auto index_of = [&](float x) { return static_cast<std::int64_t>(std::floor(x / config_.link_m)); };
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point& point = points_[i];
+    if (point.kind != kind) continue;
+    const std::uint64_t code =
+        cell_code(index_of(point.position.x()), index_of(point.position.y()), index_of(point.position.z()));
+    const std::uint32_t at = find_cell(code);
+    if (table_[at] == kNone) {
+      table_[at] = static_cast<std::uint32_t>(cells_.size());
+      cells_.push_back({.code = code, .joined_to = table_[at], .steady = false});
+    }
+    cell_of_[i] = table_[at];
+    cells_[table_[at]].steady |= point.steady_s >= seconds;
+  }
+  const std::uint64_t zero = cell_code(0, 0, 0);
+  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
+    for (int n = 0; n < kCellsRound / 2; ++n) {  // the other half finds this one
+      const std::uint32_t beside = table_[find_cell(cells_[cell].code + cell_code(cell_round(n)) - zero)];
+      if (beside == kNone) continue;
+      ++cells_[cell].neighbours;
+      ++cells_[beside].neighbours;
+      const std::uint32_t a = thing_of(cell), b = thing_of(beside);
+      cells_[std::max(a, b)].joined_to = std::min(a, b);
+    }
+  }
+}
+
+void ChangeTracker::judge_things(LastingKind kind, std::vector<LastingChange>& changes) {
+  things_.assign(cells_.size(), {});
+  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
+    Thing& thing = things_[thing_of(cell)];
+    ++thing.cells;
+    thing.steady_cells += cells_[cell].steady ? 1 : 0;
+    thing.core_cells += cells_[cell].neighbours >= kAllRound ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (cell_of_[i] == kNone) continue;
+    Thing& thing = things_[thing_of(cell_of_[i])];
+    ++thing.points;
+    thing.seen_points += points_[i].as_it_was ? 1 : 0;
+  }
+  const float min_core = kind == LastingKind::kWent ? config_.min_core_fraction : 0.0F;
+  for (Thing& thing : things_) {
+    if (thing.cells < config_.min_cells ||
+        static_cast<float>(thing.core_cells) < min_core * static_cast<float>(thing.cells) ||
+        static_cast<float>(thing.steady_cells) <
+            config_.min_steady_fraction * static_cast<float>(thing.cells) ||
+        static_cast<float>(thing.seen_points) < config_.min_seen_fraction * static_cast<float>(thing.points))
+      continue;
+    changes.push_back({.kind = kind, .points_world = {}, .ids = {}});
+    thing.change = changes.size();
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (cell_of_[i] == kNone) continue;
+    const std::size_t change = things_[thing_of(cell_of_[i])].change;
+    if (change == 0) continue;
+    changes[change - 1].points_world.emplace_back(origin_world_ + points_[i].position.cast<double>());
+    changes[change - 1].ids.push_back(points_[i].id);
+  }
+}
+
+std::vector<LastingChange> ChangeTracker::settled(double seconds) {
+  std::vector<LastingChange> changes;
+  const auto least_s = static_cast<float>(seconds);
+  for (const LastingKind kind : {LastingKind::kCame, LastingKind::kWent}) {
+    const auto steady = std::count_if(points_.begin(), points_.end(), [&](const Point& point) {
+      return point.kind == kind && point.steady_s >= least_s;
+    });
+    if (steady < config_.min_cells) continue;
+    sort_into_cells(kind, least_s);
+    judge_things(kind, changes);
+  }
+  return changes;
+}
+
+double ChangeTracker::still_true(const LastingChange& change) const {
+  std::size_t found = 0;
+  auto point = points_.begin();
+  for (const std::uint32_t id : change.ids) {
+    while (point != points_.end() && point->id < id) ++point;
+    found += point != points_.end() && point->id == id ? 1 : 0;
+  }
+  return change.ids.empty() ? 0.0 : static_cast<double>(found) / static_cast<double>(change.ids.size());
+}
+
+double ChangeTracker::seen_now(const LastingChange& change) const {
+  std::size_t found = 0;
+  auto point = points_.begin();
+  for (const std::uint32_t id : change.ids) {
+    while (point != points_.end() && point->id < id) ++point;
+    found += point != points_.end() && point->id == id && point->as_it_was ? 1 : 0;
+  }
+  return change.ids.empty() ? 0.0 : static_cast<double>(found) / static_cast<double>(change.ids.size());
+}
+
+void ChangeTracker::forget(const LastingChange& change) {
+  auto id = change.ids.begin();
+  std::erase_if(points_, [&](const Point& point) {
+    while (id != change.ids.end() && *id < point.id) ++id;
+    return id != change.ids.end() && *id == point.id;
+  });
+}
+
+}  // namespace roomradar

@@ -1,0 +1,112 @@
+// depth_regions.cpp: connected regions by runs and union-find.
+#include "dynamic/foreground/connected_components.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "mapping/types/depth_noise.hpp"
+
+namespace roomradar {
+namespace {
+
+// The next pixel from x on, before `width`, that has one of the bits; `width` if there is none.
+inline int next_marked(const std::uint8_t* evidence, int x, int width, std::uint8_t bits) {
+  const std::uint64_t eight = 0x0101010101010101ULL * bits;
+  for (; x + 8 <= width; x += 8) {
+    std::uint64_t bytes;
+    std::memcpy(&bytes, evidence + x, sizeof bytes);
+    if ((bytes & eight) != 0) break;
+  }
+  while (x < width && (evidence[x] & bits) == 0) ++x;
+  return x;
+}
+
+std::uint32_t root_of(std::vector<PixelRun>& runs, std::uint32_t run) {
+  while (runs[run].region != run) {
+    runs[run].region = runs[runs[run].region].region;
+    run = runs[run].region;
+  }
+  return run;
+}
+
+void join(std::vector<PixelRun>& runs, std::uint32_t a, std::uint32_t b) {
+  a = root_of(runs, a);
+  b = root_of(runs, b);
+  runs[std::max(a, b)].region = std::min(a, b);
+}
+
+}  // namespace
+
+void find_regions(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
+                  const RegionBits& bits, const Intrinsics& camera, DepthRegions& found) {
+  found.runs.reserve(depth_m.pixels.size());
+  found.regions.reserve(depth_m.pixels.size());
+  found.runs.clear();
+  found.regions.clear();
+  const float slope = 5.67F / static_cast<float>(std::min(camera.fx_px, camera.fy_px));
+  const float* depth = depth_m.pixels.data();
+  const auto any = static_cast<std::uint8_t>(bits.weak | bits.strong);
+  const auto hang_together = [&](std::uint32_t a, std::uint32_t b) {
+    if ((evidence[a] & evidence[b] & bits.strong) != 0) return true;
+    const float z = std::min(depth[a], depth[b]);
+    return std::abs(depth[a] - depth[b]) <= 4.0F * depth_sigma_m(z) + slope * z;
+  };
+
+  std::vector<PixelRun>& runs = found.runs;
+  std::size_t above = 0;  // first run of the row above that may touch
+  std::size_t row_begin = 0;
+  const auto width = static_cast<std::uint32_t>(depth_m.width);
+  for (int y = 0; y < depth_m.height; ++y) {
+    const std::uint32_t row = static_cast<std::uint32_t>(y) * width;
+    const std::uint8_t* marks = evidence.data() + row;
+    above = row_begin;
+    row_begin = runs.size();
+    const std::size_t above_end = row_begin;
+    for (int x = next_marked(marks, 0, depth_m.width, any); x < depth_m.width;
+         x = next_marked(marks, x, depth_m.width, any)) {
+      const auto id = static_cast<std::uint32_t>(runs.size());
+      PixelRun run{row + static_cast<std::uint32_t>(x), 0, id};
+      DepthRegion sums;
+      std::uint32_t pixel = run.first;
+      do {
+        ++sums.pixels;
+        sums.strong += (evidence[pixel] & bits.strong) != 0;
+        sums.doubtful += (evidence[pixel] & (bits.doubtful | bits.strong)) == bits.doubtful;
+        sums.before += (evidence[pixel] & bits.before) != 0;
+        sums.core += (evidence[pixel] & bits.core) != 0;
+        sums.depth2_m2 += depth[pixel] * depth[pixel];
+        ++pixel;
+        ++x;
+      } while (x < depth_m.width && (marks[x] & any) != 0 && hang_together(pixel - 1, pixel));
+      run.last = pixel - 1;
+      runs.push_back(run);
+      found.regions.push_back(sums);
+      while (above < above_end && runs[above].last + width < run.first) ++above;
+      for (std::size_t other = above; other < above_end && runs[other].first + width <= run.last; ++other) {
+        const std::uint32_t first = std::max(run.first, runs[other].first + width);
+        const std::uint32_t last = std::min(run.last, runs[other].last + width);
+        for (std::uint32_t p = first; p <= last; ++p) {
+          if (!hang_together(p, p - width)) continue;
+          join(runs, id, static_cast<std::uint32_t>(other));
+          break;
+        }
+      }
+    }
+  }
+  for (std::uint32_t i = 0; i < runs.size(); ++i) {
+    const std::uint32_t root = runs[i].region = root_of(runs, i);
+    if (root == i) continue;
+    DepthRegion& all = found.regions[root];
+    const DepthRegion& part = found.regions[i];
+    all.pixels += part.pixels;
+    all.strong += part.strong;
+    all.doubtful += part.doubtful;
+    all.before += part.before;
+    all.core += part.core;
+    all.depth2_m2 += part.depth2_m2;
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,178 @@
+// expected_bounds.cpp: noise, slope, and the edges in reach of each block of the expected depth.
+#include "dynamic/foreground/expected_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapping/types/depth_noise.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kMaxReach = 6;       // blocks to each side
+constexpr float kGrazing = 5.67F;  // depth by width of a surface seen at 80 degrees from its normal
+// Of a smooth surface within reach, as a part of its depth: a table seen at 60 degrees from its normal.
+constexpr float kSteepest = 0.1F;
+
+struct Nearer {
+  float operator()(float a, float b) const { return b < a ? b : a; }
+};
+struct Farther {
+  float operator()(float a, float b) const { return b > a ? b : a; }
+};
+
+// Nearest and farthest expected depth of each block.
+void find_extremes(const DepthImage& expected_m, ExpectedBounds& bounds) {
+  const auto width = static_cast<std::size_t>(bounds.grid.columns) * kBlock_px;
+  bounds.nearest_m.resize(bounds.grid.size());
+  bounds.farthest_m.resize(bounds.grid.size());
+  for (int row = 0; row < bounds.grid.rows; ++row) {
+    bounds.row_nearest_m.assign(width, kNoDepth_m);
+    bounds.row_farthest_m.assign(width, 0.0F);
+    float* nearest = bounds.row_nearest_m.data();
+    float* farthest = bounds.row_farthest_m.data();
+    for (int y = row * kBlock_px; y < std::min((row + 1) * kBlock_px, expected_m.height); ++y) {
+      const float* expected = expected_m.row(y);
+      for (int x = 0; x < expected_m.width; ++x) {
+        const float z = expected[x];
+        nearest[x] = Nearer{}(nearest[x], z > 0.0F ? z : kNoDepth_m);
+        farthest[x] = Farther{}(farthest[x], z);
+      }
+    }
+    for (int column = 0; column < bounds.grid.columns; ++column) {
+      const float* n = nearest + column * kBlock_px;
+      const float* f = farthest + column * kBlock_px;
+      bounds.nearest_m[bounds.grid.at(column, row)] = std::min(std::min(n[0], n[1]), std::min(n[2], n[3]));
+      bounds.farthest_m[bounds.grid.at(column, row)] = std::max(std::max(f[0], f[1]), std::max(f[2], f[3]));
+    }
+  }
+}
+
+// How many blocks to each side an edge may be off: a turn of the pose shifts all edges alike, its shift and
+// the map's distortion the near ones more. Made of steps that `spread` can take.
+void choose_reach(const Intrinsics& camera, const ForegroundConfig& config, ExpectedBounds& bounds) {
+  spread(bounds.grid, bounds.nearest_m, 1, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
+  spread(bounds.grid, bounds.nearest_level_m, 2, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
+  spread(bounds.grid, bounds.nearest_level_m, 3, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
+  const float focal_px = static_cast<float>(std::max(camera.fx_px, camera.fy_px));
+  bounds.reach.resize(bounds.grid.size());
+  for (std::size_t i = 0; i < bounds.reach.size(); ++i) {
+    const float edge_px =
+        focal_px * (config.edge_error_rad + config.edge_error_m / bounds.nearest_level_m[i]);
+    const int blocks = static_cast<int>(std::min(edge_px / kBlock_px, static_cast<float>(kMaxReach) - 0.5F));
+    bounds.reach[i] = blocks + 1;
+  }
+}
+
+// Extremes within each block's reach.
+void find_extremes_in_reach(ExpectedBounds& bounds) {
+  bounds.nearest_in_reach_m.resize(bounds.grid.size());
+  bounds.farthest_in_reach_m.resize(bounds.grid.size());
+  bounds.nearest_level_m = bounds.nearest_m;
+  bounds.farthest_level_m = bounds.farthest_m;
+  // One may see into what was not mapped, and how far is not known.
+  for (float& farthest : bounds.farthest_level_m) farthest = farthest > 0.0F ? farthest : kNoDepth_m;
+  for (int reach = 1; reach <= kMaxReach; ++reach) {
+    spread(bounds.grid, bounds.nearest_level_m, 1, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
+    spread(bounds.grid, bounds.farthest_level_m, 1, Farther{}, bounds.along_rows_m, bounds.farthest_level_m);
+    for (std::size_t i = 0; i < bounds.reach.size(); ++i) {
+      const bool is_it = bounds.reach[i] == reach;
+      bounds.nearest_in_reach_m[i] = is_it ? bounds.nearest_level_m[i] : bounds.nearest_in_reach_m[i];
+      bounds.farthest_in_reach_m[i] = is_it ? bounds.farthest_level_m[i] : bounds.farthest_in_reach_m[i];
+    }
+  }
+}
+
+void find_extremes_around_holes(int reach_px, ExpectedBounds& bounds) {
+  bounds.nearest_around_hole_m = bounds.nearest_m;
+  int reach = 0;
+  for (const int wanted = blocks_along(reach_px); reach < wanted;) {
+    const int step = std::min(2 * reach + 1, wanted - reach);
+    spread(bounds.grid, bounds.nearest_around_hole_m, step, Nearer{}, bounds.along_rows_m,
+           bounds.nearest_around_hole_m);
+    reach += step;
+  }
+}
+
+// Angle of which `cosine` in 0..1 is the cosine, within 7e-5 rad, without a library call.
+// Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.45.
+inline float arc_cosine(float cosine) {
+  return std::sqrt(1.0F - cosine) *
+         (1.5707288F + cosine * (-0.2121144F + cosine * (0.0742610F - 0.0187293F * cosine)));
+}
+
+// The flatter of two slopes, so that a depth jump on one side does not count as a slope.
+inline float flatter(float a, float b) { return std::abs(a) < std::abs(b) ? a : b; }
+
+// Errors of each block's surface, and whether all that is in reach is this surface going on.
+void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, float misfit_per_m,
+                    ExpectedBounds& bounds) {
+  const ForegroundConfig config = settings;  // a copy, so that the compiler sees that no loop writes it
+  const BlockGrid grid = bounds.grid;
+  bounds.sigma_m.resize(grid.size());
+  const auto fx = static_cast<float>(camera.fx_px);
+  const auto fy = static_cast<float>(camera.fy_px);
+  const float focal_px = std::max(fx, fy);
+  const float per_step = 1.0F / kBlock_px;
+  for (int row = 0; row < grid.rows; ++row) {
+    // Of each block its farthest depth: what slopes leaves that alone, and on edges the noisier side counts.
+    const float* middle = bounds.farthest_m.data() + grid.at(0, row);
+    const float* above = bounds.farthest_m.data() + grid.at(0, std::max(row - 1, 0));
+    const float* below = bounds.farthest_m.data() + grid.at(0, std::min(row + 1, grid.rows - 1));
+    const float* nearest_in_block = bounds.nearest_m.data() + grid.at(0, row);
+    const int* reach = bounds.reach.data() + grid.at(0, row);
+    float* sigma = bounds.sigma_m.data() + grid.at(0, row);
+    float* nearest = bounds.nearest_in_reach_m.data() + grid.at(0, row);
+    float* farthest = bounds.farthest_in_reach_m.data() + grid.at(0, row);
+    const float v = (static_cast<float>(row) + 0.5F) * kBlock_px - static_cast<float>(camera.cy_px);
+    const float v_ray2 = v * v / (fy * fy) + 1.0F;
+    for (int column = 0; column < grid.columns; ++column) {
+      // With depth z(u, v) the surface normal is (fx z_u, fy z_v, -(z + u z_u + v z_v)), u and v from the
+      // principal point; its product with the viewing ray (u / fx, v / fy, 1) is -z.
+      const float z = middle[column];
+      const float left = middle[std::max(column - 1, 0)];
+      const float right = middle[std::min(column + 1, grid.columns - 1)];
+      const float u = (static_cast<float>(column) + 0.5F) * kBlock_px - static_cast<float>(camera.cx_px);
+      const float slope_u = flatter(z - left, right - z) * per_step;
+      const float slope_v = flatter(z - above[column], below[column] - z) * per_step;
+      const float normal_x = fx * slope_u;
+      const float normal_y = fy * slope_v;
+      const float normal_z = z + u * slope_u + v * slope_v;
+      const float normal2 = normal_x * normal_x + normal_y * normal_y + normal_z * normal_z;
+      const float cosine = z / std::sqrt(normal2 * (u * u / (fx * fx) + v_ray2) + 1e-12F);
+      const float sensor = depth_sigma_m(z, arc_cosine(cosine < 1.0F ? cosine : 1.0F));
+      const float model = config.model_sigma_m;
+      const float misfit = misfit_per_m * z * z;
+      const float slope = std::min(std::abs(slope_u) + std::abs(slope_v), kGrazing * z / focal_px);
+      const float pose = slope * focal_px * (config.pose_sigma_rad + config.pose_sigma_m / (z + 1e-6F));
+      sigma[column] = std::sqrt(sensor * sensor + model * model + misfit * misfit + pose * pose);
+
+      // A plane's inverse depth is linear in the image, so over so many pixels it goes no farther than this.
+      const float inverse = 1.0F / (z + 1e-6F);
+      // What is steeper than that may be an edge itself.
+      const float change =
+          std::min(slope * inverse * inverse * static_cast<float>((reach[column] + 1) * kBlock_px),
+                   kSteepest * inverse);
+      const float slack = config.weak_sigmas * sigma[column];
+      const bool none_nearer = nearest[column] > 1.0F / (inverse + change) - slack;
+      const float at_least = 1.0F / nearest_in_block[column];
+      const bool none_farther = (farthest[column] - slack) * (at_least - change) < 1.0F;
+      nearest[column] = none_nearer ? kNoDepth_m : nearest[column];
+      farthest[column] = none_farther ? 0.0F : farthest[column];
+    }
+  }
+}
+
+}  // namespace
+
+void find_bounds(const DepthImage& expected_m, const Intrinsics& camera, const ForegroundConfig& config,
+                 float misfit_per_m, ExpectedBounds& bounds) {
+  bounds.grid = {blocks_along(expected_m.width), blocks_along(expected_m.height)};
+  find_extremes(expected_m, bounds);
+  choose_reach(camera, config, bounds);
+  find_extremes_in_reach(bounds);
+  find_extremes_around_holes(config.hole_reach_px, bounds);
+  weigh_surfaces(camera, config, misfit_per_m, bounds);
+}
+
+}  // namespace roomradar

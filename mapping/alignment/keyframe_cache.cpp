@@ -1,0 +1,40 @@
+// warm_keyframes.cpp: the references of the keyframes that were used last; others are made anew when needed.
+#include "mapping/alignment/keyframe_cache.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace roomradar {
+
+std::shared_ptr<const WarmKeyframe> warm(const StoredView& view, const ViewConfig& config, WarmParts parts) {
+  auto made = std::make_shared<WarmKeyframe>();
+  ViewPyramid pyramid;
+  restore(view, config, pyramid);
+  if (parts != WarmParts::kLive)
+    make_reference(pyramid, Eigen::Isometry3d::Identity(), config, made->reference);
+  if (parts != WarmParts::kReference) make_live(pyramid, made->live);
+  return made;
+}
+
+std::shared_ptr<const WarmKeyframe> WarmKeyframes::find(std::size_t keyframe) {
+  const auto found = std::find_if(entries_.begin(), entries_.end(),
+                                  [&](const Entry& entry) { return entry.keyframe == keyframe; });
+  if (found == entries_.end()) return nullptr;
+  std::rotate(found, found + 1, entries_.end());
+  return entries_.back().held;
+}
+
+std::shared_ptr<const WarmKeyframe> WarmKeyframes::get(std::size_t keyframe, const StoredView& view,
+                                                       const ViewConfig& config) {
+  if (auto held = find(keyframe)) return held;
+  put(keyframe, warm(view, config, parts_));
+  return entries_.back().held;
+}
+
+void WarmKeyframes::put(std::size_t keyframe, std::shared_ptr<const WarmKeyframe> made) {
+  std::erase_if(entries_, [&](const Entry& entry) { return entry.keyframe == keyframe; });
+  if (!entries_.empty() && entries_.size() >= capacity_) entries_.erase(entries_.begin());
+  entries_.push_back({keyframe, std::move(made)});
+}
+
+}  // namespace roomradar

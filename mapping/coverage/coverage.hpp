@@ -1,0 +1,21 @@
+// coverage.hpp: what a scan has seen of its room, and what it has not.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "mapping/coverage/holes.hpp"
+#include "mapping/octree/static_map.hpp"
+#include "mapping/types/mesh.hpp"
+#include "mapping/types/trajectory.hpp"
+
+namespace roomradar {
+
+struct Coverage {
+  std::vector<Hole> holes;  ///< unknown space, surface borders, outer borders; each largest first
+  std::vector<std::uint8_t> picture_png;  ///< as draw_coverage draws it
+};
+
+/// Finds the holes of a finished map and draws its coverage. Takes some tenths of a second for a room.
+Coverage survey_coverage(const StaticMap& octree, const Mesh& mesh, const std::vector<TimedPose>& trajectory);
+
+}  // namespace roomradar

@@ -1,0 +1,27 @@
+// evidence.cpp: whether a depth image bears out that the camera stands where it is taken to be.
+#include "mapping/localization/depth_agreement.hpp"
+
+#include <cmath>
+
+namespace roomradar {
+
+Evidence evidence_of(const DepthImage& depth_m, const DepthImage& expected_m) {
+  constexpr int kStep_px = 4;
+  constexpr float kAlike_per_m = 0.02F;  // of inverse depth; 5 steps of a Kinect's disparity are 0.014
+  Evidence evidence;
+  for (int y = 0; y < depth_m.height; y += kStep_px) {
+    for (int x = 0; x < depth_m.width; x += kStep_px) {
+      const float live = depth_m.at(x, y), expected = expected_m.at(x, y);
+      if (!(live > 0.0F)) continue;
+      ++evidence.valid;
+      if (!(expected > 0.0F)) continue;
+      ++evidence.both;
+      const float gap_m = kAlike_per_m * live * expected;
+      evidence.alike += std::abs(live - expected) < gap_m;
+      evidence.farther += live - expected >= gap_m;
+    }
+  }
+  return evidence;
+}
+
+}  // namespace roomradar

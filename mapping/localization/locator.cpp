@@ -1,0 +1,305 @@
+// locator.cpp: alignment with the static model, and a search of the whole map when that fails.
+#include "mapping/localization/locator.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "mapping/localization/depth_agreement.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kLiveStep_px = 1;  // all pixels of the finest level: a still camera's pose shakes the less
+
+/// A Kinect that recalibrates itself bends its depth from one frame to the next, and alignment takes that for
+/// a motion, by which edges come to stand where they are not seen. So a motion that nothing announced has to
+/// explain no fewer pixels than a camera that stood still would.
+bool is_bend_not_motion(const Tracking& tracking, const Eigen::Isometry3d& T_world_predicted,
+                        const Eigen::Isometry3d& T_world_before, const DepthImage& depth_m,
+                        const ExpectedDepth& expected_depth) {
+  constexpr double kSudden_m = 0.03, kSudden_rad = 0.01;
+  constexpr double kMoreExplained = 0.005;
+  if (is_near(T_world_predicted, tracking.T_world_camera, kSudden_m, kSudden_rad)) return false;
+  const double by_motion = evidence_of(depth_m, expected_depth(tracking.T_world_camera)).alike_part();
+  return evidence_of(depth_m, expected_depth(T_world_before)).alike_part() > by_motion + kMoreExplained;
+}
+
+/// Aligns the live view with the model as seen from T_world_view, from the guess on; once more from where
+/// that led if it is far from the view, for then the model showed other surfaces than the camera sees.
+Tracking align_with_model(Locator& locator, const AlignConfig& config, const Intrinsics& camera,
+                          Eigen::Isometry3d T_world_view, const Eigen::Isometry3d& T_world_camera_guess,
+                          const ExpectedDepth& expected_depth) {
+  constexpr double kFarOff_m = 0.05, kFarOff_rad = 0.05;
+  Tracking tracking;
+  tracking.T_world_camera = T_world_camera_guess;
+  for (int round = 0; round < 2; ++round) {
+    make_pyramid(expected_depth(T_world_view), camera, locator.expected_view, locator.expected_pyramid);
+    make_reference(locator.expected_pyramid, T_world_view, locator.expected_view, locator.expected);
+    tracking = align(locator.live, locator.expected, tracking.T_world_camera, config);
+    if (!has_pose(tracking) || is_near(T_world_view, tracking.T_world_camera, kFarOff_m, kFarOff_rad)) break;
+    T_world_view = tracking.T_world_camera;
+  }
+  return tracking;
+}
+
+/// Moves an aligned pose so that patches come to lie on those they look like, as far as the depth leaves that
+/// open: the least squares of both.
+void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPair>& pairs,
+          Tracking& tracking) {
+  constexpr double kIndependent = 0.25;  // patches of several sizes share a corner, neighbours their depth
+  constexpr double kFarthest = 0.3;      // m and rad; what goes farther is not fixed by the pairs either
+  Eigen::Matrix<double, 6, 6> H = by_depth;
+  Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+  for (const PointPair& pair : pairs) {
+    Eigen::Matrix<double, 3, 6> J;  // of a point in the camera, to the camera's twist
+    J.leftCols<3>().setIdentity();
+    for (int k = 0; k < 3; ++k) J.col(3 + k) = Eigen::Vector3d::Unit(k).cross(pair.b);
+    const Eigen::Vector3d gap = tracking.T_world_camera.inverse() * pair.a - pair.b;
+    const double weight = kIndependent * 9.0 / (pair.gate_m * pair.gate_m);  // a gate is three deviations
+    H += weight * J.transpose() * J;
+    g += weight * J.transpose() * gap;
+  }
+  const Eigen::Matrix<double, 6, 1> twist = H.ldlt().solve(g);
+  if (!(twist.norm() < kFarthest)) return;
+  tracking.T_world_camera = tracking.T_world_camera * exp_twist(twist);
+  tracking.information = H;
+}
+
+/// Whether the camera could stand 6 cm farther along a direction that `information` leaves open, or turn
+/// about as much, and the model would explain its depth as well.
+bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double fit,
+            const Eigen::Matrix<double, 6, 6>& information, const ExpectedDepth& expected_depth) {
+  constexpr double kSlide_m = 0.06, kDistance_m = 2.0;  // of what turns past the camera
+  constexpr double kMinLoss = 0.015;                    // of the fit: outlines shift by a few pixels
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(information);
+  for (int i = 0; i < 6 && solver.eigenvalues()(i) < 1e-3; ++i) {
+    const Eigen::Matrix<double, 6, 1> direction = solver.eigenvectors().col(i);
+    const double reach = direction.head<3>().norm() + kDistance_m * direction.tail<3>().norm();
+    for (const double way : {-kSlide_m / reach, kSlide_m / reach}) {
+      const Eigen::Isometry3d T_aside = T_world_camera * exp_twist(way * direction);
+      if (fit_of(evidence_of(frame.depth_m, expected_depth(T_aside))) > fit - kMinLoss) return true;
+    }
+  }
+  return false;
+}
+
+/// Tries a pose: aligned with the model, and where that leaves a direction open, moved by what patches say:
+/// the pairs that proposed it, then those that lie near each other.
+TriedPose tried(Locator& locator, const Frame& frame, const std::vector<SurfacePatch>& seen,
+                const PoseCandidate& guess, const ExpectedDepth& expected_depth) {
+  constexpr std::size_t kEnough = 10;
+  constexpr int kPulls = 3;
+  constexpr double kGoodFit = 0.6;
+  TriedPose finding;
+  const auto align_from = [&](const Eigen::Isometry3d& T_world_camera, const AlignConfig& config) {
+    finding.tracking =
+        align_with_model(locator, config, frame.depth_camera, T_world_camera, T_world_camera, expected_depth);
+    const Eigen::Isometry3d& T_found = finding.tracking.T_world_camera;
+    const Eigen::Matrix<double, 6, 6> by_depth = finding.tracking.information;
+    finding.look = prove_with_patches(seen, locator.known, T_found);
+    if (finding.tracking.status == TrackStatus::kDegenerate &&
+        finding.look.alike.size() < guess.pairs.size()) {
+      pull(by_depth, guess.pairs, finding.tracking);
+      finding.look = prove_with_patches(seen, locator.known, T_found);
+    }
+    for (int round = 0; round < kPulls && finding.tracking.status == TrackStatus::kDegenerate &&
+                        finding.look.alike.size() >= kEnough;
+         ++round) {
+      pull(by_depth, finding.look.alike, finding.tracking);
+      finding.look = prove_with_patches(seen, locator.known, T_found);
+    }
+  };
+  const std::size_t alike_before = prove_with_patches(seen, locator.known, guess.T_world_camera).alike.size();
+  align_from(guess.T_world_camera, locator.align);
+  if (alike_before >= kEnough && 3 * finding.look.alike.size() < 2 * alike_before)
+    align_from(guess.T_world_camera, locator.strict_align);
+  finding.evidence = evidence_of(frame.depth_m, expected_depth(finding.tracking.T_world_camera));
+  if (!is_proven_by_look(finding) && finding.tracking && fit_of(finding.evidence) > kGoodFit) {
+    // The depth alone must fix it.
+    const Eigen::Isometry3d& T_found = finding.tracking.T_world_camera;
+    const Tracking strict =
+        align_with_model(locator, locator.strict_align, frame.depth_camera, T_found, T_found, expected_depth);
+    if (!strict && slides(frame, T_found, fit_of(finding.evidence), strict.information, expected_depth)) {
+      finding.tracking.status = TrackStatus::kDegenerate;
+      finding.tracking.information = strict.information;
+    }
+  }
+  finding.uncertainty_m = uncertainty_m(finding.tracking);
+  return finding;
+}
+
+/// The pixels that moved as seen from a pose that no longer holds may be anything.
+void look_at_all(Locator& locator) { make_live(locator.live_pyramid, locator.live, {}, kLiveStep_px); }
+
+/// Looks for the camera in all of the map: where patches lead, and, if that is not certain, where the depth's
+/// shape fits; without gravity and colour only where remembered views are like the frame.
+Tracking search(Locator& locator, const Frame& frame, const Places& places,
+                const ExpectedDepth& expected_depth) {
+  constexpr std::size_t kByLook = 4, kByShape = 8;
+  constexpr int kMinAgreeing = 8;
+  std::vector<TriedPose>& findings = locator.findings;
+  findings.clear();
+  locator.search_end = SearchEnd::kNoCandidate;
+  const auto judge = [&] {
+    const auto best =
+        std::max_element(findings.begin(), findings.end(), [](const TriedPose& a, const TriedPose& b) {
+          return has_pose(a.tracking) != has_pose(b.tracking) ? has_pose(b.tracking)
+                                                              : support_of(a) < support_of(b);
+        });
+    if (best == findings.end()) return Tracking{};
+    locator.search_end = !is_certain(*best)             ? SearchEnd::kNotCertain
+                         : is_rivalled(*best, findings) ? SearchEnd::kRivalled
+                                                        : SearchEnd::kFound;
+    return locator.search_end == SearchEnd::kFound ? best->tracking : Tracking{};
+  };
+  if (locator.known.empty()) locator.known = known_patches(places);
+  const std::vector<SurfacePatch> seen = describe_patches(frame, locator.relocalise.place.patches);
+  const std::vector<PoseCandidate> by_look = propose_poses(seen, locator.known, kByLook, kMinAgreeing);
+  for (const PoseCandidate& candidate : by_look)
+    if (4 * candidate.agreeing >= by_look.front().agreeing)
+      findings.push_back(tried(locator, frame, seen, candidate, expected_depth));
+  if (!frame.down_camera && (frame.colour.empty() || locator.known.empty())) {
+    const Relocalisation by_preview = relocalise(frame, places, locator.relocalise);
+    if (by_preview)
+      findings.push_back(tried(locator, frame, seen, {by_preview.T_world_camera, 0, {}}, expected_depth));
+  }
+  Tracking found = judge();
+  if (!has_pose(found) && frame.down_camera) {
+    if (locator.known_shape.empty()) locator.known_shape = known_shape(places);
+    for (const ShapeCandidate& candidate : propose_by_shape(
+             frame.depth_m, frame.depth_camera, *frame.down_camera, locator.known_shape, kByShape))
+      findings.push_back(tried(locator, frame, seen, {candidate.T_world_camera, 0, {}}, expected_depth));
+    found = judge();
+  }
+  if (has_pose(found)) expected_depth(found.T_world_camera);
+  return found;
+}
+
+/// From the last pose and motion.
+Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expected_depth) {
+  // So near, the view from the last pose shows what the camera sees now, and it was drawn already.
+  constexpr double kNear_m = 0.04, kNear_rad = 0.04;
+  const Eigen::Isometry3d& T_world_last = *locator.T_world_camera;
+  const Eigen::Isometry3d T_world_predicted = T_world_last * locator.T_last_now;
+  Tracking tracking = align_with_model(
+      locator, locator.align, frame.depth_camera,
+      is_near(T_world_last, T_world_predicted, kNear_m, kNear_rad) ? T_world_last : T_world_predicted,
+      T_world_predicted, expected_depth);
+  if (has_pose(tracking) &&
+      is_bend_not_motion(tracking, T_world_predicted, T_world_last, frame.depth_m, expected_depth)) {
+    tracking.status = TrackStatus::kDegenerate;
+    tracking.T_world_camera = T_world_last;
+  }
+  return tracking;
+}
+
+/// Whether the frame shows patches enough where patches are known, and what is known to be there.
+bool is_borne_out_by_look(Locator& locator, const Frame& frame, const Places& places,
+                          const Eigen::Isometry3d& T_world_camera) {
+  if (locator.known.empty()) locator.known = known_patches(places);
+  const PatchProof look = prove_with_patches(describe_patches(frame, locator.relocalise.place.patches),
+                                             locator.known, T_world_camera);
+  return is_borne_out(look);
+}
+
+/// Where the camera was lost some frames ago it may still be: a hand was before the lens. Before a wall the
+/// depth would say so too where it was moved along, so there the look has to.
+Tracking resume(Locator& locator, const Frame& frame, const Places& places,
+                const ExpectedDepth& expected_depth) {
+  constexpr int kLongest_frames = 30;
+  constexpr double kMinAlike = 0.7, kMaxFarther = 0.08;
+  if (!locator.T_world_lost || ++locator.lost_frames > kLongest_frames) return {};
+  const Tracking tracking = align_with_model(locator, locator.align, frame.depth_camera,
+                                             *locator.T_world_lost, *locator.T_world_lost, expected_depth);
+  const Evidence evidence = evidence_of(frame.depth_m, expected_depth(tracking.T_world_camera));
+  const bool holds = has_pose(tracking) && 2 * evidence.both > evidence.valid &&
+                     evidence.alike_part() > kMinAlike && evidence.farther_part() < kMaxFarther;
+  const bool is_open = tracking.status == TrackStatus::kDegenerate;
+  if (!holds || (is_open && !is_borne_out_by_look(locator, frame, places, tracking.T_world_camera)))
+    return {};
+  return tracking;
+}
+
+/// What was followed into a place that the depth speaks against for some frames is searched for; what is not
+/// found then is lost, unless a good part of the view still fits: things may have been taken away. From where
+/// it was to another place there was no motion. False: all of the map was searched, and it is lost.
+bool doubt(Locator& locator, const Frame& frame, const Places& places, const ExpectedDepth& expected_depth,
+           Tracking& tracking) {
+  constexpr double kMinAlike = 0.3, kMaxFarther = 0.25, kHopeless = 0.3;
+  constexpr int kPatience_frames = 3, kSure_frames = 30;
+  const Evidence evidence = evidence_of(frame.depth_m, expected_depth(tracking.T_world_camera));
+  const bool is_doubtful = evidence.alike_part() < kMinAlike || evidence.farther_part() > kMaxFarther;
+  locator.doubtful_frames = is_doubtful ? locator.doubtful_frames + 1 : 0;
+  if (locator.doubtful_frames < kPatience_frames || --locator.sure_until > 0) return true;
+  look_at_all(locator);
+  const Tracking found = search(locator, frame, places, expected_depth);
+  if (has_pose(found)) {
+    const bool is_elsewhere = !is_same_place(found.T_world_camera, tracking.T_world_camera);
+    tracking = found;
+    if (is_elsewhere) {
+      locator.T_world_camera.reset();
+      locator.doubtful_frames = locator.sure_until = 0;
+      return true;
+    }
+  } else if (evidence.alike_part() < kHopeless) {
+    tracking = {};
+    return false;
+  }
+  locator.sure_until = kSure_frames;
+  expected_depth(tracking.T_world_camera);
+  return true;
+}
+
+}  // namespace
+
+std::string_view to_string(SearchEnd end) {
+  switch (end) {
+    case SearchEnd::kFound:
+      return "found";
+    case SearchEnd::kNoCandidate:
+      return "no candidate";
+    case SearchEnd::kNotCertain:
+      return "not certain";
+    case SearchEnd::kRivalled:
+      return "rivalled";
+  }
+  return "unknown";
+}
+
+Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
+                const ExpectedDepth& expected_depth) {
+  make_pyramid(frame.depth_m, frame.depth_camera, locator.live_view, locator.live_pyramid);
+  make_live(locator.live_pyramid, locator.live, moved_mask, kLiveStep_px);
+
+  Tracking tracking;
+  bool may_be_found = true;  // by a search; one a frame is enough
+  if (locator.T_world_camera) {
+    tracking = follow(locator, frame, expected_depth);
+    if (has_pose(tracking)) may_be_found = doubt(locator, frame, places, expected_depth, tracking);
+    if (!has_pose(tracking)) {
+      locator.T_world_lost = locator.T_world_camera;
+      locator.T_world_camera.reset();
+      locator.lost_frames = locator.doubtful_frames = locator.sure_until = 0;
+    }
+  }
+  if (!has_pose(tracking)) {
+    look_at_all(locator);
+    tracking = resume(locator, frame, places, expected_depth);
+    if (!has_pose(tracking) && may_be_found) tracking = search(locator, frame, places, expected_depth);
+  }
+
+  if (!has_pose(tracking)) {
+    locator.T_last_now.setIdentity();
+    return tracking;
+  }
+  locator.T_last_now =
+      locator.T_world_camera
+          ? expected_motion(tracking, locator.T_world_camera->inverse() * tracking.T_world_camera)
+          : Eigen::Isometry3d::Identity();
+  locator.T_world_camera = tracking.T_world_camera;
+  return tracking;
+}
+
+}  // namespace roomradar

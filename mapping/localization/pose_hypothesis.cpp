@@ -1,0 +1,89 @@
+// tried_pose.cpp: what depth and look must say for a pose, and what they may say against it.
+#include "mapping/localization/pose_hypothesis.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace roomradar {
+namespace {
+
+constexpr int kFewPatches = 12;        // of which no part can be told, and which contradict nothing
+constexpr double kContradicted = 0.2;  // of more patches: with no larger part of them alike a pose is wrong
+
+}  // namespace
+
+bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
+             double reach_rad) {
+  const Eigen::Isometry3d T_a_b = T_world_a.inverse() * T_world_b;
+  return T_a_b.translation().norm() < reach_m && Eigen::AngleAxisd(T_a_b.linear()).angle() < reach_rad;
+}
+
+double support_of(const TriedPose& finding) {
+  constexpr double kEnough = 0.4;  // of the depth, that the model must have an answer to
+  const Evidence& evidence = finding.evidence;
+  const double covered = std::min(1.0, evidence.both / (kEnough * std::max(evidence.valid, 1)));
+  return covered * fit_of(evidence) +
+         static_cast<double>(finding.look.alike.size()) / std::max(finding.look.compared, kFewPatches);
+}
+
+double uncertainty_m(const Tracking& tracking) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(tracking.information);
+  if (!(solver.eigenvalues()(0) > 1e-3)) return std::numeric_limits<double>::infinity();
+  const Eigen::Matrix3d covariance_m2 = tracking.information.inverse().topLeftCorner<3, 3>();
+  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance_m2).eigenvalues()(2));
+}
+
+bool is_proven_by_look(const TriedPose& finding) {
+  constexpr std::size_t kMany = 15, kManyAlone = 40, kManyUndisputed = 25;
+  constexpr double kMinAlike = 0.35;
+  constexpr double kUndisputed = 0.75, kUndisputedFit = 0.9;  // wrong poses have the one or the other
+  const PatchProof& look = finding.look;
+  const bool is_undisputed = look.alike_part() > kUndisputed && fit_of(finding.evidence) > kUndisputedFit;
+  const std::size_t enough = finding.tracking ? kMany : is_undisputed ? kManyUndisputed : kManyAlone;
+  return look.alike.size() >= enough && look.alike_part() > kMinAlike;
+}
+
+bool is_borne_out(const PatchProof& look) {
+  return look.compared >= kFewPatches && look.alike_part() > kContradicted;
+}
+
+bool is_certain(const TriedPose& finding) {
+  constexpr double kMostUncertain_m = 0.015;  // three and more of it are 5 cm
+  // People stand before what is known, never behind it. Where the depth leaves a direction open, floorboards
+  // repeat along it, and it is for the few edges to say that the pose is wrong.
+  constexpr double kMostFarther = 0.12, kMostFartherOpen = 0.05;
+  // There two thirds of some hundred patches may be alike in a wrong place, of which the depth says so, too:
+  // the depth has to be clear, or both together.
+  constexpr double kClearTogether = 1.53, kClearDepth = 0.95;
+  const Evidence& evidence = finding.evidence;
+  const PatchProof& look = finding.look;
+  if (!has_pose(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
+      evidence.both < 0.2 * evidence.valid)
+    return false;
+  if (is_proven_by_look(finding)) {
+    const bool is_clear = finding.tracking || evidence.alike_part() > kClearDepth ||
+                          look.alike_part() + evidence.alike_part() > kClearTogether;
+    return is_clear && fit_of(evidence) > 0.4 &&
+           evidence.farther_part() < (finding.tracking ? kMostFarther : kMostFartherOpen);
+  }
+  if (!finding.tracking || evidence.both < 0.5 * evidence.valid || evidence.farther_part() > 0.03)
+    return false;
+  if (look.compared < kFewPatches) return evidence.alike_part() > 0.9;
+  return look.alike_part() > kContradicted &&
+         evidence.alike_part() > (look.alike.size() > kFewPatches ? 0.7 : 0.9);
+}
+
+bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings) {
+  constexpr double kClear = 0.08, kChance = 0.8;  // two deviations of a part of one patch
+  return std::any_of(findings.begin(), findings.end(), [&](const TriedPose& other) {
+    const int compared = std::min(best.look.compared, other.look.compared);
+    const double chance = compared >= kFewPatches ? kChance / std::sqrt(compared) : 0.0;
+    return !is_same_place(best.tracking.T_world_camera, other.tracking.T_world_camera) &&
+           has_pose(other.tracking) && support_of(other) > support_of(best) - kClear - chance;
+  });
+}
+
+}  // namespace roomradar

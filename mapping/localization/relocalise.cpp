@@ -1,0 +1,212 @@
+// relocalise.cpp: where in a known room a frame was taken.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "mapping/alignment/align.hpp"
+#include "mapping/localization/keyframe_database.hpp"
+#include "mapping/localization/place_matching.hpp"
+
+namespace roomradar {
+namespace {
+
+void make_preview_pyramid(const Place& place, const ViewConfig& view, ViewPyramid& pyramid) {
+  DepthImage depth_m(place.preview_camera.width_px, place.preview_camera.height_px);
+  std::transform(place.preview_depth_mm.pixels.begin(), place.preview_depth_mm.pixels.end(),
+                 depth_m.pixels.begin(), [](std::uint16_t mm) { return 0.001F * static_cast<float>(mm); });
+  make_pyramid(depth_m, place.preview_camera, view, pyramid);
+}
+
+/// The preview as something to align with, at the origin.
+ReferenceView reference_of(const ViewPyramid& preview, const ViewConfig& view) {
+  ReferenceView reference;
+  make_reference(preview, Eigen::Isometry3d::Identity(), view, reference);
+  return reference;
+}
+
+struct Proof {
+  bool holds = false;
+  Eigen::Isometry3d T_place_camera = Eigen::Isometry3d::Identity();
+  double agreement = 0.0;
+};
+
+double angle_rad(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
+
+/// Refines a pose found by features with the view's depth: these must agree with each other and with the
+/// depth.
+Proof prove_with_features(const LiveView& live, const Place& place, const PlaceMatch& match,
+                          const RelocaliseConfig& config, const ViewConfig& view) {
+  constexpr double kMaxCorrection_m = 0.12, kMaxCorrection_rad = 0.12;
+  ViewPyramid preview;
+  make_preview_pyramid(place, view, preview);
+  const ReferenceView reference = reference_of(preview, view);
+  const Tracking t = align(live, reference, match.T_a_b, {.coarsest_level = 1, .gate_m = 0.15F});
+  Proof proof{.T_place_camera = t.T_world_camera, .agreement = t.inlier_fraction};
+  const Eigen::Isometry3d correction = match.T_a_b.inverse() * t.T_world_camera;
+  proof.holds = has_pose(t) && t.overlap > 0.2 && t.inlier_fraction >= config.min_depth_agreement &&
+                correction.translation().norm() < kMaxCorrection_m &&
+                angle_rad(correction) < kMaxCorrection_rad;
+  return proof;
+}
+
+/// Without features a pose must be found from the view's own, fixed in all directions, overlap well, and come
+/// out the same when the view is aligned with the frame instead.
+Proof prove_with_depth(const LiveView& live, const ReferenceView& live_reference, const Place& place,
+                       const ViewConfig& view) {
+  constexpr double kMinAgreement = 0.85, kMinOverlap = 0.6, kMaxGap_m = 0.03, kMaxGap_rad = 0.03;
+  const AlignConfig wide{.coarsest_level = 2, .iterations = 12, .gate_m = 0.3F, .intensity_sigma = 0.0F};
+  Proof proof;
+  ViewPyramid preview;
+  make_preview_pyramid(place, view, preview);
+  const ReferenceView reference = reference_of(preview, view);
+  const Tracking there = align(live, reference, Eigen::Isometry3d::Identity(), wide);
+  proof.T_place_camera = there.T_world_camera;
+  proof.agreement = there.inlier_fraction;
+  if (!there || there.overlap < kMinOverlap || there.inlier_fraction < kMinAgreement) return proof;
+  LiveView place_live;
+  make_live(preview, place_live);
+  const Tracking back = align(place_live, live_reference, there.T_world_camera.inverse(), wide);
+  const Eigen::Isometry3d gap = there.T_world_camera * back.T_world_camera;
+  proof.holds = back && back.inlier_fraction >= kMinAgreement && gap.translation().norm() < kMaxGap_m &&
+                angle_rad(gap) < kMaxGap_rad;
+  return proof;
+}
+
+/// Positions of at most `count` places whose depth is most like the frame's, ray by ray. Alignment with the
+/// others, which begins where they were taken, would have next to nothing within its gate.
+std::vector<std::size_t> nearest_in_depth(const Frame& frame, const Places& places, std::size_t count) {
+  constexpr int kEvery_px = 8;  // of a preview
+  constexpr float kGate_m = 0.3F;
+  std::vector<std::pair<int, std::size_t>> unlike;
+  for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
+    const Place& place = places.keyframes[i];
+    int alike = 0;
+    for (int v = kEvery_px / 2; v < place.preview_camera.height_px; v += kEvery_px) {
+      for (int u = kEvery_px / 2; u < place.preview_camera.width_px; u += kEvery_px) {
+        const float place_m = 0.001F * static_cast<float>(place.preview_depth_mm.at(u, v));
+        const Eigen::Vector2d at =
+            project(frame.depth_camera, back_project(place.preview_camera, u, v, 1.0)).array().round();
+        const bool is_seen =
+            (at.array() >= 0.0).all() && at.x() < frame.depth_m.width && at.y() < frame.depth_m.height;
+        if (place_m == 0.0F || !is_seen) continue;
+        const float depth_m = frame.depth_m.at(static_cast<int>(at.x()), static_cast<int>(at.y()));
+        if (depth_m > 0.0F && std::abs(depth_m - place_m) < kGate_m) ++alike;
+      }
+    }
+    unlike.emplace_back(-alike, i);
+  }
+  const auto end = unlike.begin() + static_cast<std::ptrdiff_t>(std::min(count, unlike.size()));
+  std::partial_sort(unlike.begin(), end, unlike.end());
+  std::vector<std::size_t> nearest;
+  std::transform(unlike.begin(), end, std::back_inserter(nearest), [](const auto& of) { return of.second; });
+  return nearest;
+}
+
+/// A view that was proven to be where the frame was taken.
+struct Witness {
+  std::size_t position = 0;  ///< in places.keyframes
+  int feature_inliers = 0;
+  Proof proof;
+};
+
+/// The answer of the best witness, refined over the depth of all that agree with it: each remembered pose has
+/// an error of its own.
+Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& live, const Places& places,
+                      const ViewConfig& view) {
+  constexpr double kAgree_m = 0.15, kAgree_rad = 0.1;
+  const Witness& best =
+      *std::max_element(witnesses.begin(), witnesses.end(), [](const Witness& a, const Witness& b) {
+        return std::pair(a.feature_inliers, a.proof.agreement) <
+               std::pair(b.feature_inliers, b.proof.agreement);
+      });
+  Relocalisation found{
+      .status = RelocalisationStatus::kFound,
+      .T_world_camera = places.keyframes[best.position].T_world_camera * best.proof.T_place_camera,
+      .keyframe = static_cast<std::int64_t>(best.position),
+      .feature_inliers = best.feature_inliers,
+      .depth_agreement = best.proof.agreement};
+  std::vector<ReferenceView> references;
+  for (const Witness& witness : witnesses) {
+    const Place& place = places.keyframes[witness.position];
+    const Eigen::Isometry3d gap =
+        found.T_world_camera.inverse() * place.T_world_camera * witness.proof.T_place_camera;
+    if (gap.translation().norm() > kAgree_m || angle_rad(gap) > kAgree_rad) continue;
+    ViewPyramid preview;
+    make_preview_pyramid(place, view, preview);
+    references.push_back(reference_of(preview, view));
+    references.back().T_world_view = place.T_world_camera;
+  }
+  if (references.size() < 2) return found;
+  std::vector<PosedReference> posed;
+  posed.reserve(references.size());
+  for (const ReferenceView& reference : references) posed.push_back({&reference, reference.T_world_view});
+  const Tracking refined = align(live, posed, found.T_world_camera, {.coarsest_level = 1});
+  if (has_pose(refined)) found.T_world_camera = refined.T_world_camera;
+  return found;
+}
+
+}  // namespace
+
+std::string_view to_string(RelocalisationStatus status) {
+  switch (status) {
+    case RelocalisationStatus::kFound:
+      return "found";
+    case RelocalisationStatus::kNoPlaces:
+      return "no places";
+    case RelocalisationStatus::kNoDepth:
+      return "no depth";
+    case RelocalisationStatus::kNoMatch:
+      return "no match";
+    case RelocalisationStatus::kUnproven:
+      return "unproven";
+  }
+  return "unknown";
+}
+
+Relocalisation relocalise(const Frame& frame, const Places& places, const RelocaliseConfig& config) {
+  Relocalisation none;
+  if (places.keyframes.empty()) {
+    none.status = RelocalisationStatus::kNoPlaces;
+    return none;
+  }
+  const ViewConfig view{.finest_width_px = config.place.preview_width_px, .normal_reach_px = 2};
+  ViewPyramid pyramid;
+  LiveView live;
+  make_pyramid(frame.depth_m, frame.depth_camera, view, pyramid);
+  make_live(pyramid, live);
+  constexpr std::size_t kMinPoints = 200;
+  if (live.levels.front().size() < kMinPoints) {
+    none.status = RelocalisationStatus::kNoDepth;
+    return none;
+  }
+
+  std::vector<Witness> witnesses;
+  const bool remembered_by_features =
+      std::any_of(places.keyframes.begin(), places.keyframes.end(),
+                  [](const Place& place) { return !place.descriptors.empty(); });
+  if (!frame.colour.empty() && remembered_by_features) {
+    constexpr int kMinMatches = 8;
+    const Place here = describe_place(frame, Eigen::Isometry3d::Identity(), config.place);
+    const auto most = static_cast<std::size_t>(std::max(config.candidates, 0));
+    for (const std::size_t i : most_alike(here, places.keyframes, most, kMinMatches)) {
+      const PlaceMatch match = match_places(places.keyframes[i], here);
+      if (match.inliers < config.min_feature_inliers) continue;
+      none.status = RelocalisationStatus::kUnproven;
+      const Proof proof = prove_with_features(live, places.keyframes[i], match, config, view);
+      if (proof.holds) witnesses.push_back({i, match.inliers, proof});
+    }
+  } else {
+    constexpr std::size_t kMostByDepth = 40;  // each some milliseconds
+    const ReferenceView live_reference = reference_of(pyramid, view);
+    for (const std::size_t i : nearest_in_depth(frame, places, kMostByDepth)) {
+      const Proof proof = prove_with_depth(live, live_reference, places.keyframes[i], view);
+      if (proof.holds) witnesses.push_back({i, 0, proof});
+    }
+  }
+  return witnesses.empty() ? none : answer(witnesses, live, places, view);
+}
+
+}  // namespace roomradar

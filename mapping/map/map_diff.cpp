@@ -1,0 +1,255 @@
+// map_diff.cpp: surface of one map in the free space of the other, and what of it hangs together.
+#include "mapping/map/map_diff.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+#include <utility>
+
+#include "mapping/types/system/config_check.hpp"
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+/// A surface voxel of one map where the other knows free space.
+struct Suspect {
+  bool clear = false;  ///< free all round, too
+  int steps = -1;      ///< from the nearest clear one; -1: further than the clearance
+  int thing = -1;
+};
+
+/// Six faces and eight corners of a cube in a ball of radius 1.
+std::array<Eigen::Vector3d, 14> directions() {
+  std::array<Eigen::Vector3d, 14> all;
+  std::size_t n = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double sign : {-1.0, 1.0}) all[n++] = sign * Eigen::Vector3d::Unit(axis);
+  for (int i = 0; i < 8; ++i)
+    all[n++] = Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1).normalized();
+  return all;
+}
+
+class ThingFinder {
+ public:
+  ThingFinder(const StaticMap& has, const StaticMap& lacks, const Eigen::Isometry3d& T_lacks_has,
+              const DiffConfig& config)
+      : has_(has),
+        lacks_(lacks),
+        T_lacks_has_(T_lacks_has),
+        config_(config),
+        clearance_m_(std::max(config.clearance_m, config.clearance_voxels *
+                                                      std::max(has.resolution_m(), lacks.resolution_m()))) {}
+
+  /// Surfaces in the world of the map that has them.
+  std::vector<std::vector<VoxelIndex>> find() {
+    collect();
+    reach_out();
+    return gather();
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d centre(const VoxelIndex& voxel) const {
+    return (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * has_.resolution_m();
+  }
+
+  void collect() {
+    static const std::array<Eigen::Vector3d, 14> kAround = directions();
+    has_.visit_leaves([&](const MapLeaf& leaf) {
+      if (leaf.log_odds <= 0.0F) return;
+      const int last = leaf.edge_voxels - 1;
+      const auto is_rim = [&](int i) { return i == 0 || i == last; };
+      for (int z = 0; z <= last; ++z)
+        for (int y = 0; y <= last; ++y)
+          for (int x = 0; x <= last;
+               x += is_rim(y) || is_rim(z) ? 1 : last) {  // what is inside is no surface
+            const VoxelIndex voxel = leaf.lowest_voxel + VoxelIndex(x, y, z);
+            const Eigen::Vector3d p = T_lacks_has_ * centre(voxel);
+            if (lacks_.occupancy_at(p) != Occupancy::kFree) continue;
+            Suspect suspect;
+            suspect.clear =
+                std::all_of(kAround.begin(), kAround.end(), [&](const Eigen::Vector3d& direction) {
+                  return lacks_.occupancy_at(p + clearance_m_ * direction) == Occupancy::kFree &&
+                         lacks_.occupancy_at(p + 0.5 * clearance_m_ * direction) == Occupancy::kFree;
+                });
+            suspects_.emplace(cell_code(voxel), suspect);
+            order_.push_back(voxel);
+          }
+    });
+  }
+
+  /// Calls visit(neighbour, its suspect) for all suspects within `radius` voxels.
+  template <typename Visit>
+  void neighbours(const VoxelIndex& voxel, int radius, const Visit& visit) {
+    for (int z = -radius; z <= radius; ++z)
+      for (int y = -radius; y <= radius; ++y)
+        for (int x = -radius; x <= radius; ++x) {
+          const VoxelIndex other = voxel + VoxelIndex(x, y, z);
+          if (const auto found = suspects_.find(cell_code(other)); found != suspects_.end())
+            visit(other, found->second);
+        }
+  }
+
+  /// From clear surface to the surface round it that is nearer to what else is there.
+  void reach_out() {
+    const int most = static_cast<int>(std::ceil(clearance_m_ / has_.resolution_m())) + 1;
+    std::vector<VoxelIndex> rim;
+    for (const VoxelIndex& voxel : order_) {
+      Suspect& suspect = suspects_.at(cell_code(voxel));
+      if (!suspect.clear) continue;
+      suspect.steps = 0;
+      rim.push_back(voxel);
+    }
+    for (int steps = 1; steps <= most; ++steps) {
+      std::vector<VoxelIndex> next;
+      for (const VoxelIndex& voxel : rim)
+        neighbours(voxel, 1, [&](const VoxelIndex& other, Suspect& suspect) {
+          if (suspect.steps >= 0) return;
+          suspect.steps = steps;
+          next.push_back(other);
+        });
+      rim = std::move(next);
+    }
+  }
+
+  /// What hangs together, and has enough clear surface.
+  std::vector<std::vector<VoxelIndex>> gather() {
+    constexpr int kBridged_voxels = 2;
+    std::vector<std::vector<VoxelIndex>> things;
+    int number = 0;
+    for (const VoxelIndex& first : order_) {
+      Suspect& start = suspects_.at(cell_code(first));
+      if (start.steps < 0 || start.thing >= 0) continue;
+      start.thing = number;
+      std::vector<VoxelIndex> thing{first};
+      for (std::size_t i = 0; i < thing.size(); ++i) {
+        const VoxelIndex voxel = thing[i];
+        neighbours(voxel, kBridged_voxels, [&](const VoxelIndex& other, Suspect& suspect) {
+          if (suspect.steps < 0 || suspect.thing >= 0) return;
+          suspect.thing = number;
+          thing.push_back(other);
+        });
+      }
+      ++number;
+      if (is_large(thing) && !is_there_aside(thing)) things.push_back(std::move(thing));
+    }
+    return things;
+  }
+
+  [[nodiscard]] bool is_large(const std::vector<VoxelIndex>& thing) const {
+    std::size_t clear = 0;
+    Eigen::AlignedBox3d box;
+    for (const VoxelIndex& voxel : thing) {
+      if (!suspects_.at(cell_code(voxel)).clear) continue;
+      ++clear;
+      box.extend(centre(voxel));
+    }
+    const double voxel_m = has_.resolution_m();
+    return static_cast<double>(clear) * voxel_m * voxel_m >= config_.min_area_m2 &&
+           box.sizes().maxCoeff() + voxel_m >= config_.min_size_m;
+  }
+
+  /// Whether the other map has the thing, too, a little aside.
+  [[nodiscard]] bool is_there_aside(const std::vector<VoxelIndex>& thing) const {
+    constexpr std::size_t kLooked = 150;
+    const double step_m = std::max(0.02, lacks_.resolution_m());
+    const int steps = static_cast<int>(config_.max_pose_error_m / step_m);
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t i = 0; i < thing.size(); i += 1 + thing.size() / kLooked)
+      points.push_back(T_lacks_has_ * centre(thing[i]));
+    const auto enough = static_cast<std::size_t>(config_.min_same_shape * static_cast<double>(points.size()));
+    for (int z = -steps; z <= steps; ++z)
+      for (int y = -steps; y <= steps; ++y)
+        for (int x = -steps; x <= steps; ++x) {
+          const Eigen::Vector3d shift = step_m * Eigen::Vector3d(x, y, z);
+          if (shift.norm() > config_.max_pose_error_m) continue;
+          std::size_t met = 0;
+          for (const Eigen::Vector3d& p : points)
+            if (is_surface(p + shift, step_m)) ++met;
+          if (met >= std::max<std::size_t>(enough, 1)) return true;
+        }
+    return false;
+  }
+  [[nodiscard]] bool is_surface(const Eigen::Vector3d& p, double near_m) const {
+    const auto sample = lacks_.sample_at(p);
+    return sample ? static_cast<double>(std::abs(sample->distance_m)) < near_m
+                  : lacks_.occupancy_at(p) == Occupancy::kOccupied;
+  }
+
+  const StaticMap& has_;
+  const StaticMap& lacks_;
+  Eigen::Isometry3d T_lacks_has_;
+  DiffConfig config_;
+  double clearance_m_;
+  std::unordered_map<std::uint64_t, Suspect> suspects_;
+  std::vector<VoxelIndex> order_;  ///< of the octree, so that the answer does not depend on hashing
+};
+
+/// @param T_world_has  the world that the answer is given in
+Change describe_thing(ChangeKind kind, const std::vector<VoxelIndex>& thing, const StaticMap& has,
+                      const StaticMap& lacks, const Eigen::Isometry3d& T_world_has,
+                      const Eigen::Isometry3d& T_world_lacks) {
+  Change change;
+  change.kind = kind;
+  const double voxel_m = has.resolution_m();
+  for (const VoxelIndex& voxel : thing) {
+    const Eigen::Vector3d p =
+        T_world_has * ((voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * voxel_m);
+    change.surface_world.push_back(p);
+    change.box_world.extend(p);
+    change.position_world += p / static_cast<double>(thing.size());
+  }
+  change.area_m2 = static_cast<double>(thing.size()) * voxel_m * voxel_m;
+  change.box_world.min().array() -= 0.5 * voxel_m;
+  change.box_world.max().array() += 0.5 * voxel_m;
+
+  const Eigen::Isometry3d T_has_world = T_world_has.inverse(), T_lacks_world = T_world_lacks.inverse();
+  constexpr double kMostCells = 4e6;  // some seconds
+  Eigen::Array3d cells = (change.box_world.sizes().array() / voxel_m).round().max(1.0);
+  while (cells.prod() > kMostCells) cells = (0.8 * cells).floor().max(1.0);
+  const Eigen::Vector3d step = (change.box_world.sizes().array() / cells).matrix();
+  for (int z = 0; z < static_cast<int>(cells.z()); ++z)
+    for (int y = 0; y < static_cast<int>(cells.y()); ++y)
+      for (int x = 0; x < static_cast<int>(cells.x()); ++x) {
+        const Eigen::Vector3d p =
+            change.box_world.min() + (Eigen::Vector3d(x, y, z).array() + 0.5).matrix().cwiseProduct(step);
+        if (lacks.occupancy_at(T_lacks_world * p) == Occupancy::kFree &&
+            has.occupancy_at(T_has_world * p) != Occupancy::kFree)
+          change.volume_m3 += step.prod();
+      }
+  return change;
+}
+
+}  // namespace
+
+std::string_view to_string(ChangeKind kind) {
+  return kind == ChangeKind::kAppeared ? "appeared" : "vanished";
+}
+
+void require_valid(const DiffConfig& config) {
+  const SettingRules require{"diff"};
+  for (const auto& [name, value] :
+       {std::pair("clearance_m", config.clearance_m), std::pair("clearance_voxels", config.clearance_voxels),
+        std::pair("min_area_m2", config.min_area_m2), std::pair("min_size_m", config.min_size_m),
+        std::pair("max_pose_error_m", config.max_pose_error_m),
+        std::pair("min_same_shape", config.min_same_shape)})
+    require(value >= 0.0 && std::isfinite(value), name, value, "finite and >= 0");
+}
+
+std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
+                              const DiffConfig& config) {
+  require_valid(config);
+  const Eigen::Isometry3d T_a_a = Eigen::Isometry3d::Identity();
+  std::vector<Change> changes;
+  for (const auto& thing : ThingFinder(b, a, T_a_b, config).find())
+    changes.push_back(describe_thing(ChangeKind::kAppeared, thing, b, a, T_a_b, T_a_a));
+  for (const auto& thing : ThingFinder(a, b, T_a_b.inverse(), config).find())
+    changes.push_back(describe_thing(ChangeKind::kVanished, thing, a, b, T_a_a, T_a_b));
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const Change& left, const Change& right) { return left.area_m2 > right.area_m2; });
+  return changes;
+}
+
+}  // namespace roomradar

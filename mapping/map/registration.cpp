@@ -1,0 +1,325 @@
+// registration.cpp: views vote for a transform, the surface refines it and has the last word.
+#include "mapping/map/registration.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "mapping/alignment/align.hpp"
+#include "mapping/localization/place_matching.hpp"
+
+namespace roomradar {
+namespace {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// One view of b found in a.
+struct Vote {
+  std::size_t view_b = 0;
+  int inliers = 0;
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
+};
+
+bool has_features(const Places& places) {
+  return std::any_of(places.keyframes.begin(), places.keyframes.end(),
+                     [](const Place& place) { return !place.descriptors.empty(); });
+}
+
+std::vector<Vote> collect_votes(const Places& a, const Places& b, const RegistrationConfig& config) {
+  constexpr int kMinMatches = 15;
+  const auto most = static_cast<std::size_t>(std::max(config.views, 1));
+  const std::size_t stride = 1 + (b.keyframes.size() - 1) / most;
+  std::vector<Vote> votes;
+  for (std::size_t j = 0; j < b.keyframes.size(); j += stride) {
+    const Place& view = b.keyframes[j];
+    const auto candidates = static_cast<std::size_t>(std::max(config.candidates, 1));
+    for (const std::size_t i : most_alike(view, a.keyframes, candidates, kMinMatches)) {
+      const PlaceMatch match = match_places(a.keyframes[i], view);
+      if (match.inliers < config.min_inliers) continue;
+      votes.push_back(
+          {j, match.inliers, a.keyframes[i].T_world_camera * match.T_a_b * view.T_world_camera.inverse()});
+    }
+  }
+  return votes;
+}
+
+/// Whether two transforms put a view of b at nearly the same place in a.
+bool agree(const Vote& vote, const Eigen::Isometry3d& T_a_b, const Place& view) {
+  constexpr double kNear_m = 0.15, kNear_rad = 0.1;
+  const Eigen::Isometry3d gap = (vote.T_a_b * view.T_world_camera).inverse() * T_a_b * view.T_world_camera;
+  return gap.translation().norm() < kNear_m && Eigen::AngleAxisd(gap.linear()).angle() < kNear_rad;
+}
+
+/// Views of b, each counted once, that agree with a transform.
+int count_agreeing(const std::vector<Vote>& votes, const Eigen::Isometry3d& T_a_b, const Places& b) {
+  int agreeing = 0;
+  std::size_t last = b.keyframes.size();
+  for (const Vote& vote : votes) {
+    if (vote.view_b == last || !agree(vote, T_a_b, b.keyframes[vote.view_b])) continue;
+    ++agreeing;
+    last = vote.view_b;
+  }
+  return agreeing;
+}
+
+/// What a knows at b's points.
+struct Judgement {
+  std::size_t on_surface = 0;
+  std::size_t in_free_space = 0;
+  double residual_m = 0.0;
+};
+
+/// Distances are gated at what noise and drift can make of one surface.
+constexpr double kGate_m = 0.05;
+
+Judgement judge(const StaticMap& a, std::span<const Eigen::Vector3d> surface_b,
+                const Eigen::Isometry3d& T_a_b) {
+  Judgement judgement;
+  std::vector<double> distances_m;
+  for (const Eigen::Vector3d& p_b : surface_b) {
+    const Eigen::Vector3d p_a = T_a_b * p_b;
+    if (const auto at = distance_at(a, p_a)) {
+      const double distance_m = at->distance_m / std::max(at->gradient.norm(), 0.3);
+      if (std::abs(distance_m) < kGate_m)
+        distances_m.push_back(std::abs(distance_m));
+      else if (distance_m > 0.0)
+        ++judgement.in_free_space;
+    } else if (a.occupancy_at(p_a) == Occupancy::kFree && !a.sample_at(p_a)) {
+      ++judgement.in_free_space;
+    }
+  }
+  judgement.on_surface = distances_m.size();
+  if (!distances_m.empty()) {
+    const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+    std::nth_element(distances_m.begin(), middle, distances_m.end());
+    judgement.residual_m = *middle;
+  }
+  return judgement;
+}
+
+/// Gauss-Newton on the distances of b's points to a's surface, robust to what was moved. Directions in which
+/// the surface does not change are left alone.
+Eigen::Isometry3d lay_on(const StaticMap& a, std::span<const Eigen::Vector3d> surface_b,
+                         const Eigen::Isometry3d& T_a_b_start) {
+  constexpr int kIterations = 15;
+  constexpr double kSoft_m = 0.015;         // distance past which a point counts less
+  constexpr double kMinConstraint = 0.005;  // mean squared cosine, lever arms in units of their spread
+  Eigen::Vector3d centre_b = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& p : surface_b) centre_b += p / static_cast<double>(surface_b.size());
+  double spread_m = 0.0;
+  for (const Eigen::Vector3d& p : surface_b)
+    spread_m += (p - centre_b).norm() / static_cast<double>(surface_b.size());
+  spread_m = std::max(spread_m, 0.1);
+
+  Eigen::Isometry3d T_a_b = T_a_b_start;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Matrix6d H = Matrix6d::Zero();
+    Vector6d g = Vector6d::Zero();
+    double weights = 0.0;
+    const Eigen::Vector3d centre_a = T_a_b * centre_b;
+    for (const Eigen::Vector3d& p_b : surface_b) {
+      const Eigen::Vector3d p_a = T_a_b * p_b;
+      const auto at = distance_at(a, p_a);
+      if (!at) continue;
+      const double slope = at->gradient.norm();
+      if (slope < 0.3) continue;
+      const double distance_m = at->distance_m / slope;
+      if (std::abs(distance_m) > 2.0 * kGate_m) continue;
+      const Eigen::Vector3d normal = at->gradient / slope;
+      const double ratio = distance_m / kSoft_m;
+      const double weight = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));  // Geman and McClure's
+      Vector6d row;
+      row << normal, (p_a - centre_a).cross(normal) / spread_m;
+      H += weight * row * row.transpose();
+      g += weight * distance_m * row;
+      weights += weight;
+    }
+    if (weights < 50.0) break;
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(H / weights);
+    Vector6d step = Vector6d::Zero();
+    for (int i = 0; i < 6; ++i) {
+      const double constraint = axes.eigenvalues()[i];
+      if (constraint < kMinConstraint) continue;
+      const Vector6d axis = axes.eigenvectors().col(i);
+      step -= axis * (axis.dot(g) / weights / constraint);
+    }
+    const Eigen::Vector3d turn = step.tail<3>() / spread_m;
+    Eigen::Isometry3d change = Eigen::Isometry3d::Identity();
+    if (turn.norm() > 0.0) change.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).matrix();
+    change.translation() = centre_a + step.head<3>() - change.linear() * centre_a;
+    T_a_b = change * T_a_b;
+    if (step.norm() < 1e-5) break;
+  }
+  T_a_b.linear() = Eigen::Quaterniond(T_a_b.linear()).normalized().toRotationMatrix();
+  return T_a_b;
+}
+
+}  // namespace
+
+std::optional<DistanceAt> distance_at(const StaticMap& map, const Eigen::Vector3d& p_world) {
+  const double voxel_m = map.resolution_m();
+  const Eigen::Vector3d p =
+      p_world / voxel_m - Eigen::Vector3d::Constant(0.5);  // centres are at whole numbers
+  if (!p.allFinite()) return std::nullopt;
+  const Eigen::Vector3d low = p.array().floor();
+  const Eigen::Vector3d t = p - low;
+  std::array<double, 8> d{};
+  for (unsigned i = 0; i < 8; ++i) {
+    const Eigen::Vector3d corner = low + Eigen::Vector3d(i & 1U, (i >> 1U) & 1U, (i >> 2U) & 1U);
+    const auto sample = map.sample_at((corner + Eigen::Vector3d::Constant(0.5)) * voxel_m);
+    if (!sample) return std::nullopt;
+    d[i] = static_cast<double>(sample->distance_m);
+  }
+  const auto mix = [](double a, double b, double share) { return a + share * (b - a); };
+  const double x00 = mix(d[0], d[1], t.x()), x10 = mix(d[2], d[3], t.x());
+  const double x01 = mix(d[4], d[5], t.x()), x11 = mix(d[6], d[7], t.x());
+  const double y0 = mix(x00, x10, t.y()), y1 = mix(x01, x11, t.y());
+  DistanceAt at;
+  at.distance_m = mix(y0, y1, t.z());
+  at.gradient.x() = mix(mix(d[1] - d[0], d[3] - d[2], t.y()), mix(d[5] - d[4], d[7] - d[6], t.y()), t.z());
+  at.gradient.y() = mix(x10 - x00, x11 - x01, t.z());
+  at.gradient.z() = y1 - y0;
+  at.gradient /= voxel_m;
+  return at;
+}
+
+Registration register_to(const StaticMap& octree_a, const Places& places_a, const Places& places_b,
+                         std::span<const Eigen::Vector3d> surface_b, const RegistrationConfig& config) {
+  Registration best;
+  if (surface_b.empty()) {
+    best.status = RegistrationStatus::kNoOverlap;
+    return best;
+  }
+  const bool comparable = has_features(places_a) && has_features(places_b);
+  const std::vector<Vote> votes =
+      comparable ? collect_votes(places_a, places_b, config) : std::vector<Vote>{};
+
+  // The transform that most views agree on; features break ties.
+  const Vote* favourite = nullptr;
+  for (const Vote& vote : votes) {
+    const int agreeing = count_agreeing(votes, vote.T_a_b, places_b);
+    if (favourite && std::pair(agreeing, vote.inliers) <= std::pair(best.agreeing_views, favourite->inliers))
+      continue;
+    favourite = &vote;
+    best.agreeing_views = agreeing;
+  }
+  if (!favourite || best.agreeing_views < config.min_agreeing) {
+    best.status = comparable ? RegistrationStatus::kNotRecognised : RegistrationStatus::kNoFeatures;
+    return best;
+  }
+
+  const Eigen::Isometry3d T_a_b = lay_on(octree_a, surface_b, favourite->T_a_b);
+  best = judge_registration(octree_a, surface_b, T_a_b, config);
+  best.agreeing_views = count_agreeing(votes, T_a_b, places_b);
+  if (best.agreeing_views < config.min_agreeing) best.status = RegistrationStatus::kNotRecognised;
+  return best;
+}
+
+Registration judge_registration(const StaticMap& octree_a, std::span<const Eigen::Vector3d> surface_b,
+                                const Eigen::Isometry3d& T_a_b, const RegistrationConfig& config) {
+  Registration judged;
+  judged.status = RegistrationStatus::kNoOverlap;
+  judged.T_a_b = T_a_b;
+  if (surface_b.empty()) return judged;
+  const Judgement judgement = judge(octree_a, surface_b, T_a_b);
+  const auto known = static_cast<double>(judgement.on_surface + judgement.in_free_space);
+  judged.overlap = known / static_cast<double>(surface_b.size());
+  judged.agreement = known > 0.0 ? static_cast<double>(judgement.on_surface) / known : 0.0;
+  judged.residual_m = judgement.residual_m;
+  if (judged.overlap >= config.min_overlap)
+    judged.status = judged.agreement >= config.min_agreement ? RegistrationStatus::kRegistered
+                                                             : RegistrationStatus::kContradicted;
+  return judged;
+}
+
+std::string describe(const Registration& registration) {
+  std::array<char, 200> text{};
+  switch (registration.status) {
+    case RegistrationStatus::kRegistered:
+      std::snprintf(
+          text.data(), text.size(),
+          "%d views agree; %.0f %% of the surface is known to both, %.0f %% of that agrees, %.1f mm apart",
+          registration.agreeing_views, 100.0 * registration.overlap, 100.0 * registration.agreement,
+          1e3 * registration.residual_m);
+      break;
+    case RegistrationStatus::kNoFeatures:
+      return "one of them has no views with colour, so nothing can be recognised";
+    case RegistrationStatus::kNotRecognised:
+      std::snprintf(text.data(), text.size(),
+                    "%d views agree on how they stand to each other, and more are needed",
+                    registration.agreeing_views);
+      break;
+    case RegistrationStatus::kNoOverlap:
+      std::snprintf(text.data(), text.size(), "only %.0f %% of the surface is known to both",
+                    100.0 * registration.overlap);
+      break;
+    case RegistrationStatus::kContradicted:
+      if (registration.agreeing_views > 0)
+        std::snprintf(text.data(), text.size(),
+                      "%d views look alike, but only %.0f %% of the surface agrees; is it another room?",
+                      registration.agreeing_views, 100.0 * registration.agreement);
+      else
+        std::snprintf(text.data(), text.size(),
+                      "only %.0f %% of the surface agrees; was the room rearranged?",
+                      100.0 * registration.agreement);
+      break;
+  }
+  return text.data();
+}
+
+std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count) {
+  std::vector<double> area_m2;
+  double sum_m2 = 0.0;
+  for (const Triangle& triangle : mesh.triangles) {
+    const Eigen::Vector3f &p = mesh.vertices[triangle[0]], &q = mesh.vertices[triangle[1]],
+                          &r = mesh.vertices[triangle[2]];
+    area_m2.push_back(0.5 * static_cast<double>((q - p).cross(r - p).norm()));
+    sum_m2 += area_m2.back();
+  }
+  std::vector<Eigen::Vector3d> points;
+  if (!(sum_m2 > 0.0) || count == 0) return points;
+  const double step_m2 = sum_m2 / static_cast<double>(count);
+  double next_m2 = 0.5 * step_m2, passed_m2 = 0.0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    passed_m2 += area_m2[i];
+    for (; next_m2 < passed_m2; next_m2 += step_m2) {
+      // Within the triangle by a low-discrepancy sequence. Source: Roberts, R2 sequence, 2018.
+      const auto n = static_cast<double>(points.size());
+      double u = std::fmod(0.5 + 0.7548776662466927 * n, 1.0),
+             v = std::fmod(0.5 + 0.5698402909980532 * n, 1.0);
+      if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
+      const Triangle& triangle = mesh.triangles[i];
+      const Eigen::Vector3d p = mesh.vertices[triangle[0]].cast<double>();
+      const Eigen::Vector3d q = mesh.vertices[triangle[1]].cast<double>();
+      const Eigen::Vector3d r = mesh.vertices[triangle[2]].cast<double>();
+      points.emplace_back(mesh.origin + p + u * (q - p) + v * (r - p));
+    }
+  }
+  return points;
+}
+
+std::vector<Eigen::Vector3d> surface_of(const Places& places, std::size_t count) {
+  constexpr std::uint16_t kFarthest_mm = 3000;  // beyond, one measurement is off by 1.5 cm and more
+  std::size_t pixels = 0;
+  for (const Place& place : places.keyframes) pixels += place.preview_depth_mm.pixels.size();
+  const std::size_t stride = 1 + pixels / std::max<std::size_t>(count, 1);
+  std::vector<Eigen::Vector3d> points;
+  std::size_t at = 0;
+  for (const Place& place : places.keyframes) {
+    const auto width = static_cast<std::size_t>(std::max(place.preview_depth_mm.width, 1));
+    for (; at < place.preview_depth_mm.pixels.size(); at += stride) {
+      const std::uint16_t depth_mm = place.preview_depth_mm.pixels[at];
+      if (depth_mm == 0 || depth_mm > kFarthest_mm) continue;
+      points.push_back(place.T_world_camera * back_project(place.preview_camera,
+                                                           static_cast<double>(at % width),
+                                                           static_cast<double>(at / width), 1e-3 * depth_mm));
+    }
+    at -= place.preview_depth_mm.pixels.size();
+  }
+  return points;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,60 @@
+// mesh_pieces.cpp: union of triangles by shared vertices.
+#include "mapping/mesh/components.hpp"
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+namespace roomradar {
+namespace {
+
+float area_m2(const Mesh& mesh, const Triangle& t) {
+  const Eigen::Vector3f& a = mesh.vertices[t[0]];
+  return 0.5F * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+}
+
+}  // namespace
+
+Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles) {
+  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+  std::vector<std::uint32_t> renamed(mesh.vertices.size(), kUnused);
+  Mesh out;
+  out.origin = mesh.origin;
+  out.triangles.reserve(triangles.size());
+  for (const Triangle& old_triangle : triangles) {
+    Triangle& triangle = out.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t old = old_triangle[k];
+      if (renamed[old] == kUnused) {
+        renamed[old] = static_cast<std::uint32_t>(out.vertices.size());
+        out.vertices.push_back(mesh.vertices[old]);
+        if (!mesh.normals.empty()) out.normals.push_back(mesh.normals[old]);
+        if (!mesh.colours.empty()) out.colours.push_back(mesh.colours[old]);
+      }
+      triangle[k] = renamed[old];
+    }
+  }
+  return out;
+}
+
+Mesh without_specks(const Mesh& mesh, float min_component_area_m2) {
+  std::vector<std::uint32_t> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  const auto piece = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles) {
+    parent[piece(t[1])] = piece(t[0]);
+    parent[piece(t[2])] = piece(t[0]);
+  }
+  std::vector<float> piece_area_m2(mesh.vertices.size(), 0.0F);
+  for (const Triangle& t : mesh.triangles) piece_area_m2[piece(t[0])] += area_m2(mesh, t);
+  std::vector<Triangle> kept;
+  for (const Triangle& t : mesh.triangles)
+    if (piece_area_m2[piece(t[0])] >= min_component_area_m2) kept.push_back(t);
+  return compacted(mesh, kept);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,385 @@
+// edge_collapse.cpp: a queue of edges by quadric error, and the checks that a collapse must pass.
+#include "mapping/mesh/edge_collapse.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "mapping/mesh/collapse_queue.hpp"
+#include "mapping/mesh/quadric.hpp"
+#include "mapping/mesh/triangle_distance.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+constexpr float kThinnest_m = 1e-4F;  // least height of a new triangle, unless the old one was as thin
+constexpr float kLarge = 12.0F;       // a side of so many tolerances makes a triangle large
+constexpr float kMostTurn = 0.3F;     // cosine of how far a collapse may turn a triangle
+// An open border is held by planes across it that weigh so many times its triangles.
+constexpr double kBorderWeight = 2.0;
+
+class EdgeCollapser {
+ public:
+  EdgeCollapser(const Mesh& full, const SurfaceNear& full_surface, const std::vector<float>& tolerance_m)
+      : full_(full),
+        full_surface_(full_surface),
+        tolerance_m_(tolerance_m),
+        mesh_(full),
+        merged_(full.vertices.size()),
+        first_corner_(full.vertices.size(), kNone),
+        next_corner_(3 * full.triangles.size(), kNone),
+        first_point_(full.triangles.size(), kNone),
+        next_point_(full.vertices.size(), kNone),
+        mark_(full.vertices.size(), 0) {
+    link();
+    find_borders();
+    add_planes();
+    for (std::uint32_t t = 0; t < full_.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = full_.triangles[t][k];
+        const std::uint32_t b = full_.triangles[t][(k + 1) % 3];
+        if (a < b || merged_[a].on_border) push(a, b);
+      }
+  }
+
+  void run() {
+    Candidate next;
+    while (queue_.pop(next)) {
+      if (merged_[next.kept].version != next.kept_version || merged_[next.gone].version != next.gone_version)
+        continue;
+      if (collapse(next.kept, next.gone)) push_around(next.kept);
+    }
+  }
+
+  Mesh take() {
+    for (std::size_t v = 0; v < merged_.size(); ++v) {
+      const Merged& merged = merged_[v];
+      if (merged.count == 0) continue;
+      if (!mesh_.normals.empty() && !merged.normal_sum.isZero())
+        mesh_.normals[v] = merged.normal_sum.normalized();
+      if (mesh_.colours.empty()) continue;
+      const Eigen::Vector3f mean = merged.colour_sum / static_cast<float>(merged.count);
+      const auto channel = [](float value) { return static_cast<std::uint8_t>(std::lround(value)); };
+      mesh_.colours[v] = {channel(mean.x()), channel(mean.y()), channel(mean.z())};
+    }
+    std::erase_if(mesh_.triangles, [](const Triangle& t) { return t[0] == kNone; });
+    return std::move(mesh_);
+  }
+
+ private:
+  // What was merged into a vertex.
+  struct Merged {
+    Quadric quadric;
+    Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();
+    Eigen::Vector3f colour_sum = Eigen::Vector3f::Zero();
+    std::uint32_t count = 0;
+    std::uint32_t version = 0;  // changes with every collapse; of a vertex that is gone it fits no candidate
+    float tolerance_m = 0.0F;   // the least of all; 0: may not move
+    bool on_border = false;
+  };
+
+  [[nodiscard]] bool is_alive(std::uint32_t triangle) const { return mesh_.triangles[triangle][0] != kNone; }
+  [[nodiscard]] const Eigen::Vector3f& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
+
+  // Corners by vertex, and each vertex as a point of one of its triangles.
+  void link() {
+    for (std::uint32_t t = 0; t < full_.triangles.size(); ++t)
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t v = full_.triangles[t][k];
+        if (first_corner_[v] == kNone) {
+          next_point_[v] = first_point_[t];
+          first_point_[t] = v;
+        }
+        next_corner_[3 * t + k] = first_corner_[v];
+        first_corner_[v] = 3 * t + k;
+      }
+  }
+
+  // The live triangles round a vertex, unlinking those that are gone.
+  void star_of(std::uint32_t vertex, std::vector<std::uint32_t>& star) {
+    star.clear();
+    std::uint32_t* link = &first_corner_[vertex];
+    while (*link != kNone) {
+      if (is_alive(*link / 3)) {
+        star.push_back(*link / 3);
+        link = &next_corner_[*link];
+      } else {
+        *link = next_corner_[*link];
+      }
+    }
+  }
+
+  [[nodiscard]] bool has_corner(std::uint32_t triangle, std::uint32_t vertex) const {
+    const Triangle& t = mesh_.triangles[triangle];
+    return t[0] == vertex || t[1] == vertex || t[2] == vertex;
+  }
+
+  template <typename Visit>
+  void for_each_edge(const Visit& visit) {
+    for (std::uint32_t t = 0; t < full_.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) visit(t, full_.triangles[t][k], full_.triangles[t][(k + 1) % 3]);
+  }
+
+  void find_borders() {
+    for_each_edge([&](std::uint32_t, std::uint32_t a, std::uint32_t b) {
+      if (triangles_at(a, b) != 2) merged_[a].on_border = merged_[b].on_border = true;
+    });
+  }
+  std::size_t triangles_at(std::uint32_t a, std::uint32_t b) {
+    star_of(a, star_kept_);
+    return static_cast<std::size_t>(std::count_if(star_kept_.begin(), star_kept_.end(),
+                                                  [&](std::uint32_t t) { return has_corner(t, b); }));
+  }
+
+  void add_planes() {
+    for (std::uint32_t v = 0; v < merged_.size(); ++v) {
+      Merged& merged = merged_[v];
+      merged.count = 1;
+      merged.tolerance_m = tolerance_m_[v];
+      if (!full_.normals.empty()) merged.normal_sum = full_.normals[v];
+      if (!full_.colours.empty())
+        merged.colour_sum = Eigen::Vector3f(full_.colours[v].r, full_.colours[v].g, full_.colours[v].b);
+    }
+    for (const Triangle& t : full_.triangles) {
+      const Eigen::Vector3d a = full_.vertices[t[0]].cast<double>();
+      const Eigen::Vector3d normal =
+          (full_.vertices[t[1]].cast<double>() - a).cross(full_.vertices[t[2]].cast<double>() - a);
+      const double doubled_area = normal.norm();
+      if (!(doubled_area > 0.0)) continue;
+      for (const std::uint32_t v : t)
+        merged_[v].quadric.add_plane(normal / doubled_area, a, doubled_area / 2);
+    }
+    for_each_edge([&](std::uint32_t t, std::uint32_t a, std::uint32_t b) {
+      if (!merged_[a].on_border || !merged_[b].on_border || triangles_at(a, b) == 2) return;
+      const Eigen::Vector3d start = full_.vertices[a].cast<double>();
+      const Eigen::Vector3d along = full_.vertices[b].cast<double>() - start;
+      const Eigen::Vector3d across = along.cross(normal_of(mesh_, t).cast<double>());
+      if (across.isZero()) return;
+      for (const std::uint32_t v : {a, b})
+        merged_[v].quadric.add_plane(across.normalized(), start, kBorderWeight * along.squaredNorm());
+    });
+  }
+
+  static Eigen::Vector3f normal_of(const Mesh& mesh, std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
+  }
+
+  // Where the two would meet; what may not move stays. False if they may not meet at all.
+  bool place(std::uint32_t kept, std::uint32_t gone, const Quadric& both, Eigen::Vector3f& p) const {
+    const bool hold_kept =
+        merged_[kept].tolerance_m == 0.0F || (merged_[kept].on_border && !merged_[gone].on_border);
+    const bool hold_gone =
+        merged_[gone].tolerance_m == 0.0F || (merged_[gone].on_border && !merged_[kept].on_border);
+    if (hold_kept && hold_gone) return false;
+    if (hold_kept || hold_gone) {
+      p = position(hold_kept ? kept : gone);
+      return true;
+    }
+    const Eigen::Vector3d middle = 0.5 * (position(kept) + position(gone)).cast<double>();
+    const Eigen::Vector3d best = both.nearest_to_all(middle);
+    const double reach = (position(kept) - position(gone)).cast<double>().norm();
+    p = ((best - middle).norm() <= reach ? best : middle).cast<float>();
+    return true;
+  }
+
+  void push(std::uint32_t kept, std::uint32_t gone) {
+    if (merged_[gone].tolerance_m == 0.0F) std::swap(kept, gone);  // what may not move keeps its name
+    Quadric both = merged_[kept].quadric;
+    both += merged_[gone].quadric;
+    Eigen::Vector3f p;
+    if (!place(kept, gone, both, p)) return;
+    const double error = both.at(p.cast<double>());
+    const float tolerance_m = std::max(merged_[kept].tolerance_m, merged_[gone].tolerance_m);
+    if (error > tolerance_m * tolerance_m * both.weight) return;
+    // Among equals the short ones first, which keeps the triangles of flat parts in shape.
+    const double shortness =
+        1e-5 * both.weight * (position(kept) - position(gone)).cast<double>().squaredNorm();
+    queue_.push(
+        {static_cast<float>(error + shortness), kept, gone, merged_[kept].version, merged_[gone].version});
+  }
+
+  void push_around(std::uint32_t vertex) {
+    star_of(vertex, star_kept_);
+    ++stamp_;
+    for (const std::uint32_t t : star_kept_)
+      for (const std::uint32_t other : mesh_.triangles[t]) {
+        if (other == vertex || mark_[other] == stamp_) continue;
+        mark_[other] = stamp_;
+        push(vertex, other);
+      }
+  }
+
+  // The surface stays a surface of the same kind: the edge's ends have no neighbours in common but those of
+  // its triangles, and no two borders meet across a piece of surface.
+  bool keeps_kind(std::uint32_t kept, std::uint32_t gone) {
+    const auto shared = static_cast<std::size_t>(std::count_if(
+        star_kept_.begin(), star_kept_.end(), [&](std::uint32_t t) { return has_corner(t, gone); }));
+    if (shared != 1 && shared != 2) return false;
+    if (shared == 2 && merged_[kept].on_border && merged_[gone].on_border) return false;
+    if (star_kept_.size() == shared || star_gone_.size() == shared)
+      return false;  // nothing would be left of it
+    if (shared == 2 && star_kept_.size() == 3 && star_gone_.size() == 3) return false;
+    const std::uint32_t beside_kept = ++stamp_;
+    const std::uint32_t beside_gone = ++stamp_;
+    for (const std::uint32_t t : star_kept_)
+      for (const std::uint32_t v : mesh_.triangles[t]) mark_[v] = beside_kept;
+    std::size_t common = 0;
+    for (const std::uint32_t t : star_gone_)
+      for (const std::uint32_t v : mesh_.triangles[t]) {
+        if (v == kept || v == gone || mark_[v] == beside_gone) continue;
+        if (mark_[v] == beside_kept) ++common;
+        // Another mesh may share these two and join them, too.
+        else if (merged_[kept].tolerance_m == 0.0F && merged_[v].tolerance_m == 0.0F)
+          return false;
+        mark_[v] = beside_gone;
+      }
+    return common == shared;
+  }
+
+  // The triangles that would be there afterwards; false if one would turn over or lose its height.
+  bool make_new_triangles(std::uint32_t kept, std::uint32_t gone, const Eigen::Vector3f& p) {
+    made_.clear();
+    for (const auto* star : {&star_kept_, &star_gone_})
+      for (const std::uint32_t t : *star) {
+        if (has_corner(t, kept) && has_corner(t, gone)) continue;
+        Made made{t, {}};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t v = mesh_.triangles[t][k];
+          made.corners[k] = v == kept || v == gone ? p : position(v);
+        }
+        const auto& [a, b, c] = made.corners;
+        const Eigen::Vector3f normal = (b - a).cross(c - a);
+        const Eigen::Vector3f before = normal_of(mesh_, t);
+        if (normal.dot(before) < kMostTurn * normal.norm() * before.norm()) return false;
+        const float longest =
+            std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
+        if (normal.norm() < kThinnest_m * longest) return false;
+        made_.push_back(made);
+      }
+    return true;
+  }
+
+  // Finds a near enough triangle for every vertex of the full mesh that belongs to one that changes.
+  bool rehome_points() {
+    homes_.clear();
+    for (const auto* star : {&star_kept_, &star_gone_})
+      for (const std::uint32_t t : *star) {
+        const auto own = static_cast<std::size_t>(
+            std::find_if(made_.begin(), made_.end(), [&](const Made& m) { return m.triangle == t; }) -
+            made_.begin());
+        for (std::uint32_t v = first_point_[t]; v != kNone; v = next_point_[v]) {
+          if (mark_[v] == stamp_) continue;  // of a triangle in both stars
+          mark_[v] = stamp_;
+          const float limit_m2 = tolerance_m_[v] * tolerance_m_[v];
+          const auto is_near = [&](const Made& m) {
+            const auto& [a, b, c] = m.corners;
+            return squared_distance_to_triangle(full_.vertices[v], a, b, c) <= limit_m2;
+          };
+          std::size_t home = own;
+          if (home == made_.size() || !is_near(made_[home]))
+            home =
+                static_cast<std::size_t>(std::find_if(made_.begin(), made_.end(), is_near) - made_.begin());
+          if (home == made_.size()) return false;
+          homes_.push_back({v, made_[home].triangle});
+        }
+      }
+    return true;
+  }
+
+  // Is the new vertex (where planes meet may be outside of a rounded edge), or the middle of a large new
+  // triangle (which may span a notch), too far from the full surface?
+  [[nodiscard]] bool bulges(const Eigen::Vector3f& p, float tolerance_m) const {
+    const auto is_far = [&](const Eigen::Vector3f& q) {
+      return full_surface_.distance_m(q, tolerance_m) > tolerance_m;
+    };
+    return is_far(p) || std::any_of(made_.begin(), made_.end(), [&](const Made& made) {
+             const auto& [a, b, c] = made.corners;
+             const float longest_m2 =
+                 std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
+             return longest_m2 > kLarge * kLarge * tolerance_m * tolerance_m && is_far((a + b + c) / 3.0F);
+           });
+  }
+
+  bool collapse(std::uint32_t kept, std::uint32_t gone) {
+    star_of(kept, star_kept_);
+    star_of(gone, star_gone_);
+    if (!keeps_kind(kept, gone)) return false;
+    Quadric both = merged_[kept].quadric;
+    both += merged_[gone].quadric;
+    Eigen::Vector3f p;
+    if (!place(kept, gone, both, p) || !make_new_triangles(kept, gone, p)) return false;
+    ++stamp_;
+    if (!rehome_points()) return false;
+    if (bulges(p, std::max(merged_[kept].tolerance_m, merged_[gone].tolerance_m))) return false;
+
+    for (const auto* star : {&star_kept_, &star_gone_})
+      for (const std::uint32_t t : *star) first_point_[t] = kNone;
+    for (const auto& [point, triangle] : homes_) {
+      next_point_[point] = first_point_[triangle];
+      first_point_[triangle] = point;
+    }
+    for (const std::uint32_t t : star_gone_) {
+      Triangle& triangle = mesh_.triangles[t];
+      if (has_corner(t, kept)) {
+        triangle.fill(kNone);
+        continue;
+      }
+      const auto k =
+          static_cast<std::uint32_t>(std::find(triangle.begin(), triangle.end(), gone) - triangle.begin());
+      triangle[k] = kept;
+      next_corner_[3 * t + k] = first_corner_[kept];
+      first_corner_[kept] = 3 * t + k;
+    }
+    first_corner_[gone] = kNone;
+    mesh_.vertices[kept] = p;
+    Merged& into = merged_[kept];
+    Merged& from = merged_[gone];
+    into.quadric = both;
+    into.normal_sum += from.normal_sum;
+    into.colour_sum += from.colour_sum;
+    into.count += from.count;
+    into.on_border |= from.on_border;
+    ++into.version;
+    from.version = kNone;
+    into.tolerance_m = std::min(into.tolerance_m, from.tolerance_m);
+    return true;
+  }
+
+  struct Made {
+    std::uint32_t triangle;
+    std::array<Eigen::Vector3f, 3> corners;
+  };
+  struct Home {
+    std::uint32_t point;
+    std::uint32_t triangle;
+  };
+
+  const Mesh& full_;
+  const SurfaceNear& full_surface_;
+  const std::vector<float>& tolerance_m_;
+  Mesh mesh_;  // triangles that are gone have corners kNone
+  std::vector<Merged> merged_;
+  std::vector<std::uint32_t> first_corner_, next_corner_;  // corner 3 t + k, by vertex
+  std::vector<std::uint32_t> first_point_, next_point_;    // vertices of the full mesh, by triangle
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t stamp_ = 0;
+  CandidateQueue queue_;
+  std::vector<std::uint32_t> star_kept_, star_gone_;
+  std::vector<Made> made_;
+  std::vector<Home> homes_;
+};
+
+}  // namespace
+
+Mesh collapsed(const Mesh& full, const SurfaceNear& full_surface, const std::vector<float>& tolerance_m) {
+  EdgeCollapser collapser(full, full_surface, tolerance_m);
+  collapser.run();
+  return collapser.take();
+}
+
+}  // namespace roomradar

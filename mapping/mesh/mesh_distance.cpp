@@ -1,0 +1,177 @@
+// mesh_distance.cpp: triangles in a hashed grid, and points spread over a mesh.
+#include "mapping/mesh/mesh_distance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "mapping/mesh/triangle_distance.hpp"
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kReachesACube = 4.0F;  // a query looks into one to eight cubes
+// However short the reach: else a triangle would lie in countless cubes, or they be too small for a float.
+constexpr float kCubesASide = 8.0F, kCubesAcross = 1e5F;
+
+// Mean of the triangles' longest extents along an axis.
+float mean_side_m(const Mesh& mesh) {
+  double sum_m = 0.0;
+  for (const auto& [i, j, k] : mesh.triangles) {
+    const Eigen::Vector3f &a = mesh.vertices[i], &b = mesh.vertices[j], &c = mesh.vertices[k];
+    const Eigen::Vector3f extents = a.cwiseMax(b).cwiseMax(c) - a.cwiseMin(b).cwiseMin(c);
+    sum_m += static_cast<double>(extents.maxCoeff());
+  }
+  return mesh.triangles.empty() ? 0.0F
+                                : static_cast<float>(sum_m / static_cast<double>(mesh.triangles.size()));
+}
+
+std::uint64_t mixed(std::uint64_t code) { return code * 0x9E3779B97F4A7C15U; }
+// A hash is its upper bits. Tells cubes of one hash apart; two that it does not cost time, not truth.
+std::uint32_t tag_of(std::uint64_t mixed_code) { return static_cast<std::uint32_t>(mixed_code >> 14U); }
+
+}  // namespace
+
+SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
+    : mesh_(mesh), reach_m_(reach_m), edge_m_(kReachesACube * reach_m) {
+  if (!mesh.vertices.empty()) {
+    Eigen::Vector3f high = low_ = mesh.vertices.front();
+    for (const Eigen::Vector3f& vertex : mesh.vertices) {
+      low_ = low_.cwiseMin(vertex);
+      high = high.cwiseMax(vertex);
+    }
+    edge_m_ = std::max({edge_m_, mean_side_m(mesh) / kCubesASide, (high - low_).maxCoeff() / kCubesAcross});
+  }
+  struct Part {
+    std::uint64_t mixed_code;
+    std::uint32_t triangle;
+  };
+  std::vector<Part> parts;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    for_each_cube(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c], [&](std::uint64_t cube) {
+      parts.push_back({mixed(cube), t});
+    });
+  }
+  // About a hash a triangle, more where triangles lie in very many cubes.
+  const std::size_t hashes = std::max(mesh.triangles.size(), parts.size() / 4);
+  hash_shift_ = 64 - static_cast<int>(std::bit_width(hashes | 1U));
+  first_of_hash_.assign((std::size_t{1} << (64 - hash_shift_)) + 1, 0);
+  for (const Part& part : parts) ++first_of_hash_[hash_of(part.mixed_code) + 1];
+  for (std::size_t h = 1; h < first_of_hash_.size(); ++h) first_of_hash_[h] += first_of_hash_[h - 1];
+  entries_.resize(parts.size());
+  std::vector<std::uint32_t> next(first_of_hash_.begin(), first_of_hash_.end() - 1);
+  for (const Part& part : parts)
+    entries_[next[hash_of(part.mixed_code)]++] = {tag_of(part.mixed_code), part.triangle};
+}
+
+// A large triangle is halved along its longest side until its parts' boxes touch few cubes.
+template <typename Visit>
+void SurfaceNear::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
+                                const Visit& visit) const {
+  const auto cube_of = [&](const Eigen::Vector3f& p) -> Eigen::Array3i {
+    return ((p - low_) / edge_m_).array().floor().cast<int>();
+  };
+  const Eigen::Array3i low = cube_of(a.cwiseMin(b).cwiseMin(c));
+  const Eigen::Array3i high = cube_of(a.cwiseMax(b).cwiseMax(c));
+  if ((high - low).maxCoeff() <= 1) {
+    for (int z = low.z(); z <= high.z(); ++z)
+      for (int y = low.y(); y <= high.y(); ++y)
+        for (int x = low.x(); x <= high.x(); ++x) visit(cell_code(x, y, z));
+    return;
+  }
+  const float ab = (b - a).squaredNorm();
+  const float bc = (c - b).squaredNorm();
+  const float ca = (a - c).squaredNorm();
+  if (ab >= bc && ab >= ca) {
+    for_each_cube(a, (a + b) / 2, c, visit);
+    for_each_cube((a + b) / 2, b, c, visit);
+  } else if (bc >= ca) {
+    for_each_cube(b, (b + c) / 2, a, visit);
+    for_each_cube((b + c) / 2, c, a, visit);
+  } else {
+    for_each_cube(c, (c + a) / 2, b, visit);
+    for_each_cube((c + a) / 2, a, b, visit);
+  }
+}
+
+template <typename Visit>
+void SurfaceNear::visit_near(const Eigen::Vector3f& p, const Visit& visit) const {
+  const Eigen::Array3f place = (p - low_).array();
+  const Eigen::Array3i low = ((place - reach_m_) / edge_m_).floor().cast<int>();
+  const Eigen::Array3i high = ((place + reach_m_) / edge_m_).floor().cast<int>();
+  for (int z = low.z(); z <= high.z(); ++z)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int x = low.x(); x <= high.x(); ++x) {
+        const std::uint64_t wanted = mixed(cell_code(x, y, z));
+        const std::size_t hash = hash_of(wanted);
+        const std::uint32_t tag = tag_of(wanted);
+        for (std::uint32_t i = first_of_hash_[hash]; i < first_of_hash_[hash + 1]; ++i)
+          if (entries_[i].cube == tag && visit(entries_[i].triangle)) return;
+      }
+}
+
+float SurfaceNear::distance_m(const Eigen::Vector3f& p, float enough_m) const {
+  float nearest = reach_m_ * reach_m_;
+  bool found = false;
+  visit_near(p, [&](std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    const float distance =
+        squared_distance_to_triangle(p, mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+    if (distance > nearest) return false;
+    nearest = distance;
+    found = true;
+    return distance <= enough_m * enough_m;
+  });
+  return found ? std::sqrt(nearest) : kInfinity;
+}
+
+std::optional<std::uint32_t> SurfaceNear::nearest_facing(const Eigen::Vector3f& p,
+                                                         const Eigen::Vector3f& facing) const {
+  float nearest = reach_m_ * reach_m_;
+  std::optional<std::uint32_t> found;
+  visit_near(p, [&](std::uint32_t triangle) {
+    const auto& [i, j, k] = mesh_.triangles[triangle];
+    const Eigen::Vector3f &a = mesh_.vertices[i], &b = mesh_.vertices[j], &c = mesh_.vertices[k];
+    if (!((b - a).cross(c - a).dot(facing) > 0.0F)) return false;
+    const float distance = squared_distance_to_triangle(p, a, b, c);
+    if (distance > nearest) return false;
+    nearest = distance;
+    found = triangle;
+    return false;
+  });
+  return found;
+}
+
+float greatest_distance_m(const Mesh& mesh, const SurfaceNear& other, float spacing_m, float limit_m,
+                          std::vector<FarPoint>& beyond_limit) {
+  float greatest = 0.0F;  // what is nearer than this does not change it
+  const auto ask = [&](const Eigen::Vector3f& p) {
+    const float distance = other.distance_m(p, greatest);
+    if (distance <= limit_m) greatest = std::max(greatest, distance);
+    if (distance > limit_m) beyond_limit.push_back({p, distance});
+  };
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const auto& [i, j, k] : mesh.triangles) {
+    used[i] = used[j] = used[k] = true;
+    const Eigen::Vector3f& a = mesh.vertices[i];
+    const Eigen::Vector3f ab = mesh.vertices[j] - a;
+    const Eigen::Vector3f ac = mesh.vertices[k] - a;
+    const float longest = std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}));
+    const int parts = std::max(2, static_cast<int>(std::ceil(longest / spacing_m)));
+    // Sides included, which is where surfaces bend; corners come later, each once.
+    const float step = 1.0F / static_cast<float>(parts);
+    for (int u = 0; u <= parts; ++u)
+      for (int v = u == 0 ? 1 : 0; u + v <= parts - (u == 0 || v == 0 ? 1 : 0); ++v)
+        ask(a + static_cast<float>(u) * step * ab + static_cast<float>(v) * step * ac);
+  }
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) ask(mesh.vertices[v]);
+  return greatest;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,140 @@
+// mesh_simplify.cpp: block by block, collapse, measure, and do again with less tolerance where too far apart.
+#include "mapping/mesh/mesh_simplify.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <future>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "mapping/mesh/components.hpp"
+#include "mapping/mesh/edge_collapse.hpp"
+#include "mapping/mesh/mesh_blocks.hpp"
+#include "mapping/mesh/mesh_distance.hpp"
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+// Vertices are held nearer than the bound, as the surface between them lies farther off here and there; with
+// more, repairs cost more triangles than this saves.
+constexpr float kOfBound = 0.6F;
+constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};  // of a triangle that is gone
+constexpr int kMostRounds = 10;
+constexpr float kTightening = 0.4F;
+constexpr float kLeastOfBound = 0.2F;  // below, a vertex is kept as it is
+
+// Lessens the tolerance of all vertices within radius_m of a far point.
+void tighten_around(const Mesh& mesh, const std::vector<FarPoint>& far, float radius_m, float least_m,
+                    std::vector<float>& tolerance_m) {
+  const auto cube_of = [&](const Eigen::Vector3f& p) -> Eigen::Vector3i {
+    return (p / radius_m).array().floor().cast<int>();
+  };
+  std::unordered_multimap<std::uint64_t, std::size_t> in_cube;
+  for (std::size_t i = 0; i < far.size(); ++i) in_cube.emplace(cell_code(cube_of(far[i].position)), i);
+  const auto is_near = [&](const Eigen::Vector3f& p) {
+    for (int n = 0; n < kCellsRound; ++n) {
+      const auto [begin, end] = in_cube.equal_range(cell_code(cube_of(p) + cell_round(n)));
+      if (std::any_of(begin, end, [&](const auto& entry) {
+            return (far[entry.second].position - p).squaredNorm() <= radius_m * radius_m;
+          }))
+        return true;
+    }
+    return false;
+  };
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (!is_near(mesh.vertices[v])) continue;
+    tolerance_m[v] *= kTightening;
+    if (tolerance_m[v] < least_m) tolerance_m[v] = 0.0F;
+  }
+}
+
+// One block, its vertices in place: fewer triangles, and how far they lie from what it was. Vertices on a
+// seam stay. A block that comes out too far apart in all rounds is left as it is.
+SimplifiedMesh simplified_block(const Mesh& mesh, std::vector<float> tolerance_m, float max_deviation_m,
+                                float spacing_m) {
+  const SurfaceNear full_surface(mesh, max_deviation_m);
+  float radius_m = spacing_m;
+  for (int round = 0; round < kMostRounds; ++round, radius_m *= 1.5F) {
+    SimplifiedMesh result{collapsed(mesh, full_surface, tolerance_m), 0.0F};
+    std::vector<FarPoint> far;
+    result.deviation_m = greatest_distance_m(result.mesh, full_surface, spacing_m, max_deviation_m, far);
+    if (far.empty()) {
+      const SurfaceNear simple_surface(result.mesh, max_deviation_m);
+      result.deviation_m = std::max(
+          result.deviation_m, greatest_distance_m(mesh, simple_surface, spacing_m, max_deviation_m, far));
+      if (far.empty()) return result;
+    }
+    tighten_around(mesh, far, radius_m, kLeastOfBound * max_deviation_m, tolerance_m);
+  }
+  return {mesh, 0.0F};
+}
+
+// Takes turns with others at the blocks of one mesh. Each writes to its own triangles and to the vertices
+// that no other block uses.
+class BlockSimplifier {
+ public:
+  BlockSimplifier(Mesh& mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles)
+      : mesh_(mesh),
+        max_deviation_m_(max_deviation_m),
+        spacing_m_(spacing_m),
+        blocks_(sort_into_blocks(mesh, block_triangles)),
+        on_seam_(seam_vertices(mesh, blocks_)) {}
+
+  /// The greatest deviation (m) in the blocks that this call did.
+  float work() {
+    float deviation_m = 0.0F;
+    for (std::size_t b = next_++; b < blocks_.size(); b = next_++)
+      deviation_m = std::max(deviation_m, simplify(blocks_[b]));
+    return deviation_m;
+  }
+  [[nodiscard]] bool has_many() const { return blocks_.size() > 1; }
+
+ private:
+  float simplify(std::span<Triangle> block) {
+    const BlockMesh full = block_mesh(mesh_, block);
+    std::vector<float> tolerance_m;
+    for (const std::uint32_t v : full.name)
+      tolerance_m.push_back(on_seam_[v] ? 0.0F : kOfBound * max_deviation_m_);
+    const auto [simple, deviation_m] = simplified_block(full.mesh, tolerance_m, max_deviation_m_, spacing_m_);
+    for (std::size_t v = 0; v < full.name.size(); ++v) {
+      const std::uint32_t name = full.name[v];
+      if (on_seam_[name]) continue;
+      mesh_.vertices[name] = simple.vertices[v];
+      if (!mesh_.normals.empty()) mesh_.normals[name] = simple.normals[v];
+      if (!mesh_.colours.empty()) mesh_.colours[name] = simple.colours[v];
+    }
+    for (std::size_t t = 0; t < block.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        block[t][k] = t < simple.triangles.size() ? full.name[simple.triangles[t][k]] : kNoCorner;
+    return deviation_m;
+  }
+
+  Mesh& mesh_;
+  float max_deviation_m_;
+  float spacing_m_;
+  std::vector<std::span<Triangle>> blocks_;
+  std::vector<bool> on_seam_;
+  std::atomic<std::size_t> next_ = 0;
+};
+
+}  // namespace
+
+SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles) {
+  BlockSimplifier blocks(mesh, max_deviation_m, spacing_m, block_triangles);
+  float deviation_m = 0.0F;
+  if (blocks.has_many()) {
+    auto second = std::async(std::launch::async, [&] { return blocks.work(); });
+    deviation_m = blocks.work();
+    deviation_m = std::max(deviation_m, second.get());
+  } else {
+    deviation_m = blocks.work();
+  }
+  std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == kNoCorner; });
+  return {compacted(mesh, mesh.triangles), deviation_m};
+}
+
+}  // namespace roomradar

@@ -1,0 +1,38 @@
+// block_octree.cpp: the tree's units and size.
+#include "mapping/octree/block_octree.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mapping/octree/depth_pyramid.hpp"
+
+namespace roomradar {
+
+BlockUnits::BlockUnits(double resolution_m, const FusionConfig& config)
+    : log_odds(std::max(std::abs(config.min_log_odds), config.max_log_odds) / 32767.0F),
+      distance_m(half_layer_m(config.max_range_m, resolution_m, config) / 32767.0F),
+      weight(config.max_weight / 65535.0F) {}
+
+BlockOctree::BlockOctree(double resolution_m, const FusionConfig& config)
+    : resolution_m_(resolution_m), units_(resolution_m, config) {}
+
+SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth) {
+  if (node.is_unknown()) return {};
+  SubtreeSize size{.nodes = 1};
+  if (!node.is_block()) return size;
+  if (depth < kLeafDepth - 1) {
+    size.bytes += sizeof(InnerBlock);
+    for (const Slot child : tree.inner(node).slots) {
+      const SubtreeSize below = size_of(tree, child, depth + 1);
+      size.nodes += below.nodes;
+      size.bytes += below.bytes;
+    }
+  } else {
+    const LeafBlock& block = tree.leaves(node);
+    size.bytes += sizeof(LeafBlock) + (block.coloured != 0 ? sizeof(ColourBlock) : 0);
+    for (unsigned i = 0; i < 8; ++i) size.nodes += block.holds(i) ? 1 : 0;
+  }
+  return size;
+}
+
+}  // namespace roomradar

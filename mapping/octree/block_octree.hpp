@@ -1,0 +1,242 @@
+// block_octree.hpp: OctoMap's octree with eight siblings in one block: what the static map is fused into.
+// Private to the static map. Keys, depth, log-odds and pruning are OctoMap's; its file forms are written from
+// here by static_map_file.cpp. A frame touches some 50,000 groups of eight voxels, and memory decides how
+// long that takes: the eight are one line of the processor's cache, where OctoMap's nodes are nine places.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "mapping/octree/block_pool.hpp"
+#include "mapping/octree/fusion_config.hpp"
+#include "mapping/types/image.hpp"
+
+namespace roomradar {
+
+inline constexpr unsigned kLeafDepth = 16;  // OctoMap's, from its 16-bit keys
+inline constexpr int kKeyOrigin = 32768;    // key of the voxel whose lower corner is the world's origin
+
+/// Log-odds in units of BlockUnits::log_odds. 0 is unknown; what is known and even is the least above it,
+/// since OctoMap takes a probability of one half as occupied.
+using LogOdds = std::int16_t;
+
+/// What a node is: unknown, a cube of one log-odds, or a block of children.
+class Slot {
+ public:
+  Slot() = default;
+  static Slot cube(LogOdds log_odds) {
+    return log_odds == 0 ? Slot() : Slot(kCube | static_cast<std::uint16_t>(log_odds));
+  }
+  static Slot block(std::uint32_t number) { return Slot(number); }
+
+  [[nodiscard]] bool is_unknown() const { return bits_ == 0; }
+  [[nodiscard]] bool is_cube() const { return (bits_ & kCube) != 0; }
+  [[nodiscard]] bool is_block() const { return bits_ != 0 && !is_cube(); }
+  /// Of a cube; 0 of what is unknown.
+  [[nodiscard]] LogOdds log_odds() const { return static_cast<LogOdds>(static_cast<std::uint16_t>(bits_)); }
+  /// Number of the block: of inner blocks above depth 15, of leaf blocks at depth 15.
+  [[nodiscard]] std::uint32_t number() const { return bits_; }
+  friend bool operator==(const Slot&, const Slot&) = default;
+
+ private:
+  static constexpr std::uint32_t kCube = 1U << 31U;
+  explicit Slot(std::uint32_t bits) : bits_(bits) {}
+  std::uint32_t bits_ = 0;
+};
+
+/// The children of a node above depth 15, in OctoMap's order: x has weight 1, y 2, z 4.
+struct alignas(32) InnerBlock {
+  std::array<Slot, 8> slots;
+};
+static_assert(sizeof(InnerBlock) == 32);
+
+/// The eight voxels of a node of depth 15. A voxel behind a surface may be unknown and have a signed
+/// distance.
+struct alignas(64) LeafBlock {
+  std::array<LogOdds, 8> log_odds{};
+  std::array<std::int16_t, 8> distance{};  ///< in BlockUnits::distance_m
+  std::array<std::uint16_t, 8> weight{};   ///< in BlockUnits::weight; 0: no signed distance
+  std::uint32_t colours = 0;               ///< number of its ColourBlock; 0: none
+  std::uint8_t coloured = 0;               ///< bit i: voxel i has a colour
+
+  [[nodiscard]] bool holds(unsigned i) const { return log_odds[i] != 0 || weight[i] != 0; }
+};
+static_assert(sizeof(LeafBlock) == 64);
+
+/// The colours of a leaf block: away from it, since most blocks have none, or have it settled.
+struct ColourBlock {
+  std::array<Rgb, 8> colours;
+};
+
+/// What one step of the whole numbers in the blocks is worth: the range of each that a config allows, in 15
+/// or 16 bits. By default, at 1 cm: 1e-4, 5 micrometres, and half of what a frame weighs at 5 m.
+struct BlockUnits {
+  BlockUnits(double resolution_m, const FusionConfig& config);
+  float log_odds;
+  float distance_m;
+  float weight;
+};
+
+/// A node's place in the tree: how deep it is, and the key of its lowest voxel (kKeyOrigin + its index).
+struct NodePlace {
+  unsigned depth = 0;
+  Eigen::Array3i key = Eigen::Array3i::Zero();
+
+  [[nodiscard]] int edge_voxels() const { return 1 << (kLeafDepth - depth); }
+  [[nodiscard]] NodePlace child(unsigned i) const {
+    const int edge = edge_voxels() / 2;
+    return {depth + 1, key + Eigen::Array3i(i & 1U ? edge : 0, i & 2U ? edge : 0, i & 4U ? edge : 0)};
+  }
+  /// Which child of it holds a voxel.
+  [[nodiscard]] unsigned towards(const Eigen::Array3i& voxel_key) const {
+    const auto digit = [&](int axis) {
+      return static_cast<unsigned>(voxel_key[axis] >> (kLeafDepth - 1 - depth)) & 1U;
+    };
+    return digit(0) | digit(1) << 1U | digit(2) << 2U;
+  }
+};
+
+class BlockOctree {
+ public:
+  BlockOctree(double resolution_m, const FusionConfig& config);
+
+  [[nodiscard]] double resolution_m() const { return resolution_m_; }
+  [[nodiscard]] const BlockUnits& units() const { return units_; }
+  [[nodiscard]] std::size_t memory_bytes() const {
+    return inner_.memory_bytes() + leaves_.memory_bytes() + colours_.memory_bytes();
+  }
+
+  Slot root;
+
+  InnerBlock& inner(Slot slot) { return inner_[slot.number()]; }
+  const InnerBlock& inner(Slot slot) const { return inner_[slot.number()]; }
+  LeafBlock& leaves(Slot slot) { return leaves_[slot.number()]; }
+  const LeafBlock& leaves(Slot slot) const { return leaves_[slot.number()]; }
+  /// The block's colours, made where there are none.
+  ColourBlock& colours(LeafBlock& block) {
+    if (block.colours == 0) block.colours = colours_.take();
+    return colours_[block.colours];
+  }
+  [[nodiscard]] Rgb colour(const LeafBlock& block, unsigned i) const {
+    return (block.coloured >> i & 1U) != 0 ? colours_[block.colours].colours[i] : Rgb{};
+  }
+
+  /// What a node has become whose children are now `block`: a cube, or unknown, where the eight are alike;
+  /// else a block, which is `block` itself where the node was that already.
+  Slot settle(Slot node, const InnerBlock& block) {
+    if (alike(block)) {
+      if (node.is_block()) inner_.give_back(node.number());
+      return block.slots[0];
+    }
+    if (node.is_block()) return node;
+    const Slot kept = Slot::block(inner_.take());
+    inner(kept) = block;
+    return kept;
+  }
+  Slot settle(Slot node, const LeafBlock& block) {
+    if (alike(block)) {
+      const Slot merged = Slot::cube(block.log_odds[0]);
+      if (block.colours != 0) colours_.give_back(block.colours);
+      if (node.is_block()) leaves_.give_back(node.number());
+      return merged;
+    }
+    if (node.is_block()) return node;
+    const Slot kept = Slot::block(leaves_.take());
+    leaves(kept) = block;
+    return kept;
+  }
+
+ private:
+  // No two slots name the same block: alike are cubes, or unknown.
+  static bool alike(const InnerBlock& block) {
+    bool same = true;
+    for (const Slot slot : block.slots) same &= slot == block.slots[0];
+    return same;
+  }
+  static bool alike(const LeafBlock& block) {
+    using Words = std::array<std::uint64_t, 2>;
+    const auto weight = std::bit_cast<Words>(block.weight), log_odds = std::bit_cast<Words>(block.log_odds);
+    const std::uint64_t first = static_cast<std::uint16_t>(block.log_odds[0]) * 0x0001'0001'0001'0001U;
+    return (weight[0] | weight[1] | (log_odds[0] ^ first) | (log_odds[1] ^ first)) == 0;
+  }
+
+  double resolution_m_;
+  BlockUnits units_;
+  BlockPool<InnerBlock> inner_;
+  BlockPool<LeafBlock> leaves_;
+  BlockPool<ColourBlock> colours_;
+};
+
+struct SubtreeSize {
+  std::size_t nodes = 0;  ///< that OctoMap would have: its file forms store these
+  std::size_t bytes = 0;  ///< of the blocks that they lie in, colours included
+};
+/// Of a node and all below it.
+SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth);
+
+inline void forget_sample(LeafBlock& block, unsigned i) {
+  block.weight[i] = 0;
+  block.distance[i] = 0;
+  block.coloured &= static_cast<std::uint8_t>(~(1U << i));
+}
+
+/// The children of a node that is no block: each is what it is.
+inline InnerBlock opened(Slot node) {
+  InnerBlock block;
+  block.slots.fill(node);
+  return block;
+}
+inline LeafBlock opened_leaves(Slot node) {
+  LeafBlock block;
+  block.log_odds.fill(node.log_odds());
+  return block;
+}
+
+/// Visits what is below a node in Morton order: on_cube(place, log-odds), on_leaves(place, LeafBlock).
+template <typename OnCube, typename OnLeaves>
+void for_each_part(const BlockOctree& tree, Slot node, const NodePlace& place, const OnCube& on_cube,
+                   const OnLeaves& on_leaves) {
+  if (node.is_unknown()) return;
+  if (node.is_cube()) return on_cube(place, node.log_odds());
+  if (place.depth == kLeafDepth - 1) return on_leaves(place, tree.leaves(node));
+  const InnerBlock& block = tree.inner(node);
+  for (unsigned i = 0; i < 8; ++i) for_each_part(tree, block.slots[i], place.child(i), on_cube, on_leaves);
+}
+
+/// Visits each free or occupied leaf, of any size, in Morton order: visit(place, log-odds).
+template <typename Visit>
+void for_each_leaf(const BlockOctree& tree, const Visit& visit) {
+  for_each_part(tree, tree.root, {}, visit, [&](const NodePlace& place, const LeafBlock& block) {
+    for (unsigned i = 0; i < 8; ++i)
+      if (block.log_odds[i] != 0) visit(place.child(i), block.log_odds[i]);
+  });
+}
+
+/// Lets change(LeafBlock&) change the voxels of a node of depth 15, made where there are none. Gives what the
+/// node has become.
+template <typename Change>
+Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
+  LeafBlock made;
+  if (!node.is_block()) made = opened_leaves(node);
+  LeafBlock& block = node.is_block() ? tree.leaves(node) : made;
+  change(block);
+  return tree.settle(node, block);
+}
+
+/// Lets change(slot) say what the node at `target`, which is at or below `place`, becomes; makes what is
+/// above it. Gives what the node at `place` has become.
+template <typename Change>
+Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const NodePlace& target,
+                 const Change& change) {
+  if (place.depth == target.depth) return change(node);
+  InnerBlock made;
+  if (!node.is_block()) made = opened(node);
+  InnerBlock& block = node.is_block() ? tree.inner(node) : made;
+  const unsigned i = place.towards(target.key);
+  block.slots[i] = change_node(tree, block.slots[i], place.child(i), target, change);
+  return tree.settle(node, block);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,112 @@
+// depth_pyramid.cpp: building and asking the pyramid of depth bounds.
+#include "mapping/octree/depth_pyramid.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "mapping/types/depth_noise.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr float kNothing_m = std::numeric_limits<float>::infinity();
+// Front of a cell that leaves it to its neighbours.
+constexpr std::int16_t kNoWord = std::numeric_limits<std::int16_t>::max();
+constexpr float kFarthestStep = 32'000.0F;
+constexpr int kHoleLevel = 2;  // cells of 4 x 4 pixels must hold some depth
+
+DepthBounds merged(const DepthBounds& a, const DepthBounds& b) {
+  return {std::min(a.front, b.front), std::min(a.nearest, b.nearest), std::min(a.behind, b.behind),
+          std::min(a.unused, b.unused)};
+}
+
+// The row of cells that two rows of the image give.
+void bound_rows(const float* upper, const float* lower, int width, double resolution_m,
+                const FusionConfig& config, DepthPyramid& pyramid, DepthBounds* cells) {
+  float* nearest = pyramid.row_nearest_m.data();    // of what was measured
+  float* farthest = pyramid.row_farthest_m.data();  // likewise, within max_range_m
+  float* deepest = pyramid.row_deepest_m.data();    // at any range
+  const float max_range_m = config.max_range_m;
+  for (int x = 0; x < width; ++x) {
+    const float a = upper[x], b = lower[x];
+    nearest[x] = std::min(a > 0.0F ? a : kNothing_m, b > 0.0F ? b : kNothing_m);
+    farthest[x] = std::max(a <= max_range_m ? a : 0.0F, b <= max_range_m ? b : 0.0F);
+    deepest[x] = std::max(a, b);
+  }
+  const float steps_per_m = pyramid.steps_per_m;
+  for (int x = 0; x < (width + 1) / 2; ++x) {
+    const float near_m = std::min(nearest[2 * x], nearest[2 * x + 1]);
+    const float far_m = std::max(farthest[2 * x], farthest[2 * x + 1]);
+    const bool past_range = std::max(deepest[2 * x], deepest[2 * x + 1]) > max_range_m;
+    const float in_range_m = std::min(near_m, max_range_m);
+    const float front_m =
+        near_m > max_range_m ? max_range_m : in_range_m - half_layer_m(in_range_m, resolution_m, config);
+    const float layer_end_m = far_m > 0.0F ? far_m + half_layer_m(far_m, resolution_m, config) : 0.0F;
+    const float behind_m = std::max(layer_end_m, past_range ? max_range_m : 0.0F);
+    const int front =
+        near_m == kNothing_m ? kNoWord : static_cast<int>(std::max(front_m, 0.0F) * steps_per_m);
+    const int behind = -static_cast<int>(behind_m * steps_per_m) - 1;
+    cells[x] = {static_cast<std::int16_t>(front), static_cast<std::int16_t>(front),
+                static_cast<std::int16_t>(behind), 0};
+  }
+}
+
+void halve(DepthPyramid& pyramid, int level) {
+  const int fine_across = pyramid.cells_across(level - 1), fine_down = pyramid.cells_down(level - 1);
+  for (int y = 0; y < pyramid.cells_down(level); ++y) {
+    const DepthBounds* upper = pyramid.row(level - 1, 2 * y);
+    const DepthBounds* lower = pyramid.row(level - 1, std::min(2 * y + 1, fine_down - 1));
+    DepthBounds* out = pyramid.row(level, y);
+    for (int x = 0; x < fine_across / 2; ++x)
+      out[x] = merged(merged(upper[2 * x], upper[2 * x + 1]), merged(lower[2 * x], lower[2 * x + 1]));
+    if (fine_across % 2 == 1) out[fine_across / 2] = merged(upper[fine_across - 1], lower[fine_across - 1]);
+  }
+}
+
+// A cell without any depth leaves its word to others no longer: nothing is free there.
+void block_holes(DepthPyramid& pyramid, int level) {
+  for (int y = 0; y < pyramid.cells_down(level); ++y)
+    for (int x = 0; x < pyramid.cells_across(level); ++x) {
+      DepthBounds& cell = pyramid.row(level, y)[x];
+      cell.front = cell.front == kNoWord ? std::int16_t{0} : cell.front;
+    }
+}
+
+void resize(int width_px, int height_px, DepthPyramid& pyramid) {
+  if (pyramid.width_px == width_px && pyramid.height_px == height_px) return;
+  pyramid.width_px = width_px;
+  pyramid.height_px = height_px;
+  pyramid.levels = std::bit_width(static_cast<unsigned>(std::max({width_px, height_px, 2}) - 1));
+  pyramid.stride = pyramid.cells_across(1) + 1;  // pairs of cells are read, also at the end of a row
+  pyramid.cells.assign((std::size_t{1} << pyramid.levels) * static_cast<std::size_t>(pyramid.stride),
+                       {kNoWord, kNoWord, kNoWord, kNoWord});
+  const auto even_width = 2 * static_cast<std::size_t>(pyramid.cells_across(1));
+  pyramid.row_nearest_m.assign(even_width, kNothing_m);
+  pyramid.row_farthest_m.assign(even_width, 0.0F);
+  pyramid.row_deepest_m.assign(even_width, 0.0F);
+}
+
+}  // namespace
+
+float half_layer_m(float depth_m, double resolution_m, const FusionConfig& config) {
+  return std::max(config.truncation_voxels * static_cast<float>(resolution_m),
+                  config.truncation_sigmas * depth_sigma_m(depth_m));
+}
+
+void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
+                   DepthPyramid& pyramid) {
+  pyramid.steps_per_m =
+      kFarthestStep / (config.max_range_m + half_layer_m(config.max_range_m, resolution_m, config));
+  resize(depth_m.width, depth_m.height, pyramid);
+  for (int y = 0; y < pyramid.cells_down(1); ++y)
+    bound_rows(depth_m.row(2 * y), depth_m.row(std::min(2 * y + 1, depth_m.height - 1)), depth_m.width,
+               resolution_m, config, pyramid, pyramid.row(1, y));
+  for (int level = 2; level <= pyramid.levels; ++level) {
+    halve(pyramid, level);
+    if (level <= kHoleLevel) block_holes(pyramid, level - 1);
+    if (level == kHoleLevel) block_holes(pyramid, level);
+  }
+}
+
+}  // namespace roomradar

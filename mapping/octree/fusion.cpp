@@ -1,0 +1,202 @@
+// fusion.cpp: the descent that fuses one depth frame.
+#include "mapping/octree/fusion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <span>
+
+#include "mapping/octree/leaf_update.hpp"
+#include "mapping/octree/node_visibility.hpp"
+
+namespace roomradar {
+namespace {
+
+using HitRange = std::span<const BlockHits>;
+
+// A sample fades only where a box so many times its node is seen through: at an edge, poses that are a little
+// off see past what is there.
+constexpr float kClearance = 3.0F;
+
+// The hits in each child of a node. They are sorted: those of child i come before those of child i + 1.
+struct ChildHits {
+  unsigned mask = 0;  // bit i: there are some in child i
+  std::array<HitRange, 8> in;
+
+  ChildHits(HitRange hits, unsigned child_depth) {
+    while (!hits.empty()) {
+      const unsigned i = hits.front().child(child_depth);
+      const auto end = std::partition_point(
+          hits.begin(), hits.end(), [&](const BlockHits& hit) { return hit.child(child_depth) == i; });
+      in[i] = hits.first(static_cast<std::size_t>(end - hits.begin()));
+      hits = hits.subspan(in[i].size());
+      mask |= 1U << i;
+    }
+  }
+};
+
+template <typename Float8>
+class Descent {
+ public:
+  Descent(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_camera_world,
+          const FusionConfig& config, const DepthPyramid& pyramid)
+      : tree_(tree),
+        config_(config),
+        pyramid_(pyramid),
+        camera_(frame.depth_camera),
+        offsets_(T_camera_world.linear(), tree.resolution_m()),
+        leaves_(tree, frame, config),
+        frame_index_(static_cast<std::uint64_t>(frame.index)) {}
+
+  /// root_centre: of the whole tree, in the camera frame, m.
+  void run(const Eigen::Vector3d& root_centre, HitRange hits) {
+    tree_.root = update(tree_.root, 0, cell_at(0, root_centre, 0, hits));
+  }
+
+ private:
+  // A node above depth 15 that is looked into.
+  struct Cell {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // in the camera frame, m
+    std::uint64_t code = 0;                            // Morton code
+    HitRange hits;
+    Verdicts children;
+  };
+  Cell cell_at(unsigned depth, const Eigen::Vector3d& centre, std::uint64_t code, HitRange hits) const {
+    return {centre, code, hits, judge_children(depth, centre, 1.0F)};
+  }
+  Verdicts judge_children(unsigned depth, const Eigen::Vector3d& centre, float enlarged) const {
+    return judge(offsets_.centres<Float8>(depth, centre), offsets_.half_extent(depth) * enlarged, camera_,
+                 config_.max_range_m, pyramid_);
+  }
+
+  /// Gives what the node has become.
+  Slot update(Slot node, unsigned depth, const Cell& cell) {
+    const ChildHits hits(cell.hits, depth + 1);
+    InnerBlock made;
+    if (!node.is_block()) made = opened(node);
+    InnerBlock& block = node.is_block() ? tree_.inner(node) : made;
+    const unsigned settled = settled_free(block);
+    unsigned free = cell.children.free & ~hits.mask & ~settled;
+    unsigned split =
+        hits.mask |
+        (0xFFU & ~(cell.children.nothing | cell.children.free | (cell.children.part_free & settled)));
+    if ((free | split) == 0) return node;
+
+    const bool children_hold_leaves = depth + 1 == kLeafDepth - 1;
+    prefetch_children(block, free | split, children_hold_leaves);
+    unsigned clear = free;
+    if (const unsigned in_doubt = free == 0 ? 0 : free & blocks_in(block); in_doubt != 0) {
+      clear &= ~in_doubt | judge_children(depth, cell.centre, kClearance).free;
+      if (!children_hold_leaves) {
+        split |= free & ~clear;
+        free &= clear;
+      }
+    }
+    for (unsigned open = free; open != 0; open &= open - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(open));
+      const double z_m = cell.centre.z() + offsets_.to_child(depth, i).z();
+      const float weight = weight_at(static_cast<float>(z_m));
+      block.slots[i] = mark_free(block.slots[i], depth + 1, weight, (clear >> i & 1U) != 0);
+    }
+    if (children_hold_leaves)
+      update_leaves(block, split, cell, hits);
+    else
+      update_children(block, split, depth, cell, hits);
+    return tree_.settle(node, block);
+  }
+
+  // All are judged before the first is changed: the processor works on one while it waits for another.
+  void update_children(InnerBlock& block, unsigned split, unsigned depth, const Cell& cell,
+                       const ChildHits& hits) {
+    std::array<Cell, 8> cells;
+    for (unsigned open = split; open != 0; open &= open - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(open));
+      cells[i] =
+          cell_at(depth + 1, cell.centre + offsets_.to_child(depth, i), cell.code << 3U | i, hits.in[i]);
+    }
+    for (unsigned open = split; open != 0; open &= open - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(open));
+      block.slots[i] = update(block.slots[i], depth + 1, cells[i]);
+    }
+  }
+  void update_leaves(InnerBlock& block, unsigned split, const Cell& cell, const ChildHits& hits) {
+    std::array<Observed<Float8>, 8> observed;
+    for (unsigned open = split; open != 0; open &= open - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(open));
+      const Eigen::Vector3d centre = cell.centre + offsets_.to_child(kLeafDepth - 2, i);
+      observed[i] = leaves_.observe(offsets_.centres<Float8>(kLeafDepth - 1, centre));
+    }
+    for (unsigned open = split; open != 0; open &= open - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(open));
+      const unsigned hit = hits.in[i].empty() ? 0 : hits.in[i].front().voxels();
+      block.slots[i] = leaves_.update(block.slots[i], observed[i], hit, is_colours_turn(cell.code << 3U | i));
+    }
+  }
+
+  // The whole node is seen through; clear: and so is what is round it.
+  Slot mark_free(Slot node, unsigned depth, float weight, bool clear) {
+    if (!node.is_block()) return leaves_.missed(node);
+    if (depth == kLeafDepth - 1) return leaves_.mark_free(node, weight, clear);
+    InnerBlock& block = tree_.inner(node);
+    prefetch_children(block, 0xFFU, depth + 1 == kLeafDepth - 1);
+    for (Slot& slot : block.slots) slot = mark_free(slot, depth + 1, weight, clear);
+    return tree_.settle(node, block);
+  }
+
+  static unsigned blocks_in(const InnerBlock& block) {
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i].is_block()) << i;
+    return bits;
+  }
+  [[nodiscard]] unsigned settled_free(const InnerBlock& block) const {
+    const Slot settled = leaves_.settled_free();
+    unsigned bits = 0;
+    for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i] == settled) << i;
+    return bits;
+  }
+
+  // A settled colour is looked at by one frame in sixteen; which one, differs from block to block.
+  [[nodiscard]] bool is_colours_turn(std::uint64_t code) const {
+    return (((code * 0x9E37'79B9'7F4A'7C15U) >> 60U) + frame_index_) % 16 == 0;
+  }
+
+  void prefetch_children(const InnerBlock& block, unsigned which, bool hold_leaves) const {
+    for (; which != 0; which &= which - 1) {
+      const Slot child = block.slots[static_cast<unsigned>(std::countr_zero(which))];
+      if (!child.is_block()) continue;
+      if (hold_leaves)
+        __builtin_prefetch(&tree_.leaves(child), 1);
+      else
+        __builtin_prefetch(&tree_.inner(child), 1);
+    }
+  }
+
+  BlockOctree& tree_;
+  const FusionConfig& config_;
+  const DepthPyramid& pyramid_;
+  Pinhole camera_;
+  ChildOffsets offsets_;
+  LeafUpdate<Float8> leaves_;
+  std::uint64_t frame_index_;
+};
+
+template <typename Float8>
+void descend(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+             const FusionConfig& config, const FusionScratch& scratch) {
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  const Eigen::Vector3d world_origin = T_camera_world.translation();  // the middle of the tree
+  Descent<Float8>(tree, frame, T_camera_world, config, scratch.pyramid).run(world_origin, scratch.hits);
+}
+
+}  // namespace
+
+void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                const FusionConfig& config, FusionScratch& scratch, Arithmetic arithmetic) {
+  build_pyramid(frame.depth_m, tree.resolution_m(), config, scratch.pyramid);
+  if (arithmetic == Arithmetic::kFastest)
+    descend<Float8>(tree, frame, T_world_camera, config, scratch);
+  else
+    descend<PlainFloat8>(tree, frame, T_world_camera, config, scratch);
+}
+
+}  // namespace roomradar

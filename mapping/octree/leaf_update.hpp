@@ -1,0 +1,247 @@
+// fusion_leaves.hpp: what a frame does to the eight voxels of a leaf block. Private to the fusion.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "mapping/octree/block_octree.hpp"
+#include "mapping/octree/node_visibility.hpp"
+#include "mapping/octree/simd8f.hpp"
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+/// What a measurement weighs: the variance at 1 m over its own, at most 1.
+inline float weight_at(float depth_m) {
+  const float ratio = depth_sigma_m(1.0F) / depth_sigma_m(depth_m);
+  return std::min(ratio * ratio, 1.0F);
+}
+
+/// What the pixels that the centres of eight voxels fall on say about them.
+template <typename Float8>
+struct Observed {
+  EightPoints<Float8> p_camera;  ///< the centres
+  Float8 distance_m;             ///< the measured depth less the centre's
+  Float8 sigma_m;                ///< of the measured depth
+  unsigned free = 0;             ///< bit i: centre i is seen through
+  unsigned sampled = 0;          ///< it is within the truncation of the measured surface
+};
+
+template <typename Float8>
+class LeafUpdate {
+ public:
+  LeafUpdate(BlockOctree& tree, const Frame& frame, const FusionConfig& config)
+      : tree_(tree),
+        frame_(frame),
+        config_(config),
+        camera_(frame.depth_camera),
+        colour_camera_(frame.colour_camera),
+        T_colour_depth_(frame.T_colour_depth.cast<float>().matrix()),
+        truncation_m_(config.truncation_voxels * static_cast<float>(tree.resolution_m())),
+        colour_distance_m_(kColourVoxels * static_cast<float>(tree.resolution_m())),
+        behind_(-kBehind_voxels * static_cast<float>(tree.resolution_m()) / tree.units().distance_m),
+        hit_(in_steps(config.hit_log_odds)),
+        miss_(in_steps(config.miss_log_odds)),
+        min_(in_steps(config.min_log_odds)),
+        max_(in_steps(config.max_log_odds)) {
+    const ColourImage& colour = frame.colour;
+    has_colour_ = !colour.empty() && colour.width == frame.colour_camera.width_px &&
+                  colour.height == frame.colour_camera.height_px;
+  }
+
+  /// A cube that another miss would not change.
+  [[nodiscard]] Slot settled_free() const { return Slot::cube(static_cast<LogOdds>(min_)); }
+  [[nodiscard]] Slot missed(Slot cube) const {
+    const float after = std::max(static_cast<float>(cube.log_odds()) + miss_, min_);
+    return Slot::cube(static_cast<LogOdds>(after == 0.0F ? 1.0F : after));
+  }
+
+  [[nodiscard]] Observed<Float8> observe(const EightPoints<Float8>& p_camera) const {
+    const Float8 inverse_z = Float8(1.0F) / p_camera.z;
+    const Float8 u = floor(p_camera.x * camera_.fx * inverse_z + (camera_.cx + 0.5F));
+    const Float8 v = floor(p_camera.y * camera_.fy * inverse_z + (camera_.cy + 0.5F));
+    const auto seen = (Float8(kNearest_m) < p_camera.z) & (Float8(0.0F) <= u) & (u < camera_.width) &
+                      (Float8(0.0F) <= v) & (v < camera_.height);
+    const Float8 depth_m = Float8::gather(frame_.depth_m.pixels.data(), v * camera_.width + u, seen);
+    const auto measured = Float8(kLeastDepth_m) <= depth_m;
+    const Float8 distance_m = depth_m - p_camera.z;
+    const Float8 sigma_m = sigma_of(depth_m);
+    const auto free = measured & (p_camera.z < min(depth_m, config_.max_range_m));
+    const auto sampled = measured & (depth_m <= config_.max_range_m) &
+                         (absolute(distance_m) <= max(truncation_m_, sigma_m * config_.truncation_sigmas));
+    return {p_camera, distance_m, sigma_m, free.bits(), sampled.bits()};
+  }
+
+  /// hit: bit i: a ray ends in voxel i. refresh_colour: a colour that is settled is averaged on, too. Gives
+  /// what the node of the eight has become.
+  Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
+    const unsigned missed = observed.free & ~hit;
+    unsigned sampled = observed.sampled;
+    if ((hit | missed | sampled) == 0) return node;
+    if ((hit | sampled) == 0 && node == settled_free()) return node;
+    LeafBlock made;
+    if (!node.is_block()) made = opened_leaves(node);
+    LeafBlock& block = node.is_block() ? tree_.leaves(node) : made;
+    if ((hit | missed) != 0) add_log_odds(block, hit, missed);
+    if (const unsigned gone = missed & seen_through(block, observed); gone != 0)
+      sampled &= ~cancel_samples(block, weight_of(observed.sigma_m), gone);
+    if (sampled != 0) add_samples(block, observed, sampled, refresh_colour);
+    return tree_.settle(node, block);
+  }
+
+  /// All eight are seen through, from so far that the frame weighs `weight`; clear: and so is what is round
+  /// them: then a sample's distance is at least the truncation. Once this is settled the sample goes, so that
+  /// the voxel can merge with the free space around it. A voxel seen through by its own pixel alone keeps its
+  /// sample: beside an edge, and on surfaces seen obliquely, that is noise more often than change. Only what
+  /// lies behind a surface cannot be seen through unless that has gone: there the frames that saw it and
+  /// those that see through it cancel each other. Else what moved on from before a wall, too near to it to be
+  /// clear, would leave its back behind.
+  Slot mark_free(Slot node, float weight, bool clear) {
+    LeafBlock& block = tree_.leaves(node);
+    add_log_odds(block, 0, 0xFFU);
+    if (clear)
+      fade_samples(block, weight);
+    else if (const unsigned gone = behind_surface(block); gone != 0)
+      cancel_samples(block, weight, gone);
+    return tree_.settle(node, block);
+  }
+
+ private:
+  // Samples so far from the surface take its colour: its triangles' corners lie among them.
+  static constexpr float kColourVoxels = 1.5F;
+  // A measurement that weighs less than this part of all before leaves the colour as it is, but now and then;
+  // then it counts as this part: rounded to whole levels, less would change nothing.
+  static constexpr float kSettledPart = 1.0F / 8.0F;
+
+  // A sample is behind a surface from here on: nearer, noise and poses see past it too often.
+  static constexpr float kBehind_voxels = 0.5F;
+  // A frame that sees through such a sample takes back so many that measured it: the first ones only make the
+  // voxel free, and what was there for half of the frames is to go.
+  static constexpr float kCancelled = 2.0F;
+
+  static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
+  [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }
+
+  // depth_sigma_m() of each.
+  static Float8 sigma_of(const Float8& depth_m) {
+    const Float8 beyond_m = max(depth_m - 0.4F, 0.0F);
+    return beyond_m * beyond_m * 0.0019F + 0.0012F;
+  }
+
+  static Float8 weight_of(const Float8& sigma_m) {
+    const Float8 ratio = Float8(depth_sigma_m(1.0F)) / sigma_m;
+    return min(ratio * ratio, 1.0F);
+  }
+
+  void add_log_odds(LeafBlock& block, unsigned hit, unsigned missed) const {
+    const Float8 before = Float8::load(block.log_odds);
+    const Float8 after =
+        select(Float8::Mask::of_bits(hit), min(before + hit_, max_), max(before + miss_, min_));
+    const Float8 known = select(after == Float8(0.0F), 1.0F, after);
+    select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
+  }
+
+  // What is occupied keeps its sample: without one it would be out of sight for the votes on ghosts.
+  [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
+    return ((Float8::load(block.distance) < Float8(behind_)) & (Float8::load(block.log_odds) <= 0.0F)).bits();
+  }
+  // Of those, the ones that this frame measures something farther than the truncation behind.
+  [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
+    const Float8 further =
+        observed.distance_m * (1.0F / tree_.units().distance_m) - Float8::load(block.distance);
+    return behind_surface(block) & (Float8(truncation_m_ / tree_.units().distance_m) < further).bits();
+  }
+
+  // Takes the weight of a frame that sees through the samples in `gone` from them. Gives those that are left.
+  unsigned cancel_samples(LeafBlock& block, const Float8& weight, unsigned gone) const {
+    const Float8 own_weight = Float8::load(block.weight);
+    const Float8 cancelled = max(weight * (kCancelled / tree_.units().weight), 1.0F);
+    select(Float8::Mask::of_bits(gone), max(own_weight - cancelled, 0.0F), own_weight)
+        .store_rounded(block.weight);
+    const auto kept = Float8(0.0F) < Float8::load(block.weight);
+    select(kept, Float8::load(block.distance), 0.0F).store_rounded(block.distance);
+    block.coloured &= static_cast<std::uint8_t>(kept.bits());
+    return gone & kept.bits();
+  }
+
+  void fade_samples(LeafBlock& block, float weight) const {
+    const BlockUnits& units = tree_.units();
+    const Float8 own_weight = Float8::load(block.weight);
+    const Float8 gained(std::max(weight * config_.seen_through_gain / units.weight, 1.0F));
+    const Float8 distance = Float8::load(block.distance);
+    const Float8 truncation(truncation_m_ / units.distance_m);
+    const Float8 sum = own_weight + gained;
+    const Float8 further = distance + (max(truncation, distance) - distance) * (gained / sum);
+    const auto sampled = Float8(0.0F) < own_weight;
+    const auto forgotten = (Float8::load(block.log_odds) <= min_) & (truncation * 0.7F < further);
+    const auto kept = Float8::Mask::of_bits(sampled.bits() & ~forgotten.bits());
+    select(kept, further, 0.0F).store_rounded(block.distance);
+    select(kept, sum, 0.0F).store_rounded(block.weight);
+    block.coloured &= static_cast<std::uint8_t>(kept.bits());
+  }
+
+  void add_samples(LeafBlock& block, const Observed<Float8>& observed, unsigned which, bool refresh_colour) {
+    const BlockUnits& units = tree_.units();
+    const Float8 own_weight = Float8::load(block.weight);
+    const Float8 weight = max(floor(weight_of(observed.sigma_m) * (1.0F / units.weight) + 0.5F), 1.0F);
+    const Float8 sum = own_weight + weight;
+    const Float8 part = weight / sum;
+    const Float8 distance = Float8::load(block.distance);
+    const Float8 mean = distance + (observed.distance_m * (1.0F / units.distance_m) - distance) * part;
+    const auto sampled = Float8::Mask::of_bits(which);
+    select(sampled, mean, distance).store_rounded(block.distance);
+    select(sampled, sum, own_weight).store_rounded(block.weight);
+    if (!has_colour_) return;
+    unsigned take = which & (absolute(observed.distance_m) < colour_distance_m_).bits();
+    if (!refresh_colour) take &= ~block.coloured | (Float8(kSettledPart) <= part).bits();
+    if (take != 0) add_colours(block, observed.p_camera, max(part, kSettledPart), take);
+  }
+
+  void add_colours(LeafBlock& block, const EightPoints<Float8>& p_camera, const Float8& part, unsigned take) {
+    const Eigen::Matrix4f& T = T_colour_depth_;
+    const auto along = [&](int row) {
+      return p_camera.x * T(row, 0) + p_camera.y * T(row, 1) + p_camera.z * T(row, 2) + T(row, 3);
+    };
+    const Float8 z = along(2);
+    const Float8 inverse_z = Float8(1.0F) / z;
+    const Float8 u = along(0) * colour_camera_.fx * inverse_z + colour_camera_.cx;
+    const Float8 v = along(1) * colour_camera_.fy * inverse_z + colour_camera_.cy;
+    const auto in_image = (Float8(kNearest_m) < z) & (Float8(0.0F) <= u) & (u < colour_camera_.width - 1.0F) &
+                          (Float8(0.0F) <= v) & (v < colour_camera_.height - 1.0F);
+    take &= in_image.bits();
+    if (take == 0) return;
+    alignas(32) std::array<float, 8> pixel_x, pixel_y, parts;
+    (u + 0.5F).store(pixel_x);
+    (v + 0.5F).store(pixel_y);
+    part.store(parts);
+    ColourBlock& colours = tree_.colours(block);
+    for (; take != 0; take &= take - 1) {
+      const auto i = static_cast<unsigned>(std::countr_zero(take));
+      const Rgb seen = frame_.colour.at(static_cast<int>(pixel_x[i]), static_cast<int>(pixel_y[i]));
+      Rgb& own = colours.colours[i];
+      own = (block.coloured >> i & 1U) != 0 ? blended(own, seen, parts[i]) : seen;
+      block.coloured |= static_cast<std::uint8_t>(1U << i);
+    }
+  }
+
+  static Rgb blended(const Rgb& own, const Rgb& seen, float part) {
+    const auto channel = [part](std::uint8_t a, std::uint8_t b) {
+      return static_cast<std::uint8_t>(static_cast<float>(a) + static_cast<float>(b - a) * part + 0.5F);
+    };
+    return {channel(own.r, seen.r), channel(own.g, seen.g), channel(own.b, seen.b)};
+  }
+
+  BlockOctree& tree_;
+  const Frame& frame_;
+  const FusionConfig& config_;
+  Pinhole camera_, colour_camera_;
+  Eigen::Matrix4f T_colour_depth_;
+  float truncation_m_, colour_distance_m_;
+  float behind_;                  // a distance, in the tree's steps
+  float hit_, miss_, min_, max_;  // log-odds, in the tree's steps
+  bool has_colour_ = false;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,73 @@
+// memory_use.cpp: what the system says of this process, and what single frames say of the whole scan.
+#include "mapping/octree/memory_use.hpp"
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "mapping/octree/static_map.hpp"
+
+namespace roomradar {
+
+std::size_t resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t all_pages = 0, resident_pages = 0;
+  if (!(file >> all_pages >> resident_pages)) return 0;
+  return resident_pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t machine_bytes() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || page_bytes <= 0) return 0;
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes);
+}
+
+void release_unused_memory() {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
+}
+
+void keep_large_blocks_apart() {
+#ifdef __GLIBC__
+  // Above what decoding one 640 x 480 image takes, below a keyframe's reference. Unless it is set glibc puts
+  // it up to whatever was freed last.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
+
+std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolution_m) {
+  constexpr std::int64_t kLooks = 4, kTries = 5, kMinute = 1800;
+  constexpr double kFramesAnew = 80.0, kWholeRoom = 20.0;
+  constexpr double kTracking_bytes = 60e6,
+                   kKeyframe_bytes = 0.05e6;  // the latter a frame: one in eight is one
+  const std::optional<std::int64_t> count = source.frame_count();
+  MemoryEstimate estimate{.frames = count.value_or(kMinute), .length_known = count.has_value()};
+  double sum_bytes = 0.0;
+  int looks = 0;
+  Frame frame;
+  for (std::int64_t look = 0; look < kLooks; ++look) {
+    if (look > 0 && !(count && source.seek(look * *count / kLooks))) break;
+    for (std::int64_t attempt = 0; attempt < kTries; ++attempt) {
+      const ReadResult result = source.next(frame);
+      if (result.status == ReadStatus::kEnd) break;
+      if (result.status != ReadStatus::kFrame) continue;
+      StaticMap map(resolution_m);
+      if (map.fuse(frame, Eigen::Isometry3d::Identity()) != FuseStatus::kFused) continue;
+      sum_bytes += static_cast<double>(map.memory_bytes());
+      ++looks;
+      break;
+    }
+  }
+  if (!source.rewind() || looks == 0) return std::nullopt;
+  const auto frames = static_cast<double>(estimate.frames);
+  estimate.octree_bytes = sum_bytes / looks * std::min(1.0 + frames / kFramesAnew, kWholeRoom);
+  estimate.process_bytes =
+      static_cast<double>(resident_bytes()) +
+      std::max(kTracking_bytes + frames * kKeyframe_bytes, (1.0 + kSurfaceMemory) * estimate.octree_bytes);
+  return estimate;
+}
+
+}  // namespace roomradar

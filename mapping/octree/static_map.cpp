@@ -1,0 +1,339 @@
+// static_map.cpp: fusing into and asking the octree.
+#include "mapping/octree/static_map.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "mapping/octree/static_map_octree.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
+#include "mapping/types/validity.hpp"
+
+namespace roomradar {
+namespace {
+
+using Key = Eigen::Array3i;
+
+Occupancy occupancy_of(LogOdds log_odds) {
+  if (log_odds == 0) return Occupancy::kUnknown;
+  return log_odds > 0 ? Occupancy::kOccupied : Occupancy::kFree;
+}
+
+SurfaceSample sample_of(const BlockOctree& tree, const LeafBlock& block, unsigned i, const Key& key) {
+  return {.voxel = (key - kKeyOrigin).matrix(),
+          .occupancy = occupancy_of(block.log_odds[i]),
+          .distance_m = block.distance[i] * tree.units().distance_m,
+          .weight = block.weight[i] * tree.units().weight,
+          .colour = tree.colour(block, i),
+          .has_colour = (block.coloured >> i & 1U) != 0};
+}
+
+// What holds one voxel: a leaf block and the voxel's place in it, or a node that is no block.
+struct Found {
+  Key key = Key::Zero();
+  Slot node;
+  const LeafBlock* block = nullptr;
+  unsigned i = 0;
+
+  [[nodiscard]] LogOdds log_odds() const { return block ? block->log_odds[i] : node.log_odds(); }
+};
+
+Found find(const BlockOctree& tree, const Eigen::Vector3d& p_world) {
+  const Eigen::Array3d voxel = (p_world / tree.resolution_m()).array().floor() + kKeyOrigin;
+  if (!(voxel >= 0.0).all() || !(voxel <= 65535.0).all()) return {};
+  Found found{.key = voxel.cast<int>(), .node = tree.root};
+  NodePlace place;
+  for (; found.node.is_block() && place.depth < kLeafDepth - 1; ++place.depth)
+    found.node = tree.inner(found.node).slots[place.towards(found.key)];
+  if (!found.node.is_block()) return found;
+  found.block = &tree.leaves(found.node);
+  found.i = place.towards(found.key);
+  return found;
+}
+
+// Adding log-odds to all there is in a node, within the clamping.
+class AddLogOdds {
+ public:
+  AddLogOdds(BlockOctree& tree, const FusionConfig& config, float log_odds)
+      : tree_(tree), config_(config), added_(log_odds) {}
+
+  [[nodiscard]] Slot to_node(Slot node, unsigned depth) const {
+    if (!node.is_block()) return Slot::cube(sum(node.log_odds()));
+    if (depth == kLeafDepth - 1) return to_voxels(node, 0xFFU);
+    InnerBlock& block = tree_.inner(node);
+    for (Slot& slot : block.slots) slot = to_node(slot, depth + 1);
+    return tree_.settle(node, block);
+  }
+  [[nodiscard]] Slot to_voxels(Slot node, unsigned which) const {
+    return change_leaves(tree_, node, [&](LeafBlock& block) {
+      for (unsigned i = 0; i < 8; ++i)
+        if ((which >> i & 1U) != 0) block.log_odds[i] = sum(block.log_odds[i]);
+    });
+  }
+
+ private:
+  [[nodiscard]] LogOdds sum(LogOdds before) const {
+    const float unit = tree_.units().log_odds;
+    const float after =
+        std::clamp(static_cast<float>(before) * unit + added_, config_.min_log_odds, config_.max_log_odds);
+    const auto steps = static_cast<LogOdds>(std::lround(after / unit));
+    return steps == 0 ? LogOdds{1} : steps;
+  }
+  BlockOctree& tree_;
+  const FusionConfig& config_;
+  float added_;
+};
+
+// Averages a sample of another map into voxel i.
+void add_sample(BlockOctree& tree, LeafBlock& block, unsigned i, const SurfaceSample& sample) {
+  const BlockUnits& units = tree.units();
+  const float weight = std::clamp(std::round(sample.weight / units.weight), 1.0F, 65535.0F);
+  const float sum = static_cast<float>(block.weight[i]) + weight;
+  const float part = weight / sum;
+  if (sample.has_colour) {
+    Rgb& own = tree.colours(block).colours[i];
+    const float colour_part = (block.coloured >> i & 1U) != 0 ? part : 1.0F;
+    const auto mean = [colour_part](std::uint8_t a, std::uint8_t b) {
+      return static_cast<std::uint8_t>(std::lround(a + static_cast<float>(b - a) * colour_part));
+    };
+    own = {mean(own.r, sample.colour.r), mean(own.g, sample.colour.g), mean(own.b, sample.colour.b)};
+    block.coloured |= static_cast<std::uint8_t>(1U << i);
+  }
+  const auto own_distance = static_cast<float>(block.distance[i]);
+  const float distance = own_distance + (sample.distance_m / units.distance_m - own_distance) * part;
+  block.distance[i] = static_cast<std::int16_t>(std::lround(std::clamp(distance, -32767.0F, 32767.0F)));
+  block.weight[i] = static_cast<std::uint16_t>(std::min(sum, 65535.0F));
+}
+
+// The keys of the voxels whose centres lie in a box.
+struct KeyRange {
+  Key first = Key::Zero();
+  Key last = Key::Constant(65535);
+
+  [[nodiscard]] bool holds(const Key& key) const { return (key >= first).all() && (key <= last).all(); }
+  [[nodiscard]] bool meets(const NodePlace& place) const {
+    return (place.key <= last).all() && (place.key + (place.edge_voxels() - 1) >= first).all();
+  }
+};
+KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m) {
+  if (box_world.isEmpty()) return {.first = Key::Constant(1), .last = Key::Zero()};
+  const auto to_key = [](const Eigen::Array3d& voxel) -> Key {
+    return voxel.max(-1.0).min(65536.0).cast<int>();
+  };
+  const Eigen::Array3d low = box_world.min().array() / resolution_m + kKeyOrigin - 0.5;
+  const Eigen::Array3d high = box_world.max().array() / resolution_m + kKeyOrigin - 0.5;
+  return {.first = to_key(low.ceil()), .last = to_key(high.floor())};
+}
+
+// Decides on every sample below a node that is in the range. Gives what the node has become.
+Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, const KeyRange& range,
+            const std::function<SampleFate(const SurfaceSample&)>& decide) {
+  if (!node.is_block() || !range.meets(place)) return node;
+  if (place.depth == kLeafDepth - 1)
+    return change_leaves(tree, node, [&](LeafBlock& block) {
+      for (unsigned i = 0; i < 8; ++i) {
+        const bool is_surface = block.weight[i] != 0 || block.log_odds[i] > 0;
+        if (!is_surface || !range.holds(place.child(i).key)) continue;
+        const SampleFate fate = decide(sample_of(tree, block, i, place.child(i).key));
+        if (fate == SampleFate::kKeep) continue;
+        forget_sample(block, i);
+        if (fate == SampleFate::kFree) block.log_odds[i] = free;
+        if (fate == SampleFate::kUnknown) block.log_odds[i] = 0;
+      }
+    });
+  InnerBlock& block = tree.inner(node);
+  for (unsigned i = 0; i < 8; ++i)
+    block.slots[i] = revise(tree, block.slots[i], place.child(i), free, range, decide);
+  return tree.settle(node, block);
+}
+
+// Visits the samples below a node that are in the range.
+void visit_in(const BlockOctree& tree, Slot node, const NodePlace& place, const KeyRange& range,
+              const std::function<void(const SurfaceSample&)>& visit) {
+  if (!node.is_block() || !range.meets(place)) return;
+  if (place.depth == kLeafDepth - 1) {
+    const LeafBlock& block = tree.leaves(node);
+    for (unsigned i = 0; i < 8; ++i)
+      if (block.weight[i] != 0 && range.holds(place.child(i).key))
+        visit(sample_of(tree, block, i, place.child(i).key));
+    return;
+  }
+  const InnerBlock& block = tree.inner(node);
+  for (unsigned i = 0; i < 8; ++i) visit_in(tree, block.slots[i], place.child(i), range, visit);
+}
+
+void require_cube(const VoxelIndex& lowest, int edge_voxels) {
+  const Key key = lowest.array() + kKeyOrigin;
+  const bool sound = edge_voxels > 0 && edge_voxels <= 1 << kLeafDepth &&
+                     std::has_single_bit(static_cast<unsigned>(edge_voxels)) &&
+                     (lowest.array() >= -kKeyOrigin).all() && (lowest.array() < kKeyOrigin).all() &&
+                     key.unaryExpr([&](int k) { return k & (edge_voxels - 1); }).isZero();
+  if (sound) return;
+  throw Error(
+      "voxel " + std::to_string(lowest.x()) + " " + std::to_string(lowest.y()) + " " +
+      std::to_string(lowest.z()) + " with an edge of " + std::to_string(edge_voxels) +
+      " is no leaf of an octree: it must lie within +-32768, on a multiple of its edge, a power of two");
+}
+
+const FusionConfig& checked(const FusionConfig& config) {
+  require_valid(config);
+  return config;
+}
+
+double checked_resolution(double resolution_m) {
+  if (!(resolution_m >= 0.001 && resolution_m <= 1.0))
+    throw Error("resolution = " + number_text(resolution_m) + " m: must be within 0.001 and 1 m");
+  return resolution_m;
+}
+
+}  // namespace
+
+StaticMap::Octree::Octree(double resolution_m, const FusionConfig& fusion)
+    : config(checked(fusion)), tree(checked_resolution(resolution_m), config) {}
+
+StaticMap::StaticMap(double resolution_m, const FusionConfig& config)
+    : octree_(std::make_unique<Octree>(resolution_m, config)) {}
+StaticMap::StaticMap(std::unique_ptr<Octree> octree) : octree_(std::move(octree)) {}
+StaticMap::~StaticMap() = default;
+StaticMap::StaticMap(StaticMap&&) noexcept = default;
+StaticMap& StaticMap::operator=(StaticMap&&) noexcept = default;
+
+FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  constexpr int kMaxSide_px = 4096;  // pixels are counted in floats
+  if (!depth_fault_of(frame).empty() || std::max(frame.depth_m.width, frame.depth_m.height) > kMaxSide_px)
+    return FuseStatus::kInvalidFrame;
+  if (!is_rigid(T_world_camera, 1e-3)) return FuseStatus::kInvalidPose;
+  Octree& o = *octree_;
+  switch (collect_hits(frame, T_world_camera, resolution_m(), o.config, o.scratch)) {
+    case HitStatus::kNone:
+      return FuseStatus::kNothingMeasured;
+    case HitStatus::kOutOfReach:
+      return FuseStatus::kOutOfReach;
+    case HitStatus::kCollected:
+      break;
+  }
+  fuse_depth(o.tree, frame, T_world_camera, o.config, o.scratch);
+  return FuseStatus::kFused;
+}
+
+Occupancy StaticMap::occupancy_at(const Eigen::Vector3d& p_world) const {
+  return occupancy_of(find(octree_->tree, p_world).log_odds());
+}
+
+std::optional<SurfaceSample> StaticMap::sample_at(const Eigen::Vector3d& p_world) const {
+  const Found found = find(octree_->tree, p_world);
+  if (!found.block || found.block->weight[found.i] == 0) return std::nullopt;
+  return sample_of(octree_->tree, *found.block, found.i, found.key);
+}
+
+void StaticMap::visit_samples(const std::function<void(const SurfaceSample&)>& visit) const {
+  const BlockOctree& tree = octree_->tree;
+  for_each_part(
+      tree, tree.root, {}, [](const NodePlace&, LogOdds) {},
+      [&](const NodePlace& place, const LeafBlock& block) {
+        for (unsigned i = 0; i < 8; ++i)
+          if (block.weight[i] != 0) visit(sample_of(tree, block, i, place.child(i).key));
+      });
+}
+
+void StaticMap::visit_samples(const Eigen::AlignedBox3d& box_world,
+                              const std::function<void(const SurfaceSample&)>& visit) const {
+  const BlockOctree& tree = octree_->tree;
+  visit_in(tree, tree.root, {}, keys_in(box_world, resolution_m()), visit);
+}
+
+void StaticMap::visit_leaves(const std::function<void(const MapLeaf&)>& visit) const {
+  const BlockOctree& tree = octree_->tree;
+  for_each_leaf(tree, [&](const NodePlace& place, LogOdds log_odds) {
+    visit({(place.key - kKeyOrigin).matrix(), place.edge_voxels(), log_odds * tree.units().log_odds});
+  });
+}
+
+void StaticMap::add_evidence(const MapLeaf& leaf) {
+  require_cube(leaf.lowest_voxel, leaf.edge_voxels);
+  if (!std::isfinite(leaf.log_odds)) throw Error("log-odds of a leaf must be finite");
+  if (leaf.log_odds == 0.0F) return;
+  BlockOctree& tree = octree_->tree;
+  const int log2_edge = std::countr_zero(static_cast<unsigned>(leaf.edge_voxels));
+  const unsigned depth = kLeafDepth - static_cast<unsigned>(log2_edge);
+  const NodePlace target{std::min(depth, kLeafDepth - 1), leaf.lowest_voxel.array() + kKeyOrigin};
+  const AddLogOdds add(tree, octree_->config, leaf.log_odds);
+  tree.root = change_node(tree, tree.root, {}, target, [&](Slot node) {
+    return depth < kLeafDepth ? add.to_node(node, depth)
+                              : add.to_voxels(node, 1U << target.towards(target.key));
+  });
+}
+
+void StaticMap::add_evidence(const SurfaceSample& sample) {
+  require_cube(sample.voxel, 1);
+  if (!std::isfinite(sample.distance_m) || !(sample.weight > 0.0F) || !std::isfinite(sample.weight))
+    throw Error("a sample's distance must be finite, its weight finite and > 0");
+  BlockOctree& tree = octree_->tree;
+  const NodePlace target{kLeafDepth - 1, sample.voxel.array() + kKeyOrigin};
+  tree.root = change_node(tree, tree.root, {}, target, [&](Slot node) {
+    return change_leaves(
+        tree, node, [&](LeafBlock& block) { add_sample(tree, block, target.towards(target.key), sample); });
+  });
+}
+
+void StaticMap::revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide) {
+  const double reach = reach_m();
+  const Eigen::AlignedBox3d all(Eigen::Vector3d::Constant(-reach), Eigen::Vector3d::Constant(reach));
+  revise_samples(all, decide);
+}
+
+void StaticMap::revise_samples(const Eigen::AlignedBox3d& box_world,
+                               const std::function<SampleFate(const SurfaceSample&)>& decide) {
+  BlockOctree& tree = octree_->tree;
+  const long free = std::lround(octree_->config.min_log_odds / tree.units().log_odds);
+  tree.root =
+      revise(tree, tree.root, {}, static_cast<LogOdds>(free), keys_in(box_world, resolution_m()), decide);
+}
+
+double StaticMap::resolution_m() const { return octree_->tree.resolution_m(); }
+double StaticMap::reach_m() const { return resolution_m() * kKeyOrigin; }
+const FusionConfig& StaticMap::config() const { return octree_->config; }
+std::size_t StaticMap::memory_bytes() const { return octree_->tree.memory_bytes(); }
+
+MapCounts StaticMap::counts() const {
+  MapCounts counts;
+  const BlockOctree& tree = octree_->tree;
+  for_each_leaf(tree, [&](const NodePlace& place, LogOdds log_odds) {
+    const Eigen::Vector3d low = (place.key - kKeyOrigin).cast<double>().matrix() * tree.resolution_m();
+    const Eigen::Vector3d edges = Eigen::Vector3d::Constant(place.edge_voxels() * tree.resolution_m());
+    const Eigen::AlignedBox3d box(low, low + edges);
+    counts.known_world.extend(box);
+    if (log_odds < 0) {
+      ++counts.free_leaves;
+    } else {
+      ++counts.occupied_leaves;
+      counts.occupied_world.extend(box);
+    }
+  });
+  visit_samples([&](const SurfaceSample&) { ++counts.sampled_leaves; });
+  const SubtreeSize size = size_of(tree, tree.root, 0);
+  counts.nodes = size.nodes;
+  counts.memory_bytes = size.bytes;
+  return counts;
+}
+
+std::string_view to_string(FuseStatus status) {
+  switch (status) {
+    case FuseStatus::kFused:
+      return "fused";
+    case FuseStatus::kNothingMeasured:
+      return "nothing measured";
+    case FuseStatus::kInvalidFrame:
+      return "invalid frame";
+    case FuseStatus::kInvalidPose:
+      return "invalid pose";
+    case FuseStatus::kOutOfReach:
+      return "out of the octree's reach";
+  }
+  return "unknown status";
+}
+
+}  // namespace roomradar

@@ -1,0 +1,342 @@
+// static_map_file.cpp: the octree to and from OctoMap's file forms.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <type_traits>
+
+#include "mapping/octree/octomap_tree.hpp"
+#include "mapping/octree/static_map.hpp"
+#include "mapping/octree/static_map_octree.hpp"
+#include "mapping/types/system/atomic_file.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr const char* kFirstLine = "# Octomap OcTree file";  // OctoMap's own
+constexpr std::size_t kMaxHeaderLines = 100;
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& fault) {
+  throw Error(path.string() + ": " + fault);
+}
+
+// OctoMap prints the resolution with the stream's precision, and reports failed writes only through the
+// stream.
+template <typename Write>
+void write_stream(const std::filesystem::path& path, const Write& write) {
+  WholeFile file(path);
+  file.stream().precision(17);
+  write(file.stream());
+  file.put_in_place();
+}
+
+// Writes nodes in the form of OctoMap's writeNodesRecurs: each node, the mask of its children, these in turn.
+class NodeWriter {
+ public:
+  NodeWriter(const BlockOctree& tree, std::ostream& stream) : tree_(tree), stream_(stream) {}
+
+  void write(Slot node, unsigned depth) {
+    if (!node.is_block()) return put(leaf(node.log_odds()), 0);
+    RoomNode inner;  // as OctoMap has it: its log-odds are the greatest below it
+    inner.setLogOdds(greatest(node, depth));
+    if (depth == kLeafDepth - 1) return write_voxels(inner, tree_.leaves(node));
+    const InnerBlock& block = tree_.inner(node);
+    unsigned children = 0;
+    for (unsigned i = 0; i < 8; ++i) children |= block.slots[i].is_unknown() ? 0 : 1U << i;
+    put(inner, children);
+    for (const Slot child : block.slots)
+      if (!child.is_unknown()) write(child, depth + 1);
+  }
+
+ private:
+  void put(const RoomNode& node, unsigned children) {
+    node.writeData(stream_);
+    stream_.put(static_cast<char>(children));
+  }
+  [[nodiscard]] RoomNode leaf(LogOdds log_odds) const {
+    RoomNode node;
+    node.setLogOdds(static_cast<float>(log_odds) * tree_.units().log_odds);
+    return node;
+  }
+  void write_voxels(const RoomNode& parent, const LeafBlock& block) {
+    unsigned children = 0;
+    for (unsigned i = 0; i < 8; ++i) children |= block.holds(i) ? 1U << i : 0;
+    put(parent, children);
+    for (unsigned i = 0; i < 8; ++i) {
+      if (!block.holds(i)) continue;
+      RoomNode node = leaf(block.log_odds[i]);
+      node.distance_m = static_cast<float>(block.distance[i]) * tree_.units().distance_m;
+      node.weight = static_cast<float>(block.weight[i]) * tree_.units().weight;
+      node.colour = tree_.colour(block, i);
+      node.colour_count = block.coloured >> i & 1U;
+      put(node, 0);
+    }
+  }
+  // Looks at every node once for each level above it: some tenths of a second a million nodes.
+  [[nodiscard]] float greatest(Slot node, unsigned depth) const {
+    LogOdds found = std::numeric_limits<LogOdds>::min();
+    for_each_part(
+        tree_, node, {depth, {}},
+        [&](const NodePlace&, LogOdds log_odds) { found = std::max(found, log_odds); },
+        [&](const NodePlace&, const LeafBlock& block) {
+          for (unsigned i = 0; i < 8; ++i)
+            if (block.holds(i)) found = std::max(found, block.log_odds[i]);
+        });
+    return static_cast<float>(found) * tree_.units().log_odds;
+  }
+
+  const BlockOctree& tree_;
+  std::ostream& stream_;
+};
+
+// Free and occupied alone, in the form of OctoMap's writeBinaryNode: two bits for each child of a node, then
+// what is below the children in turn.
+class PlainWriter {
+ public:
+  enum Kind : unsigned { kUnknown = 0, kFree = 1, kOccupied = 2, kMixed = 3 };
+
+  explicit PlainWriter(const BlockOctree& tree) : tree_(tree) {
+    const Kind kind = write(tree.root, 0);
+    if (kind == kUnknown) return;
+    ++nodes_;
+    if (kind != kMixed) {  // the form has no word for a root without children
+      bytes_.assign(2, static_cast<char>(0b01010101U * kind));
+      nodes_ += 8;
+    }
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  [[nodiscard]] std::size_t nodes() const { return nodes_; }
+
+ private:
+  static Kind kind_of(LogOdds log_odds) {
+    return log_odds == 0 ? kUnknown : log_odds < 0 ? kFree : kOccupied;
+  }
+
+  // Appends what is below a node if it is not all of one kind.
+  Kind write(Slot node, unsigned depth) {
+    if (!node.is_block()) return kind_of(node.log_odds());
+    const std::size_t start = bytes_.size();
+    bytes_.append(2, '\0');
+    unsigned kinds = 0;
+    std::size_t children = 0;
+    for (unsigned i = 0; i < 8; ++i) {
+      const Kind kind = depth == kLeafDepth - 1 ? kind_of(tree_.leaves(node).log_odds[i])
+                                                : write(tree_.inner(node).slots[i], depth + 1);
+      kinds |= kind << 2 * i;
+      children += kind != kUnknown ? 1 : 0;
+    }
+    const auto first = static_cast<Kind>(kinds & 3U);
+    if (first != kMixed && kinds == 0b0101'0101'0101'0101U * first) {
+      bytes_.resize(start);
+      return first;
+    }
+    bytes_[start] = static_cast<char>(kinds & 0xFFU);
+    bytes_[start + 1] = static_cast<char>(kinds >> 8U);
+    nodes_ += children;
+    return kMixed;
+  }
+
+  const BlockOctree& tree_;
+  std::string bytes_;
+  std::size_t nodes_ = 0;
+};
+
+// Numbers one after the other from bytes that may end anywhere.
+class ByteReader {
+ public:
+  ByteReader(const std::filesystem::path& path, std::string bytes) : path_(path), bytes_(std::move(bytes)) {}
+
+  template <typename Value>
+  Value get() {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    if (bytes_.size() - at_ < sizeof(Value))
+      fail(path_, "is cut short after " + std::to_string(at_) + " bytes");
+    Value value;
+    std::memcpy(&value, bytes_.data() + at_, sizeof(Value));
+    at_ += sizeof(Value);
+    return value;
+  }
+  std::string get_line() {
+    const auto begin = bytes_.begin() + static_cast<std::ptrdiff_t>(at_);
+    const auto end = std::find(begin, bytes_.end(), '\n');
+    if (end == bytes_.end()) fail(path_, "is not an octree file, or its header is cut short");
+    at_ += static_cast<std::size_t>(end - begin) + 1;
+    return {begin, end};
+  }
+  [[nodiscard]] std::size_t bytes_left() const { return bytes_.size() - at_; }
+
+ private:
+  const std::filesystem::path& path_;
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+struct Header {
+  std::uint64_t nodes = 0;
+  double resolution_m = 0.0;
+};
+
+Header read_header(const std::filesystem::path& path, ByteReader& bytes) {
+  if (bytes.get_line().rfind(kFirstLine, 0) != 0)
+    fail(path, "is not an octree file: its first line is not OctoMap's");
+  Header header;
+  std::string type;
+  for (std::size_t line_number = 0; line_number < kMaxHeaderLines; ++line_number) {
+    std::istringstream words(bytes.get_line());
+    std::string name;
+    words >> name;
+    if (name == "data") {
+      if (type != RoomOcTree::kTreeType)
+        fail(path, "holds a tree of type \"" + type.substr(0, 40) + "\"; wanted " + RoomOcTree::kTreeType);
+      if (!(header.resolution_m >= 0.001 && header.resolution_m <= 1.0))
+        fail(path, "its resolution is not within 0.001..1 m");
+      return header;
+    }
+    if (name == "id") words >> type;
+    if (name == "size") words >> header.nodes;
+    if (name == "res") words >> header.resolution_m;
+    if (!words && !name.empty() && name[0] != '#')
+      fail(path, "its header line \"" + name.substr(0, 40) + "\" has no value");
+  }
+  fail(path, "its header has no end");
+}
+
+// The form of OctoMap's readNodesRecurs, which trusts its input: here depth, ends and numbers are checked.
+class NodeReader {
+ public:
+  NodeReader(const std::filesystem::path& path, ByteReader& bytes, BlockOctree& tree)
+      : path_(path), bytes_(bytes), tree_(tree) {}
+
+  /// What the next node and all below it are. An inner node's own log-odds follow from its children.
+  Slot read(unsigned depth) {
+    const Leaf node = read_fields();
+    if (node.sample || depth >= kLeafDepth) fault();
+    const auto children = bytes_.get<std::uint8_t>();
+    if (children == 0) {
+      if (!is_cube_of_a_room(node.log_odds, depth)) fault();
+      return Slot::cube(node.log_odds);
+    }
+    if (depth == kLeafDepth - 1)
+      return change_leaves(tree_, Slot(), [&](LeafBlock& block) { read_voxels(children, block); });
+    InnerBlock block;
+    for (unsigned i = 0; i < 8; ++i)
+      if ((children >> i & 1U) != 0) block.slots[i] = read(depth + 1);
+    return tree_.settle(Slot(), block);
+  }
+  [[nodiscard]] std::uint64_t nodes() const { return nodes_; }
+
+ private:
+  struct Sample {
+    float distance_m, weight;
+    Rgb colour;
+    bool has_colour;
+  };
+  struct Leaf {
+    LogOdds log_odds = 0;
+    std::optional<Sample> sample;
+  };
+
+  Leaf read_fields() {
+    ++nodes_;
+    Leaf leaf;
+    const auto log_odds = bytes_.get<float>();
+    const auto sampled = bytes_.get<std::uint8_t>();
+    if (!(std::abs(log_odds) <= 1000.0F) || sampled > 1) fault();
+    leaf.log_odds = static_cast<LogOdds>(in_steps(log_odds, tree_.units().log_odds, -32767.0F, 32767.0F));
+    if (leaf.log_odds == 0 && log_odds != 0.0F) leaf.log_odds = log_odds < 0.0F ? -1 : 1;
+    if (sampled == 0) return leaf;
+    Sample sample;
+    sample.distance_m = bytes_.get<float>();
+    sample.weight = bytes_.get<float>();
+    sample.colour = bytes_.get<Rgb>();
+    sample.has_colour = bytes_.get<std::uint8_t>() > 0;
+    if (!(std::abs(sample.distance_m) <= 1000.0F && sample.weight > 0.0F && sample.weight <= 1e6F)) fault();
+    leaf.sample = sample;
+    return leaf;
+  }
+
+  void read_voxels(unsigned children, LeafBlock& block) {
+    const BlockUnits& units = tree_.units();
+    for (unsigned i = 0; i < 8; ++i) {
+      if ((children >> i & 1U) == 0) continue;
+      const Leaf leaf = read_fields();
+      if (bytes_.get<std::uint8_t>() != 0) fault();
+      if (leaf.log_odds == 0 && !leaf.sample) fault();
+      block.log_odds[i] = leaf.log_odds;
+      if (!leaf.sample) continue;
+      block.distance[i] =
+          static_cast<std::int16_t>(in_steps(leaf.sample->distance_m, units.distance_m, -32767.0F, 32767.0F));
+      block.weight[i] =
+          static_cast<std::uint16_t>(in_steps(leaf.sample->weight, units.weight, 1.0F, 65535.0F));
+      if (!leaf.sample->has_colour) continue;
+      tree_.colours(block).colours[i] = leaf.sample->colour;
+      block.coloured |= static_cast<std::uint8_t>(1U << i);
+    }
+  }
+
+  // A sensor sees free space cube by cube, and of what is solid the skin. What walks the voxels of such a
+  // cube comes to an end.
+  [[nodiscard]] bool is_cube_of_a_room(LogOdds log_odds, unsigned depth) const {
+    constexpr int kMaxFree_voxels = 8192;
+    constexpr double kMaxSolid_m = 4.0;
+    const int edge_voxels = 1 << (kLeafDepth - depth);
+    if (log_odds < 0) return edge_voxels <= kMaxFree_voxels;
+    return log_odds > 0 && edge_voxels * tree_.resolution_m() <= kMaxSolid_m;
+  }
+
+  static long in_steps(float value, float step, float least, float most) {
+    return std::lround(std::clamp(value / step, least, most));
+  }
+  [[noreturn]] void fault() const {
+    fail(path_,
+         "is damaged: node " + std::to_string(nodes_) + " cannot be one; scan the room again or take a copy");
+  }
+  const std::filesystem::path& path_;
+  ByteReader& bytes_;
+  BlockOctree& tree_;
+  std::uint64_t nodes_ = 0;
+};
+
+}  // namespace
+
+void StaticMap::write_ot(const std::filesystem::path& path) const {
+  const BlockOctree& tree = octree_->tree;
+  write_stream(path, [&](std::ostream& stream) {
+    stream << kFirstLine << "\n#\nid " << RoomOcTree::kTreeType << "\nsize "
+           << size_of(tree, tree.root, 0).nodes << "\nres " << tree.resolution_m() << "\ndata\n";
+    if (!tree.root.is_unknown()) NodeWriter(tree, stream).write(tree.root, 0);
+  });
+}
+
+void StaticMap::write_bt(const std::filesystem::path& path) const {
+  const PlainWriter plain(octree_->tree);
+  write_stream(path, [&](std::ostream& stream) {
+    stream << "# Octomap OcTree binary file\n#\nid OcTree\nsize " << plain.nodes() << "\nres "
+           << octree_->tree.resolution_m() << "\ndata\n"
+           << plain.bytes();
+  });
+}
+
+StaticMap StaticMap::read_ot(const std::filesystem::path& path, const FusionConfig& config) {
+  ByteReader bytes(path, read_bytes(path, "an octree file"));
+  const Header header = read_header(path, bytes);
+  auto octree = std::make_unique<Octree>(header.resolution_m, config);
+  if (header.nodes > 0) {
+    NodeReader nodes(path, bytes, octree->tree);
+    octree->tree.root = nodes.read(0);
+    if (nodes.nodes() != header.nodes)
+      fail(path, "holds " + std::to_string(nodes.nodes()) + " nodes, but its header says " +
+                     std::to_string(header.nodes));
+  }
+  if (bytes.bytes_left() != 0)
+    fail(path, "has " + std::to_string(bytes.bytes_left()) + " bytes after its end");
+  return StaticMap(std::move(octree));
+}
+
+}  // namespace roomradar

@@ -1,0 +1,16 @@
+// static_map_octree.hpp: what a StaticMap owns. Private to static_map*.cpp.
+#pragma once
+#include "mapping/octree/block_octree.hpp"
+#include "mapping/octree/fusion.hpp"
+#include "mapping/octree/static_map.hpp"
+
+namespace roomradar {
+
+struct StaticMap::Octree {
+  Octree(double resolution_m, const FusionConfig& fusion);
+  FusionConfig config;
+  BlockOctree tree;
+  FusionScratch scratch;
+};
+
+}  // namespace roomradar

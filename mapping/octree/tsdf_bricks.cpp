@@ -1,0 +1,70 @@
+// sample_bricks.cpp: sorting an octree's samples into bricks.
+#include "mapping/octree/tsdf_bricks.hpp"
+
+#include <optional>
+
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+static_assert(sizeof(BrickSample) == 12);
+constexpr int kBrickShift = 3;
+static_assert(1 << kBrickShift == kBrickEdge);
+
+}  // namespace
+
+SampleBricks::SampleBricks(const StaticMap& map, float min_weight)
+    : SampleBricks([&map](const auto& visit) { map.visit_samples(visit); }, min_weight) {}
+
+SampleBricks::SampleBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world)
+    : SampleBricks([&](const auto& visit) { map.visit_samples(box_world, visit); }, min_weight) {}
+
+SampleBricks::SampleBricks(const VisitSamples& visit_samples, float min_weight) {
+  // The octree's order visits each brick once. All are counted first: a vector that grows holds them twice.
+  std::optional<VoxelIndex> last;
+  std::size_t count = 0;
+  visit_samples([&](const SurfaceSample& sample) {
+    if (sample.weight < min_weight) return;
+    const VoxelIndex first = brick_of(sample.voxel);
+    count += last != first ? 1U : 0U;
+    last = first;
+  });
+  bricks_.reserve(count);
+  by_place_.reserve(count);
+  visit_samples([&](const SurfaceSample& sample) {
+    if (sample.weight < min_weight) return;
+    const VoxelIndex first = brick_of(sample.voxel);
+    if (bricks_.empty() || bricks_.back().first != first) {
+      by_place_.emplace(cell_code(first), bricks_.size());
+      bricks_.emplace_back().first = first;
+    }
+    bricks_.back().samples[brick_offset(sample.voxel - first)] = {.distance_m = sample.distance_m,
+                                                                  .weight = sample.weight,
+                                                                  .colour = sample.colour,
+                                                                  .has_colour = sample.has_colour};
+  });
+}
+
+std::size_t SampleBricks::find(const VoxelIndex& first) const {
+  const auto found = by_place_.find(cell_code(first));
+  return found == by_place_.end() ? kNone : found->second;
+}
+
+BrickNeighbourhood::BrickNeighbourhood(const SampleBricks& bricks, std::size_t centre) {
+  const VoxelIndex first = bricks.bricks()[centre].first;
+  for (int z = 0; z < 3; ++z)
+    for (int y = 0; y < 3; ++y)
+      for (int x = 0; x < 3; ++x)
+        around_[static_cast<std::size_t>((z * 3 + y) * 3 + x)] =
+            bricks.find(first + kBrickEdge * Eigen::Vector3i(x - 1, y - 1, z - 1));
+}
+
+BrickNeighbourhood::Place BrickNeighbourhood::place(const Eigen::Vector3i& relative) const {
+  const Eigen::Vector3i which = relative.unaryExpr([](int v) { return (v >> kBrickShift) + 1; });
+  const Eigen::Vector3i offset = relative.unaryExpr([](int v) { return v & (kBrickEdge - 1); });
+  return {around_[static_cast<std::size_t>((which.z() * 3 + which.y()) * 3 + which.x())],
+          brick_offset(offset)};
+}
+
+}  // namespace roomradar

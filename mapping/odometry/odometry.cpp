@@ -1,0 +1,385 @@
+// odometry.cpp: where the camera was, frame by frame, in a room that is not known yet.
+#include "mapping/odometry/odometry.hpp"
+
+#include <algorithm>
+#include <future>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "mapping/alignment/stationary_camera.hpp"
+#include "mapping/odometry/keyframe_job.hpp"
+#include "mapping/odometry/odometry_snapshot.hpp"
+
+namespace roomradar {
+namespace {
+
+/// A radian counts as a metre.
+double length(const Eigen::Isometry3d& T) {
+  return T.translation().norm() + Eigen::AngleAxisd(T.linear()).angle();
+}
+
+KeyframeJobConfig job_config(const OdometryConfig& config) {
+  return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
+}
+
+/// Takes over the keyframes' poses. What is known of the camera's pose moves with the current keyframe.
+/// Returns how that moved.
+Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept) {
+  const Eigen::Isometry3d before = kept.graph.keyframes[kept.current].T_world_camera;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    kept.graph.keyframes[i].T_world_camera = moved[i].T_world_camera;
+    if (i < kept.places.keyframes.size()) kept.places.keyframes[i].T_world_camera = moved[i].T_world_camera;
+  }
+  const Eigen::Isometry3d T_new_old = kept.graph.keyframes[kept.current].T_world_camera * before.inverse();
+  kept.T_world_last = T_new_old * kept.T_world_last;
+  kept.last_moved.T_world_camera = T_new_old * kept.last_moved.T_world_camera;
+  return T_new_old;
+}
+
+void anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera, OdometrySnapshot& kept) {
+  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // of a relocalised pose
+  Matrix6d information = Matrix6d::Zero();
+  information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
+  information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
+  kept.graph.anchors.push_back({keyframe, T_known_camera, information});
+  ++kept.counts.anchored;
+}
+
+/// Moves the keyframes to where the second thread found them.
+Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
+  const std::size_t newest = result.graph.keyframes.size() - 1;
+  kept.graph.constraints = std::move(result.graph.constraints);
+  kept.graph.loops_found = result.graph.loops_found;
+  kept.graph.loops_rejected = result.graph.loops_rejected;
+  kept.places.keyframes.push_back(std::move(result.place));
+  Eigen::Isometry3d T_new_old = move_keyframes(result.graph.keyframes, kept);
+  if (result.T_known_camera) {
+    if (!kept.located) {
+      const Eigen::Isometry3d T_known_world =
+          *result.T_known_camera * kept.graph.keyframes[newest].T_world_camera.inverse();
+      std::vector<Keyframe> moved = kept.graph.keyframes;
+      for (Keyframe& keyframe : moved) keyframe.T_world_camera = T_known_world * keyframe.T_world_camera;
+      T_new_old = move_keyframes(moved, kept) * T_new_old;
+      kept.located = true;
+    }
+    anchor(newest, *result.T_known_camera, kept);
+  }
+  return T_new_old;
+}
+
+}  // namespace
+
+struct Odometry::State {
+  OdometryConfig config;
+  Places known;
+  OdometrySnapshot kept;
+  ViewPyramid pyramid;  ///< of the present frame, and so is `live`
+  LiveView live;
+  WarmKeyframes warm;
+  ViewPyramid open;  ///< the current keyframe's, with the depth of the views since it was taken up
+  Image<std::uint8_t> open_measured;
+  bool open_is_newer = false;  ///< than what is stored
+  std::future<KeyframeJobResult> job;
+  std::optional<KeyframeJobResult> joined;  ///< what it came to, where that was waited for
+  int job_frames = 0;                       ///< since it was begun
+
+  explicit State(const OdometryConfig& chosen) : config(chosen), warm(chosen.graph.warm) {}
+
+  Tracking start(const Frame& frame);
+  Tracking align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess);
+  Tracking recover(const Frame& frame);
+  [[nodiscard]] bool is_plausible(const Tracking& tracking) const;
+  void improve_current(const Tracking& tracking);
+  [[nodiscard]] bool is_far_from(std::size_t keyframe, const Tracking& tracking) const;
+  void choose_keyframe(const Frame& frame, Tracking& tracking);
+  void add_keyframe(const Frame& frame, const Tracking& tracking);
+  void take_up(std::size_t keyframe);
+  void store_open();
+  void wait_for_job();
+  Eigen::Isometry3d take_over_job();
+  void keep(const Frame& frame, const Tracking& tracking);
+};
+
+Tracking Odometry::State::start(const Frame& frame) {
+  Tracking tracking;
+  const auto enough = static_cast<std::size_t>(std::max(config.align.min_points, 1));
+  if (live.levels.front().size() < enough) {
+    tracking.status = TrackStatus::kTooFewPoints;
+    return tracking;
+  }
+  tracking.status = TrackStatus::kTracked;
+  tracking.overlap = tracking.inlier_fraction = 1.0;
+  add_keyframe(frame, tracking);
+  return tracking;
+}
+
+/// Against one keyframe and those next to it; of the latter at most one is made ready for it.
+Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess) {
+  // view_distance(); past it too little of the frame meets the keyframe.
+  constexpr double kUsefulReference = 0.7;
+  const auto most = static_cast<std::size_t>(std::max(config.references, 1));
+  const std::vector<Keyframe>& keyframes = kept.graph.keyframes;
+  std::vector<std::shared_ptr<const WarmKeyframe>> used{warm.get(first, *keyframes[first].view, config.view)};
+  std::vector<PosedReference> references{{&used[0]->reference, keyframes[first].T_world_camera}};
+  bool made_one = false;
+  for (const std::size_t i : keyframes_near(kept.graph, T_world_guess, kUsefulReference)) {
+    if (i == first || references.size() >= most) continue;
+    auto other = warm.find(i);
+    if (!other && std::exchange(made_one, true)) continue;
+    if (!other) other = warm.get(i, *keyframes[i].view, config.view);
+    references.push_back({&other->reference, keyframes[i].T_world_camera});
+    used.push_back(std::move(other));
+  }
+  return align(live, references, T_world_guess, config.align);
+}
+
+Tracking Odometry::State::recover(const Frame& frame) {
+  Tracking standing = align_near(kept.current, kept.T_world_last);
+  if (standing && is_plausible(standing)) return standing;
+  standing.status = TrackStatus::kDiverged;
+  if (frame.colour.empty() && !kept.last_moved_grey.empty())
+    return standing;  // a frame that lost its colour on the way
+  const Relocalisation found = relocalise(frame, kept.places, config.relocalise);
+  if (!found) return standing;
+  const auto keyframe = static_cast<std::size_t>(found.keyframe);
+  const Tracking tracking = align_near(keyframe, found.T_world_camera);
+  if (!tracking) return standing;
+  ++kept.counts.relocalised;
+  take_up(keyframe);
+  // It did not get here from where it was seen last by a motion that goes on.
+  kept.T_world_last = tracking.T_world_camera;
+  return tracking;
+}
+
+/// A hand does not change a camera's speed by more than this from one frame to the next; a sensor that
+/// recalibrates itself seems to.
+bool Odometry::State::is_plausible(const Tracking& tracking) const {
+  constexpr double kMost_m = 0.10, kMost_rad = 0.05;
+  if (!has_pose(tracking)) return false;
+  const Eigen::Isometry3d change = (kept.T_world_last * kept.T_last_next).inverse() * tracking.T_world_camera;
+  return change.translation().norm() < kMost_m && Eigen::AngleAxisd(change.linear()).angle() < kMost_rad;
+}
+
+void Odometry::State::improve_current(const Tracking& tracking) {
+  const Keyframe& keyframe = kept.graph.keyframes[kept.current];
+  improve_depth(open, open_measured, pyramid, tracking.T_world_camera.inverse() * keyframe.T_world_camera);
+  open_is_newer = true;
+  if (++kept.improved < config.improve_every) return;
+  kept.improved = 0;
+  halve_depth(open);
+  auto made = std::make_shared<WarmKeyframe>();
+  make_reference(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
+  make_live(open, made->live);
+  warm.put(kept.current, std::move(made));
+}
+
+bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking) const {
+  const Eigen::Isometry3d T =
+      kept.graph.keyframes[keyframe].T_world_camera.inverse() * tracking.T_world_camera;
+  return T.translation().norm() > config.keyframe_distance_m ||
+         Eigen::AngleAxisd(T.linear()).angle() > config.keyframe_angle_deg * std::numbers::pi / 180.0;
+}
+
+void Odometry::State::choose_keyframe(const Frame& frame, Tracking& tracking) {
+  const bool little_in_common = tracking.overlap < config.keyframe_overlap;
+  if (!little_in_common && !is_far_from(kept.current, tracking)) return;
+  const std::vector<std::size_t> near = keyframes_near(kept.graph, tracking.T_world_camera, 1.0);
+  if (!near.empty() && near.front() != kept.current && !is_far_from(near.front(), tracking)) {
+    take_up(near.front());
+    return;
+  }
+  tracking.T_world_camera = take_over_job() * tracking.T_world_camera;
+  add_keyframe(frame, tracking);
+}
+
+void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking) {
+  store_open();
+  open = pyramid;
+  open.grey.resize(0, 0);
+  open_measured.resize(open.levels.front().camera.width_px, open.levels.front().camera.height_px, 1);
+  kept.graph.keyframes.push_back({frame.index, tracking.T_world_camera,
+                                  std::make_shared<const StoredView>(store(open, open_measured)), 0,
+                                  kept.way_m});
+  ++kept.counts.keyframes;
+  kept.current = kept.graph.keyframes.size() - 1;
+  kept.improved = 0;
+  auto made = std::make_shared<WarmKeyframe>();
+  make_reference(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
+  made->live = live;
+  warm.put(kept.current, std::move(made));
+  job = std::async(
+      std::launch::async, run,
+      KeyframeJob{frame, kept.graph, warm, &kept.places, known.keyframes.empty() ? nullptr : &known},
+      job_config(config));
+  job_frames = 0;
+}
+
+/// Makes another keyframe the one that frames are aligned with first and that their depth goes to.
+void Odometry::State::take_up(std::size_t keyframe) {
+  if (keyframe == kept.current) return;
+  store_open();
+  kept.current = keyframe;
+  kept.improved = 0;
+  restore(*kept.graph.keyframes[keyframe].view, config.view, open);
+  open_measured = kept.graph.keyframes[keyframe].view->measured;
+}
+
+void Odometry::State::store_open() {
+  if (!std::exchange(open_is_newer, false)) return;
+  Keyframe& keyframe = kept.graph.keyframes[kept.current];
+  keyframe.view = std::make_shared<const StoredView>(store(open, open_measured));
+  ++keyframe.revision;
+}
+
+void Odometry::State::wait_for_job() {
+  if (job.valid()) joined = job.get();
+}
+
+/// Waits for the second thread and moves the keyframes to where it found them. Returns what that does to
+/// poses near the current keyframe.
+Eigen::Isometry3d Odometry::State::take_over_job() {
+  wait_for_job();
+  if (!joined) return Eigen::Isometry3d::Identity();
+  return take_over(*std::exchange(joined, std::nullopt), kept);
+}
+
+void Odometry::State::keep(const Frame& frame, const Tracking& tracking) {
+  KeptFrame frame_kept{frame.index,     frame.stamp_s, std::nullopt, tracking.T_world_camera,
+                       tracking.status, bool{tracking}};
+  if (!kept.graph.keyframes.empty()) {
+    frame_kept.keyframe = kept.current;
+    frame_kept.T_keyframe_camera =
+        kept.graph.keyframes[kept.current].T_world_camera.inverse() * tracking.T_world_camera;
+  }
+  kept.frames.push_back(frame_kept);
+}
+
+Odometry::Odometry(const OdometryConfig& config) : state_(std::make_unique<State>(config)) {}
+Odometry::Odometry(Odometry&&) noexcept = default;
+Odometry& Odometry::operator=(Odometry&&) noexcept = default;
+Odometry::~Odometry() = default;
+
+Odometry::Odometry(const OdometryConfig& config, OdometrySnapshot snapshot)
+    : state_(std::make_unique<State>(config)) {
+  state_->kept = std::move(snapshot);
+  if (state_->kept.graph.keyframes.empty()) return;
+  const StoredView& view = *state_->kept.graph.keyframes[state_->kept.current].view;
+  restore(view, config.view, state_->open);
+  state_->open_measured = view.measured;
+}
+
+void Odometry::know(Places known) { state_->known = std::move(known); }
+
+bool Odometry::is_located() const { return state_->kept.located; }
+
+Tracking Odometry::track(const Frame& frame) {
+  State& s = *state_;
+  OdometrySnapshot& kept = s.kept;
+  ++kept.counts.frames;
+  make_pyramid(frame, s.config.view, s.pyramid);
+  make_live(s.pyramid, s.live);
+  const bool is_joining = s.job.valid() || s.joined;
+  if (is_joining && ++s.job_frames >= s.config.join_frames) s.take_over_job();
+  const bool first = kept.graph.keyframes.empty();
+  if (!first && shows_the_same(kept.last_moved_grey, s.pyramid.grey)) {
+    ++kept.counts.tracked;
+    kept.T_world_last = kept.last_moved.T_world_camera;
+    kept.T_last_next.setIdentity();
+    s.keep(frame, kept.last_moved);
+    return kept.last_moved;
+  }
+  Tracking tracking =
+      first ? s.start(frame) : s.align_near(kept.current, kept.T_world_last * kept.T_last_next);
+  if (!first && !s.is_plausible(tracking)) tracking = s.recover(frame);
+
+  if (!has_pose(tracking)) {
+    ++kept.counts.lost;
+    tracking.T_world_camera = kept.T_world_last;
+    kept.T_last_next.setIdentity();
+    s.keep(frame, tracking);
+    return tracking;
+  }
+  const Eigen::Isometry3d T_last_next = kept.T_world_last.inverse() * tracking.T_world_camera;
+  kept.way_m += length(T_last_next) * (tracking ? 1.0 : 10.0);
+  if (tracking && !first) {
+    s.improve_current(tracking);
+    s.choose_keyframe(frame, tracking);
+  }
+  ++(tracking ? kept.counts.tracked : kept.counts.degenerate);
+  kept.T_last_next = expected_motion(tracking, T_last_next);
+  kept.T_world_last = tracking.T_world_camera;
+  kept.last_moved_grey.resize(0, 0);
+  if (tracking) {
+    kept.last_moved_grey = s.pyramid.grey;
+    kept.last_moved = tracking;
+  }
+  s.keep(frame, tracking);
+  return tracking;
+}
+
+void Odometry::add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  State& s = *state_;
+  std::vector<Place>& places = s.kept.places.keyframes;
+  ++s.kept.counts.frames;
+  ++s.kept.counts.tracked;
+  s.kept.frames.push_back(
+      {frame.index, frame.stamp_s, std::nullopt, T_world_camera, TrackStatus::kTracked, true});
+  const double limit = view_distance(
+      Eigen::Translation3d(s.config.keyframe_distance_m, 0, 0) *
+      Eigen::AngleAxisd(s.config.keyframe_angle_deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX()));
+  const bool known = std::any_of(places.begin(), places.end(), [&](const Place& place) {
+    return view_distance(place.T_world_camera.inverse() * T_world_camera) < limit;
+  });
+  if (known) return;
+  places.push_back(describe_place(frame, T_world_camera, s.config.place));
+  ++s.kept.counts.keyframes;
+}
+
+void Odometry::settle() {
+  state_->wait_for_job();
+  state_->store_open();
+}
+
+OdometrySnapshot Odometry::snapshot() const {
+  OdometrySnapshot snapshot = state_->kept;
+  if (state_->joined) take_over(*state_->joined, snapshot);
+  return snapshot;
+}
+
+std::vector<TrackedFrame> Odometry::optimise() {
+  State& s = *state_;
+  s.take_over_job();
+  s.store_open();
+  if (!s.kept.graph.keyframes.empty()) {
+    KeyframeGraph graph = s.kept.graph;
+    s.warm = WarmKeyframes(s.config.graph.warm);  // of no use now, and large
+    join_all(graph, job_config(s.config).join);
+    solve_positions_then_turns(graph);
+    move_keyframes(graph.keyframes, s.kept);
+    graph.keyframes = s.kept.graph.keyframes;
+    s.kept.graph = std::move(graph);
+  }
+  std::vector<TrackedFrame> trajectory;
+  for (const KeptFrame& f : s.kept.frames) {
+    const Eigen::Isometry3d T_world_camera =
+        f.keyframe ? s.kept.graph.keyframes[*f.keyframe].T_world_camera * f.T_keyframe_camera
+                   : f.T_keyframe_camera;
+    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera, f.status, f.trusted});
+  }
+  return trajectory;
+}
+
+Places Odometry::take_places() {
+  state_->take_over_job();
+  return std::exchange(state_->kept.places, {});
+}
+
+OdometryCounts Odometry::counts() const {
+  OdometryCounts counts = state_->kept.counts;
+  counts.loops_found = state_->kept.graph.loops_found;
+  counts.loops_rejected = state_->kept.graph.loops_rejected;
+  return counts;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,289 @@
+// odometry_checkpoint.cpp: an odometry on disk, to go on with after the program ends.
+//
+// All numbers little-endian; each file has a magic word, a version (u32), a body, and a checksum (u64).
+#include "mapping/odometry/odometry_checkpoint.hpp"
+
+#include <string>
+#include <utility>
+
+#include "mapping/odometry/odometry_snapshot.hpp"
+#include "mapping/storage/binary_file.hpp"
+#include "mapping/storage/checkpoints.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/validity.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kStateMagic = "RRODOMET", kViewMagic = "RRKEYFRM";
+constexpr std::uint32_t kVersion = 1;
+constexpr int kMaxSide_px = 8192;
+
+fs::path view_name(std::size_t number, std::uint32_t revision) {
+  return "keyframe-" + std::to_string(number) + "-" + std::to_string(revision) + ".bin";
+}
+
+fs::path place_name(std::size_t number) { return "place-" + std::to_string(number) + ".bin"; }
+
+void put_pose(std::string& out, const Eigen::Isometry3d& T) { put(out, T.matrix().data(), 16); }
+
+Eigen::Isometry3d take_pose(BinaryReader& in, const char* what) {
+  Eigen::Isometry3d T;
+  for (Eigen::Index i = 0; i < 16; ++i) T.matrix().data()[i] = in.take_finite(what);
+  if (!is_rigid(T, 1e-6)) in.fail(std::string(what) + " is not a rotation and a shift");
+  return T;
+}
+
+void put_information(std::string& out, const Matrix6d& information) { put(out, information.data(), 36); }
+
+Matrix6d take_information(BinaryReader& in) {
+  Matrix6d information;
+  for (Eigen::Index i = 0; i < 36; ++i) information.data()[i] = in.take_finite("information");
+  return information;
+}
+
+template <typename Pixel>
+void put_image(std::string& out, const Image<Pixel>& image) {
+  put(out, image.width);
+  put(out, image.height);
+  put(out, image.pixels.data(), image.pixels.size());
+}
+
+template <typename Pixel>
+Image<Pixel> take_image(BinaryReader& in, const char* what) {
+  const int width = in.take<int>(what), height = in.take<int>(what);
+  if (width < 0 || height < 0 || width > kMaxSide_px || height > kMaxSide_px) {
+    in.fail(std::string(what) + " of " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
+  }
+  in.require(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), sizeof(Pixel), what);
+  Image<Pixel> image(width, height);
+  in.take(image.pixels.data(), image.pixels.size(), what);
+  return image;
+}
+
+void write_view(const StoredView& view, const fs::path& path) {
+  std::string out;
+  for (const double number : {view.camera.fx_px, view.camera.fy_px, view.camera.cx_px, view.camera.cy_px}) {
+    put(out, number);
+  }
+  put_image(out, view.inverse_depth);
+  put_image(out, view.intensity);
+  put_image(out, view.measured);
+  write_binary(path, kViewMagic, kVersion, out);
+}
+
+StoredView read_view(const fs::path& path) {
+  const std::string bytes = read_binary(path, kViewMagic, kVersion);
+  BinaryReader in(bytes, path);
+  StoredView view;
+  for (double* number : {&view.camera.fx_px, &view.camera.fy_px, &view.camera.cx_px, &view.camera.cy_px}) {
+    *number = in.take_finite("camera");
+  }
+  view.inverse_depth = take_image<std::uint16_t>(in, "depth");
+  view.intensity = take_image<std::uint8_t>(in, "intensity");
+  view.measured = take_image<std::uint8_t>(in, "counts");
+  view.camera.width_px = view.inverse_depth.width;
+  view.camera.height_px = view.inverse_depth.height;
+  require_valid(view.camera, (path.string() + ": the camera").c_str());
+  const auto fits = [&](int width, int height) {
+    return width == view.camera.width_px && height == view.camera.height_px;
+  };
+  if (!fits(view.measured.width, view.measured.height) ||
+      !(view.intensity.empty() || fits(view.intensity.width, view.intensity.height)) || in.left() != 0) {
+    in.fail("its images differ in size");
+  }
+  return view;
+}
+
+TrackStatus take_status(BinaryReader& in) {
+  const auto status = in.take<std::uint32_t>("status");
+  if (status > static_cast<std::uint32_t>(TrackStatus::kDiverged)) in.fail("a frame's status is none");
+  return static_cast<TrackStatus>(status);
+}
+
+std::size_t take_index(BinaryReader& in, std::size_t count, const char* what) {
+  const auto index = in.take<std::uint64_t>(what);
+  if (index >= count) in.fail(std::string(what) + " " + std::to_string(index) + " is not there");
+  return static_cast<std::size_t>(index);
+}
+
+std::size_t take_count(BinaryReader& in, std::size_t item_bytes, const char* what) {
+  const auto count = in.take<std::uint64_t>(what);
+  in.require(static_cast<std::size_t>(count), item_bytes, what);
+  return static_cast<std::size_t>(count);
+}
+
+constexpr std::size_t kPose_bytes = 16 * sizeof(double), kInformation_bytes = 36 * sizeof(double);
+
+void put_counts(std::string& out, const OdometryCounts& c) {
+  for (const std::int64_t count :
+       {c.frames, c.tracked, c.degenerate, c.lost, c.relocalised, c.keyframes, c.anchored}) {
+    put(out, count);
+  }
+}
+
+void take_counts(BinaryReader& in, OdometryCounts& c) {
+  for (std::int64_t* count :
+       {&c.frames, &c.tracked, &c.degenerate, &c.lost, &c.relocalised, &c.keyframes, &c.anchored}) {
+    *count = in.take<std::int64_t>("counts");
+  }
+}
+
+void put_graph(std::string& out, const KeyframeGraph& graph) {
+  put(out, std::uint64_t{graph.keyframes.size()});
+  for (const Keyframe& keyframe : graph.keyframes) {
+    put(out, keyframe.frame_index);
+    put_pose(out, keyframe.T_world_camera);
+    put(out, keyframe.revision);
+    put(out, keyframe.way_m);
+  }
+  put(out, std::uint64_t{graph.constraints.size()});
+  for (const PoseConstraint& c : graph.constraints) {
+    put(out, std::uint64_t{c.a});
+    put(out, std::uint64_t{c.b});
+    put_pose(out, c.T_a_b);
+    put_information(out, c.information);
+    put(out, std::uint32_t{c.robust ? 1U : 0U});
+  }
+  put(out, std::uint64_t{graph.anchors.size()});
+  for (const PoseAnchor& anchor : graph.anchors) {
+    put(out, std::uint64_t{anchor.pose});
+    put_pose(out, anchor.T_world_camera);
+    put_information(out, anchor.information);
+  }
+  put(out, graph.loops_found);
+  put(out, graph.loops_rejected);
+}
+
+KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
+  KeyframeGraph graph;
+  graph.keyframes.resize(take_count(in, kPose_bytes, "keyframes"));
+  for (std::size_t i = 0; i < graph.keyframes.size(); ++i) {
+    Keyframe& keyframe = graph.keyframes[i];
+    keyframe.frame_index = in.take<std::int64_t>("frame index");
+    keyframe.T_world_camera = take_pose(in, "a keyframe's pose");
+    keyframe.revision = in.take<std::uint32_t>("revision");
+    keyframe.way_m = in.take_finite("way");
+    keyframe.view = std::make_shared<const StoredView>(read_view(folder / view_name(i, keyframe.revision)));
+  }
+  graph.constraints.resize(take_count(in, kPose_bytes + kInformation_bytes, "constraints"));
+  for (PoseConstraint& c : graph.constraints) {
+    c.a = take_index(in, graph.keyframes.size(), "keyframe");
+    c.b = take_index(in, graph.keyframes.size(), "keyframe");
+    c.T_a_b = take_pose(in, "a constraint's pose");
+    c.information = take_information(in);
+    c.robust = in.take<std::uint32_t>("constraint") != 0;
+  }
+  graph.anchors.resize(take_count(in, kPose_bytes + kInformation_bytes, "anchors"));
+  for (PoseAnchor& anchor : graph.anchors) {
+    anchor.pose = take_index(in, graph.keyframes.size(), "keyframe");
+    anchor.T_world_camera = take_pose(in, "an anchor's pose");
+    anchor.information = take_information(in);
+  }
+  graph.loops_found = in.take<std::int64_t>("loops");
+  graph.loops_rejected = in.take<std::int64_t>("loops");
+  return graph;
+}
+
+Places take_places(BinaryReader& in, const fs::path& folder) {
+  Places places;
+  places.keyframes.resize(take_count(in, kPose_bytes, "places"));
+  for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
+    Places one = read_places(folder / place_name(i));
+    if (one.keyframes.size() != 1) in.fail(place_name(i).string() + " does not hold one place");
+    places.keyframes[i] = std::move(one.keyframes.front());
+    places.keyframes[i].T_world_camera = take_pose(in, "a place's pose");
+  }
+  return places;
+}
+
+void put_frames(std::string& out, const std::vector<KeptFrame>& frames) {
+  put(out, std::uint64_t{frames.size()});
+  for (const KeptFrame& frame : frames) {
+    put(out, frame.frame_index);
+    put(out, frame.stamp_s);
+    put(out, frame.keyframe ? static_cast<std::int64_t>(*frame.keyframe) : std::int64_t{-1});
+    put_pose(out, frame.T_keyframe_camera);
+    put(out, static_cast<std::uint32_t>(frame.status));
+    put(out, std::uint32_t{frame.trusted ? 1U : 0U});
+  }
+}
+
+std::vector<KeptFrame> take_frames(BinaryReader& in, std::size_t keyframes) {
+  std::vector<KeptFrame> frames(take_count(in, kPose_bytes, "frames"));
+  for (KeptFrame& frame : frames) {
+    frame.frame_index = in.take<std::int64_t>("frame index");
+    frame.stamp_s = in.take_finite("stamp");
+    const auto keyframe = in.take<std::int64_t>("keyframe");
+    if (keyframe >= static_cast<std::int64_t>(keyframes)) in.fail("a frame's keyframe is not there");
+    if (keyframe >= 0) frame.keyframe = static_cast<std::size_t>(keyframe);
+    frame.T_keyframe_camera = take_pose(in, "a frame's pose");
+    frame.status = take_status(in);
+    frame.trusted = in.take<std::uint32_t>("frame") != 0;
+  }
+  return frames;
+}
+
+}  // namespace
+
+void save_odometry(const Odometry& odometry, const fs::path& into, const fs::path& previous) {
+  const OdometrySnapshot kept = odometry.snapshot();
+  const auto is_carried_over = [&](const fs::path& name) {
+    return !previous.empty() && carry_over(previous / name, into / name);
+  };
+  for (std::size_t i = 0; i < kept.graph.keyframes.size(); ++i) {
+    const fs::path name = view_name(i, kept.graph.keyframes[i].revision);
+    if (!is_carried_over(name)) write_view(*kept.graph.keyframes[i].view, into / name);
+  }
+  for (std::size_t i = 0; i < kept.places.keyframes.size(); ++i) {
+    const fs::path name = place_name(i);
+    if (!is_carried_over(name)) write_places({{kept.places.keyframes[i]}}, into / name);
+  }
+  std::string out;
+  put_counts(out, kept.counts);
+  put_graph(out, kept.graph);
+  put(out, std::uint64_t{kept.places.keyframes.size()});
+  for (const Place& place : kept.places.keyframes) put_pose(out, place.T_world_camera);
+  put_frames(out, kept.frames);
+  put(out, std::uint64_t{kept.current});
+  put(out, kept.improved);
+  put_pose(out, kept.T_world_last);
+  put_pose(out, kept.T_last_next);
+  put(out, kept.way_m);
+  put_image(out, kept.last_moved_grey);
+  put(out, static_cast<std::uint32_t>(kept.last_moved.status));
+  put_pose(out, kept.last_moved.T_world_camera);
+  put(out, std::uint32_t{kept.located ? 1U : 0U});
+  write_binary(into / "state.bin", kStateMagic, kVersion, out);
+}
+
+Odometry load_odometry(const fs::path& folder, const OdometryConfig& config) {
+  const fs::path path = folder / "state.bin";
+  const std::string bytes = read_binary(path, kStateMagic, kVersion);
+  BinaryReader in(bytes, path);
+  OdometrySnapshot kept;
+  take_counts(in, kept.counts);
+  kept.graph = take_graph(in, folder);
+  const std::size_t keyframes = kept.graph.keyframes.size();
+  kept.places = take_places(in, folder);
+  if (keyframes > 0 && kept.places.keyframes.size() != keyframes)
+    in.fail("keyframes and places differ in number");
+  kept.frames = take_frames(in, keyframes);
+  const auto current = in.take<std::uint64_t>("keyframe");
+  if (keyframes > 0 && current >= keyframes) in.fail("the current keyframe is not there");
+  kept.current = keyframes > 0 ? static_cast<std::size_t>(current) : 0;
+  kept.improved = in.take<int>("views");
+  kept.T_world_last = take_pose(in, "the last pose");
+  kept.T_last_next = take_pose(in, "the last motion");
+  kept.way_m = in.take_finite("way");
+  kept.last_moved_grey = take_image<float>(in, "picture");
+  kept.last_moved.status = take_status(in);
+  kept.last_moved.T_world_camera = take_pose(in, "the pose when the camera last moved");
+  kept.located = in.take<std::uint32_t>("located") != 0;
+  if (in.left() != 0) in.fail(std::to_string(in.left()) + " bytes more than expected");
+  return Odometry(config, std::move(kept));
+}
+
+}  // namespace roomradar

@@ -1,0 +1,224 @@
+// pose_graph.cpp: the poses that agree best with many measured relative poses.
+#include "mapping/odometry/pose_graph.hpp"
+
+#include <ceres/ceres.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "mapping/odometry/relative_pose_residual.hpp"
+
+namespace roomradar {
+namespace {
+
+// Residuals of robust constraints past this many standard deviations (of six together) count linearly, then
+// less.
+constexpr double kRobustSigma = 4.0;
+
+struct PoseBlock {
+  Eigen::Vector3d t;
+  Eigen::Quaterniond q;
+};
+
+/// A usable measurement of b in a; a may be the world, whose index is the number of poses.
+struct Measured {
+  std::size_t a, b;
+  Eigen::Isometry3d T_a_b;
+  Matrix6d information;
+  Matrix6d square_root;
+  bool robust;
+};
+
+/// S with S' S = information, or nothing if the matrix is no information.
+std::optional<Matrix6d> square_root(const Matrix6d& information) {
+  if (!information.allFinite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(0.5 * (information + information.transpose()));
+  const double most = solver.eigenvalues().maxCoeff();
+  if (most <= 0.0 || solver.eigenvalues().minCoeff() < -1e-9 * most) return std::nullopt;
+  return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * solver.eigenvectors().transpose();
+}
+
+std::optional<Measured> usable(std::size_t a, std::size_t b, std::size_t count,
+                               const Eigen::Isometry3d& T_a_b, const Matrix6d& information, bool robust) {
+  if (a > count || b >= count || a == b || !T_a_b.matrix().allFinite()) return std::nullopt;
+  const std::optional<Matrix6d> root = square_root(information);
+  if (!root) return std::nullopt;
+  return Measured{a, b, T_a_b, information, *root, robust};
+}
+
+std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+/// What a twist at camera a does to camera b's place in a, as a twist at b: -Ad(T_b_a).
+Matrix6d seen_from_b(const Eigen::Isometry3d& T_a_b) {
+  const Eigen::Isometry3d T_b_a = T_a_b.inverse();
+  const Eigen::Vector3d& t = T_b_a.translation();
+  Eigen::Matrix3d cross;
+  cross << 0, -t.z(), t.y(), t.z(), 0, -t.x(), -t.y(), t.x(), 0;
+  Matrix6d J = Matrix6d::Zero();
+  J.topLeftCorner<3, 3>() = J.bottomRightCorner<3, 3>() = -T_b_a.linear();
+  J.topRightCorner<3, 3>() = -cross * T_b_a.linear();
+  return J;
+}
+
+/// How many directions of all free poses together the measurements leave open: pivots of the normal equations
+/// that are next to nothing. `place` gives each pose its number among the free ones, or -1.
+std::size_t count_free_directions(const std::vector<Measured>& measured, const std::vector<int>& place,
+                                  int free_poses) {
+  if (free_poses == 0) return 0;
+  constexpr double kNothing = 1e-9;  // of the strongest direction
+  std::vector<Eigen::Triplet<double>> entries;
+  double most = 0.0;
+  const auto add = [&](int row, int column, const Matrix6d& block) {
+    if (row < 0 || column < 0) return;
+    for (int i = 0; i < 6; ++i) {
+      for (int j = 0; j < 6; ++j) entries.emplace_back(6 * row + i, 6 * column + j, block(i, j));
+    }
+    if (row == column) most = std::max(most, block.diagonal().maxCoeff());
+  };
+  for (const Measured& m : measured) {
+    const int a = place[m.a], b = place[m.b];
+    const Matrix6d J = seen_from_b(m.T_a_b);
+    add(a, a, J.transpose() * m.information * J);
+    add(a, b, J.transpose() * m.information);
+    add(b, a, m.information * J);
+    add(b, b, m.information);
+  }
+  const int size = 6 * free_poses;
+  for (int i = 0; i < size; ++i) entries.emplace_back(i, i, kNothing * most);
+  Eigen::SparseMatrix<double> H(size, size);
+  H.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> decomposed(H);
+  if (decomposed.info() != Eigen::Success) return static_cast<std::size_t>(size);
+  return static_cast<std::size_t>((decomposed.vectorD().array() < 100.0 * kNothing * most).count());
+}
+
+}  // namespace
+
+std::string describe(const PoseGraphResult& result) {
+  switch (result.status) {
+    case PoseGraphStatus::kSolved:
+      return "the poses agree with what was measured between them";
+    case PoseGraphStatus::kUnderdetermined:
+      return "nothing measured fixes " + std::to_string(result.untied) + " poses and " +
+             std::to_string(result.free_directions) +
+             " directions of the others; these were kept as they were";
+    case PoseGraphStatus::kNothingToSolve:
+      return "nothing usable was measured between the poses; they were left as they were";
+    case PoseGraphStatus::kNotFinite:
+      return "a pose is not a number; all were left as they were";
+    case PoseGraphStatus::kFailed:
+      return "the poses cannot be made to agree; they were left as they were";
+  }
+  return "unknown";
+}
+
+PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_camera,
+                                    const std::vector<PoseConstraint>& constraints,
+                                    const std::vector<PoseAnchor>& anchors, const std::vector<bool>& held) {
+  PoseGraphResult result;
+  result.residual_sigma.assign(constraints.size(), -1.0);
+  const std::size_t count = T_world_camera.size(), world = count;
+  std::vector<PoseBlock> blocks;
+  blocks.reserve(count + 1);
+  for (const Eigen::Isometry3d& T : T_world_camera) {
+    if (!T.matrix().allFinite()) {
+      result.status = PoseGraphStatus::kNotFinite;
+      return result;
+    }
+    blocks.push_back({T.translation(), Eigen::Quaterniond(T.linear()).normalized()});
+  }
+  blocks.push_back({Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
+
+  const auto is_held = [&](std::size_t i) { return held.empty() ? i == 0 : i < held.size() && held[i]; };
+  std::vector<Measured> measured;
+  std::vector<std::size_t> constraint_of;  // of the measured ones that are constraints, their numbers
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const PoseConstraint& c = constraints[i];
+    if (c.a >= count || (is_held(c.a) && is_held(c.b))) continue;  // nothing could move by it
+    if (const auto m = usable(c.a, c.b, count, c.T_a_b, c.information, c.robust)) {
+      measured.push_back(*m);
+      constraint_of.push_back(i);
+    }
+  }
+  for (const PoseAnchor& anchor : anchors) {
+    if (anchor.pose < count && is_held(anchor.pose)) continue;
+    if (const auto m = usable(world, anchor.pose, count, anchor.T_world_camera, anchor.information, true))
+      measured.push_back(*m);
+  }
+  if (measured.empty()) {
+    result.status = PoseGraphStatus::kNothingToSolve;
+    return result;
+  }
+
+  // What is tied, by whatever chain, to something that is held?
+  std::vector<std::size_t> parent(count + 1);
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_held(i)) parent[root_of(parent, i)] = root_of(parent, world);
+  }
+  for (const Measured& m : measured) parent[root_of(parent, m.a)] = root_of(parent, m.b);
+  std::vector<int> place(count + 1, -1);
+  int free_poses = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_held(i)) continue;
+    if (root_of(parent, i) == root_of(parent, world)) {
+      place[i] = free_poses++;
+    } else {
+      ++result.untied;
+    }
+  }
+
+  ceres::Problem problem;
+  std::vector<ceres::ResidualBlockId> ids;
+  for (const Measured& m : measured) {
+    auto* cost = new ceres::AutoDiffCostFunction<RelativePoseResidual, 6, 3, 4, 3, 4>(
+        new RelativePoseResidual{m.T_a_b.inverse(), m.square_root});
+    ids.push_back(problem.AddResidualBlock(cost, m.robust ? new ceres::CauchyLoss(kRobustSigma) : nullptr,
+                                           blocks[m.a].t.data(), blocks[m.a].q.coeffs().data(),
+                                           blocks[m.b].t.data(), blocks[m.b].q.coeffs().data()));
+  }
+  for (std::size_t i = 0; i <= count; ++i) {
+    if (!problem.HasParameterBlock(blocks[i].t.data())) continue;
+    problem.SetManifold(blocks[i].q.coeffs().data(), new ceres::EigenQuaternionManifold);
+    if (place[i] >= 0) continue;
+    problem.SetParameterBlockConstant(blocks[i].t.data());
+    problem.SetParameterBlockConstant(blocks[i].q.coeffs().data());
+  }
+
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = 50;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (!summary.IsSolutionUsable()) return result;
+  for (const PoseBlock& block : blocks) {
+    if (!block.t.allFinite() || !block.q.coeffs().allFinite()) return result;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (place[i] < 0) continue;
+    T_world_camera[i].translation() = blocks[i].t;
+    T_world_camera[i].linear() = blocks[i].q.normalized().toRotationMatrix();
+  }
+  for (std::size_t i = 0; i < constraint_of.size(); ++i) {
+    double half_square = 0.0;
+    problem.EvaluateResidualBlock(ids[i], false, &half_square, nullptr, nullptr);
+    result.residual_sigma[constraint_of[i]] = std::sqrt(2.0 * half_square);
+  }
+  result.cost_before = summary.initial_cost;
+  result.cost_after = summary.final_cost;
+  result.free_directions = count_free_directions(measured, place, free_poses);
+  result.status = result.untied + result.free_directions > 0 ? PoseGraphStatus::kUnderdetermined
+                                                             : PoseGraphStatus::kSolved;
+  return result;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,84 @@
+// ghost_removal.cpp: two more passes over the recording: find the ghosts, then look again at where they were.
+#include "mapping/revision/ghost_removal.hpp"
+
+#include "mapping/revision/ghost_zone.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+// Reads chosen frames in the order of the recording, without those between where the source can.
+class ChosenFrames {
+ public:
+  ChosenFrames(FrameSource& source, StageTimes& times) : source_(source), times_(times) {
+    if (!source.rewind()) throw Error(source.name() + ": cannot be read once more");
+  }
+
+  // False if the source does not deliver it now as it did before.
+  bool read(const FusedFrame& chosen, Frame& frame) {
+    return times_.timed("read", [&] {
+      if (position_ != chosen.position && source_.seek(chosen.position)) position_ = chosen.position;
+      while (position_ <= chosen.position) {
+        const ReadResult result = source_.next(frame);
+        if (result.status == ReadStatus::kEnd) return false;
+        if (position_++ == chosen.position)
+          return result.status == ReadStatus::kFrame && frame.index == chosen.frame_index;
+      }
+      return false;
+    });
+  }
+
+ private:
+  FrameSource& source_;
+  StageTimes& times_;
+  std::int64_t position_ = 0;
+};
+
+}  // namespace
+
+GhostRevision take_out_ghosts(FrameSource& source, std::span<const FusedFrame> fused,
+                              const GhostConfig& config, StaticMap& map, StageTimes& times,
+                              const GhostProgress& progress) {
+  // What is seen through?
+  GhostVotes votes(map, config);
+  Frame frame;
+  const std::size_t stride = 1 + (fused.size() - 1) / static_cast<std::size_t>(config.max_looks);
+  ChosenFrames chosen(source, times);
+  for (std::size_t i = 0; i < fused.size(); i += stride) {
+    if (!chosen.read(fused[i], frame)) continue;
+    times.timed("ghosts", [&] { votes.look(frame, fused[i].T_world_camera); });
+    if (progress) progress("looked");
+  }
+
+  // Out with it, and with all samples that it may have spoiled.
+  GhostRevision revision;
+  times.timed("ghosts", [&] {
+    revision.verdicts = votes.verdicts();
+    if (revision.voxels() == 0) return;
+    const GhostZone zone(revision.verdicts, map.resolution_m());
+    for (std::vector<VoxelIndex>* voxels : {&revision.verdicts.still, &revision.verdicts.unseen})
+      std::erase_if(*voxels, [&](const VoxelIndex& voxel) { return !zone.reaches(voxel); });
+    map.revise_samples([&](const SurfaceSample& sample) { return zone.fate_of(sample); });
+  });
+  return revision;
+}
+
+void look_again(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,
+                StaticMap& map, StageTimes& times, const GhostProgress& progress) {
+  if (revision.voxels() == 0) return;
+  const GhostZone zone =
+      times.timed("ghosts", [&] { return GhostZone(revision.verdicts, map.resolution_m()); });
+  Frame frame;
+  ChosenFrames chosen(source, times);
+  while (revision.next < fused.size()) {
+    const FusedFrame& one = fused[revision.next++];
+    if (!zone.in_view(one.depth_camera, one.T_world_camera) || !chosen.read(one, frame)) continue;
+    times.timed("ghosts", [&] {
+      zone.mask(frame.depth_camera, one.T_world_camera, frame.depth_m);
+      map.fuse(frame, one.T_world_camera);
+    });
+    if (progress) progress("fused again");
+  }
+}
+
+}  // namespace roomradar

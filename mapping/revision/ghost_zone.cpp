@@ -1,0 +1,156 @@
+// ghost_zone.cpp: marking the bricks round ghosts, and the pixels that they are seen in.
+#include "mapping/revision/ghost_zone.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kNear = 2;      // voxels: rounding, and noise where samples are averages
+constexpr int kCellEdge = 4;  // voxels, half a brick
+constexpr double kNearest_m =
+    0.1;  // bricks with a corner nearer to the camera's plane are taken to fill the image
+
+std::size_t offset_of(const VoxelIndex& voxel) {
+  return brick_offset(voxel.unaryExpr([](int v) { return v & (kBrickEdge - 1); }));
+}
+
+// Which of its brick's cells a voxel lies in.
+std::size_t cell_of(const VoxelIndex& voxel) {
+  const auto half = [&](int axis) { return static_cast<std::size_t>(voxel[axis] >> 2 & 1); };
+  return half(0) | half(1) << 1U | half(2) << 2U;
+}
+
+struct Rectangle {
+  int left = 0, top = 0, right = -1, bottom = -1;  // borders included
+};
+
+// Of the image, what a brick's projection lies in; nothing if it is out of sight.
+std::optional<Rectangle> covered_by(const VoxelIndex& first, double resolution_m, const Intrinsics& camera,
+                                    const Eigen::Isometry3d& T_camera_world) {
+  Eigen::Array2d low = Eigen::Array2d::Constant(1e9);
+  Eigen::Array2d high = -low;
+  int behind = 0;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Vector3d corner(first.x() + (i & 1 ? kBrickEdge : 0), first.y() + (i & 2 ? kBrickEdge : 0),
+                                 first.z() + (i & 4 ? kBrickEdge : 0));
+    const Eigen::Vector3d p_camera = T_camera_world * (corner * resolution_m);
+    if (p_camera.z() < kNearest_m) {
+      ++behind;
+      continue;
+    }
+    const Eigen::Array2d pixel = project(camera, p_camera).array();
+    low = low.min(pixel);
+    high = high.max(pixel);
+  }
+  if (behind == 8) return std::nullopt;
+  if (behind > 0) return Rectangle{0, 0, camera.width_px - 1, camera.height_px - 1};
+  const auto last = [](double pixel, int size) {
+    return static_cast<int>(std::clamp(pixel, -1.0, size - 1.0));
+  };
+  const auto begin = [](double pixel, int size) {
+    return static_cast<int>(std::clamp(pixel, 0.0, static_cast<double>(size)));
+  };
+  const Rectangle r{begin(std::floor(low.x()), camera.width_px), begin(std::floor(low.y()), camera.height_px),
+                    last(std::ceil(high.x()), camera.width_px), last(std::ceil(high.y()), camera.height_px)};
+  if (r.left > r.right || r.top > r.bottom) return std::nullopt;
+  return r;
+}
+
+}  // namespace
+
+GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
+    : resolution_m_(resolution_m) {
+  const auto mark = [this](const VoxelIndex& ghost, std::bitset<512> Marks::*bits) {
+    const auto found = marks_.find(cell_code(brick_of(ghost)));
+    if (found != marks_.end() && found->second.ghost_cells.test(cell_of(ghost))) {
+      (found->second.*bits).set(offset_of(ghost));
+      return;
+    }
+    for (int i = 0; i < kCellsRound; ++i) {
+      const VoxelIndex step = cell_round(i);
+      const VoxelIndex first = brick_of(ghost) + kBrickEdge * step;
+      if (marks_.try_emplace(cell_code(first)).second) bricks_.push_back(first);
+      const VoxelIndex neighbour = ghost + kCellEdge * step;
+      marks_[cell_code(brick_of(neighbour))].cells.set(cell_of(neighbour));
+    }
+    Marks& own = marks_.at(cell_code(brick_of(ghost)));
+    own.ghost_cells.set(cell_of(ghost));
+    (own.*bits).set(offset_of(ghost));
+  };
+  for (const VoxelIndex& ghost : verdicts.ghosts) mark(ghost, &Marks::ghost);
+  for (const VoxelIndex& absent : verdicts.absent) mark(absent, &Marks::absent);
+  const auto mark_near = [this](const VoxelIndex& voxel, std::bitset<512> Marks::*bits) {
+    if (!reaches(voxel)) return;
+    for (int z = -kNear; z <= kNear; ++z)
+      for (int y = -kNear; y <= kNear; ++y)
+        for (int x = -kNear; x <= kNear; ++x) {
+          const VoxelIndex near = voxel + VoxelIndex(x, y, z);
+          const auto found = marks_.find(cell_code(brick_of(near)));
+          if (found != marks_.end()) (found->second.*bits).set(offset_of(near));
+        }
+  };
+  for (const VoxelIndex& ghost : verdicts.ghosts) mark_near(ghost, &Marks::near_ghost);
+  for (const VoxelIndex& absent : verdicts.absent) mark_near(absent, &Marks::near_ghost);
+  for (const VoxelIndex& still : verdicts.still) mark_near(still, &Marks::near_still);
+  for (const VoxelIndex& unseen : verdicts.unseen) {
+    const auto found = marks_.find(cell_code(brick_of(unseen)));
+    if (found != marks_.end()) found->second.unseen.set(offset_of(unseen));
+    mark_near(unseen, &Marks::near_unseen);
+  }
+}
+
+bool GhostZone::reaches(const VoxelIndex& voxel) const {
+  for (int i = 0; i < 8; ++i) {
+    const VoxelIndex corner(i & 1 ? kNear : -kNear, i & 2 ? kNear : -kNear, i & 4 ? kNear : -kNear);
+    if (marks_.contains(cell_code(brick_of(voxel + corner)))) return true;
+  }
+  return false;
+}
+
+const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {
+  const auto found = marks_.find(cell_code(brick_of(voxel)));
+  return found == marks_.end() ? nullptr : &found->second;
+}
+
+SampleFate GhostZone::fate_of(const SurfaceSample& sample) const {
+  const Marks* marks = marks_of(sample.voxel);
+  if (!marks) return SampleFate::kKeep;
+  const std::size_t offset = offset_of(sample.voxel);
+  if (marks->ghost.test(offset)) return SampleFate::kFree;
+  if (marks->absent.test(offset)) return SampleFate::kUnknown;
+  const bool near_ghost = marks->near_ghost.test(offset);
+  const bool near_still = marks->near_still.test(offset);
+  const bool near_unseen = marks->near_unseen.test(offset);
+  if (!(sample.weight > 0.0F) && near_ghost && !near_still && !near_unseen) return SampleFate::kUnknown;
+  if (!near_ghost && (marks->unseen.test(offset) || (near_unseen && !near_still))) return SampleFate::kKeep;
+  return marks->cells.test(cell_of(sample.voxel)) ? SampleFate::kForget : SampleFate::kKeep;
+}
+
+bool GhostZone::in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const {
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  return std::any_of(bricks_.begin(), bricks_.end(), [&](const VoxelIndex& first) {
+    return covered_by(first, resolution_m_, camera, T_camera_world).has_value();
+  });
+}
+
+void GhostZone::mask(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                     DepthImage& depth_m) const {
+  for (int y = 0; y < depth_m.height; ++y)
+    for (int x = 0; x < depth_m.width; ++x) {
+      float& depth = depth_m.at(x, y);
+      if (!(depth > 0.0F)) continue;
+      const Eigen::Vector3d p_world = T_world_camera * back_project(camera, x, y, static_cast<double>(depth));
+      const VoxelIndex voxel = (p_world / resolution_m_).array().floor().cast<int>();
+      const Marks* marks = marks_of(voxel);
+      const std::size_t offset = offset_of(voxel);
+      if (!marks || !marks->near_still.test(offset) || marks->near_ghost.test(offset)) depth = 0.0F;
+    }
+}
+
+}  // namespace roomradar

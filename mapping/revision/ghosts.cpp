@@ -1,0 +1,321 @@
+// ghosts.cpp: the votes of frames on the map's surface, brick by brick.
+#include "mapping/revision/ghosts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+#include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/types/depth_noise.hpp"
+#include "mapping/types/system/config_check.hpp"
+#include "mapping/types/validity.hpp"
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr float kNearestProjected_m = 0.1F;  // nothing is projected from nearer to the camera's plane
+// Surface that is nearer gives no depth, and hides what is behind.
+constexpr float kTooNear_m = 0.8F;
+constexpr int kHiddenCell_px = 8;  // a voxel of a centimetre at that distance
+
+// A group of ghosts that covers a square of this edge is no error of tracking. Round it, and no farther away,
+// less evidence is enough; without both limits rows of static edges go along.
+constexpr double kSureExtent_m = 0.5;
+constexpr double kReach_m = 0.1;
+constexpr int kHardlySeen = 3;  // looks: what hangs together with such a group stays only if more saw it
+
+constexpr std::size_t kEveryColour =
+    4;  // of so many voxels one looks at its colour: it is a group's that counts
+
+// False if nothing within radius_m of the centre can be in the image.
+bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_camera, double radius_m) {
+  if (centre_camera.z() < kNearestProjected_m - radius_m) return false;
+  const double nearest_z = std::max(centre_camera.z() - radius_m, static_cast<double>(kNearestProjected_m));
+  const double margin_px = 2.0 * radius_m * std::max(camera.fx_px, camera.fy_px) / nearest_z;
+  if (centre_camera.z() < 2.0 * radius_m) return true;  // too near to tell so simply
+  const Eigen::Vector2d pixel = project(camera, centre_camera);
+  return pixel.x() > -margin_px && pixel.y() > -margin_px && pixel.x() < camera.width_px + margin_px &&
+         pixel.y() < camera.height_px + margin_px;
+}
+
+Eigen::Vector3i in_brick(std::uint16_t offset) {
+  static_assert(kBrickEdge == 8);
+  return {offset & 7, offset >> 3 & 7, offset >> 6};
+}
+
+// For each voxel, how many hang together with it, itself among them: those in cells of 4^3 voxels that touch.
+std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) {
+  const auto cell_of = [](const VoxelIndex& voxel) -> VoxelIndex {
+    return voxel.unaryExpr([](int v) { return v >> 2; });
+  };
+  struct Cell {
+    VoxelIndex index;
+    std::size_t voxels = 0;
+    std::size_t together = 0;  // voxels of all cells that it hangs together with
+  };
+  std::vector<Cell> cells;
+  std::unordered_map<std::uint64_t, std::size_t> position;
+  for (const VotedVoxel& one : voxels) {
+    const VoxelIndex& voxel = one.voxel;
+    const auto [found, is_new] = position.try_emplace(cell_code(cell_of(voxel)), cells.size());
+    if (is_new) cells.push_back({cell_of(voxel)});
+    ++cells[found->second].voxels;
+  }
+  std::vector<std::size_t> group;
+  std::vector<std::uint8_t> reached(cells.size(), 0);
+  for (std::size_t seed = 0; seed < cells.size(); ++seed) {
+    if (reached[seed] != 0) continue;
+    group.assign(1, seed);
+    reached[seed] = 1;
+    std::size_t count = 0;
+    for (std::size_t done = 0; done < group.size(); ++done) {
+      const Cell& cell = cells[group[done]];
+      count += cell.voxels;
+      for (int i = 0; i < kCellsRound; ++i) {
+        const auto found = position.find(cell_code(cell.index + cell_round(i)));
+        if (found == position.end() || reached[found->second] != 0) continue;
+        reached[found->second] = 1;
+        group.push_back(found->second);
+      }
+    }
+    for (const std::size_t member : group) cells[member].together = count;
+  }
+  std::vector<std::size_t> together;
+  together.reserve(voxels.size());
+  for (const VotedVoxel& one : voxels)
+    together.push_back(cells[position.at(cell_code(cell_of(one.voxel)))].together);
+  return together;
+}
+
+}  // namespace
+
+void require_valid(const GhostConfig& c) {
+  const SettingRules require{"ghosts"};
+  require(c.margin_m > 0.0F && std::isfinite(c.margin_m), "margin_m", c.margin_m, "> 0");
+  require(c.margin_per_m >= 0.0F && std::isfinite(c.margin_per_m), "margin_per_m", c.margin_per_m, ">= 0");
+  require(c.margin_voxels >= 0.0F && std::isfinite(c.margin_voxels), "margin_voxels", c.margin_voxels,
+          ">= 0");
+  require(c.margin_sigmas >= 0.0F && std::isfinite(c.margin_sigmas), "margin_sigmas", c.margin_sigmas,
+          ">= 0");
+  require(c.window_radius_m >= 0.0F && c.window_radius_m <= 1.0F, "window_radius_m", c.window_radius_m,
+          "in 0..1 m");
+  require(c.min_measured_share >= 0.0F && c.min_measured_share <= 1.0F, "min_measured_share",
+          c.min_measured_share, "in 0..1");
+  require(c.min_through >= 1, "min_through", c.min_through, "1 or more");
+  require(c.min_through_share >= 0.0F && c.min_through_share <= 1.0F, "min_through_share",
+          c.min_through_share, "in 0..1");
+  require(c.min_extent_m >= 0.0F && std::isfinite(c.min_extent_m), "min_extent_m", c.min_extent_m, ">= 0");
+  require(c.max_looks >= 1 && c.max_looks <= 60'000, "max_looks", c.max_looks, "in 1..60000");
+}
+
+GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
+    : resolution_m_(map.resolution_m()), config_(config) {
+  require_valid(config);
+  const auto voxel_m = static_cast<float>(resolution_m_);
+  map.visit_samples([&](const SurfaceSample& sample) {
+    if (sample.occupancy != Occupancy::kOccupied && std::abs(sample.distance_m) > voxel_m) return;
+    const VoxelIndex first = brick_of(sample.voxel);
+    if (bricks_.empty() || bricks_.back().first != first) bricks_.push_back({first, 0});
+    Votes& votes = votes_.emplace_back();
+    votes.offset = brick_offset(sample.voxel - first) & 511U;
+    votes.occupied = sample.occupancy == Occupancy::kOccupied ? 1U : 0U;
+    bricks_.back().end = votes_.size();
+  });
+  absence_.resize(votes_.size());
+}
+
+void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  const DepthImage& depth_m = frame.depth_m;
+  const Intrinsics& camera = frame.depth_camera;
+  if (!depth_fault_of(frame).empty()) return;
+  build_windows(depth_m, windows_);
+  absence_looks_.begin(frame, T_world_camera);
+
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  const Eigen::Matrix3f R_camera_voxels = (T_camera_world.linear() * resolution_m_).cast<float>();
+  std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps;  // from the middle of a brick's first voxel
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < kBrickEdge; ++i)
+      steps[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] =
+          R_camera_voxels.col(axis) * static_cast<float>(i);
+  const double brick_radius_m = 0.5 * std::sqrt(3.0) * kBrickEdge * resolution_m_;
+  const auto fx = static_cast<float>(camera.fx_px);
+  const auto fy = static_cast<float>(camera.fy_px);
+  const auto cx = static_cast<float>(camera.cx_px);
+  const auto cy = static_cast<float>(camera.cy_px);
+  const auto width = static_cast<float>(depth_m.width);
+  const auto height = static_cast<float>(depth_m.height);
+  const float least_margin_m =
+      std::max(config_.margin_m, config_.margin_voxels * static_cast<float>(resolution_m_));
+
+  // Calls visit(position, centre in the camera frame, pixel) for the voxels in the image, nearer than that.
+  const auto for_each_nearer = [&](float farthest_m, const auto& visit) {
+    std::size_t begin = 0;
+    for (const Brick& brick : bricks_) {
+      const std::size_t first = std::exchange(begin, brick.end);
+      const Eigen::Vector3d low_world = brick.first.cast<double>() * resolution_m_;
+      const Eigen::Vector3d middle_camera =
+          T_camera_world * (low_world + Eigen::Vector3d::Constant(0.5 * kBrickEdge * resolution_m_));
+      if (middle_camera.z() > static_cast<double>(farthest_m) + brick_radius_m ||
+          !may_be_seen(camera, middle_camera, brick_radius_m))
+        continue;
+      const Eigen::Vector3f first_camera =
+          (T_camera_world * (low_world + Eigen::Vector3d::Constant(0.5 * resolution_m_))).cast<float>();
+      for (std::size_t i = first; i < brick.end; ++i) {
+        const std::size_t offset = votes_[i].offset;
+        const Eigen::Vector3f p_camera =
+            first_camera + steps[0][offset & 7U] + steps[1][offset >> 3U & 7U] + steps[2][offset >> 6U];
+        const float z = p_camera.z();
+        if (!(z > kNearestProjected_m && z < farthest_m)) continue;
+        const float u = fx * p_camera.x() / z + cx + 0.5F;
+        const float v = fy * p_camera.y() / z + cy + 0.5F;
+        if (u >= 0.0F && v >= 0.0F && u < width && v < height)
+          visit(i, p_camera, static_cast<int>(u), static_cast<int>(v));
+      }
+    }
+  };
+  const int cells_across = depth_m.width / kHiddenCell_px + 1,
+            cells_down = depth_m.height / kHiddenCell_px + 1;
+  const auto cell_at = [&](int column, int row) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(cells_across) +
+           static_cast<std::size_t>(column);
+  };
+  std::vector<bool> is_hidden(cell_at(0, cells_down), false);
+  for_each_nearer(kTooNear_m, [&](std::size_t i, const Eigen::Vector3f&, int x, int y) {
+    if (votes_[i].occupied == 0) return;
+    const int column = x / kHiddenCell_px, row = y / kHiddenCell_px;
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, cells_down - 1); ++r)
+      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, cells_across - 1); ++c)
+        is_hidden[cell_at(c, r)] = true;
+  });
+
+  for_each_nearer(std::numeric_limits<float>::infinity(), [&](std::size_t i, const Eigen::Vector3f& p_camera,
+                                                              int x, int y) {
+    Votes& votes = votes_[i];
+    const float z = p_camera.z();
+    const float measured_m = depth_m.at(x, y);
+    const auto window_at = [&, this] {
+      const int radius_px =
+          std::min(static_cast<int>(std::ceil(config_.window_radius_m * fx / z)), kMaxWindowRadius_px);
+      return window_depth(windows_, x, y, radius_px);
+    };
+    const bool has_colour = i % kEveryColour == 0;
+    const auto margin_m = [&, this](float depth) {
+      return std::max(
+          {least_margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
+    };
+    if (!(measured_m > 0.0F)) {
+      if (is_hidden[cell_at(x / kHiddenCell_px, y / kHiddenCell_px)]) return;
+      const WindowDepth window = window_at();
+      const bool beside_nearer = window.nearest_m < z - margin_m(z);
+      absence_looks_.unmeasured(frame, x, y, p_camera, window.measured_share, beside_nearer, has_colour,
+                                absence_[i]);
+      return;
+    }
+    if (std::abs(measured_m - z) <= margin_m(measured_m)) {
+      ++votes.seen;
+      if (has_colour) absence_looks_.measured(frame, p_camera, absence_[i]);
+      return;
+    }
+    if (measured_m < z) return;
+    const WindowDepth window = window_at();
+    if (window.nearest_m - z > margin_m(window.nearest_m) &&
+        window.measured_share >= config_.min_measured_share)
+      ++votes.through;
+    else if (measured_m - z > margin_m(measured_m))
+      ++votes.glimpsed;
+  });
+}
+
+bool GhostVotes::is_share(int part, int others) const {
+  return part > 0 &&
+         static_cast<float>(part) >= static_cast<float>(part + others) * config_.min_through_share;
+}
+
+std::vector<GhostVotes::Fate> GhostVotes::fates() const {
+  std::vector<Fate> fates(votes_.size(), Fate::kStill);
+  const auto those = [this](const auto& are_such) {
+    std::vector<VotedVoxel> found;
+    std::uint32_t next = 0;
+    for (const Brick& brick : bricks_)
+      for (; next < brick.end; ++next)
+        if (are_such(votes_[next], absence_[next]))
+          found.push_back({brick.first + in_brick(votes_[next].offset), next});
+    return found;
+  };
+  const auto voxels_of = [this](double edge_m) {
+    return 2.0 * edge_m * edge_m / (resolution_m_ * resolution_m_);
+  };
+  const double min_voxels = voxels_of(static_cast<double>(config_.min_extent_m));
+
+  // Enough evidence, and enough of them together.
+  const auto may_be_gone = those(
+      [](const Votes& votes, const AbsenceVotes& absence) { return may_be_absent(absence, votes.seen); });
+  const auto seen_through = those([this](const Votes& votes, const AbsenceVotes&) {
+    return votes.through >= config_.min_through && is_share(votes.through, votes.seen);
+  });
+  std::vector<VotedVoxel> absent = find_absent(may_be_gone, absence_, min_voxels);
+  std::vector<VotedVoxel> ghosts, sure;
+  const std::vector<std::size_t> together = voxels_together(seen_through);
+  for (std::size_t i = 0; i < seen_through.size(); ++i) {
+    const auto size = static_cast<double>(together[i]);
+    if (size >= min_voxels) ghosts.push_back(seen_through[i]);
+    if (size >= voxels_of(kSureExtent_m)) sure.push_back(seen_through[i]);
+  }
+
+  // What hangs together with those goes along on less.
+  std::vector<VotedVoxel> moved_on;
+  const auto add = [&](const std::vector<VotedVoxel>& more) {
+    moved_on.insert(moved_on.end(), more.begin(), more.end());
+  };
+  const auto is_once_through = [this](const Votes& votes, const AbsenceVotes&) {
+    return is_share(votes.through, votes.seen);
+  };
+  const auto goes_along = [](const Votes& votes, const AbsenceVotes& absence) {
+    return may_go_along(absence, votes.seen);
+  };
+  if (!absent.empty()) add(spread(std::move(absent), those(goes_along)));
+  if (!ghosts.empty()) add(spread(std::move(ghosts), those(is_once_through)));
+  if (!sure.empty()) {
+    const int reach = static_cast<int>(std::lround(kReach_m / resolution_m_));
+    const auto is_glimpsed = [this](const Votes& votes, const AbsenceVotes&) {
+      return is_share(votes.through + votes.glimpsed, votes.seen);
+    };
+    const auto is_hardly_seen = [](const Votes& votes, const AbsenceVotes&) {
+      return votes.seen <= kHardlySeen;
+    };
+    sure = spread(std::move(sure), those(is_once_through));
+    sure = spread(std::move(sure), those(is_glimpsed), reach);
+    add(spread(std::move(sure), those(is_hardly_seen), reach));
+  }
+  for (const VotedVoxel& one : moved_on) {
+    const Votes& votes = votes_[one.position];
+    fates[one.position] = votes.through + votes.glimpsed > 0 ? Fate::kGhost : Fate::kAbsent;
+  }
+  return fates;
+}
+
+GhostVotes::Verdicts GhostVotes::verdicts() const {
+  const std::vector<Fate> fates = this->fates();
+  Verdicts verdicts;
+  std::size_t next = 0;
+  for (const Brick& brick : bricks_)
+    for (; next < brick.end; ++next) {
+      const VoxelIndex voxel = brick.first + in_brick(votes_[next].offset);
+      if (fates[next] == Fate::kGhost)
+        verdicts.ghosts.push_back(voxel);
+      else if (fates[next] == Fate::kAbsent)
+        verdicts.absent.push_back(voxel);
+      else if (const Votes& v = votes_[next]; v.seen == 0 && v.through == 0 && v.glimpsed == 0)
+        verdicts.unseen.push_back(voxel);
+      else if (votes_[next].occupied != 0)
+        verdicts.still.push_back(voxel);
+    }
+  return verdicts;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,172 @@
+// absence.cpp: votes by colour and missing depth, and the groups of voxels that they tell are gone.
+#include "mapping/revision/unmeasured_evidence.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <unordered_map>
+
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+using State = AbsenceVotes::State;
+
+constexpr float kNearestMeasured_m = 0.6F;  // nearer, sensors may give no depth of what is there
+constexpr float kFarthest_m = 4.5F;         // and farther
+constexpr float kUnmeasuredShare = 0.5F;
+constexpr float kGoneShare = 0.25F;    // of the pixels round a voxel may have depth
+constexpr int kBorder = 32;            // the outermost 1/32 of the image, where sensors have no depth
+constexpr double kOnePlace = 0.1;      // camera centres, by the distance of what is seen: 6 degrees
+constexpr int kMinGone = 3;            // frames
+constexpr int kSeenForUnmeasured = 2;  // frames that may see a voxel for each that does not
+constexpr double kTurnChange = 30.0;   // of 255, more than between two looks at what stays
+constexpr double kMinTurned = 0.1;     // of a group's voxels that have colour
+
+template <typename Count>
+void add(Count& count, int n = 1) {
+  count = static_cast<Count>(std::min<int>(count + n, std::numeric_limits<Count>::max()));
+}
+
+// Voxels by place, each handed out once.
+class Unreached {
+ public:
+  explicit Unreached(std::span<const VotedVoxel> voxels) : voxels_(voxels) {
+    index_of_.reserve(voxels.size());
+    for (std::size_t i = 0; i < voxels.size(); ++i) index_of_.emplace(cell_code(voxels[i].voxel), i);
+  }
+
+  void take(const VoxelIndex& voxel) { index_of_.erase(cell_code(voxel)); }
+  // Takes a voxel and its 26 neighbours, those that are there.
+  template <typename Take>
+  void take_round(const VoxelIndex& voxel, const Take& take) {
+    for (int i = 0; i < kCellsRound; ++i) {
+      const auto found = index_of_.find(cell_code(voxel + cell_round(i)));
+      if (found == index_of_.end()) continue;
+      const VotedVoxel& taken = voxels_[found->second];
+      index_of_.erase(found);
+      take(taken);
+    }
+  }
+
+ private:
+  std::span<const VotedVoxel> voxels_;
+  std::unordered_map<std::uint64_t, std::size_t> index_of_;
+};
+
+// Mean change of colour at the group's turns, beyond that between two looks at it; negative if too few
+// turned.
+double turn_change(std::span<const VotedVoxel> group, std::span<const AbsenceVotes> all_votes) {
+  double turns = 0.0, turn_sum = 0.0, steadies = 0.0, steady_sum = 0.0;
+  double coloured = 0.0, turned = 0.0;  // voxels
+  for (const VotedVoxel& one : group) {
+    const AbsenceVotes& votes = all_votes[one.position];
+    coloured += votes.state != State::kUnknown ? 1.0 : 0.0;
+    turned += votes.turns > 0 ? 1.0 : 0.0;
+    turns += votes.turns;
+    turn_sum += votes.turn_change;
+    steadies += votes.steadies;
+    steady_sum += votes.steady_change;
+  }
+  if (turned < 1.0 || turned < kMinTurned * coloured) return -1.0;
+  return turn_sum / std::max(turns, 1.0) - steady_sum / std::max(steadies, 1.0);
+}
+
+}  // namespace
+
+void AbsenceLooks::begin(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  centres_world_.emplace_back(T_world_camera.translation());
+  Eigen::Matrix3d K = Eigen::Matrix3d::Identity();
+  K(0, 0) = frame.colour_camera.fx_px;
+  K(1, 1) = frame.colour_camera.fy_px;
+  K(0, 2) = frame.colour_camera.cx_px;
+  K(1, 2) = frame.colour_camera.cy_px;
+  K_R_colour_depth_ = (K * frame.T_colour_depth.linear()).cast<float>();
+  K_t_colour_depth_ = (K * frame.T_colour_depth.translation()).cast<float>();
+}
+
+void AbsenceLooks::turn(const Frame& frame, const Eigen::Vector3f& p_camera, State state,
+                        AbsenceVotes& votes) const {
+  const Eigen::Vector3f p = K_R_colour_depth_ * p_camera + K_t_colour_depth_;
+  if (!(p.z() > 0.0F)) return;
+  const float u = p.x() / p.z() + 0.5F;
+  const float v = p.y() / p.z() + 0.5F;
+  if (!(u >= 0.0F && v >= 0.0F && u < static_cast<float>(frame.colour.width) &&
+        v < static_cast<float>(frame.colour.height)))
+    return;
+  const Rgb colour = frame.colour.at(static_cast<int>(u), static_cast<int>(v));
+  if (votes.state != State::kUnknown && (state == State::kMeasured || votes.state == State::kMeasured)) {
+    const double apart_m = (centres_world_[votes.last_look] - centres_world_.back()).norm();
+    if (apart_m < kOnePlace * static_cast<double>(p_camera.z())) {
+      const int change = std::max({std::abs(colour.r - votes.colour.r), std::abs(colour.g - votes.colour.g),
+                                   std::abs(colour.b - votes.colour.b)});
+      const bool turned = state != votes.state;
+      std::uint8_t& count = turned ? votes.turns : votes.steadies;
+      if (count < std::numeric_limits<std::uint8_t>::max()) {
+        add(count);
+        add(turned ? votes.turn_change : votes.steady_change, change);
+      }
+    }
+  }
+  votes.state = state;
+  votes.colour = colour;
+  votes.last_look = static_cast<std::uint16_t>(centres_world_.size() - 1);
+}
+
+void AbsenceLooks::measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const {
+  turn(frame, p_camera, State::kMeasured, votes);
+}
+
+void AbsenceLooks::unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera,
+                              float measured_share, bool beside_nearer, bool has_colour,
+                              AbsenceVotes& votes) const {
+  const float z = p_camera.z();
+  const int border_x = frame.depth_m.width / kBorder;
+  const int border_y = frame.depth_m.height / kBorder;
+  if (!(z > kNearestMeasured_m && z < kFarthest_m) || measured_share >= kUnmeasuredShare || x < border_x ||
+      y < border_y || x >= frame.depth_m.width - border_x || y >= frame.depth_m.height - border_y)
+    return;
+  if (!beside_nearer) add(votes.unmeasured);
+  if (measured_share >= kGoneShare) return;
+  add(votes.gone);
+  if (has_colour) turn(frame, p_camera, State::kGone, votes);
+}
+
+bool may_be_absent(const AbsenceVotes& votes, int seen) {
+  return votes.gone >= kMinGone && votes.gone >= 2 * seen;
+}
+
+bool may_go_along(const AbsenceVotes& votes, int seen) {
+  if (votes.unmeasured >= kMinGone && kSeenForUnmeasured * votes.unmeasured >= seen) return true;
+  return votes.turns > 0 && votes.turn_change >= kTurnChange * votes.turns;
+}
+
+std::vector<VotedVoxel> find_absent(std::span<const VotedVoxel> candidates,
+                                    std::span<const AbsenceVotes> votes, double min_group_voxels) {
+  std::vector<VotedVoxel> absent, group;
+  Unreached unreached(candidates);
+  for (const VotedVoxel& seed : candidates) {
+    group.clear();
+    const auto take = [&](const VotedVoxel& one) { group.push_back(one); };
+    unreached.take_round(seed.voxel, take);
+    for (std::size_t done = 0; done < group.size(); ++done)
+      unreached.take_round(VoxelIndex(group[done].voxel), take);
+    if (static_cast<double>(group.size()) >= min_group_voxels && turn_change(group, votes) >= kTurnChange)
+      absent.insert(absent.end(), group.begin(), group.end());
+  }
+  return absent;
+}
+
+std::vector<VotedVoxel> spread(std::vector<VotedVoxel> cores, std::span<const VotedVoxel> going_along,
+                               int max_steps) {
+  Unreached unreached(going_along);
+  for (const VotedVoxel& core : cores) unreached.take(core.voxel);
+  std::size_t done = 0;
+  for (int step = 0; step < max_steps && done < cores.size(); ++step)
+    for (const std::size_t end = cores.size(); done < end; ++done)
+      unreached.take_round(VoxelIndex(cores[done].voxel),
+                           [&](const VotedVoxel& one) { cores.push_back(one); });
+  return cores;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,138 @@
+// folder_swap.cpp: write beside, sync, rename, by Linux calls: the standard library can only rename.
+#include "mapping/storage/atomic_folder.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPartial = "partial";
+constexpr const char* kBefore = "before";
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what, int reason) {
+  throw Error(path.string() + ": " + what + ": " + std::strerror(reason) +
+              (reason == ENOSPC || reason == EDQUOT ? "; free some space and save again" : ""));
+}
+
+fs::path parent_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+fs::path beside(const fs::path& target, const char* word) {
+  return parent_of(target) / (target.filename().string() + "." + word + "-" + std::to_string(::getpid()));
+}
+
+/// What processes that are gone have left beside the target, under such a word.
+std::vector<fs::path> abandoned(const fs::path& target, const std::string& word) {
+  const std::string prefix = target.filename().string() + "." + word + "-";
+  std::vector<fs::path> found;
+  std::error_code fault;
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent_of(target), fault)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    pid_t owner = 0;
+    const char* const end = name.data() + name.size();
+    const auto parsed = std::from_chars(name.data() + prefix.size(), end, owner);
+    const bool named = parsed.ec == std::errc() && parsed.ptr == end && owner > 0;
+    if (named && ::kill(owner, 0) != 0 && errno == ESRCH) found.push_back(entry.path());
+  }
+  return found;
+}
+
+/// What was moved aside comes back where nothing took its place; all else that was abandoned goes.
+void clear_abandoned(const fs::path& target) {
+  if (const fs::path aside = set_aside_of(target); !aside.empty()) {
+    if (::rename(aside.c_str(), target.c_str()) != 0) fail(target, "cannot be brought back", errno);
+  }
+  std::error_code ignored;
+  for (const char* word : {kPartial, kBefore})
+    for (const fs::path& folder : abandoned(target, word)) fs::remove_all(folder, ignored);
+}
+
+}  // namespace
+
+void sync_to_disk(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) fail(path, "cannot be opened to sync it", errno);
+  const int result = ::fsync(descriptor);
+  const int reason = errno;
+  ::close(descriptor);
+  if (result != 0) fail(path, "does not reach the disk", reason);
+}
+
+PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_(beside(target, kPartial)) {
+  std::error_code fault;
+  fs::create_directories(parent_of(target), fault);
+  if (fault) fail(parent_of(target), "the folder cannot be made", fault.value());
+  clear_abandoned(target);
+  fs::remove_all(partial_, fault);  // of an earlier process with this number
+  fs::create_directory(partial_, fault);
+  if (fault) fail(partial_, "the folder cannot be made", fault.value());
+}
+
+PartialFolder::~PartialFolder() {
+  std::error_code ignored;  // nothing can be done about it here, and the name tells what it is
+  fs::remove_all(partial_, ignored);
+}
+
+void PartialFolder::put_in_place() {
+  for (const fs::directory_entry& entry : fs::directory_iterator(partial_)) sync_to_disk(entry.path());
+  sync_to_disk(partial_);
+  if (!fs::exists(fs::symlink_status(target_))) {
+    if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) != 0 &&
+        ((errno != EINVAL && errno != ENOSYS) || ::rename(partial_.c_str(), target_.c_str()) != 0))
+      fail(target_, "cannot be put in place", errno);
+  } else if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
+    if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be put in place", errno);
+    // A file system that cannot exchange: for a moment neither name is there, but one of them is whole at all
+    // times.
+    const fs::path aside = beside(target_, kBefore);
+    if (::rename(target_.c_str(), aside.c_str()) != 0) fail(target_, "cannot be moved aside", errno);
+    if (::rename(partial_.c_str(), target_.c_str()) != 0) {
+      const int reason = errno;
+      static_cast<void>(::rename(aside.c_str(), target_.c_str()));
+      fail(target_, "cannot be put in place", reason);
+    }
+    std::error_code ignored;
+    fs::remove_all(aside, ignored);
+  }
+  try {
+    sync_to_disk(parent_of(target_));
+  } catch (
+      const Error&) {  // it is in place; what is lost if the power fails now is the new name, not the map
+  }
+}
+
+fs::path set_aside_of(const fs::path& target) {
+  if (fs::exists(fs::symlink_status(target))) return {};
+  const std::vector<fs::path> aside = abandoned(target, kBefore);
+  return aside.empty() ? fs::path() : aside.front();
+}
+
+std::string swap_mark_of(const fs::path& folder) {
+  struct stat facts {};
+  if (::stat(folder.c_str(), &facts) != 0) return {};
+  return std::to_string(facts.st_dev) + " " + std::to_string(facts.st_ino) + " " +
+         std::to_string(facts.st_ctim.tv_sec) + " " + std::to_string(facts.st_ctim.tv_nsec);
+}
+
+void fail_as_never_still(const fs::path& folder) {
+  throw Error(folder.string() +
+              ": is replaced by another process again and again; read it when that is done");
+}
+
+}  // namespace roomradar

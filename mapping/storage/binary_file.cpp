@@ -1,0 +1,60 @@
+// binary_file.cpp: numbers to and from binary files, the reading side trusting nothing.
+#include "mapping/storage/binary_file.hpp"
+
+#include <cmath>
+
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::size_t kHash_bytes = sizeof(std::uint64_t);
+
+std::uint64_t fnv1a(std::string_view bytes) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
+  return hash;
+}
+
+}  // namespace
+
+void BinaryReader::fail(const std::string& fault) const {
+  throw Error(path_.string() + ": " + fault + "; make the map again or take it from a backup");
+}
+
+double BinaryReader::take_finite(const char* what) {
+  const auto number = take<double>(what);
+  if (!std::isfinite(number)) fail(std::string(what) + " is not a number");
+  return number;
+}
+
+void write_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
+                  std::string_view body) {
+  std::string out(magic);
+  put(out, version);
+  out.append(body);
+  put(out, fnv1a(out));
+  write_bytes(path, out);
+}
+
+std::string read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version) {
+  std::string bytes = read_bytes(path, "a file that begins with " + std::string(magic));
+  BinaryReader in(bytes, path);
+  if (!bytes.starts_with(magic)) in.fail("not a file of this kind, which begins with " + std::string(magic));
+  std::string beginning(magic.size(), '\0');
+  in.take(beginning.data(), beginning.size(), "beginning");
+  const auto found = in.take<std::uint32_t>("version");
+  if (found != version) {
+    in.fail("version " + std::to_string(found) + ", this program reads version " + std::to_string(version));
+  }
+  if (in.left() < kHash_bytes) in.fail("cut short: checksum missing");
+  std::uint64_t hash = 0;
+  std::memcpy(&hash, bytes.data() + bytes.size() - kHash_bytes, kHash_bytes);
+  bytes.resize(bytes.size() - kHash_bytes);
+  if (hash != fnv1a(bytes)) in.fail("cut short or altered: the checksum is wrong");
+  bytes.erase(0, magic.size() + sizeof(version));
+  return bytes;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,87 @@
+// surface.cpp: smooth the signed distances, span the net, specks out, then fewer triangles.
+#include "mapping/surface/surface_extraction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "mapping/mesh/components.hpp"
+#include "mapping/mesh/mesh_simplify.hpp"
+#include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/surface/dual_marching_cubes.hpp"
+#include "mapping/surface/tsdf_extrapolation.hpp"
+#include "mapping/surface/tsdf_smoothing.hpp"
+#include "mapping/types/system/config_check.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr int kSweeps = 6;  // more change the surface by less than 0.1 mm
+// Samples so far round a box are looked at: beyond, they move the surface in it by less than 0.1 mm.
+constexpr double kMargin_voxels = 12.0;
+constexpr double kOverlap_voxels = 1.0;
+constexpr float kSpacing_voxels = 1.5F;  // of the points at which the simplified surface is measured
+
+void require_valid(const SurfaceConfig& config) {
+  const SettingRules rules{"surface"};
+  const auto require = [&rules](const char* field, float value) {
+    rules(std::isfinite(value) && value >= 0.0F, field, value, "finite and >= 0");
+  };
+  require("min_weight", config.min_weight);
+  require("smoothing", config.smoothing);
+  require("min_component_area_m2", config.min_component_area_m2);
+  require("max_deviation_m", config.max_deviation_m);
+}
+
+Mesh full_surface(const StaticMap& map, const SurfaceConfig& config, SampleBricks bricks) {
+  if (config.smoothing > 0.0F) smooth(bricks, config.smoothing, kSweeps);
+  guess_neighbours(bricks);
+  return surface_net(bricks, map.resolution_m());
+}
+
+// Those with a corner in the box.
+std::vector<Triangle> triangles_in(const Mesh& mesh, const Eigen::AlignedBox3d& box_world) {
+  const Eigen::AlignedBox3f box((box_world.min() - mesh.origin).cast<float>(),
+                                (box_world.max() - mesh.origin).cast<float>());
+  std::vector<Triangle> inside;
+  for (const Triangle& t : mesh.triangles)
+    if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return box.contains(mesh.vertices[v]); }))
+      inside.push_back(t);
+  return inside;
+}
+
+}  // namespace
+
+Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceFacts* facts) {
+  require_valid(config);
+  Mesh full = full_surface(map, config, SampleBricks(map, config.min_weight));
+  SimplifiedMesh result{without_specks(full, config.min_component_area_m2), 0.0F};
+  full = {};
+  const std::size_t full_triangles = result.mesh.triangles.size();
+  if (config.max_deviation_m > 0.0F) {
+    const auto spacing_m = kSpacing_voxels * static_cast<float>(map.resolution_m());
+    result = simplified(std::move(result.mesh), config.max_deviation_m, spacing_m);
+  }
+  if (facts) *facts = {full_triangles, result.mesh.triangles.size(), result.deviation_m};
+  return result.mesh;
+}
+
+Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
+                     const SurfaceConfig& config) {
+  require_valid(config);
+  if (box_world.isEmpty()) return {};
+  const double voxel_m = map.resolution_m();
+  const auto grown = [&](double voxels) {
+    const Eigen::Vector3d by = Eigen::Vector3d::Constant(voxels * voxel_m);
+    return Eigen::AlignedBox3d(box_world.min() - by, box_world.max() + by);
+  };
+  const Mesh full = full_surface(map, config, SampleBricks(map, config.min_weight, grown(kMargin_voxels)));
+  Mesh mesh = without_specks(full, config.min_component_area_m2);
+  mesh = compacted(mesh, triangles_in(mesh, grown(kOverlap_voxels)));
+  if (config.max_deviation_m <= 0.0F) return mesh;
+  const auto spacing_m = kSpacing_voxels * static_cast<float>(voxel_m);
+  return simplified(std::move(mesh), config.max_deviation_m, spacing_m).mesh;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,65 @@
+// sample_guess.cpp: two rings of guesses round the measured samples.
+#include "mapping/surface/tsdf_extrapolation.hpp"
+
+#include <array>
+#include <limits>
+#include <vector>
+
+namespace roomradar {
+namespace {
+
+struct Guess {
+  std::size_t brick;
+  std::size_t offset;
+  float distance_m;
+};
+
+const BrickSample* known_at(const std::vector<Brick>& bricks, const BrickNeighbourhood::Place& place) {
+  if (place.brick == SampleBricks::kNone) return nullptr;
+  const BrickSample& sample = bricks[place.brick].samples[place.offset];
+  return sample.known() ? &sample : nullptr;
+}
+
+}  // namespace
+
+void guess_neighbours(SampleBricks& bricks) {
+  std::vector<Brick>& all = bricks.bricks();
+  std::vector<Guess> guesses;
+  for (int ring = 0; ring < 2; ++ring) {
+    guesses.clear();
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      const BrickNeighbourhood around(bricks, b);
+      for (int z = 0; z < kBrickEdge; ++z)
+        for (int y = 0; y < kBrickEdge; ++y)
+          for (int x = 0; x < kBrickEdge; ++x) {
+            const Eigen::Vector3i voxel(x, y, z);
+            if (all[b].samples[brick_offset(voxel)].known()) continue;
+            float on_lines = 0.0F, beside = 0.0F;  // sums
+            int lines = 0, count = 0;
+            for (int side = 0; side < 6; ++side) {
+              const Eigen::Vector3i step = (side % 2 == 0 ? 1 : -1) * Eigen::Vector3i::Unit(side / 2);
+              const BrickSample* next = known_at(all, around.place(voxel + step));
+              if (!next) continue;
+              const BrickSample* beyond = known_at(all, around.place(voxel + 2 * step));
+              beside += next->distance_m;
+              ++count;
+              if (!beyond) continue;
+              on_lines += 2.0F * next->distance_m - beyond->distance_m;
+              ++lines;
+            }
+            if (count > 0)
+              guesses.push_back(
+                  {b, brick_offset(voxel),
+                   lines > 0 ? on_lines / static_cast<float>(lines) : beside / static_cast<float>(count)});
+          }
+    }
+    for (const Guess& guess : guesses) {
+      BrickSample& sample = all[guess.brick].samples[guess.offset];
+      sample.distance_m = guess.distance_m;
+      sample.weight = std::numeric_limits<float>::min();
+      sample.guessed = true;
+    }
+  }
+}
+
+}  // namespace roomradar

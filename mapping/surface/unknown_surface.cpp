@@ -1,0 +1,165 @@
+// unknown_surface.cpp: which unknown cells count, which of them can be come to, and their faces.
+#include "mapping/surface/unknown_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "mapping/surface/bit_grid.hpp"
+#include "mapping/surface/blocked_neighbours.hpp"
+#include "mapping/surface/voxel_face_mesh.hpp"
+#include "mapping/types/system/config_check.hpp"
+#include "mapping/types/voxel_key.hpp"
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3i;
+
+constexpr double kMostCells = 2e8;  // 25 MB of bits
+constexpr int kGridsAtOnce = 15;    // of bits; most of them when the faces are sought
+
+// What the map knows, in cells of one voxel, or of more where the map is very large.
+struct Known {
+  CellGrid grid;
+  VoxelBits free;     // some voxel of the cell is
+  VoxelBits unknown;  // all voxels of the cell are
+};
+
+// The box of what is known and a margin round it, from one multiple of `lattice` cells to another.
+CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world, int margin, int lattice,
+                    int& cell_voxels) {
+  const auto voxel = [&](const Eigen::Vector3d& p) -> Vector3i {
+    return (p / map.resolution_m()).array().round().cast<int>();
+  };
+  const Vector3i low = voxel(known_world.min()), high = voxel(known_world.max());
+  CellGrid grid;
+  for (cell_voxels = 1;; ++cell_voxels) {
+    grid.cell_m = cell_voxels * map.resolution_m();
+    const auto block_of = [&](int v, int away) {
+      return floor_div(floor_div(v, cell_voxels) + away, lattice);
+    };
+    grid.first_cell = low.unaryExpr([&](int v) { return lattice * block_of(v, -margin); });
+    grid.size =
+        high.unaryExpr([&](int v) { return lattice * (block_of(v - 1, margin) + 1); }) - grid.first_cell;
+    if (grid.size.cast<double>().prod() <= kMostCells) return grid;
+  }
+}
+
+Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
+                  const UnknownSurfaceConfig& config) {
+  // So wide that all unknown cells of the margin count by what is in the box.
+  const int margin = std::max(config.least_voxels, config.cube_voxels);
+  Known known;
+  int edge = 1;
+  known.grid = grid_round(map, known_world, margin, config.cube_voxels, edge);
+  known.free = VoxelBits(known.grid.size, false);
+  known.unknown = VoxelBits(known.grid.size, true);
+  map.visit_leaves([&](const MapLeaf& leaf) {
+    const Vector3i from = leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v, edge); });
+    const Vector3i to =
+        leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v + leaf.edge_voxels - 1, edge) + 1; });
+    known.unknown.set_box(from - known.grid.first_cell, to - known.grid.first_cell, false);
+    if (leaf.log_odds < 0.0F)
+      known.free.set_box(from - known.grid.first_cell, to - known.grid.first_cell, true);
+  });
+  return known;
+}
+
+// Takes out of `unknown` the pieces of less than pocket_voxels that hang in free space.
+void leave_out_pockets(const Known& known, const std::array<VoxelBits, 3>& barred,
+                       const UnknownSurfaceConfig& config, VoxelBits& unknown) {
+  const VoxelBits everywhere(known.grid.size, true);
+  VoxelBits held = everywhere;  // by something occupied, or by the margin
+  held.subtract(known.unknown).subtract(known.free);
+  for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, barred);
+  held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
+  held &= unknown;
+  held.flood(unknown, barred);
+  VoxelBits hanging = unknown;
+  hanging.subtract(held);
+
+  std::vector<Vector3i> piece;
+  VoxelBits seen(known.grid.size, false);
+  hanging.for_each_set([&](const Vector3i& first) {
+    if (seen.at(first)) return;
+    piece.assign(1, first);
+    seen.set(first, true);
+    for (std::size_t done = 0; done < piece.size(); ++done)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const int step : {-1, 1}) {
+          const Vector3i next = piece[done] + step * Vector3i::Unit(axis);
+          if (!hanging.at(next) || seen.at(next)) continue;
+          seen.set(next, true);
+          piece.push_back(next);
+        }
+    if (piece.size() >= static_cast<std::size_t>(config.pocket_voxels)) return;
+    for (const Vector3i& cell : piece) unknown.set(cell, false);
+  });
+}
+
+// Where an object can be that comes from free space: through free voxels as far as they go, then on for
+// rim_voxels through whatever does not count as unknown.
+VoxelBits reachable(const VoxelBits& free, const VoxelBits& unknown, const std::array<VoxelBits, 3>& barred,
+                    const UnknownSurfaceConfig& config) {
+  VoxelBits reached = opened(free, config.least_voxels);
+  reached.flood(free, barred);
+  VoxelBits passable(free.size(), true);
+  passable.subtract(unknown);
+  for (int step = 0; step < config.rim_voxels; ++step) reached.spread(passable, barred);
+  return reached;
+}
+
+// The faces of unknown cells towards reached ones that no surface parts from them.
+std::vector<CellFaces> faces_between(const VoxelBits& unknown, const VoxelBits& reached,
+                                     const std::array<VoxelBits, 3>& barred) {
+  std::vector<CellFaces> faces;
+  for (int axis = 0; axis < 3; ++axis) {
+    const VoxelBits& bars = barred[static_cast<std::size_t>(axis)];
+    faces.push_back({reached.shifted(axis, 1).subtract(bars) &= unknown, axis, 1});
+    faces.push_back({reached.shifted(axis, -1).subtract(bars.shifted(axis, -1)) &= unknown, axis, -1});
+  }
+  return faces;
+}
+
+}  // namespace
+
+void require_valid(const UnknownSurfaceConfig& config) {
+  const SettingRules require{"unknown_surface"};
+  const auto is_in_1_to_16 = [](int value) { return value >= 1 && value <= 16; };
+  require(is_in_1_to_16(config.least_voxels), "least_voxels", config.least_voxels, "in 1..16");
+  require(is_in_1_to_16(config.cube_voxels), "cube_voxels", config.cube_voxels, "in 1..16");
+  require(is_in_1_to_16(config.rim_voxels), "rim_voxels", config.rim_voxels, "in 1..16");
+  require(config.pocket_voxels >= 0 && config.pocket_voxels <= 1'000'000'000, "pocket_voxels",
+          config.pocket_voxels, "in 0..10^9");
+  require(config.rim_voxels >= 3 * (config.cube_voxels - 1), "rim_voxels", config.rim_voxels,
+          "at least 3 * (cube_voxels - 1), or some cubes of unknown voxels are out of reach");
+}
+
+UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
+                               const UnknownSurfaceConfig& config) {
+  require_valid(config);
+  UnknownSurface result;
+  const MapCounts counts = map.counts();
+  if (counts.free_leaves == 0) return result;
+  Known known = known_cells(map, counts.known_world, config);
+  result.grid = known.grid;
+  result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
+  const std::array<VoxelBits, 3> barred = barred_steps(surface_world, known.grid);
+  leave_out_pockets(known, barred, config, result.unknown);
+  const VoxelBits reached = reachable(known.free, result.unknown, barred, config);
+  result.mesh_world = mesh_of(faces_between(result.unknown, reached, barred), known.grid);
+  result.memory_bytes = kGridsAtOnce * known.free.memory_bytes();
+  return result;
+}
+
+bool is_unknown(const UnknownSurface& surface, const Eigen::Vector3d& p_world) {
+  if (!(surface.grid.cell_m > 0.0)) return false;
+  const Eigen::Array3d cell =
+      (p_world / surface.grid.cell_m).array().floor() - surface.grid.first_cell.cast<double>().array();
+  if (!(cell >= 0.0).all() || !(cell < surface.grid.size.cast<double>().array()).all()) return true;
+  return surface.unknown.at(cell.cast<int>());
+}
+
+}  // namespace roomradar

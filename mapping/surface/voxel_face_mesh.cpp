@@ -1,0 +1,126 @@
+// cell_faces.cpp: faces, plane by plane, joined to rectangles.
+#include "mapping/surface/voxel_face_mesh.hpp"
+
+#include <algorithm>
+#include <tuple>
+#include <unordered_map>
+
+namespace roomradar {
+namespace {
+
+using Eigen::Vector3i;
+
+// A face in its plane: u and v are the two axes after its own.
+struct Face {
+  int plane, v, u;
+};
+
+// Planes ascending, row by row in each.
+std::vector<Face> sorted_faces(const CellFaces& faces) {
+  const int u = (faces.axis + 1) % 3, v = (faces.axis + 2) % 3;
+  std::vector<Face> sorted;
+  faces.cells.for_each_set([&](const Vector3i& p) { sorted.push_back({p[faces.axis], p[v], p[u]}); });
+  std::sort(sorted.begin(), sorted.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.plane, a.v, a.u) < std::tie(b.plane, b.v, b.u);
+  });
+  return sorted;
+}
+
+// The faces of a plane that no rectangle has yet.
+class OpenFaces {
+ public:
+  OpenFaces(int width, int height)
+      : width_(width),
+        height_(height),
+        open_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+
+  void open(int u, int v) { open_[index(u, v)] = 1; }
+  [[nodiscard]] bool is_open(int u, int v) const { return open_[index(u, v)] != 0; }
+  /// The largest u before which all from from_u on are open.
+  [[nodiscard]] int row_end(int from_u, int v) const {
+    int u = from_u;
+    while (u < width_ && is_open(u, v)) ++u;
+    return u;
+  }
+  /// The largest v before which all rows from from_v on are open from from_u to before to_u.
+  [[nodiscard]] int column_end(int from_u, int to_u, int from_v) const {
+    int v = from_v;
+    while (v < height_ && row_end(from_u, v) >= to_u) ++v;
+    return v;
+  }
+  void close(int from_u, int to_u, int from_v, int to_v) {
+    for (int v = from_v; v < to_v; ++v)
+      for (int u = from_u; u < to_u; ++u) open_[index(u, v)] = 0;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u);
+  }
+  int width_, height_;
+  std::vector<std::uint8_t> open_;
+};
+
+class MeshMaker {
+ public:
+  explicit MeshMaker(const CellGrid& grid) : middle_(grid.size / 2), cell_m_(grid.cell_m) {
+    mesh_.origin = (grid.first_cell + middle_).cast<double>() * grid.cell_m;
+  }
+
+  void add_rectangle(const CellFaces& faces, int plane, int from_u, int to_u, int from_v, int to_v) {
+    const auto corner = [&](int u, int v) {
+      Vector3i p;
+      p[faces.axis] = faces.step > 0 ? plane + 1 : plane;
+      p[(faces.axis + 1) % 3] = u;
+      p[(faces.axis + 2) % 3] = v;
+      return vertex(p);
+    };
+    const std::uint32_t a = corner(from_u, from_v), c = corner(to_u, to_v);
+    std::uint32_t b = corner(to_u, from_v), d = corner(from_u, to_v);
+    if (faces.step < 0) std::swap(b, d);
+    mesh_.triangles.push_back({a, b, c});
+    mesh_.triangles.push_back({a, c, d});
+  }
+  Mesh take() { return std::move(mesh_); }
+
+ private:
+  std::uint32_t vertex(const Vector3i& p) {
+    constexpr unsigned kBits = 21;
+    const std::uint64_t code = static_cast<std::uint64_t>(p.z()) << 2 * kBits |
+                               static_cast<std::uint64_t>(p.y()) << kBits | static_cast<std::uint64_t>(p.x());
+    const auto number = static_cast<std::uint32_t>(mesh_.vertices.size());
+    const auto [found, is_new] = numbers_.try_emplace(code, number);
+    if (is_new) mesh_.vertices.push_back(((p - middle_).cast<double>() * cell_m_).cast<float>());
+    return found->second;
+  }
+
+  Vector3i middle_;
+  double cell_m_;
+  Mesh mesh_;
+  std::unordered_map<std::uint64_t, std::uint32_t> numbers_;
+};
+
+}  // namespace
+
+Mesh mesh_of(const std::vector<CellFaces>& faces, const CellGrid& grid) {
+  MeshMaker maker(grid);
+  for (const CellFaces& way : faces) {
+    const std::vector<Face> sorted = sorted_faces(way);
+    OpenFaces plane(grid.size[(way.axis + 1) % 3], grid.size[(way.axis + 2) % 3]);
+    for (auto begin = sorted.begin(); begin != sorted.end();) {
+      const auto end =
+          std::find_if(begin, sorted.end(), [&](const Face& face) { return face.plane != begin->plane; });
+      std::for_each(begin, end, [&](const Face& face) { plane.open(face.u, face.v); });
+      for (; begin != end; ++begin) {
+        if (!plane.is_open(begin->u, begin->v)) continue;
+        const int to_u = plane.row_end(begin->u, begin->v);
+        const int to_v = plane.column_end(begin->u, to_u, begin->v);
+        plane.close(begin->u, to_u, begin->v, to_v);
+        maker.add_rectangle(way, begin->plane, begin->u, to_u, begin->v, to_v);
+      }
+    }
+  }
+  return maker.take();
+}
+
+}  // namespace roomradar

@@ -1,0 +1,150 @@
+// byte_archive.hpp: values to bytes and back, each type's fields listed once for both ways.
+#pragma once
+#include <Eigen/Geometry>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "mapping/types/intrinsics.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/validity.hpp"
+
+namespace roomradar {
+
+static_assert(std::endian::native == std::endian::little, "bytes are written as memory has them");
+
+class ByteWriter {
+ public:
+  static constexpr bool kReads = false;
+  void raw(const void* from, std::size_t count) { bytes_.append(static_cast<const char*>(from), count); }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+/// Reads what a ByteWriter wrote. Not trusted: ends and sizes are checked before memory is taken; what cannot
+/// be right throws Error naming the file.
+class ByteReader {
+ public:
+  static constexpr bool kReads = true;
+  ByteReader(std::string_view bytes, std::string where) : bytes_(bytes), where_(std::move(where)) {}
+  void raw(void* to, std::size_t count) {
+    require(count, 1);
+    if (count > 0) std::memcpy(to, bytes_.data(), count);
+    bytes_.remove_prefix(count);
+  }
+  /// Are there bytes for `count` items of at least so many?
+  void require(std::uint64_t count, std::size_t item_bytes) const {
+    if (count > bytes_.size() / item_bytes) fail("is cut short");
+  }
+  /// The next bytes, passed over.
+  std::string_view take(std::size_t count) {
+    require(count, 1);
+    const std::string_view taken = bytes_.substr(0, count);
+    bytes_.remove_prefix(count);
+    return taken;
+  }
+  void require_end() const {
+    if (!bytes_.empty()) fail("has bytes after its end");
+  }
+  [[nodiscard]] const std::string& where() const { return where_; }
+  [[nodiscard]] std::size_t left() const { return bytes_.size(); }
+  [[noreturn]] void fail(const char* fault) const { throw Error(where_ + ": " + fault); }
+
+ private:
+  std::string_view bytes_;
+  std::string where_;
+};
+
+template <typename Archive, typename Number>
+requires std::is_arithmetic_v<Number>
+void transfer(Archive& archive, Number& number) {
+  if constexpr (std::is_same_v<Number, bool>) {
+    auto byte = static_cast<std::uint8_t>(number);
+    transfer(archive, byte);
+    if constexpr (Archive::kReads) {
+      if (byte > 1) archive.fail("is damaged: a truth value is neither 0 nor 1");
+      number = byte == 1;
+    }
+  } else {
+    archive.raw(&number, sizeof(Number));
+  }
+}
+
+/// An enumeration whose values run from 0 to `last`.
+template <typename Archive, typename Enum>
+requires std::is_enum_v<Enum>
+void transfer(Archive& archive, Enum& value, Enum last) {
+  auto number = static_cast<std::int32_t>(value);
+  transfer(archive, number);
+  if constexpr (Archive::kReads) {
+    if (number < 0 || number > static_cast<std::int32_t>(last)) archive.fail("is damaged: no such case");
+    value = static_cast<Enum>(number);
+  }
+}
+
+template <typename Archive>
+void transfer(Archive& archive, std::string& text) {
+  std::uint64_t size = text.size();
+  transfer(archive, size);
+  if constexpr (Archive::kReads) {
+    archive.require(size, 1);
+    text.resize(size);
+  }
+  archive.raw(text.data(), size);
+}
+
+/// Matrices of a fixed size.
+template <typename Archive, typename Scalar, int kRows, int kColumns>
+void transfer(Archive& archive, Eigen::Matrix<Scalar, kRows, kColumns>& matrix) {
+  static_assert(kRows > 0 && kColumns > 0);
+  archive.raw(matrix.data(), sizeof(Scalar) * kRows * kColumns);
+}
+
+template <typename Archive>
+void transfer(Archive& archive, Eigen::Isometry3d& T) {
+  transfer(archive, T.matrix());
+  if constexpr (Archive::kReads) {
+    if (!is_rigid(T, 1e-3)) archive.fail("is damaged: a pose is no rotation and translation");
+  }
+}
+
+template <typename Archive>
+void transfer(Archive& archive, Intrinsics& camera) {
+  transfer(archive, camera.width_px);
+  transfer(archive, camera.height_px);
+  for (double* number : {&camera.fx_px, &camera.fy_px, &camera.cx_px, &camera.cy_px})
+    transfer(archive, *number);
+  if constexpr (Archive::kReads) require_valid(camera, archive.where().c_str());
+}
+
+template <typename Archive, typename Value>
+void transfer(Archive& archive, std::optional<Value>& value) {
+  bool there = value.has_value();
+  transfer(archive, there);
+  if constexpr (Archive::kReads) value = there ? std::optional<Value>(Value{}) : std::nullopt;
+  if (there) transfer(archive, *value);
+}
+
+template <typename Archive, typename Item>
+void transfer(Archive& archive, std::vector<Item>& items) {
+  std::uint64_t size = items.size();
+  transfer(archive, size);
+  if constexpr (Archive::kReads) {
+    archive.require(size, 1);  // every item has a byte at least
+    items.clear();
+    for (std::uint64_t i = 0; i < size; ++i) transfer(archive, items.emplace_back());
+  } else {
+    for (Item& item : items) transfer(archive, item);
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,21 @@
+// setting_rules.hpp: the one sentence for a setting that breaks its rule.
+#pragma once
+#include <string>
+
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/format_number.hpp"
+
+namespace roomradar {
+
+/// The rules of one group of settings. Called with a rule that does not hold it throws Error:
+/// "fusion.max_range_m = -1: must be in 0..100 m".
+struct SettingRules {
+  const char* group;
+  template <typename Number>
+  void operator()(bool holds, const char* field, Number value, const char* rule) const {
+    if (!holds)
+      throw Error(std::string(group) + "." + field + " = " + number_text(value) + ": must be " + rule);
+  }
+};
+
+}  // namespace roomradar

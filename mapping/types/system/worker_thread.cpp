@@ -1,0 +1,49 @@
+// second_thread.cpp: hand work over, wait until it is done.
+#include "mapping/types/system/worker_thread.hpp"
+
+namespace roomradar {
+
+SecondThread::SecondThread() {
+  if (std::thread::hardware_concurrency() > 1) thread_ = std::thread([this] { serve(); });
+}
+
+SecondThread::~SecondThread() {
+  if (!thread_.joinable()) return;
+  state_.store(kStop);
+  state_.notify_one();
+  thread_.join();
+}
+
+void SecondThread::start(Call call, const void* work) {
+  call_ = call;
+  work_ = work;
+  fault_ = nullptr;
+  if (!thread_.joinable()) return;
+  state_.store(kWork);
+  state_.notify_one();
+}
+
+void SecondThread::finish() {
+  if (!thread_.joinable()) return do_work();
+  state_.wait(kWork);
+}
+
+void SecondThread::serve() {
+  for (;;) {
+    state_.wait(kIdle);
+    if (state_.load() == kStop) return;
+    do_work();
+    state_.store(kIdle);
+    state_.notify_one();
+  }
+}
+
+void SecondThread::do_work() noexcept {
+  try {
+    call_(work_);
+  } catch (...) {
+    fault_ = std::current_exception();
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,28 @@
+// scene_mesh.hpp: a scene's meshes in the renderer's memory, for GlRadar.
+#pragma once
+#include <span>
+
+#include "radar/exact/scene_boxes.hpp"
+#include "radar/geometry/contact.hpp"
+#include "radar/gl/gpu_mesh.hpp"
+
+namespace roomradar {
+
+/// A mesh that can be touched.
+struct SceneMesh {
+  MeshInstance instance;
+  Touched kind = Touched::kStatic;
+};
+inline bool has_surface(const SceneMesh& s) {
+  return s.instance.mesh != nullptr && s.instance.mesh->triangle_count() > 0;
+}
+
+/// Builds the tree over the boxes of a scene's meshes, as SceneBoxes::build() does.
+inline void build(SceneBoxes& boxes, std::span<const SceneMesh> scene) {
+  boxes.clear();
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    if (has_surface(scene[i])) boxes.add(i, scene[i].instance.mesh->bounds(), scene[i].instance.T_world_mesh);
+  boxes.finish();
+}
+
+}  // namespace roomradar

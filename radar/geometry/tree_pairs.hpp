@@ -1,0 +1,191 @@
+// tree_pairs.hpp: two trees side by side: which boxes, and at last which triangles, may have to do with each
+// other?
+#pragma once
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "radar/geometry/radar_scene.hpp"
+#include "radar/geometry/triangle_gap.hpp"
+#include "radar/geometry/triangle_tree.hpp"
+
+namespace roomradar {
+
+/// A box of a tree, turned where the other tree is.
+struct PairBox {
+  Eigen::Vector3f centre, half;
+  std::uint32_t first, count;  ///< as in TreeNode; count 0: an inner node
+  bool is_within_faces;        ///< all of it
+};
+struct PendingPair {
+  PairBox object, scene;
+  float key;
+};
+/// Which pair of boxes is looked at next.
+enum class PairOrder {
+  kAny,         ///< the one found last: the fewest are pending
+  kLeastFirst,  ///< the one with the least key: where a leaf rules out all keys above some bound, this finds
+                ///< it before it opens boxes for nothing
+};
+
+inline constexpr std::size_t kLeafTriangles = 4;  // no leaf of a TriangleTree has more
+
+inline bool is_usable(const TreeInstance& instance) {
+  return instance.tree != nullptr && !instance.tree->empty() && instance.T_world_mesh.matrix().allFinite();
+}
+
+/// Whether the balls about two trees' boxes are farther apart than this: so are the trees.
+inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other, double than_m) {
+  constexpr double kRounding = 1.0 + 1e-5;  // of the boxes' float sizes
+  const auto middle_world = [](const TreeInstance& instance) -> Eigen::Vector3d {
+    return instance.T_world_mesh * (instance.tree->origin() + instance.tree->centre());
+  };
+  const auto radius_m = [](const TreeInstance& instance) {
+    return kRounding * instance.tree->half_size().cast<double>().norm();
+  };
+  const double reached_m = radius_m(one) + radius_m(other) + than_m;
+  return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
+}
+
+/// A leaf's triangles, made once for as long as the same leaf is asked for: the other tree's boxes go by.
+class LeafTriangles {
+ public:
+  /// @param triangle  triangle(i) for each of the leaf's numbers, where it is another than the last time
+  template <typename MakeTriangle>
+  std::span<const FrameTriangle> of(const PairBox& leaf, const MakeTriangle& triangle) {
+    assert(leaf.count <= kLeafTriangles);
+    if (leaf.first != first_ || leaf.count != count_) {
+      first_ = leaf.first;
+      count_ = leaf.count;
+      for (std::uint32_t i = 0; i < count_; ++i) triangles_[i] = triangle(first_ + i);
+    }
+    return {triangles_.data(), count_};
+  }
+
+ private:
+  std::array<FrameTriangle, kLeafTriangles> triangles_;
+  std::uint32_t first_ = 0, count_ = 0;
+};
+
+/// An object's tree where it stands beside one of the scene's. Frame: the scene's mesh, about its tree's
+/// centre.
+class TreePair {
+ public:
+  const TriangleTree& object;
+  const TriangleTree& scene;
+  Eigen::Isometry3d T_world_frame;
+  Eigen::Isometry3d T_frame_object;  ///< from the object's mesh, about its tree's centre
+
+  TreePair(const TreeInstance& o, const TreeInstance& s)
+      : object(*o.tree),
+        scene(*s.tree),
+        T_world_frame(s.T_world_mesh * Eigen::Translation3d(scene.origin() + scene.centre())),
+        T_frame_object(T_world_frame.inverse() * o.T_world_mesh *
+                       Eigen::Translation3d(object.origin() + object.centre())) {}
+
+  /// The triangles of a leaf of either tree; until the next call for the same tree.
+  [[nodiscard]] std::span<const FrameTriangle> of_object(const PairBox& leaf) {
+    return object_leaf_.of(leaf, [this](std::uint32_t i) { return object_triangle(i); });
+  }
+  [[nodiscard]] std::span<const FrameTriangle> of_scene(const PairBox& leaf) {
+    return scene_leaf_.of(leaf, [this](std::uint32_t i) { return scene_triangle(i); });
+  }
+
+ private:
+  LeafTriangles object_leaf_, scene_leaf_;
+
+  [[nodiscard]] FrameTriangle object_triangle(std::uint32_t i) const {
+    FrameTriangle t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3f& vertex = object.vertices()[object.triangles()[i][k]];
+      t.corners[k] = T_frame_object * Eigen::Vector3d(vertex.cast<double>() - object.centre());
+    }
+    set_normal(t);
+    return t;
+  }
+  [[nodiscard]] FrameTriangle scene_triangle(std::uint32_t i) const {
+    FrameTriangle t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      t.corners[k] = scene.vertices()[scene.triangles()[i][k]].cast<double>() - scene.centre();
+    }
+    set_normal(t);
+    return t;
+  }
+};
+
+/// Whether a leaf's triangles may tell more of the other tree's box than their own box does.
+inline bool are_large_against(const PairBox& leaf, const PairBox& other) {
+  return leaf.count > 0 && leaf.half.maxCoeff() > 2.0F * other.half.maxCoeff();
+}
+
+/// Whether all of a box is behind a triangle's plane.
+inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
+  constexpr double kTouching_m = 1e-9;
+  return t.normal.dot(box.centre.cast<double>() - t.corners[0]) +
+             t.normal.cwiseAbs().dot(box.half.cast<double>()) <
+         -kTouching_m;
+}
+
+/// Goes through all pairs of leaves that key(object box, scene box) gives a finite number for, until leaf()
+/// returns -infinity; not through those of which both lie within flat faces (see TriangleTree). With
+/// PairOrder::kLeastFirst it ends where no key is less than what leaf() returned last.
+template <PairOrder order, typename Key, typename Leaf>
+void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  const TriangleTree& object = trees.object;
+  const TriangleTree& scene = trees.scene;
+  // Boxes hold what is in them with the rounding of a float turn and shift counted in.
+  const Eigen::Matrix3f R = trees.T_frame_object.linear().cast<float>();
+  const Eigen::Matrix3f R_abs = R.cwiseAbs();
+  const Eigen::Vector3f t = trees.T_frame_object.translation().cast<float>();
+  const float slack_m = 16.0F * std::numeric_limits<float>::epsilon() *
+                        (t.lpNorm<Eigen::Infinity>() + object.half_size().norm() + scene.half_size().norm());
+  const auto is_later = [](const PendingPair& a, const PendingPair& b) { return a.key > b.key; };
+  const auto push = [&](const PairBox& o, const PairBox& s) {
+    if (o.is_within_faces && s.is_within_faces) return;
+    const float k = key(o, s);
+    if (!(k < kNone)) return;
+    pending.push_back({o, s, k});
+    if constexpr (order == PairOrder::kLeastFirst) std::push_heap(pending.begin(), pending.end(), is_later);
+  };
+  pending.clear();
+  const Eigen::Vector3f slack = Eigen::Vector3f::Constant(slack_m);
+  push({t, R_abs * object.half_size() + slack, 0, 0, false},
+       {Eigen::Vector3f::Zero(), scene.half_size() + slack, 0, 0, false});
+  float bound = kNone;
+  while (!pending.empty()) {
+    if constexpr (order == PairOrder::kLeastFirst) std::pop_heap(pending.begin(), pending.end(), is_later);
+    const PendingPair pair = pending.back();
+    pending.pop_back();
+    if (order == PairOrder::kLeastFirst && !(pair.key < bound)) return;
+    if (pair.object.count > 0 && pair.scene.count > 0) {
+      bound = leaf(pair.object, pair.scene);
+      if (bound == -kNone) return;
+      continue;
+    }
+    const bool opens_object =
+        pair.scene.count > 0 ||
+        (pair.object.count == 0 && pair.object.half.maxCoeff() > pair.scene.half.maxCoeff());
+    const TreeNode& node = opens_object ? object.nodes()[pair.object.first] : scene.nodes()[pair.scene.first];
+    for (std::uint32_t i = 0; i < node.child_count; ++i) {
+      PairBox box{{node.centre_x[i], node.centre_y[i], node.centre_z[i]},
+                  {node.half_x[i], node.half_y[i], node.half_z[i]},
+                  node.first[i],
+                  node.count[i],
+                  (node.within_faces >> i & 1U) != 0};
+      if (opens_object) {
+        box.centre = R * box.centre + t;
+        box.half = R_abs * box.half;
+      }
+      box.half += slack;
+      opens_object ? push(box, pair.scene) : push(pair.object, box);
+    }
+  }
+}
+
+}  // namespace roomradar

@@ -1,0 +1,196 @@
+// near_places.cpp: corners over faces, edges across edges, and the outermost of what they give.
+#include "radar/motion/closest_features.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "radar/geometry/infinity.hpp"
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+constexpr double kTouching_m = 1e-12;  // nearer than this, rounding says on which side
+
+bool is_over(const Vec3& p, const Face& t) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (t.inward[i].dot(p - t.corners[i]) < 0.0) return false;
+  }
+  return true;
+}
+
+/// Farther from all edges than a touch.
+bool is_inside(const Vec3& p, const Face& t) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (t.inward[i].dot(p - t.corners[i]) <= kTouching_m * t.inward[i].norm()) return false;
+  }
+  return true;
+}
+
+/// +1 or -1; 0 of less than a touch.
+double side_of(double height_m) {
+  if (std::abs(height_m) <= kTouching_m) return 0.0;
+  return height_m > 0.0 ? 1.0 : -1.0;
+}
+
+bool pierces(const Vec3& a, const Vec3& b, const Face& t) {
+  const double from = t.normal.dot(a - t.corners[0]), to = t.normal.dot(b - t.corners[0]);
+  if (from * to > 0.0 || from == to) return false;
+  return is_over(a + (b - a) * (from / (from - to)), t);
+}
+
+}  // namespace
+
+Face face_of(const FrameTriangle& t) {
+  Face face{t, {}, {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    face.edge[i] = t.corners[(i + 1) % 3] - t.corners[i];
+    face.inward[i] = t.normal.cross(face.edge[i]);
+  }
+  return face;
+}
+
+bool cross(const Face& a, const Face& b) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (pierces(a.corners[i], a.corners[(i + 1) % 3], b) || pierces(b.corners[i], b.corners[(i + 1) % 3], a))
+      return true;
+  }
+  return false;
+}
+
+void PairPlaces::add(const Vec3& on_scene, const Vec3& normal, double gap_m, const Face& s) const {
+  if (normal.isZero() || !(gap_m <= reach_m)) return;
+  if (scene_is_one_sided && !is_outside(normal, s)) return;
+  found.push_back({T_world_frame * on_scene, T_world_frame.linear() * normal, gap_m, kind});
+}
+
+Vec3 PairPlaces::off_scene(double height_m, const Face& o, const Face& s, const Range& heights) const {
+  double side = side_of(height_m);
+  // It touches: the object is where the rest of its triangle is. One that lies in the plane faces the scene.
+  if (side == 0.0) side = side_of(heights.low + heights.high);
+  if (side == 0.0 && object_is_closed) side = -side_of(o.normal.dot(s.normal));
+  if (side == 0.0) side = 1.0;
+  return side * s.normal;
+}
+
+Vec3 PairPlaces::off_object(double height_m, const Vec3& corner, const Face& o, const Range& heights) const {
+  double side = side_of(height_m);
+  if (side == 0.0) {
+    if (!is_inside(corner, o)) return Vec3::Zero();  // what passes along an edge is not held by the face
+    side = object_is_closed ? 1.0 : side_of(heights.low + heights.high);
+  }
+  return -side * o.normal;
+}
+
+bool PairPlaces::look(const FrameTriangle& object, const FrameTriangle& scene) const {
+  // Heights of the corners of the one above the other's plane.
+  std::array<double, 3> over_scene, over_object;
+  Range of_object, of_scene;
+  for (std::size_t k = 0; k < 3; ++k) {
+    over_scene[k] = scene.normal.dot(object.corners[k] - scene.corners[0]);
+    over_object[k] = object.normal.dot(scene.corners[k] - object.corners[0]);
+    of_object.include(over_scene[k]);
+    of_scene.include(over_object[k]);
+  }
+  if (of_object.low > reach_m || of_object.high < -reach_m || of_scene.low > reach_m ||
+      of_scene.high < -reach_m)
+    return false;
+  if (scene_is_one_sided && of_object.high < -kTouching_m) return false;
+  if (object_is_closed && of_scene.high < -kTouching_m) return false;
+  const Face o = face_of(object), s = face_of(scene);
+  if (of_object.low < 0.0 && of_object.high > 0.0 && of_scene.low < 0.0 && of_scene.high > 0.0 && cross(o, s))
+    return !scene_is_one_sided;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double h = over_scene[k], g = over_object[k];
+    if (std::abs(h) <= reach_m && is_over(o.corners[k], s))
+      add(o.corners[k] - h * s.normal, off_scene(h, o, s, of_object), std::abs(h), s);
+    if (std::abs(g) <= reach_m && !(object_is_closed && g < -kTouching_m) && is_over(s.corners[k], o))
+      add(s.corners[k], off_object(g, s.corners[k], o, of_scene), std::abs(g), s);
+  }
+  // Seen along the scene's normal, all of the one triangle may lie on one side of an edge of the other.
+  std::array<bool, 3> is_passed;  // by the scene's edges
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Range side = range_along(s.inward[j], o.corners);
+    const double at = s.inward[j].dot(s.corners[j]), reach = reach_m * s.inward[j].norm();
+    is_passed[j] = side.low > at + reach || side.high < at - reach;
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 across = o.edge[i].cross(s.normal);
+    const Range side = range_along(across, s.corners);
+    const double at = across.dot(o.corners[i]), reach = reach_m * across.norm();
+    if (side.low > at + reach || side.high < at - reach) continue;
+    for (std::size_t j = 0; j < 3; ++j)
+      if (!is_passed[j]) look_at_edges(o, i, s, j);
+  }
+  return false;
+}
+
+/// Two edges that pass each other: the shortest way between them stands on both.
+void PairPlaces::look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const {
+  const Vec3& a = o.corners[i];
+  const Vec3& b = s.corners[j];
+  const Vec3 &u = o.edge[i], &v = s.edge[j], w = a - b;
+  const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double across = uu * vv - uv * uv;
+  if (!(across > 1e-6 * uu * vv)) return;  // parallel: their ends say it
+  const double along_u = (uv * vw - uw * vv) / across, along_v = (uu * vw - uv * uw) / across;
+  if (!(along_u > 0.0 && along_u < 1.0 && along_v > 0.0 && along_v < 1.0)) return;
+  const Vec3 on_scene = b + along_v * v;
+  const Vec3 way = a + along_u * u - on_scene;
+  const double gap_m = way.norm();
+  if (!(gap_m <= reach_m)) return;
+  if (gap_m <= kTouching_m) {  // across both, towards the rest of the object's triangle
+    const Vec3 normal = u.cross(v).normalized();
+    return add(on_scene, side_of(normal.dot(o.corners[(i + 2) % 3] - a)) * normal, gap_m, s);
+  }
+  // The way leaves a closed object inwards: another of its faces is nearer.
+  if (object_is_closed && way.dot(o.normal) > 1e-9 * gap_m) return;
+  add(on_scene, way / gap_m, gap_m, s);
+}
+
+void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kept) {
+  constexpr double kOutPerGap = 20.0;  // 1 mm farther away is worth 2 cm farther out
+  constexpr double kSameNormal = 0.9;
+  constexpr std::size_t kMostNormals = 4, kDirections = 8;
+  kept.clear();
+  for (std::size_t cluster = 0; cluster < kMostNormals && !all.empty(); ++cluster) {
+    const auto nearest = std::min_element(
+        all.begin(), all.end(), [](const NearPoint& a, const NearPoint& b) { return a.gap_m < b.gap_m; });
+    const NearPoint seed = *nearest;
+    const Vec3 x = seed.normal_world.unitOrthogonal(), y = seed.normal_world.cross(x);
+    std::array<double, kDirections> most;
+    std::array<const NearPoint*, kDirections> outermost{};
+    most.fill(-kInfinity<double>);
+    const auto is_of_cluster = [&](const NearPoint& p) {
+      return p.normal_world.dot(seed.normal_world) > kSameNormal;
+    };
+    for (const NearPoint& p : all) {
+      if (!is_of_cluster(p)) continue;
+      const Vec3 offset = p.point_world - seed.point_world;
+      const double u = x.dot(offset), v = y.dot(offset), behind = kOutPerGap * (p.gap_m - seed.gap_m);
+      constexpr double kDiagonal = 0.70710678118654752;
+      const std::array<double, kDirections> out = {
+          u, -u, v, -v, kDiagonal * (u + v), -kDiagonal * (u + v), kDiagonal * (u - v), kDiagonal * (v - u)};
+      for (std::size_t i = 0; i < kDirections; ++i) {
+        if (out[i] - behind > most[i]) {
+          most[i] = out[i] - behind;
+          outermost[i] = &p;
+        }
+      }
+    }
+    const std::size_t first = kept.size();
+    kept.push_back(seed);
+    for (const NearPoint* p : outermost) {
+      const bool is_new =
+          p != nullptr && std::none_of(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(),
+                                       [&](const NearPoint& other) {
+                                         return (other.point_world - p->point_world).squaredNorm() < 1e-10;
+                                       });
+      if (is_new && kept.size() < NearField::kMostPoints) kept.push_back(*p);
+    }
+    if (kept.size() >= NearField::kMostPoints) return;
+    std::erase_if(all, is_of_cluster);
+  }
+}
+
+}  // namespace roomradar

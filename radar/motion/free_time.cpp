@@ -1,0 +1,209 @@
+// free_time.cpp: how long planes between pairs of triangles keep a motion free.
+#include <algorithm>
+#include <cmath>
+
+#include "radar/geometry/infinity.hpp"
+#include "radar/geometry/inflated_distance.hpp"
+#include "radar/geometry/tree_pairs.hpp"
+#include "radar/motion/closest_features.hpp"
+#include "radar/motion/proximity.hpp"
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+/// Until something that is allowed so far (m) and closes at this speed is there, if the turning adds
+/// quadratic_m_s2 t^2 at most.
+double time_for(double allowed_m, double closing_m_s, double quadratic_m_s2) {
+  const double root = std::sqrt(closing_m_s * closing_m_s + 4.0 * quadratic_m_s2 * allowed_m);
+  const double denominator = closing_m_s + root;
+  return denominator > 0.0 ? 2.0 * allowed_m / denominator : kInfinity<double>;
+}
+
+double allowed_m(double distance_m, double keep_m) {
+  return distance_m > 2.0 * keep_m ? distance_m - keep_m : 0.5 * distance_m;
+}
+
+/// A rigid motion in the frame of a scene's mesh, and what holds for how it closes in.
+struct RelativeMotion {
+  Vec3 linear, angular, centre;
+  double turn_rad_s;
+  double reach_m;  // from the centre to the farthest point of the object, across the axis
+  double keep_m;
+  /// Of the turning, what moves along each axis of the frame: at most by the quadratic, ever at most so fast.
+  Vec3 quadratic_m_s2, fastest_m_s;
+
+  [[nodiscard]] Vec3 velocity_at(const Vec3& p) const { return linear + angular.cross(p - centre); }
+  /// Until boxes that axes keep apart can be as near as they may; 0 where none does.
+  [[nodiscard]] float free_s(const PairBox& o, const PairBox& s) const {
+    const Vec3 o_centre = o.centre.cast<double>(), o_half = o.half.cast<double>();
+    const Vec3 between = o_centre - s.centre.cast<double>();
+    const Vec3 velocity = velocity_at(o_centre);
+    const Vec3 w = angular.cwiseAbs();
+    double free_s = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const double apart_m = std::abs(between[k]) - o_half[k] - static_cast<double>(s.half[k]);
+      if (!(apart_m > 0.0)) continue;
+      const int l = (k + 1) % 3, m = (k + 2) % 3;
+      const double spread = w[l] * o_half[m] + w[m] * o_half[l];
+      const double side = between[k] > 0.0 ? 1.0 : -1.0;
+      const double allowed = allowed_m(apart_m, keep_m);
+      const double now = time_for(allowed, -side * velocity[k] + spread, quadratic_m_s2[k]);
+      const double ever = time_for(allowed, -side * linear[k] + fastest_m_s[k], 0.0);
+      free_s = std::max({free_s, now, ever});
+    }
+    return static_cast<float>(free_s) * (1.0F - 1e-6F);
+  }
+  /// The same for a box and a triangle of the scene, by the triangle's plane.
+  [[nodiscard]] double free_s(const FrameTriangle& s, const PairBox& o) const {
+    const Vec3 middle = o.centre.cast<double>(), half = o.half.cast<double>();
+    const double side = s.normal.dot(middle - s.corners[0]) >= 0.0 ? 1.0 : -1.0;
+    const Vec3 direction = side * s.normal, turning = direction.cross(angular);
+    const double apart_m = direction.dot(middle - s.corners[0]) - direction.cwiseAbs().dot(half);
+    if (!(apart_m > 0.0)) return 0.0;
+    const double closing = -direction.dot(velocity_at(middle)) + turning.cwiseAbs().dot(half);
+    return time_for(allowed_m(apart_m, keep_m), closing, 0.5 * turning.norm() * turn_rad_s * reach_m);
+  }
+  /// The same for two triangles and a direction from the scene's to the object's: for each corner from where
+  /// it is now. Negative where the direction does not keep them apart.
+  [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, const FrameTriangle& s) const {
+    return free_s(direction, o, range_along(direction, s.corners).high);
+  }
+  /// The same for all that lies no farther along the direction than face_at.
+  [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, double face_at) const {
+    const double turning = direction.cross(angular).norm();
+    const double quadratic = 0.5 * turning * turn_rad_s * reach_m;
+    const double fastest = -direction.dot(linear) + turning * reach_m;
+    double free_s = kInfinity<double>;
+    for (const Vec3& corner : o.corners) {
+      const double apart_m = direction.dot(corner) - face_at;
+      if (!(apart_m > 0.0)) return -1.0;
+      const double allowed = allowed_m(apart_m, keep_m);
+      const double now = time_for(allowed, -direction.dot(velocity_at(corner)), quadratic);
+      free_s = std::min(free_s, std::max(now, time_for(allowed, fastest, 0.0)));
+    }
+    return free_s;
+  }
+};
+
+/// From the centre of turning to the farthest corner of the object's box.
+double reach_of(const TreeInstance& object, const RigidMotion& motion) {
+  double reach_m = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 side((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 4) != 0 ? 1.0 : -1.0);
+    const Vec3 corner = object.tree->origin() + object.tree->centre() +
+                        side.cwiseProduct(object.tree->half_size().cast<double>()) - motion.centre_object;
+    reach_m = std::max(reach_m, corner.norm());
+  }
+  return reach_m;
+}
+
+RelativeMotion course_of(const TreeInstance& object, const RigidMotion& motion, double keep_m,
+                         const TreePair& trees) {
+  const Eigen::Matrix3d R_frame_world = trees.T_world_frame.linear().transpose();
+  const Vec3 angular = R_frame_world * motion.angular_rad_s;
+  const double turn_rad_s = angular.norm(), reach_m = reach_of(object, motion);
+  const Vec3 turning_m_s =
+      reach_m * Vec3(std::hypot(angular.y(), angular.z()), std::hypot(angular.z(), angular.x()),
+                     std::hypot(angular.x(), angular.y()));
+  return {R_frame_world * motion.linear_m_s,
+          angular,
+          trees.T_world_frame.inverse() * (object.T_world_mesh * motion.centre_object),
+          turn_rad_s,
+          reach_m,
+          keep_m,
+          0.5 * turn_rad_s * turning_m_s,
+          turning_m_s};
+}
+
+/// One tree of the scene: how long its pairs of triangles let the motion go on.
+struct TreeFreedom {
+  TreePair& trees;
+  const Touched kind;
+  const std::uint32_t number;  // among the scene's
+  const RelativeMotion course;
+  FreeTime result;
+
+  /// Until when two boxes are free of each other; infinite where that is long enough.
+  [[nodiscard]] float key(const PairBox& o, const PairBox& s) const {
+    constexpr float kLongEnough = std::numeric_limits<float>::infinity();
+    const float free_s = course.free_s(o, s);
+    if (!(static_cast<double>(free_s) < result.free_s)) return kLongEnough;
+    if (are_large_against(o, s)) {
+      const Vec3 centre = s.centre.cast<double>(), half = s.half.cast<double>();
+      for (const FrameTriangle& t : trees.of_object(o)) {
+        const Vec3 direction = t.normal.dot(t.corners[0] - centre) >= 0.0 ? t.normal : Vec3(-t.normal);
+        const double face_at = direction.dot(centre) + direction.cwiseAbs().dot(half);
+        if (course.free_s(direction, t, face_at) < result.free_s) return free_s;
+      }
+      return kLongEnough;
+    }
+    if (are_large_against(s, o)) {
+      for (const FrameTriangle& t : trees.of_scene(s)) {
+        if (course.free_s(t, o) < result.free_s && !(is_one_sided(kind) && is_behind(t, o))) return free_s;
+      }
+      return kLongEnough;
+    }
+    return free_s;
+  }
+
+  /// The best of the planes between two triangles.
+  void look(const FrameTriangle& o, const FrameTriangle& s) {
+    double free_s = -1.0;
+    const auto is_long_enough = [&](const Vec3& direction) {
+      free_s = std::max(free_s, course.free_s(direction, o, s));
+      return free_s >= result.free_s;
+    };
+    const double side_of_scene = s.normal.dot(o.corners[0] - s.corners[0]) >= 0.0 ? 1.0 : -1.0;
+    if (is_one_sided(kind) && range_along(s.normal, o.corners).high < s.normal.dot(s.corners[0])) return;
+    const double side_of_object = o.normal.dot(s.corners[0] - o.corners[0]) >= 0.0 ? -1.0 : 1.0;
+    if (is_long_enough(side_of_scene * s.normal) || is_long_enough(side_of_object * o.normal)) return;
+    const auto [from, way] = shortest_way(o, s, 0.0);
+    const double distance_m = way.norm();
+    if (distance_m > 0.0 && is_long_enough(-way / distance_m)) return;
+    if (free_s < 0.0) {
+      if (!(distance_m > 0.0) || cross(face_of(o), face_of(s))) return;
+      free_s = 0.0;  // so near that rounding hides the plane between them
+    }
+    if (!(distance_m > 0.0)) return;  // they touch: how they part is for contacts to say
+    if (is_one_sided(kind) && !is_outside(-way / distance_m, s)) return;
+    result.free_s = free_s;
+    result.limit = {trees.T_world_frame * (from + way), trees.T_world_frame.linear() * (-way / distance_m),
+                    distance_m, kind, number};
+  }
+
+  void look_at_leaves(const PairBox& o, const PairBox& s) {
+    for (const FrameTriangle& object : trees.of_object(o))
+      for (const FrameTriangle& scene : trees.of_scene(s)) look(object, scene);
+  }
+};
+
+}  // namespace
+
+FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s,
+                              double keep_m, const RadarScene& scene, Kinds left_out) {
+  FreeTime result;
+  if (!is_usable(object) || !(duration_s > 0.0)) return result;
+  result.free_s = duration_s;
+  // No point of the object goes farther, and what is farther than twice keep_m may come as near as that.
+  const double way_m =
+      duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_of(object, motion));
+  for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
+    const SceneTree& tree = scene.trees[number];
+    if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
+    if (are_farther_apart(object, tree.instance, way_m + 2.0 * keep_m)) continue;
+    TreePair trees(object, tree.instance);
+    TreeFreedom freedom{trees, tree.kind, number, course_of(object, motion, keep_m, trees), result};
+    visit_pairs<PairOrder::kLeastFirst>(
+        trees, pending_, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
+        [&](const PairBox& o, const PairBox& s) {
+          freedom.look_at_leaves(o, s);
+          return static_cast<float>(freedom.result.free_s);
+        });
+    result = freedom.result;
+  }
+  return result;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,82 @@
+// near_field.cpp: the object's tree beside each of the scene's, and the places of each pair of triangles.
+#include "radar/motion/proximity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "radar/geometry/infinity.hpp"
+#include "radar/geometry/tree_pairs.hpp"
+#include "radar/motion/closest_features.hpp"
+
+namespace roomradar {
+namespace {
+
+bool is_far_from(const FrameTriangle& t, const PairBox& box, double reach_m) {
+  return std::abs(t.normal.dot(box.centre.cast<double>() - t.corners[0])) -
+             t.normal.cwiseAbs().dot(box.half.cast<double>()) >
+         reach_m;
+}
+
+/// Whether what is in two boxes may be within reach.
+bool may_be_near(TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
+  const double reach_m = places.reach_m;
+  const Eigen::Array3f apart = (o.centre - s.centre).array().abs() - o.half.array() - s.half.array();
+  if (apart.maxCoeff() > static_cast<float>(reach_m)) return false;
+  if (are_large_against(o, s)) {
+    const auto triangles = trees.of_object(o);
+    return std::any_of(triangles.begin(), triangles.end(),
+                       [&](const FrameTriangle& t) { return !is_far_from(t, s, reach_m); });
+  }
+  if (are_large_against(s, o)) {
+    const auto triangles = trees.of_scene(s);
+    return std::any_of(triangles.begin(), triangles.end(), [&](const FrameTriangle& t) {
+      return !is_far_from(t, o, reach_m) && !(places.scene_is_one_sided && is_behind(t, o));
+    });
+  }
+  return true;
+}
+
+/// All pairs of two leaves' triangles. Returns whether any cross.
+bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
+  bool crosses = false;
+  for (const FrameTriangle& scene : trees.of_scene(s))
+    for (const FrameTriangle& object : trees.of_object(o)) crosses = places.look(object, scene) || crosses;
+  return crosses;
+}
+
+}  // namespace
+
+Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, double reach_m, Kinds left_out,
+                      std::vector<NearPoint>& points) {
+  points.clear();
+  found_.clear();
+  Kinds crossed = 0;
+  if (!is_usable(object) || !(reach_m > 0.0)) return crossed;
+  for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
+    const SceneTree& tree = scene.trees[number];
+    if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
+    if (are_farther_apart(object, tree.instance, reach_m)) continue;
+    const std::size_t found_before = found_.size();
+    TreePair trees(object, tree.instance);
+    const PairPlaces places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),
+                            tree.kind, trees.T_world_frame,      found_};
+    bool crosses = false;
+    visit_pairs<PairOrder::kAny>(
+        trees, pending_,
+        [&](const PairBox& o, const PairBox& s) {
+          return may_be_near(trees, o, s, places) ? 0.0F : kInfinity<float>;
+        },
+        [&](const PairBox& o, const PairBox& s) {
+          crosses = look_at_leaves(trees, o, s, places);
+          return crosses ? -kInfinity<float> : kInfinity<float>;
+        });
+    for (std::size_t i = found_before; i < found_.size(); ++i) found_[i].tree = number;
+    if (!crosses) continue;
+    crossed |= bit_of(tree.kind);
+    found_.resize(found_before);
+  }
+  keep_the_outermost(found_, points);
+  return crossed;
+}
+
+}  // namespace roomradar

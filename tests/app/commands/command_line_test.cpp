@@ -1,0 +1,739 @@
+// command_line_test.cpp: the program as a user runs it: exit status, messages, and nothing lost.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/recordings.hpp"
+
+namespace roomradar::command_line_test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status = -1;
+  std::string out;  ///< stdout and stderr together
+};
+
+Outcome shell(const std::string& line) {
+  Outcome outcome;
+  FILE* pipe = popen((line + " 2>&1").c_str(), "r");
+  if (!pipe) return outcome;
+  char buffer[4096];
+  while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) outcome.out.append(buffer, n);
+  const int status = pclose(pipe);
+  outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome;
+}
+
+Outcome roomradar(const std::string& arguments) { return shell(ROOMRADAR_PROGRAM " " + arguments); }
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void expect_fault(const Outcome& outcome, int status, const std::string& word) {
+  EXPECT_EQ(outcome.status, status) << outcome.out;
+  EXPECT_NE(outcome.out.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.out;
+}
+
+/// A small simulated room is scanned once for all tests here.
+class CommandLine : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = fs::path(::testing::TempDir()) / ("roomradar_cli_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    scanned_ = roomradar("prescan 'sim:table?frames=40&width=160' --map " + map() +
+                         " --resolution 0.03 --hold-out 10 --report " + (folder_ / "prescan.json").string());
+  }
+  static void TearDownTestSuite() { fs::remove_all(folder_); }
+  static std::string map() { return (folder_ / "map").string(); }
+  /// A copy of the map that a test may break.
+  static fs::path broken_copy() {
+    const fs::path copy = folder_ / "broken";
+    fs::remove_all(copy);
+    fs::copy(map(), copy, fs::copy_options::recursive);
+    return copy;
+  }
+  inline static fs::path folder_;
+  inline static Outcome scanned_;
+};
+
+TEST_F(CommandLine, PrescanLeavesAMapThatVerifiesAndAReport) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  EXPECT_EQ(roomradar("map verify " + map()).status, 0);
+  const nlohmann::json report = nlohmann::json::parse(read_text(folder_ / "prescan.json"));
+  for (const char* key :
+       {"command", "version", "source", "settings", "renderer", "frames_read", "frames_skipped", "stages",
+        "peak_rss_mb", "wall_s", "frames_tracked", "frames_fused", "frames_lost", "ate_rmse_m", "map"})
+    EXPECT_TRUE(report.contains(key)) << key;
+  for (const char* stage : {"read", "track", "fuse", "surface", "save", "frame"})
+    EXPECT_TRUE(report["stages"].contains(stage)) << stage;
+  EXPECT_EQ(report["frames_read"], 40);
+  EXPECT_GT(report["map"]["triangles"], 1000);
+  EXPECT_LT(report["ate_rmse_m"], 0.05);
+  EXPECT_EQ(report["frames_tracked"], 40);
+  EXPECT_EQ(report["frames_fused"], 36);
+  EXPECT_EQ(report["held_out"]["frames"], 4);
+  EXPECT_LT(report["held_out"]["median_m"], 0.03);
+  EXPECT_GT(report["held_out"]["cover"], 0.5);
+}
+
+TEST_F(CommandLine, MapInfoAndEveryExportWork) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const Outcome info = roomradar("map info " + map());
+  EXPECT_EQ(info.status, 0);
+  EXPECT_NE(info.out.find("0.03"), std::string::npos) << info.out;
+  for (const char* extension : {"bt", "ot", "ply", "obj", "stl", "glb"}) {
+    const fs::path path = folder_ / (std::string("export.") + extension);
+    EXPECT_EQ(roomradar("map export " + map() + " " + path.string()).status, 0) << extension;
+    EXPECT_GT(fs::file_size(path), 1000U) << extension;
+  }
+  expect_fault(roomradar("map export " + map() + " " + (folder_ / "export.xyz").string()), 1, ".ply");
+  const fs::path unknown = folder_ / "unknown.ply";
+  EXPECT_EQ(roomradar("map export " + map() + " " + unknown.string() + " --unknown").status, 0);
+  EXPECT_GT(fs::file_size(unknown), 10000U);
+  expect_fault(roomradar("map export " + map() + " " + map() + "/unknown.ply --unknown"), 1, "map");
+}
+
+/// Everything that a user can do, one after the other.
+constexpr const char* kPlayed = R"(frame 0 add pot teapot
+time 0 drop pot view height 0.2
+frame 5 carry pot 0.2 0.1 1.2
+frame 9 turn pot 0 0 30
+frame 10 release pot velocity 0.5 0 0.5
+frame 12 surfaces skirt
+frame 14 surfaces map
+frame 15 unknown solid
+frame 17 camera hold
+frame 21 camera go
+frame 22 radar sampled 32
+frame 23 quality depth_stride 2 object_turns 2
+frame 24 camera rewind
+frame 30 quality from physics shadows off picture_turns 2
+frame 44 quit
+)";
+
+TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path session = folder_ / "session", script = folder_ / "played.txt";
+  std::ofstream(script) << kPlayed;
+  const auto pictures = [&](const char* name) { return " --pictures " + (folder_ / name).string(); };
+  const Outcome played = roomradar("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
+                                   " --poses recorded --at-end loop --script " + script.string() +
+                                   " --record-session " + session.string() + pictures("played"));
+  ASSERT_EQ(played.status, 0) << played.out;
+  const fs::path report_path = folder_ / "replay.json";
+  const Outcome replayed =
+      roomradar("run " + session.string() + pictures("replayed") + " --report " + report_path.string());
+  ASSERT_EQ(replayed.status, 0) << replayed.out;
+  EXPECT_NE(replayed.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos)
+      << replayed.out;
+  const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
+  EXPECT_EQ(report["replay"], (nlohmann::json{{"same", 44}, {"different", 0}, {"recorded", 44}}));
+  EXPECT_EQ(report["settings"]["unknown"], "free");
+  EXPECT_EQ(read_text(folder_ / "played" / "000010.png"), read_text(folder_ / "replayed" / "000010.png"));
+
+  // Also where a clock had a say: a budget that cannot be held takes all that the front has.
+  const fs::path hurried = folder_ / "hurried", hurried_report = folder_ / "hurried.json";
+  const Outcome in_hurry = roomradar("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
+                                     " --poses recorded --budget-ms 1 --record-session " + hurried.string() +
+                                     pictures("hurried") + " --report " + hurried_report.string());
+  ASSERT_EQ(in_hurry.status, 0) << in_hurry.out;
+  EXPECT_NE(in_hurry.out.find("budget 1 ms: with "), std::string::npos) << in_hurry.out;
+  const nlohmann::json budget = nlohmann::json::parse(read_text(hurried_report))["budget"];
+  EXPECT_EQ(budget["frames"], 15);
+  EXPECT_EQ(budget["settings"].back()["step"], budget["steps"].get<int>() - 1);
+  const Outcome again = roomradar("run " + hurried.string() + pictures("again"));
+  EXPECT_NE(again.out.find("replay: 15 of 15 frames the same as recorded"), std::string::npos) << again.out;
+  expect_fault(roomradar("run " + hurried.string() + " --budget-ms 33"), 1, "quality events of its own");
+  // Objects move in the same frames where no pictures are made.
+  const Outcome unseen = roomradar("run " + session.string());
+  EXPECT_NE(unseen.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos) << unseen.out;
+
+  // What it was recorded with is in it, and is not to be done twice.
+  expect_fault(roomradar("run " + session.string() + " --calibration c.json"), 2,
+               "with the frames that it has");
+  expect_fault(roomradar("run " + session.string() + " --frames 3:9"), 2, "from its first frame");
+  expect_fault(roomradar("run " + session.string() + " --object teapot"), 2, "has its own objects");
+
+  // It can fail: dropped from higher up the pot is elsewhere, and that is told.
+  std::ofstream(script) << "frame 0 add pot teapot\nframe 0 drop pot view height 0.4\nframe 44 quit\n";
+  const Outcome other = roomradar("run " + session.string() + " --script " + script.string());
+  EXPECT_EQ(other.status, 0) << other.out;
+  EXPECT_EQ(other.out.find("replay: 44 of 44"), std::string::npos) << other.out;
+  EXPECT_NE(other.out.find("the first that is not"), std::string::npos) << other.out;
+  // A session is a folder of its own, and its frames are a source like others.
+  expect_fault(roomradar("run 'sim:table?frames=3&width=160' --map " + map() + " --record-session " +
+                         session.string()),
+               1, "not empty");
+  EXPECT_EQ(roomradar("record " + session.string() + " " + (folder_ / "frames").string()).status, 0);
+}
+
+TEST_F(CommandLine, ARunThatCannotBeginLeavesNoSession) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path session = folder_ / "not-begun";
+  const std::string run =
+      "run 'sim:table?frames=2&width=160' --map " + map() + " --record-session " + session.string();
+  expect_fault(roomradar(run + " --object /no/such/pot.obj"), 1, "/no/such/pot.obj");
+  expect_fault(roomradar(run + " --video " + (folder_ / "film.gif").string()), 1, "film.gif");
+  EXPECT_FALSE(fs::exists(session));
+  EXPECT_EQ(roomradar(run).status, 0);
+}
+
+TEST_F(CommandLine, ASessionThatWasCutOffReplaysToWhereItCame) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path session = folder_ / "cut";
+  const Outcome played =
+      roomradar("run 'sim:table?frames=12&width=160&path=view&seed=2' --poses recorded --map " + map() +
+                " --record-session " + session.string());
+  ASSERT_EQ(played.status, 0) << played.out;
+  // As if it had been killed: the last frame's entry and the last result are not whole.
+  fs::resize_file(session / "frames" / "list.bin", fs::file_size(session / "frames" / "list.bin") - 9);
+  fs::resize_file(session / "results.txt", fs::file_size(session / "results.txt") - 20);
+  const Outcome replayed = roomradar("run " + session.string());
+  EXPECT_EQ(replayed.status, 0) << replayed.out;
+  EXPECT_NE(replayed.out.find("replay: 11 of 11 frames the same"), std::string::npos) << replayed.out;
+
+  // As if the disk had been full: the last result that is left, and the last event, are cut within a number.
+  fs::resize_file(session / "results.txt", fs::file_size(session / "results.txt") - 21);
+  std::ofstream(session / "events.txt", std::ios::app) << "frame 12 tur";
+  const Outcome cut_again = roomradar("run " + session.string());
+  EXPECT_EQ(cut_again.status, 0) << cut_again.out;
+  EXPECT_NE(cut_again.out.find("replay: 10 of 10 frames the same"), std::string::npos) << cut_again.out;
+
+  // Killed while the camera was held, and a frame past the end: it ends where the results do.
+  const fs::path held = folder_ / "cut-held", script = folder_ / "held.txt";
+  std::ofstream(script) << "frame 0 add pot teapot\nframe 5 quality radar_px 32\nframe 8 camera hold\n"
+                           "frame 40 quit\n";
+  ASSERT_EQ(
+      roomradar("run 'sim:table?frames=12&width=160&path=view&seed=2' --poses recorded --at-end stay --map " +
+                map() + " --shadows off --script " + script.string() + " --record-session " + held.string())
+          .status,
+      0);
+  std::string events = read_text(held / "events.txt");
+  const std::size_t quality = events.find(" quality ");
+  ASSERT_NE(quality, std::string::npos) << events;
+  EXPECT_NE(events.substr(quality, events.find('\n', quality) - quality).find(" shadows off"),
+            std::string::npos)
+      << "what an option asks for stays: " << events;
+  events.resize(events.find("frame 40 quit"));
+  std::ofstream(held / "events.txt") << events;
+  const Outcome ended = roomradar("run " + held.string());
+  EXPECT_EQ(ended.status, 0) << ended.out;
+  EXPECT_NE(ended.out.find("replay: 40 of 40 frames the same"), std::string::npos) << ended.out;
+
+  std::ofstream(session / "session.json") << "{ \"format\": \"roomradar session\", \"format_version\": 9 }";
+  expect_fault(roomradar("run " + session.string()), 1, "version 9,");
+  std::ofstream(session / "session.json") << "{ \"format\": \"roomr";
+  expect_fault(roomradar("run " + session.string()), 1, "session.json: is not the settings");
+  fs::remove(session / "session.json");
+  fs::remove_all(session / "frames");
+  expect_fault(roomradar("run " + session.string() + " --map " + map()), 1, session.string());
+}
+
+TEST_F(CommandLine, AWindowWithoutADisplaySaysWhatToDo) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const Outcome outcome = shell("env -u DISPLAY -u WAYLAND_DISPLAY " ROOMRADAR_PROGRAM
+                                " run 'sim:table?frames=3&width=160' --window --map " +
+                                map());
+  expect_fault(outcome, 1, "--video");
+}
+
+TEST_F(CommandLine, SolidUnknownSpaceIsInTheReportAndNeedsTheMap) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path report_path = folder_ / "solid.json";
+  const std::string run = "run 'sim:table?frames=20&width=160&path=view&seed=2' --poses recorded --map " +
+                          map() + " --unknown solid";
+  const Outcome ran = roomradar(run + " --report " + report_path.string());
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  EXPECT_NE(ran.out.find("unknown space: "), std::string::npos) << ran.out;
+  const auto report = nlohmann::json::parse(read_text(report_path));
+  EXPECT_EQ(report["settings"]["unknown"], "solid");
+  EXPECT_EQ(report["stages"]["unknown"]["count"], 1);
+  EXPECT_GT(report["unknown_triangles"], 100);
+  EXPECT_EQ(report["objects"][0]["began_in_unknown"], false);
+  EXPECT_EQ(report["objects"][0]["rests_on"], "seen static");
+  expect_fault(roomradar(run + " --surfaces skirt"), 2, "needs --surfaces map");
+}
+
+TEST_F(CommandLine, RunChangesNothingOfTheMap) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const auto state = [] {
+    std::map<std::string, std::pair<std::string, fs::file_time_type>> files;
+    for (const auto& entry : fs::directory_iterator(map()))
+      files[entry.path().filename().string()] = {read_text(entry.path()), fs::last_write_time(entry)};
+    return files;
+  };
+  const auto before = state();
+  ASSERT_GT(before.size(), 4U);
+  const Outcome ran =
+      roomradar("run 'sim:table?frames=60&width=160&moving=hand&crate=comes' --adopt 0.5 --map " + map() +
+                " --unknown solid");
+  EXPECT_EQ(ran.status, 0) << ran.out;
+  EXPECT_TRUE(state() == before);
+}
+
+TEST_F(CommandLine, RunFindsItselfAndDropsTheTeapotOnTheTable) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path report_path = folder_ / "run.json";
+  const Outcome ran = roomradar("run 'sim:table?frames=60&width=160&path=view&seed=2' --map " + map() +
+                                " --poses recorded --report " + report_path.string() + " --pictures " +
+                                (folder_ / "pictures").string());
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
+  for (const char* stage :
+       {"read", "locate", "expected", "foreground", "mesh", "radar", "physics", "compose", "frame"})
+    EXPECT_TRUE(report["stages"].contains(stage)) << stage;
+  EXPECT_EQ(report["frames_located"], 60);
+  ASSERT_EQ(report["objects"].size(), 1U);
+  EXPECT_TRUE(report["objects"][0]["at_rest"]) << report.dump(2);
+  EXPECT_EQ(report["settings"]["radar"], "exact");
+  EXPECT_LE(report["deepest_penetration_m"], 1e-6);
+  EXPECT_TRUE(fs::exists(folder_ / "pictures" / "000000.png"));
+}
+
+TEST_F(CommandLine, ARecordingWithoutColourRunsAsOneWithColourDoes) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  std::map<std::string, nlohmann::json> reports;
+  for (const std::string colour : {"registered", "none"}) {
+    const fs::path recording = folder_ / ("colour_" + colour), report_path = folder_ / (colour + ".json");
+    const Outcome recorded =
+        roomradar("record 'sim:table?frames=45&width=160&path=view&moving=hand&colour=" + colour + "' " +
+                  recording.string());
+    ASSERT_EQ(recorded.status, 0) << recorded.out;
+    const Outcome ran =
+        roomradar("run " + recording.string() + " --poses recorded --map " + map() + " --report " +
+                  report_path.string() + " --pictures " + (folder_ / "colours").string());
+    ASSERT_EQ(ran.status, 0) << ran.out;
+    EXPECT_TRUE(fs::exists(folder_ / "colours" / "000000.png"));
+    fs::remove_all(folder_ / "colours");
+    reports[colour] = nlohmann::json::parse(read_text(report_path));
+  }
+  const auto& with = reports["registered"];
+  const auto& without = reports["none"];
+  EXPECT_EQ(without["frames_located"], 45);
+  EXPECT_GT(without["moved_fraction_mean"], 0.001);
+  for (const char* key : {"moved_fraction_mean", "dynamic_triangles_mean", "inferred_triangles_mean"})
+    EXPECT_EQ(without[key], with[key]) << key;
+  EXPECT_EQ(without["objects"][0]["position_m"], with["objects"][0]["position_m"]);
+}
+
+TEST_F(CommandLine, TheSampledRadarHoldsTheTeapotTooBySafeBounds) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path report_path = folder_ / "sampled.json";
+  const Outcome ran =
+      roomradar("run 'sim:table?frames=60&width=160&path=view&seed=2' --map " + map() +
+                " --poses recorded --radar sampled --radar-px 32 --report " + report_path.string());
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
+  EXPECT_EQ(report["settings"]["radar"], "sampled");
+  EXPECT_TRUE(report["objects"][0]["at_rest"]) << report.dump(2);
+  EXPECT_LE(report["deepest_penetration_m"], 1e-6);  // moved by bounds that hold
+}
+
+TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const auto bytes_of = [](const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder))
+      files[entry.path().filename().string()] = read_text(entry.path());
+    return files;
+  };
+  const auto before = bytes_of(map());
+  const std::string changed = (folder_ / "changed").string();
+  const fs::path report_path = folder_ / "adopt.json";
+  const Outcome ran =
+      roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " + map() +
+                " --poses recorded --adopt 0.8 --save-map " + changed + " --report " + report_path.string());
+  ASSERT_EQ(ran.status, 0) << ran.out;
+  EXPECT_EQ(bytes_of(map()), before);
+  EXPECT_EQ(roomradar("map verify " + changed).status, 0);
+  const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
+  ASSERT_EQ(report["adopted"].size(), 1U) << report["adopted"].dump(2);
+  EXPECT_EQ(report["adopted"][0]["change"], "came");
+  EXPECT_GT(report["adopted"][0]["time_s"], 3.7);
+  EXPECT_TRUE(report["stages"].contains("changes"));
+  const Outcome diff = roomradar("map diff " + map() + " " + changed);
+  EXPECT_EQ(diff.status, 0) << diff.out;
+  EXPECT_NE(diff.out.find("appeared"), std::string::npos) << diff.out;
+  EXPECT_EQ(diff.out.find("vanished"), std::string::npos) << diff.out;
+
+  // It may be the room's own map, if it is named.
+  const fs::path own = broken_copy();
+  const Outcome again = roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " +
+                                  own.string() + " --poses recorded --adopt 0.8 --save-map " + own.string());
+  EXPECT_EQ(again.status, 0) << again.out;
+  EXPECT_EQ(read_text(own / "octree.ot"), read_text(fs::path(changed) / "octree.ot")) << "the same each time";
+  EXPECT_EQ(read_text(own / "mesh.ply"), read_text(fs::path(changed) / "mesh.ply"));
+}
+
+TEST_F(CommandLine, SavingAMapThatCannotChangeIsRefused) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string run = "run 'sim:table?frames=100000&width=160' --map " + map();
+  expect_fault(roomradar(run + " --save-map " + (folder_ / "unused").string()), 1, "--adopt");
+  expect_fault(roomradar(run + " --adopt 1 --save-map " + folder_.string()), 1, folder_.string());
+  expect_fault(roomradar(run + " --adopt 1 --surfaces holes"), 1, "--surfaces map");
+  expect_fault(roomradar(run + " --adopt 0"), 2, "86400");
+  expect_fault(roomradar(run + " --adopt nan"), 2, "86400");
+}
+
+TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
+  const auto path = [](const char* name) { return (folder_ / name).string(); };
+  const Outcome traded =
+      roomradar("trade --quick --only prescan --rooms wall --settings 2 --repeats 1 --csv " +
+                path("trade.csv") + " --html " + path("trade.html") + " --report " + path("trade.json"));
+  ASSERT_EQ(traded.status, 0) << traded.out;
+  EXPECT_NE(traded.out.find("default"), std::string::npos) << traded.out;
+  const std::string csv = read_text(path("trade.csv"));
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 + 3) << csv;
+  EXPECT_NE(read_text(path("trade.html")).find("<svg"), std::string::npos);
+  const nlohmann::json report = nlohmann::json::parse(read_text(path("trade.json")));
+  EXPECT_EQ(report["command"], "trade");
+  EXPECT_EQ(report["prescan"]["measurements"], 3);
+  expect_fault(roomradar("trade --quick --rooms 'table?colour=separate' --settings 1"), 1, "colour=");
+  expect_fault(roomradar("trade --rooms 'table?noise=3' --settings 1"), 1, "only its name and seed");
+  expect_fault(roomradar("trade --only prescan --rooms 'table?width=320' --settings 1"), 1, "width=");
+  expect_fault(roomradar("trade --rooms attic --settings 2 --quick"), 1, "table");
+  const std::string half_posed = path("half_posed");
+  ASSERT_EQ(roomradar("record 'sim:table?frames=70&width=64&path=view' " + half_posed).status, 0);
+  shell("sed -i '68,$d' " + half_posed + "/groundtruth.txt");
+  expect_fault(roomradar("trade --only run --quick --rooms wall --settings 1 " + half_posed), 1,
+               "not all frames have poses");
+  expect_fault(roomradar("trade --html " + path("none/trade.html")), 1, "none/trade.html");
+  expect_fault(roomradar("trade --quick --only prescan " + path("none")), 1, "none");
+  expect_fault(roomradar("trade --settings 0"), 2, "--settings");
+  expect_fault(roomradar("trade --only run --presets " + path("p.json")), 2, "--presets");
+  expect_fault(roomradar("trade --table1 --csv " + path("t.csv")), 2, "--csv");
+  expect_fault(roomradar("trade --table1 --rooms table,wall"), 2, "--table1");
+  expect_fault(roomradar("trade --repeats x"), 2, "--repeats");
+  expect_fault(roomradar("trade --seed 010"), 2, "without a zero before it, not 010");
+  expect_fault(roomradar("trade --seed -1"), 2, "must be a whole number");
+  expect_fault(roomradar("trade --only prescan --objects 5"), 2, "--objects");
+  expect_fault(roomradar("trade --only both"), 2, "prescan");
+}
+
+TEST_F(CommandLine, WrongUsageIsStatusTwo) {
+  EXPECT_EQ(roomradar("").status, 2);
+  EXPECT_EQ(roomradar("dance").status, 2);
+  EXPECT_EQ(roomradar("prescan").status, 2);
+  EXPECT_EQ(roomradar("--help").status, 0);
+  EXPECT_EQ(roomradar("prescan --help").status, 0);
+  const std::string prescan = "prescan sim:table --map " + (folder_ / "unused").string();
+  expect_fault(roomradar(prescan + " --resolution 0"), 2, "0.001");
+  expect_fault(roomradar(prescan + " --resolution nan"), 2, "0.001");
+  expect_fault(roomradar(prescan + " --resolution -0.01"), 2, "0.001");
+  expect_fault(roomradar(prescan + " --frames 9:3"), 2, "A:B");
+  expect_fault(roomradar(prescan + " --frames x"), 2, "A:B");
+  expect_fault(roomradar(prescan + " --hold-out 1"), 2, "--hold-out");
+  for (const char* number : {"nan", "-5", "inf", "1e9", "x"}) {
+    expect_fault(roomradar(prescan + " --max-memory " + number), 2, "10000000 (megabytes)");
+    expect_fault(roomradar(prescan + " --checkpoint-every " + number), 2, "86400 (seconds)");
+  }
+  expect_fault(roomradar(prescan + " --poses guessed"), 2, "recorded|tracked");
+  const std::string run = "run sim:table --map " + map();
+  expect_fault(roomradar(run + " --radar roughly"), 2, "exact|sampled");
+  expect_fault(roomradar(run + " --object teapot --script s.txt"), 2, "--script says which objects");
+  expect_fault(roomradar(run + " --radar-px 0"), 2, "4096");
+  expect_fault(roomradar("fallthrough --map " + map()), 2, "--map: is about a SOURCE");
+  expect_fault(roomradar("fallthrough sim:table --map " + map() + " --csv " + (folder_ / "f.csv").string()),
+               2, "--csv: is about simulated rooms");
+  expect_fault(roomradar("fallthrough --scenario 1 --video v.avi --html " + (folder_ / "f.html").string()), 2,
+               "--html: is not made of one --scenario");
+  expect_fault(roomradar("fallthrough sim:table"), 2, "--map");
+  expect_fault(roomradar(prescan + " --presets p.json"), 2, "--preset NAME");
+  expect_fault(roomradar(run + " --presets p.json"), 2, "--budget-ms");
+  expect_fault(roomradar(run + " --pictures-every 3"), 2, "--pictures");
+  EXPECT_NE(roomradar(run + " --preset fast --presets /no/p.json").out.find("/no/p.json"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
+  const std::string to = " --map " + (folder_ / "unused").string();
+  expect_fault(roomradar("prescan /no/such/folder" + to), 1, "/no/such/folder");
+  const fs::path empty = folder_ / "empty";
+  fs::create_directories(empty);
+  expect_fault(roomradar("prescan " + empty.string() + to), 1, empty.string());
+  expect_fault(roomradar("prescan sim:palace" + to), 1, "table");
+  expect_fault(roomradar("prescan kinect:x" + to), 1, "kinect:N");
+  expect_fault(roomradar("prescan kinect:0?depth=registered --calibration c.json" + to), 1,
+               "registered depth");
+  expect_fault(roomradar("calibrate kinect:0?depth=registered --square 0.03 --out c.json"), 1,
+               "registered depth");
+  expect_fault(roomradar("prescan 'sim:table?frames=10' --frames 8:12" + to), 1, "10");
+  const fs::path loop = folder_ / "loop";
+  fs::create_symlink("loop", loop);
+  expect_fault(roomradar("prescan " + loop.string() + to), 1, "cannot be used: ");
+  expect_fault(roomradar("prescan 'sim:table?frames=10' --map " + (loop / "map").string()), 1,
+               "cannot be used: ");
+  EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, WhatCannotBeWrittenOrLoadedIsSaidBeforeTheWork) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  expect_fault(roomradar("prescan " + source + " --map " + (folder_ / "unused").string() +
+                         " --report /no/such/r.json"),
+               1, "/no/such/r.json");
+  expect_fault(roomradar("run " + source + " --map " + map() + " --report /no/such/r.json"), 1,
+               "/no/such/r.json");
+  const fs::path script = folder_ / "events.txt";
+  std::ofstream(script) << "frame 90000 add pot /no/such/pot.obj\n";
+  expect_fault(roomradar("run " + source + " --map " + map() + " --script " + script.string()), 1,
+               "/no/such/pot.obj");
+}
+
+TEST_F(CommandLine, NothingElseIsPutIntoAMapsFolder) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  const std::string json = map() + "/map.json", rule = "lies in the folder of a map";
+  expect_fault(roomradar("prescan " + source + " --map " + map() + "/below"), 1, rule);
+  expect_fault(
+      roomradar("prescan " + source + " --map " + (folder_ / "unused").string() + " --report " + json), 1,
+      rule);
+  expect_fault(roomradar("map diff " + map() + " " + map() + " --report " + json), 1, rule);
+  const std::string run = "run " + source + " --map " + map();
+  expect_fault(roomradar(run + " --video " + map() + "/ar.avi"), 1, rule);
+  for (const char* below : {"", "/", "/below", "/below/"}) {
+    expect_fault(roomradar(run + " --pictures " + map() + below), 1, rule);
+    expect_fault(roomradar(run + " --record-session " + map() + below), 1, rule);
+    expect_fault(roomradar("record " + source + " " + map() + below), 1, rule);
+    expect_fault(roomradar("simulate " + map() + below), 1, rule);
+  }
+  expect_fault(roomradar("map diff " + map() + " " + map() + " --picture " + map() + "/coverage.png"), 1,
+               rule);
+  expect_fault(roomradar("map export " + map() + " " + map() + "/mesh.ply"), 1, rule);
+  EXPECT_EQ(roomradar("map verify " + map()).status, 0);
+}
+
+TEST_F(CommandLine, NothingElseIsPutIntoAFolderThatIsToBecomeAMap) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  const std::string soon = (folder_ / "soon").string(), rule = "which is to be a map";
+  fs::create_directory(soon);
+  expect_fault(roomradar("prescan " + source + " --map " + soon + "/ --report " + soon + "/r.json"), 1, rule);
+  expect_fault(
+      roomradar("map merge " + map() + " " + map() + " --map " + soon + " --report " + soon + "/r.json"), 1,
+      rule);
+  const std::string run = "run " + source + " --map " + map() + " --adopt 2 --save-map " + soon;
+  for (const char* output : {"--pictures", "--record-session", "--frames-csv", "--report", "--video"})
+    expect_fault(roomradar(run + " " + output + " " + soon + "/../soon/new.avi"), 1, rule);
+  expect_fault(roomradar(run + " --pictures " + soon), 1, rule);
+  EXPECT_TRUE(fs::is_empty(soon));
+}
+
+TEST_F(CommandLine, AReportCannotBeAFolderNorAPictureAnythingButPng) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string diff = "map diff " + map() + " " + map();
+  expect_fault(roomradar(diff + " --report " + folder_.string()), 1, "a folder has that name");
+  const std::string jpg = (folder_ / "picture.jpg").string();
+  expect_fault(roomradar(diff + " --picture " + jpg), 1, ".png");
+  expect_fault(roomradar("fallthrough sim:table --map " + map() + " --picture " + jpg), 1, ".png");
+  expect_fault(roomradar("calibrate sim:board --out " + (folder_ / "c.json").string() + " --plot " + jpg), 1,
+               ".png");
+  expect_fault(roomradar("fallthrough --scenario 1 --video " + (folder_ / "v.webm").string()), 1, ".mp4");
+}
+
+TEST_F(CommandLine, RecordedPosesAreNotTakenForThoseOfAMapThatKnowsNone) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path blind = broken_copy();
+  nlohmann::json info = nlohmann::json::parse(read_text(blind / "map.json"));
+  ASSERT_EQ(info["settings"]["poses"], "tracked");
+  for (int i = 0; i < 16; ++i) info["T_world_recorded"][i] = i % 5 == 0 ? 1.0 : 0.0;
+  std::ofstream(blind / "map.json") << info;
+  const std::string run = "run 'sim:table?frames=2&width=160' --map " + blind.string() + " --poses ";
+  expect_fault(roomradar(run + "recorded"), 1, "take --poses tracked");
+  expect_fault(roomradar("fallthrough 'sim:table?width=160' --poses recorded --map " + blind.string()), 1,
+               "take --poses tracked");
+  EXPECT_EQ(roomradar(run + "tracked").status, 0);
+}
+
+TEST_F(CommandLine, AMapIsNotJoinedWithItself) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string joined = " --map " + (folder_ / "unused").string();
+  expect_fault(roomradar("map merge " + map() + " " + map() + joined), 1, "the same map");
+  expect_fault(roomradar("map merge " + map() + " " + broken_copy().string() + joined), 1, "the same map");
+  expect_fault(roomradar("map merge " + map() + " " + map() + joined + " --deviation -1"), 2, "--deviation");
+  EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, LeavingOutAllFramesIsSaid) {
+  expect_fault(
+      roomradar("prescan 'sim:table?frames=4&width=160' --frames 1:3 --fuse-every 200 --resolution 0.05 "
+                "--map " +
+                (folder_ / "left-out").string()),
+      1, "no frame was left to be fused");
+}
+
+TEST_F(CommandLine, CalibratingPassesOverACalibrationThatIsThere) {
+  const fs::path recording = folder_ / "board";
+  ASSERT_EQ(roomradar("record 'sim:table?frames=2&width=160' " + recording.string()).status, 0);
+  std::ofstream(recording / "calibration.json") << "{";
+  expect_fault(roomradar("record " + recording.string() + " " + (folder_ / "copy").string()), 1,
+               "calibration.json");
+  const Outcome calibrated = roomradar("calibrate " + recording.string() + " --square 0.06 --out " +
+                                       (folder_ / "new.json").string());
+  EXPECT_EQ(calibrated.status, 1);
+  EXPECT_EQ(calibrated.out.find("calibration.json"), std::string::npos) << calibrated.out;
+}
+
+TEST_F(CommandLine, ResultsThatAreLostOnTheirWayOutAreAFault) {
+  for (const std::string& command : {"map info " + map(), std::string("--help"), std::string("doctor")})
+    expect_fault(shell("(" ROOMRADAR_PROGRAM " " + command + " > /dev/full)"), 1, "stdout: ");
+}
+
+TEST_F(CommandLine, AMapOfOnesOwnIsNotTakenForAWalksAndReplaced) {
+  const fs::path maps = folder_ / "maps_of_mine";
+  fs::create_directories(maps);
+  fs::copy(map(), maps / "table-1", fs::copy_options::recursive);
+  expect_fault(roomradar("fallthrough --scenario 0 --video " + (folder_ / "never.avi").string() + " --maps " +
+                         maps.string()),
+               1, "is the map of sim:table");
+  EXPECT_EQ(roomradar("map verify " + (maps / "table-1").string()).status, 0);
+}
+
+TEST_F(CommandLine, FramesAreNotCalibratedASecondTime) {
+  const std::string raw = (folder_ / "as_taken").string(), freed = (folder_ / "freed").string(),
+                    copy = (folder_ / "freed_copy").string(), session = (folder_ / "freed_played").string(),
+                    file = (folder_ / "five_percent.json").string();
+  ASSERT_EQ(roomradar("record 'sim:table?frames=2&width=160' " + raw + " --format 7scenes").status, 0);
+  nlohmann::json calibration = nlohmann::json::parse(read_text(raw + "/camera.json"));
+  const nlohmann::json straight = {{"k1", 0}, {"k2", 0}, {"p1", 0}, {"p2", 0}, {"k3", 0}};
+  calibration["format"] = "roomradar calibration";
+  calibration["depth_lens"] = calibration["colour_lens"] = straight;
+  calibration["depth_correction"] = {
+      {"inverse_scale", 1.05}, {"columns", 0}, {"rows", 0}, {"offset_per_m", nlohmann::json::array()}};
+  std::ofstream(file) << calibration;
+  const std::string by_it = " --calibration " + file;
+
+  const Outcome recorded = roomradar("record " + raw + " " + freed + " --format 7scenes" + by_it);
+  ASSERT_EQ(recorded.status, 0) << recorded.out;
+  EXPECT_NE(read_text(freed + "/frame-000000.depth.png"), read_text(raw + "/frame-000000.depth.png"));
+  ASSERT_EQ(roomradar("record " + freed + " " + copy + " --format 7scenes").status, 0);
+  EXPECT_EQ(read_text(copy + "/frame-000000.depth.png"), read_text(freed + "/frame-000000.depth.png"));
+  (void)roomradar("run " + freed + " --map " + map() + " --record-session " + session);
+
+  for (const std::string& folder : {freed, copy, session}) {
+    const std::string out = (folder_ / "never").string();
+    expect_fault(roomradar("record " + folder + " " + out + by_it), 1, "before they were recorded");
+    expect_fault(roomradar("prescan " + folder + " --map " + out + by_it), 1, "before they were recorded");
+    expect_fault(roomradar("calibrate " + folder + " --square 0.06 --out " + out), 1,
+                 "before they were recorded");
+    EXPECT_FALSE(fs::exists(out));
+  }
+  EXPECT_EQ(roomradar("record " + raw + " " + (folder_ / "freed_too").string() + by_it).status, 0);
+}
+
+TEST_F(CommandLine, HoldingOutNoFrameIsSaid) {
+  const fs::path path = folder_ / "none_held.json";
+  const Outcome scanned =
+      roomradar("prescan 'sim:table?frames=10&width=160' --resolution 0.05 --hold-out 100 --map " +
+                (folder_ / "none_held").string() + " --report " + path.string());
+  expect_fault(scanned, 0, "no frame was held out");
+  EXPECT_EQ(nlohmann::json::parse(read_text(path))["held_out"], nlohmann::json({{"frames", 0}}));
+}
+
+TEST_F(CommandLine, ARecordingWithoutAnyDepthIsRefusedInWords) {
+  const fs::path recording = folder_ / "blank";
+  ASSERT_EQ(
+      roomradar("record 'sim:table?frames=5&width=160' " + recording.string() + " --format 7scenes").status,
+      0);
+  // Every depth image becomes one without a measurement: the same size, all 0.
+  for (const auto& entry : fs::directory_iterator(recording)) {
+    if (entry.path().string().ends_with(".depth.png"))
+      fs::copy_file(fs::path(ROOMRADAR_SOURCE_DIR) / "tests/data/no_depth_160x120.png", entry.path(),
+                    fs::copy_options::overwrite_existing);
+  }
+  expect_fault(roomradar("prescan " + recording.string() + " --map " + (folder_ / "unused").string()), 1,
+               "depth");
+  expect_fault(
+      roomradar("prescan " + recording.string() + " --poses recorded --map " + (folder_ / "unused").string()),
+      1, "depth");
+  EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, ABrokenMapIsRefusedAndTheFileNamed) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string run = "run 'sim:table?frames=2&width=160' --map ";
+  expect_fault(roomradar(run + (folder_ / "no_map").string()), 1, "no_map");
+  for (const char* name :
+       {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"}) {
+    fs::path copy = broken_copy();
+    fs::remove(copy / name);
+    expect_fault(roomradar(run + copy.string()), 1, name);
+    expect_fault(roomradar("map verify " + copy.string()), 1, name);
+
+    copy = broken_copy();
+    fs::resize_file(copy / name, fs::file_size(copy / name) / 2);
+    expect_fault(roomradar(run + copy.string()), 1, name);
+
+    copy = broken_copy();
+    std::string bytes = read_text(copy / name);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x20);
+    std::ofstream(copy / name, std::ios::binary) << bytes;
+    expect_fault(roomradar("map verify " + copy.string()), 1, name);
+  }
+  const fs::path later = broken_copy();
+  std::string json = read_text(later / "map.json");
+  const std::size_t at = json.find("\"format_version\": 1");
+  ASSERT_NE(at, std::string::npos) << json.substr(0, 300);
+  json.replace(at, 19, "\"format_version\": 9");
+  std::ofstream(later / "map.json", std::ios::binary) << json;
+  expect_fault(roomradar(run + later.string()), 1, "version");
+}
+
+TEST_F(CommandLine, ObjectMeshesThatCannotBeOnesAreNamed) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string run = "run 'sim:table?frames=2&width=160' --map " + map() + " --object ";
+  const auto object = [&](const char* name, const std::string& content) {
+    const fs::path path = folder_ / name;
+    std::ofstream(path, std::ios::binary) << content;
+    return path.string();
+  };
+  expect_fault(roomradar(run + "/no/such.obj"), 1, "/no/such.obj");
+  expect_fault(roomradar(run + object("no_faces.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")), 1, "no_faces.obj");
+  expect_fault(roomradar(run + object("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")), 1, "nan.obj");
+  expect_fault(roomradar(run + object("text.ply", "hello\n")), 1, "text.ply");
+  std::string huge =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 10000000\nproperty list uchar int vertex_indices\nend_header\n";
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  huge.append(reinterpret_cast<const char*>(corners), sizeof corners);
+  const std::string face("\3\0\0\0\0\1\0\0\0\2\0\0\0", 13);
+  huge.reserve(huge.size() + 10'000'000 * face.size());
+  for (int i = 0; i < 10'000'000; ++i) huge += face;
+  expect_fault(roomradar(run + object("huge.ply", huge)), 1, "huge.ply");
+}
+
+TEST_F(CommandLine, AFullDiskLosesNothing) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string before = read_text(folder_ / "map" / "map.json");
+  const Outcome full = shell("ulimit -f 64; " ROOMRADAR_PROGRAM
+                             " prescan 'sim:table?frames=10&width=160' --resolution 0.03 --map " +
+                             map());
+  EXPECT_EQ(full.status, 1) << full.out;
+  EXPECT_NE(full.out.find("map"), std::string::npos) << full.out;
+  EXPECT_EQ(read_text(folder_ / "map" / "map.json"), before);
+  EXPECT_EQ(roomradar("map verify " + map()).status, 0);
+  for (const auto& entry : fs::directory_iterator(folder_))
+    EXPECT_EQ(entry.path().string().find("partial"), std::string::npos) << entry.path();
+}
+
+TEST_F(CommandLine, AFolderThatIsNotAMapIsLeftAlone) {
+  const fs::path precious = folder_ / "precious";
+  fs::create_directories(precious);
+  std::ofstream(precious / "thesis.txt") << "years of work";
+  expect_fault(roomradar("prescan 'sim:table?frames=5&width=160' --map " + precious.string()), 1, "precious");
+  EXPECT_EQ(read_text(precious / "thesis.txt"), "years of work");
+}
+
+}  // namespace
+}  // namespace roomradar::command_line_test

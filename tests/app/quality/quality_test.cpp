@@ -1,0 +1,121 @@
+// quality_test.cpp: what can be traded for time: its rules, its words, its JSON, and what it sets.
+#include "app/quality/quality.hpp"
+
+#include <gtest/gtest.h>
+
+#include "app/quality/quality_json.hpp"
+#include "app/session/apply_quality.hpp"
+#include "mapping/types/system/error.hpp"
+#include "tests/support/error_of.hpp"
+
+namespace roomradar::quality_test {
+namespace {
+
+RunQuality coarse() {
+  return {.depth_stride = 4,
+          .tracking_px = 80,
+          .mesh_sigmas = 1.0 / 3.0,
+          .fine_mesh = true,
+          .radar = RadarMode::kSampled,
+          .radar_px = 24,
+          .physics_step_s = 0.1,
+          .object_turns = 3,
+          .object_error_px = 2.0,
+          .soft_edges = false,
+          .shadows = false,
+          .shadow_turns = 8,
+          .picture_turns = 2};
+}
+
+TEST(Quality, EveryFieldIsInTheListOnce) {
+  // A field that visit_fields() forgets would be neither read nor written, and be the default's here.
+  RunQuality made;
+  set_fields(made, words_of(coarse()));
+  EXPECT_EQ(made, coarse());
+  EXPECT_EQ(words_of(coarse()).size(), 13U);
+  const ScanQuality scan{.resolution_m = 0.05, .deviation_m = 0.1, .tracking_px = 160, .fuse_every = 3};
+  ScanQuality made_scan;
+  set_fields(made_scan, words_of(scan));
+  EXPECT_EQ(made_scan, scan);
+  EXPECT_TRUE(words_of(RunQuality{}).empty());
+}
+
+TEST(Quality, JsonAndBackIsTheSame) {
+  const nlohmann::ordered_json json = nlohmann::ordered_json::parse(to_json(coarse()).dump());
+  EXPECT_EQ(run_quality_of(json, "file"), coarse());
+  EXPECT_EQ(run_quality_of(nlohmann::ordered_json::object(), "file"), RunQuality{});
+  EXPECT_EQ(scan_quality_of({{"resolution_m", 0.02}}, "file").resolution_m, 0.02);
+}
+
+TEST(Quality, JsonThatIsWrongIsRefusedByName) {
+  const auto fault = [](const char* text) {
+    return test::error_of([&] { run_quality_of(nlohmann::ordered_json::parse(text), "presets.json: fast"); });
+  };
+  EXPECT_EQ(fault("[]"), "presets.json: fast: is not a JSON object of settings");
+  EXPECT_EQ(fault(R"({"depth_stride": 3})"), "presets.json: fast: depth_stride = 3: must be 1|2|4");
+  EXPECT_EQ(fault(R"({"depth_stride": 2.5})"), "presets.json: fast: depth_stride = 2.5: must be 1|2|4");
+  EXPECT_EQ(fault(R"({"radar": "guessed"})"), "presets.json: fast: radar = guessed: must be exact|sampled");
+  EXPECT_EQ(fault(R"({"shadows": 1})"), "presets.json: fast: shadows = 1: must be on|off");
+  EXPECT_EQ(fault(R"({"tracking_px": 1e99})"),
+            "presets.json: fast: tracking_px = 1e+99: must be within 40 and 640");
+  EXPECT_EQ(fault(R"({"mesh_sigmas": null})"),
+            "presets.json: fast: mesh_sigmas = null: must be within 0.1 and 100");
+  EXPECT_EQ(fault(R"({"mesh_sigmas": {"a": 1}})"), "presets.json: fast: mesh_sigmas: is no single value");
+  EXPECT_NE(fault(R"({"depth_strid": 2})").find("there is nothing called \"depth_strid\" to set"),
+            std::string::npos);
+}
+
+TEST(Quality, NumbersThatAreNoneAreRefused) {
+  RunQuality quality;
+  for (const char* word : {"nan", "inf", "-1", "", "1e400", "0.5 "})
+    EXPECT_THROW(set_field(quality, "mesh_sigmas", word), Error) << word;
+  EXPECT_EQ(quality, RunQuality{});
+  quality.mesh_sigmas = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(require_valid(quality), Error);
+  EXPECT_THROW(require_valid(ScanQuality{.fuse_every = 0}), Error);
+}
+
+TEST(Quality, LengthsInPixelsAreOfWholeDepthImages) {
+  for (const int stride : {2, 4}) {
+    SessionConfig config;
+    apply(RunQuality{.depth_stride = stride}, config);
+    const SessionConfig usual;
+    EXPECT_EQ(config.scene.mesh.skirt_gap_px * stride, usual.scene.mesh.skirt_gap_px);
+    EXPECT_EQ(config.scene.mesh.stride_px, 1);  // of 2 whole pixels; 4 are as fine as it can be
+    EXPECT_EQ(config.scene.foreground.hole_reach_px * stride, usual.scene.foreground.hole_reach_px);
+  }
+}
+
+TEST(Quality, DefaultsChangeNothing) {
+  // Each field's default is that of the config it sets: otherwise a run would not be what it was.
+  SessionConfig config;
+  apply(RunQuality{}, config);
+  const SessionConfig usual;
+  EXPECT_EQ(config.depth_stride, usual.depth_stride);
+  EXPECT_EQ(config.tracking_px, usual.tracking_px);
+  EXPECT_EQ(config.scene.moved.deviation_sigmas, usual.scene.moved.deviation_sigmas);
+  EXPECT_EQ(config.scene.foreground.min_region_px, usual.scene.foreground.min_region_px);
+  EXPECT_EQ(config.scene.foreground.hole_reach_px, usual.scene.foreground.hole_reach_px);
+  EXPECT_EQ(config.scene.foreground.weak_reach_px, usual.scene.foreground.weak_reach_px);
+  EXPECT_EQ(config.scene.mesh.stride_px, usual.scene.mesh.stride_px);
+  EXPECT_EQ(config.scene.mesh.skirt_gap_px, usual.scene.mesh.skirt_gap_px);
+  EXPECT_EQ(config.fine_mesh, usual.fine_mesh);
+  EXPECT_EQ(config.radar, usual.radar);
+  EXPECT_EQ(config.physics.max_step_s, usual.physics.max_step_s);
+  EXPECT_EQ(config.object_turns, usual.object_turns);
+  EXPECT_EQ(config.object_error_px, usual.object_error_px);
+  EXPECT_EQ(config.picture.occlusion.edge_reach_px, usual.picture.occlusion.edge_reach_px);
+  EXPECT_EQ(config.picture.shadow_strength, usual.picture.shadow_strength);
+  EXPECT_EQ(config.shadow_turns, usual.shadow_turns);
+  EXPECT_EQ(config.picture_turns, usual.picture_turns);
+  PrescanConfig scan;
+  apply(ScanQuality{}, scan);
+  const PrescanConfig usual_scan;
+  EXPECT_EQ(scan.resolution_m, usual_scan.resolution_m);
+  EXPECT_EQ(scan.surface.max_deviation_m, usual_scan.surface.max_deviation_m);
+  EXPECT_EQ(scan.odometry.view.finest_width_px, usual_scan.odometry.view.finest_width_px);
+  EXPECT_EQ(scan.fuse_every, usual_scan.fuse_every);
+}
+
+}  // namespace
+}  // namespace roomradar::quality_test

@@ -1,0 +1,244 @@
+// adopt_test.cpp: a crate that comes and stays, or is taken away, in a simulated session; and what stays out.
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "app/session/session.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "mapping/surface/surface_extraction.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar::map_updater_test {
+namespace {
+
+using Eigen::Vector3d;
+
+const Vector3d kCrateTop(0.11, -0.205, 0.97);  // in the room `table`, whose table is 0.75 m high
+
+SimOptions view(const std::string& rest) {
+  return parse_sim_spec("sim:table?path=view&rate=10&width=160&" + rest);
+}
+
+/// What a viewer sees of a room, fused by true poses.
+SavedMap map_of(const std::string& crate) {
+  SavedMap map;
+  map.octree = StaticMap(0.02);
+  SimulatedSource source(view("frames=30&crate=" + crate));
+  Frame frame;
+  while (source.next(frame).status == ReadStatus::kFrame) map.octree.fuse(frame, *frame.T_world_camera);
+  map.mesh = extract_surface(map.octree);
+  return map;
+}
+
+/// @param after_s  none: only what is asked for
+SessionConfig adopting(std::optional<double> after_s) {
+  SessionConfig config;
+  config.poses = PoseOrigin::kRecorded;
+  config.make_picture = false;
+  config.adopt.emplace();
+  config.adopt->after_s = after_s;
+  config.adopt->views = 6;
+  config.adopt->apply_after_frames = 5;
+  return config;
+}
+
+/// A session over a simulated source, and a pot in it.
+class AdoptingSession {
+ public:
+  AdoptingSession(SavedMap& map, const SimOptions& options, const SessionConfig& config)
+      : source_(options), session(map, config, &map.octree) {}
+
+  /// Runs so many frames; `hidden`: a hand right before the lens covers the middle of the image.
+  FrameResult run(int frames, bool hidden = false) {
+    FrameResult result;
+    for (int i = 0; i < frames && source_.next(frame_).status == ReadStatus::kFrame; ++i) {
+      if (hidden) {
+        for (int y = 20; y < 110; ++y)
+          for (int x = 30; x < 120; ++x) frame_.depth_m.at(x, y) = 0.6F;
+      }
+      result = session.step(frame_, times_);
+    }
+    return result;
+  }
+  /// So many frames of which nobody knows where they were taken.
+  void run_lost(int frames) {
+    for (int i = 0; i < frames && source_.next(frame_).status == ReadStatus::kFrame; ++i) {
+      frame_.T_world_camera.reset();
+      static_cast<void>(session.step(frame_, times_));
+    }
+  }
+  /// Shows the last frame so many times again, as a source does that is held.
+  void hold(int times) {
+    for (int i = 0; i < times; ++i) {
+      frame_.stamp_s += 1.0 / 30.0;
+      static_cast<void>(session.step(frame_, times_));
+    }
+  }
+  void make_unknown_solid() { session.make_unknown_solid(times_); }
+  void drop_pot(const Vector3d& above) {
+    ScriptEvent event;
+    event.name = "pot";
+    event.mesh = "teapot";
+    event.size_m = 0.1;
+    event.action = Action::kAdd;
+    session.apply(event);
+    event.action = Action::kDrop;
+    event.position_world = above;
+    event.height_m = 0.03;
+    session.apply(event);
+  }
+  /// The height of its lowest point.
+  [[nodiscard]] double pot_m() const {
+    const VirtualObject& pot = *session.objects().front();
+    return pot.body.T_world_object.translation().z() + lowest_m(pot);
+  }
+
+ private:
+  SimulatedSource source_;
+  StageTimes times_;
+  Frame frame_;
+
+ public:
+  Session session;
+};
+
+void ask(Session& session) {
+  ScriptEvent event;
+  event.action = Action::kAdopt;
+  session.apply(event);
+}
+
+TEST(Adopt, ACrateThatCameHoldsAPotAlsoWhenAHandHidesIt) {
+  SavedMap map = map_of("0");
+  AdoptingSession run(map, view("frames=90&crate=comes"), adopting(1.5));
+  run.run(45);
+  EXPECT_TRUE(run.session.adopted().empty());
+  const FrameResult moved = run.run(5);
+  EXPECT_GT(moved.foreground.moved, 150U);
+  run.run(30);
+  ASSERT_EQ(run.session.adopted().size(), 1U);
+  const AdoptedChange adopted = run.session.adopted().front();
+  EXPECT_EQ(adopted.kind, LastingKind::kCame);
+  EXPECT_GE(adopted.frame, 45 + 15 + 6 + 5);
+  EXPECT_LT((adopted.box_world.center() - kCrateTop + Vector3d(0, 0, 0.11)).norm(), 0.06);
+  // It is no longer foreground, and holds what is dropped on it behind a hand.
+  const FrameResult now = run.run(1);
+  EXPECT_LT(now.foreground.moved, 20U);
+  run.drop_pot(kCrateTop);
+  run.run(9, true);
+  EXPECT_NEAR(run.pot_m(), kCrateTop.z(), 0.01);
+}
+
+TEST(Adopt, WithoutItAHiddenCrateHoldsNothing) {
+  SavedMap map = map_of("0");
+  SessionConfig config = adopting(1.5);
+  config.adopt.reset();
+  AdoptingSession run(map, view("frames=90&crate=comes"), config);
+  run.run(75);
+  run.drop_pot(kCrateTop);
+  run.run(12, true);
+  EXPECT_LT(run.pot_m(), 0.8) << "the test above would pass by itself";
+}
+
+TEST(Adopt, WhatACrateHeldFallsWhenItIsTakenAway) {
+  SavedMap map = map_of("1");
+  AdoptingSession run(map, view("frames=120&crate=goes"), adopting(1.5));
+  run.drop_pot(kCrateTop);
+  run.run(62);
+  EXPECT_NEAR(run.pot_m(), kCrateTop.z(), 0.01) << "not seen for long enough to be gone";
+  run.run(58);
+  ASSERT_EQ(run.session.adopted().size(), 1U);
+  EXPECT_EQ(run.session.adopted().front().kind, LastingKind::kWent);
+  EXPECT_NEAR(run.pot_m(), 0.75, 0.01);
+  EXPECT_EQ(map.octree.occupancy_at(kCrateTop - Vector3d(0, 0, 0.1)), Occupancy::kFree);
+}
+
+TEST(Adopt, SolidUnknownSpaceInsideACrateGoesWithIt) {
+  SavedMap map = map_of("1");
+  AdoptingSession run(map, view("frames=90&crate=goes"), adopting(1.5));
+  run.make_unknown_solid();
+  const Vector3d inside = kCrateTop - Vector3d(0, 0, 0.11);
+  EXPECT_TRUE(is_unknown(run.session.unknown(), inside));
+  run.drop_pot(kCrateTop);
+  run.run(90);
+  ASSERT_EQ(run.session.adopted().size(), 1U);
+  EXPECT_FALSE(is_unknown(run.session.unknown(), inside));
+  EXPECT_NEAR(run.pot_m(), 0.75, 0.01);
+}
+
+TEST(Adopt, WhatIsAskedForIsAdoptedAtOnce) {
+  SavedMap map = map_of("0");
+  AdoptingSession run(map, view("frames=80&crate=comes"), adopting(std::nullopt));
+  run.run(60);
+  EXPECT_TRUE(run.session.adopted().empty()) << "nobody asked";
+  ask(run.session);
+  run.run(15);
+  EXPECT_EQ(run.session.adopted().size(), 1U);
+}
+
+TEST(Adopt, WhatWasAskedForWhileTheCameraWasLostIsNotDoneLater) {
+  SavedMap map = map_of("0");
+  AdoptingSession run(map, view("frames=90&crate=comes"), adopting(std::nullopt));
+  run.run(46);
+  ask(run.session);
+  run.run_lost(14);
+  run.run(30);
+  EXPECT_TRUE(run.session.adopted().empty()) << "nobody asked for what stands there by then";
+}
+
+TEST(Adopt, AHandThatWavesAndAPersonWhoStandsForTwoSecondsAreNot) {
+  for (const char* const moving : {"hand", "hand&pace=slow", "person&pace=waits"}) {
+    SavedMap map = map_of("0");
+    AdoptingSession run(map, view(std::string("frames=100&moving=") + moving), adopting(5.0));
+    run.run(100);
+    run.session.finish_adopting();
+    EXPECT_TRUE(run.session.adopted().empty()) << moving;
+  }
+}
+
+TEST(Adopt, WhatMovesIsNotBecauseTheCameraIsHeld) {
+  for (const char* const moving : {"moving=hand", "crate=comes"}) {
+    SavedMap map = map_of("0");
+    AdoptingSession run(map, view(std::string("frames=100&") + moving), adopting(1.5));
+    std::size_t moved = 0;
+    for (int i = 0; i < 90 && moved < 150; ++i) moved = run.run(1).foreground.moved;
+    ASSERT_GE(moved, 150U) << moving;
+    run.hold(150);
+    run.session.finish_adopting();
+    EXPECT_TRUE(run.session.adopted().empty()) << moving;
+  }
+}
+
+TEST(Adopt, APersonInTheBackgroundDoesNotKeepTheCrateOut) {
+  SavedMap map = map_of("0");
+  AdoptingSession run(map, view("frames=90&crate=comes&moving=person"), adopting(1.5));
+  run.run(90);
+  run.session.finish_adopting();
+  ASSERT_EQ(run.session.adopted().size(), 1U);
+  EXPECT_LT(run.session.adopted().front().box_world.sizes().maxCoeff(), 0.4);
+}
+
+TEST(Adopt, AMapWithoutAnOctreeIsRefusedInWords) {
+  SavedMap map;
+  map.mesh.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}};
+  map.mesh.triangles = {{0, 1, 2}};
+  try {
+    Session session(map, adopting(1.0), &map.octree);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("octree holds no surface"), std::string::npos) << error.what();
+  }
+  EXPECT_THROW(Session(map, adopting(1.0)), Error);
+  EXPECT_THROW(Session(map, adopting(0.0), &map.octree), Error);
+}
+
+TEST(Adopt, AskingASessionThatDoesNotWatchIsSaid) {
+  SavedMap map = map_of("0");
+  SessionConfig config = adopting(1.0);
+  config.adopt.reset();
+  Session session(map, config, &map.octree);
+  EXPECT_THROW(ask(session), Error);
+}
+
+}  // namespace
+}  // namespace roomradar::map_updater_test

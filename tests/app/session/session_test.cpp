@@ -1,0 +1,732 @@
+// session_test.cpp: virtual objects, and frames in which they cannot be put, on a floor that is known.
+#include "app/session/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include "app/run/run_results.hpp"
+#include "mapping/types/system/error.hpp"
+#include "tests/radar/shapes.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/exact_depth.hpp"
+
+namespace roomradar::session_test {
+namespace {
+
+constexpr Intrinsics kCamera{160, 120, 146.0, 146.0, 79.5, 59.5};
+const Eigen::Isometry3d kAtTheFloor = test::looking_at({0.0, -1.2, 1.2}, {0.0, 0.0, 0.0});
+const Eigen::Isometry3d kAtTheSky = test::looking_at({0.0, -1.2, 1.2}, {0.0, 0.0, 3.0});
+
+/// A level floor of 4 x 4 m at z = 0.
+SavedMap floor_map() {
+  SavedMap map;
+  map.mesh.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
+  map.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return map;
+}
+
+/// What a camera without colour sees of it.
+Frame depth_only(std::int64_t index, const std::optional<Eigen::Isometry3d>& T_world_camera) {
+  Frame frame;
+  frame.index = index;
+  frame.stamp_s = static_cast<double>(index) / 30.0;
+  frame.depth_camera = kCamera;
+  frame.depth_m.resize(kCamera.width_px, kCamera.height_px, 2.0F);
+  frame.T_world_camera = T_world_camera;
+  return frame;
+}
+
+SessionConfig by_recorded_poses() {
+  SessionConfig config;
+  config.poses = PoseOrigin::kRecorded;
+  return config;
+}
+
+ScriptEvent event(Action action) {
+  ScriptEvent event;
+  event.action = action;
+  event.name = "pot";
+  event.mesh = "teapot";
+  return event;
+}
+
+/// A pot that is to be dropped, and no level surface in view yet.
+void let_a_drop_wait(Session& session, StageTimes& times) {
+  session.apply(event(Action::kAdd));
+  session.apply(event(Action::kDrop));
+  static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
+}
+
+/// Frames of the floor until the pot is in the room: a drop that waits is not tried in each.
+void see_the_floor(Session& session, StageTimes& times) {
+  for (std::int64_t i = 1; i <= 12 && !session.objects().front()->in_room; ++i)
+    static_cast<void>(session.step(depth_only(i, kAtTheFloor), times));
+}
+
+/// A green picture, twice as fine as the depth.
+void give_colour(Frame& frame) {
+  frame.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
+  frame.colour.resize(320, 240, {10, 200, 30});
+}
+
+/// What a camera with colour sees of it.
+Frame in_colour(std::int64_t index, const std::optional<Eigen::Isometry3d>& T_world_camera) {
+  Frame frame = depth_only(index, T_world_camera);
+  give_colour(frame);
+  return frame;
+}
+
+TEST(Session, FrameWithoutColourThatIsNotLocatedShowsItsDepth) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  EXPECT_EQ(session.step(depth_only(0, std::nullopt), times).status, FrameStatus::kNotLocated);
+  EXPECT_EQ(session.picture().width, kCamera.width_px);
+  EXPECT_EQ(session.picture().height, kCamera.height_px);
+}
+
+TEST(Session, OneFrameWithoutColourKeepsTheLastPicture) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame coloured = in_colour(0, kAtTheFloor);
+  for (const Frame& frame : {coloured, depth_only(1, kAtTheFloor), depth_only(2, std::nullopt)}) {
+    static_cast<void>(session.step(frame, times));
+    EXPECT_EQ(session.picture().width, 320) << frame.index;
+    EXPECT_EQ(session.picture().pixels, coloured.colour.pixels) << frame.index;
+  }
+}
+
+TEST(Session, ACameraWhoseColourHasStoppedShowsItsDepthUntilThereIsColourAgain) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame coloured = in_colour(0, kAtTheFloor);
+  for (const bool is_located : {true, false}) {
+    static_cast<void>(session.step(coloured, times));
+    for (std::int64_t i = 1; i <= 20; ++i) {
+      const auto T_world_camera = is_located ? std::optional(kAtTheFloor) : std::nullopt;
+      static_cast<void>(session.step(depth_only(coloured.index + i, T_world_camera), times));
+      const bool lasts = i <= 15;  // half a second
+      EXPECT_EQ(session.picture().width, lasts ? 320 : 160) << "frame " << i << " located " << is_located;
+    }
+    coloured.index += 21;
+    coloured.stamp_s = static_cast<double>(coloured.index) / 30.0;
+  }
+  static_cast<void>(session.step(coloured, times));
+  EXPECT_EQ(session.picture().pixels, coloured.colour.pixels);
+}
+
+TEST(Session, ColourThatComesBetweenTwoPicturesIsInTheNextOne) {
+  const SavedMap map = floor_map();
+  SessionConfig config = by_recorded_poses();
+  config.picture_turns = 2;
+  Session session(map, config);
+  StageTimes times;
+  for (std::int64_t i = 0; i < 40; ++i) {
+    Frame frame = depth_only(i, kAtTheFloor);
+    if (i % 2 == 1) give_colour(frame);
+    const bool is_composed = session.step(frame, times).picture_is_new;
+    ASSERT_EQ(is_composed, i % 2 == 0);
+    EXPECT_EQ(session.picture().width, i < 2 ? 160 : 320) << i;
+  }
+}
+
+TEST(Session, ALostCameraDoesNotShowAnOlderPictureThanItHasShown) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  const Frame found = in_colour(0, kAtTheFloor);
+  static_cast<void>(session.step(found, times));
+  Frame lost = in_colour(1, std::nullopt);
+  lost.colour.resize(320, 240, {200, 10, 30});
+  static_cast<void>(session.step(lost, times));
+  EXPECT_EQ(session.picture().pixels, lost.colour.pixels);
+  static_cast<void>(session.step(depth_only(2, std::nullopt), times));
+  EXPECT_EQ(session.picture().pixels, lost.colour.pixels);
+  static_cast<void>(session.step(depth_only(3, kAtTheFloor), times));
+  EXPECT_NE(session.picture().pixels, found.colour.pixels);
+}
+
+TEST(Session, WhatMovedNeedsNoColour) {
+  const SavedMap map = floor_map();
+  for (const bool has_colour : {false, true}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    Frame frame = depth_only(0, kAtTheFloor);
+    static_cast<void>(session.step(frame, times));
+    frame.depth_m = session.scene().expected_depth_m();
+    for (int y = 40; y < 80; ++y)
+      for (int x = 50; x < 100; ++x) frame.depth_m.at(x, y) = 0.8F;
+    if (has_colour) give_colour(frame);
+    FrameResult result;
+    for (frame.index = 1; frame.index < 4; ++frame.index) {
+      frame.stamp_s = static_cast<double>(frame.index) / 30.0;
+      result = session.step(frame, times);
+    }
+    EXPECT_EQ(result.status, FrameStatus::kDone);
+    EXPECT_EQ(result.foreground.moved, 40U * 50U) << has_colour;
+    EXPECT_GT(result.dynamic_triangles, 0U) << has_colour;
+    EXPECT_EQ(session.picture().width, has_colour ? 320 : 160);
+  }
+}
+
+TEST(Session, ObjectsAreDrawnFromWhereTheCameraWasWhenTheColourWasTaken) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame before = depth_only(0, kAtTheFloor), after = depth_only(1, kAtTheFloor);
+  Eigen::Isometry3d T_before_after = Eigen::Isometry3d::Identity();
+  T_before_after.linear() = Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  T_before_after.translation() = Eigen::Vector3d(0.03, 0.0, 0.0);
+  after.T_world_camera = kAtTheFloor * T_before_after;
+  after.colour_after_depth_s = -0.5 / 30.0;  // half a frame sooner
+  for (Frame* frame : {&before, &after}) {
+    frame->colour_camera = kCamera;
+    frame->colour.resize(kCamera.width_px, kCamera.height_px);
+    static_cast<void>(session.step(*frame, times));
+  }
+  ASSERT_TRUE(session.shown_view());
+  const Eigen::Isometry3d T_before_shown = kAtTheFloor.inverse() * session.shown_view()->T_world_view;
+  EXPECT_NEAR(T_before_shown.translation().x(), 0.015, 1e-3);
+  EXPECT_NEAR(Eigen::AngleAxisd(T_before_shown.linear()).angle(), 0.01, 1e-6);
+  // A picture that is shown on stays where it was taken.
+  Frame without = depth_only(2, *after.T_world_camera * T_before_after);
+  static_cast<void>(session.step(without, times));
+  EXPECT_NEAR((kAtTheFloor.inverse() * session.shown_view()->T_world_view).translation().x(), 0.015, 1e-3);
+  // After a jump, as at the end of a recording that is repeated, the way there is no motion to go by.
+  Frame far = after;
+  far.index = 3;
+  far.stamp_s = 3.0 / 30.0;
+  far.T_world_camera = Eigen::Translation3d(1.0, 0.0, 0.0) * kAtTheFloor;
+  static_cast<void>(session.step(far, times));
+  EXPECT_TRUE(session.shown_view()->T_world_view.isApprox(*far.T_world_camera, 1e-9));
+}
+
+TEST(Session, DropWaitsForAFrameThatShowsALevelSurface) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  let_a_drop_wait(session, times);
+  EXPECT_FALSE(session.objects().front()->in_room);
+  see_the_floor(session, times);
+  EXPECT_TRUE(session.objects().front()->in_room);
+  EXPECT_NEAR(session.objects().front()->body.T_world_object.translation().z(), 0.3,
+              0.02);  // the drop's height
+}
+
+TEST(Session, ADropThatWaitsToTheEndIsSaid) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  let_a_drop_wait(session, times);
+  for (const bool is_in_view : {false, true}) {
+    if (is_in_view) see_the_floor(session, times);
+    testing::internal::CaptureStdout();
+    print_summary({}, session);
+    const std::string said = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(said.find("pot: not in the room; its drop waits") == std::string::npos, is_in_view) << said;
+  }
+}
+
+TEST(Session, ADropThatWaitsOutlivesATurnOfWhatIsNotInTheRoom) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  let_a_drop_wait(session, times);
+  ScriptEvent turn = event(Action::kTurn);
+  turn.turn_world_deg = Eigen::Vector3d(0.0, 0.0, 30.0);
+  session.apply(turn);
+  see_the_floor(session, times);
+  EXPECT_TRUE(session.objects().front()->in_room);
+}
+
+TEST(Session, RemovedObjectDoesNotComeInByADropThatWaited) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  let_a_drop_wait(session, times);
+  session.apply(event(Action::kRemove));
+  see_the_floor(session, times);
+  EXPECT_FALSE(session.objects().front()->in_room);
+}
+
+TEST(Session, DropsThatWaitAreNotTriedAllInOneFrame) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  for (const char* const name : {"one", "two", "three"}) {
+    ScriptEvent drop = event(Action::kAdd);
+    drop.name = name;
+    session.apply(drop);
+    drop.action = Action::kDrop;
+    session.apply(drop);
+  }
+  static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
+  const auto& waiting = session.waiting_drops();
+  ASSERT_EQ(waiting.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(waiting[i].try_at_frame, 10 + static_cast<std::int64_t>(i));
+  for (std::int64_t i = 1; i <= 13; ++i) {
+    static_cast<void>(session.step(depth_only(i, kAtTheFloor), times));
+    EXPECT_EQ(waiting.size(), i < 10 ? 3U : i > 12 ? 0U : static_cast<std::size_t>(12 - i)) << i;
+  }
+}
+
+TEST(Session, NothingIsDroppedOntoASurfaceThatSomethingStandsBefore) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.apply(event(Action::kAdd));
+  session.apply(event(Action::kDrop));
+  Frame full = depth_only(0, kAtTheFloor);  // of somebody, over all of the floor
+  for (float& depth_m : full.depth_m.pixels) depth_m *= 0.6F;
+  static_cast<void>(session.step(full, times));
+  EXPECT_FALSE(session.objects().front()->in_room);
+  see_the_floor(session, times);
+  EXPECT_TRUE(session.objects().front()->in_room);
+}
+
+/// A box whose origin is at a corner of its floor.
+Mesh box_about_its_corner(float size_m) {
+  Mesh box = shapes::box(Eigen::Vector3f::Constant(size_m));
+  for (Eigen::Vector3f& p : box.vertices) p += Eigen::Vector3f::Constant(0.5F * size_m);
+  return box;
+}
+
+TEST(Session, WhereAMeshHasItsOriginDoesNotMatterForADropInView) {
+  const SavedMap map = floor_map();
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const bool is_about_corner : {false, true}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    session.add_object(
+        "pot", is_about_corner ? box_about_its_corner(0.4F) : shapes::box(Eigen::Vector3f::Constant(0.4F)));
+    session.apply(event(Action::kDrop));
+    static_cast<void>(session.step(depth_only(0, kAtTheFloor), times));
+    const VirtualObject& object = *session.objects().front();
+    ASSERT_TRUE(object.in_room);
+    const Eigen::Vector3d now = object.body.T_world_object * object.model->middle;
+    if (is_about_corner) {
+      EXPECT_LT((now - middle).norm(), 1e-6);
+    }
+    middle = now;
+  }
+  // Its corner is 1.13 m from its origin, and 0.57 m from its middle.
+  Session session(map, by_recorded_poses());
+  session.add_object("pot", box_about_its_corner(0.8F));
+  EXPECT_NO_THROW(session.apply(event(Action::kDrop)));
+}
+
+TEST(Session, WhatIsTurnedWhileItIsCarriedTurnsAboutItsMiddle) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.add_object("pot", box_about_its_corner(0.2F));
+  const VirtualObject& object = *session.objects().front();
+  const auto middle = [&]() -> Eigen::Vector3d { return object.body.T_world_object * object.model->middle; };
+  ScriptEvent carry = event(Action::kCarry);
+  carry.position_world = Eigen::Vector3d(0.0, 0.0, 0.8);
+  session.apply(carry);
+  for (std::int64_t i = 0; i < 5; ++i) static_cast<void>(session.step(depth_only(i, kAtTheSky), times));
+  const Eigen::Vector3d before = middle();
+  ScriptEvent turn = event(Action::kTurn);
+  turn.turn_world_deg = Eigen::Vector3d(90.0, 0.0, 0.0);
+  session.apply(turn);
+  for (std::int64_t i = 5; i < 10; ++i) static_cast<void>(session.step(depth_only(i, kAtTheSky), times));
+  EXPECT_GT(Eigen::AngleAxisd(object.body.T_world_object.linear()).angle(), 1.5);
+  EXPECT_LT((middle() - before).norm(), 1e-3);
+}
+
+TEST(Session, OneThatSpinsOnAndOnDoesNotKeepTheOthersFromTheirShadows) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  for (const char* const name : {"rests", "spins"}) {
+    ScriptEvent add = event(Action::kAdd);
+    add.name = name;
+    session.apply(add);
+  }
+  ScriptEvent put = event(Action::kPlace);
+  put.name = "rests";
+  put.position_world = Eigen::Vector3d(0.0, 0.0, 0.001);
+  put.R_world_object = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  session.apply(put);
+  put = event(Action::kThrow);
+  put.name = "spins";
+  put.position_world = Eigen::Vector3d(0.5, 0.0, -5.0);  // it falls on and on, below the floor
+  put.spin_world_rad_s = Eigen::Vector3d(0.0, 0.0, 10.0);
+  session.apply(put);
+  for (std::int64_t i = 0; i < 40; ++i) static_cast<void>(session.step(in_colour(i, kAtTheFloor), times));
+  ASSERT_TRUE(session.objects()[0]->body.at_rest);
+  ASSERT_FALSE(session.objects()[1]->body.at_rest);
+  const VirtualObject& rests = *session.objects()[0];
+  EXPECT_EQ(rests.shadow.cells_across, 16);
+  EXPECT_TRUE(rests.shadow.R_world_object.isApprox(rests.body.T_world_object.linear(), 0.05));
+}
+
+/// Free space above z = 0, 3.8 m wide, with a floor where x < 0; nobody has seen what is below elsewhere.
+SavedMap half_floor_map() {
+  SavedMap map;
+  map.mesh.vertices = {{-2, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-2, 2, 0}};
+  map.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  map.octree = StaticMap(0.02);
+  constexpr int kEdge = 16;
+  for (int z = 0; z < 6; ++z)
+    for (int y = -6; y < 6; ++y)
+      for (int x = -6; x < 6; ++x)
+        map.octree.add_evidence(MapLeaf{kEdge * Eigen::Vector3i(x, y, z), kEdge, -1.0F});
+  return map;
+}
+
+/// A pot falls on each of the places.
+void drop_pots(Session& session, const std::vector<Eigen::Vector3d>& over_world) {
+  for (std::size_t i = 0; i < over_world.size(); ++i) {
+    ScriptEvent drop = event(Action::kAdd);
+    drop.name = "pot" + std::to_string(i);
+    drop.size_m = 0.08;
+    session.apply(drop);
+    drop.action = Action::kDrop;
+    drop.position_world = over_world[i];
+    drop.height_m = 0.3;
+    session.apply(drop);
+  }
+}
+
+TEST(Session, ManyPotsThatFallTogetherStayOnAMappedFloorAndOnlyAHoleLetsThemThrough) {
+  const SavedMap map = half_floor_map();
+  for (const bool is_solid : {false, true}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    if (is_solid) session.make_unknown_solid(times);
+    std::vector<Eigen::Vector3d> places;
+    for (int i = 0; i < 12; ++i) places.emplace_back(-0.6 + 0.1 * (i % 6), 0.1 * (i / 6), 0.0);
+    for (int i = 0; i < 3; ++i) places.emplace_back(0.3 + 0.2 * i, 0.0, 0.0);  // where no floor is mapped
+    drop_pots(session, places);
+    for (std::int64_t i = 0; i < 30; ++i) {
+      Frame frame = depth_only(i, kAtTheSky);
+      frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+      static_cast<void>(session.step(frame, times));
+    }
+    for (const auto& pot : session.objects()) {
+      const Eigen::Vector3d middle_world = pot->body.T_world_object * pot->model->middle;
+      const bool has_floor = middle_world.x() < 0.0 || is_solid;
+      EXPECT_EQ(middle_world.z() > 0.0, has_floor) << pot->body.name << " at " << middle_world.transpose();
+      EXPECT_EQ(pot->model, session.objects().front()->model);
+    }
+  }
+}
+
+/// Some frames in which nothing is seen.
+void go_on(Session& session, std::int64_t first, std::int64_t frames) {
+  StageTimes times;
+  for (std::int64_t i = first; i < first + frames; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    static_cast<void>(session.step(frame, times));
+  }
+}
+
+/// A pot that fell where there is no floor, for 33 frames.
+Body fallen(const SessionConfig& config) {
+  const SavedMap map = half_floor_map();
+  Session session(map, config);
+  drop_pots(session, {{1.0, 0.0, 0.0}});
+  go_on(session, 0, 34);
+  return session.objects().front()->body;
+}
+
+TEST(Session, ObjectsThatAreMovedInTurnsFallAsFastAsOthers) {
+  SessionConfig config = by_recorded_poses();
+  const Body usual = fallen(config);
+  config.object_turns = 16;
+  config.picture_turns = 2;
+  const Body in_turns = fallen(config);  // moved in frames 1 and 33
+  EXPECT_NEAR(in_turns.velocity_world_mps.z(), -9.81 * 33.0 / 30.0, 1e-9);
+  EXPECT_NEAR(in_turns.T_world_object.translation().z(), usual.T_world_object.translation().z(), 1e-6);
+}
+
+TEST(Session, ObjectsMoveInTheSameFramesWhereNoPicturesAreMade) {
+  SessionConfig config = by_recorded_poses();
+  config.picture_turns = 3;
+  const Body seen = fallen(config);
+  config.make_picture = false;
+  EXPECT_TRUE(fallen(config).T_world_object.isApprox(seen.T_world_object, 0.0));
+}
+
+TEST(Session, AQualityThatWasDueInALostFrameHoldsFromThereOn) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  ScriptEvent change = event(Action::kQuality);
+  change.quality.shadow_turns = 7;
+  change.from = FramePart::kCompose;
+  session.apply(change);
+  ASSERT_EQ(session.step(depth_only(0, std::nullopt), times).status, FrameStatus::kNotLocated);
+  EXPECT_EQ(session.config().shadow_turns, 7);
+}
+
+TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
+  const SavedMap map = half_floor_map();
+  for (const Action how : {Action::kThrow, Action::kCarry}) {
+    Session session(map, by_recorded_poses());
+    drop_pots(session, {{-1.0, 0.0, 0.0}, {-1.4, 0.0, 0.0}});
+    go_on(session, 0, 45);
+    const Body& shoved = session.objects().front()->body;
+    ASSERT_TRUE(shoved.at_rest);
+    const Eigen::Vector3d stood = shoved.T_world_object.translation();
+    ScriptEvent shove = event(how);
+    shove.name = "pot1";
+    for (int frame = 0; frame < 30; ++frame) {
+      const double x = how == Action::kThrow ? -1.3 : -1.4 + 0.02 * frame;
+      shove.position_world = Eigen::Vector3d(x, 0.0, 0.01);
+      shove.velocity_world_mps = Eigen::Vector3d(2.0, 0.0, 0.0);
+      if (frame == 0 || how == Action::kCarry) session.apply(shove);
+      go_on(session, 45 + frame, 1);
+    }
+    EXPECT_GT(shoved.T_world_object.translation().x() - stood.x(), 0.02)
+        << (how == Action::kThrow ? "thrown" : "carried");
+    EXPECT_LT(std::abs(shoved.T_world_object.translation().y()), 0.2)
+        << (how == Action::kThrow ? "thrown" : "carried");
+    EXPECT_GT(shoved.T_world_object.translation().z(), -0.05)
+        << (how == Action::kThrow ? "thrown" : "carried");
+  }
+}
+
+TEST(Session, PotsDroppedIntoOnePlaceBeginOnTopOfOneAnotherAndComeToLieApart) {
+  const SavedMap map = half_floor_map();
+  SessionConfig config = by_recorded_poses();
+  config.measure_penetration = true;
+  Session session(map, config);
+  const Eigen::Vector3d place(-1.0, 0.0, 0.0);
+  drop_pots(session, {place, place, place + Eigen::Vector3d(0.0, 0.03, 0.0), place});
+  double below_m = 0.0;
+  for (const auto& pot : session.objects()) {
+    EXPECT_GT(pot->body.T_world_object.translation().z(), below_m) << pot->body.name;
+    below_m = pot->body.T_world_object.translation().z();
+  }
+  EXPECT_LT(below_m, 0.3 + 4 * 0.08);
+  StageTimes times;
+  for (std::int64_t i = 0; i < 90; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    EXPECT_LT(session.step(frame, times).deepest_penetration_m, 0.001) << "frame " << i;
+  }
+  for (const auto& pot : session.objects())
+    EXPECT_GT((pot->body.T_world_object * pot->model->middle).z(), 0.0) << pot->body.name;
+}
+
+/// How far the bottom of the second of two bodies is above the floor where it begins, in a room with a shelf
+/// at shelf_z_m, if that is given.
+struct Put {
+  Action how = Action::kPlace;
+  Eigen::Vector3d at_world{-1.0, 0.0, 0.3};
+};
+double begins_at_m(const std::pair<Mesh, Put>& first, const std::pair<Mesh, Put>& second,
+                   std::optional<float> shelf_z_m = {}, bool faces_down = false) {
+  SavedMap map = half_floor_map();
+  if (shelf_z_m) {
+    const std::vector<Eigen::Vector3f> floor = map.mesh.vertices;
+    for (const Eigen::Vector3f& corner : floor)
+      map.mesh.vertices.push_back(corner + Eigen::Vector3f(0.0F, 0.0F, *shelf_z_m));
+    map.mesh.triangles.push_back(faces_down ? Triangle{4, 6, 5} : Triangle{4, 5, 6});
+    map.mesh.triangles.push_back(faces_down ? Triangle{4, 7, 6} : Triangle{4, 6, 7});
+  }
+  Session session(map, by_recorded_poses());
+  for (const auto& [mesh, put] : {first, second}) {
+    ScriptEvent event;
+    event.action = put.how;
+    event.name = std::to_string(session.objects().size());
+    event.position_world = put.at_world;
+    session.add_object(event.name, mesh);
+    session.apply(event);
+  }
+  const VirtualObject& put = *session.objects().back();
+  return put.body.T_world_object.translation().z() + lowest_m(put);
+}
+
+TEST(Session, WhatIsPutIntoAnotherObjectBeginsOnTopOfItUnlessTheRoomIsInTheWay) {
+  const Mesh pot = object_mesh("teapot", 0.08), chest = shapes::box({0.4F, 0.4F, 0.5F});
+  const Mesh crate = shapes::box({0.2F, 0.2F, 0.2F});
+  const double on_chest_m = 0.55 + PhysicsConfig{}.contact_margin_m;
+  const std::pair chest_there{chest, Put{}};  // from 0.05 to 0.55 m above the floor
+  for (const Action how : {Action::kDrop, Action::kPlace, Action::kThrow}) {
+    const Eigen::Vector3d at(-1.0, 0.0, how == Action::kDrop ? 0.0 : 0.3);
+    EXPECT_NEAR(begins_at_m(chest_there, {pot, {how, at}}), on_chest_m, 2e-5) << "wholly inside";
+  }
+  EXPECT_NEAR(begins_at_m(chest_there, {chest, {}}), on_chest_m, 2e-5) << "where its like stands";
+  EXPECT_NEAR(begins_at_m(chest_there, {chest, {Action::kPlace, {-0.9, 0.0, 0.3}}}), on_chest_m, 2e-5);
+  EXPECT_NEAR(begins_at_m({crate, {}}, {chest, {Action::kPlace, {-1.0, 0.1, 0.3}}}),
+              0.4 + PhysicsConfig{}.contact_margin_m, 2e-5)
+      << "wholly about it";
+  const double pot_in_chest_m = begins_at_m({crate, {Action::kPlace, {1.0, 0.0, 0.3}}}, {pot, {}});
+  for (const bool faces_down : {false, true}) {
+    EXPECT_NEAR(begins_at_m(chest_there, {pot, {}}, 0.57F, faces_down), pot_in_chest_m, 1e-9) << faces_down;
+    EXPECT_NEAR(begins_at_m(chest_there, {pot, {}}, 0.7F, faces_down), on_chest_m, 2e-5) << faces_down;
+  }
+  EXPECT_NEAR(begins_at_m({crate, {}}, {pot, {}}, 0.41F), pot_in_chest_m, 1e-9) << "through a board";
+}
+
+TEST(Session, WhatIsPutFlushBesideAnotherObjectStaysThere) {
+  const Mesh crate = shapes::box({0.2F, 0.2F, 0.2F});
+  for (const Eigen::Vector3d& beside : {Eigen::Vector3d(0.2, 0.0, 0.0), Eigen::Vector3d(0.0, -0.2, 0.0),
+                                        Eigen::Vector3d(0.0, 0.0, 0.2), Eigen::Vector3d(0.2, 0.2, 0.0)}) {
+    const Eigen::Vector3d at = Eigen::Vector3d(-1.0, 0.0, 0.3) + beside;
+    EXPECT_NEAR(begins_at_m({crate, {}}, {crate, {Action::kPlace, at}}), at.z() - 0.1, 1e-6)
+        << beside.transpose();
+  }
+}
+
+TEST(Session, WhatIsTooLargeForAnyPlaceInViewIsRefusedInWords) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  session.add_object("pot", shapes::box({85.0F, 90.0F, 120.0F}));
+  const std::string fault = test::error_of([&] { session.apply(event(Action::kDrop)); });
+  EXPECT_NE(fault.find("pot: reaches 61.9 m sideways"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("Meshes are in metres"), std::string::npos) << fault;
+  // What is refused changes nothing.
+  ScriptEvent carry = event(Action::kCarry);
+  carry.position_world = Eigen::Vector3d(0, 0, 100);
+  session.apply(carry);
+  EXPECT_NE(test::error_of([&] { session.apply(event(Action::kDrop)); }), "");
+  EXPECT_TRUE(session.objects().front()->carried_to_world);
+}
+
+TEST(Session, WhatTheRadarLookedAtIsCountedAcrossAChangeOfRadar) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  drop_pots(session, {{-1.0, 0.0, 0.0}});
+  go_on(session, 0, 20);
+  StageTimes times;
+  for (std::int64_t i = 20; i < 30; ++i) {
+    ScriptEvent change = event(Action::kQuality);
+    change.quality.radar = i % 2 == 0 ? RadarMode::kSampled : RadarMode::kExact;
+    change.from = FramePart::kPhysics;
+    session.apply(change);
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    EXPECT_LE(session.step(frame, times).use.room_asked, 1000U) << i;
+  }
+}
+
+struct Thrown {
+  const VirtualObject& pot;
+  int unknown_contacts = 0;
+};
+
+/// A pot that is thrown from a place, and what has become of it a second and a half later; no depth is seen.
+Thrown thrown(Session& session, const Eigen::Vector3d& from_world, double up_mps) {
+  StageTimes times;
+  session.apply(event(Action::kAdd));
+  ScriptEvent put = event(Action::kThrow);
+  put.position_world = from_world;
+  put.velocity_world_mps = Eigen::Vector3d(0.0, 0.0, up_mps);
+  session.apply(put);
+  Thrown result{*session.objects().front()};
+  for (std::int64_t i = 0; i < 45; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    result.unknown_contacts +=
+        session.step(frame, times).contacts_by_kind[static_cast<std::size_t>(Touched::kUnknownFrontier)];
+  }
+  return result;
+}
+
+TEST(Session, SolidUnknownSpaceHoldsAnObjectUpAndSaysSo) {
+  const SavedMap map = half_floor_map();
+  for (const bool is_solid : {false, true}) {
+    Session session(map, by_recorded_poses());
+    StageTimes times;
+    if (is_solid) session.make_unknown_solid(times);
+    const auto [pot, unknown_contacts] = thrown(session, {1.0, 0.0, 0.6}, 0.0);
+    const double bottom_m = pot.body.T_world_object.translation().z() + lowest_m(pot);
+    EXPECT_FALSE(pot.began_in_unknown);
+    EXPECT_EQ(unknown_contacts > 0, is_solid);
+    if (is_solid) {
+      EXPECT_TRUE(pot.body.at_rest);
+      EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+      EXPECT_NEAR(bottom_m, 0.0, 0.005);
+    } else {
+      EXPECT_LT(bottom_m, -1.0);
+    }
+  }
+}
+
+TEST(Session, OverASeenFloorSolidUnknownSpaceChangesNothing) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.make_unknown_solid(times);
+  const auto [pot, unknown_contacts] = thrown(session, {-1.0, 0.0, 0.6}, 0.0);
+  EXPECT_TRUE(pot.body.at_rest);
+  EXPECT_EQ(pot.body.rests_on, Touched::kStatic);
+  EXPECT_EQ(unknown_contacts, 0);
+}
+
+TEST(Session, WhatIsPutIntoUnknownSpaceCanLeaveItAndCannotComeBack) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.make_unknown_solid(times);
+  const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.5}, 4.2).pot;
+  EXPECT_TRUE(pot.began_in_unknown);
+  EXPECT_FALSE(pot.in_unknown);
+  EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+  EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
+}
+
+TEST(Session, WhatIsPutOnTheBorderOfUnknownSpaceComesOutAndStaysOnIt) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  session.make_unknown_solid(times);
+  const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.04}, 0.0).pot;  // sunk in by 4 of its 15 cm
+  EXPECT_TRUE(pot.began_in_unknown);
+  EXPECT_FALSE(pot.in_unknown);
+  EXPECT_TRUE(pot.body.at_rest);
+  EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+  EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
+}
+
+TEST(Session, UnknownSpaceIsNotSolidWithoutTheMapsSurfaces) {
+  const SavedMap map = half_floor_map();
+  SessionConfig config = by_recorded_poses();
+  config.scene.surfaces = SurfacePolicy::kSkirt;
+  Session session(map, config);
+  StageTimes times;
+  EXPECT_THROW(session.make_unknown_solid(times), Error);
+}
+
+TEST(Session, AFrameThatDoesNotFitItsCameraIsPassedOver) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  StageTimes times;
+  Frame small = depth_only(0, kAtTheFloor);
+  small.depth_m.resize(80, 60, 2.0F);
+  const FrameResult bad = session.step(small, times);
+  EXPECT_EQ(bad.status, FrameStatus::kBadFrame);
+  EXPECT_NE(bad.fault.find("differ in size"), std::string_view::npos) << bad.fault;
+  Frame coloured = depth_only(1, kAtTheFloor);
+  coloured.colour_camera = kCamera;
+  coloured.colour.resize(80, 60);
+  EXPECT_EQ(session.step(coloured, times).status, FrameStatus::kBadFrame);
+  EXPECT_EQ(session.step(depth_only(2, kAtTheFloor), times).status, FrameStatus::kDone);
+}
+
+TEST(VirtualObject, FootprintReachesToACorner) {
+  GlContext context;
+  Mesh plate;
+  plate.vertices = {{-0.3F, -0.4F, 0.1F}, {0.3F, -0.4F, 0.1F}, {0.3F, 0.4F, 0.1F}};
+  plate.triangles = {{0, 1, 2}};
+  const VirtualObject object("plate",
+                             std::make_shared<const ObjectModel>(context, object_parts("plate", plate)));
+  EXPECT_NEAR(footprint_radius_m(object, Eigen::Matrix3d::Identity()), 0.5, 1e-6);
+  const Eigen::AngleAxisd on_edge(M_PI / 2.0, Eigen::Vector3d::UnitX());
+  EXPECT_NEAR(footprint_radius_m(object, on_edge.toRotationMatrix()), 0.3, 1e-6);
+  EXPECT_LT((level_to_middle(object, on_edge.toRotationMatrix()) - Eigen::Vector3d(0.0, -0.1, 0.0)).norm(),
+            1e-6);
+  EXPECT_NEAR(lowest_m(object), 0.1, 1e-6);
+}
+
+TEST(VirtualObject, MeshWithoutTrianglesIsRefused) { EXPECT_THROW(object_parts("nothing", Mesh{}), Error); }
+
+}  // namespace
+}  // namespace roomradar::session_test

@@ -1,0 +1,73 @@
+// The sim: form of a source: what it sets, and sentences for what is wrong.
+#include <gtest/gtest.h>
+
+#include "app/sim/sensor/sim_options.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar::sim_options_test {
+namespace {
+
+TEST(SimSpec, SetsWhatItNamesAndLeavesTheRest) {
+  const SimOptions options =
+      parse_sim_spec("sim:shelf?seed=3&frames=90&path=view&moving=hand,ball&noise=0&width=320");
+  EXPECT_EQ(options.room, "shelf");
+  EXPECT_EQ(options.seed, 3U);
+  EXPECT_EQ(options.frames, 90);
+  EXPECT_EQ(options.path, CameraPathKind::kView);
+  EXPECT_EQ(options.movers, (std::vector{MoverKind::kHand, MoverKind::kBall}));
+  EXPECT_EQ(options.noise_scale, 0.0);
+  EXPECT_EQ(options.depth_camera.width_px, 320);
+  EXPECT_EQ(options.depth_camera.height_px, 240);
+  EXPECT_DOUBLE_EQ(options.depth_camera.fx_px, 292.5);
+  EXPECT_DOUBLE_EQ(options.rate_hz, 30.0);
+  EXPECT_EQ(parse_sim_spec("sim:wall").depth_camera, kKinectDepthCamera);
+}
+
+TEST(SimSpec, ComesBackFromItsOptions) {
+  for (const char* const spec :
+       {"sim:table", "sim:wall?seed=12", "sim:shelf?seed=3&frames=90&path=view&moving=hand,person&noise=0.5",
+        "sim:table?rate=15&width=160&colour=separate", "sim:table?moving=person&pace=leaves",
+        "sim:table?crate=1", "sim:table?crate=comes", "sim:table?crate=goes"})
+    EXPECT_EQ(sim_spec(parse_sim_spec(spec)), spec);
+}
+
+TEST(SimSpec, FaultsAreNamedWithWhatIsKnown) {
+  const auto message = [](const char* spec) -> std::string {
+    try {
+      parse_sim_spec(spec);
+      return "accepted";
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+  const std::pair<const char*, const char*> cases[] = {
+      {"table", "sim:ROOM"},
+      {"sim:", "table, shelf, wall"},
+      {"sim:attic", "table, shelf, wall"},
+      {"sim:table?", "no key=value"},
+      {"sim:table?sead=1", "known are: seed, frames"},
+      {"sim:table?seed", "no key=value"},
+      {"sim:table?seed=-1", "seed"},
+      {"sim:table?seed=1x", "1x"},
+      {"sim:table?frames=0", "frames"},
+      {"sim:table?frames=", "frames"},
+      {"sim:table?rate=0", "rate"},
+      {"sim:table?rate=nan", "rate"},
+      {"sim:table?noise=-1", "noise"},
+      {"sim:table?noise=inf", "noise"},
+      {"sim:table?path=fly", "scan, view or swing"},
+      {"sim:table?crate=2", "comes or goes"},
+      {"sim:table?moving=cat", "hand, ball, person"},
+      {"sim:table?moving=hand,hand", "once"},
+      {"sim:table?moving=", "hand, ball, person"},
+      {"sim:table?pace=run", "steady, slow, waits or leaves"},
+      {"sim:table?width=63", "width"},
+      {"sim:table?width=99999999999", "width"},
+      {"sim:table?colour=red", "registered, separate or none"},
+  };
+  for (const auto& [spec, part] : cases)
+    EXPECT_NE(message(spec).find(part), std::string::npos) << spec << ": " << message(spec);
+}
+
+}  // namespace
+}  // namespace roomradar::sim_options_test

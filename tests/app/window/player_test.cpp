@@ -1,0 +1,507 @@
+// player_test.cpp: what a user does with the mouse, as events of a script, on a floor that is known.
+#include "app/window/link/player.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include "app/cli/interrupt.hpp"
+#include "app/run/opened_run.hpp"
+#include "app/run/run_loop.hpp"
+#include "app/window/link/key_meant.hpp"
+#include "app/window/link/play_host.hpp"
+#include "app/window/link/ui_channel.hpp"
+#include "mapping/types/system/error.hpp"
+#include "tests/support/exact_depth.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roomradar::player_test {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+constexpr Intrinsics kCamera{160, 120, 146.0, 146.0, 79.5, 59.5};
+const Eigen::Isometry3d kAtTheFloor = test::looking_at({0.0, -1.2, 1.2}, {0.0, 0.0, 0.0});
+
+/// A level floor of 4 x 4 m at z = 0.
+SavedMap floor_map() {
+  SavedMap map;
+  map.mesh.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
+  map.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return map;
+}
+
+/// A session over that floor with one pot, and a camera that looks down at it.
+class Playing : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ScriptEvent add;
+    add.action = Action::kAdd;
+    add.name = "pot";
+    add.mesh = "teapot";
+    session_.apply(add);
+    step();
+  }
+  void step() {
+    frame_.index = frames_;
+    frame_.stamp_s = static_cast<double>(frames_++) / 30.0;
+    frame_.depth_camera = kCamera;
+    frame_.depth_m.resize(kCamera.width_px, kCamera.height_px, 0.0F);
+    frame_.T_world_camera = kAtTheFloor;
+    result_ = session_.step(frame_, times_);
+  }
+  /// Does what one wish leads to, and goes one frame on.
+  std::vector<ScriptEvent> play(const Wish& wish) {
+    std::vector<ScriptEvent> events = player_.events_of({&wish, 1}, session_);
+    for (const ScriptEvent& event : events) session_.apply(event);
+    step();
+    return events;
+  }
+  static Wish wish(WishKind kind, const Vec3& p_world = Vec3::Zero()) {
+    Wish wish;
+    wish.kind = kind;
+    wish.pixel = project(kCamera, kAtTheFloor.inverse() * p_world);
+    return wish;
+  }
+  static Wish new_teapot() {
+    Wish wish;
+    wish.kind = WishKind::kNew;
+    wish.event.mesh = "teapot";
+    return wish;
+  }
+  [[nodiscard]] const VirtualObject& pot() const { return *session_.objects().front(); }
+  [[nodiscard]] Vec3 position() const { return pot().body.T_world_object.translation(); }
+  /// Where the pot is seen.
+  [[nodiscard]] Vec3 middle() const { return pot().body.T_world_object * pot().model->middle; }
+
+  static SessionConfig config() {
+    SessionConfig config;
+    config.poses = PoseOrigin::kRecorded;
+    return config;
+  }
+  SavedMap map_ = floor_map();
+  Session session_{map_, config()};
+  Player player_;
+  StageTimes times_;
+  Frame frame_;
+  FrameResult result_;
+  std::int64_t frames_ = 0;
+};
+
+TEST_F(Playing, AnObjectIsDroppedWhereOneClicks) {
+  const Vec3 there(0.3, 0.2, 0.0);
+  EXPECT_TRUE(play(wish(WishKind::kGrab, there)).empty());  // nothing is there to be grabbed
+  Wish click = wish(WishKind::kLetGo, there);
+  click.event.height_m = 0.25;
+  const auto events = play(click);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].action, Action::kDrop);
+  EXPECT_EQ(events[0].name, "pot");
+  const Vec3 to_middle = level_to_middle(pot(), Eigen::Matrix3d::Identity());
+  EXPECT_LT((*events[0].position_world + to_middle - there).norm(), 1e-6);
+  EXPECT_EQ(events[0].height_m, 0.25);
+  for (int i = 0; i < 60; ++i) step();
+  EXPECT_TRUE(pot().body.at_rest);
+  EXPECT_LT((middle() - there).head<2>().norm(), 0.01);
+}
+
+TEST_F(Playing, AnObjectIsPlacedOntoTheSurface) {
+  const auto events = play(wish(WishKind::kPlace, {-0.4, 0.1, 0.0}));
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].action, Action::kPlace);
+  EXPECT_NEAR(events[0].position_world->z() + lowest_m(pot()), 0.002, 1e-6);
+  const Vec3 to_middle = level_to_middle(pot(), Eigen::Matrix3d::Identity());
+  EXPECT_NEAR(events[0].position_world->x() + to_middle.x(), -0.4, 1e-6);
+}
+
+TEST_F(Playing, WhatIsTurnedWhileItIsDraggedStaysUnderTheMouse) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  play(wish(WishKind::kGrab, middle()));
+  const Vec3 there = middle() + Vec3(0.0, 0.0, 0.3);
+  for (int i = 0; i < 10; ++i) play(wish(WishKind::kDrag, there));
+  const Vec3 held = middle();
+  Wish turn = wish(WishKind::kTurn);
+  turn.event.turn_world_deg = Vec3(90.0, 0.0, 0.0);
+  play(turn);
+  for (int i = 0; i < 3; ++i) play(wish(WishKind::kDrag, there));
+  EXPECT_LT((middle() - held).norm(), 0.005);
+}
+
+TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  for (int i = 0; i < 30; ++i) step();
+  ASSERT_TRUE(play(wish(WishKind::kGrab, middle())).empty());
+  EXPECT_TRUE(player_.is_grabbed());
+  // Half a metre to the right and up, at the distance at which it was taken.
+  const Vec3 before = position();
+  const double distance_m = (middle() - kAtTheFloor.translation()).norm();
+  for (int i = 1; i <= 10; ++i) play(wish(WishKind::kDrag, middle() + Vec3(0.05, 0.0, 0.04)));
+  for (int i = 0; i < 3; ++i) step();
+  EXPECT_GT(position().x(), before.x() + 0.2);
+  EXPECT_GT(position().z(), before.z() + 0.1);
+  EXPECT_NEAR((middle() - kAtTheFloor.translation()).norm(), distance_m, 0.1);
+  const Vec3 held = position();
+  for (int i = 0; i < 20; ++i) step();
+  EXPECT_LT((position() - held).norm(), 1e-6) << "it hangs in the air while it is held";
+  // Through the floor, if nothing stopped it.
+  for (int i = 0; i < 10; ++i) play(wish(WishKind::kDrag, {0.3, -0.4, 0.0}));
+  EXPECT_GT(position().z() + lowest_m(pot()), -1e-6);
+  const auto events = play(wish(WishKind::kLetGo, {0.3, -0.4, 0.0}));
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].action, Action::kRelease);
+  EXPECT_FALSE(player_.is_grabbed());
+  EXPECT_FALSE(pot().carried_to_world);
+}
+
+TEST_F(Playing, WhatIsDraggedAndLetGoBetweenTwoFramesIsCarriedThere) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  for (int i = 0; i < 30; ++i) step();
+  const Vec3 before = position(), way(0.2, 0.0, 0.3);
+  const std::vector<Wish> wishes = {wish(WishKind::kGrab, middle()), wish(WishKind::kDrag, middle() + way),
+                                    wish(WishKind::kLetGo, middle() + way)};
+  const std::vector<ScriptEvent> first = player_.events_of(wishes, session_);
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first[0].action, Action::kCarry);
+  session_.apply(first[0]);
+  step();
+  EXPECT_GT((position() - before).norm(), 0.2);
+  const std::vector<ScriptEvent> second = player_.events_of({}, session_);
+  ASSERT_EQ(second.size(), 1U);
+  EXPECT_EQ(second[0].action, Action::kRelease);
+  EXPECT_TRUE(player_.events_of({}, session_).empty());
+}
+
+TEST_F(Playing, RemovingAnotherObjectDoesNotLeaveTheHeldOneHanging) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  play(new_teapot());
+  play(wish(WishKind::kPlace, Vec3(0.5, 0.0, 0.0)));
+  play(wish(WishKind::kGrab, middle()));
+  play(wish(WishKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
+  ASSERT_TRUE(pot().carried_to_world);
+  Wish choose = wish(WishKind::kChoose);
+  choose.event.name = "teapot";
+  play(choose);
+  ASSERT_EQ(play(wish(WishKind::kRemove)).at(0).name, "teapot");
+  EXPECT_TRUE(player_.is_grabbed());
+  play(wish(WishKind::kLetGo, middle()));
+  EXPECT_FALSE(pot().carried_to_world);
+}
+
+TEST_F(Playing, WhatIsLetGoInMotionFliesOnAsFastAsTheMouseWas) {
+  play(wish(WishKind::kPlace, Vec3::Zero()));
+  play(wish(WishKind::kGrab, middle()));
+  play(wish(WishKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
+  Wish let_go = wish(WishKind::kLetGo, middle() + Vec3(0.02, 0.0, 0.2));
+  let_go.pixel_velocity_s = {146.0, 0.0};  // one metre a second, a metre away
+  const auto events = play(let_go);
+  ASSERT_EQ(events.size(), 1U);
+  const double distance_m = (middle() - kAtTheFloor.translation()).norm();
+  EXPECT_NEAR(events[0].velocity_world_mps.x(), distance_m, 0.15 * distance_m);
+  EXPECT_NEAR(events[0].velocity_world_mps.y(), 0.0, 0.1);
+}
+
+TEST_F(Playing, AThrownObjectFliesThroughThePixel) {
+  Wish wish = Playing::wish(WishKind::kThrow, {0.5, 0.5, 0.0});
+  wish.speed_mps = 4.0;
+  const auto events = play(wish);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_NEAR(events[0].velocity_world_mps.norm(), 4.0, 1e-9);
+  const Vec3 to_there = Vec3(0.5, 0.5, 0.0) - kAtTheFloor.translation();
+  EXPECT_NEAR(events[0].velocity_world_mps.normalized().dot(to_there.normalized()), 1.0, 1e-9);
+}
+
+TEST_F(Playing, AnotherObjectHasANameOfItsOwnAndIsChosen) {
+  const auto events = play(new_teapot());
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].action, Action::kAdd);
+  EXPECT_EQ(events[0].name, "teapot");
+  EXPECT_EQ(player_.chosen(), "teapot");
+  EXPECT_EQ(play(new_teapot())[0].name, "teapot2");
+  EXPECT_EQ(session_.objects().size(), 3U);
+  const auto reset = play(wish(WishKind::kReset));
+  EXPECT_EQ(reset.back().action, Action::kDrop);
+  EXPECT_EQ(reset.back().name, "teapot2");
+}
+
+TEST_F(Playing, ResetLeavesNoDropWaiting) {
+  for (const Action action : {Action::kAdd, Action::kDrop}) {
+    ScriptEvent other;
+    other.action = action;
+    other.name = "other";
+    other.mesh = "teapot";
+    session_.apply(other);  // its drop waits for the next frame
+  }
+  (void)play(wish(WishKind::kReset));
+  EXPECT_TRUE(session_.objects()[0]->in_room);
+  EXPECT_FALSE(session_.objects()[1]->in_room);
+}
+
+TEST_F(Playing, WhereThereIsNothingTheUserIsTold) {
+  const Wish at_the_sky = wish(WishKind::kDrop, {0.0, 40.0, 0.0});
+  EXPECT_TRUE(play(at_the_sky).empty());
+  EXPECT_NE(player_.complaint().find("no surface"), std::string::npos);
+  EXPECT_EQ(play(wish(WishKind::kDrop)).size(), 1U);
+  EXPECT_TRUE(player_.complaint().empty());
+}
+
+TEST_F(Playing, PoliciesThatDoNotGoTogetherAreRefusedAndNothingChanges) {
+  ScriptEvent solid, skirt;
+  solid.action = Action::kUnknown;
+  solid.unknown_is_solid = true;
+  skirt.action = Action::kSurfaces;
+  skirt.surfaces = SurfacePolicy::kSkirt;
+  session_.apply(skirt);
+  EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kSkirt);
+  EXPECT_THROW(session_.apply(solid), Error);
+  EXPECT_FALSE(session_.unknown_is_solid());
+  skirt.surfaces = SurfacePolicy::kMap;
+  session_.apply(skirt);
+  session_.apply(solid);
+  EXPECT_TRUE(session_.unknown_is_solid());
+  skirt.surfaces = SurfacePolicy::kHoles;
+  EXPECT_THROW(session_.apply(skirt), Error);
+  EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kMap);
+}
+
+TEST(TurnOfDrag, TheSideThatFacesTheCameraGoesWithTheMouse) {
+  const Vec3 target(0.0, 0.0, 0.0);
+  const Vec3 places[] = {{0.0, -2.0, 0.0}, {0.0, -1.2, 1.2}, {1.0, 1.0, -1.0}, {0.0, -0.05, 2.0}};
+  for (const Vec3& place : places)
+    for (const double roll_deg : {0.0, 30.0, 90.0, 180.0, 270.0}) {
+      const Eigen::Matrix3d R_world_view =
+          test::looking_at(place, target).linear() *
+          Eigen::AngleAxisd(roll_deg * M_PI / 180.0, Vec3::UnitZ()).toRotationMatrix();
+      const Vec3 near_world = -0.1 * R_world_view.col(2);
+      for (const Eigen::Vector2d& way_px : {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(0.0, 1.0)}) {
+        const Vec3 turn_world_deg = turn_of_drag_world_deg(R_world_view, way_px);
+        const Vec3 goes_view = R_world_view.transpose() * turn_world_deg.cross(near_world);
+        EXPECT_GT(goes_view.head<2>().dot(way_px), 0.01)
+            << "from " << place.transpose() << " rolled " << roll_deg << " by " << way_px.transpose();
+      }
+    }
+  // An upright object stays upright where the mouse goes to the side.
+  const Vec3 aside_deg = turn_of_drag_world_deg(kAtTheFloor.linear(), {1.0, 0.0});
+  EXPECT_TRUE(aside_deg.isApprox(0.5 * Vec3::UnitZ()));
+}
+
+TEST(KeyMeant, IsWhatTheKeyTypesWhereThatIsOneLetterOrSign) {
+  constexpr int kOfA = 'A', kOfMinus = '-', kOfSlash = '/', kHome = 268, kOfKeypadPlus = 334;
+  EXPECT_EQ(key_meant(kOfA, "a"), 'A');
+  EXPECT_EQ(key_meant(kOfA, "q"), 'Q') << "a French keyboard";
+  EXPECT_EQ(key_meant(kOfSlash, "-"), '-') << "a German keyboard";
+  EXPECT_EQ(key_meant(kOfMinus, "ß"), kOfMinus);
+  EXPECT_EQ(key_meant(kOfA, "ф"), kOfA) << "a Russian keyboard";
+  EXPECT_EQ(key_meant(kOfA, nullptr), kOfA);
+  EXPECT_EQ(key_meant(kHome, nullptr), kHome);
+  EXPECT_EQ(key_meant(kOfKeypadPlus, "+"), kOfKeypadPlus);
+}
+
+/// A device that never has a frame.
+class NoFrames : public FrameSource {
+ public:
+  ReadResult next(Frame& /*frame*/) override { return {}; }
+  bool rewind() override { return false; }
+  [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return {}; }
+  [[nodiscard]] std::string name() const override { return "none"; }
+};
+
+class Hosted : public Playing {
+ protected:
+  /// The next events that come of what was asked for, or nothing within half a minute.
+  std::vector<ScriptEvent> awaited_events() {
+    for (int tries = 0; tries < 3000; ++tries) {
+      std::vector<ScriptEvent> events = host_.take_events();
+      said_ += link_.take_message();
+      if (!events.empty()) return events;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return {};
+  }
+  std::string said_;
+  PlayLink link_;
+  PlaybackSource source_{std::make_unique<NoFrames>(), AtEnd::kEnd};
+  PlayHost host_{link_, session_, source_, times_, map_.mesh, /*is_live=*/true};
+};
+
+TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
+  Wish wish = new_teapot();
+  wish.event.size_m = 0.25;  // no model of that size is there yet
+  link_.ask(wish);
+  EXPECT_TRUE(host_.take_events().empty());  // it takes longer than this
+  const std::vector<ScriptEvent> events = awaited_events();
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].action, Action::kAdd);
+  EXPECT_EQ(events[1].action, Action::kDrop);
+  session_.add_object(events[0].name, host_.take_parts());
+  const ObjectModel& model = *session_.objects().back()->model;
+  ScriptEvent waited_for = events[0];
+  waited_for.name = "another";
+  session_.apply(waited_for);
+  EXPECT_EQ(session_.objects().back()->model.get(), &model);  // of the same mesh, so it shares its model
+  const ObjectParts parts = object_parts("pot", object_mesh("teapot", 0.25));
+  ASSERT_EQ(model.levels.size(), parts.levels.size());
+  EXPECT_GT(parts.levels.size(), 0U);
+  EXPECT_EQ(model.mass.mass_kg, parts.mass.mass_kg);
+}
+
+TEST_F(Hosted, AMeshThatCannotBeReadIsSaidAndThoseAfterItCome) {
+  Wish broken = new_teapot();
+  broken.event.mesh = "/nowhere/chair.ply";
+  link_.ask(broken);
+  link_.ask(new_teapot());
+  link_.ask(new_teapot());
+  std::vector<ScriptEvent> events = awaited_events();
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].mesh, "teapot");
+  EXPECT_NE(said_.find("/nowhere/chair.ply"), std::string::npos);
+  session_.add_object(events[0].name, host_.take_parts());
+  events = awaited_events();
+  ASSERT_EQ(events.size(), 2U);
+  EXPECT_EQ(events[0].name, "teapot2");
+}
+
+TEST_F(Hosted, AfterAPauseADevicesTimeGoesOnWhereItWas) {
+  EXPECT_TRUE(host_.take_events().empty());
+  link_.set_paused(true);
+  link_.step();
+  for (const bool is_paused : {true, false}) {
+    link_.set_paused(is_paused);
+    const std::vector<ScriptEvent> events = host_.take_events();
+    ASSERT_EQ(events.size(), 1U);
+    EXPECT_EQ(events[0].action, Action::kCamera);
+    EXPECT_EQ(events[0].camera, CameraPlay::kResume);
+    ScriptEvent line = events[0];
+    line.frame = 7;
+    EXPECT_EQ(to_line(line), "frame 7 camera resume");
+  }
+  EXPECT_TRUE(host_.take_events().empty());
+}
+
+TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
+  ScriptEvent drop;
+  drop.action = Action::kDrop;
+  drop.name = "pot";
+  session_.apply(drop);
+  frame_.T_world_camera.reset();  // nobody knows what is in view
+  result_ = session_.step(frame_, times_);
+  host_.show(0, 0.0, frame_, result_);
+  EXPECT_NE(link_.take_message().find("pot waits for a level surface"), std::string::npos);
+  host_.show(1, 0.1, frame_, result_);
+  EXPECT_EQ(link_.take_message(), "");
+}
+
+/// While it is read a user adds what is in a mesh file, and turns it, until something was said.
+class AskedMeanwhile : public NoFrames {
+ public:
+  AskedMeanwhile(PlayLink& link, const std::string& mesh, std::string& said) : link_(link), said_(said) {
+    wish_.kind = WishKind::kNew;
+    wish_.event.mesh = mesh;
+  }
+  ReadResult next(Frame& frame) override {
+    said_ += link_.take_message();
+    if (said_.find("cannot be copied") != std::string::npos) frames_left_ = std::min(frames_left_, 5);
+    if (--frames_left_ == 0) return {};
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    link_.ask(wish_);
+    wish_.kind = WishKind::kTurn;
+    frame.depth_camera = kCamera;
+    frame.depth_m.resize(kCamera.width_px, kCamera.height_px, 0.0F);
+    frame.stamp_s += 0.01;
+    return {ReadStatus::kFrame, {}};
+  }
+
+ private:
+  PlayLink& link_;
+  std::string& said_;
+  Wish wish_;
+  int frames_left_ = 6000;  // a minute
+};
+
+TEST(RecordedRun, AnObjectWhoseMeshCannotBeKeptDoesNotComeIn) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder.path() / "roof.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
+  RunCommand command;
+  command.map = folder.path() / "none";
+  OpenedRun run(command);
+  run.map = floor_map();
+  run.session = std::make_unique<Session>(run.map, SessionConfig());
+  run.recorder.emplace(folder.path() / "session", command, run.map.info, /*are_calibrated=*/false);
+  std::ofstream(folder.path() / "session" / "meshes") << "where the folder of meshes should be";
+  PlayLink link;
+  std::string said;
+  auto source = std::make_unique<PlaybackSource>(
+      std::make_unique<AskedMeanwhile>(link, (folder.path() / "roof.obj").string(), said), AtEnd::kEnd);
+  run.playback = source.get();
+  run.source = std::move(source);
+  run.host.emplace(link, *run.session, *run.playback, run.report.times, run.map.mesh, /*is_live=*/true);
+  play_to_end(run);
+  EXPECT_NE(said.find("cannot be copied"), std::string::npos) << said;
+  EXPECT_TRUE(run.session->objects().empty());
+  EXPECT_NO_THROW(static_cast<void>(read_script(folder.path() / "session" / "events.txt")));
+}
+
+TEST(PlayLink, APausedSessionWaitsForAStepOrTheEnd) {
+  PlayLink link;
+  link.set_paused(true);
+  link.step();
+  int refreshed = 0;
+  link.want({.radar = true, .models = false});
+  EXPECT_TRUE(link.wait_turn(1.0, true, [&] { ++refreshed; }));
+  EXPECT_EQ(refreshed, 1);
+  link.close();
+  EXPECT_FALSE(link.wait_turn(2.0, true, [] {}));
+}
+
+TEST(PlayLink, CtrlCEndsAPausedSession) {
+  const Interrupt interrupt;
+  PlayLink link;
+  link.set_paused(true);
+  std::raise(SIGINT);
+  EXPECT_FALSE(link.wait_turn(1.0, true, [] {}));
+  EXPECT_TRUE(Interrupt::take()) << "whoever reads the source is told, too";
+}
+
+TEST(PlayLink, OfManyDragsOnlyTheNewestCountsAndTheOrderOfTheRestStays) {
+  PlayLink link;
+  Wish wish;
+  for (const WishKind kind :
+       {WishKind::kGrab, WishKind::kDrag, WishKind::kDrag, WishKind::kDrag, WishKind::kLetGo}) {
+    wish.kind = kind;
+    wish.pixel.x() += 1.0;
+    link.ask(wish);
+  }
+  const std::vector<Wish> wishes = link.take_wishes();
+  ASSERT_EQ(wishes.size(), 3U);
+  EXPECT_EQ(wishes[1].kind, WishKind::kDrag);
+  EXPECT_EQ(wishes[1].pixel.x(), 4.0);
+  EXPECT_EQ(wishes[2].kind, WishKind::kLetGo);
+  EXPECT_TRUE(link.take_wishes().empty());
+}
+
+TEST(PlayLink, TurnsBetweenTwoFramesAddUpAsFarAsAScriptCanSayThem) {
+  PlayLink link;
+  Wish turn;
+  turn.kind = WishKind::kTurn;
+  turn.event.turn_world_deg = {0.5, 0.0, -1.0};
+  for (int i = 0; i < 1000; ++i) link.ask(turn);
+  std::vector<Wish> wishes = link.take_wishes();
+  ASSERT_EQ(wishes.size(), 1U);
+  EXPECT_TRUE(wishes[0].event.turn_world_deg.isApprox(Vec3(500.0, 0.0, -1000.0)));
+  for (int i = 0; i < 5000; ++i) link.ask(turn);
+  wishes = link.take_wishes();
+  ASSERT_EQ(wishes.size(), 2U);
+  EXPECT_EQ(wishes[0].event.turn_world_deg.z(), -3600.0);
+  EXPECT_EQ(wishes[1].event.turn_world_deg.z(), -1400.0);
+  link.ask(turn);
+  Wish choose;
+  choose.kind = WishKind::kChoose;
+  link.ask(choose);
+  link.ask(turn);
+  EXPECT_EQ(link.take_wishes().size(), 3U) << "of two objects, maybe";
+}
+
+}  // namespace
+}  // namespace roomradar::player_test

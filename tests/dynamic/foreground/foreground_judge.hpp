@@ -1,0 +1,93 @@
+// foreground_judge.hpp: the foreground's verdict on simulated movers, against their true masks.
+#pragma once
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "app/sim/room/room.hpp"
+#include "app/sim/sensor/simulated_source.hpp"
+#include "app/sim/solids/view_caster.hpp"
+#include "dynamic/foreground/foreground.hpp"
+
+namespace roomradar::test {
+
+/// Pixel counts over frames, of pixels with live depth only: a mask says nothing where nothing was measured.
+struct MaskScore {
+  std::size_t frames = 0;
+  std::size_t valid = 0;
+  std::size_t both = 0;    ///< marked and truly moved
+  std::size_t missed = 0;  ///< truly moved, not marked
+  std::size_t false_ = 0;  ///< marked, not truly moved
+
+  [[nodiscard]] double iou() const {
+    const std::size_t either = both + missed + false_;
+    return either == 0 ? 1.0 : static_cast<double>(both) / static_cast<double>(either);
+  }
+  [[nodiscard]] double false_fraction() const {
+    return valid == 0 ? 0.0 : static_cast<double>(false_) / static_cast<double>(valid);
+  }
+};
+
+inline void add_frame(const DepthImage& depth_m, const MaskImage& marked, const MaskImage& truth,
+                      MaskScore& score) {
+  ++score.frames;
+  for (std::size_t i = 0; i < depth_m.pixels.size(); ++i) {
+    if (!(depth_m.pixels[i] > 0.0F)) continue;
+    const bool is = marked.pixels[i] != 0;
+    const bool should = truth.pixels[i] != 0;
+    ++score.valid;
+    score.both += is && should;
+    score.missed += !is && should;
+    score.false_ += is && !should;
+  }
+}
+
+/// What a perfect mesh of the room shows from a pose: exact depth, 0 where no surface is.
+inline void cast_room(const Room& room, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                      ViewCaster& caster, DepthImage& depth_m) {
+  caster.prepare(room.solids, camera, T_world_camera);
+  depth_m.resize(camera.width_px, camera.height_px, 0.0F);
+  for (int y = 0; y < camera.height_px; ++y) {
+    for (int x = 0; x < camera.width_px; ++x)
+      depth_m.at(x, y) = static_cast<float>(caster.cast(x, y).depth_m);
+  }
+}
+
+/// A pose that is `shift_m` and `turn_deg` off, the direction of both by `turn` (any number).
+inline Eigen::Isometry3d pose_error(double shift_m, double turn_deg, int turn) {
+  const Eigen::Vector3d axis =
+      Eigen::Vector3d(std::sin(1.0 + turn), std::cos(2.3 * turn), std::sin(4.1 * turn)).normalized();
+  Eigen::Isometry3d error(
+      Eigen::AngleAxisd(turn_deg * M_PI / 180.0, axis.cross(Eigen::Vector3d(0.3, -0.5, 0.8)).normalized()));
+  error.pretranslate(axis * shift_m);
+  return error;
+}
+
+/// Runs every `step`-th frame of the simulated recording against the exact room, seen from a pose that is off
+/// by shift_m and turn_deg.
+inline MaskScore judge_foreground(const SimOptions& options, std::int64_t step, double shift_m,
+                                  double turn_deg, const ForegroundConfig& config = {}) {
+  SimulatedSource source(options);
+  ViewCaster caster;
+  Frame frame;
+  DepthImage expected_m;
+  ForegroundState state;
+  LabelImage labels;
+  MaskImage moved_mask;
+  MaskScore score;
+  for (std::int64_t i = 0; i < options.frames; i += step) {
+    source.seek(i);
+    if (source.next(frame).status != ReadStatus::kFrame) break;
+    const Eigen::Isometry3d T_world_camera =
+        source.truth().T_world_camera * pose_error(shift_m, turn_deg, static_cast<int>(i));
+    cast_room(source.room(), frame.depth_camera, T_world_camera, caster, expected_m);
+    mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, config, state, labels,
+                    moved_mask);
+    add_frame(frame.depth_m, moved_mask, source.truth().moved, score);
+  }
+  return score;
+}
+
+}  // namespace roomradar::test

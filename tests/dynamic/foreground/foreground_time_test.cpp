@@ -1,0 +1,136 @@
+// foreground_time_test.cpp: what the foreground carries from frame to frame.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/dynamic/foreground/foreground_views.hpp"
+#include "tests/support/allocation_count.hpp"
+
+namespace roomradar::foreground_time_test {
+namespace {
+
+using namespace test;
+
+// Frames in a row.
+struct Watch {
+  ForegroundState state;
+  Marked marked;
+
+  void see(const DepthImage& live_m, const DepthImage& expected_m,
+           const Eigen::Isometry3d& T_world_camera = Eigen::Isometry3d::Identity()) {
+    marked.counts = mark_foreground(live_m, expected_m, kKinect, T_world_camera, {}, state, marked.labels,
+                                    marked.moved_mask);
+  }
+};
+
+// A wall at 2 m, and before it a square thing, as a camera sees them that has moved `right_m` to the right.
+DepthImage wall_with(float square_m, int half_px, double right_m = 0.0) {
+  DepthImage depth_m = flat(2.0F);
+  const int x = 320 - static_cast<int>(std::lround(kKinect.fx_px * right_m / square_m));
+  fill_rectangle(depth_m, x - half_px, 240 - half_px, x + half_px, 240 + half_px, square_m);
+  return depth_m;
+}
+
+TEST(ForegroundInTime, SmallThingIsBelievedInTheSecondFrame) {
+  Watch run;
+  const DepthImage live_m = wall_with(1.5F, 5);
+  run.see(live_m, flat(2.0F));
+  EXPECT_EQ(run.marked.counts.moved, 0U);
+  EXPECT_EQ(run.marked.labels.at(320, 240), PixelLabel::kNotKnown);
+  run.see(live_m, flat(2.0F));
+  EXPECT_EQ(run.marked.counts.moved, 100U);
+}
+
+TEST(ForegroundInTime, FlashOfOneFrameIsNeverMarked) {
+  Watch run;
+  for (int frame = 0; frame < 6; ++frame) {
+    run.see(frame % 2 == 0 ? wall_with(1.5F, 5) : flat(2.0F), flat(2.0F));
+    EXPECT_EQ(run.marked.counts.moved, 0U) << frame;
+  }
+}
+
+TEST(ForegroundInTime, SmallThingIsFoundAgainWhereTheCameraMovedOn) {
+  Watch run;
+  run.see(wall_with(1.5F, 5), flat(2.0F));
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  T_world_camera.translation().x() = 0.15;  // 58 px at the thing's depth: none of its pixels stays
+  run.see(wall_with(1.5F, 5, 0.15), flat(2.0F), T_world_camera);
+  EXPECT_EQ(run.marked.counts.moved, 100U);
+
+  Watch elsewhere;  // a thing that is as new at its place as the one before
+  elsewhere.see(wall_with(1.5F, 5), flat(2.0F));
+  elsewhere.see(wall_with(1.5F, 5, 0.15), flat(2.0F));
+  EXPECT_EQ(elsewhere.marked.counts.moved, 0U);
+}
+
+TEST(ForegroundInTime, WhatWasMarkedStaysWhileItComesNearerToTheWall) {
+  // A palm that sinks towards a wall 1 m away. Seen alone it is lost earlier than watched.
+  const DepthImage wall_m = flat(1.0F);
+  float lost_watched_m = 0.0F, lost_alone_m = 0.0F;
+  Watch watched;
+  for (float before_m = 0.05F; before_m > 0.005F; before_m -= 0.001F) {
+    DepthImage live_m = flat(1.0F);
+    fill_rectangle(live_m, 250, 180, 390, 300, 1.0F - before_m);
+    watched.see(live_m, wall_m);
+    if (watched.marked.counts.moved > 0) lost_watched_m = before_m;
+    if (mark(live_m, wall_m).counts.moved > 0) lost_alone_m = before_m;
+  }
+  EXPECT_LT(lost_watched_m, lost_alone_m - 0.003F);
+  EXPECT_LT(lost_alone_m, 0.03F);
+}
+
+TEST(ForegroundInTime, WhatLeftLeavesNothingBehind) {
+  Watch run;
+  for (int frame = 0; frame < 3; ++frame) {
+    DepthImage live_m = wall_with(1.0F, 60);
+    add_noise(live_m, 10 + static_cast<unsigned>(frame));
+    run.see(live_m, flat(2.0F));
+    EXPECT_GT(run.marked.counts.moved, 14000U);
+  }
+  DepthImage live_m = flat(2.0F);
+  add_noise(live_m, 20);
+  run.see(live_m, flat(2.0F));
+  EXPECT_EQ(run.marked.counts.moved, 0U);
+}
+
+TEST(ForegroundInTime, AMapThatFitsBadlyIsTrustedLess) {
+  // 1.5 cm between map and room, at 1 m; then they agree again.
+  Watch run;
+  DepthImage live_m = flat(1.0F);
+  for (int frame = 0; frame < 3; ++frame) run.see(live_m, flat(1.015F));
+  EXPECT_EQ(run.marked.counts.moved, 0U);
+  EXPECT_GT(run.state.fit.misfit_per_m, 0.005F);
+  for (int frame = 0; frame < 60; ++frame) run.see(live_m, flat(1.0F));
+  EXPECT_LT(run.state.fit.misfit_per_m, 0.001F);
+}
+
+TEST(ForegroundInTime, AnotherCameraRemembersNothing) {
+  Watch run;
+  run.see(wall_with(1.5F, 5), flat(2.0F));
+  Intrinsics wider = kKinect;
+  wider.fx_px = wider.fy_px = 500.0;
+  const ForegroundCounts counts =
+      mark_foreground(wall_with(1.5F, 5), flat(2.0F), wider, Eigen::Isometry3d::Identity(), {}, run.state,
+                      run.marked.labels, run.marked.moved_mask);
+  EXPECT_EQ(counts.moved, 0U);
+}
+
+TEST(ForegroundInTime, NothingIsAllocatedAfterTheFirstFrame) {
+  Watch run;
+  DepthImage live_m = flat(2.0F);
+  const DepthImage expected_m = table_view(0.0, 0.0);
+  run.see(live_m, expected_m);
+  DepthImage all_m = flat(0.45F), noise_m = flat(1.2F);
+  add_noise(noise_m, 30);
+  for (std::size_t i = 0; i < noise_m.pixels.size(); i += 2)
+    noise_m.pixels[i] *= 0.7F;  // as many runs as can be
+  const std::size_t before = allocations;
+  run.see(live_m, expected_m);
+  run.see(all_m, expected_m);
+  run.see(noise_m, expected_m);
+  run.see(expected_m, expected_m);
+  EXPECT_EQ(allocations - before, 0U);
+}
+
+}  // namespace
+}  // namespace roomradar::foreground_time_test

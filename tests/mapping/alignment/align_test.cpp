@@ -1,0 +1,263 @@
+// align_test.cpp: the pose of an image relative to views whose poses are known.
+#include "mapping/alignment/align.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/support/exact_depth.hpp"
+#include "tests/support/painted_frame.hpp"
+
+namespace roomradar::align_test {
+namespace {
+
+constexpr Intrinsics kCamera{320, 240, 292.5, 292.5, 159.5, 119.5};
+
+test::Scene corner_with_ball() {
+  using namespace test;
+  return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), plane({0, 1, 0}, 3.0)),
+                    nearest_of(plane({1, 0, 0}, -1.5), sphere({0.2, 2.0, 0.4}, 0.4)));
+}
+
+Eigen::Isometry3d eye() { return test::looking_at({0.6, 0.2, 1.3}, {0.0, 2.2, 0.5}); }
+
+Eigen::Isometry3d moved(double x_m, double y_m, double z_m, double rx, double ry, double rz) {
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << x_m, y_m, z_m, rx, ry, rz;
+  return exp_twist(twist);
+}
+
+ReferenceView reference_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  ViewPyramid pyramid;
+  ReferenceView reference;
+  make_pyramid(frame, {}, pyramid);
+  make_reference(pyramid, T_world_camera, {}, reference);
+  return reference;
+}
+
+LiveView live_of(const Frame& frame, const MaskImage& ignore = {}) {
+  ViewPyramid pyramid;
+  LiveView live;
+  make_pyramid(frame, {}, pyramid);
+  make_live(pyramid, live, ignore);
+  return live;
+}
+
+double translation_error_m(const Tracking& tracking, const Eigen::Isometry3d& truth) {
+  return (tracking.T_world_camera.translation() - truth.translation()).norm();
+}
+
+double rotation_error_rad(const Tracking& tracking, const Eigen::Isometry3d& truth) {
+  return Eigen::AngleAxisd(truth.linear().transpose() * tracking.T_world_camera.linear()).angle();
+}
+
+// A reference's planes are fitted across the creases between surfaces as far as the noise allows, so even
+// exact depth leaves this much.
+constexpr double kFit_m = 0.003, kFit_rad = 0.0015;
+
+const Eigen::Isometry3d kStep = moved(0.03, -0.02, 0.025, 0.02, -0.03, 0.015);
+
+TEST(Twist, LogIsTheInverseOfExp) {
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << 1.0, -2.0, 0.5, 0.3, -0.8, 0.1;
+  EXPECT_TRUE(log_twist(exp_twist(twist)).isApprox(twist, 1e-12));
+  EXPECT_TRUE(log_twist(Eigen::Isometry3d::Identity()).isZero(1e-15));
+}
+
+TEST(MakeReference, PlanesLieOnTheSurface) {
+  const Eigen::Isometry3d T = eye();
+  const ReferenceView reference = reference_of(test::exact_frame(test::plane({0, 0, 1}, 0.0), kCamera, T), T);
+  const Eigen::Vector3d up_camera = T.linear().transpose() * Eigen::Vector3d::UnitZ();
+  for (const ReferenceLevel& level : reference.levels) {
+    int planes = 0;
+    for (const ReferencePixel& pixel : level.pixels.pixels) {
+      if (pixel.inverse_sigma_per_m <= 0.0F) continue;
+      ++planes;
+      ASSERT_GT(pixel.normal.cast<double>().dot(up_camera), 0.9999);  // 0.8 degrees
+      ASSERT_NEAR(pixel.offset_m, -1.3, 0.003);                       // the eye is 1.3 m above the floor
+    }
+    EXPECT_GT(planes, level.camera.width_px * level.camera.height_px / 3);
+  }
+}
+
+TEST(Align, FindsAKnownMotion) {
+  const Eigen::Isometry3d T = eye(), truth = T * kStep;
+  const ReferenceView reference = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
+  const Tracking tracking =
+      align(live_of(test::exact_frame(corner_with_ball(), kCamera, truth)), reference, T);
+  EXPECT_EQ(tracking.status, TrackStatus::kTracked);
+  EXPECT_LT(translation_error_m(tracking, truth), kFit_m);
+  EXPECT_LT(rotation_error_rad(tracking, truth), kFit_rad);
+  EXPECT_EQ(tracking.held_directions, 0);
+  EXPECT_GT(tracking.inlier_fraction, 0.9);
+}
+
+TEST(Align, FollowsARenderedViewWithoutColour) {
+  const Eigen::Isometry3d T = eye(), truth = T * kStep;
+  const ViewConfig rendered{.noisy = false};
+  ViewPyramid pyramid;
+  ReferenceView reference;
+  make_pyramid(test::exact_frame(corner_with_ball(), kCamera, T).depth_m, kCamera, rendered, pyramid);
+  make_reference(pyramid, T, rendered, reference);
+  Frame now = test::exact_frame(corner_with_ball(), kCamera, truth);
+  test::add_depth_noise(now, 4);
+  const Tracking tracking = align(live_of(now), reference, T);
+  EXPECT_EQ(tracking.status, TrackStatus::kTracked);
+  EXPECT_LT(translation_error_m(tracking, truth), kFit_m);
+  EXPECT_LT(rotation_error_rad(tracking, truth), kFit_rad);
+}
+
+TEST(Align, StandsTheNoiseOfAKinect) {
+  const Eigen::Isometry3d T = eye(), truth = T * kStep;
+  Frame before = test::exact_frame(corner_with_ball(), kCamera, T);
+  Frame now = test::exact_frame(corner_with_ball(), kCamera, truth);
+  test::add_depth_noise(before, 1);
+  test::add_depth_noise(now, 2);
+  const Tracking tracking = align(live_of(now), reference_of(before, T), T);
+  EXPECT_EQ(tracking.status, TrackStatus::kTracked);
+  EXPECT_LT(translation_error_m(tracking, truth), 0.003);
+  EXPECT_LT(rotation_error_rad(tracking, truth), 0.002);
+}
+
+TEST(Align, WhatHasMovedDoesNotPull) {
+  const Eigen::Isometry3d T = eye(), truth = T * kStep;
+  const ReferenceView reference = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
+  const test::Scene with_person = test::nearest_of(
+      corner_with_ball(),
+      test::box(Eigen::AlignedBox3d(Eigen::Vector3d(-0.6, 1.2, 0.0), Eigen::Vector3d(0.0, 1.5, 1.4))));
+  const Frame now = test::exact_frame(with_person, kCamera, truth);
+  const Tracking tracking = align(live_of(now), reference, T);
+  EXPECT_EQ(tracking.status, TrackStatus::kTracked);
+  EXPECT_LT(translation_error_m(tracking, truth), 0.003);
+  EXPECT_LT(tracking.inlier_fraction, 0.95);  // the person was seen, and not taken for the room
+}
+
+TEST(Align, IgnoredPixelsAreLeftOut) {
+  const Frame frame = test::exact_frame(corner_with_ball(), kCamera, eye());
+  MaskImage left(kCamera.width_px, kCamera.height_px, 0);
+  for (int y = 0; y < left.height; ++y) std::fill_n(left.row(y), left.width / 2, std::uint8_t{255});
+  const LiveView live = live_of(frame, left);
+  ASSERT_FALSE(live.levels.front().empty());
+  for (const LivePoint& point : live.levels.front()) EXPECT_GT(point.p_camera.x(), 0.0F);
+}
+
+TEST(Align, OneWallFixesDistanceAndTiltAndHoldsTheRest) {
+  const test::Scene wall = test::plane({0, 1, 0}, 2.0);
+  const Eigen::Isometry3d T = test::looking_at({0, 0, 1}, {0, 2, 1});
+  // 2 cm nearer and tilted, and 3 cm along the wall, which nobody can see.
+  const Eigen::Isometry3d truth = T * moved(0.03, 0, 0.02, 0.01, 0.02, 0);
+  const ReferenceView reference = reference_of(test::exact_frame(wall, kCamera, T), T);
+  const Tracking tracking = align(live_of(test::exact_frame(wall, kCamera, truth)), reference, T);
+  EXPECT_EQ(tracking.status, TrackStatus::kDegenerate);
+  EXPECT_EQ(tracking.held_directions, 3);  // two shifts along the wall, one turn in it
+  EXPECT_FALSE(tracking);
+  const Eigen::Vector3d position = tracking.T_world_camera.translation();
+  EXPECT_NEAR(position.y(), truth.translation().y(), 0.001);
+  // Held, up to the turn about the wall's mean distance.
+  EXPECT_NEAR(position.x(), T.translation().x(), 0.004);
+  EXPECT_NEAR(tracking.T_world_camera.linear().col(2).dot(truth.linear().col(2)), 1.0, 1e-6);
+}
+
+TEST(Align, ColourFixesWhatOneWallDoesNot) {
+  const test::Scene wall = test::plane({0, 1, 0}, 2.0);
+  const Eigen::Isometry3d T = test::looking_at({0, 0, 1}, {0, 2, 1});
+  const Eigen::Isometry3d truth = T * moved(0.02, -0.01, 0.01, 0.005, 0.005, 0.01);
+  Frame before = test::exact_frame(wall, kCamera, T), now = test::exact_frame(wall, kCamera, truth);
+  test::paint(before, T);
+  test::paint(now, truth, 0.8, 15.0);  // and the exposure has changed
+  const Tracking tracking = align(live_of(now), reference_of(before, T), T);
+  EXPECT_EQ(tracking.status, TrackStatus::kTracked);
+  EXPECT_LT(translation_error_m(tracking, truth), 0.003);
+  EXPECT_LT(rotation_error_rad(tracking, truth), 0.002);
+}
+
+TEST(Align, IdenticalFramesDoNotMove) {
+  const Eigen::Isometry3d T = eye();
+  Frame frame = test::exact_frame(corner_with_ball(), kCamera, T);
+  test::add_depth_noise(frame, 3);
+  const Tracking tracking = align(live_of(frame), reference_of(frame, T), T);
+  EXPECT_EQ(tracking.status, TrackStatus::kTracked);
+  EXPECT_LT(translation_error_m(tracking, T), kFit_m);
+  EXPECT_LT(rotation_error_rad(tracking, T), kFit_rad);
+}
+
+TEST(Align, SeveralReferencesAreMetAtOnce) {
+  const Eigen::Isometry3d T = eye(), other = T * moved(-0.08, 0.02, 0, 0, -0.05, 0), truth = T * kStep;
+  const ReferenceView a = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
+  const ReferenceView b = reference_of(test::exact_frame(corner_with_ball(), kCamera, other), other);
+  const std::array<PosedReference, 2> both{PosedReference{&a, T}, PosedReference{&b, other}};
+  const LiveView live = live_of(test::exact_frame(corner_with_ball(), kCamera, truth));
+  const Tracking tracking = align(live, both, T);
+  EXPECT_EQ(tracking.status, TrackStatus::kTracked);
+  EXPECT_LT(translation_error_m(tracking, truth), kFit_m);
+  EXPECT_EQ(align(live, std::span<const PosedReference>(), T).status, TrackStatus::kTooFewPoints);
+}
+
+TEST(Align, A300MetreOffsetChangesNothing) {
+  const Eigen::Isometry3d T = eye();
+  Eigen::Isometry3d far_away = Eigen::Isometry3d::Identity();
+  far_away.translation() = Eigen::Vector3d(300, -300, 300);
+  const Frame before = test::exact_frame(corner_with_ball(), kCamera, T);
+  const LiveView live = live_of(test::exact_frame(corner_with_ball(), kCamera, T * kStep));
+  const Tracking here = align(live, reference_of(before, T), T);
+  const Tracking there = align(live, reference_of(before, far_away * T), far_away * T);
+  EXPECT_EQ(there.status, TrackStatus::kTracked);
+  EXPECT_TRUE((far_away.inverse() * there.T_world_camera).isApprox(here.T_world_camera, 1e-6));
+}
+
+/// What must come out of images that say nothing, or next to nothing.
+void expect_guess_kept(const DepthImage& depth_m, TrackStatus expected) {
+  const Eigen::Isometry3d T = eye();
+  Frame now = test::exact_frame(corner_with_ball(), kCamera, T);
+  const ReferenceView reference = reference_of(now, T);
+  now.depth_m = depth_m;
+  const Tracking tracking = align(live_of(now), reference, T);
+  EXPECT_EQ(tracking.status, expected) << to_string(tracking.status);
+  EXPECT_TRUE(tracking.T_world_camera.isApprox(T));
+  EXPECT_TRUE(tracking.information.allFinite());
+}
+
+TEST(Align, NoDepthKeepsTheGuess) {
+  expect_guess_kept(DepthImage(kCamera.width_px, kCamera.height_px), TrackStatus::kTooFewPoints);
+}
+
+TEST(Align, OnePixelKeepsTheGuess) {
+  DepthImage depth_m(kCamera.width_px, kCamera.height_px);
+  depth_m.at(160, 120) = 2.0F;
+  expect_guess_kept(depth_m, TrackStatus::kTooFewPoints);
+}
+
+TEST(Align, AnotherRoomIsNotTaken) {
+  expect_guess_kept(DepthImage(kCamera.width_px, kCamera.height_px, 0.6F), TrackStatus::kDiverged);
+}
+
+TEST(Align, ConstantDepthIsAWallSquareToTheCamera) {
+  Frame frame;
+  frame.depth_camera = kCamera;
+  frame.depth_m.resize(kCamera.width_px, kCamera.height_px, 2.0F);
+  const Eigen::Isometry3d T = eye();
+  const Tracking tracking = align(live_of(frame), reference_of(frame, T), T);
+  EXPECT_EQ(tracking.status, TrackStatus::kDegenerate);
+  EXPECT_EQ(tracking.held_directions, 3);
+  EXPECT_LT(translation_error_m(tracking, T), 1e-4);
+}
+
+TEST(Align, AGuessThatIsNoNumberIsRefused) {
+  const Frame frame = test::exact_frame(corner_with_ball(), kCamera, eye());
+  Eigen::Isometry3d guess = eye();
+  guess.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  const Tracking tracking = align(live_of(frame), reference_of(frame, eye()), guess);
+  EXPECT_EQ(tracking.status, TrackStatus::kDiverged);
+  EXPECT_TRUE(tracking.T_world_camera.matrix().allFinite());
+}
+
+TEST(Align, AnEmptyReferenceIsNoReference) {
+  const Frame frame = test::exact_frame(corner_with_ball(), kCamera, eye());
+  Frame nothing = frame;
+  nothing.depth_m.resize(kCamera.width_px, kCamera.height_px);
+  EXPECT_EQ(align(live_of(frame), reference_of(nothing, eye()), eye()).status, TrackStatus::kTooFewPoints);
+  EXPECT_EQ(align(live_of(frame), ReferenceView{}, eye()).status, TrackStatus::kTooFewPoints);
+}
+
+}  // namespace
+}  // namespace roomradar::align_test

@@ -1,0 +1,287 @@
+// places_test.cpp: places on disk, and the camera found among them.
+#include "mapping/localization/keyframe_database.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "app/sources/recordings/folder_source.hpp"
+#include "mapping/odometry/odometry.hpp"
+#include "mapping/types/system/error.hpp"
+#include "tests/support/exact_depth.hpp"
+#include "tests/support/painted_frame.hpp"
+#include "tests/support/recordings.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roomradar::keyframe_database_test {
+namespace {
+
+constexpr Intrinsics kCamera{320, 240, 292.5, 292.5, 159.5, 119.5};
+
+Frame painted(const Eigen::Isometry3d& T_world_camera, const test::Scene& scene = test::corner_with_ball()) {
+  Frame frame = test::exact_frame(scene, kCamera, T_world_camera);
+  test::paint(frame, T_world_camera);
+  test::add_depth_noise(frame, 7);
+  return frame;
+}
+
+Eigen::Isometry3d eye(double x_m) { return test::looking_at({x_m, -0.3, 1.2}, {x_m, 2.0, 0.6}); }
+
+Places three_places() {
+  Places places;
+  for (const double x_m : {-0.8, 0.0, 0.8})
+    places.keyframes.push_back(describe_place(painted(eye(x_m)), eye(x_m)));
+  return places;
+}
+
+Places without_features(Places places) {
+  for (Place& place : places.keyframes) {
+    place.descriptors.clear();
+    place.points_camera.clear();
+  }
+  return places;
+}
+
+double error_m(const Relocalisation& found, const Eigen::Isometry3d& truth) {
+  return (found.T_world_camera.translation() - truth.translation()).norm();
+}
+
+std::string read_bytes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+std::string refusal(const std::filesystem::path& path) {
+  try {
+    (void)read_places(path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(DescribePlace, FeaturePointsLieOnTheSurface) {
+  const Eigen::Isometry3d T = eye(0.0);
+  const Place place = describe_place(painted(T), T);
+  ASSERT_GT(place.descriptors.size(), 100U);
+  ASSERT_EQ(place.descriptors.size(), place.points_camera.size());
+  for (const Eigen::Vector3f& p : place.points_camera) {
+    const Eigen::Vector3d direction = T.linear() * (p / p.z()).cast<double>();
+    EXPECT_NEAR(static_cast<double>(p.z()), test::corner_with_ball()(T.translation(), direction), 0.1);
+  }
+  EXPECT_EQ(place.preview_camera.width_px, 160);
+  EXPECT_NEAR(place.preview_depth_mm.at(80, 60) * 1e-3, static_cast<double>(painted(T).depth_m.at(160, 120)),
+              0.05);
+}
+
+TEST(PlacesFile, ComesBackAsItWas) {
+  const test::TemporaryFolder folder;
+  const Places places = three_places();
+  write_places(places, folder.path() / "places.bin");
+  const Places read = read_places(folder.path() / "places.bin");
+  ASSERT_EQ(read.keyframes.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read.keyframes[i].T_world_camera.matrix(), places.keyframes[i].T_world_camera.matrix());
+    EXPECT_EQ(read.keyframes[i].descriptors, places.keyframes[i].descriptors);
+    EXPECT_EQ(read.keyframes[i].points_camera, places.keyframes[i].points_camera);
+    EXPECT_EQ(read.keyframes[i].preview_depth_mm.pixels, places.keyframes[i].preview_depth_mm.pixels);
+    EXPECT_EQ(read.keyframes[i].preview_camera, places.keyframes[i].preview_camera);
+    ASSERT_GT(read.keyframes[i].patches.size(), 100U);
+    ASSERT_EQ(read.keyframes[i].patches.size(), places.keyframes[i].patches.size());
+    for (std::size_t k = 0; k < read.keyframes[i].patches.size(); ++k) {
+      const SurfacePatch &is = read.keyframes[i].patches[k], &was = places.keyframes[i].patches[k];
+      EXPECT_EQ(is.point, was.point);
+      EXPECT_EQ(is.normal, was.normal);
+      EXPECT_EQ(is.along, was.along);
+      EXPECT_EQ(is.size, was.size);
+      EXPECT_EQ(is.bits, was.bits);
+    }
+  }
+  write_places({}, folder.path() / "none.bin");
+  EXPECT_TRUE(read_places(folder.path() / "none.bin").keyframes.empty());
+}
+
+TEST(PlacesFile, WhatIsCutOrAlteredIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "places.bin";
+  write_places(three_places(), path);
+  const std::string whole = read_bytes(path);
+  for (const std::size_t size : {std::size_t{0}, std::size_t{4}, std::size_t{11}, std::size_t{17},
+                                 whole.size() / 2, whole.size() - 1}) {
+    write_bytes(path, whole.substr(0, size));
+    EXPECT_NE(refusal(path).find("places.bin"), std::string::npos) << size << ": " << refusal(path);
+  }
+  for (const std::size_t at : {std::size_t{13}, std::size_t{100}, whole.size() / 2, whole.size() - 3}) {
+    std::string altered = whole;
+    altered[at] = static_cast<char>(altered[at] ^ 0x10);
+    write_bytes(path, altered);
+    EXPECT_NE(refusal(path).find("altered"), std::string::npos) << at << ": " << refusal(path);
+  }
+  std::string later = whole;
+  later[8] = 9;
+  write_bytes(path, later);
+  EXPECT_NE(refusal(path).find("version 9"), std::string::npos) << refusal(path);
+  write_bytes(path, "garbage that is no file of places at all");
+  EXPECT_NE(refusal(path).find("not a file of this kind"), std::string::npos);
+  EXPECT_NE(refusal(folder.path() / "absent.bin").find("absent.bin"), std::string::npos);
+}
+
+TEST(PlacesFile, APlaceThatNoMapReachesIsRefused) {
+  const test::TemporaryFolder folder;
+  for (const double away_m : {-1.1e5, 1e12}) {
+    Places places = three_places();
+    places.keyframes.back().T_world_camera.translation().z() = away_m;
+    write_places(places, folder.path() / "far.bin");
+    EXPECT_NE(refusal(folder.path() / "far.bin").find("where no map reaches"), std::string::npos) << away_m;
+  }
+}
+
+TEST(PlacesFile, AViewOfMoreThanAnySearchComparesIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "crowded.bin";
+  const auto most = static_cast<std::size_t>(kMostDescribed);
+  for (const std::size_t count : {most, most + 1}) {
+    const std::string wanted = count == most ? "accepted" : "a view of 10001 ";
+    Places features = three_places(), patches = features;
+    features.keyframes.back().points_camera.resize(count, Eigen::Vector3f::Zero());
+    features.keyframes.back().descriptors.resize(count);
+    write_places(features, path);
+    EXPECT_NE(refusal(path).find(wanted), std::string::npos) << refusal(path);
+    patches.keyframes.back().patches.resize(count);
+    write_places(patches, path);
+    EXPECT_NE(refusal(path).find(wanted), std::string::npos) << refusal(path);
+  }
+}
+
+TEST(PlacesFile, SizesThatLieAreRefusedBeforeMemoryIsTaken) {
+  // A file whose checksum is right and whose counts are not: 4 billion views, none of them there.
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = folder.path() / "places.bin";
+  std::string bytes("RRPLACES\x02\0\0\0\xff\xff\xff\xff", 16);
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 1099511628211ULL;
+  bytes.append(reinterpret_cast<const char*>(&hash), sizeof(hash));
+  write_bytes(path, bytes);
+  EXPECT_NE(refusal(path).find("cut short"), std::string::npos) << refusal(path);
+}
+
+TEST(PlacesFile, AFolderThatIsNotThereIsNamed) {
+  EXPECT_THROW(write_places({}, "/no/such/folder/places.bin"), Error);
+}
+
+TEST(Relocalise, FindsAViewBetweenPlaces) {
+  const Eigen::Isometry3d truth = eye(0.3) * Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY());
+  const Relocalisation found = relocalise(painted(truth), three_places());
+  ASSERT_TRUE(found) << to_string(found.status);
+  EXPECT_LT(error_m(found, truth), 0.015);
+  EXPECT_GE(found.feature_inliers, 20);
+  EXPECT_GT(found.depth_agreement, 0.7);
+}
+
+TEST(Relocalise, FollowsTheWorldWhenItIsTurned) {
+  Places places = three_places();
+  const Eigen::Isometry3d T_new_old =
+      Eigen::Translation3d(300.0, 2.0, -1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX());
+  transform(places, T_new_old);
+  const Relocalisation found = relocalise(painted(eye(0.1)), places);
+  ASSERT_TRUE(found);
+  EXPECT_LT(error_m(found, T_new_old * eye(0.1)), 0.015);
+}
+
+TEST(Relocalise, AnotherRoomIsNotFound) {
+  using namespace test;
+  const Scene other = nearest_of(plane({0, 0, 1}, 0.0), plane({0.6, 0.8, 0}, 2.0));
+  const Eigen::Isometry3d elsewhere = looking_at({40, -30, 1.2}, {42, -28, 0.7});
+  const Scene shifted = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
+    return other(from - Eigen::Vector3d(40, -30, 0), direction);
+  };
+  EXPECT_FALSE(relocalise(painted(elsewhere, shifted), three_places()));
+  EXPECT_FALSE(relocalise(painted(elsewhere, shifted), without_features(three_places())));
+}
+
+TEST(Relocalise, SameLooksWithOtherDepthAreUnproven) {
+  // A photograph of the room: every feature is there, on one flat board.
+  Frame photograph = painted(eye(0.0));
+  std::fill(photograph.depth_m.pixels.begin(), photograph.depth_m.pixels.end(), 1.0F);
+  EXPECT_FALSE(relocalise(photograph, three_places()));
+}
+
+TEST(Relocalise, FeaturesWithoutTheDepthAreUnproven) {
+  // The upper part of the image is the room's, features and all; the lower part is something else, nearer.
+  Frame frame = painted(eye(0.0));
+  for (int y = 2 * frame.depth_m.height / 5; y < frame.depth_m.height; ++y) {
+    std::fill_n(frame.depth_m.row(y), frame.depth_m.width, 0.7F);
+  }
+  const Places one{{three_places().keyframes[1]}};
+  EXPECT_TRUE(relocalise(painted(eye(0.0)), one));
+  EXPECT_EQ(relocalise(frame, one).status, RelocalisationStatus::kUnproven);
+}
+
+TEST(Relocalise, WithoutColourTheDepthDecides) {
+  Frame frame = painted(eye(0.05));
+  frame.colour.resize(0, 0);
+  const Relocalisation found = relocalise(frame, without_features(three_places()));
+  ASSERT_TRUE(found) << to_string(found.status);
+  EXPECT_LT(error_m(found, eye(0.05)), 0.03);
+  EXPECT_EQ(found.feature_inliers, 0);
+}
+
+TEST(Relocalise, WithoutColourItIsFoundAmongMoreViewsThanAreTried) {
+  // The only one that helps is the last of 130; the others look elsewhere.
+  Places places;
+  Place elsewhere = describe_place(painted(eye(0.0)), eye(0.0));
+  for (std::uint16_t& mm : elsewhere.preview_depth_mm.pixels) mm = static_cast<std::uint16_t>(mm + 1000);
+  places.keyframes.assign(129, elsewhere);
+  places.keyframes.push_back(three_places().keyframes[1]);
+  Frame frame = painted(eye(0.05));
+  frame.colour.resize(0, 0);
+  const Relocalisation found = relocalise(frame, without_features(places));
+  ASSERT_TRUE(found) << to_string(found.status);
+  EXPECT_EQ(found.keyframe, 129);
+  EXPECT_LT(error_m(found, eye(0.05)), 0.03);
+}
+
+TEST(Relocalise, SaysWhyItCannot) {
+  EXPECT_EQ(relocalise(painted(eye(0.0)), {}).status, RelocalisationStatus::kNoPlaces);
+  Frame dark = painted(eye(0.0));
+  std::fill(dark.depth_m.pixels.begin(), dark.depth_m.pixels.end(), 0.0F);
+  EXPECT_EQ(relocalise(dark, three_places()).status, RelocalisationStatus::kNoDepth);
+}
+
+TEST(RelocaliseOnARecording, KitchenFramesAreFoundAgain) {
+  ROOMRADAR_RECORDING_OR_SKIP(folder, "kitchen");
+  const auto source = open_folder(folder);
+  Odometry odometry;
+  Places places;
+  Frame frame;
+  int asked = 0, right = 0, wrong = 0;
+  while (source->next(frame).status == ReadStatus::kFrame && frame.index < 500) {
+    ASSERT_TRUE(frame.T_world_camera);
+    if (frame.index < 400) {
+      if (frame.index % 4 == 0) odometry.add_posed(frame, *frame.T_world_camera);
+      continue;
+    }
+    if (places.keyframes.empty()) places = odometry.take_places();
+    if (frame.index % 10 != 0) continue;
+    ++asked;
+    const Relocalisation found = relocalise(frame, places);
+    if (!found) continue;
+    const Eigen::Isometry3d error = frame.T_world_camera->inverse() * found.T_world_camera;
+    const bool near = error.translation().norm() < 0.05 && Eigen::AngleAxisd(error.linear()).angle() < 0.0873;
+    right += near ? 1 : 0;
+    // The recorded poses are off by some centimetres themselves.
+    wrong += error.translation().norm() > 0.15 ? 1 : 0;
+  }
+  EXPECT_EQ(asked, 10);
+  EXPECT_GE(right, 9);
+  EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace roomradar::keyframe_database_test

@@ -1,0 +1,363 @@
+// map_pairs_test.cpp: two maps of painted rooms: how they stand to each other, joined, and compared.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "mapping/map/map_diff.hpp"
+#include "mapping/map/map_merge.hpp"
+#include "mapping/map/registration.hpp"
+#include "mapping/surface/surface_extraction.hpp"
+#include "mapping/types/system/error.hpp"
+#include "tests/support/error_of.hpp"
+#include "tests/support/exact_depth.hpp"
+#include "tests/support/painted_frame.hpp"
+
+namespace roomradar::map_pairs_test {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using test::Scene;
+
+constexpr Intrinsics kCamera{160, 120, 146.0, 146.0, 80.0, 60.0};
+constexpr double kVoxel_m = 0.02;
+
+/// Floor, two walls in a corner, and a chest; the corner is at x = 2, y = 2.
+Scene room() {
+  return test::nearest_of(
+      test::nearest_of(test::plane(Vector3d::UnitZ(), 0.0), test::plane(Vector3d::UnitY(), 2.0)),
+      test::nearest_of(test::plane(Vector3d::UnitX(), 2.0),
+                       test::box({Vector3d(0.9, 1.2, 0.0), Vector3d(1.5, 1.6, 0.5)})));
+}
+Scene with(const Scene& scene, const Eigen::AlignedBox3d& thing) {
+  return test::nearest_of(scene, test::box(thing));
+}
+const Eigen::AlignedBox3d kThing(Vector3d(0.2, 1.0, 0.0), Vector3d(0.5, 1.25, 0.3));
+
+/// A map as a prescan leaves it, in a world of its own.
+SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& T_own_world, unsigned seed,
+              double voxel_m = kVoxel_m) {
+  SavedMap map;
+  map.octree = StaticMap(voxel_m);
+  for (int i = 0; i < 16; ++i) {
+    const double along = from_m + (to_m - from_m) * i / 15.0;
+    const Isometry3d T_world_camera =
+        test::looking_at(Vector3d(along, -0.6 + 0.2 * std::sin(i), 1.4), Vector3d(along + 0.4, 1.7, 0.5));
+    Frame frame = test::exact_frame(scene, kCamera, T_world_camera);
+    test::paint(frame, T_world_camera);
+    if (seed > 0) test::add_depth_noise(frame, seed + static_cast<unsigned>(i));
+    frame.index = i;
+    const Isometry3d T_own_camera = T_own_world * T_world_camera;
+    EXPECT_EQ(map.octree.fuse(frame, T_own_camera), FuseStatus::kFused);
+    if (i % 2 == 0) map.places.keyframes.push_back(describe_place(frame, T_own_camera));
+    map.trajectory.push_back({i, i / 30.0, T_own_camera});
+  }
+  map.mesh = extract_surface(map.octree);
+  map.info.source = "painted";
+  map.info.frames_read = map.info.frames_fused = 16;
+  return map;
+}
+
+Isometry3d turned(double angle_rad, const Vector3d& shift_m) {
+  Isometry3d T = Isometry3d::Identity();
+  T.linear() = Eigen::AngleAxisd(angle_rad, Vector3d(0.1, 0.2, 1.0).normalized()).matrix();
+  T.translation() = shift_m;
+  return T;
+}
+
+class MapPairs : public ::testing::Test {
+ protected:
+  inline static const Isometry3d kT_b_world = turned(0.7, {1.3, -0.4, 0.2});
+  inline static const Isometry3d kT_a_b = kT_b_world.inverse();  // a's world is the room's
+  static const SavedMap& a() {
+    static const SavedMap map = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
+    return map;
+  }
+  static const SavedMap& b() {
+    static const SavedMap map = scan(room(), 0.2, 1.2, kT_b_world, 1000);
+    return map;
+  }
+  /// As far as a point within 2 m of the origin can be off.
+  static double gap_m(const Isometry3d& T, const Isometry3d& U) {
+    double worst_m = 0.0;
+    for (const Vector3d& p : {Vector3d(2, 2, 0), Vector3d(-1, 2, 1), Vector3d(1, 0, 1.4)})
+      worst_m = std::max(worst_m, (T * p - U * p).norm());
+    return worst_m;
+  }
+};
+
+TEST_F(MapPairs, AreRegisteredWithinAFifthOfAVoxel) {
+  const Registration found = register_maps(a(), b());
+  ASSERT_TRUE(found) << describe(found);
+  EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
+  EXPECT_LT(found.residual_m, 0.25 * kVoxel_m);
+  EXPECT_GT(found.agreement, 0.95);
+  EXPECT_GT(found.overlap, 0.3);
+  const Registration again = register_maps(a(), b());
+  EXPECT_EQ(again.T_a_b.matrix(), found.T_a_b.matrix());
+}
+
+TEST_F(MapPairs, ASmallPartOfALargeMapIsRegistered) {
+  SavedMap hall = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
+  const auto first = static_cast<std::uint32_t>(hall.mesh.vertices.size());
+  for (const Eigen::Vector3f& corner :
+       {Eigen::Vector3f(0, 30, 0), Eigen::Vector3f(60, 30, 0), Eigen::Vector3f(0, 90, 0)})
+    hall.mesh.vertices.push_back(corner);
+  hall.mesh.triangles.push_back({first, first + 1, first + 2});  // where b saw nothing
+  const Registration found = register_maps(hall, b());
+  ASSERT_TRUE(found) << describe(found);
+  EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
+}
+
+TEST_F(MapPairs, ALargeMapIsRegisteredInASmallPartOfIt) {
+  SavedMap hall = scan(room(), 0.2, 1.2, kT_b_world, 1000);
+  const auto first = static_cast<std::uint32_t>(hall.mesh.vertices.size());
+  for (const Eigen::Vector3f& corner :
+       {Eigen::Vector3f(0, 30, 0), Eigen::Vector3f(60, 30, 0), Eigen::Vector3f(0, 90, 0)})
+    hall.mesh.vertices.push_back(corner);
+  hall.mesh.triangles.push_back({first, first + 1, first + 2});  // where a saw nothing
+  const Registration found = register_maps(a(), hall);
+  ASSERT_TRUE(found) << describe(found);
+  EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
+}
+
+TEST_F(MapPairs, AnotherRoomIsRefused) {
+  // The same camera path, other walls, painted by other places.
+  const Scene other = test::nearest_of(test::plane(Vector3d(0.3, 1.0, 0.0).normalized(), 1.6),
+                                       test::plane(Vector3d::UnitZ(), -0.3));
+  const Registration found = register_maps(a(), scan(other, -0.6, 0.8, Isometry3d::Identity(), 7));
+  EXPECT_FALSE(found) << describe(found);
+}
+
+TEST_F(MapPairs, ALookAlikeIsRefused) {
+  // The wall with its paint and the floor are the same; the room round them is another: its side wall stands
+  // a metre further in, and boxes stand where a knows free space.
+  const Scene look_alike =
+      with(with(test::nearest_of(test::plane(Vector3d::UnitY(), 2.0), test::plane(Vector3d::UnitX(), 1.0)),
+                {Vector3d(-0.8, 0.6, -0.5), Vector3d(-0.1, 1.4, 0.7)}),
+           {Vector3d(0.2, 0.5, -0.5), Vector3d(0.9, 1.3, 0.6)});
+  const Registration found = register_maps(a(), scan(look_alike, -0.6, 0.8, Isometry3d::Identity(), 7));
+  EXPECT_FALSE(found) << describe(found);
+}
+
+TEST_F(MapPairs, WithoutColourNothingIsRecognised) {
+  SavedMap blind = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 3);
+  for (Place& place : blind.places.keyframes) {
+    place.points_camera.clear();
+    place.descriptors.clear();
+  }
+  EXPECT_EQ(register_maps(a(), blind).status, RegistrationStatus::kNoFeatures);
+  EXPECT_EQ(register_maps(a(), SavedMap{}).status, RegistrationStatus::kNoOverlap);
+}
+
+TEST_F(MapPairs, MergedWithAFinerMapItSaysTheFinerResolution) {
+  SavedMap coarse;
+  coarse.octree = StaticMap(2.0 * kVoxel_m);
+  coarse.info.settings["resolution_m"] = std::to_string(coarse.octree.resolution_m());
+  SavedMap fine = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
+  fine.info.settings["resolution_m"] = std::to_string(fine.octree.resolution_m());
+  const SavedMap merged = merge_maps(std::move(coarse), fine, Isometry3d::Identity());
+  EXPECT_EQ(merged.octree.resolution_m(), fine.octree.resolution_m());
+  EXPECT_EQ(merged.info.settings.at("resolution_m"), fine.info.settings.at("resolution_m"));
+}
+
+TEST_F(MapPairs, WhatLiesPastTheReachOfTheFinerCellsIsRefusedInWords) {
+  SavedMap far, fine;
+  far.info.source = "corridor";
+  far.octree = StaticMap(0.01);
+  far.octree.add_evidence(MapLeaf{{7'000, 0, 0}, 8, -1.0F});
+  fine.octree = StaticMap(0.002);
+  fine.octree.add_evidence(MapLeaf{{0, 0, 0}, 8, -1.0F});
+  const std::string fault =
+      test::error_of([&] { (void)merge_maps(std::move(far), fine, Isometry3d::Identity()); });
+  EXPECT_NE(fault.find("the map of corridor: reaches 70.1 m"), std::string::npos) << fault;
+  EXPECT_NE(fault.find("a map reaches 65.5 m"), std::string::npos) << fault;
+}
+
+TEST_F(MapPairs, MergedItsSurfaceIsAsCloseAsTheFirstOnes) {
+  const auto triangles = [](const char* deviation_m) {
+    SavedMap first = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1);
+    if (*deviation_m != 0) first.info.settings[kDeviationSetting] = deviation_m;
+    return merge_maps(std::move(first), b(), kT_a_b).mesh.triangles.size();
+  };
+  const std::size_t usual = triangles("");
+  EXPECT_EQ(triangles("0.002"), usual);
+  EXPECT_LT(triangles("0.02"), usual * 3 / 4);
+  for (const char* impossible : {"", "-1", "nan", "inf", "2 mm", "1e99"}) {
+    MapInfo info;
+    info.settings[kDeviationSetting] = impossible;
+    EXPECT_THROW((void)surface_config_of(info), Error) << impossible;
+  }
+}
+
+TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
+  const SavedMap merged = merge_maps(scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1), b(), kT_a_b);
+  EXPECT_EQ(merged.places.keyframes.size(), a().places.keyframes.size() + b().places.keyframes.size());
+  ASSERT_EQ(merged.trajectory.size(), 32U);
+  for (std::size_t i = 1; i < merged.trajectory.size(); ++i)
+    EXPECT_GT(merged.trajectory[i].stamp_s, merged.trajectory[i - 1].stamp_s);
+  EXPECT_EQ(merged.info.frames_fused, 32);
+
+  std::size_t off = 0, only_b = 0, lost = 0;
+  for (const Eigen::Vector3f& vertex : merged.mesh.vertices) {
+    const Vector3d p = merged.mesh.origin + vertex.cast<double>();
+    const double to_walls_m = std::min({std::abs(p.z()), std::abs(p.y() - 2.0), std::abs(p.x() - 2.0)});
+    const Eigen::AlignedBox3d chest(Vector3d(0.9, 1.2, 0.0), Vector3d(1.5, 1.6, 0.5));
+    const double to_chest_m = chest.contains(p)
+                                  ? std::min((p - chest.min()).minCoeff(), (chest.max() - p).minCoeff())
+                                  : chest.exteriorDistance(p);
+    if (std::min(to_walls_m, to_chest_m) > kVoxel_m) ++off;
+  }
+  EXPECT_LT(off, merged.mesh.vertices.size() / 50);
+  // Every point on either surface is on that of both.
+  for (const Vector3d& p_b : sample_surface(b().mesh, 2000)) {
+    const Vector3d p = kT_a_b * p_b;
+    const auto at = distance_at(merged.octree, p);
+    if (!at || std::abs(at->distance_m) > kVoxel_m) ++lost;
+    if (!a().octree.sample_at(p)) ++only_b;
+  }
+  EXPECT_GT(only_b, 100U);
+  EXPECT_LT(lost, 60U);  // 3 %: at rims, where not all eight samples are known
+}
+
+TEST_F(MapPairs, InOneWorldAddingIsExact) {
+  StaticMap sum(kVoxel_m);
+  add_map(a().octree, Isometry3d::Identity(), sum);
+  EXPECT_EQ(sum.counts().occupied_leaves, a().octree.counts().occupied_leaves);
+  EXPECT_EQ(sum.counts().free_leaves, a().octree.counts().free_leaves);
+  sum.visit_samples([](const SurfaceSample& sample) {
+    const auto before =
+        a().octree.sample_at((sample.voxel.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m);
+    ASSERT_TRUE(before);
+    EXPECT_NEAR(before->distance_m, sample.distance_m, 1e-5F);
+  });
+}
+
+TEST_F(MapPairs, AFinerGridTakesEachVoxelOnce) {
+  // One free cube and one occupied voxel, turned, into half the voxel size: what the centres say.
+  StaticMap from(0.04), into(0.02);
+  from.add_evidence(MapLeaf{{8, 8, 8}, 8, -1.0F});
+  from.add_evidence(MapLeaf{{20, 8, 8}, 1, 2.0F});
+  const Isometry3d T = turned(0.5, {0.013, 0.2, -0.1});
+  add_map(from, T, into);
+  int wrong = 0, known = 0;
+  for (int z = -40; z < 80; ++z)
+    for (int y = -40; y < 80; ++y)
+      for (int x = -40; x < 100; ++x) {
+        const Vector3d p = (Vector3d(x, y, z) + Vector3d::Constant(0.5)) * 0.02;
+        const Occupancy expected = from.occupancy_at(T.inverse() * p);
+        if (into.occupancy_at(p) != expected) ++wrong;
+        if (expected != Occupancy::kUnknown) ++known;
+      }
+  EXPECT_GT(known, 4000);
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(MapPairs, AFinerGridTakesTheWholeOfEachSample) {
+  // A tilted plane, and what it is in cells of an half, a third and a quarter of the edge: no holes.
+  constexpr double kCoarse_m = 0.04;
+  const Vector3d normal = Vector3d(0.2, 0.3, 1.0).normalized();
+  StaticMap from(kCoarse_m);
+  for (int y = -12; y < 12; ++y)
+    for (int x = -12; x < 12; ++x)
+      for (int z = -12; z < 12; ++z) {
+        const Vector3d p = (Vector3d(x, y, z) + Vector3d::Constant(0.5)) * kCoarse_m;
+        const double distance_m = normal.dot(p);
+        if (std::abs(distance_m) > 3.0 * kCoarse_m) continue;
+        SurfaceSample sample;
+        sample.voxel = {x, y, z};
+        sample.distance_m = static_cast<float>(distance_m);
+        sample.weight = 4.0F;
+        sample.occupancy = Occupancy::kFree;
+        from.add_evidence(MapLeaf{sample.voxel, 1, -1.0F});
+        from.add_evidence(sample);
+      }
+  for (const int parts : {2, 3, 4}) {
+    StaticMap into(kCoarse_m / parts);
+    add_map(from, Isometry3d::Identity(), into);
+    int missing = 0, wrong = 0, all = 0;
+    for (double y = -0.3; y < 0.3; y += 0.01)
+      for (double x = -0.3; x < 0.3; x += 0.01) {
+        const Vector3d p(x, y, -(normal.x() * x + normal.y() * y) / normal.z());
+        const auto at = into.sample_at(p);
+        ++all;
+        missing += at ? 0 : 1;
+        wrong += at && std::abs(at->distance_m) > kCoarse_m / parts ? 1 : 0;
+      }
+    EXPECT_EQ(missing, 0) << parts << " of " << all;
+    EXPECT_EQ(wrong, 0) << parts;
+  }
+}
+
+TEST_F(MapPairs, CellsThatDifferByMoreThanFourTimesAreNotJoined) {
+  SavedMap coarse, fine;
+  coarse.octree = StaticMap(0.05);
+  fine.octree = StaticMap(0.01);
+  const std::string fault =
+      test::error_of([&] { (void)merge_maps(std::move(coarse), fine, Isometry3d::Identity()); });
+  EXPECT_NE(fault.find("are 0.01 m and of the other 0.05 m"), std::string::npos) << fault;
+}
+
+TEST_F(MapPairs, TwoScansOfOneRoomDoNotDiffer) {
+  EXPECT_TRUE(diff_maps(a().octree, b().octree, kT_a_b).empty());
+  EXPECT_TRUE(diff_maps(a().octree, a().octree, Isometry3d::Identity()).empty());
+}
+
+TEST_F(MapPairs, AThingThatAppearsIsMeasuredAndVanishesTheOtherWayRound) {
+  const SavedMap after = scan(with(room(), kThing), -0.6, 0.8, kT_b_world, 50);
+  const std::vector<Change> appeared = diff_maps(a().octree, after.octree, kT_a_b);
+  ASSERT_EQ(appeared.size(), 1U);
+  EXPECT_EQ(appeared[0].kind, ChangeKind::kAppeared);
+  // Its front and top are seen; what lies behind them is no longer free.
+  EXPECT_LT((appeared[0].box_world.center() - kThing.center()).norm(), 0.05);
+  EXPECT_LT((appeared[0].box_world.sizes() - kThing.sizes()).cwiseAbs().maxCoeff(), 0.08);
+  EXPECT_NEAR(appeared[0].volume_m3, kThing.volume(), 0.4 * kThing.volume());
+  const std::vector<Change> vanished = diff_maps(after.octree, a().octree, kT_b_world);
+  ASSERT_EQ(vanished.size(), 1U);
+  EXPECT_EQ(vanished[0].kind, ChangeKind::kVanished);
+  EXPECT_LT((kT_a_b * vanished[0].position_world - appeared[0].position_world).norm(), 0.02);
+}
+
+TEST_F(MapPairs, WhatOneMapHasNotSeenHasNotChanged) {
+  // The thing stands where a never looked.
+  const Eigen::AlignedBox3d far_off(Vector3d(0.2, -1.6, 0.0), Vector3d(0.6, -1.2, 0.4));
+  const SavedMap after = scan(with(room(), far_off), -0.6, 0.8, Isometry3d::Identity(), 60);
+  EXPECT_TRUE(diff_maps(a().octree, after.octree, Isometry3d::Identity()).empty());
+}
+
+TEST_F(MapPairs, PosesThatAreOffAreNoChange) {
+  const Isometry3d T_off(Eigen::Translation3d(0.02, -0.05, 0.01));
+  EXPECT_TRUE(diff_maps(a().octree, b().octree, T_off * kT_a_b).empty());
+  DiffConfig trusting;
+  trusting.max_pose_error_m = 0.0;
+  EXPECT_FALSE(diff_maps(a().octree, b().octree, T_off * kT_a_b, trusting).empty());
+}
+
+TEST(MapDiff, OfASolidCubeTheSkinHasChanged) {
+  constexpr int kEdge = 16;
+  StaticMap before(0.02), after(0.02);
+  before.add_evidence(MapLeaf{{-64, -64, -64}, 64, -2.0F});
+  before.add_evidence(MapLeaf{{-64, -64, 0}, 64, -2.0F});
+  after.add_evidence(MapLeaf{{-48, -48, -16}, kEdge, 3.0F});
+  const std::vector<Change> changes = diff_maps(before, after, Isometry3d::Identity());
+  ASSERT_EQ(changes.size(), 1U);
+  constexpr int kInside = kEdge - 2;
+  EXPECT_EQ(changes[0].surface_world.size(), kEdge * kEdge * kEdge - kInside * kInside * kInside);
+  EXPECT_NEAR(changes[0].box_world.sizes().minCoeff(), kEdge * 0.02, 1e-9);
+}
+
+TEST(SampleSurface, SpreadsPointsByArea) {
+  Mesh mesh;
+  mesh.origin = Vector3d(10, 0, 0);
+  mesh.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 1, 0}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const std::vector<Vector3d> points = sample_surface(mesh, 400);
+  ASSERT_EQ(points.size(), 400U);
+  EXPECT_EQ(std::count_if(points.begin(), points.end(), [](const Vector3d& p) { return p.z() < 1.0; }), 300);
+  for (const Vector3d& p : points) EXPECT_TRUE(p.x() >= 10.0 && p.y() >= 0.0 && p.x() <= 13.0);
+  EXPECT_TRUE(sample_surface(Mesh{}, 10).empty());
+}
+
+}  // namespace
+}  // namespace roomradar::map_pairs_test

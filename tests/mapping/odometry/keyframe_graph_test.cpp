@@ -1,0 +1,256 @@
+// keyframe_graph_test.cpp: keyframes kept and restored, loops closed where drift explains them, and refused
+// where it does not.
+#include "mapping/odometry/keyframe_graph.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mapping/odometry/keyframe_job.hpp"
+#include "mapping/types/trajectory.hpp"
+#include "tests/support/noisy_room.hpp"
+
+namespace roomradar::keyframe_graph_test {
+namespace {
+
+using test::frame_at, test::on_path;
+
+/// One keyframe of a frame, thought to be at T_world_camera.
+Keyframe keyframe_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double way_m) {
+  ViewPyramid pyramid;
+  make_pyramid(frame, {}, pyramid);
+  const Image<std::uint8_t> measured(pyramid.levels[0].camera.width_px, pyramid.levels[0].camera.height_px,
+                                     1);
+  return {frame.index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)), 0,
+          way_m};
+}
+
+/// A camera goes away and comes back to where it was at its first keyframe. Drift puts the last keyframe
+/// `drift` off.
+struct RoundTrip {
+  Eigen::Isometry3d T_first = on_path(0, 1);
+  Eigen::Isometry3d T_last = on_path(0, 1) * Eigen::Translation3d(0.03, 0.0, 0.02);
+  Frame first = frame_at(T_first, 0), last = frame_at(T_last, 9);
+  Places places;
+  KeyframeGraph graph;
+
+  RoundTrip(const Eigen::Isometry3d& drift, double way_m) {
+    graph.keyframes = {keyframe_of(first, T_first, 0.0), keyframe_of(last, T_last * drift, way_m)};
+    // In between, away from both: three keyframes that see nothing of this.
+    for (int i = 1; i <= 3; ++i) {
+      Keyframe blind = graph.keyframes[0];
+      blind.view = std::make_shared<const StoredView>([&] {
+        StoredView view = *blind.view;
+        std::fill(view.inverse_depth.pixels.begin(), view.inverse_depth.pixels.end(), std::uint16_t{0});
+        return view;
+      }());
+      blind.T_world_camera.translation().x() += 3.0 * i;
+      blind.way_m = way_m * i / 4.0;
+      graph.keyframes.insert(graph.keyframes.end() - 1, blind);
+    }
+    places.keyframes.push_back(describe_place(first, T_first));
+    for (int i = 1; i <= 3; ++i)
+      places.keyframes.push_back(
+          {i, graph.keyframes[static_cast<std::size_t>(i)].T_world_camera, {}, {}, {}, {}, {}});
+  }
+  KeyframeJobResult run_job() const {
+    return run({last, graph, WarmKeyframes(8), &places, nullptr},
+               {{{}, {.max_correction_m = 0.25F}, {}}, {}, {}});
+  }
+};
+
+TEST(StoredView, ComesBackWithinAThirtiethOfTheNoise) {
+  ViewPyramid before, after;
+  make_pyramid(frame_at(on_path(0, 1), 0), {}, before);
+  const Image<std::uint8_t> measured(320, 240, 1);
+  restore(store(before, measured), {}, after);
+  ASSERT_EQ(after.levels.size(), before.levels.size());
+  for (std::size_t level = 0; level < before.levels.size(); ++level) {
+    EXPECT_EQ(after.levels[level].camera, before.levels[level].camera);
+    EXPECT_EQ(after.levels[level].intensity.pixels.size(), before.levels[level].intensity.pixels.size());
+  }
+  const ViewPyramid::Level &a = before.levels[0], &b = after.levels[0];
+  for (std::size_t i = 0; i < a.inverse_depth_per_m.pixels.size(); ++i) {
+    ASSERT_NEAR(b.inverse_depth_per_m.pixels[i], a.inverse_depth_per_m.pixels[i],
+                0.51F * kInverseDepthStep_per_m);
+    ASSERT_NEAR(b.intensity.pixels[i], a.intensity.pixels[i], 1.0F);
+  }
+}
+
+TEST(StoredView, HasNoIntensityWhereThereWasNoColour) {
+  ViewPyramid before, after;
+  Frame frame = frame_at(on_path(0, 1), 0);
+  make_pyramid(frame.depth_m, frame.depth_camera, {}, before);
+  restore(store(before, Image<std::uint8_t>(320, 240, 1)), {}, after);
+  for (const ViewPyramid::Level& level : after.levels) EXPECT_TRUE(level.intensity.empty());
+}
+
+TEST(WarmKeyframes, ForgetsTheOneThatWasNotAskedForTheLongest) {
+  WarmKeyframes warm(2);
+  warm.put(1, std::make_shared<WarmKeyframe>());
+  warm.put(2, std::make_shared<WarmKeyframe>());
+  const auto one = warm.find(1);
+  warm.put(3, std::make_shared<WarmKeyframe>());
+  EXPECT_EQ(warm.find(1), one);
+  EXPECT_EQ(warm.find(2), nullptr);
+  EXPECT_NE(warm.find(3), nullptr);
+  warm.put(3, one);  // in place of what was held
+  EXPECT_EQ(warm.find(3), one);
+  EXPECT_EQ(warm.find(1), one);
+}
+
+TEST(KeyframeGraph, ALoopIsFoundByItsLooksThoughDriftHasParted) {
+  // 1 m and 17 degrees off after 30 m: too far for the poses to suggest it.
+  const Eigen::Isometry3d drift =
+      Eigen::Translation3d(0.9, 0.1, 0.4) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
+  const RoundTrip trip(drift, 30.0);
+  ASSERT_GT(view_distance(trip.graph.keyframes[0].T_world_camera.inverse() *
+                          trip.graph.keyframes[4].T_world_camera),
+            KeyframeGraphConfig{}.furthest);
+  const KeyframeJobResult result = trip.run_job();
+  EXPECT_EQ(result.graph.loops_found, 1);
+  const Eigen::Isometry3d error = trip.T_last.inverse() * result.graph.keyframes.back().T_world_camera;
+  EXPECT_LT(error.translation().norm(), 0.01);
+  EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.01);
+}
+
+TEST(KeyframeGraph, ALookAlikePlaceFurtherOffThanDriftIsAnotherPlace) {
+  // The same looks and the same depth, 6 m away after a way of 7 m: the room next door has the same kitchen.
+  const RoundTrip trip(Eigen::Isometry3d(Eigen::Translation3d(6.0, 0.0, 0.0)), 7.0);
+  const KeyframeJobResult result = trip.run_job();
+  EXPECT_EQ(result.graph.loops_found, 0);
+  EXPECT_EQ(result.graph.loops_rejected, 1);
+  EXPECT_TRUE(
+      result.graph.keyframes.back().T_world_camera.isApprox(trip.graph.keyframes.back().T_world_camera));
+}
+
+TEST(KeyframeGraph, AJoinMustAgreeBothWays) {
+  // Another room's view where the first one's should be: nothing is joined.
+  RoundTrip trip(Eigen::Isometry3d::Identity(), 3.0);
+  const test::Scene other = test::nearest_of(test::plane({0, 1, 0}, 1.4), test::sphere({0.3, 1.0, 0.9}, 0.4));
+  trip.graph.keyframes.back() = keyframe_of(frame_at(trip.T_last, 9, other), trip.T_last, 3.0);
+  WarmKeyframes warm(4);
+  EXPECT_FALSE(join(trip.graph, 0, 4, trip.T_first.inverse() * trip.T_last, {}, warm));
+  EXPECT_EQ(trip.graph.loops_rejected, 1);
+  EXPECT_TRUE(trip.graph.constraints.empty());
+}
+
+TEST(KeyframeGraph, JoiningAllAnewDoesNotDependOnThreads) {
+  KeyframeGraph graph;
+  for (int i = 0; i < 6; ++i) {
+    const Eigen::Isometry3d T = on_path(i, 30);
+    graph.keyframes.push_back(keyframe_of(frame_at(T, i), T, 0.1 * i));
+  }
+  KeyframeGraph again = graph;
+  join_all(graph, {});
+  join_all(again, {});
+  ASSERT_GT(graph.constraints.size(), 8U);
+  ASSERT_EQ(again.constraints.size(), graph.constraints.size());
+  for (std::size_t i = 0; i < graph.constraints.size(); ++i) {
+    EXPECT_EQ(again.constraints[i].a, graph.constraints[i].a);
+    EXPECT_EQ(again.constraints[i].T_a_b.matrix(), graph.constraints[i].T_a_b.matrix());
+  }
+  KeyframeGraph none, one;
+  join_all(none, {});
+  one.keyframes.push_back(again.keyframes[0]);
+  join_all(one, {});
+  EXPECT_TRUE(one.constraints.empty());
+}
+
+/// Keyframes along a way that turns as it goes, each joined with the next `reach` exactly, and put off from
+/// where they stand.
+struct Way {
+  std::vector<Eigen::Isometry3d> truth;
+  KeyframeGraph graph;
+
+  explicit Way(std::size_t reach) {
+    for (int i = 0; i < 16; ++i) {
+      truth.push_back(Eigen::Translation3d(0.08 * i, 0.02 * i * (i % 3), 0.01 * i) *
+                      Eigen::AngleAxisd(0.06 * i, Eigen::Vector3d(0.2, 1.0, 0.1).normalized()));
+      const double off = i == 0 ? 0.0 : 0.02 * (i % 5 - 2);
+      const Eigen::Isometry3d T = truth.back() * Eigen::Translation3d(off, -off, 0.01) *
+                                  Eigen::AngleAxisd(off, Eigen::Vector3d::UnitX());
+      graph.keyframes.push_back(
+          {i, i == 0 ? truth.back() : T, std::make_shared<const StoredView>(), 0, 0.1 * i});
+    }
+    for (std::size_t a = 0; a < truth.size(); ++a) {
+      for (std::size_t b = a + 1; b < truth.size() && b <= a + reach; ++b)
+        graph.constraints.push_back(
+            {a, b, truth[a].inverse() * truth[b], 1e6 * Matrix6d::Identity(), b - a > 2});
+    }
+  }
+  /// The RMS of all keyframes', laid on the true ones as well as can be.
+  [[nodiscard]] double position_error_m() const {
+    std::vector<TimedPose> found, true_poses;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const auto index = static_cast<std::int64_t>(i);
+      found.push_back({index, 0.0, graph.keyframes[i].T_world_camera});
+      true_poses.push_back({index, 0.0, truth[i]});
+    }
+    return absolute_trajectory_error(found, true_poses).rmse_m;
+  }
+};
+
+TEST(PositionsThenTurns, ExactMotionsGiveTheExactPosesAndTheFirstStays) {
+  Way way(4);
+  solve_positions_then_turns(way.graph);
+  EXPECT_TRUE(way.graph.keyframes[0].T_world_camera.isApprox(way.truth[0], 1e-9));
+  for (std::size_t i = 0; i < way.truth.size(); ++i)
+    EXPECT_TRUE(way.graph.keyframes[i].T_world_camera.isApprox(way.truth[i], 1e-5)) << i;
+}
+
+TEST(PositionsThenTurns, MotionsBetweenLikeViewsOverruleThoseBetweenUnlikeOnes) {
+  // What a fixed distortion does: the less alike two keyframes look, the further off is the motion between.
+  Way way(8);
+  for (PoseConstraint& c : way.graph.constraints) {
+    if (view_distance(c.T_a_b) > 1.0) c.T_a_b = c.T_a_b * Eigen::Translation3d(0.03, 0.0, 0.0);
+  }
+  solve_positions_then_turns(way.graph);
+  EXPECT_LT(way.position_error_m(), 0.005);
+}
+
+TEST(PositionsThenTurns, ADirectionThatAMotionDoesNotFixIsTakenFromOthers) {
+  // Each keyframe and the one after the next see one wall: along it their alignment is only a guess.
+  Way way(2);
+  for (PoseConstraint& c : way.graph.constraints) {
+    if (c.b != c.a + 2) continue;
+    const Eigen::Vector3d along = Eigen::Vector3d(1.0, 2.0, 0.5).normalized();
+    c.information.topLeftCorner<3, 3>() -= 1e6 * along * along.transpose();
+    c.T_a_b = c.T_a_b * Eigen::Translation3d(0.3 * along);
+  }
+  solve_positions_then_turns(way.graph);
+  EXPECT_LT(way.position_error_m(), 1e-4);
+}
+
+TEST(PositionsThenTurns, AWrongLoopIsOverruled) {
+  Way way(4);
+  // It says that the last keyframe, 1.2 m further on, stands where the first one does.
+  way.graph.constraints.push_back({0, 15, Eigen::Isometry3d::Identity(), 1e6 * Matrix6d::Identity(), true});
+  solve_positions_then_turns(way.graph);
+  EXPECT_LT(way.position_error_m(), 0.015);
+}
+
+TEST(PositionsThenTurns, AnchoredKeyframesStandWhereTheMapSays) {
+  Way way(4);
+  const Eigen::Isometry3d T_map_world =
+      Eigen::Translation3d(2.0, -1.0, 0.5) * Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ());
+  for (const std::size_t i : {2UL, 13UL})
+    way.graph.anchors.push_back({i, T_map_world * way.truth[i], 1e4 * Matrix6d::Identity()});
+  for (Keyframe& keyframe : way.graph.keyframes)
+    keyframe.T_world_camera = T_map_world * keyframe.T_world_camera;
+  solve_positions_then_turns(way.graph);
+  for (std::size_t i = 0; i < way.truth.size(); ++i)
+    EXPECT_TRUE(way.graph.keyframes[i].T_world_camera.isApprox(T_map_world * way.truth[i], 1e-4)) << i;
+}
+
+TEST(PositionsThenTurns, NothingAndOneStayAsTheyAre) {
+  KeyframeGraph none;
+  solve_positions_then_turns(none);
+  EXPECT_TRUE(none.keyframes.empty());
+  Way one(1);
+  one.graph.keyframes.resize(1);
+  one.graph.constraints.clear();
+  solve_positions_then_turns(one.graph);
+  EXPECT_TRUE(one.graph.keyframes[0].T_world_camera.isApprox(one.truth[0], 1e-12));
+}
+
+}  // namespace
+}  // namespace roomradar::keyframe_graph_test

@@ -1,0 +1,238 @@
+// voxel_bits_test.cpp: boxes of bits against one voxel after the other, in rows of more than one word.
+#include "mapping/surface/bit_grid.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "mapping/surface/blocked_neighbours.hpp"
+#include "mapping/surface/voxel_face_mesh.hpp"
+
+namespace roomradar::bit_grid_test {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3i;
+
+const Vector3i kSize(150, 9, 7);
+
+template <typename Visit>
+void for_each_voxel(const Vector3i& size, const Visit& visit) {
+  for (int z = 0; z < size.z(); ++z)
+    for (int y = 0; y < size.y(); ++y)
+      for (int x = 0; x < size.x(); ++x) visit(Vector3i(x, y, z));
+}
+
+VoxelBits random_bits(std::mt19937& random, unsigned out_of_8) {
+  VoxelBits bits(kSize, false);
+  for_each_voxel(kSize, [&](const Vector3i& p) { bits.set(p, random() % 8 < out_of_8); });
+  return bits;
+}
+
+TEST(VoxelBits, ShiftingTakesTheNeighboursValueAndClearPastTheEnd) {
+  std::mt19937 random(1);
+  const VoxelBits bits = random_bits(random, 4);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int step : {-1, 1}) {
+      const VoxelBits shifted = bits.shifted(axis, step);
+      int wrong = 0;
+      for_each_voxel(kSize, [&](const Vector3i& p) {
+        wrong += shifted.at(p) != bits.at(p + step * Vector3i::Unit(axis)) ? 1 : 0;
+      });
+      EXPECT_EQ(wrong, 0) << "axis " << axis << ", step " << step;
+    }
+}
+
+TEST(VoxelBits, ABoxIsSetAsFarAsItLiesInside) {
+  VoxelBits bits(kSize, false);
+  bits.set_box({60, -3, 2}, {131, 4, 99}, true);
+  bits.set_box({70, 1, 3}, {70, 5, 5}, true);  // empty
+  std::size_t count = 0;
+  bits.for_each_set([&](const Vector3i&) { ++count; });
+  EXPECT_EQ(count, 71U * 4U * 5U);
+  EXPECT_TRUE(bits.at({130, 0, 6}));
+  EXPECT_FALSE(bits.at({131, 0, 6}));
+}
+
+TEST(VoxelBits, OpeningKeepsWhatLiesInAWholeCube) {
+  std::mt19937 random(2);
+  for (const auto& cube : {std::pair(2, 1), std::pair(2, 2), std::pair(3, 1), std::pair(3, 3)}) {
+    const int edge = cube.first, lattice = cube.second;
+    const VoxelBits bits = random_bits(random, 7), result = opened(bits, edge, lattice);
+    int wrong = 0;
+    std::size_t kept = 0;
+    for_each_voxel(kSize, [&](const Vector3i& p) {
+      bool in_cube = false;
+      for_each_voxel(Vector3i::Constant(edge), [&](const Vector3i& offset) {
+        const Vector3i low = p - offset;
+        if ((low.unaryExpr([&](int v) { return v % lattice; }).array() != 0).any()) return;
+        bool whole = true;
+        for_each_voxel(Vector3i::Constant(edge), [&](const Vector3i& q) { whole &= bits.at(low + q); });
+        in_cube |= whole;
+      });
+      wrong += result.at(p) != in_cube ? 1 : 0;
+      kept += in_cube ? 1 : 0;
+    });
+    EXPECT_EQ(wrong, 0) << "cubes of " << edge << ", lattice " << lattice;
+    EXPECT_GT(kept, 100U);
+  }
+}
+
+// Steps as they are defined, from voxel to voxel.
+VoxelBits slowly_spread(const VoxelBits& from, const VoxelBits& where,
+                        const std::array<VoxelBits, 3>& barred) {
+  VoxelBits to = from;
+  for_each_voxel(kSize, [&](const Vector3i& p) {
+    if (!from.at(p)) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3i up = p + Vector3i::Unit(axis), down = p - Vector3i::Unit(axis);
+      const VoxelBits& bars = barred[static_cast<std::size_t>(axis)];
+      if (where.at(up) && !bars.at(p)) to.set(up, true);
+      if (where.at(down) && !bars.at(down)) to.set(down, true);
+    }
+  });
+  return to;
+}
+
+TEST(VoxelBits, SpreadingAndFloodingTakeTheStepsThatAreNotBarred) {
+  std::mt19937 random(3);
+  const VoxelBits where = random_bits(random, 6);
+  const std::array<VoxelBits, 3> barred = {random_bits(random, 2), random_bits(random, 2),
+                                           random_bits(random, 2)};
+  VoxelBits bits(kSize, false);
+  bits.set_box({64, 3, 3}, {67, 5, 5}, true);
+  const VoxelBits seed = bits;
+  VoxelBits slow = bits;
+  for (int step = 0; step < 5; ++step) {
+    bits.spread(where, barred);
+    slow = slowly_spread(slow, where, barred);
+    ASSERT_EQ(bits, slow) << "step " << step;
+  }
+  for (VoxelBits before; !(before == slow);) {
+    before = slow;
+    slow = slowly_spread(slow, where, barred);
+  }
+  bits = seed;
+  bits.flood(where, barred);
+  EXPECT_EQ(bits, slow);
+  EXPECT_NE(bits, seed);
+}
+
+// Every face is in one rectangle, and nothing else is.
+TEST(CellFaces, RectanglesCoverEachFaceOnce) {
+  std::mt19937 random(4);
+  const CellGrid grid{{-3, 5, 100}, kSize, 0.5};
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int step : {-1, 1}) {
+      const VoxelBits cells = random_bits(random, 6);
+      const Mesh mesh = mesh_of({{cells, axis, step}}, grid);
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      VoxelBits covered(kSize, false);
+      for (std::size_t i = 0; i < mesh.triangles.size(); i += 2) {
+        // Two triangles, a b c and a c d: a rectangle from its lowest to its highest corner.
+        Eigen::AlignedBox3d bounds;
+        Vector3d area = Vector3d::Zero();
+        for (const std::size_t t : {i, i + 1}) {
+          std::array<Vector3d, 3> p;
+          for (std::size_t k = 0; k < 3; ++k) {
+            p[k] = (mesh.origin + mesh.vertices[mesh.triangles[t][k]].cast<double>()) / grid.cell_m;
+            bounds.extend(p[k]);
+          }
+          area += 0.5 * (p[1] - p[0]).cross(p[2] - p[0]);
+        }
+        const auto corner = [&](const Vector3d& p) -> Vector3i {
+          return p.array().round().cast<int>().matrix() - grid.first_cell;
+        };
+        const Vector3i low = corner(bounds.min()), high = corner(bounds.max());
+        EXPECT_NEAR(area[axis], step * (high[u] - low[u]) * (high[v] - low[v]), 1e-6);
+        for (int b = low[v]; b < high[v]; ++b)
+          for (int a = low[u]; a < high[u]; ++a) {
+            Vector3i cell;
+            cell[axis] = step > 0 ? low[axis] - 1 : low[axis];
+            cell[u] = a;
+            cell[v] = b;
+            ASSERT_FALSE(covered.at(cell)) << cell.transpose();
+            covered.set(cell, true);
+          }
+      }
+      EXPECT_EQ(covered, cells);
+    }
+}
+
+// A ball of triangles, not all of them small.
+Mesh ball(double radius_m, int rings) {
+  Mesh mesh;
+  mesh.origin = Vector3d(3.0, -2.0, 1.0);
+  const int columns = 2 * rings;
+  for (int i = 0; i <= rings; ++i)
+    for (int j = 0; j < columns; ++j) {
+      const double polar = std::numbers::pi * i / rings, around = 2.0 * std::numbers::pi * j / columns;
+      mesh.vertices.push_back(Vector3d(radius_m * std::sin(polar) * std::cos(around),
+                                       radius_m * std::sin(polar) * std::sin(around),
+                                       radius_m * std::cos(polar))
+                                  .cast<float>());
+    }
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * columns + j % columns); };
+  for (int i = 0; i < rings; ++i)
+    for (int j = 0; j < columns; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return mesh;
+}
+
+TEST(BarredSteps, NoWayOfStepsLeadsOutOfAClosedSurface) {
+  for (const int rings : {4, 30}) {
+    const Mesh mesh = ball(0.5, rings);
+    CellGrid grid;
+    grid.cell_m = 0.02;
+    grid.first_cell = (mesh.origin / grid.cell_m).array().floor().cast<int>() - 30;
+    grid.size = Vector3i::Constant(60);
+    const VoxelBits everywhere(grid.size, true);
+    VoxelBits inside(grid.size, false);
+    inside.set(Vector3i::Constant(30), true);
+    inside.flood(everywhere, barred_steps(mesh, grid));
+    std::size_t cells = 0;
+    inside.for_each_set([&](const Vector3i&) { ++cells; });
+    const double volume_cells = 4.0 / 3.0 * std::numbers::pi * std::pow(0.5 / 0.02, 3);
+    EXPECT_LT(static_cast<double>(cells), volume_cells);
+    if (rings == 30) {
+      EXPECT_GT(static_cast<double>(cells), 0.97 * volume_cells);
+    }
+  }
+}
+
+TEST(BarredSteps, OnlyStepsThatMeetTheSurfaceAreBarred) {
+  Mesh mesh;  // one triangle across z = 0.1
+  mesh.vertices = {{0.05F, 0.05F, 0.1F}, {0.35F, 0.05F, 0.1F}, {0.05F, 0.35F, 0.1F}};
+  mesh.triangles = {{0, 1, 2}};
+  const CellGrid grid{Vector3i::Zero(), Vector3i(8, 8, 4), 0.05};
+  const auto barred = barred_steps(mesh, grid);
+  std::set<std::tuple<int, int, int>> cells;
+  barred[2].for_each_set([&](const Vector3i& p) { cells.insert({p.x(), p.y(), p.z()}); });
+  // Middles of cells at 0.075, 0.125, ...: those with x + y <= 0.4 are over it.
+  std::set<std::tuple<int, int, int>> expected;
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      if (x >= 1 && y >= 1 && 0.05 * (x + y + 1) <= 0.4 + 1e-6) expected.insert({x, y, 1});
+  EXPECT_EQ(cells, expected);
+  for (const std::size_t axis : {0U, 1U}) {
+    barred[axis].for_each_set([&](const Vector3i& p) { ADD_FAILURE() << p.transpose(); });
+  }
+  mesh.vertices[1].x() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(barred_steps(mesh, grid)[2], VoxelBits(grid.size, false));
+  mesh.vertices[1].x() = 1e30F;  // far past the grid
+  mesh.vertices[2].y() = -1e30F;
+  EXPECT_NO_THROW(static_cast<void>(barred_steps(mesh, grid)));
+}
+
+}  // namespace
+}  // namespace roomradar::bit_grid_test

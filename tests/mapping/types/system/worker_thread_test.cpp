@@ -1,0 +1,48 @@
+// second_thread_test.cpp: both pieces of work are done when the call returns, and no fault gets lost.
+#include "mapping/types/system/worker_thread.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace roomradar::worker_thread_test {
+namespace {
+
+TEST(SecondThread, BothPiecesAreDoneWhenTheCallReturns) {
+  SecondThread second;
+  std::vector<int> numbers(1000);
+  for (int round = 0; round < 2000; ++round) {
+    const auto fill = [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) numbers[i] = round;
+    };
+    second.run([&] { fill(0, 500); }, [&] { fill(500, 1000); });
+    ASSERT_EQ(std::accumulate(numbers.begin(), numbers.end(), 0), 1000 * round);
+  }
+}
+
+TEST(SecondThread, WhatEitherThrowsIsThrownAndTheNextCallIsAsEver) {
+  SecondThread second;
+  const auto fault_of_run = [&](const auto& here, const auto& beside) -> std::string {
+    try {
+      second.run(here, beside);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  const auto fine = [] {};
+  const auto breaks = [] { throw std::runtime_error("here"); };
+  const auto breaks_too = [] { throw std::runtime_error("beside"); };
+  EXPECT_EQ(fault_of_run(breaks, fine), "here");
+  EXPECT_EQ(fault_of_run(fine, breaks_too), "beside");
+  EXPECT_EQ(fault_of_run(breaks, breaks_too), "here");
+  EXPECT_EQ(fault_of_run(fine, fine), "none");
+}
+
+TEST(SecondThread, OneThatNeverWorkedEndsToo) { const SecondThread second; }
+
+}  // namespace
+}  // namespace roomradar::worker_thread_test
