@@ -1,4 +1,4 @@
-// change_tracker.cpp: points on what changed, looked up frame by frame, and the things that they make up.
+// change_tracker.cpp: looks up points frame by frame, and groups them into objects.
 #include "dynamic/foreground/change_tracker.hpp"
 
 #include <algorithm>
@@ -17,11 +17,11 @@ namespace {
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 constexpr float kNearest_m = 0.2F;  // no sensor measures nearer
 constexpr double kLongestStep_s = 0.5;
-// A sighting that contradicts a point weighs as much as two that confirm it: at its rim, where the pixel may
-// be the background's, a thing that stays is missed in one frame out of four.
+// A contradicting sighting weighs as much as two confirming ones. At the rim of an object that stays, the
+// pixel may show the background: one frame in four misses the object there.
 constexpr int kContradiction = 2, kConfirmation = 1, kMostDoubt = 7;
-constexpr float kFarApart_m = 4.0F;  // pixels of the sampling grid are spacing_m apart at this depth
-constexpr int kAllRound = 7;         // of the eight cells round one in a flat surface
+constexpr float kFarApart_m = 4.0F;  // depth at which pixels of the sampling grid are spacing_m apart
+constexpr int kAllRound = 7;         // neighbours of an interior cell, of eight in a flat surface
 constexpr float kNothing_m = std::numeric_limits<float>::quiet_NaN();
 
 std::uint8_t bit_of(LastingKind kind) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(kind)); }
@@ -34,8 +34,8 @@ struct ChangeTracker::View {
   const LabelImage& labels;
   float fx, fy, cx, cy;
   Eigen::Matrix3f R_camera_world;
-  Eigen::Vector3f t_camera_world;  // of points relative to the tracker's origin
-  int stride_px;                   // of the sampling grid
+  Eigen::Vector3f t_camera_world;  // for points relative to the tracker's origin
+  int stride_px;                   // stride of the sampling grid
   int grid_width;
 
   [[nodiscard]] Eigen::Vector3f to_camera(const Eigen::Vector3f& p) const {
@@ -51,8 +51,8 @@ struct ChangeTracker::View {
 
 namespace {
 
-// How much farther than z the image is at (x, y), or at one of the pixels round it if it agrees better there:
-// a point between two pixels, or on an edge, is seen in one of them. NaN where nothing is measured.
+// Returns how much farther than z the image is at (x, y), or at the adjacent pixel that agrees best, since a
+// point between two pixels or on an edge appears in one of them. NaN if nothing is measured.
 float beyond(const DepthImage& depth_m, int x, int y, float z) {
   float best = kNothing_m;
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth_m.height - 1); ++v) {
@@ -63,7 +63,7 @@ float beyond(const DepthImage& depth_m, int x, int y, float z) {
   return best;
 }
 
-// Whether the foreground says so of (x, y) or of a pixel beside it.
+// Returns true if (x, y) or an adjacent pixel has this label.
 bool is_labelled(const LabelImage& labels, int x, int y, PixelLabel label) {
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, labels.height - 1); ++v) {
     const PixelLabel* row = labels.row(v);
@@ -133,7 +133,7 @@ void ChangeTracker::update(const DepthImage& depth_m, const DepthImage& expected
     has_origin_ = true;
   }
   const double passed_s = stamp_s - last_stamp_s_;
-  const double dt_s = passed_s > 0.0 ? std::min(passed_s, kLongestStep_s) : 0.0;  // nothing by a NaN
+  const double dt_s = passed_s > 0.0 ? std::min(passed_s, kLongestStep_s) : 0.0;  // 0 for NaN
   if (std::isfinite(stamp_s)) last_stamp_s_ = stamp_s;
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   const double focal_px = std::min(camera.fx_px, camera.fy_px);
@@ -174,16 +174,16 @@ bool ChangeTracker::review(const View& view, float dt_s, Point& point) {
 
   const float live_here = view.depth_m.at(x, y);
   const float live = came ? beyond(view.depth_m, x, y, z) : live_here > 0.0F ? live_here - z : kNothing_m;
-  // NaN, hidden by something else, or, of what went, by anything.
+  // Not measured (NaN), or occluded by another surface; a kWent point is occluded by any surface.
   if (!(live >= (came ? -config_.own_reach_m : -tolerance))) return may_stay_unseen;
   const float model = beyond(view.expected_m, x, y, z);
   const bool in_model = std::abs(model) <= tolerance;
   const bool in_sight = std::abs(live) <= tolerance;
 
-  // What came is to be seen and not yet in the model; what went, not seen and still in the model.
-  // The foreground knows more of edges and noise: what it takes for static is.
+  // A kCame point must be visible and not in the model yet; a kWent point must be invisible and still in the
+  // model. The foreground knows more about edges and noise: pixels that it labels static are static.
   bool holds = came ? in_sight && !in_model : !in_sight && in_model;
-  if (!came && model < -tolerance) return may_stay_unseen;  // the model has something before it here
+  if (!came && model < -tolerance) return may_stay_unseen;  // the model has a surface in front of the point
   if (holds && !is_labelled(view.labels, x, y, came ? PixelLabel::kMoved : PixelLabel::kRevealed)) {
     if (view.labels.at(x, y) == PixelLabel::kNotKnown) return may_stay_unseen;
     holds = false;
@@ -197,7 +197,7 @@ bool ChangeTracker::review(const View& view, float dt_s, Point& point) {
   point.steady_s += dt_s;
   point.doubt = static_cast<std::uint8_t>(std::max(point.doubt - kConfirmation, 0));
   if (came && std::abs(live_here - z) <= tolerance && live_here > 0.0F) {
-    // The mean of all sightings, along the rays.
+    // Mean of all sightings, along the rays.
     if (point.sightings < std::numeric_limits<std::uint16_t>::max()) ++point.sightings;
     const float share = (live_here - z) / (z * static_cast<float>(point.sightings));
     point.position = view.from_camera(p_camera * (1.0F + share));
@@ -211,7 +211,7 @@ void ChangeTracker::cover(const View& view, LastingKind kind, float u_px, float 
   const float reach_px = 0.5F * config_.spacing_m * view.fx / depth_m;
   const int last_column = view.grid_width - 1;
   const int last_row = static_cast<int>(covered_.size()) / view.grid_width - 1;
-  // Points of the grid within reach_px of the point, along rows and columns.
+  // Grid points within reach_px of the point, along rows and columns.
   const int left = std::max(static_cast<int>(std::ceil((u_px - reach_px) / stride)), 0);
   const int right = std::min(static_cast<int>(std::floor((u_px + reach_px) / stride)), last_column);
   const int top = std::max(static_cast<int>(std::ceil((v_px - reach_px) / stride)), 0);
@@ -280,7 +280,7 @@ void ChangeTracker::sort_into_cells(LastingKind kind, float seconds) {
   }
   const std::uint64_t zero = cell_code(0, 0, 0);
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
-    for (int n = 0; n < kCellsRound / 2; ++n) {  // the other half finds this one
+    for (int n = 0; n < kCellsRound / 2; ++n) {  // the neighbour's own loop covers the other half
       const std::uint32_t beside = table_[find_cell(cells_[cell].code + cell_code(cell_round(n)) - zero)];
       if (beside == kNone) continue;
       ++cells_[cell].neighbours;

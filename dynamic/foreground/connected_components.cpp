@@ -1,4 +1,4 @@
-// depth_regions.cpp: connected regions by runs and union-find.
+// depth_regions.cpp: connected components by runs and union-find.
 #include "dynamic/foreground/connected_components.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-// The next pixel from x on, before `width`, that has one of the bits; `width` if there is none.
+// Returns the first pixel from x on, below `width`, that has one of the bits; `width` if there is none.
 inline int next_marked(const std::uint8_t* evidence, int x, int width, std::uint8_t bits) {
   const std::uint64_t eight = 0x0101010101010101ULL * bits;
   for (; x + 8 <= width; x += 8) {

@@ -1,4 +1,4 @@
-// expected_bounds.cpp: noise, slope, and the edges in reach of each block of the expected depth.
+// expected_bounds.cpp: noise, slope, and edges within reach of each block of the expected depth.
 #include "dynamic/foreground/expected_bounds.hpp"
 
 #include <algorithm>
@@ -10,8 +10,8 @@ namespace roomradar {
 namespace {
 
 constexpr int kMaxReach = 6;       // blocks to each side
-constexpr float kGrazing = 5.67F;  // depth by width of a surface seen at 80 degrees from its normal
-// Of a smooth surface within reach, as a part of its depth: a table seen at 60 degrees from its normal.
+constexpr float kGrazing = 5.67F;  // depth per width of a surface seen at 80 degrees from its normal
+// Max relative depth change of a smooth surface within reach: a table seen at 60 degrees from its normal.
 constexpr float kSteepest = 0.1F;
 
 struct Nearer {
@@ -21,7 +21,7 @@ struct Farther {
   float operator()(float a, float b) const { return b > a ? b : a; }
 };
 
-// Nearest and farthest expected depth of each block.
+// Computes the nearest and farthest expected depth of each block.
 void find_extremes(const DepthImage& expected_m, ExpectedBounds& bounds) {
   const auto width = static_cast<std::size_t>(bounds.grid.columns) * kBlock_px;
   bounds.nearest_m.resize(bounds.grid.size());
@@ -48,8 +48,8 @@ void find_extremes(const DepthImage& expected_m, ExpectedBounds& bounds) {
   }
 }
 
-// How many blocks to each side an edge may be off: a turn of the pose shifts all edges alike, its shift and
-// the map's distortion the near ones more. Made of steps that `spread` can take.
+// Computes how many blocks to each side an edge may be shifted. A rotation error shifts all edges alike; a
+// translation error and the map's distortion shift near edges more. Composed of steps that `spread` allows.
 void choose_reach(const Intrinsics& camera, const ForegroundConfig& config, ExpectedBounds& bounds) {
   spread(bounds.grid, bounds.nearest_m, 1, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
   spread(bounds.grid, bounds.nearest_level_m, 2, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
@@ -64,13 +64,13 @@ void choose_reach(const Intrinsics& camera, const ForegroundConfig& config, Expe
   }
 }
 
-// Extremes within each block's reach.
+// Computes the extremes within each block's reach.
 void find_extremes_in_reach(ExpectedBounds& bounds) {
   bounds.nearest_in_reach_m.resize(bounds.grid.size());
   bounds.farthest_in_reach_m.resize(bounds.grid.size());
   bounds.nearest_level_m = bounds.nearest_m;
   bounds.farthest_level_m = bounds.farthest_m;
-  // One may see into what was not mapped, and how far is not known.
+  // Through a hole of the model the sensor may see to an unknown distance.
   for (float& farthest : bounds.farthest_level_m) farthest = farthest > 0.0F ? farthest : kNoDepth_m;
   for (int reach = 1; reach <= kMaxReach; ++reach) {
     spread(bounds.grid, bounds.nearest_level_m, 1, Nearer{}, bounds.along_rows_m, bounds.nearest_level_m);
@@ -94,20 +94,20 @@ void find_extremes_around_holes(int reach_px, ExpectedBounds& bounds) {
   }
 }
 
-// Angle of which `cosine` in 0..1 is the cosine, within 7e-5 rad, without a library call.
-// Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.45.
+// Returns the angle whose cosine (0..1) is given, within 7e-5 rad, without a library call. Source: Abramowitz
+// and Stegun, Handbook of Mathematical Functions, 4.4.45.
 inline float arc_cosine(float cosine) {
   return std::sqrt(1.0F - cosine) *
          (1.5707288F + cosine * (-0.2121144F + cosine * (0.0742610F - 0.0187293F * cosine)));
 }
 
-// The flatter of two slopes, so that a depth jump on one side does not count as a slope.
+// Returns the flatter of two slopes, so a depth discontinuity on one side does not count as a slope.
 inline float flatter(float a, float b) { return std::abs(a) < std::abs(b) ? a : b; }
 
-// Errors of each block's surface, and whether all that is in reach is this surface going on.
+// Computes the error of each block's surface, and whether everything within reach is a continuation of it.
 void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, float misfit_per_m,
                     ExpectedBounds& bounds) {
-  const ForegroundConfig config = settings;  // a copy, so that the compiler sees that no loop writes it
+  const ForegroundConfig config = settings;  // a copy, so the compiler sees that no loop writes to it
   const BlockGrid grid = bounds.grid;
   bounds.sigma_m.resize(grid.size());
   const auto fx = static_cast<float>(camera.fx_px);
@@ -115,7 +115,7 @@ void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, 
   const float focal_px = std::max(fx, fy);
   const float per_step = 1.0F / kBlock_px;
   for (int row = 0; row < grid.rows; ++row) {
-    // Of each block its farthest depth: what slopes leaves that alone, and on edges the noisier side counts.
+    // The farthest depth of each block: slopes are unaffected, and at edges the noisier side counts.
     const float* middle = bounds.farthest_m.data() + grid.at(0, row);
     const float* above = bounds.farthest_m.data() + grid.at(0, std::max(row - 1, 0));
     const float* below = bounds.farthest_m.data() + grid.at(0, std::min(row + 1, grid.rows - 1));
@@ -127,8 +127,8 @@ void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, 
     const float v = (static_cast<float>(row) + 0.5F) * kBlock_px - static_cast<float>(camera.cy_px);
     const float v_ray2 = v * v / (fy * fy) + 1.0F;
     for (int column = 0; column < grid.columns; ++column) {
-      // With depth z(u, v) the surface normal is (fx z_u, fy z_v, -(z + u z_u + v z_v)), u and v from the
-      // principal point; its product with the viewing ray (u / fx, v / fy, 1) is -z.
+      // For depth z(u, v) the surface normal is (fx z_u, fy z_v, -(z + u z_u + v z_v)), u and v relative to
+      // the principal point. Its dot product with the viewing ray (u / fx, v / fy, 1) is -z.
       const float z = middle[column];
       const float left = middle[std::max(column - 1, 0)];
       const float right = middle[std::min(column + 1, grid.columns - 1)];
@@ -147,9 +147,10 @@ void weigh_surfaces(const Intrinsics& camera, const ForegroundConfig& settings, 
       const float pose = slope * focal_px * (config.pose_sigma_rad + config.pose_sigma_m / (z + 1e-6F));
       sigma[column] = std::sqrt(sensor * sensor + model * model + misfit * misfit + pose * pose);
 
-      // A plane's inverse depth is linear in the image, so over so many pixels it goes no farther than this.
+      // A plane's inverse depth is linear in the image; over this many pixels it changes by at most this
+      // much.
       const float inverse = 1.0F / (z + 1e-6F);
-      // What is steeper than that may be an edge itself.
+      // A steeper surface may be an edge itself.
       const float change =
           std::min(slope * inverse * inverse * static_cast<float>((reach[column] + 1) * kBlock_px),
                    kSteepest * inverse);

@@ -1,4 +1,4 @@
-// foreground.cpp: evidence of each pixel, and regions that are believed.
+// foreground.cpp: evidence of each pixel, and regions that are accepted.
 #include "dynamic/foreground/foreground.hpp"
 
 #include <algorithm>
@@ -9,14 +9,14 @@
 namespace roomradar {
 namespace {
 
-// Evidence of one pixel, as bits.
+// Evidence bits of one pixel.
 constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kDoubtMoved = 4, kWeakRevealed = 8,
                        kStrongRevealed = 16, kDoubtRevealed = 32, kMovedBefore = 64, kRevealedBefore = 128;
 
-// In a hole of the model, beside kWeakMoved; there nothing is revealed.
+// In a hole of the model, together with kWeakMoved. Shares a bit, since nothing is revealed in a hole.
 constexpr std::uint8_t kInHole = kDoubtRevealed;
 
-// Of what is revealed, beside its own bits: it goes on farther around than an edge may be off.
+// Revealed pixels that are surrounded by revealed pixels for longer than an edge error. Shares a bit.
 constexpr std::uint8_t kRevealedCore = kDoubtMoved;
 
 struct Union {
@@ -26,7 +26,7 @@ struct Fewer {
   std::uint8_t operator()(std::uint8_t a, std::uint8_t b) const { return b < a ? b : a; }
 };
 
-// The bounds of a row of blocks, one value a pixel.
+// Expands the bounds of a row of blocks to one value per pixel.
 void stretch_bounds(const ForegroundConfig& config, int row, int width, ForegroundState& state) {
   const ExpectedBounds& bounds = state.bounds;
   const std::size_t begin = bounds.grid.at(0, row);
@@ -43,7 +43,7 @@ void stretch_bounds(const ForegroundConfig& config, int row, int width, Foregrou
   }
 }
 
-// What one row of pixels says, before its neighbours are asked.
+// Computes the evidence of one row of pixels, without their neighbours.
 void weigh_row(const float* live, const float* expected, int width, const ForegroundConfig& config,
                const ForegroundState& state, std::uint8_t* evidence, PixelLabel* labels) {
   const float* weak = state.weak_m.data();
@@ -64,7 +64,7 @@ void weigh_row(const float* live, const float* expected, int width, const Foregr
     evidence[x] = static_cast<std::uint8_t>((moved | revealed) & (known ? 0xFF : 0));
     labels[x] = known ? PixelLabel::kStatic : PixelLabel::kNotKnown;
   }
-  // Holes of the model: they prove nothing, but what moved may cover them.
+  // Holes of the model prove nothing, but a dynamic region may cover them.
   int holes = 0;
   for (int x = 0; x < width; ++x) holes |= !(expected[x] > 0.0F);
   if (holes == 0) return;
@@ -76,7 +76,7 @@ void weigh_row(const float* live, const float* expected, int width, const Foregr
   }
 }
 
-// The bits of all pixels of each block of a row.
+// Combines the bits of all pixels of each block in a row of blocks.
 void gather_blocks(const std::uint8_t* evidence, int width, int rows_px, std::uint8_t* row_bits,
                    std::uint8_t* blocks) {
   std::copy_n(evidence, width, row_bits);
@@ -91,9 +91,9 @@ void gather_blocks(const std::uint8_t* evidence, int width, int rows_px, std::ui
   }
 }
 
-// A pixel behind a near edge's reach, as of a ball behind a box, is no less moved if no expected surface
-// within reach lies at its depth, give or take. A block that holds an edge stands for its two sides, not for
-// what is between them.
+// Resolves ambiguous pixels, which are behind a near edge's reach, such as those of a ball behind a box. They
+// are dynamic if no expected surface within reach is at their depth, within tolerance. A block with an edge
+// represents its two sides, not the depths between them.
 std::uint8_t settle_doubts(const DepthImage& depth_m, int column, int row, const ForegroundConfig& config,
                            ForegroundState& state) {
   const ExpectedBounds& bounds = state.bounds;
@@ -113,7 +113,8 @@ std::uint8_t settle_doubts(const DepthImage& depth_m, int column, int row, const
       ++count;
     }
   }
-  for (int i = count; i < kLanes; ++i) {  // the rest repeat the first, so that the loop below has one length
+  for (int i = count; i < kLanes; ++i) {  // the rest repeat the first, so the loop below has a constant
+                                          // length
     depth[i] = depth[0];
     tolerance[i] = tolerance[0];
   }
@@ -171,7 +172,7 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
   }
 }
 
-// Whether nearly all that is known of a block is farther than the model.
+// Returns true if at least 3/4 of a block's known pixels are farther than the model.
 bool is_revealed(const DepthImage& depth_m, const DepthImage& expected_m, int column, int row,
                  const ForegroundState& state) {
   int known = 0, revealed = 0;
@@ -187,12 +188,12 @@ bool is_revealed(const DepthImage& depth_m, const DepthImage& expected_m, int co
   return known > 0 && 4 * revealed >= 3 * known;
 }
 
-// An edge of the model that stands off by an error shows what is behind it in a strip as wide as that error;
-// what was taken away was wider. Marks the blocks in the middle of revealed ones that reach as far to all
-// sides as half an edge's error.
+// A model edge displaced by an error reveals a strip of background as wide as the error; a removed object was
+// wider. Marks the blocks that have revealed blocks to all sides for half an edge's error.
 void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m, ForegroundState& state) {
   const BlockGrid grid = state.bounds.grid;
-  std::vector<std::uint8_t>& within = state.revealed_for;  // blocks to all sides, itself included
+  std::vector<std::uint8_t>& within = state.revealed_for;  // number of revealed blocks to all sides, itself
+                                                           // included
   within.assign(grid.size(), 0);
   bool any = false;
   for (int row = 0; row < grid.rows; ++row) {
@@ -224,7 +225,7 @@ void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m
   }
 }
 
-// Drops weak evidence that is far from strong.
+// Drops weak evidence that is far from strong evidence.
 void drop_far_weak(const DepthImage& depth_m, int reach_px, ForegroundState& state) {
   const BlockGrid grid = state.bounds.grid;
   std::vector<std::uint8_t>& near = state.near_strong;
@@ -247,7 +248,7 @@ void drop_far_weak(const DepthImage& depth_m, int reach_px, ForegroundState& sta
   }
 }
 
-// One of the two ways to differ from the model.
+// One of the two differences from the model: moved or revealed.
 struct Difference {
   RegionBits bits;
   std::uint8_t block, block_maybe;
@@ -279,7 +280,7 @@ Belief belief_in(const DepthRegion& region, const Difference& difference, const 
   return has(1.0F) ? Belief::kMaybe : Belief::kNone;
 }
 
-// Labels the regions of one kind that are believed; returns how many pixels they have.
+// Labels the accepted regions of one kind; returns their number of pixels.
 std::size_t label_regions(const DepthImage& depth_m, const Difference& difference, const Intrinsics& camera,
                           const ForegroundConfig& config, ForegroundState& state, LabelImage& labels) {
   find_regions(depth_m, state.evidence, difference.bits, camera, state.regions);

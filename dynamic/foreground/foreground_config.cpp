@@ -1,4 +1,4 @@
-// foreground_config.cpp: the rules that a foreground's settings keep.
+// foreground_config.cpp: valid ranges of the foreground's settings.
 #include "dynamic/foreground/foreground_config.hpp"
 
 #include <cmath>

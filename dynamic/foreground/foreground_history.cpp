@@ -1,4 +1,4 @@
-// moved_memory.cpp: carries the marked blocks of one frame into the next.
+// moved_memory.cpp: carries the marked blocks of one frame over to the next.
 #include "dynamic/foreground/foreground_history.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ void recall(const MovedMemory& memory, const DepthImage& depth_m, const Intrinsi
   before.assign(grid.size(), 0);
   if (memory.is_empty || !(memory.camera == camera)) return;
 
-  // A point on the ray (u, v, 1) at depth z was, in the camera before, at z (R (u, v, 1)) + t.
+  // A point on the ray (u, v, 1) at depth z was at z (R (u, v, 1)) + t in the previous camera's frame.
   const Eigen::Isometry3f T_before_now = (memory.T_world_camera.inverse() * T_world_camera).cast<float>();
   const Eigen::Matrix3f R = T_before_now.linear();
   const Eigen::Vector3f t = T_before_now.translation();

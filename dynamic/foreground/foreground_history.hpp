@@ -1,4 +1,4 @@
-// moved_memory.hpp: where the frame before differed from the static model, carried along with the camera.
+// moved_memory.hpp: history of where the previous frame differed from the static model.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -12,26 +12,26 @@ namespace roomradar {
 
 /// Bits of a block of pixels.
 inline constexpr std::uint8_t kBlockMoved = 1, kBlockRevealed = 2;
-/// The same for regions that were too small or too new to be believed at once.
+/// The same for regions too small or too new to be accepted at once.
 inline constexpr std::uint8_t kBlockMaybeMoved = 4, kBlockMaybeRevealed = 8;
 
-/// Belongs to one camera; another one's memory is as good as none.
+/// History of one camera. It is ignored for other intrinsics.
 struct MovedMemory {
   BlockGrid grid;
-  Intrinsics camera;  ///< of no size: nothing is remembered
+  Intrinsics camera;  ///< without size: no history
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  bool is_empty = true;              ///< no block has a bit
-  std::vector<std::uint8_t> blocks;  ///< as that camera saw them, and their neighbours
+  bool is_empty = true;              ///< no block has a bit set
+  std::vector<std::uint8_t> blocks;  ///< as seen by that camera, dilated by one block
   std::vector<std::uint8_t> along_rows;
 };
 
-/// What is remembered of the places that this frame's blocks show, by the live depth in their middle.
-/// @param before  bits a block, resized and set
+/// Looks up the history of the places that this frame's blocks show, by the live depth in their middle.
+/// @param before  bits per block, resized and set
 void recall(const MovedMemory& memory, const DepthImage& depth_m, const Intrinsics& camera,
             const Eigen::Isometry3d& T_world_camera, std::vector<std::uint8_t>& before);
 
-/// Replaces what is remembered by `memory.blocks` as the caller has filled it, widened by a block: things
-/// move between frames.
+/// Stores `memory.blocks`, as filled by the caller, as the new history. Dilates them by one block, since
+/// things move between frames.
 void remember(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, MovedMemory& memory);
 
 }  // namespace roomradar

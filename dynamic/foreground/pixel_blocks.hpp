@@ -1,4 +1,4 @@
-// pixel_blocks.hpp: an image in blocks of 4 x 4 pixels, and the best value around each block.
+// pixel_blocks.hpp: an image in blocks of 4 x 4 pixels, and extremes over neighbouring blocks.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -8,10 +8,10 @@ namespace roomradar {
 
 inline constexpr int kBlock_px = 4;
 
-/// Blocks that cover so many pixels.
+/// Returns the number of blocks that cover this many pixels.
 inline int blocks_along(int size_px) { return (size_px + kBlock_px - 1) / kBlock_px; }
 
-/// columns x rows blocks, row by row; the last ones of a row or column may stand over the image's border.
+/// columns x rows blocks, row by row; the last of a row or column may extend beyond the image.
 struct BlockGrid {
   int columns = 0;
   int rows = 0;
@@ -21,7 +21,7 @@ struct BlockGrid {
   }
 };
 
-/// One value a pixel of a row from one value a block.
+/// Expands a row of blocks to one value per pixel.
 template <typename Value>
 void stretch(const Value* blocks, int width_px, Value* pixels) {
   const int whole = width_px / kBlock_px;
@@ -31,9 +31,9 @@ void stretch(const Value* blocks, int width_px, Value* pixels) {
   for (int x = whole * kBlock_px; x < width_px; ++x) pixels[x] = blocks[whole];
 }
 
-/// The best of each block and the blocks `step` to its left, right, above and below it, corners too. Of
-/// blocks whose neighbours within r were asked it makes blocks whose neighbours within r + step were, if
-/// step <= 2 r + 1. `better(a, b)` picks one of two; `along_rows` is room to work in. `from` may be `to`.
+/// Sets each block to the best of itself and the eight blocks `step` away along rows, columns and diagonals.
+/// If every block already is the best within a radius r, the result is the best within r + step, provided
+/// step <= 2 r + 1. `better(a, b)` selects one of two values; `along_rows` is scratch. `from` may be `to`.
 template <typename Value, typename Better>
 void spread(const BlockGrid& grid, const std::vector<Value>& from, int step, const Better& better,
             std::vector<Value>& along_rows, std::vector<Value>& to) {

@@ -1,4 +1,4 @@
-// model_fit.cpp: the spread of live minus expected inverse depth.
+// model_fit.cpp: spread of live minus expected inverse depth.
 #include "dynamic/foreground/static_residual.hpp"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, Mode
   constexpr int kLeastSamples = 100;
   constexpr float kLargest_per_m = 0.03F;
   constexpr float kLeast_per_m = 0.0006F, kMost_per_m = 0.007F;
-  constexpr float kShrink = 0.1F;      // of the difference, a frame
-  constexpr double kOneSigma = 0.683;  // of a normal distribution's values are within one sigma
+  constexpr float kShrink = 0.1F;      // fraction of the difference, per frame
+  constexpr double kOneSigma = 0.683;  // fraction of a normal distribution within one sigma
   const float bins_per_m = static_cast<float>(fit.histogram.size()) / kLargest_per_m;
 
   fit.histogram.fill(0);

@@ -1,4 +1,4 @@
-// model_fit.hpp: how well the static model and the live depth agree where nothing moved.
+// model_fit.hpp: residual between the static model and the live depth where nothing moved.
 #pragma once
 #include <array>
 
@@ -6,19 +6,18 @@
 
 namespace roomradar {
 
-/// A map that was tracked with some drift, a pose that is off, a sensor whose depth is bent: all of them are
-/// errors of inverse depth that hardly change with depth. On a Kinect's recording against its own map they
-/// are 0.003 / m (1 sigma) from 0.9 m to 3.5 m, one step of the sensor's disparity; against an exact model
-/// 0.0005.
+/// Drift of the map, a pose error and distorted sensor depth are all errors of inverse depth that hardly
+/// change with depth. For a Kinect recording against its own map, the 1 sigma error is 0.003 / m from 0.9 m
+/// to 3.5 m, one step of the sensor's disparity. Against an exact model it is 0.0005 / m.
 inline constexpr float kUsualMisfit_per_m = 0.003F;
 
 struct ModelFit {
-  float misfit_per_m = kUsualMisfit_per_m;  ///< 1 sigma of inverse depth, without the sensor's noise
+  float misfit_per_m = kUsualMisfit_per_m;  ///< 1 sigma of inverse depth, without sensor noise
   std::array<int, 256> histogram{};
 };
 
-/// Follows the misfit: at once where it grows, over some frames where it shrinks; between 0.0006 and 0.007
-/// per metre. What is off by more than 0.03 / m counts as moved and not as misfit.
+/// Updates the misfit: at once where it grows, over some frames where it shrinks; between 0.0006 and 0.007
+/// per metre. Pixels that differ by more than 0.03 / m count as dynamic, not as misfit.
 void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, ModelFit& fit);
 
 }  // namespace roomradar

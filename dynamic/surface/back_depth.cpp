@@ -1,4 +1,4 @@
-// back_depth.cpp: distance from the outline, and how things bulge out of it.
+// back_depth.cpp: distance from the outline, and the bulge that follows from it.
 #include "dynamic/surface/back_depth.hpp"
 
 #include <algorithm>
@@ -26,9 +26,9 @@ constexpr std::array<Step, 8> kSteps{{{1, 0, kCell_px},
                                       {0, -1, kCell_px},
                                       {1, -1, kDiagonal_px}}};
 
-/// The farthest that the back of what is at depth_m may be.
+/// Returns the depth of the back of a surface at depth_m, within all limits.
 float limited(float depth_m, float thickness_m, float expected_m, const BackRules& rules) {
-  constexpr float kThinnest_m = 0.001F;  // a back is behind its front
+  constexpr float kThinnest_m = 0.001F;  // keeps the back behind its front
   if (expected_m > 0.0F) thickness_m = std::min(thickness_m, expected_m - rules.clearance_m - depth_m);
   return depth_m + std::max(thickness_m, kThinnest_m);
 }
@@ -67,7 +67,8 @@ class BackMaker {
   void measure_distances() {
     visit([&](std::size_t i, int column, int row) {
       if ((back_.joined[i] & 0b01010101U) == 0b01010101U || !has_outline(i, column, row)) return;
-      // Of 5 x 5 pixels about a point half are in on the outline itself, and a fifth more a pixel farther in.
+      // Of the 5 x 5 pixels around a point, half are dynamic on the outline itself, and a fifth more per
+      // pixel inside it.
       const CellBits window = pixels_.smooth.square(kCell_px * column - 2, kCell_px * row - 2);
       back_.rim_px[i] =
           std::clamp(5.0F * (static_cast<float>(std::popcount(window)) / 25.0F - 0.5F), 0.5F, 2.5F);
@@ -85,11 +86,12 @@ class BackMaker {
         }
       };
     };
-    visit(pass(4));       // from above and the left
-    visit_back(pass(0));  // from below and the right
+    visit(pass(4));       // propagates from above and the left
+    visit_back(pass(0));  // propagates from below and the right
   }
 
-  /// Half the width of the thing where a point is: uphill from there to the ridge of the distances.
+  /// Computes the object's half width at each point: the greatest distance from the outline, uphill from
+  /// there.
   void measure_widths() {
     back_.width_px = back_.rim_px;
     const auto pass = [&](std::size_t first_step) {
@@ -106,7 +108,7 @@ class BackMaker {
     visit_back(pass(0));
   }
 
-  /// Sums up over each part that hangs together.
+  /// Sums up the bulges of each connected component.
   void measure_bulges() {
     visit([&](std::size_t first, int, int) {
       if (back_.part[first] != 0) return;
@@ -181,20 +183,20 @@ class BackMaker {
     }
   }
 
-  /// How far a round thing of this width bulges out of its outline here.
+  /// Returns how far, in pixels, a round object of this half width bulges at this distance from its outline.
   static float round_px(float rim_px, float width_px) {
     return rim_px < kFar_px ? std::sqrt(rim_px * (2.0F * width_px - rim_px)) : kFar_px;
   }
 
-  /// Whether the thing itself ends beside this point, towards one of its four neighbours.
+  /// Returns true if the object itself ends beside this point, towards one of its four neighbours.
   [[nodiscard]] bool has_outline(std::size_t i, int column, int row) const {
     const float here = lattice_.inverse_depth[i];
     for (std::size_t k = 0; k < kSteps.size(); k += 2) {
       if ((back_.joined[i] >> k & 1U) != 0) continue;
       const int x = kCell_px * (column + kSteps[k].x), y = kCell_px * (row + kSteps[k].y);
-      if (!depth_m_.contains(x, y)) continue;  // it goes on beyond the image
+      if (!depth_m_.contains(x, y)) continue;  // continues beyond the image
       const float there_m = depth_m_.at(x, y);
-      const bool is_behind_it = there_m > 0.0F && there_m * here < 1.0F;  // seen past something nearer
+      const bool is_behind_it = there_m > 0.0F && there_m * here < 1.0F;  // cut off by a nearer surface
       if (!is_behind_it || rules_.jump.joins_inverse(here, 1.0F / there_m)) return true;
     }
     return false;
@@ -254,7 +256,7 @@ float back_at(int x, int y, float front_inverse_depth, const MovedLattice& latti
   float thickness_m = 0.0F;
   for (int k = 0; k < 4; ++k) {
     const float weight = (k % 2 == 0 ? 1.0F - along_x : along_x) * (k / 2 == 0 ? 1.0F - along_y : along_y);
-    if (!(weight > 0.0F)) continue;  // and the point may not be there
+    if (!(weight > 0.0F)) continue;  // the point may not exist
     const float there_m = back.thickness_m[lattice.index(column + k % 2, row + k / 2)];
     thickness_m += weight * std::max(there_m, rules.least_thickness_m);
   }

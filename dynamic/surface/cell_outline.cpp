@@ -1,4 +1,4 @@
-// cell_outline.cpp: tables of what each straight cut through a cell covers.
+// cell_outline.cpp: tables of the pixels that each straight cut through a cell covers.
 #include "dynamic/surface/cell_outline.hpp"
 
 #include <bit>
@@ -7,17 +7,17 @@
 namespace roomradar {
 namespace {
 
-// How far a pixel may lie outside its polygon, or a pixel that is not in inside of it.
+// Max distance of a set pixel outside its polygon, and of an empty pixel inside it.
 constexpr double kTolerance_px = 1.0 + 1e-6;
 
-/// Twice the area of a triangle, positive counter-clockwise as the camera sees it.
+/// Returns twice the area of a triangle, positive if counter-clockwise as seen by the camera.
 int turn(CellPixel a, CellPixel b, CellPixel c) {
   return (b.y - a.y) * (c.x - a.x) - (b.x - a.x) * (c.y - a.y);
 }
 
 struct Cut {
-  CellBits allowed = 0;   // inside or little outside: pixels may be here
-  CellBits required = 0;  // well inside: pixels must be here
+  CellBits allowed = 0;   // inside or slightly outside: pixels may be set
+  CellBits required = 0;  // well inside: pixels must be set
 };
 
 Cut make_cut(int first, int last) {
@@ -27,7 +27,7 @@ Cut make_cut(int first, int last) {
   for (std::int8_t y = 0; y < 5; ++y) {
     for (std::int8_t x = 0; x < 5; ++x) {
       const CellBits bit = CellBits{1} << (5 * y + x);
-      // The run goes from a to b, so the polygon is on the left of the way back.
+      // The run goes from a to b, so the polygon is on the left of the line from b to a.
       const double inside_px = first == last ? -std::hypot(x - a.x, y - a.y) : turn(b, a, {x, y}) / length;
       if (inside_px >= -kTolerance_px) cut.allowed |= bit;
       if (inside_px > kTolerance_px) cut.required |= bit;
@@ -71,14 +71,14 @@ bool find_outline(CellBits pixels, RingArc& arc) {
 
 CellTriangles triangulate(const int* corners, int count) {
   CellTriangles result;
-  std::array<std::uint8_t, 16> left;  // what is not cut off yet
+  std::array<std::uint8_t, 16> left;  // corners not cut off yet
   for (int i = 0; i < count; ++i) left[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(i);
   const auto pixel = [&](int i) {
     return kRing[static_cast<std::size_t>(corners[left[static_cast<std::size_t>(i % count)]])];
   };
   int area = 0;
   for (int i = 1; i + 1 < count; ++i) area += turn(pixel(0), pixel(i), pixel(i + 1));
-  // The polygon is convex: any corner that is one may be cut off, as long as an area is left for the rest.
+  // The polygon is convex: any corner with a positive area may be cut off, as long as the rest has an area.
   while (count > 2 && area > 0) {
     int best = -1, best_area = 0, shortest = 1000;
     for (int i = 0; i < count; ++i) {

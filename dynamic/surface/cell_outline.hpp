@@ -1,20 +1,20 @@
-// cell_outline.hpp: the surface in a cell of 4 x 4 pixels that its outline cuts, as one convex polygon.
+// cell_outline.hpp: convex polygon of a surface in a cell of 4 x 4 pixels that is cut by its outline.
 #pragma once
 #include <array>
 #include <cstdint>
 
 namespace roomradar {
 
-/// A cell's 5 x 5 pixels, its corners and sides included: bit 5 * y + x.
+/// The 5 x 5 pixels of a cell, corners and sides included: bit 5 * y + x.
 using CellBits = std::uint32_t;
 constexpr int kCell_px = 4;
 constexpr CellBits kWholeCell = (CellBits{1} << 25) - 1;
 
-/// A pixel of a cell.
+/// Position of a pixel in a cell, 0 to 4.
 struct CellPixel {
   std::int8_t x, y;
 };
-/// The 16 pixels on a cell's sides, counter-clockwise as the camera sees them (x right, y down) from the top
+/// The 16 pixels on a cell's sides, counter-clockwise as seen by the camera (x right, y down), from the top
 /// left: down the left side (0 to 4), along the bottom, up the right side, back along the top.
 constexpr std::array<CellPixel, 16> kRing{{{0, 0},
                                            {0, 1},
@@ -33,24 +33,24 @@ constexpr std::array<CellPixel, 16> kRing{{{0, 0},
                                            {2, 0},
                                            {1, 0}}};
 
-/// A run of the ring's pixels: `count` of them from `first` on; 16: all.
+/// `count` consecutive pixels of the ring from `first` on; 16: the whole ring.
 struct RingArc {
   int first = 0, count = 0;
 };
 
-/// Whether the pixels of one surface in a cell are what a convex polygon covers: those of the ring are one
-/// run, and the straight line that joins the run's ends leaves no pixel more than about one pixel outside and
-/// takes in none that lies deeper. A cell whose ring is complete is covered whole, unmeasured specks within
-/// it included.
+/// Returns true if a convex polygon can represent the pixels of one surface in a cell. The pixels on the ring
+/// must be one run. The line between the run's ends must leave no pixel more than about one pixel outside and
+/// include no empty pixel deeper than that. If the ring is complete, the polygon is the whole cell, including
+/// unmeasured specks in it.
 bool find_outline(CellBits pixels, RingArc& arc);
 
-/// Triangles over a polygon on the ring, as places in its list of corners.
+/// Triangles of a polygon on the ring, as indices into its list of corners.
 struct CellTriangles {
   std::array<std::array<std::uint8_t, 3>, 14> triangles;
   int count = 0;
 };
-/// @param corners  places in kRing in its order, 0 to 16 of them
-/// @return counter-clockwise, each with an area; none where all corners lie on one line
+/// @param corners  0 to 16 indices into kRing, in ring order
+/// @return counter-clockwise triangles of positive area; none if all corners are collinear
 CellTriangles triangulate(const int* corners, int count);
 
 }  // namespace roomradar

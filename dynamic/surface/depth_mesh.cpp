@@ -1,4 +1,4 @@
-// depth_mesh.cpp: triangles through the pixels of a depth frame.
+// depth_mesh.cpp: triangle mesh through the pixels of a depth frame.
 #include "dynamic/surface/depth_mesh.hpp"
 
 #include <algorithm>
@@ -17,8 +17,8 @@ constexpr std::uint32_t kNoVertex = 0xFFFFFFFFU;
 struct Projection {
   float inv_fx, inv_fy, cx, cy;
   Eigen::Matrix3f R_world_camera;
-  int last_x = 0, last_y = 0;  // of the grid
-  float border_push_m = 0.0F;  // of the vertices in its first and last row and column
+  int last_x = 0, last_y = 0;  // last column and row of the grid
+  float border_push_m = 0.0F;  // for vertices in the grid's first and last row and column
 
   Eigen::Vector3f operator()(int x, int y, float depth_m) const {
     Eigen::Vector3f p_camera((static_cast<float>(x) - cx) * inv_fx * depth_m,
@@ -27,7 +27,7 @@ struct Projection {
     return R_world_camera * p_camera;
   }
   void push_out(int x, int y, Eigen::Vector3f& p_camera) const {
-    constexpr float kNearest_m = 0.1F;  // still before the camera
+    constexpr float kNearest_m = 0.1F;  // still in front of the camera
     const int side_x = static_cast<int>(x == last_x) - static_cast<int>(x == 0);
     const int side_y = static_cast<int>(y == last_y) - static_cast<int>(y == 0);
     if (side_x == 0 && side_y == 0) return;
@@ -37,11 +37,10 @@ struct Projection {
   }
 };
 
-// One corner of a grid cell. A vertex is made when the first triangle needs it, so none is without a
-// triangle.
+// A corner of a grid cell. The first triangle that needs its vertex makes it, so every vertex has a triangle.
 struct Corner {
   int x, y;
-  float depth_m;          // 0: nothing here
+  float depth_m;          // 0: no depth
   std::uint32_t& vertex;  // slot in the row buffer
 };
 
@@ -56,14 +55,14 @@ class GridMesher {
         skirts_(skirts),
         mesh_(mesh) {}
 
-  // The cell with corners a (top left), b (bottom left), c (bottom right), d (top right): counter-clockwise
-  // as the camera sees them. It is split along the diagonal with the smaller depth step.
+  // Adds the cell with corners a (top left), b (bottom left), c (bottom right), d (top right),
+  // counter-clockwise as seen by the camera. Splits it along the diagonal with the smaller depth step.
   void cell(const Corner& a, const Corner& b, const Corner& c, const Corner& d) {
     const bool has_ac = a.depth_m > 0.0F && c.depth_m > 0.0F;
     const bool has_bd = b.depth_m > 0.0F && d.depth_m > 0.0F;
     if (!has_ac && !has_bd) return;
     if (has_bd && (!has_ac || std::abs(b.depth_m - d.depth_m) <= std::abs(a.depth_m - c.depth_m))) {
-      triangle(a, b, d);  // the right angle first, the diagonal opposite
+      triangle(a, b, d);  // right angle first, diagonal opposite
       triangle(c, d, b);
     } else {
       triangle(b, c, a);
@@ -71,7 +70,7 @@ class GridMesher {
     }
   }
 
-  // Pushes the outermost vertices of a grid of this size outwards and nearer.
+  // Moves the outermost vertices of a grid of this size outwards and nearer.
   void push_border(int width, int height, int stride, float push_m) {
     project_.last_x = (width - 1) / stride * stride;
     project_.last_y = (height - 1) / stride * stride;
@@ -84,7 +83,7 @@ class GridMesher {
       if (length > 0.0F) normal /= length;
     }
     if (!skirts_) return;
-    for (std::size_t i = 0; i < mesh_.normals.size(); ++i) {  // met by skirts only: faces the camera
+    for (std::size_t i = 0; i < mesh_.normals.size(); ++i) {  // vertices of skirts only face the camera
       if (mesh_.normals[i].isZero()) mesh_.normals[i] = -mesh_.vertices[i].normalized();
     }
   }
@@ -98,7 +97,7 @@ class GridMesher {
     if (!one_surface && !skirts_) return;
     const Triangle t = {vertex(corner), vertex(second), vertex(third)};
     mesh_.triangles.push_back(t);
-    if (!one_surface) return;  // a skirt is no surface: it does not bend the normals
+    if (!one_surface) return;  // a skirt is no surface: it does not affect the normals
     const Eigen::Vector3f& p = mesh_.vertices[t[0]];
     const Eigen::Vector3f area_normal = (mesh_.vertices[t[1]] - p).cross(mesh_.vertices[t[2]] - p);
     for (const std::uint32_t i : t) mesh_.normals[i] += area_normal;
@@ -128,14 +127,14 @@ void start(const DepthImage& depth_m, const Eigen::Isometry3d& T_world_camera, c
   mesh.normals.clear();
   mesh.colours.clear();
   mesh.triangles.clear();
-  mesh.vertices.reserve(columns * rows);  // the most there can be, so that no later frame allocates
+  mesh.vertices.reserve(columns * rows);  // upper bounds, so later frames do not allocate
   mesh.normals.reserve(columns * rows);
   mesh.triangles.reserve(columns * rows * 2);
   scratch.vertex_above.assign(columns, kNoVertex);
   scratch.vertex_here.assign(columns, kNoVertex);
 }
 
-// Walks the cells of the stride grid row by row; depth_at(x, y) is 0 where there is nothing.
+// Meshes the cells of the stride grid row by row; depth_at(x, y) is 0 without depth.
 template <typename DepthAt>
 void mesh_grid(int width, int height, int stride, const DepthAt& depth_at, DepthMeshScratch& scratch,
                GridMesher& mesher) {
@@ -157,8 +156,7 @@ void mesh_grid(int width, int height, int stride, const DepthAt& depth_at, Depth
   }
 }
 
-// Copies one row and joins the two sides of its gaps of up to gap_px by straight lines, which in a picture
-// are linear in inverse depth.
+// Copies one row and fills its gaps of up to gap_px along straight lines, which are linear in inverse depth.
 void fill_gaps(const float* depth_m, int width, int gap_px, float* filled_m) {
   std::copy_n(depth_m, width, filled_m);
   int last = -1;
@@ -174,7 +172,7 @@ void fill_gaps(const float* depth_m, int width, int gap_px, float* filled_m) {
   }
 }
 
-// Takes a row's first and last depth for what is not measured beside them.
+// Extends a row's first and last depth over the unmeasured pixels beside them.
 void fill_ends(int width, float* depth_m) {
   const auto measured = [](float of_m) { return of_m > 0.0F; };
   float* const end = depth_m + width;

@@ -1,4 +1,4 @@
-// depth_mesh.hpp: triangles through the pixels of a depth frame.
+// depth_mesh.hpp: triangle mesh through the pixels of a depth frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -13,39 +13,40 @@ namespace roomradar {
 
 struct DepthMeshConfig {
   int stride_px = 2;  ///< every stride-th pixel becomes a vertex; silhouettes lose up to stride - 1 pixels
-  float jump_sigmas = 4.0F;          ///< two pixels whose depths differ by noise alone are one surface
-  float jump_incidence_deg = 80.0F;  ///< and so are two on a plane seen at up to this angle from its normal
-  int skirt_gap_px = 64;  ///< a skirt closes unmeasured gaps (projector shadow) of up to this width
-  /// kBorder: how far the vertices on the image's border are pushed outwards, and how much nearer.
+  float jump_sigmas = 4.0F;          ///< depths that differ by up to this much noise are one surface
+  float jump_incidence_deg = 80.0F;  ///< and so is a plane seen at up to this angle from its normal
+  int skirt_gap_px = 64;             ///< max width of unmeasured gaps (projector shadow) that a skirt closes
+  /// kBorder: distance by which vertices on the image's border are moved outwards, and nearer.
   float border_push_m = 0.5F;
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const DepthMeshConfig& config);
 
-/// Buffers that the meshers reuse from frame to frame; their content means nothing between calls.
+/// Buffers that the meshers reuse from frame to frame; their content is meaningless between calls.
 struct DepthMeshScratch {
   std::vector<std::uint32_t> vertex_above, vertex_here;  // of two grid rows
-  std::vector<float> filled_m;                           // the image with its gaps closed, for skirts
+  std::vector<float> filled_m;                           // image with its gaps filled, for skirts
 };
 
-/// Meshes the pixels that moved: a vertex at each measured pixel of the mask (on the stride grid), triangles
-/// between neighbours that lie on one surface. Nothing spans a depth jump or the mask's edge.
+/// Meshes the dynamic pixels: a vertex at each measured pixel of the mask (on the stride grid), triangles
+/// between neighbours on one surface. No triangle spans a depth discontinuity or the mask's edge.
 ///
 /// @param depth_m         height x width, metres along the axis, 0 = no measurement
-/// @param moved_mask      same size, not 0 = in
+/// @param moved_mask      same size; not 0: dynamic
 /// @param T_world_camera  pose of the depth camera
-/// @param mesh            overwritten, allocations kept; origin at the camera's position, world axes, unit
-///                        normals, counter-clockwise towards the camera, no colours; empty if nothing is in
+/// @param mesh            overwritten, allocations kept; origin at the camera's position, world axes,
+///                        unit normals, counter-clockwise towards the camera, no colours; empty if no
+///                        pixel is dynamic
 void mesh_masked(const DepthImage& depth_m, const MaskImage& moved_mask, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
                  DepthMeshScratch& scratch, Mesh& mesh);
 
-/// Meshes the whole frame, as a system without a map would. kSkirt also joins the two sides of each depth
-/// jump, and of each unmeasured gap within a row, by polygons; kHoles, and kMap alike, leave them open.
-/// kBorder does as kSkirt, takes each row's first and last depth for what is not measured beside them, and
-/// pushes the vertices on the image's border by border_push_m outwards in the image plane and as much nearer,
-/// so that nothing that leaves the view falls. Otherwise as mesh_masked.
-/// Source of kBorder: the depth collider of Google's ARCore Depth Lab (2020).
+/// Meshes the whole frame, as a system without a map would. kHoles and kMap leave depth discontinuities open.
+/// kSkirt connects both sides of each discontinuity, and of each unmeasured gap within a row, by polygons.
+/// kBorder does so too and extends each row's first and last depth over unmeasured pixels beside them. It
+/// also moves vertices on the image's border by border_push_m outwards in the image plane and as much nearer,
+/// so nothing that leaves the view falls. Otherwise as mesh_masked(). Source of kBorder: the depth collider
+/// of Google's ARCore Depth Lab (2020).
 void mesh_whole(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 SurfacePolicy policy, const DepthMeshConfig& config, DepthMeshScratch& scratch, Mesh& mesh);
 

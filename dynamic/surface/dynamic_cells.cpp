@@ -1,4 +1,4 @@
-// moved_cells.cpp: jumps, outlines and bends, cell by cell.
+// moved_cells.cpp: discontinuities, outlines and bends, cell by cell.
 #include "dynamic/surface/dynamic_cells.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace roomradar {
 namespace {
 
 constexpr CellBits kNotLastColumn = 0b01111'01111'01111'01111'01111U;
-constexpr std::array<int, 4> kCorners{0, 4, 8, 12};  // places in the ring
+constexpr std::array<int, 4> kCorners{0, 4, 8, 12};  // indices into the ring
 
 using CellValues = std::array<float, 25>;  // inverse depths of a cell's pixels
 
@@ -17,11 +17,12 @@ constexpr int place(CellPixel p) { return 5 * p.y + p.x; }
 constexpr CellBits bit(int place) { return CellBits{1} << place; }
 CellPixel ring(int i) { return kRing[static_cast<std::size_t>(i & 15)]; }
 
-/// Where neighbours are in but not one surface: right[k]: between pixel k and the one on its right.
+/// Discontinuities between dynamic neighbours. Bit k of right: between pixel k and its right neighbour; of
+/// down: between pixel k and the one below.
 struct Jumps {
   CellBits right = 0, down = 0;
   [[nodiscard]] bool any() const { return (right | down) != 0; }
-  /// Between two neighbours along the ring.
+  /// Returns true if there is one between two neighbours along the ring.
   [[nodiscard]] bool between(CellPixel a, CellPixel b) const {
     const int first = std::min(place(a), place(b));
     return ((a.y == b.y ? right : down) >> first & 1U) != 0;
@@ -41,7 +42,7 @@ Jumps find_jumps(CellBits in, const CellValues& values, const JumpRule& rule) {
   return jumps;
 }
 
-/// All that hangs together with the lowest pixel of `in`, jumps apart.
+/// Returns all pixels connected to the lowest bit of `in` without crossing a discontinuity.
 CellBits take_surface(CellBits in, const Jumps& jumps) {
   const CellBits can_right = in & in >> 1 & kNotLastColumn & ~jumps.right;
   const CellBits can_down = in & in >> 5 & ~jumps.down;
@@ -54,8 +55,8 @@ CellBits take_surface(CellBits in, const Jumps& jumps) {
   return surface;
 }
 
-/// Corners of the polygon that covers an arc of the ring: its ends, the cell's corners, and on sides that are
-/// `busy` (bit: left, bottom, right, top) every pixel.
+/// Corners of the polygon that covers an arc of the ring: the arc's ends, the cell's corners, and every pixel
+/// on `busy` sides (bits: left, bottom, right, top).
 struct Polygon {
   std::array<int, 16> corners;
   int count = 0;
@@ -71,7 +72,7 @@ Polygon polygon_of(const RingArc& arc, unsigned busy) {
   return polygon;
 }
 
-/// Whether the pixels of a surface lie on the triangles of its polygon but for noise.
+/// Returns true if the pixels of a surface are on the triangles of its polygon, within noise.
 bool is_followed(CellBits surface, const CellValues& values, const RingArc& arc, float most) {
   const Polygon polygon = polygon_of(arc, 0);
   const CellTriangles triangles = triangulate(polygon.corners.data(), polygon.count);
@@ -129,7 +130,7 @@ class CellSorter {
         for (const std::size_t i : corners(column, row)) cells_.must_be_vertex[i] = 1;
       }
     }
-    // A flat cell beside a full one has all its pixels on that side.
+    // A flat cell beside a full one gets a vertex at every pixel on that side.
     for (int row = 0; row * kCell_px < pixels_.smooth.height; ++row) {
       for (int column = 0; column * kCell_px < pixels_.smooth.width; ++column) {
         const std::size_t i = cell(column, row);
@@ -199,7 +200,7 @@ class CellSorter {
       std::size_t count = 0;
       for (CellBits left = in, part; left != 0; left &= ~part) {
         part = take_surface(left, jumps);
-        if (std::popcount(part) < 3) continue;  // no triangle
+        if (std::popcount(part) < 3) continue;  // too few for a triangle
         if (count == parts.size()) return CellKind::kFull;
         parts[count++] = part;
       }
@@ -210,7 +211,7 @@ class CellSorter {
     return CellKind::kCut;
   }
 
-  /// Inverse depths of the pixels that are in, and the least and the greatest of them.
+  /// Reads the inverse depths of the dynamic pixels; returns the least and the greatest.
   std::pair<float, float> read(CellBits in, int column, int row, CellValues& values) const {
     float least = 1e30F, most = 0.0F;
     for (; in != 0; in &= in - 1) {
@@ -244,7 +245,7 @@ class CellSorter {
     return is_followed(part, values, arc, rules_.most_sigmas * inverse_depth_sigma(most, slope * slope));
   }
 
-  /// Null: none reaches the cell.
+  /// Returns the first ball that reaches the cell, or null.
   [[nodiscard]] const FineBall* fine_ball(CellBits in, int column, int row) const {
     const int k = std::countr_zero(in);
     const CellPixel p{static_cast<std::int8_t>(k % 5), static_cast<std::int8_t>(k / 5)};
@@ -259,7 +260,7 @@ class CellSorter {
     return found == fine_.end() ? nullptr : &*found;
   }
 
-  /// Bits of the sides beyond which a full cell lies: left, bottom, right, top.
+  /// Returns the bits of the sides that border on a full cell: left, bottom, right, top.
   [[nodiscard]] unsigned busy_sides(int column, int row) const {
     const auto is_full = [&](int i, int j) {
       return i >= 0 && j >= 0 && i < across_ && j + 1 < lattice_.rows &&
@@ -294,7 +295,7 @@ class CellSorter {
     const CellBits in = pixels_.smooth.square(column * kCell_px, row * kCell_px);
     CellValues depth_m{};
     (void)read(in, column, row, depth_m);
-    for (float& z : depth_m) z = 1.0F / z;  // what is not in stays unread
+    for (float& z : depth_m) z = 1.0F / z;  // values of other pixels are never read
     const auto depth = [&](CellPixel p) { return depth_m[static_cast<std::size_t>(place(p))]; };
     const auto triangle = [&](CellPixel corner, CellPixel second, CellPixel third) {
       if ((in & bit(place(corner))) == 0 || (in & bit(place(second))) == 0 || (in & bit(place(third))) == 0)
@@ -327,7 +328,7 @@ class CellSorter {
   std::span<const FineBall> fine_;
   const CellRules& rules_;
   MovedCells& cells_;
-  int across_;  // cells in a row
+  int across_;  // cells per row
   std::size_t width_;
 };
 

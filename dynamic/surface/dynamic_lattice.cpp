@@ -1,4 +1,4 @@
-// moved_lattice.cpp: planes through windows of 5 x 5 pixels, and means over what lies opposite.
+// moved_lattice.cpp: planes through windows of 5 x 5 pixels, and means over opposite pixels.
 #include "dynamic/surface/dynamic_lattice.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-/// The term of the sensor's noise by angle, times sqrt(depth), by the angle's cosine.
+/// The angle-dependent term of the sensor's noise, times sqrt(depth), tabulated by the angle's cosine.
 struct GrazingNoise {
   static constexpr int kSteps = 128;
   std::array<float, kSteps + 2> by_cosine;
@@ -29,15 +29,16 @@ struct GrazingNoise {
   }
 };
 
-/// Where a lattice point lies and how the image spreads there.
+/// View ray of a lattice point, with the focal lengths.
 struct Ray {
   float u, v;  // x / z, y / z
   float fx, fy;
-  /// Squared tangent of the angle between this ray and the normal of the plane with this inverse depth and
-  /// these slopes of it (1/m a pixel).
+  /// Returns the squared tangent of the angle between this ray and a plane's normal. The plane is given by
+  /// its inverse depth here and the slopes of that (1/m per pixel).
   [[nodiscard]] float tangent2(float inverse_depth, float slope_x, float slope_y) const {
     const float a = slope_x * fx, b = slope_y * fy;
-    const float c = inverse_depth - a * u - b * v;  // inverse depth = a u + b v + c: the normal is (a, b, c)
+    const float c = inverse_depth - a * u - b * v;  // inverse depth = a u + b v + c, so the normal is (a, b,
+                                                    // c)
     const float cosine2 = inverse_depth * inverse_depth / ((1.0F + u * u + v * v) * (a * a + b * b + c * c));
     return 1.0F / std::max(cosine2, 1e-6F) - 1.0F;
   }
@@ -45,10 +46,10 @@ struct Ray {
 
 struct Plane {
   float mean, slope_x, slope_y;
-  float rms2;  // of the residuals
+  float rms2;  // mean square of the residuals
 };
 
-/// The plane of least squares through 5 x 5 values; 8 of each row are read.
+/// Fits the least-squares plane through 5 x 5 values; reads 8 values of each row.
 Plane fit(const float* top_left, std::size_t width) {
   const float middle = top_left[2 * width + 2];
   std::array<float, 8> sum{}, by_row{}, squares{};
@@ -70,7 +71,7 @@ Plane fit(const float* top_left, std::size_t width) {
   return {middle + all / 25.0F, slope_x, slope_y, std::max(rest, 0.0F) / 25.0F};
 }
 
-/// Mean over the pairs of pixels opposite each other that are in and differ from a line by noise only.
+/// Returns the mean over pairs of opposite dynamic pixels that deviate from a line by noise only.
 Plane mean_of_pairs(const float* middle, std::ptrdiff_t width, CellBits window, float sigma) {
   float bend = 0.0F, by_x = 0.0F, by_y = 0.0F;
   int pairs = 0, x2 = 0, y2 = 0;
@@ -79,7 +80,7 @@ Plane mean_of_pairs(const float* middle, std::ptrdiff_t width, CellBits window, 
     const int dx = 2 - k % 5, dy = 2 - k / 5;
     const std::ptrdiff_t to = dy * width + dx;
     const float second = middle[to] + middle[-to] - 2.0F * middle[0];
-    if (std::abs(second) > 6.0F * sigma) continue;  // sqrt(6) sigmas are one of such a difference
+    if (std::abs(second) > 6.0F * sigma) continue;  // one sigma of such a difference is sqrt(6) sigmas
     bend += second;
     const float difference = middle[to] - middle[-to];
     by_x += static_cast<float>(dx) * difference;
@@ -90,8 +91,7 @@ Plane mean_of_pairs(const float* middle, std::ptrdiff_t width, CellBits window, 
           by_y / static_cast<float>(std::max(y2, 1)), 0.0F};
 }
 
-/// Averages flat points with flat neighbours that lie opposite each other, where that does not round off a
-/// bend.
+/// Averages flat points with pairs of opposite flat neighbours, unless that would round off a bend.
 void average_neighbours(MovedLattice& lattice) {
   constexpr float kMostBend_sigmas = 1.5F;
   lattice.raw = lattice.inverse_depth;

@@ -1,4 +1,4 @@
-// moved_lattice.hpp: the surface of what moved at every fourth pixel, with its noise averaged away.
+// moved_lattice.hpp: the dynamic surface at every fourth pixel, with its noise averaged away.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,20 +10,20 @@
 
 namespace roomradar {
 
-/// Squares of this many cells of kCell_px pixels are meshed as a whole where they are flat.
+/// Side of a square in cells of kCell_px pixels. Flat squares are meshed as a whole.
 constexpr int kSquareCells = 8;
 
-/// Points at pixels (kCell_px * column, kCell_px * row), rows first. The cells between them cover the image
-/// and make whole squares; points beyond the image are not in.
+/// Points at pixels (kCell_px * column, kCell_px * row), row-major. The cells between them cover the image
+/// and form whole squares; points beyond the image are not dynamic.
 struct MovedLattice {
-  int columns = 0, rows = 0;  ///< of points: a multiple of kSquareCells plus one
-  /// 1/m, 0 where the pixel is not in. Averaged over pairs of pixels that lie opposite each other, which
-  /// leaves planes as they are.
+  int columns = 0, rows = 0;  ///< number of points: a multiple of kSquareCells plus one
+  /// 1/m, 0 where the pixel is not dynamic. Averaged over pairs of opposite pixels, which leaves planes
+  /// unchanged.
   std::vector<float> inverse_depth;
   std::vector<float> sigma;  ///< 1/m, noise of one pixel at this depth and angle
-  /// The 5 x 5 pixels about the point are all in, and are a plane but for noise.
+  /// 1 if the 5 x 5 pixels around the point are all dynamic, and on a plane within noise.
   std::vector<std::uint8_t> is_flat;
-  std::vector<float> raw;  // before points were averaged with their neighbours
+  std::vector<float> raw;  // before averaging points with their neighbours
 
   [[nodiscard]] std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
@@ -31,14 +31,15 @@ struct MovedLattice {
   }
 };
 
-/// Noise of inverse depth, 1/m, on a surface whose tangent of the angle between view ray and normal is given.
+/// Returns the noise of inverse depth, 1/m. tangent2: squared tangent of the angle between view ray and
+/// surface normal.
 float inverse_depth_sigma(float inverse_depth, float tangent2);
 
-/// A pixel that is in, averaged with those of the 5 x 5 about it that lie opposite each other and differ from
-/// a line by noise alone: outlines stay, bends are rounded off by less than the noise. 1/m.
+/// Returns a dynamic pixel's inverse depth (1/m), averaged over pairs of opposite pixels of the surrounding 5
+/// x 5 that deviate from a line by noise only. Outlines stay; bends are rounded by less than the noise.
 float smoothed_inverse_depth(const MovedPixels& pixels, int x, int y);
 
-/// @param flat_sigmas  five by five pixels that differ from a plane by this much (RMS) are flat
+/// @param flat_sigmas  5 x 5 pixels are flat if their RMS distance from a plane is at most this
 void make_lattice(const MovedPixels& pixels, const Intrinsics& camera, float flat_sigmas,
                   MovedLattice& lattice);
 

@@ -1,4 +1,4 @@
-// moved_pixels.cpp: mask and depth to bits, 64 pixels at a time.
+// moved_pixels.cpp: converts mask and depth to bits, 64 pixels at a time.
 #include "dynamic/surface/dynamic_pixels.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::uint64_t take_word(const std::uint8_t* mask, const float* depth_m, int coun
   return word;
 }
 
-/// Gives what is in `smooth` only the mean of what was measured about it.
+/// Sets a pixel of `smooth` that is not measured to the mean of its measured neighbours.
 void fill(int x, int y, MovedPixels& pixels) {
   float sum = 0.0F;
   int count = 0;
@@ -50,7 +50,7 @@ void fill(int x, int y, MovedPixels& pixels) {
 }  // namespace
 
 void take_moved_pixels(const DepthImage& depth_m, const MaskImage& moved_mask, MovedPixels& pixels) {
-  constexpr std::size_t kReadPast = 8;  // what fits planes reads eight pixels where it needs five
+  constexpr std::size_t kReadPast = 8;  // plane fitting reads eight pixels where it needs five
   pixels.inverse_depth.resize(depth_m.pixels.size() + kReadPast);
   pixels.measured.resize(depth_m.width, depth_m.height);
   for (int y = 0; y < depth_m.height; ++y) {

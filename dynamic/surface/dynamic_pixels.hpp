@@ -1,4 +1,4 @@
-// moved_pixels.hpp: the pixels that moved, as bits and inverse depths, with their outline made smooth.
+// moved_pixels.hpp: dynamic pixels as bits and inverse depths, with a smoothed outline.
 #pragma once
 #include <vector>
 
@@ -7,20 +7,22 @@
 
 namespace roomradar {
 
-/// Inverse depths, since a plane is linear in them over the image.
+/// Stores inverse depths, since a plane's inverse depth is linear over the image.
 struct MovedPixels {
-  PixelBits measured;  ///< in the mask, and with depth
-  /// The same with a smooth outline: what most of the 3 x 3 pixels around are. Every pixel of `measured` is
-  /// in this, beside a pixel that is, or in `thin`.
+  PixelBits measured;  ///< in the mask and with depth
+  /// `measured` with a smooth outline: majority of the surrounding 3 x 3 pixels. Every pixel of `measured` is
+  /// in `smooth`, has a neighbour in it, or is in `thin`.
   PixelBits smooth;
-  PixelBits thin;  ///< lines and specks that are too thin for that
-  /// 1/m, one a pixel; of those in `smooth` alone the mean of the measured about it; elsewhere meaningless.
+  PixelBits thin;  ///< lines and specks too thin for `smooth`
+  /// 1/m per pixel. In `smooth` but not `measured`: mean of the measured neighbours; outside both:
+  /// meaningless.
   std::vector<float> inverse_depth;
 };
 
-/// @param depth_m     metres; what is 0, not finite or beyond 10 km is not measured
-/// @param moved_mask  same size, not 0 = in
-/// Allocates when the size grows, else never.
+/// @param depth_m     metres; 0, not finite or beyond 10 km: not measured
+/// @param moved_mask  same size; not 0: dynamic
+///
+/// Allocates only when the size grows.
 void take_moved_pixels(const DepthImage& depth_m, const MaskImage& moved_mask, MovedPixels& pixels);
 
 }  // namespace roomradar

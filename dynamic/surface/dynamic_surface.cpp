@@ -1,4 +1,4 @@
-// moved_surface.cpp: from cells and squares to the two meshes of what moved.
+// moved_surface.cpp: assembles the two dynamic meshes from cells and squares.
 #include "dynamic/surface/dynamic_surface.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ void clear(Mesh& mesh, const Eigen::Vector3d& origin) {
   mesh.triangles.clear();
 }
 
-/// Points in the world's axes, from the camera's position.
+/// Back-projects pixels to points relative to the camera's position, in world axes.
 struct Rays {
   float inverse_fx, inverse_fy, cx, cy;
   Eigen::Matrix3f R_world_camera;
@@ -99,7 +99,7 @@ class Assembler {
     forget_pixels();
   }
 
-  /// Slabs for lines and specks, `most_px` pixels at a time.
+  /// Adds slabs for lines and specks, up to kMost_px pixels each.
   void add_thin(bool with_back) {
     constexpr int kMost_px = 8;
     PixelBits& thin = scratch_.pixels.thin;
@@ -131,7 +131,7 @@ class Assembler {
     find_needed(grid_, values, tolerances, scratch_.needed);
   }
 
-  /// All triangles, square by square, so that what is near in the world is near in the mesh.
+  /// Visits all triangles square by square, so vertices near in the world are near in the mesh.
   template <typename Value, typename Take>
   void walk(Mesh& mesh, const Value& value, const Take& take) {
     scratch_.pixel_of_vertex.clear();
@@ -171,7 +171,7 @@ class Assembler {
     for (const std::uint32_t pixel : scratch_.pixel_of_vertex) scratch_.vertex_of_pixel[pixel] = kNone;
   }
 
-  /// Leaves in `edges` those of the seen mesh that have a triangle on one side only.
+  /// Leaves in `edges` the boundary edges of the seen mesh, which have a triangle on one side only.
   void find_rim() {
     scratch_.edges.clear();
     scratch_.first_edge.assign(seen_.vertices.size(), kNone);
@@ -208,7 +208,7 @@ class Assembler {
     return back_rules_.jump.joins_inverse(inverse_depth(x, y), inverse_depth(to_x, to_y));
   }
 
-  /// The pixels from (x0, y0) to (x1, y1), half a pixel more all round.
+  /// Adds a slab over the pixels from (x0, y0) to (x1, y1), enlarged by half a pixel on all sides.
   void add_slab(int x0, int y0, int x1, int y1, bool with_back) {
     const std::array<float, 2> front{inverse_depth(x0, y0), inverse_depth(x1, y1)};
     const std::array<float, 2> x{static_cast<float>(x0) - 0.5F, static_cast<float>(x1) + 0.5F};
@@ -248,7 +248,7 @@ class Assembler {
   BisectedGrid grid_;
 };
 
-/// Room for the most that there can be, so that no later frame allocates.
+/// Reserves upper bounds, so later frames do not allocate.
 void reserve(std::size_t pixels, bool with_back, MovedSurfaceScratch& scratch, MovedSurface& surface) {
   surface.seen_world.vertices.reserve(pixels);
   surface.seen_world.normals.reserve(pixels);

@@ -1,4 +1,4 @@
-// moved_surface.hpp: what moved, as few triangles: what is seen of it, and the back that it is taken to have.
+// moved_surface.hpp: dynamic surfaces as few triangles, the visible front and an assumed back.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -15,88 +15,84 @@
 
 namespace roomradar {
 
-/// "Sigmas" are of the sensor's noise at the depth and the angle of the surface.
+/// "Sigmas" are of the sensor's noise at the surface's depth and angle.
 struct MovedSurfaceConfig {
-  /// How far, in depth, the mesh may be from the surface that the pixels show on average over 5 x 5 of them.
+  /// Max deviation, in depth, of the mesh from the pixels' average over 5 x 5.
   float deviation_sigmas = 0.8F;
-  float flat_sigmas = 2.0F;  ///< RMS of 5 x 5 pixels from a plane; more, and they are a bend, not noise
-  float cut_sigmas =
-      2.5F;  ///< the same of 4 x 4 pixels at an outline from their triangles; else all are vertices
-  float jump_sigmas = 4.0F;          ///< two pixels whose depths differ by noise alone are one surface
-  float jump_incidence_deg = 80.0F;  ///< and so are two on a plane seen at up to this angle from its normal
+  float flat_sigmas = 2.0F;  ///< max RMS of 5 x 5 pixels from a plane; above it they are a bend, not noise
+  float cut_sigmas = 2.5F;  ///< max RMS of an outline cell's pixels from its triangles; else all are vertices
+  float jump_sigmas = 4.0F;          ///< depths that differ by up to this much noise are one surface
+  float jump_incidence_deg = 80.0F;  ///< and so is a plane seen at up to this angle from its normal
   bool has_back = true;              ///< false: no inferred mesh
-  float least_thickness_m = 0.005F;  ///< of the back at the outline
+  float least_thickness_m = 0.005F;  ///< at the outline
   float most_thickness_m = 0.3F;     ///< a person's chest
-  float least_roundness = 0.3F;      ///< of what looks flat: 1 is as round as a ball
-  float back_clearance_m = 0.005F;   ///< the back stays this far before the static model
+  float least_roundness = 0.3F;      ///< assumed of flat fronts; 1: as round as a ball
+  float back_clearance_m = 0.005F;   ///< min distance of the back from the static model
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const MovedSurfaceConfig& config);
 
-/// A place, such as a virtual object's, within which the mesh is to be as fine as the image.
+/// A region, such as around a virtual object, where the mesh has the image's resolution.
 struct FineRegion {
   Eigen::Vector3d centre_world;
   double radius_m;
 };
 
-/// Both meshes have their origin at the camera's position, axes of the world, no colours; both are empty
-/// where nothing moved. Together they are closed: each edge has as many triangles on one side as on the
-/// other.
+/// Both meshes have their origin at the camera's position, world axes and no colours; both are empty if
+/// nothing is dynamic. Together they are closed: every edge is used equally often in both directions.
 struct MovedSurface {
   Mesh seen_world;  ///< counter-clockwise towards the camera, unit normals
-  /// Back and side walls, counter-clockwise from outside, no normals. Inferred: nobody has seen them.
+  /// Back and side walls, counter-clockwise from outside, no normals. Assumed, never observed.
   Mesh inferred_world;
 };
 
-/// Buffers that mesh_moved reuses from frame to frame; their content means nothing between calls.
+/// Buffers that mesh_moved reuses from frame to frame; their content is meaningless between calls.
 struct MovedSurfaceScratch {
   MovedPixels pixels;
   MovedLattice lattice;
   MovedCells cells;
   BackLattice back;
   std::vector<FineBall> fine;
-  std::vector<float> values, tolerances;       // one a lattice point
-  std::vector<std::uint8_t> needed;            // one a lattice point
-  std::vector<float> smoothed;                 // 1/m, of the seen mesh's vertices beside the lattice
-  std::vector<std::uint32_t> vertex_of_pixel;  // kNoVertex between uses
-  std::vector<std::uint32_t> pixel_of_vertex;  // of the mesh being made
+  std::vector<float> values, tolerances;       // one per lattice point
+  std::vector<std::uint8_t> needed;            // one per lattice point
+  std::vector<float> smoothed;                 // 1/m, of seen vertices that are not lattice points
+  std::vector<std::uint32_t> vertex_of_pixel;  // 0xFFFFFFFF between uses
+  std::vector<std::uint32_t> pixel_of_vertex;  // of the mesh being assembled
   std::vector<std::uint32_t> seen_pixels;      // of the seen mesh's vertices
-  std::vector<std::uint32_t> rim_of_seen;      // copies of the seen mesh's vertices in the other
+  std::vector<std::uint32_t> rim_of_seen;      // copies of seen vertices in the inferred mesh
   struct Edge {
     std::uint32_t from, to, next;
   };
   std::vector<Edge> edges;
-  std::vector<std::uint32_t> first_edge;  // of each vertex
+  std::vector<std::uint32_t> first_edge;  // per vertex
 };
 
-/// Meshes the pixels that moved, and gives them a back.
+/// Meshes the dynamic pixels and adds an assumed back.
 ///
-///  1. Pixels of the mask with depth, their outline made smooth: what has most of 3 x 3 pixels about it.
-///  Lines
-///     and specks that are lost by that become slabs one pixel wide.
-///  2. Every fourth pixel: inverse depth averaged over 5 x 5 pixels and then over flat neighbours, the noise
-///  by
-///     depth and angle. Pixels that bend, or lie at an outline, are averaged with those alone that lie
-///     opposite each other on one line but for noise; so are the vertices beside these points.
-///  3. Cells of 4 x 4 pixels: flat; cut by outlines or jumps, where straight lines follow these to a pixel;
-///  or
-///     full, with every pixel a vertex: where neither will do, and in the regions.
-///  4. Right triangles over flat cells, up to 32 pixels, halved until no point of the lattice is farther than
-///     deviation_sigmas from them. No cracks anywhere: what two triangles share they share whole.
-///  5. The back: the same outline, behind (make_back); walls join the two.
+///   1. Pixels of the mask with depth, outline smoothed by a 3 x 3 majority. Lines and specks lost by
+///      the majority become slabs one pixel wide.
+///   2. Every fourth pixel: inverse depth averaged over 5 x 5 pixels, then over flat neighbours; noise
+///      from depth and angle. Pixels at a bend or an outline are averaged only over opposite pixels
+///      that deviate from a line by noise only; so are vertices that are not lattice points.
+///   3. Cells of 4 x 4 pixels, each flat, cut or full. In cut cells straight lines follow outlines and
+///      discontinuities within a pixel. In full cells every pixel is a vertex; full are the cells in the
+///      regions, and those that are neither flat nor well cut.
+///   4. RTIN: right triangles over flat cells, up to 32 pixels, bisected until no lattice point is
+///      farther than deviation_sigmas from them. No cracks, as adjacent triangles share whole edges.
+///   5. The back: the same outline, farther away (make_back). Walls connect it to the front.
 ///
-/// The bound: over flat cells no averaged point is farther than deviation_sigmas from the mesh, and averaging
-/// rounds off what bends by at most 0.7 sigmas more (1.5 sigmas of bend in each of 4 of 9 places); a cut
-/// cell's pixels are cut_sigmas (RMS) from it at most. A pixel of the mask lies no more than a pixel beside
-/// the mesh, but for specks whose neighbours are at other depths.
+/// Error bound: over flat cells no averaged point is farther than deviation_sigmas from the mesh. Averaging
+/// rounds off bends by at most 0.7 sigmas more (1.5 sigmas of bend in each of 4 of 9 places). The pixels of a
+/// cut cell have an RMS distance of at most cut_sigmas. A pixel of the mask is at most a pixel beside the
+/// mesh, except specks whose neighbours are at other depths.
 ///
 /// @param depth_m           height x width, metres along the axis, 0 = no measurement
-/// @param moved_mask        same size, not 0 = in
-/// @param expected_depth_m  same size, the static model's depth, which the back stays before; 0: not known
+/// @param moved_mask        same size; not 0: dynamic
+/// @param expected_depth_m  same size; depth of the static model, which limits the back; 0: unknown
 /// @param T_world_camera    pose of the depth camera
-/// @param regions           may be empty; other than finite ones are left out
+/// @param regions           may be empty; regions that are not finite are skipped
 /// @param surface           overwritten, allocations kept
-/// Sizes must agree (asserted). Never throws but for memory; allocates on the first frame of a size only.
+/// Sizes must agree (asserted). Throws only if memory runs out; allocates in the first frame of a size only.
 void mesh_moved(const DepthImage& depth_m, const MaskImage& moved_mask, const DepthImage& expected_depth_m,
                 const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                 std::span<const FineRegion> regions, const MovedSurfaceConfig& config,

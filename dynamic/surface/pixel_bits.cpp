@@ -1,4 +1,4 @@
-// pixel_bits.cpp: sums of neighbours, bit by bit, for 64 pixels at once.
+// pixel_bits.cpp: sums over neighbours, bit by bit, for 64 pixels at once.
 #include "dynamic/surface/pixel_bits.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ std::uint64_t from_left(const std::uint64_t* word) { return word[0] << 1 | word[
 std::uint64_t from_right(const std::uint64_t* word) { return word[0] >> 1 | word[1] << 63; }
 std::uint64_t majority(std::uint64_t a, std::uint64_t b, std::uint64_t c) { return (a & b) | (c & (a | b)); }
 
-/// Ones in the last word of a row where there are pixels.
+/// Returns a word with ones where there are pixels.
 std::uint64_t inside(const PixelBits& bits, int word) {
   const int left = bits.width - 64 * word;
   return left >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << left) - 1;
@@ -26,7 +26,7 @@ void take_majority(const PixelBits& bits, PixelBits& smooth) {
     std::uint64_t* out = smooth.row(y);
     for (int i = 0; i < bits.words; ++i) {
       if ((rows[0][i] | rows[1][i] | rows[2][i]) == 0) continue;
-      // Each row's three neighbours as a number of two bits; then the sum of three such numbers.
+      // Each row's three neighbours as a 2 bit number, then the sum of the three numbers.
       std::array<std::uint64_t, 3> ones, twos;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint64_t left = from_left(rows[k] + i), right = from_right(rows[k] + i);

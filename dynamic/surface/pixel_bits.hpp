@@ -1,4 +1,4 @@
-// pixel_bits.hpp: one bit a pixel, so that logic is done on 64 pixels at a time.
+// pixel_bits.hpp: one bit per pixel, for logic on 64 pixels at a time.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -6,14 +6,14 @@
 
 namespace roomradar {
 
-/// height rows of width bits; around them is a margin of zeros that may be read: kAbove rows above, kBelow
-/// below, 64 bits to each side.
+/// height rows of width bits, with a margin of zeros that may be read: kAbove rows above, kBelow rows below,
+/// 64 bits to each side.
 struct PixelBits {
   static constexpr int kAbove = 2, kBelow = 8;
-  int width = 0, height = 0, words = 0;  ///< words of 64 bits that a row takes, without its margin
+  int width = 0, height = 0, words = 0;  ///< words: 64 bit words per row, without its margin
   std::vector<std::uint64_t> bits;
 
-  /// Gives it this size, all zero; keeps the allocation when it is large enough.
+  /// Sets the size and clears all bits; keeps the allocation if it is large enough.
   void resize(int width_px, int height_px) {
     width = width_px;
     height = height_px;
@@ -21,12 +21,12 @@ struct PixelBits {
     bits.assign(static_cast<std::size_t>(words + 2) * static_cast<std::size_t>(height_px + kAbove + kBelow),
                 0);
   }
-  /// y in -kAbove .. height + kBelow - 1; words -1 .. words of it may be read.
+  /// y in -kAbove .. height + kBelow - 1; words -1 .. words may be read.
   [[nodiscard]] const std::uint64_t* row(int y) const { return bits.data() + offset(y); }
   [[nodiscard]] std::uint64_t* row(int y) { return bits.data() + offset(y); }
   /// x in -64 .. 64 * words + 63.
   [[nodiscard]] bool at(int x, int y) const { return (row(y)[x >> 6] >> (x & 63) & 1U) != 0; }
-  /// Bits x to x + 4 of row y, the lowest first.
+  /// Bits x to x + 4 of row y, lowest first.
   [[nodiscard]] std::uint32_t five(int x, int y) const {
     const std::uint64_t* word = row(y) + (x >> 6);
     const int shift = x & 63;
@@ -47,12 +47,12 @@ struct PixelBits {
   }
 };
 
-/// Smooths an outline: a pixel is set where most of the 3 x 3 pixels around it are, those beyond the image
-/// being not set. `smooth` gets the size of `bits`.
+/// Smooths an outline: sets a pixel if most of the 3 x 3 pixels around it are set, pixels beyond the image
+/// being unset. `smooth` gets the size of `bits`.
 void take_majority(const PixelBits& bits, PixelBits& smooth);
 
-/// Of `bits` those that have no neighbour in `near`, and are not in it: what a majority of 3 x 3 has lost as
-/// a whole, such as lines that are one pixel wide.
+/// Selects the pixels of `bits` that are not in `near` and have no neighbour in it. These are details that a
+/// 3 x 3 majority removes as a whole, such as lines one pixel wide.
 void take_far_from(const PixelBits& bits, const PixelBits& near, PixelBits& far);
 
 }  // namespace roomradar

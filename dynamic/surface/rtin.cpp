@@ -1,4 +1,4 @@
-// bisected_grid.cpp: from the smallest triangles to the largest, which must be halved.
+// bisected_grid.cpp: finds the triangles to be bisected, from the smallest to the largest.
 #include "dynamic/surface/rtin.hpp"
 
 #include <cmath>
@@ -6,13 +6,14 @@
 namespace roomradar {
 namespace {
 
-/// Looks at triangles of the grid as slopes from their right angle.
+/// Tests triangles of the grid as linear functions from their right angle.
 class Judge {
  public:
   Judge(const BisectedGrid& grid, std::span<const float> values, std::span<const float> tolerances)
       : grid_(grid), values_(values), tolerances_(tolerances) {}
 
-  /// Right angle at c, legs of `length` points along x and y, in the directions given.
+  /// Tests the triangle with its right angle at c and legs of `length` points along x and y, in these
+  /// directions.
   [[nodiscard]] bool is_off_by_legs(GridPoint c, int to_x, int to_y, int length) const {
     if (!grid_.is_wanted(c.x - (to_x < 0 ? 1 : 0), c.y - (to_y < 0 ? 1 : 0))) return false;
     const float at_c = value(c.x, c.y);
@@ -27,7 +28,8 @@ class Judge {
     return false;
   }
 
-  /// Right angle at c, the middle of the longest side `height` points from it, along (to_x, to_y).
+  /// Tests the triangle with its right angle at c and the middle of its hypotenuse `height` points away,
+  /// along (to_x, to_y).
   [[nodiscard]] bool is_off_by_height(GridPoint c, int to_x, int to_y, int height) const {
     if (!grid_.is_wanted(c.x - (to_x < 0 ? 1 : 0), c.y - (to_y < 0 ? 1 : 0))) return false;
     const GridPoint middle{c.x + to_x * height, c.y + to_y * height};
@@ -85,14 +87,14 @@ void find_needed(const BisectedGrid& grid, std::span<const float> values, std::s
         here = is ? 1 : 0;
       }
     }
-    // Middles of these squares, which two triangles share along a diagonal.
+    // Middles of these squares; two triangles share each, across a diagonal.
     for (int y = half; y <= last_y; y += size) {
       for (int x = half; x <= last_x; x += size) {
         std::uint8_t& here = needed[grid.point(x, y)];
         if (here != 0) continue;
         bool is = is_needed(x - half, y) || is_needed(x + half, y) || is_needed(x, y - half) ||
                   is_needed(x, y + half);
-        const int down = ((x / size + y / size) & 1) == 0 ? 1 : -1;  // the diagonal runs down to the right
+        const int down = ((x / size + y / size) & 1) == 0 ? 1 : -1;  // 1: the diagonal runs down to the right
         is = is || judge.is_off_by_legs({x - half, y + down * half}, 1, -down, size) ||
              judge.is_off_by_legs({x + half, y - down * half}, -1, down, size);
         here = is ? 1 : 0;

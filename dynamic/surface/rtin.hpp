@@ -1,4 +1,4 @@
-// bisected_grid.hpp: right triangles over a lattice, halved until they follow the surface, without cracks.
+// bisected_grid.hpp: right-triangulated irregular network (RTIN), an adaptive crack-free mesh of a lattice.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -7,14 +7,13 @@
 
 namespace roomradar {
 
-/// Squares of 8 x 8 cells, each two right triangles that are halved at the middle of their longest side, down
-/// to half a cell. A middle that one triangle needs is needed by the other one on that side too, and needs
-/// the middles by which these two came about: so all sides fit.
-/// Source: Evans, Kirkpatrick, Townsend, Right-triangulated irregular networks, Algorithmica 2001.
+/// Squares of 8 x 8 cells, each two right triangles that are bisected at the middle of their hypotenuse, down
+/// to half a cell. The two triangles at a hypotenuse share its bisection point, and the point requires those
+/// of the coarser bisections, so there are no T-junctions. Source: Evans, Kirkpatrick, Townsend,
+/// Right-triangulated irregular networks, Algorithmica 2001.
 struct BisectedGrid {
-  int columns = 0, rows = 0;  ///< of points: multiples of 8, plus one
-  std::span<const std::uint8_t>
-      cells;  ///< (columns - 1) * (rows - 1): 1 where the grid's triangles are wanted
+  int columns = 0, rows = 0;            ///< number of points: multiples of 8, plus one
+  std::span<const std::uint8_t> cells;  ///< (columns - 1) * (rows - 1) values; 1: cell to be meshed
 
   [[nodiscard]] std::size_t point(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
@@ -26,12 +25,12 @@ struct BisectedGrid {
   }
 };
 
-/// Marks the points at which triangles are halved.
+/// Marks the points at which triangles are bisected.
 ///
-/// @param values      one a point, where a wanted cell is
-/// @param tolerances  how far a triangle may be from the value at each point in it
-/// @param needed      one a point; those that are 1 already stay so: all corners of cells that are not wanted
-///                    but beside one that is must be; others are 0
+/// @param values      one per point, valid at the corners of wanted cells
+/// @param tolerances  max distance of a triangle from the value at each of its points
+/// @param needed      in and out, one per point. Must be 1 at all corners of unwanted cells beside a
+///                    wanted one, else 0; entries of 1 stay 1.
 void find_needed(const BisectedGrid& grid, std::span<const float> values, std::span<const float> tolerances,
                  std::span<std::uint8_t> needed);
 
@@ -41,7 +40,7 @@ struct GridPoint {
 
 namespace bisected_grid {
 
-/// The triangle with the right angle at c, counter-clockwise where y runs down: a, b, c.
+/// Descends into a triangle a, b, c with the right angle at c, counter-clockwise with y down.
 template <typename Take>
 void descend(const BisectedGrid& grid, std::span<const std::uint8_t> needed, GridPoint a, GridPoint b,
              GridPoint c, const Take& take) {
@@ -54,13 +53,13 @@ void descend(const BisectedGrid& grid, std::span<const std::uint8_t> needed, Gri
       return;
     }
   }
-  // A triangle that is not halved lies on wanted cells only, or on none: ask the one at its right angle.
+  // A leaf triangle covers wanted cells only, or none: test the cell at its right angle.
   if (grid.is_wanted(c.x - (x < 2 * c.x ? 1 : 0), c.y - (y < 2 * c.y ? 1 : 0))) take(a, b, c);
 }
 
 }  // namespace bisected_grid
 
-/// Calls take(a, b, c) for each triangle on wanted cells in the square whose top left point is given.
+/// Calls take(a, b, c) for each triangle on wanted cells in the square with this top left point.
 template <typename Take>
 void walk_square(const BisectedGrid& grid, std::span<const std::uint8_t> needed, int column, int row,
                  const Take& take) {

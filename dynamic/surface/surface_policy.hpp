@@ -1,17 +1,17 @@
-// surface_policy.hpp: which surfaces a virtual object can touch in a frame.
+// surface_policy.hpp: selects the surfaces that a virtual object can touch in a frame.
 #pragma once
 #include <string_view>
 
 namespace roomradar {
 
 enum class SurfacePolicy {
-  kHoles,   ///< this frame's depth pixels only, nothing across depth jumps: what is hidden is open
-  kSkirt,   ///< the same, and polygons across the depth jumps that join the near side to the far side
-  kBorder,  ///< the same as kSkirt, and the image's border pushed outwards and nearer: a tray round the view
-  kMap,     ///< the static mesh of the saved map, and this frame's pixels where something moved
+  kHoles,   ///< this frame's depth pixels only; open across depth discontinuities and where hidden
+  kSkirt,   ///< kHoles, plus polygons across depth discontinuities that connect near and far side
+  kBorder,  ///< kSkirt, plus the image's border pushed outwards and nearer: a tray around the view
+  kMap,     ///< the saved map's static mesh, and this frame's pixels where something is dynamic
 };
 
-/// As the command line and the reports call it.
+/// Returns the name used by the command line and reports.
 constexpr std::string_view to_string(SurfacePolicy policy) {
   switch (policy) {
     case SurfacePolicy::kHoles:

@@ -1,4 +1,4 @@
-// gl_radar.cpp: M where it is not kept, R through M, the least L of each query, one copy back.
+// gl_radar.cpp: M unless cached, R through M, the least L of each query, one read-back.
 #include "radar/batch/gl_radar.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -19,10 +19,10 @@ namespace roomradar {
 namespace {
 
 constexpr double kMaxDistance_m = 1e4;
-constexpr std::size_t kMasksKept = 16;                       // at least, where the atlas may be that large
+constexpr std::size_t kMasksKept = 16;                       // at least, if the atlas may be that large
 const Eigen::Vector2d kSample_px(kSampleX_px, kSampleY_px);  // as in tile_shaders.hpp
 
-/// L this near to 0 is touching.
+/// Returns the distance from 0 within which L counts as touching.
 double touching_m(const RadarOutline& outline, double distance_m) {
   return 1e-5 + 1e-6 * (outline.length_m + distance_m);
 }
@@ -34,8 +34,8 @@ bool is_usable(const GlQuery& query) {
          query.object.mesh->triangle_count() > 0 && query.object.T_world_mesh.matrix().allFinite();
 }
 
-/// How far the renderer's floats may put a vertex of the object beside where it is; as kTileVertexShader has
-/// it.
+/// Returns the max error across the direction of the object's vertices in the renderer's floats; same formula
+/// as kTileVertexShader.
 double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline) {
   const Eigen::AlignedBox3d bounds = mesh.bounds();
   const Eigen::Vector3d farthest =
@@ -44,7 +44,7 @@ double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline) {
   return 4.3e-7 * (to_outline.leftCols<3>() * farthest + to_outline.col(3)).head<2>().maxCoeff();
 }
 
-/// What the shaders are told of the query, its draws' keys aside.
+/// Returns the query data for the shaders, without the keys of its draws.
 TileQuery tile_query(const RadarOutline& outline, double distance_m, double tolerance_m,
                      std::array<int, 2> object_corner_px, std::array<int, 2> scene_corner_px) {
   TileQuery tile;
@@ -166,16 +166,17 @@ void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneM
   TileAtlas::unbind();
 }
 
-/// Says whether there is room for at least one query. Textures that grow lose what is kept in them.
+/// Returns true if there is room for at least one query. Textures that grow lose their contents.
 bool GlRadar::fit_atlases(std::size_t queries) {
   const auto side = static_cast<std::size_t>(std::max(config_.atlas_px / config_.resolution_px, 1));
   const auto fit = [&](TileAtlas& atlas, std::size_t tiles) {
-    constexpr std::size_t kMostGroups = 255 * 255;  // a tile each, of one dispatch: 65,535 are sure
+    constexpr std::size_t kMostGroups = 255 * 255;  // work groups in one dispatch, one per tile; GL
+                                                    // guarantees 65,535
     tiles = std::min({tiles, side * side, kMostGroups});
     if (atlas.tile_count() >= tiles) return false;
     const auto columns = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(tiles))));
     const auto rows = (tiles + columns - 1) / columns;
-    // A renderer that has not the memory may have it for one.
+    // A renderer without memory for all tiles may have it for one.
     const bool has_memory =
         atlas.resize(static_cast<int>(columns), static_cast<int>(rows), config_.resolution_px);
     if (!has_memory) (void)atlas.resize(1, 1, config_.resolution_px);
@@ -186,7 +187,7 @@ bool GlRadar::fit_atlases(std::size_t queries) {
   return object_tiles_.tile_count() > 0 && scene_tiles_.tile_count() > 0;
 }
 
-/// Adds what a query draws to the batch; false where the batch has no tile left for it.
+/// Adds a query's draws to the batch; returns false if the batch has no tile left for them.
 bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene,
                   Contact& contact) {
   if (batch_.size() == scene_tiles_.tile_count()) return false;
@@ -209,7 +210,7 @@ bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const Scene
   tile.margin_px = static_cast<float>(2.0 * vertex_error_px(*query.object.mesh, outline));
   shown_ = {volume, tile, true, false};
 
-  // What the renderer counts as outside by float is less than what is left out here.
+  // The padding exceeds the float error of the renderer's own test for outside.
   const double pad_m = touching_m(outline, query.distance_m);
   const Eigen::Vector3d low(-pad_m / outline.pixel_m, -pad_m / outline.pixel_m, -outline.length_m - pad_m);
   const Eigen::Vector3d high(outline.width_px - low.x(), outline.height_px - low.y(),
@@ -257,7 +258,7 @@ bool GlRadar::add(std::size_t index, const GlQuery& query, std::span<const Scene
   return true;
 }
 
-/// Both passes for the queries of the batch, and what is least in them.
+/// Draws both passes for the queries of the batch, and reduces their tiles.
 void GlRadar::draw_batch() {
   if (!batch_.empty()) {
     const auto use = [](unsigned program, const TileAtlas& atlas) {
@@ -297,7 +298,7 @@ Contact GlRadar::contact_of(const GlQuery& query, const Drawn& drawn, const Tile
   const double touching = touching_m(outline, query.distance_m);
   Contact contact;
   contact.pixel_m = outline.pixel_m;
-  constexpr double kSubtraction = 1.0 - 2e-7;  // z of scene and object, each rounded to float
+  constexpr double kSubtraction = 1.0 - 2e-7;  // rounding of the z of scene and object to float
   contact.lower_m = std::min(kSubtraction * result.lower_m, query.distance_m);
   if (!(result.travel_m <= query.distance_m + touching)) {
     contact.status = ContactStatus::kNoTarget;
@@ -313,7 +314,7 @@ Contact GlRadar::contact_of(const GlQuery& query, const Drawn& drawn, const Tile
     contact.upper_m = std::max(static_cast<double>(result.upper_m) / kSubtraction, contact.travel_m);
   }
 
-  // The triangle that is met, at the pixel's centre line, in double.
+  // The touched triangle at the pixel's centre line, in double.
   const RadarVolume volume = volume_of(outline, query.object, query.distance_m);
   contact.normal_world = -volume.u_world;
   Eigen::Vector3d at(result.x_px + kSample_px.x(), result.y_px + kSample_px.y(), result.travel_m);
@@ -343,7 +344,7 @@ Contact GlRadar::contact_of(const GlQuery& query, const Drawn& drawn, const Tile
   return contact;
 }
 
-/// Scene in the same pixel as the object, neither ahead nor behind: only exact tests can tell.
+/// Runs the exact test if scene is in the same pixel as the object, neither ahead nor behind.
 void GlRadar::settle(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
                      Contact& contact) {
   const bool is_doubtful = contact.status == ContactStatus::kNoTarget ||

@@ -1,4 +1,4 @@
-// gl_radar.hpp: collision by two orthographic depth passes: how far may an object go before it touches?
+// gl_radar.hpp: distance an object can move before contact, from two orthographic depth passes.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -21,37 +21,37 @@
 
 namespace roomradar {
 
-/// Where the least gap of a query is found.
+/// Processor that computes the least gap of a query.
 enum class GlMinimum {
-  kAuto,        ///< on a GPU there, with the software renderer here
-  kOnRenderer,  ///< by a compute shader; a few bytes a query come back
-  kReadBack,    ///< all pixels come back
+  kAuto,        ///< GPU if there is one, CPU with the software renderer
+  kOnRenderer,  ///< compute shader; a few bytes per query are read back
+  kReadBack,    ///< CPU; all pixels are read back
 };
 
 struct GlRadarConfig {
   int resolution_px = 128;            ///< samples along the longer side of the object's outline, 1 to 4096
-  double overlap_tolerance_m = 0.03;  ///< surfaces deeper inside the object are behind it, not in its way
-  int atlas_px = 2048;                ///< side of the textures that many queries share, 1 to 16384
+  double overlap_tolerance_m = 0.03;  ///< deeper surfaces count as behind the object and are ignored
+  int atlas_px = 2048;                ///< side of the textures shared by many queries, 1 to 16384
   GlMinimum minimum = GlMinimum::kAuto;
-  /// Asks the processor's radar for the exact answer where the two passes cannot tell (see GlRadar) and all
-  /// meshes that reach the query's volume share a tree (GpuMesh::tree()).
+  /// Runs CyberRadar for an exact result where the two passes cannot decide (see GlRadar), if all meshes that
+  /// reach the query's volume share a tree (GpuMesh::tree()).
   bool settle = true;
 };
 /// @throws Error naming the field, its value and the rule
 void require_valid(const GlRadarConfig& config);
 
-/// One question to the radar.
+/// One query of GlRadar::query_all().
 struct GlQuery {
   static constexpr std::size_t kNotInScene = static_cast<std::size_t>(-1);
   MeshInstance object;
   Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();  ///< any length but 0
-  double distance_m = 0.0;                                    ///< how far ahead to look, > 0, at most 10 km
-  /// Which of the scene is the object itself, and is left out.
+  double distance_m = 0.0;                                    ///< max distance to search, > 0, at most 10 km
+  /// Index of the object itself in the scene, which is skipped.
   std::size_t own_index = kNotInScene;
 };
 
-/// Cyber Radar: an object that moves along a line touches first where the scene is nearest ahead of its
-/// front.
+/// Cyber Radar with OpenGL: an object that moves along a line first touches the scene where the gap ahead of
+/// its front is least.
 ///
 ///     rear plane                                                  far plane
 ///        |<------------------------ d ------------------------------->|
@@ -60,74 +60,73 @@ struct GlQuery {
 ///        |                               |<--------------- M -------->|      L = R + M - d
 ///
 /// M is the object seen from the far plane, R the scene seen from the rear plane through the object's
-/// outline, L the gap between them in each pixel; the least L is the way to go. L is defined only where the
-/// object covers the pixel and something is there. R is the first surface not behind the object's front: per
-/// pixel, a surface is passed over when it lies behind the front
-///   - and faces along the motion (what the object leaves, such as the table that a plate is lifted from), or
-///   - by more than overlap_tolerance_m or the object's own length, whichever is less, or
-///   - not for certain inside the front slab of the object's solid (in a hollow, such as the hole of a
-///   handle).
+/// outline, and L the gap between them in each pixel. The least L is the distance to contact. L is defined
+/// only where the object covers the pixel and there is scene. R is the first surface not behind the object's
+/// front. Per pixel, a surface behind the front is ignored if it
+///   - is back-facing, as the object leaves it (such as the table that a plate is lifted from), or
+///   - is behind by more than overlap_tolerance_m or the object's own length, whichever is less, or
+///   - is not certainly inside the front slab of the object's solid (it may be in a hollow, such as the
+///     hole of a handle).
 ///
-/// travel_m is sampled: a spike or sheet thinner than a pixel may be missed, a surface in a hollow meets the
-/// object's front layer only, and the answer is late by about half a pixel's diagonal times the sum of both
-/// slopes. lower_m and upper_m hold all the same. They come from the same two passes: each pixel also keeps
-/// what may be anywhere in its square, and what is on its centre line for certain. lower_m is 0 where
-/// something of the scene is in the same pixel as the object and neither wholly ahead nor wholly behind: a
-/// wall that is passed closer than a pixel, a peg in a hollow. Such a query is settled on the processor if it
-/// can be (GlRadarConfig::settle): its answer is then exact, with lower_m = upper_m.
+/// travel_m is sampled. A spike or sheet thinner than a pixel may be missed, a surface in a hollow is
+/// compared with the object's front layer only, and travel_m is too large by about half a pixel's diagonal
+/// times the sum of both slopes. lower_m and upper_m hold nevertheless. They come from the same two passes:
+/// each pixel also stores what may be anywhere in its square, and what is certainly on its centre line.
+/// lower_m is 0 if some scene is in the same pixel as the object and neither wholly ahead nor wholly behind:
+/// a wall passed closer than a pixel, a peg in a hollow. Such a query gets the exact test on the CPU if
+/// possible (GlRadarConfig::settle); then lower_m = upper_m.
 ///
-/// Surfaces that are met from one side only (is_one_sided(), such as the frontier of what was seen) are met
-/// from both here: where that matters, ask CyberRadar.
+/// One-sided surfaces (is_one_sided(), such as the frontier of observed space) block from both sides here;
+/// use CyberRadar where that matters.
 ///
-/// Overlap and hollow need triangles that wind counter-clockwise seen from outside, and a closed object.
-/// Masks are kept: an object that is asked about again along the same direction in its own frame is not drawn
-/// again. Source of R, M and L: the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread
-/// safe.
+/// Overlap and hollow need a closed object with triangles counter-clockwise seen from outside. Masks (M) are
+/// cached: an object queried again along the same direction in its own frame is not redrawn. Source of R, M
+/// and L: the Cyber Radar paper's Range, Mask and LookAt Distance Scopes. Not thread safe.
 class GlRadar {
  public:
-  /// @throws Error if config is out of its rules or the renderer lacks what is needed
+  /// @throws Error if config is invalid or the renderer lacks a required feature
   explicit GlRadar(GlContext& context, const GlRadarConfig& config = {});
   ~GlRadar();
   GlRadar(const GlRadar&) = delete;
   GlRadar& operator=(const GlRadar&) = delete;
 
-  /// How far `object` can move along a line until it touches the scene.
+  /// Computes how far `object` can move along a line until it touches the scene.
   ///
-  /// @param object           the sensor object; must not be in `scene`
+  /// @param object           the moving object; must not be in `scene`
   /// @param direction_world  any length but 0
-  /// @param distance_m       how far ahead to look, > 0, at most 10 km
-  /// @param scene            what can be touched; instances with a null or empty mesh are left out
-  /// @return see Contact. L within 10 um + 1e-6 d of zero counts as touching: kContact with travel 0. Where
-  ///         several pixels are equally near (a face that lands flat) the point is the one nearest to their
-  ///         middle.
+  /// @param distance_m       max distance to search, > 0, at most 10 km
+  /// @param scene            surfaces that can be touched; instances with a null or empty mesh are skipped
+  /// @return see Contact. L within 10 um + 1e-6 d of zero counts as touching: kContact with travel 0. If
+  ///         several pixels are equally near (a face that lands flat), the point is the one nearest to
+  ///         their middle.
+  ///
   /// Never throws; allocates nothing after the first queries of a size.
   Contact query(const MeshInstance& object, const Eigen::Vector3d& direction_world, double distance_m,
                 std::span<const SceneMesh> scene);
 
-  /// The same for many objects and directions at once, drawn into shared textures and read back together.
-  /// @param scene     what can be touched, the objects among it: each is scene for the others
-  /// @param contacts  gets one for each query; must have their size
+  /// Runs many queries at once, drawn into shared textures and read back together.
+  /// @param scene     surfaces that can be touched, including the objects: each is scene for the others
+  /// @param contacts  out, one per query; must have the size of `queries`
   void query_all(std::span<const GlQuery> queries, std::span<const SceneMesh> scene,
                  std::span<Contact> contacts);
 
-  /// Of the last call's last query that was not kInvalidInput; everything empty if there is none. Where
-  /// nothing of the scene reaches the volume, nothing is drawn and both hold depth_m.
+  /// Returns the images of the last call's last query that was not kInvalidInput; all empty if there is none.
+  /// If no scene reaches the volume, nothing is drawn, and R and M are depth_m everywhere.
   [[nodiscard]] RadarPictures pictures() const;
 
  private:
-  /// A query that was drawn.
   struct Drawn {
     std::size_t query = 0;
     RadarOutline outline;
     std::size_t first_reach = 0, reach_count = 0;
   };
-  /// A run of triangles of the scene that reaches a query's volume.
+  /// A run of scene triangles that reaches a query's volume.
   struct Reach {
     std::size_t scene_index = 0;
     std::uint32_t first_triangle = 0;
     std::uint32_t first_key = 0;
   };
-  /// Where the last picture is.
+  /// The query that pictures() returns.
   struct Shown {
     RadarVolume volume;
     TileQuery tile;
@@ -141,7 +140,7 @@ class GlRadar {
   LeastGap least_;
   unsigned clear_program_ = 0, object_program_ = 0, scene_program_ = 0;
 
-  // Of one call; kept for their memory.
+  // Scratch of one call; members keep their memory.
   SceneBoxes boxes_;
   std::vector<Drawn> drawn_;
   std::vector<Reach> reaches_;

@@ -1,4 +1,4 @@
-// least_gap.cpp: a compute shader, or the same loop here; then one copy back.
+// least_gap.cpp: minimum by a compute shader or the same loop on the CPU, then one copy back.
 #include "radar/batch/least_gap.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -15,7 +15,7 @@ namespace roomradar {
 namespace {
 
 constexpr GLuint kQueriesBinding = 0, kResultsBinding = 1;
-constexpr GLuint64 kPatience_ns = 5'000'000'000;  // a renderer that takes longer is taken for lost
+constexpr GLuint64 kPatience_ns = 5'000'000'000;  // a slower renderer counts as lost
 
 }  // namespace
 
@@ -106,15 +106,15 @@ std::span<const TileResult> LeastGap::read(std::size_t count) {
   glDeleteSync(done);
   const bool is_done = (waited == GL_ALREADY_SIGNALED || waited == GL_CONDITION_SATISFIED) &&
                        glGetGraphicsResetStatus() == GL_NO_ERROR &&
-                       glGetError() == GL_NO_ERROR;  // out of memory for what was to be drawn
-  // Without a context all of the above does nothing and says 0; the stamps tell old results from new.
+                       glGetError() == GL_NO_ERROR;  // out of memory while drawing
+  // Without a context all of the above does nothing and returns 0; stamps distinguish old results from new.
   const std::span<const TileResult> results(host_results_, is_done ? count : 0);
   const bool are_new = std::all_of(results.begin(), results.end(),
                                    [&](const TileResult& result) { return result.stamp == stamp_; });
   return are_new ? results : std::span<const TileResult>{};
 }
 
-/// As kLeastShader.
+/// Same as kLeastShader.
 TileResult LeastGap::least_of(const TileQuery& query, const float* pixels, std::size_t row_pixels) const {
   TileResult result{stamp_, kNothing, kNothing, kNothing, -1, -1, std::numeric_limits<std::uint32_t>::max(),
                     0};

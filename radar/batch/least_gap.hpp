@@ -1,4 +1,4 @@
-// least_gap.hpp: the least of each scene tile, found by the renderer or here, and a few bytes a query back.
+// least_gap.hpp: minimum of each scene tile, found on the GPU or the CPU.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,38 +11,37 @@
 
 namespace roomradar {
 
-/// What comes back of a query. Numbers of at least kNothingMet: there was nothing.
+/// Result of one query. Distances of at least kNothingMet mean that nothing was found.
 struct TileResult {
-  std::uint32_t stamp = 0;  ///< of the call that wrote it
+  std::uint32_t stamp = 0;  ///< number of the call that wrote it
   float lower_m = 0.0F, upper_m = 0.0F, travel_m = 0.0F;
-  std::int32_t x_px = -1, y_px = -1;  ///< where in its tile; -1 where travel_m says that there was nothing
-  std::uint32_t key = 0;              ///< of the triangle that is met there
+  std::int32_t x_px = -1, y_px = -1;  ///< nearest pixel in its tile; -1 if nothing was found
+  std::uint32_t key = 0;              ///< key of the triangle touched there
   std::uint32_t unused = 0;
 };
 inline constexpr float kNothingMet = 1e38F;
-/// What tiles are cleared to; as in tile_shaders.hpp.
+/// Clear value of tiles, as in tile_shaders.hpp.
 inline constexpr float kNothing = 3e38F;
 
-/// Owns the program and the buffers; they grow to the largest call. Not thread safe.
+/// Owns the program and the buffers, which grow to the largest call. Not thread safe.
 class LeastGap {
  public:
-  /// @param on_renderer  whether the minimum is taken there; else the tiles are read back, which is free
-  /// where
-  ///                     the renderer is this processor. Both give the same results.
+  /// @param on_renderer  true: the renderer takes the minimum. false: the tiles are read back, at no cost
+  ///                     if the renderer is this CPU. Both give the same results.
   LeastGap(GlContext& context, bool on_renderer);
   ~LeastGap();
   LeastGap(const LeastGap&) = delete;
   LeastGap& operator=(const LeastGap&) = delete;
 
-  /// Room for the results of up to this many queries, none of them known yet.
+  /// Makes room for the results of up to this many queries; earlier results become invalid.
   void begin(std::size_t queries);
-  /// Reduces the scene's tiles of a batch. `queries[i].query` says which result each is.
+  /// Computes the minima of a batch's scene tiles. `queries[i].query` is the index of the result.
   void reduce(std::span<const TileQuery> queries, const TileAtlas& scene_tiles);
-  /// Finds the triangles that are met: the same draws as for the scene's tiles again, without a pixel.
+  /// Finds the triangles touched, by repeating the draws of the scene tiles without rasterisation.
   void find_keys(const TileDraws& draws, const TileAtlas& object_tiles) const;
-  /// The first `count` results since begin(); empty where the renderer did not hand them out.
+  /// Returns the first `count` results since begin(); empty if the renderer failed to return them.
   std::span<const TileResult> read(std::size_t count);
-  /// Trusts nothing that was handed to the renderer before.
+  /// Makes the next call reallocate the buffers, after the renderer failed.
   void forget() { queries_capacity_ = results_capacity_ = 0; }
 
  private:

@@ -1,4 +1,4 @@
-// mask_cache.cpp: a hash table in arrays, and a hand that goes round for the next tile to give away.
+// mask_cache.cpp: a hash table in arrays, with a clock hand for the next tile to evict.
 #include "radar/batch/mask_cache.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// radar_volume.cpp: fit pixels around an object as seen along a direction.
+// radar_volume.cpp: fits pixels around an object seen along a direction.
 #include "radar/batch/radar_volume.hpp"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace roomradar {
 namespace {
 
-/// Bounds of the triangles' vertices in a turned frame. Chunks whose box lies within what is known are passed
-/// over.
+/// Returns the bounds of the triangles' vertices in a rotated frame. Skips chunks whose box lies within the
+/// bounds so far.
 Eigen::AlignedBox3d turned_bounds(const GpuMesh& mesh, const Eigen::Matrix3d& R_frame_mesh) {
   Eigen::AlignedBox3d bounds;
   const Eigen::Matrix3d reach = R_frame_mesh.cwiseAbs();

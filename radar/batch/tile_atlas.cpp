@@ -1,4 +1,4 @@
-// tile_atlas.cpp: a float texture that is drawn into by minimum blending.
+// tile_atlas.cpp: a float texture drawn into by minimum blending.
 #include "radar/batch/tile_atlas.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -67,7 +67,7 @@ void TileAtlas::clear(std::size_t tiles, float value) const {
 }
 
 void TileAtlas::read(int x_px, int y_px, int width_px, int height_px, float* out) const {
-  // By rows, as many as GL can count the bytes of.
+  // In blocks of rows whose byte count fits GLsizei.
   const GLsizei row_bytes = static_cast<GLsizei>(4 * sizeof(float)) * width_px;
   const int rows_at_once = std::max(std::numeric_limits<GLsizei>::max() / std::max(row_bytes, 1), 1);
   for (int row = 0; row < height_px; row += rows_at_once) {

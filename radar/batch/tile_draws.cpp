@@ -1,4 +1,4 @@
-// tile_draws.cpp: sort by mesh and run, one item an instance, one call a mesh.
+// tile_draws.cpp: sorts by mesh and run; one item per instance, one call per mesh.
 #include "radar/batch/tile_draws.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -48,7 +48,7 @@ void TileDraws::fill_buffer(std::size_t which, const void* data, std::size_t siz
     glNamedBufferData(buffers_[which], static_cast<GLsizeiptr>(capacity_bytes_[which]), nullptr,
                       GL_STREAM_DRAW);
   }
-  glInvalidateBufferData(buffers_[which]);  // draws under way keep the old contents
+  glInvalidateBufferData(buffers_[which]);  // pending draws keep the old contents
   glNamedBufferSubData(buffers_[which], 0, static_cast<GLsizeiptr>(size_bytes), data);
 }
 

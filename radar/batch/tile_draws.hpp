@@ -1,4 +1,4 @@
-// tile_draws.hpp: many meshes drawn into many tiles with few calls.
+// tile_draws.hpp: draws many meshes into many tiles with few GL calls.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -12,13 +12,12 @@
 
 namespace roomradar {
 
-/// What the tile shaders are told of a query.
+/// Query data for the tile shaders.
 struct TileQuery {
-  std::array<std::int32_t, 4>
-      corners_px{};  ///< of its tiles: x, y in the objects' atlas, x, y in the scene's
+  std::array<std::int32_t, 4> corners_px{};  ///< tile corners: x, y in the object atlas, x, y in the scene's
   std::int32_t width_px = 0, height_px = 0;
-  std::int32_t query = 0;       ///< its number in the call
-  std::uint32_t first_key = 0;  ///< of the draw: its triangles are first_key, first_key + 1, ...
+  std::int32_t query = 0;       ///< index of the query in the call
+  std::uint32_t first_key = 0;  ///< the draw's triangles have keys first_key, first_key + 1, ...
   float far_m = 0.0F, touching_m = 0.0F, tolerance_m = 0.0F, length_m = 0.0F;
   float margin_px = 0.0F;  ///< twice the error of the object's vertices across the direction
   std::array<float, 3> unused{};
@@ -32,7 +31,7 @@ struct TileDraw {
   TileQuery query;
 };
 
-/// Owns the buffers that the draws of a pass stand in; they grow to the largest pass. Not thread safe.
+/// Owns the buffers of a pass's draws, which grow to the largest pass. Not thread safe.
 class TileDraws {
  public:
   explicit TileDraws(GlContext& context);
@@ -40,23 +39,23 @@ class TileDraws {
   TileDraws(const TileDraws&) = delete;
   TileDraws& operator=(const TileDraws&) = delete;
 
-  /// Puts the draws in an order in which those of one mesh are one call, and hands them to the renderer.
+  /// Sorts the draws so each mesh takes one GL call, and uploads them.
   void upload(std::span<TileDraw> draws);
-  /// With the program in use; attributes as in tile_shaders.hpp.
+  /// Draws with the current program; attributes as in tile_shaders.hpp.
   void draw() const;
-  /// Trusts nothing that was handed to the renderer before.
+  /// Makes the next call reallocate the buffers, after the renderer failed.
   void forget() { capacity_bytes_ = {}; }
-  /// A rectangle of 4 vertices (a strip) for each draw.
+  /// Draws a rectangle of 4 vertices (a strip) for each draw.
   void draw_rectangles() const;
 
  private:
-  /// As glMultiDrawElementsIndirect reads it.
+  /// Layout read by glMultiDrawElementsIndirect.
   struct Command {
     std::uint32_t index_count = 0, instance_count = 0, first_index = 0;
     std::int32_t base_vertex = 0;
     std::uint32_t base_instance = 0;
   };
-  /// As the vertex shader reads it.
+  /// Layout read by the vertex shader.
   struct Item {
     std::array<float, 12> outline_from_local{};
     TileQuery query;

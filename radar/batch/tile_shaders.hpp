@@ -1,31 +1,31 @@
-// tile_shaders.hpp: GLSL that draws triangles into tiles of an atlas, with coverage and depth between bounds.
+// tile_shaders.hpp: GLSL that draws triangles into atlas tiles, with guaranteed bounds of coverage and depth.
 #pragma once
 
 namespace roomradar {
 
-// Every triangle becomes the rectangle of those pixels of its tile that it may touch; coverage and depth of
-// each pixel are then worked out from the triangle's own three vertices. Nothing hangs on how a driver snaps
-// vertices or interpolates depth, so that all renderers answer the same, within bounds that hold: all float
-// errors are counted, from the product of matrix and vertex on. Several fragments of a pixel meet by GL_MIN
+// Every triangle becomes the rectangle of its tile's pixels that it may touch. Coverage and depth of each
+// pixel are computed from the triangle's three vertices. Nothing depends on how a driver snaps vertices or
+// interpolates depth, so all renderers give the same results, within guaranteed bounds. The bounds include
+// all float errors, from the product of matrix and vertex on. Fragments of a pixel are combined by GL_MIN
 // blending, which needs no depth buffer and no order.
 //
-// A tile's coordinates are its query's outline coordinates (radar_volume.hpp). kNothing marks what no
-// fragment wrote.
+// A tile's coordinates are its query's outline coordinates (radar_volume.hpp). kNothing marks pixels without
+// a fragment.
 //
-// Object tiles: r: -z of the foremost point in the pixel's square, not behind the truth
-//               g: -z of the foremost surface on the sample line, not before the truth
-//               b:  z of the rearmost point in the square, not before the truth
-//               a: -z of the foremost surface near the sample line, perhaps, that is entered from behind, not
-//                  behind the truth; with g the front slab of the object's solid
-// Scene tiles:  r: way until something in the square may touch, not above the truth
-//               g: way until something on the sample line touches for certain, not below the truth
-//               b: way to go on the sample line; negative: overlap
+// Object tiles: r: -z, z an upper bound of the foremost point in the pixel's square
+//               g: -z, z a lower bound of the foremost surface on the sample line
+//               b:  z, a lower bound of the rearmost point in the square
+//               a: -z, z an upper bound of the foremost rear surface that may be near the sample line; g
+//                  and a enclose the front slab of the object's solid
+// Scene tiles:  r: lower bound of the distance until something in the square may touch
+//               g: upper bound of the distance until something on the sample line certainly touches
+//               b: distance to contact on the sample line; negative: overlap
 
-/// The first piece of every shader here.
+/// First piece of every shader here.
 inline constexpr const char* kTilePreamble = R"(#version 450 core
-const float kNothing = 3e38, kAnything = 1e38;  // what is cleared to; all that is written is less
-const vec2 kSample = vec2(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // of a pixel; its very middle is on too many edges
-// What goes from the vertices to the triangles.
+const float kNothing = 3e38, kAnything = 1e38;  // kNothing: clear value; values below kAnything are results
+const vec2 kSample = vec2(0.5 + 1.0 / 64.0, 0.5 + 1.0 / 97.0);  // in a pixel; its exact middle is on too many edges
+// Data passed from the vertices to the triangles.
 #define TILE_VERTEX Vertex { vec3 p; vec3 error; ivec4 corners; ivec4 item; vec4 limits_m; float margin; }
 )";
 
@@ -33,13 +33,13 @@ inline constexpr const char* kTileVertexShader = R"(layout(location = 0) in vec3
 layout(location = 1) in vec4 outline_x;  // rows: pixels, pixels, m
 layout(location = 2) in vec4 outline_y;
 layout(location = 3) in vec4 outline_z;
-layout(location = 4) in ivec4 corners;  // of the tiles in their atlases: x, y of the object's, x, y of the scene's
+layout(location = 4) in ivec4 corners;  // tile corners: x, y in the object atlas, x, y in the scene's
 layout(location = 5) in ivec4 item;     // width_px, height_px, query, first key
-layout(location = 6) in vec4 limits_m;  // far, touching, deepest overlap, object's length
-layout(location = 7) in vec4 margin_px;  // x: how far beside the sample line the object's front may be
+layout(location = 6) in vec4 limits_m;  // far, touching, overlap tolerance, object's length
+layout(location = 7) in vec4 margin_px;  // x: max distance of the object's front from the sample line
 out TILE_VERTEX to;
 void main() {
-  const float kRounding = 4.2e-7;  // 7 steps of 2^-24: rows, three products, three sums
+  const float kRounding = 4.2e-7;  // 7 x 2^-24: rounded rows, three products, three sums
   to.p = vec3(dot(outline_x.xyz, p_local) + outline_x.w, dot(outline_y.xyz, p_local) + outline_y.w,
               dot(outline_z.xyz, p_local) + outline_z.w);
   vec3 q = abs(p_local);
@@ -53,29 +53,29 @@ void main() {
 }
 )";
 
-/// What a triangle is to a pixel. Needs nothing but the triangle, its vertices' errors and the centre.
+/// Relation of a triangle to a pixel, from the triangle, its vertices' errors and the sample position alone.
 inline constexpr const char* kSpanSource = R"(
 struct Span {
   bool in_square;  // may touch the pixel's square
-  bool is_near;    // may touch the sample line: if it is drawn there, it has a point within 2 errors of it
+  bool is_near;    // may touch the sample line; if drawn there, it has a point within 2 errors of it
   bool is_around;  // may touch a line within 2 errors of the sample line
-  bool is_across;  // crosses every line within `margin` of the sample line for certain
-  int facing;      // along the motion: 1, opposing: -1, edge-on or unknown: 0
-  float square_min, square_max;  // z in the square, for certain between these
-  float line_min, line_max;      // z within 3 errors and `margin` of the sample line, for certain between these
+  bool is_across;  // certainly crosses every line within `margin` of the sample line
+  int facing;      // 1: along the motion, -1: against it, 0: edge-on or unknown
+  float square_min, square_max;  // guaranteed bounds of z in the square
+  float line_min, line_max;      // guaranteed bounds of z within 3 errors and `margin` of the sample line
   float line;                    // z on the sample line
 };
 
-/// a, b, c: vertices; error: of each, per axis; p: where the pixel is sampled.
+/// a, b, c: vertices; error: of each vertex, per axis; p: sample position.
 Span span_of(vec3 a, vec3 b, vec3 c, vec3 error, float margin, vec2 p) {
-  const float kRounding = 6e-7;  // 10 steps of 2^-24, more than any sum of products here takes
+  const float kRounding = 6e-7;  // 10 x 2^-24, more than any sum of products here needs
   Span s;
   float z_min = min(a.z, min(b.z, c.z)), z_max = max(a.z, max(b.z, c.z));
   s.square_min = s.line_min = z_min - error.z;
   s.square_max = s.line_max = z_max + error.z;
   s.line = 0.5 * (z_min + z_max);
   s.facing = 0;
-  if (!(error.x < 1e20 && error.y < 1e20 && error.z < 1e20)) {  // past what float can tell
+  if (!(error.x < 1e20 && error.y < 1e20 && error.z < 1e20)) {  // beyond float precision
     s.in_square = s.is_near = s.is_around = true;
     s.is_across = false;
     s.square_min = s.line_min = -3e37;
@@ -86,19 +86,19 @@ Span span_of(vec3 a, vec3 b, vec3 c, vec3 error, float margin, vec2 p) {
   vec3 n = cross(ab, ac);
   vec3 n_error = kRounding * (abs(ab.yzx * ac.zxy) + abs(ab.zxy * ac.yzx));
 
-  // Separating axes: pixel and triangle overlap if their shadows on all axes do. The two pixel axes:
+  // Separating axes: pixel and triangle overlap if their projections on all axes do. The two pixel axes:
   vec2 below = min(a.xy, min(b.xy, c.xy)) - p, above = max(a.xy, max(b.xy, c.xy)) - p;
   vec2 reach = kSample + error.xy;
   s.in_square = all(lessThanEqual(below, reach)) && all(greaterThanEqual(above, -reach));
   s.is_near = all(lessThanEqual(below, error.xy)) && all(greaterThanEqual(above, -error.xy));
   s.is_around = all(lessThanEqual(below, 3.0 * error.xy)) && all(greaterThanEqual(above, -3.0 * error.xy));
   s.is_across = true;
-  // The three across the edges: each edge, its start, and where the third vertex is across it (+-n.z).
+  // The three axes across the edges; the third vertex is at +-n.z from its opposite edge.
   for (int i = 0; i < 3; ++i) {
     vec2 edge = i == 0 ? ab.xy : i == 1 ? bc.xy : -ac.xy;
     vec2 start = p - (i == 0 ? a.xy : i == 1 ? b.xy : c.xy);
     vec2 across = vec2(-edge.y, edge.x);
-    float at = dot(across, start);  // of the sample; the edge is at 0
+    float at = dot(across, start);  // sample's position across the edge, which is at 0
     float slack = kRounding * dot(abs(across), abs(start)) + n_error.z;
     float near_reach = dot(abs(across), error.xy) + slack;
     float around_reach = 3.0 * near_reach;
@@ -111,7 +111,7 @@ Span span_of(vec3 a, vec3 b, vec3 c, vec3 error, float margin, vec2 p) {
     s.is_across = s.is_across && (n.z > 0.0 ? at : -at) > across_reach;
   }
 
-  // The plane's depth, where the triangle is not so near to edge-on that rounding decides its slope.
+  // The plane's depth, unless the triangle is so nearly edge-on that rounding decides its slope.
   if (!(abs(n.z) > 8.0 * n_error.z)) {
     s.is_across = false;
     return s;
@@ -140,8 +140,8 @@ in TILE_VERTEX from[];
 
 inline constexpr const char* kTileGeometryShader = R"(
 layout(triangle_strip, max_vertices = 4) out;
-layout(location = 0) uniform vec2 pixel_ndc;  // 2 / the atlas's size
-layout(location = 1) uniform int which;       // 0: objects' tiles, 1: scene's
+layout(location = 0) uniform vec2 pixel_ndc;  // 2 / atlas size in pixels
+layout(location = 1) uniform int which;       // 0: object tiles, 1: scene tiles
 out Corner {
   flat vec3 a, b, c, error;
   flat ivec4 corners;
@@ -198,8 +198,8 @@ void main() {
 }
 )";
 
-/// The scene against the object in one pixel. A surface behind the object's front is passed over (see
-/// GlRadar) unless it is certain that it is inside the front slab of the object's solid.
+/// The scene against the object in one pixel. A surface behind the object's front is ignored (see GlRadar)
+/// unless it is certainly inside the front slab of the object's solid.
 inline constexpr const char* kGapSource = R"(
 bool is_in_the_way(Span s, vec4 object, vec4 limits_m, out float gap_m) {
   gap_m = s.line + object.g;
@@ -224,8 +224,8 @@ void main() {
 }
 )";
 
-/// Least of each scene tile, one work group a tile. Where several pixels are equally near, the one nearest to
-/// the middle of the box around them.
+/// Minimum of each scene tile, one work group per tile. If several pixels are equally near, chooses the one
+/// nearest to the middle of their bounding box.
 inline constexpr const char* kLeastShader = R"(layout(local_size_x = 128) in;
 struct Query { ivec4 corners; ivec4 item; vec4 limits_m; vec4 margin_px; };
 struct Result { uint stamp; float lower_m, upper_m, travel_m; int x, y; uint key, unused; };
@@ -292,7 +292,7 @@ void main() {
 }
 )";
 
-/// Which triangle is met at the pixel that kLeastShader chose: the first in the order of keys.
+/// Finds the triangle touched at the pixel that kLeastShader chose: the one with the least key.
 inline constexpr const char* kWhichShader = R"(
 layout(points, max_vertices = 1) out;
 struct Result { uint stamp; float lower_m, upper_m, travel_m; int x, y; uint key, unused; };
@@ -313,7 +313,7 @@ void main() {
 }
 )";
 
-/// Overwrites tiles: what kNothing is written with where an object's tile is drawn anew.
+/// Overwrites an object tile with kNothing before it is redrawn.
 inline constexpr const char* kClearVertexShader = R"(layout(location = 4) in ivec4 corners;
 layout(location = 5) in ivec4 item;
 layout(location = 0) uniform vec2 pixel_ndc;

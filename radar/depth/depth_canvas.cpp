@@ -1,4 +1,4 @@
-// depth_canvas.cpp: which triangles cover pixels, their edges and planes side by side, then row by row.
+// depth_canvas.cpp: triangles that cover pixels, then edges and planes with SIMD, then pixels row by row.
 #include "radar/depth/depth_canvas.hpp"
 
 #include <Eigen/Core>
@@ -9,17 +9,17 @@ namespace roomradar {
 namespace {
 
 constexpr float kWider_px = 1.0F / 1024.0F;
-constexpr float kLeastArea_px2 = 1e-7F;  // twice the area; less covers no pixel centre
+constexpr float kLeastArea_px2 = 1e-7F;  // twice the area; smaller triangles cover no pixel centre
 constexpr float kLevel_px = 1e-4F;       // an edge that rises by less bounds rows only
 
-/// The first whole number not below x, and one past the last not above it, for x >= 0.
+/// For x >= 0, return the first integer >= x, and one past the last integer <= x.
 int first_from(float x) {
   const int whole = static_cast<int>(x);
   return whole + (static_cast<float>(whole) < x ? 1 : 0);
 }
 int end_after(float x) { return static_cast<int>(x) + 1; }
 
-/// Keeps the triangles that may cover pixels; returns how many.
+/// Keeps the triangles that may cover pixels; returns their number.
 std::size_t take_visible(const ProjectedVertices& vertices, std::span<const PieceTriangle> triangles,
                          bool cull_back_faces, int width_px, int height_px, TriangleSetup& setup) {
   const float* u_px = vertices.u_px.data();
@@ -40,7 +40,7 @@ std::size_t take_visible(const ProjectedVertices& vertices, std::span<const Piec
     const int x1 = end_after(std::max(std::min(high_u, last_x), 0.0F));
     const int y1 = end_after(std::max(std::min(high_v, last_y), 0.0F));
     const float area = (u1 - u0) * (v2 - v0) - (u2 - u0) * (v1 - v0);
-    // Rows run down: counter-clockwise as seen is clockwise in pixels.
+    // Image rows run down, so counter-clockwise as seen is clockwise in pixels.
     const bool visible = (x0 < x1) & (y0 < y1) & (high_u >= 0.0F) & (high_v >= 0.0F) & (low_u <= last_x) &
                          (low_v <= last_y) & (std::abs(area) > kLeastArea_px2) & (back_sign * area <= 0.0F);
     const auto fx = static_cast<float>(x0), fy = static_cast<float>(y0);
@@ -57,7 +57,7 @@ std::size_t take_visible(const ProjectedVertices& vertices, std::span<const Piec
   return count;
 }
 
-/// How the inverse depth runs over each triangle.
+/// Computes the plane of inverse depth of each triangle.
 void find_planes(std::size_t count, TriangleSetup& setup) {
   for (std::size_t i = 0; i < count; ++i) {
     const float u0 = setup.u[0][i], v0 = setup.v[0][i], q0 = setup.q[0][i];
@@ -76,8 +76,8 @@ void find_planes(std::size_t count, TriangleSetup& setup) {
   }
 }
 
-/// Where each triangle's edges cross the rows. An edge bounds from the left or from the right, by the side on
-/// which the third corner lies.
+/// Computes where each triangle's edges cross the rows. An edge bounds from the left or the right, depending
+/// on the side of the third corner.
 void find_edges(std::size_t count, TriangleSetup& setup) {
   constexpr float kNoBound_px = 1e9F;
   for (std::size_t edge = 0; edge < 3; ++edge) {
@@ -132,7 +132,7 @@ void fill(const TriangleSetup& setup, std::size_t i, DepthCanvas& canvas) {
     for (int lane = 0; lane < lanes; ++lane) {
       float* row = corner + static_cast<std::size_t>(y + lane) * static_cast<std::size_t>(canvas.stride_px);
       const float q_row = q_first + q_per_y * static_cast<float>(y + lane);
-      // By whole lanes from a multiple of kLanes on, so that what was just stored is loaded as it was.
+      // Whole lanes from a multiple of kLanes on, so a load matches the preceding store (store forwarding).
       const int misaligned = (setup.first_x[i] + begin[lane]) % kLanes;
       for (int x = begin[lane] - misaligned; x < end[lane]; x += kLanes) {
         Eigen::Map<Lanes> pixels(row + x);

@@ -1,4 +1,4 @@
-// depth_pass.cpp: draw depth only; with OpenGL, read it back and turn it into metres.
+// depth_pass.cpp: draws depth only; with OpenGL, reads it back and converts it to metres.
 #include "radar/depth/depth_pass.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -51,7 +51,7 @@ void DepthPass::fit_framebuffer(int width_px, int height_px) {
   if (width_px <= texture_width_px_ && height_px <= texture_height_px_) return;
   const int wide_px = std::max(width_px, texture_width_px_);
   const int high_px = std::max(height_px, texture_height_px_);
-  texture_width_px_ = texture_height_px_ = 0;  // until it is there
+  texture_width_px_ = texture_height_px_ = 0;  // until the texture exists
   glDeleteTextures(1, &depth_texture_);
   glCreateTextures(GL_TEXTURE_2D, 1, &depth_texture_);
   glTextureStorage2D(depth_texture_, 1, GL_DEPTH_COMPONENT32F, wide_px, high_px);

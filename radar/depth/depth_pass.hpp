@@ -1,4 +1,4 @@
-// depth_pass.hpp: what a depth camera would measure of meshes, without noise.
+// depth_pass.hpp: depth image of meshes as a depth camera would measure it, without noise.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -15,20 +15,20 @@
 namespace roomradar {
 
 enum class DepthRenderer {
-  kAuto,       ///< OpenGL on a GPU; the processor where OpenGL is software
-  kOpenGl,     ///< whatever the context runs on
-  kProcessor,  ///< DepthRaster
+  kAuto,       ///< OpenGL on a GPU, the CPU if OpenGL runs in software
+  kOpenGl,     ///< OpenGL, on a GPU or in software
+  kProcessor,  ///< DepthRaster, on the CPU
 };
 
 struct DepthPassConfig {
   DepthRenderer renderer = DepthRenderer::kAuto;
-  double near_m = 0.1;           ///< nearer surfaces are cut away; a Kinect sees from 0.4 m on
-  bool cull_back_faces = false;  ///< true: only triangles that are counter-clockwise seen from the camera
+  double near_m = 0.1;           ///< nearer surfaces are clipped, > 0; a Kinect measures from 0.4 m
+  bool cull_back_faces = false;  ///< true: draws only triangles counter-clockwise as seen by the camera
 };
 /// @throws Error naming the field, its value and the rule
 void require_valid(const DepthPassConfig& config);
 
-/// Owns what it draws with, which grows to the largest image asked for. Not thread safe.
+/// Owns its buffers, which grow to the largest image rendered. Not thread safe.
 class DepthPass {
  public:
   explicit DepthPass(GlContext& context, const DepthPassConfig& config = {});
@@ -38,25 +38,26 @@ class DepthPass {
 
   /// Renders the nearest surface of all instances, sampled at pixel centres.
   ///
-  /// @param scene           meshes with their poses; those with a null mesh are left out
-  /// @param camera          of the image to make; if it is not one (require_valid), depth_m comes back empty
+  /// @param scene           meshes with their poses; instances with a null mesh are skipped
+  /// @param camera          intrinsics of the image; if invalid (require_valid), depth_m comes back empty
   /// @param T_world_camera  camera pose
-  /// @param depth_m         gets camera's size; metres along the optical axis, 0 where nothing is
-  /// @return triangles handed to the renderer
-  /// There is no far end. Error against the exact ray: 1/256 pixel (of vertices that OpenGL snaps, or of
-  /// outlines that the processor widens by less) across the surface's slope, and about 1e-7 of the depth
-  /// along it; by the processor, of triangles that reach to near_m, 4e-6 / m of inverse depth: 0.3 mm at 8 m.
+  /// @param depth_m         resized to the camera's size; metres along the optical axis, 0 without a surface
+  /// @return number of triangles passed to the renderer
+  ///
+  /// There is no far plane. Error against the exact ray: 1/256 pixel across the surface's slope (OpenGL snaps
+  /// vertices, the CPU widens outlines by less), and about 1e-7 of the depth along the ray. On the CPU,
+  /// triangles that reach near_m have an error of 4e-6 / m of inverse depth: 0.3 mm at 8 m.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, DepthImage& depth_m);
 
-  /// The same for a rectangle of the image only: pixels of `depth_m` outside it stay as they are (if depth_m
-  /// has not camera's size it is resized and set to 0 first). Chunks outside the rectangle are not drawn.
+  /// Renders only a rectangle of the image; pixels of `depth_m` outside it are unchanged. If depth_m does not
+  /// have the camera's size, it is first resized and set to 0. Chunks outside the rectangle are not drawn.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, DepthImage& depth_m);
 
  private:
   DepthPassConfig config_;
-  std::unique_ptr<DepthRaster> raster_;  ///< null: OpenGL
+  std::unique_ptr<DepthRaster> raster_;  ///< null if OpenGL renders
   unsigned program_ = 0;
   unsigned framebuffer_ = 0;
   unsigned depth_texture_ = 0;
@@ -69,8 +70,8 @@ class DepthPass {
                              DepthImage& depth_m);
 };
 
-/// The smallest rectangle of whole pixels that holds the instance's bounding box as the camera sees it; the
-/// whole image where the box reaches behind near_m; width and height 0 where it is out of sight.
+/// Returns the smallest rectangle of whole pixels that contains the instance's bounding box in the image: the
+/// whole image if part of the box is behind near_m, width and height 0 if the box is out of view.
 PixelRect pixels_of(const MeshInstance& instance, const Intrinsics& camera,
                     const Eigen::Isometry3d& T_world_camera, double near_m);
 

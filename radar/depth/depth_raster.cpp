@@ -1,4 +1,4 @@
-// depth_raster.cpp: find the pieces in view, deal them to the threads, lay both canvases over one another.
+// depth_raster.cpp: finds visible pieces, shares them between two threads, merges both canvases.
 #include "radar/depth/depth_raster.hpp"
 
 #include <algorithm>
@@ -6,20 +6,19 @@
 namespace roomradar {
 namespace {
 
-constexpr double kFarAside_px = 8192.0;  // past it pixel coordinates in float lose more than 1/1024 pixel
-constexpr std::size_t kWorthTwo = 8;     // pieces
+constexpr double kFarAside_px = 8192.0;  // beyond it, pixel coordinates in float lose more than 1/1024 pixel
+constexpr std::size_t kWorthTwo = 8;     // pieces from which a second thread pays
 
-/// A corner of a triangle that is being cut: (u * depth, v * depth, depth).
+/// Corner of a triangle being clipped: (u * depth, v * depth, depth).
 using Corner = Eigen::Vector3d;
 
-/// A triangle cut by five planes has at most eight corners.
+/// A triangle clipped by five planes has at most eight corners.
 struct Polygon {
   std::array<Corner, 8> corners;
   std::size_t count = 0;
 };
 
-/// What of the polygon has side(corner) >= 0. Source: Sutherland and Hodgman, Reentrant polygon clipping,
-/// 1974.
+/// Clips the polygon to side(corner) >= 0. Source: Sutherland and Hodgman, Reentrant polygon clipping, 1974.
 template <typename Side>
 void cut(const Side& side, Polygon& polygon) {
   Polygon kept;
@@ -36,7 +35,7 @@ void cut(const Side& side, Polygon& polygon) {
 }  // namespace
 
 const RasterMesh& DepthRaster::pieces_of(const GpuMesh& mesh) {
-  constexpr std::size_t kKept = 8;  // meshes that were not drawn for long make room
+  constexpr std::size_t kKept = 8;  // meshes; the one drawn least recently is replaced
   const auto is_same = [&](const auto& known) { return known->mesh == &mesh; };
   auto found = std::find_if(known_.begin(), known_.end(), is_same);
   if (found == known_.end()) {
@@ -75,7 +74,7 @@ std::size_t DepthRaster::find_visible(std::span<const MeshInstance> scene, const
     const Projection projection = K * T_camera_local.matrix().topRows<3>();
     visible_meshes_.push_back({&mesh, projection});
 
-    // Planes through the image's borders, a pixel outside, and, for pieces to be cut, far outside.
+    // Planes through the image's borders: one pixel outside, and far outside for pieces that need clipping.
     const auto borders = [&](double aside_px) {
       Eigen::Matrix4d planes;
       planes << projection.row(0) + aside_px * projection.row(2),
@@ -135,7 +134,7 @@ void DepthRaster::paint(Painter& painter) {
   }
 }
 
-/// The same for a piece whose triangles may have to be cut, one by one.
+/// Draws a piece whose triangles may need clipping, one by one.
 void DepthRaster::paint_cut(const RasterMesh& mesh, const RasterPiece& piece, const Projection& projection,
                             Painter& painter) const {
   painter.vertices.resize(0);

@@ -1,4 +1,4 @@
-// depth_raster.hpp: the depth of meshes as a camera sees them, drawn by the processor on two threads.
+// depth_raster.hpp: CPU renderer of depth images of meshes, on two threads.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -19,13 +19,12 @@
 
 namespace roomradar {
 
-/// Draws what DepthPass draws with OpenGL, without it: several times as fast as a software renderer, whose
-/// effort a triangle is much greater than these few pixels need. Pieces of the meshes are dealt to two
-/// threads, each with a canvas of its own; the nearest surface wins, so that the answer does not depend on
-/// which thread drew what. Not thread safe.
+/// Renders the images of DepthPass without OpenGL. Several times as fast as a software OpenGL, whose cost per
+/// triangle is too high for images this small. Two threads share the pieces of the meshes, each with its own
+/// canvas. The nearest surface wins, so the result does not depend on which thread drew it. Not thread safe.
 class DepthRaster {
  public:
-  /// Parameters are those of DepthPass::render and its config; `rect` lies within the image and has pixels.
+  /// Parameters as for DepthPass::render() and its config; `rect` must lie within the image and have pixels.
   /// Allocates nothing once meshes and images as large were drawn.
   std::size_t render(std::span<const MeshInstance> scene, const Intrinsics& camera,
                      const Eigen::Isometry3d& T_world_camera, const PixelRect& rect, double near_m,
@@ -45,11 +44,11 @@ class DepthRaster {
     Projection projection;
   };
   struct VisiblePiece {
-    std::uint32_t mesh = 0;  ///< in visible_meshes_
+    std::uint32_t mesh = 0;  ///< index in visible_meshes_
     std::uint32_t piece = 0;
-    bool is_cut = false;  ///< may reach behind the near plane, or very far aside
+    bool is_cut = false;  ///< needs clipping: may reach behind the near plane or far outside the image
   };
-  /// What one thread draws with.
+  /// Buffers of one thread.
   struct Painter {
     DepthCanvas canvas;
     ProjectedVertices vertices;

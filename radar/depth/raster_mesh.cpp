@@ -1,4 +1,4 @@
-// raster_mesh.cpp: give each run of triangles its own copy of the vertices that it uses.
+// raster_mesh.cpp: gives each run of triangles its own copy of the vertices that it uses.
 #include "radar/depth/raster_mesh.hpp"
 
 namespace roomradar {
@@ -9,8 +9,8 @@ void cut_into_pieces(std::span<const Eigen::Vector3f> vertices, std::span<const 
   out.pieces.clear();
   out.x_m.clear(), out.y_m.clear(), out.z_m.clear();
   out.triangles.resize(triangles.size());
-  // By vertex: its place among all pieces' vertices, the last time that it was given one. It is this piece's
-  // if it is past this piece's first.
+  // Per vertex: its latest index among all pieces' vertices. The index belongs to the current piece if it is
+  // at least the piece's first vertex.
   constexpr std::uint32_t kNone = 0xFFFFFFFF;
   out.places.assign(vertices.size(), kNone);
   for (const MeshChunk& chunk : out.chunked.chunks) {

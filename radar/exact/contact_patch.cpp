@@ -1,4 +1,4 @@
-// contact_patch.cpp: sort each piece's corners around it, weigh them, find the nearest point.
+// contact_patch.cpp: sorts each piece's corners, weighs pieces, finds the nearest point.
 #include "radar/exact/contact_patch.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ Eigen::Vector3d mean_of(const PatchPiece& piece) {
   return sum / static_cast<double>(piece.count);
 }
 
-/// Corners of a convex outline, counter-clockwise across the motion.
+/// Sorts the corners of a convex outline counter-clockwise, across the motion.
 void sort_around(PatchPiece& piece) {
   const Eigen::Vector3d mean = mean_of(piece);
   std::sort(piece.corners.begin(), piece.corners.begin() + static_cast<std::ptrdiff_t>(piece.count),
@@ -26,10 +26,10 @@ void sort_around(PatchPiece& piece) {
 
 double cross2(const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Point of the piece nearest to p across the motion.
+/// Returns the point of the piece nearest to p across the motion.
 Eigen::Vector3d nearest_in(const PatchPiece& piece, const Eigen::Vector2d& p) {
   const auto at = [&](std::size_t i) -> const Eigen::Vector3d& { return piece.corners[i % piece.count]; };
-  // Within one of the triangles about the first corner?
+  // Test the triangles of the fan around the first corner.
   for (std::size_t i = 1; i + 1 < piece.count; ++i) {
     const Eigen::Vector3d a = at(i) - at(0), b = at(i + 1) - at(0);
     const Eigen::Vector3d q(p.x() - at(0).x(), p.y() - at(0).y(), 0.0);
@@ -115,7 +115,7 @@ Eigen::Vector2d ContactPatch::middle(double best_m, double equally_m) {
   if (has_all() && pieces_.size() == 1 && pieces_[0].count == 1) return pieces_[0].corners[0].head<2>();
   Sums sums = sums_;
   for (PatchPiece& piece : pieces_) sums.add(piece);
-  // Lines have no area and points no length, but for rounding.
+  // Lines have no area and points no length, except for rounding.
   constexpr double kThin_m = 1e-9;
   const PlaceSum& sum = sums.areas.weight > kThin_m * sums.lengths.weight && sums.areas.weight > 0.0
                             ? sums.areas
@@ -133,7 +133,7 @@ PatchPoint ContactPatch::nearest(const Eigen::Vector2d& place, double best_m, do
     sort_around(piece);
     const Eigen::Vector3d q = nearest_in(piece, place);
     const double m2 = (q.head<2>() - place).squaredNorm();
-    // Of pieces that are equally near (a shared edge) the one that opposes the motion most.
+    // Among equally near pieces (a shared edge), choose the one that faces most against the motion.
     const bool is_nearer = best == nullptr || m2 < best_m2 - 1e-15;
     if (!is_nearer && !(m2 < best_m2 + 1e-15 && piece.normal.z() < best->normal.z())) continue;
     best = &piece;

@@ -1,4 +1,4 @@
-// contact_patch.hpp: all places that touch at once, and the one of them nearest to their middle.
+// contact_patch.hpp: set of equally near contact points, and the point nearest to their centroid.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -9,10 +9,11 @@
 
 namespace roomradar {
 
-/// The part of a pair's common outline that is equally near: on the scene's triangle, before the motion.
+/// Equally near part of the intersection of two projected triangles, as points of the scene's triangle before
+/// the motion.
 struct PatchPiece {
   double travel_m = 0.0;
-  std::array<Eigen::Vector3d, 18> corners;  // in the frame, m
+  std::array<Eigen::Vector3d, 18> corners;  // frame of the motion, m
   std::size_t count = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Touched kind = Touched::kNothing;
@@ -24,7 +25,7 @@ struct PatchPoint {
   Touched kind;
 };
 
-/// Weights and first moments of places, across the motion.
+/// Sums of weights and first moments of points, across the motion.
 struct PlaceSum {
   double weight = 0.0;
   Eigen::Vector2d moment = Eigen::Vector2d::Zero();
@@ -34,28 +35,28 @@ struct PlaceSum {
   }
 };
 
-/// Collects pieces while the least travel is still sought. Holds kCapacity of them; what was held before is
-/// remembered by its sums only, so that the middle is that of all.
+/// Collects pieces while the search for the least distance continues. Stores up to kCapacity pieces; earlier
+/// ones are kept as sums only, so the centroid covers all of them.
 class ContactPatch {
  public:
   static constexpr std::size_t kCapacity = 512;
-  /// What comes when that many are equally near is left out: some milliseconds of settling.
+  /// Max number of equally near pieces; later ones are dropped. Limits the exact tests to some milliseconds.
   static constexpr std::size_t kMostPieces = 4096;
   void clear();
-  /// Whether kMostPieces were equally near when the last one came.
+  /// Returns true if no further piece is accepted: kMostPieces pieces are equally near.
   [[nodiscard]] bool is_full() const { return summed_count_ + pieces_.size() >= kMostPieces; }
-  /// @param equally_m  how much farther than the nearest is still as near
+  /// @param equally_m  points at most this much farther than the nearest count as equally near
   void add(const TriangleGap& gap, double travel_m, double equally_m, const FrameTriangle& scene,
            Touched kind, double best_m);
-  /// Of the pieces within equally_m of best_m: of their area if they have any, else of their length, else of
-  /// their points. There must be a piece.
+  /// Returns the centroid of the pieces within equally_m of best_m: of their areas if any, else of their
+  /// lengths, else of their points. Requires at least one piece.
   [[nodiscard]] Eigen::Vector2d middle(double best_m, double equally_m);
-  /// The point of the pieces at hand, within equally_m of best_m, that is nearest to a place. There must be a
-  /// piece.
+  /// Returns the point nearest to `place` on the stored pieces within equally_m of best_m. Requires at least
+  /// one stored piece.
   [[nodiscard]] PatchPoint nearest(const Eigen::Vector2d& place, double best_m, double equally_m);
-  /// Whether every piece is at hand.
+  /// Returns true if every piece is still stored.
   [[nodiscard]] bool has_all() const { return summed_count_ == 0; }
-  /// Makes room for more: only what is at hand stays.
+  /// Drops the sums to make room for more pieces; stored pieces stay.
   void forget_sums();
 
  private:
@@ -64,8 +65,8 @@ class ContactPatch {
     void add(PatchPiece& piece);
   };
   std::vector<PatchPiece> pieces_;
-  Sums sums_;              // of pieces that are not at hand any more
-  double summed_m_ = 0.0;  // least travel when they were summed up
+  Sums sums_;              // pieces that are no longer stored
+  double summed_m_ = 0.0;  // least distance when they were summed
   std::size_t summed_count_ = 0;
 
   void leave_out_what_is_farther(double limit_m);

@@ -1,4 +1,4 @@
-// cyber_radar.cpp: M, then R from the nearest bound on, then L where it can be least.
+// cyber_radar.cpp: M first, then R from the least bound on, then L where it can be least.
 #include "radar/exact/cyber_radar.hpp"
 
 #include <algorithm>
@@ -28,14 +28,15 @@ SceneItem pop(std::vector<SceneItem>& heap) {
   return item;
 }
 
-/// Of an M, as ColumnScratch::work: triangles smaller than a pixel are entered as one.
+/// Returns the cost of building M, in units of ColumnScratch::work; triangles smaller than a pixel are
+/// entered together.
 std::uint64_t work_to_build(const TurnedTree& object, int px) {
   const auto pixels = static_cast<std::uint64_t>(px) * static_cast<std::uint64_t>(px);
   return std::min<std::uint64_t>(object.tree->triangle_count() / 2, pixels) + pixels / 50;
 }
 
-/// What the gap of two triangles cannot be less than, cheaply: by their heights, and by the object's corners
-/// under the scene's plane, extended. Infinite where the object slides along the scene.
+/// Returns a cheap lower bound of the gap between two triangles, from their heights and from the object's
+/// corners under the scene's extended plane. Infinite if the object slides along the scene.
 double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, double touching_m) {
   const auto& o = object.corners;
   const auto& s = scene.corners;
@@ -57,7 +58,7 @@ double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, 
     by_plane_m = std::min(by_plane_m, scene.normal.dot(s[0] - corner) * per_m);
     size_m = std::max(size_m, corner.lpNorm<1>());
   }
-  // A difference, a product and a sum of three, and what the normal's own rounding tilts.
+  // Rounding of a difference, a product and a sum of three, and the tilt by the normal's own rounding.
   constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
   return std::max(by_height_m, by_plane_m - kRounding * size_m * std::abs(per_m));
 }
@@ -82,8 +83,8 @@ double touching_m(const TriangleTree& object) {
 
 CyberRadar::CyberRadar(const RadarConfig& config) : config_(config) { require_valid(config); }
 
-/// One question, in its frame: origin at the object's middle, z along the direction. The frame is fixed to
-/// the object, so that M stays as it is while the direction does in the object's own frame.
+/// One query, in its frame: origin at the object's middle, z along the direction. The frame is fixed to the
+/// object, so M stays valid while the direction is unchanged in the object's own frame.
 struct CyberRadar::Search {
   const RadarQuery& query;
   const TriangleTree& tree;
@@ -92,13 +93,13 @@ struct CyberRadar::Search {
   Eigen::Vector3d origin_world;
   bool is_thick;
 
-  double best_m = kInfinity<double>;  // least travel that was settled
-  bool overlaps = false;              // settled, and nothing else matters any more
-  OverlappedTriangle overlapped;      // if it does
-  bool leaves_something = false;      // which faces along the motion and crosses the object now
-  bool met_a_back = false;            // of something that faces along the motion
-  bool collects_backs = false;        // instead of meeting them
-  bool is_cut_short = false;          // not all that may be behind the front was settled
+  double best_m = kInfinity<double>;  // least distance from an exact test
+  bool overlaps = false;              // found by an exact test; nothing else matters then
+  OverlappedTriangle overlapped;      // if overlaps
+  bool leaves_something = false;      // a back-facing surface crosses the object now
+  bool met_a_back = false;            // contact with a back-facing surface
+  bool collects_backs = false;        // instead of treating them as contacts
+  bool is_cut_short = false;          // not all scene that may be behind the front was tested
 
   Search(const RadarQuery& q, const Eigen::Vector3d& u_mesh)
       : query(q), tree(*q.object.tree), is_thick(q.margin_m > 0.0) {
@@ -109,7 +110,7 @@ struct CyberRadar::Search {
     R_frame_world = object.R_frame_mesh * q.object.T_world_mesh.linear().transpose();
     origin_world = q.object.T_world_mesh * (tree.origin() + tree.centre());
   }
-  /// What is no farther from the nearest than this touches with it.
+  /// Contacts at most this much farther than the nearest count as equally near.
   [[nodiscard]] double equally_m() const { return object.touching_m; }
   [[nodiscard]] bool is_rear(const FrameTriangle& o) const {
     return tree.is_closed() && o.normal.z() < -kEdgeOn;
@@ -132,7 +133,8 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   return search.overlaps ? overlap_of(search) : contact_of(search);
 }
 
-/// Unit, in the object's frame; the same as the last time but for the rounding of a turn: M is kept.
+/// Returns the unit direction in the object's frame. Reuses the last one if only rounding differs, so M stays
+/// valid.
 Eigen::Vector3d CyberRadar::direction_in_object(const RadarQuery& query) {
   const Eigen::Vector3d u_mesh =
       (query.object.T_world_mesh.linear().transpose() * query.direction_world.stableNormalized())
@@ -141,7 +143,7 @@ Eigen::Vector3d CyberRadar::direction_in_object(const RadarQuery& query) {
   return u_mesh_;
 }
 
-/// What the object sweeps on its way, in its frame.
+/// Returns the volume that the object sweeps, in its frame.
 Eigen::AlignedBox3d CyberRadar::volume_ahead(const Search& search) const {
   Eigen::AlignedBox3d volume = front_.bounds();
   volume.min().z() -= search.object.touching_m;
@@ -153,14 +155,14 @@ SceneBound CyberRadar::bound_of(const Search& search) const {
   return {&front_, static_cast<float>(volume_ahead(search).min().z())};
 }
 
-/// Coarse for a direction that may never come again, finer where it has stayed for so long that a finer M
-/// would have paid by now: with it nearly all of the scene is ruled out by M's pixels, whatever the object's
-/// triangles are. The exact answer does not depend on how fine M is.
+/// Builds a coarse M for a new direction, and a finer one once the direction has repeated so often that the
+/// finer M would have paid by now. M's pixels then rule out nearly all of the scene, whatever the object's
+/// triangles are. The exact result does not depend on M's resolution.
 void CyberRadar::build_front(const TurnedTree& object, bool is_kept) {
   constexpr int kFewFresh_px = 64;
-  constexpr int kFinest_px = 384;  // unless it is to be sampled more finely
+  constexpr int kFinest_px = 384;  // unless config_.resolution_px is finer
   const std::array kept_px{96, 192, kFinest_px, std::max(kFinest_px, config_.resolution_px)};
-  constexpr std::size_t kFewTriangles = 500;  // their M costs little
+  constexpr std::size_t kFewTriangles = 500;  // fewer make a cheap M
   const bool is_exact = config_.mode == RadarMode::kExact;
   const auto at_most_asked = [&](int px) {
     return is_exact ? std::min(px, kFinest_px) : std::min(px, config_.resolution_px);
@@ -177,8 +179,8 @@ void CyberRadar::build_front(const TurnedTree& object, bool is_kept) {
   if (finest_px > 0) front_.build(object, finest_px);
 }
 
-/// The more scene there is to rule out, the finer an M pays: its time goes with its pixels, and what it
-/// leaves to settle falls with them.
+/// Returns the resolution of M for a new direction. The more scene there is to rule out, the finer an M pays:
+/// its time grows with its pixels, and the pairs left for exact tests shrink with them.
 int CyberRadar::fresh_px() const {
   constexpr int kLeast_px = 8, kMost_px = 40, kOverTrees_px = 24;
   if (scene_.has_trees()) return kOverTrees_px;
@@ -186,13 +188,13 @@ int CyberRadar::fresh_px() const {
   return std::clamp(static_cast<int>(px), kLeast_px, kMost_px);
 }
 
-/// Nothing farther than this is looked at.
+/// Returns the distance beyond which the search stops.
 double CyberRadar::limit_m(const Search& search) const {
   const bool wants_equals = !patch_.is_full() && !search.is_thick;
   return std::min(search.best_m, search.query.distance_m) + (wants_equals ? search.equally_m() : 0.0);
 }
 
-/// Settles what has the least bound until nothing can be nearer, or enough is known.
+/// Runs exact tests from the least bound on, until nothing can be nearer or enough is known.
 void CyberRadar::look(Search& search) {
   const double distance_m = search.query.distance_m;
   const SceneBound bound = bound_of(search);
@@ -236,22 +238,22 @@ void CyberRadar::look(Search& search) {
   }
 }
 
-/// Lets be what may be behind the object's front, and goes on with what is ahead for certain.
+/// Drops everything that may be behind the object's front, and continues with what is certainly ahead.
 void CyberRadar::cut_short(Search& search) {
   std::erase_if(heap_, [](const SceneItem& item) { return item.low_m < 0.0F; });
   std::make_heap(heap_.begin(), heap_.end(), is_farther);
   search.is_cut_short = true;
-  search.collects_backs = true;  // what is left as a whole is not known: none of them is met
+  search.collects_backs = true;  // which back-facing surfaces are left is unknown: none of them is a contact
   if (!search.met_a_back) return;
   search.best_m = kInfinity<double>;
   patch_.clear();
 }
 
-/// One triangle of the scene against all of the object's in its column.
+/// Tests a scene triangle exactly against all object triangles in its column.
 void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriangle& s) {
   if (s.normal.z() > kEdgeOn && is_one_sided(scene_.kind(item))) return;
   const TurnedTree& object = search.object;
-  // A thick object's triangles are not told apart.
+  // For an inflated object, layers are not distinguished.
   bool has_ahead = search.is_thick && item.low_m < 0.0F;
   const auto limit = [&] { return search.overlaps ? -kInfinity<double> : limit_m(search); };
   has_ahead |= search_column(object, s, limit, -object.touching_m, columns_, [&](std::uint32_t i) {
@@ -264,7 +266,8 @@ void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriang
     FrameTriangle o = turned_corners(object, i);
     const double least_m = least_gap_bound(o, s, object.touching_m);
     if (least_m >= limit_m(search)) return;
-    // The rear of a closed object meets only what is inside it: cheap to tell where much is behind the front.
+    // The rear of a closed object touches only scene inside it. Cheap to test if much scene is behind the
+    // front.
     const bool is_ahead = item.low_m < 0.0F && least_m > object.touching_m;
     if (is_ahead) set_normal(o);
     if (is_ahead && search.is_rear(o)) return;
@@ -302,7 +305,8 @@ void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriang
   }
 }
 
-/// What is left, until it is left as a whole, is met by nothing; what faces so and comes after that is.
+/// Finds the first contact with a back-facing surface after the surface being left has been passed as a
+/// whole.
 void CyberRadar::leave(Search& search) {
   search.collects_backs = true;
   search.best_m = kInfinity<double>;
@@ -335,7 +339,7 @@ Contact CyberRadar::nothing_found(const Search& search) const {
   return contact;
 }
 
-/// No contact that is not known is nearer.
+/// Returns a lower bound of the distance of every contact not found yet.
 double CyberRadar::least_unsettled_m(const Search& search) const {
   if (search.is_cut_short) return 0.0;
   return heap_.empty() ? kInfinity<double> : std::max(heap_.front().low_m, 0.0F);
@@ -382,7 +386,7 @@ Contact CyberRadar::contact_of(Search& search) {
   return contact;
 }
 
-/// Finds the piece that holds this place again, where there were more of them than are at hand.
+/// Finds the piece at this place again if more pieces were found than are stored.
 void CyberRadar::look_over(Search& search, const Eigen::Vector2d& place) {
   const SceneBound bound = bound_of(search);
   const auto limit = static_cast<float>(search.best_m + search.equally_m());

@@ -1,4 +1,4 @@
-// cyber_radar.hpp: how far may an object go before it touches? Exactly, or between bounds that hold.
+// cyber_radar.hpp: distance an object can move along a line before contact, exact or between bounds.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>
@@ -15,8 +15,8 @@
 namespace roomradar {
 
 enum class RadarMode {
-  kSampled,  ///< settles few triangles exactly: fast, the bounds are as wide as a pixel is deep
-  kExact     ///< settles until lower_m = upper_m = travel_m
+  kSampled,  ///< few exact tests: fast; bounds as wide as the depth range within a pixel
+  kExact     ///< exact tests until lower_m = upper_m = travel_m
 };
 constexpr std::string_view to_string(RadarMode mode) {
   return mode == RadarMode::kExact ? "exact" : "sampled";
@@ -24,10 +24,10 @@ constexpr std::string_view to_string(RadarMode mode) {
 
 struct RadarConfig {
   RadarMode mode = RadarMode::kExact;
-  /// Pixels along the longer side of the object's outline, 1 to 4096: how wide the bounds of sampled mode
-  /// are once a direction of the object's own frame has come so often that a finer M pays (before, M has 40
-  /// at most, or 64 of an object of few triangles), and Contact::pixel_m. Exact mode takes as many pixels as
-  /// is fastest; its answer does not depend on them.
+  /// Pixels along the longer side of the object's outline, 1 to 4096. Determines Contact::pixel_m and the
+  /// width of sampled mode's bounds. Sampled mode uses this resolution once a direction in the object's frame
+  /// has repeated often enough that a finer M pays. Before that M has at most 40 pixels, or 64 for an object
+  /// of few triangles. Exact mode chooses the fastest resolution; its result does not depend on it.
   int resolution_px = 64;
   friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
 };
@@ -35,92 +35,93 @@ struct RadarConfig {
 void require_valid(const RadarConfig& config);
 
 struct RadarQuery {
-  TreeInstance object;                                        ///< not in the scene, but for own_tree
+  TreeInstance object;                                        ///< not in the scene, except as own_tree
   Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();  ///< any length but 0
-  double distance_m = 0.0;                                    ///< how far ahead to look, > 0
-  /// The object is thickened by this all round: lower_m then holds for any motion that strays no farther from
-  /// the straight one (turning, noise). > 0: only lower_m is of use; upper_m is infinite, overlap and
-  /// touching are lower_m = 0, and what the object leaves counts as well.
+  double distance_m = 0.0;                                    ///< max distance to search, > 0
+  /// Inflates the object by this on all sides: lower_m then holds for any motion that deviates no farther
+  /// from the straight one (rotation, noise). If > 0, only lower_m is meaningful: upper_m is infinite,
+  /// overlap and touching give lower_m = 0, and surfaces that the object leaves count too.
   double margin_m = 0.0;
-  /// Which of the scene's trees is the object itself, and is left out.
+  /// Index of the object's own tree in the scene, which is skipped.
   std::size_t own_tree = kNotInScene;
   static constexpr std::size_t kNotInScene = static_cast<std::size_t>(-1);
 };
 
-/// Whether it can be asked: see CyberRadar::query() for what cannot.
+/// Returns false for a query that CyberRadar::query() rejects by itself, whatever the scene.
 bool is_valid(const RadarQuery& query);
 
-/// Cyber Radar on the processor: M, the object's leading surface, against R, the scene ahead; the least gap
-/// L between them is the way to go.
+/// Cyber Radar on the CPU. M is the object's leading surface, R the scene ahead; the least gap L between them
+/// is the distance to contact. Below, u is the direction of motion and n a scene triangle's normal.
 ///
-///  1. M: for each pixel the greatest height that the object may have anywhere in it (FrontMap). Kept while
-///     the object's tree and the direction in its frame stay.
-///  2. R: the scene's boxes, large to small, nearest first (SceneInFrame). A box's least height less the
-///     greatest M under it is a lower bound of every contact in it; for a triangle, that of its plane over
-///     each of M's pixels.
-///  3. L: what has the least bound is settled: the scene's triangle against the object's triangles in its
-///     column, all layers of them, in double (search_column, find_gap, meeting_of). The least travel settled
-///     is an upper bound; the least bound unsettled is a lower one; when they meet, both are the truth.
+///   1. M: per pixel, an upper bound of the object's height (FrontMap). Kept while the object's tree and the
+///      direction in its frame are unchanged.
+///   2. R: the scene's boxes, large to small, nearest first (SceneInFrame). A box's least height minus the
+///      greatest M under it is a lower bound for every contact in it. For a triangle, the bound comes from
+///      its plane over each pixel of M.
+///   3. L: the triangle with the least bound gets the exact test: in double, against all layers of object
+///      triangles in its column (search_column, find_gap, meeting_of). The least distance found is an upper
+///      bound and the least untested bound a lower one. Once they agree, both are exact.
 ///
-/// Needles and sheets thinner than a pixel are in M and in R with their whole boxes, so neither bound misses
-/// them. Scene in a hollow of a concave object is behind the front layer, whose gap is negative and says
-/// nothing; the layer behind it is met if there is one.
+/// Needles and sheets thinner than a pixel enter M and R with their whole boxes, so neither bound misses
+/// them. Scene in a hollow of a concave object is behind the front layer; its negative gap to that layer is
+/// no contact. The object's next layer behind that scene touches it, if there is one.
 ///
-/// Exact means: the error is that of double arithmetic on the float vertices, some 1e-12 m in a room and 1e-9
+/// Exactness: the error is that of double arithmetic on the float vertices, about 1e-12 m in a room and 1e-9
 /// m at a million metres from the world's origin.
 ///
-/// Touching: surfaces nearer than touching_m() touch. Touching what opposes the motion is a contact after 0;
-/// touching what faces along the motion (what the object leaves) or slides along it is none. An overlap is a
-/// pair of surfaces that cross by more than that, or scene inside a closed object
-/// (TriangleTree::is_closed()), unless the scene's triangle faces along the motion. travel_m = lower_m =
-/// upper_m is then minus the way back along the direction until the object is free: the near end of the union
-/// of all pairs' spans of crossing, the inside of a closed object included, that holds 0. Where that is long
-/// (an object that is sunk in the ground and moves along it is free again where the ground ends) the search
-/// is cut short (kMostOverlapWork): travel_m = upper_m is then how far the union reaches for certain, and
-/// lower_m minus infinity.
+/// Touching: surfaces closer than touching_m() touch. Touching a surface that faces against the motion (n . u
+/// < 0) is a contact after 0. Touching a back-facing one (n . u > 0, which the object leaves), or one that
+/// slides along, is no contact.
 ///
-/// Sliding: a scene triangle exactly edge-on (|n . u| <= 1e-9) that has an object triangle wholly on one side
-/// is slid along by that triangle. So an open sheet that runs exactly along edges of the object's mesh is not
-/// met by the triangles on either side.
+/// Overlap: surfaces that cross by more than touching_m(), or scene inside a closed object
+/// (TriangleTree::is_closed()), unless the scene's triangle is back-facing. Each pair of triangles crosses
+/// over an interval of travel; so does scene inside a closed object. travel_m = lower_m = upper_m is the
+/// lower end of the union of intervals that contains 0: the object is clear after moving back this far. An
+/// object that is sunk in the ground and moves along it is clear only where the ground ends, so a long search
+/// is cut short (kMostOverlapWork). Then travel_m = upper_m is the part of the union found so far, and
+/// lower_m is -infinity.
 ///
-/// Leaving: what faces along the motion and crosses the object now is left, and all that faces so and is
-/// crossed without a break from now on is left with it, also where a part of the object is still behind it
-/// (the bar of a handle behind a hand that is in the handle): no contact until the last of it has been
-/// passed.
+/// Sliding: an object triangle wholly on one side of a scene triangle that is exactly edge-on (|n . u| <=
+/// 1e-9) slides along it. An open sheet that runs exactly along edges of the object's mesh is therefore not
+/// touched by the triangles on either side.
 ///
-/// One-sided surfaces (is_one_sided()) are met from their outside only: what of them faces along the motion
-/// is left, wherever it is.
+/// Leaving: a back-facing surface that crosses the object now is left. All back-facing surfaces crossed
+/// without a break from now on are left with it, even if part of the object is still behind them (the bar of
+/// a handle behind a hand in the handle). They cause no contact until the last of them is passed.
 ///
-/// Contact point: of all places that are equally near (a face that lands flat; ContactPatch::kMostPieces
-/// pairs of triangles are counted) the one nearest to their middle.
+/// One-sided surfaces (is_one_sided()) are touched from their outside only: their back-facing triangles are
+/// always ignored.
 ///
-/// No GL. Not thread safe: one radar a thread; trees and images may be shared.
+/// Contact point: the one nearest to the centroid of all equally near points, such as those of a face that
+/// lands flat. At most ContactPatch::kMostPieces pairs of triangles are counted.
+///
+/// No GL. Not thread safe: use one radar per thread; trees and images may be shared.
 class CyberRadar {
  public:
   explicit CyberRadar(const RadarConfig& config = {});
 
-  /// Never throws, allocates nothing after the first queries of a size.
+  /// Computes the first contact. Never throws; allocates nothing after the first queries of a size.
   ///
-  /// kInvalidInput: direction zero or not finite, distance not finite or <= 0, margin negative or not finite,
-  /// object without triangles, a pose of object or scene not finite, a camera that cannot be one, a mask of
-  /// another size than its depth image, a jump that is negative or no number.
-  /// Sampled mode settles until a contact is found and kSampledSettles triangles are settled, and all that
-  /// may overlap; exact until nothing unsettled can be nearer.
+  /// Returns kInvalidInput if the direction is zero or not finite, the distance not finite or <= 0, the
+  /// margin negative or not finite, the object without triangles, a pose of object or scene not finite, a
+  /// camera unusable, a mask not of its depth image's size, a stride below 1, or a jump limit negative or
+  /// NaN. Sampled mode stops once it has a contact, has run kSampledSettles exact tests, and nothing untested
+  /// may overlap. Exact mode stops once nothing untested can be nearer.
   Contact query(const RadarQuery& query, const RadarScene& scene);
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }
-  /// Triangles of Touched::kStatic that were looked at one by one so far, by all queries.
+  /// Number of Touched::kStatic triangles examined one by one so far, over all queries; triangles smaller
+  /// than a pixel of M are not counted.
   [[nodiscard]] std::uint64_t static_triangles_asked() const { return static_triangles_asked_; }
 
   static constexpr int kSampledSettles = 48;
-  /// What an object that is sunk in a very fine mesh, or holds one in its hollow, may cost before it is left
-  /// at that: some milliseconds. lower_m is then 0 in exact mode too, and no surface that faces along the
-  /// motion counts as found.
+  /// Limit of work (see ColumnScratch) on scene behind the object's front, some milliseconds. Reached by an
+  /// object that is sunk in a very fine mesh or has one in its hollow. Beyond it lower_m is 0 in exact mode
+  /// too, and back-facing surfaces cause no contact.
   static constexpr std::uint64_t kMostWorkBehind = 40'000;
 
  private:
-  /// A scene triangle that faces along the motion, and from which travel to which an object triangle crosses
-  /// it.
+  /// A back-facing scene triangle, and the interval of travel over which an object triangle crosses it.
   struct Back {
     double low_m, high_m;
     std::uint32_t object_triangle;
@@ -129,7 +130,7 @@ class CyberRadar {
   RadarConfig config_;
   FrontMap front_;
   std::uint64_t static_triangles_asked_ = 0;
-  std::uint64_t front_work_ = 0;  // of all queries with front_ as it is turned now, as ColumnScratch::work
+  std::uint64_t front_work_ = 0;  // ColumnScratch::work of all queries since front_ was last turned
   SceneInFrame scene_;
   ContactPatch patch_;
   OverlapScratch overlap_;
@@ -160,8 +161,8 @@ class CyberRadar {
   static void touch(const Search& search, const PatchPoint& at, Contact& contact);
 };
 
-/// Surfaces of this object that are nearer to the scene than this touch it, m: 1 um and what float vertices
-/// of its size cannot tell apart.
+/// Returns the distance below which surfaces touch this object, m: 1 um plus the float resolution at its
+/// size.
 double touching_m(const TriangleTree& object);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// depth_blocks.cpp: the volume's outline in the image, boxes of blocks row by row, triangles of one block.
+// depth_blocks.cpp: the volume's outline in the image, boxes of blocks row by row, triangles of a block.
 #include "radar/exact/depth_blocks.hpp"
 
 #include <algorithm>
@@ -11,9 +11,9 @@
 namespace roomradar {
 namespace {
 
-constexpr int kCells = 8;  // a block's side
+constexpr int kCells = 8;  // side of a block
 
-/// Depths of vertices first..first + count - 1 of grid row j; 0 where nothing is measured.
+/// Returns depths of vertices first..first + count - 1 of grid row j; with a mask, 0 where the mask is 0.
 const float* depth_row(const DepthView& view, int j, int first, int count, float* scratch) {
   const SceneDepth& s = *view.scene;
   const float* row = s.depth_m->row(j * s.stride_px);
@@ -31,7 +31,7 @@ const float* depth_row(const DepthView& view, int j, int first, int count, float
   return scratch;
 }
 
-/// Bounds of the points seen in each column of a few rows, in the frame.
+/// Bounds, in the frame, of the points in each column of a few rows.
 struct ColumnBounds {
   float *low_x, *low_y, *low_z, *high_x, *high_y, *high_z, *farthest;
 
@@ -50,8 +50,8 @@ struct ColumnBounds {
   }
 };
 
-/// One axis of a row: least and greatest of depth * (slope * i + offset) + shift; `beyond` is 0 where
-/// something is measured, else infinite. Without branches, so that compilers make it eight at a time.
+/// Extends one axis of a row's bounds by depth * (slope * i + offset) + shift. `beyond` is 0 for a measured
+/// depth, else infinite. Branch-free, so compilers vectorise it.
 void widen_axis(const float* __restrict known, const float* __restrict beyond, int count, float slope,
                 float offset, float shift, float* __restrict low, float* __restrict high) {
   for (int i = 0; i < count; ++i) {
@@ -86,7 +86,7 @@ void widen_by_row(const DepthView& view, int j, const float* depths, int count, 
   widen_axis(known, beyond, count, slope.z(), offset.z(), t.z(), bounds.low_z, bounds.high_z);
 }
 
-/// Rectangle around a box's projection. False if all of it is behind the camera.
+/// Computes the rectangle around a box's projection. Returns false if all of the box is behind the camera.
 bool outline_in_image(const Intrinsics& camera, const std::array<Eigen::Vector3d, 8>& corners,
                       Eigen::AlignedBox2d& outline) {
   constexpr double kNear_m = 1e-9;
@@ -125,7 +125,7 @@ bool place_depth(const SceneDepth& scene, const Eigen::Matrix3d& R_frame_world,
   }
   Eigen::AlignedBox2d outline;
   if (!outline_in_image(scene.camera, corners, outline)) return false;
-  // Rounding of the float vertices moves a cell by far less than a hundredth of a pixel.
+  // Rounding of the float vertices moves a cell by much less than a hundredth of a pixel.
   const auto to_grid = [&](double pixel, double offset, int last) {
     return std::clamp((pixel + offset) / stride, -2.0, last + 2.0);
   };
@@ -143,7 +143,7 @@ bool place_depth(const SceneDepth& scene, const Eigen::Matrix3d& R_frame_world,
       0.0, 0.0, 1.0;
   view.rays = (view.R_frame_camera * rays_camera).cast<float>();
   view.shift = view.t_frame_camera.cast<float>();
-  // A product and a sum of three terms, each rounded a few times, of at most these sizes.
+  // Rounding of a product and a sum of three terms of at most these sizes, each rounded a few times.
   constexpr double kRounding = 8.0 * std::numeric_limits<float>::epsilon();
   const double widest = std::max(std::abs(c.cx_px), std::abs(c.cx_px - scene.depth_m->width)) / c.fx_px +
                         std::max(std::abs(c.cy_px), std::abs(c.cy_px - scene.depth_m->height)) / c.fy_px +
@@ -215,7 +215,7 @@ void append_triangles(const DepthView& view, const DepthBlock& block, std::vecto
       const std::uint32_t cell = static_cast<std::uint32_t>(block.j + static_cast<int>(b)) *
                                      static_cast<std::uint32_t>(view.columns) +
                                  static_cast<std::uint32_t>(block.i + static_cast<int>(a));
-      // a, c, d and a, d, b: corners (row, column) of the middle one differ.
+      // Triangles a, c, d and a, d, b differ in the (row, column) of their middle corner.
       for (std::uint32_t which = 0; which < 2; ++which) {
         const std::size_t mb = b + (which == 0 ? 1 : 0), ma = a + (which == 0 ? 0 : 1);
         const auto three = [&](const auto& v, const auto& pick) {

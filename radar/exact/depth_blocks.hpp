@@ -1,5 +1,4 @@
-// depth_blocks.hpp: a depth image as a scene: only the part that a volume projects into, eight by eight cells
-// at a time.
+// depth_blocks.hpp: triangles of a depth image inside a volume, in blocks of 8 x 8 cells.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -10,47 +9,48 @@
 
 namespace roomradar {
 
-/// A box along a frame's axes, m.
+/// Axis-aligned box in a frame, m.
 struct FrameBox {
   float x0, x1, y0, y1, z0, z1;
 };
 
-/// A depth image placed in a frame, and the part of its grid of vertices that matters.
+/// A depth image placed in a frame, and the part of its vertex grid that may reach a volume.
 struct DepthView {
   const SceneDepth* scene = nullptr;
   Eigen::Matrix3d R_frame_camera;
   Eigen::Vector3d t_frame_camera;
-  Eigen::Matrix3f rays;  ///< a point is depth * rays * (u, v, 1) + shift
+  Eigen::Matrix3f rays;  ///< pixel (u, v) is at depth * rays * (u, v, 1) + shift
   Eigen::Vector3f shift;
-  /// Float may put a point this far, plus this much a metre of its depth, from where it is.
+  /// Error bound of a point computed in float: slack_m + slack_per_m * depth.
   float slack_m = 0.0F, slack_per_m = 0.0F;
-  int columns = 0;                       ///< of the whole grid of vertices
-  int i0 = 0, i1 = -1, j0 = 0, j1 = -1;  ///< vertices that matter, both ends included
+  int columns = 0;                       ///< columns of the whole vertex grid
+  int i0 = 0, i1 = -1, j0 = 0, j1 = -1;  ///< range of vertices that may reach the volume, both ends included
 };
 
-/// Finds the rectangle of vertices whose cells can lie in `volume` (in the frame): the volume's outline in
-/// the image, since a cell's triangles lie in the pyramid between the camera and the cell.
-/// @return whether there is any
+/// Finds the rectangle of vertices whose cells can lie in `volume` (in the frame). It is the volume's outline
+/// in the image, since a cell's triangles lie in the pyramid between camera and cell.
+/// @return false if there is no such cell
 bool place_depth(const SceneDepth& scene, const Eigen::Matrix3d& R_frame_world,
                  const Eigen::Vector3d& origin_world, const Eigen::AlignedBox3d& volume, DepthView& view);
 
-/// Up to 8 x 8 cells and the box around their vertices.
+/// Up to 8 x 8 cells, and the bounding box of their vertices.
 struct DepthBlock {
   FrameBox box;
-  std::int32_t i, j;  ///< top left vertex
+  std::int32_t i, j;  ///< column and row of the top left vertex
 };
-/// Appends the blocks of the view that have vertices. O(vertices in the view), nothing else is touched.
+/// Appends the blocks of the view that have measured vertices. O(vertices in the view); reads no other
+/// pixels.
 void append_blocks(const DepthView& view, std::vector<float>& scratch, std::vector<DepthBlock>& blocks);
 
-/// A triangle of a cell and the box around it.
+/// A triangle of a cell, and its bounding box.
 struct DepthTriangle {
   FrameBox box;
   std::uint32_t id;
 };
-/// Appends the triangles of a block (see SceneDepth for which there are).
+/// Appends the triangles of a block; SceneDepth says which triangles exist.
 void append_triangles(const DepthView& view, const DepthBlock& block, std::vector<DepthTriangle>& triangles);
 
-/// The triangle with this id, in double from its float vertices.
+/// Returns the triangle with this id, in double from its float vertices.
 FrameTriangle depth_triangle(const DepthView& view, std::uint32_t id);
 
 }  // namespace roomradar

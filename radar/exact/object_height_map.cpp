@@ -1,4 +1,4 @@
-// front_map.cpp: enter boxes and planes from the front to the back, then the greatest of four and four.
+// front_map.cpp: enters boxes and planes from front to back, then builds the max pyramid.
 #include "radar/exact/object_height_map.hpp"
 
 #include <algorithm>
@@ -11,26 +11,26 @@ namespace roomradar {
 namespace {
 
 constexpr float kHeightRounding = 16.0F * std::numeric_limits<float>::epsilon();
-constexpr int kLanes = 8;  // pixels that are looked at side by side
+constexpr int kLanes = 8;  // pixels processed together
 
-/// The pixel that holds a place, the nearest one where none does.
+/// Returns the pixel that contains a position, or the nearest pixel.
 int to_pixel(float at_px, float last) {
   const float above = at_px > 0.0F ? at_px : 0.0F;
   return static_cast<int>(above < last ? above : last);
 }
 
-/// Eight boxes of a node: the pixels that they touch, first to last, and how high they reach.
+/// Eight boxes of a node: their first and last pixels, and their greatest heights.
 struct PixelBoxes {
   alignas(32) std::array<float, TreeNode::kWidth> top;
   alignas(32) std::array<int, TreeNode::kWidth> x0, x1, y0, y1;
 };
 
-/// How boxes of a tree lie over a grid of pixels.
+/// Maps boxes of a tree to a grid of pixels.
 struct PixelPlaces {
   Eigen::Matrix3f R_frame_mesh;
   float x0_m, y0_m, per_m, last_x, last_y, slack_m;
 
-  /// A function of its own, without branches, so that compilers make it eight at a time.
+  /// A function of its own, branch-free, so compilers vectorise it.
   [[gnu::noinline]] void of(const TreeNode& node, PixelBoxes& boxes) const {
     LinearOverBoxes x, y, z;
     linear_over_boxes(node, R_frame_mesh.row(0), x);
@@ -46,12 +46,12 @@ struct PixelPlaces {
   }
 };
 
-/// a x + b y + c <= 0 at the middle of a pixel that a triangle may touch.
+/// Half plane: a x + b y + c <= 0 at the middle of a pixel that a triangle may touch.
 struct Line {
   float a, b, c;
 };
-/// Along the edges, `half_px` farther out. Each goes through the corner farthest out, whichever that is, so
-/// that a sliver's rounding cannot shut itself out.
+/// Returns lines along the edges, moved out by `half_px`. Each goes through the corner farthest out,
+/// whichever it is, so rounding cannot make a sliver exclude itself.
 std::array<Line, 3> outlines_of(const std::array<Eigen::Vector3f, 3>& corners, float half_px) {
   const Eigen::Vector3f e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
   const float area = e1.x() * e2.y() - e1.y() * e2.x();
@@ -71,15 +71,15 @@ float outside_by(const std::array<Line, 3>& lines, float x, float y) {
       lines[2].a * x + lines[2].b * y + lines[2].c);
 }
 
-/// Greatest value of g . p over the tree's vertices in use, or up to tolerance_m more: many are nearly as
-/// far.
+/// Returns the greatest value of g . p over the tree's used vertices, or up to tolerance_m more. The
+/// tolerance saves time, since many vertices are nearly as far out.
 double support(const TriangleTree& tree, const Eigen::Vector3d& g, double tolerance_m,
                std::vector<PendingNode>& pending) {
   const Eigen::Vector3f direction = g.cast<float>();
   const float slack_m = kHeightRounding * tree.half_size().sum();
   double best = -std::numeric_limits<double>::infinity(), passed = best;
   pending.clear();
-  pending.push_back({-kInfinity<float>, 0, 0});  // low_m: minus the greatest value that can be below
+  pending.push_back({-kInfinity<float>, 0, 0});  // low_m: minus an upper bound of the values below
   while (!pending.empty()) {
     const PendingNode next = pending.back();
     pending.pop_back();
@@ -132,7 +132,7 @@ void FrontMap::turn(const TurnedTree& object) {
   R_frame_mesh_ = object.R_frame_mesh;
   margin_m_ = object.margin_m;
   resolution_px_ = 0;
-  constexpr double kTolerance = 5e-3;  // of the size: many vertices are nearly as far out
+  constexpr double kTolerance = 5e-3;  // fraction of the size: many vertices are nearly as far out
   bounds_ = turned_bounds(object, kTolerance * object.tree->half_size().cast<double>().sum(), pending_);
 }
 
@@ -154,13 +154,13 @@ void FrontMap::build(const TurnedTree& object, int resolution_px) {
     count += static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
     if (w == 1 && h == 1) break;
   }
-  heights_.assign(count + kLanes, -kInfinity<float>);  // room to read on past the last pixel
+  heights_.assign(count + kLanes, -kInfinity<float>);  // padding for reads past the last pixel
 
   enter_tree(object);
   build_levels();
 }
 
-/// From the front to the back: what is higher hides the rest.
+/// Enters the tree from front to back, as higher boxes hide the rest.
 void FrontMap::enter_tree(const TurnedTree& object) {
   const TriangleTree& tree = *object.tree;
   const PixelPlaces places{object.R_frame_mesh.cast<float>(),
@@ -196,7 +196,7 @@ void FrontMap::enter_tree(const TurnedTree& object) {
   }
 }
 
-/// Each level is the greatest of two by two of the one below.
+/// Each level is the maximum over two by two pixels of the level below.
 void FrontMap::build_levels() {
   for (std::size_t level = 1; level < levels_.size(); ++level) {
     const Level& fine = levels_[level - 1];
@@ -213,7 +213,8 @@ void FrontMap::build_levels() {
   }
 }
 
-/// Large rectangles are not looked through.
+/// Returns true if all pixels of the rectangle are at least this high. Large rectangles are not examined
+/// (false).
 bool FrontMap::is_under(int x0, int x1, int y0, int y1, float height) const {
   if (x1 - x0 > 8 || y1 - y0 > 8) return false;
   for (int y = y0; y <= y1; ++y) {
@@ -254,7 +255,7 @@ void FrontMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) 
 
   const float half_px = static_cast<float>(0.5 * pixel_m_ * (1.0 + 1e-6)) + slack_m;
   const std::array<Line, 3> lines = outlines_of(c, half_px + kHeightRounding * size_m);
-  // The plane, where it is not too steep for float to tell.
+  // The plane, unless it is too steep for float precision.
   const Eigen::Vector3f e1 = c[1] - c[0], e2 = c[2] - c[0];
   const float area = e1.x() * e2.y() - e1.y() * e2.x();
   float gx = 0.0F, gy = 0.0F, plane = top;
@@ -262,8 +263,9 @@ void FrontMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) 
   if (std::abs(area) > 1e-3F * size2) {
     gx = (e1.z() * e2.y() - e2.z() * e1.y()) / area;
     gy = (e2.z() * e1.x() - e1.z() * e2.x()) / area;
-    // Corners off by rounding_m tilt the plane by that over the triangle's least height, area over its
-    // longest edge; it stays within three times that and more where it is used, over the triangle.
+    // Corners off by rounding_m tilt the plane by rounding_m over the triangle's least height, which is area
+    // over longest edge. Where the plane is used, over the triangle, it stays within three times that and
+    // more.
     const float slope = std::abs(gx) + std::abs(gy);
     const float tilt = 4.0F * rounding_m * std::sqrt(size2) / std::abs(area) * (1.0F + slope);
     plane = c[0].z() - gx * c[0].x() - gy * c[0].y() + slope * half_px + slack_m +
@@ -284,7 +286,7 @@ void FrontMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) 
 
 float FrontMap::max_under(float x0_m, float x1_m, float y0_m, float y1_m) const {
   const int width = levels_[0].width, height = levels_[0].height;
-  // A hair wider: what a pixel's border is, both must agree on.
+  // Slightly wider, so both sides of a pixel's border are included despite rounding.
   const float fx0 = (x0_m - x0_) * per_m_ - 1e-3F, fx1 = (x1_m - x0_) * per_m_ + 1e-3F;
   const float fy0 = (y0_m - y0_) * per_m_ - 1e-3F, fy1 = (y1_m - y0_) * per_m_ + 1e-3F;
   if (!(fx1 >= -0.01F && fy1 >= -0.01F && fx0 <= static_cast<float>(width) + 0.01F &&
@@ -295,7 +297,7 @@ float FrontMap::max_under(float x0_m, float x1_m, float y0_m, float y1_m) const 
   int x1 = static_cast<int>(std::clamp(fx1, 0.0F, static_cast<float>(width - 1)));
   int y0 = static_cast<int>(std::clamp(fy0, 0.0F, static_cast<float>(height - 1)));
   int y1 = static_cast<int>(std::clamp(fy1, 0.0F, static_cast<float>(height - 1)));
-  // At most three by three.
+  // At most three by three pixels.
   const int level =
       std::max(static_cast<int>(std::bit_width(static_cast<unsigned>(std::max(x1 - x0, y1 - y0)))) - 1, 0);
   x0 >>= level, x1 >>= level, y0 >>= level, y1 >>= level;
@@ -318,7 +320,7 @@ float FrontMap::least_gap_under(const FrameTriangle& scene) const {
   const float slack_m = kHeightRounding * size_m;
   const Level& finest = levels_[0];
   const auto last_x = static_cast<float>(finest.width - 1), last_y = static_cast<float>(finest.height - 1);
-  // A hair wider, as in max_under().
+  // Slightly wider, as in max_under().
   const float fx0 = (low.x() - slack_m - x0_) * per_m_ - 1e-3F,
               fx1 = (high.x() + slack_m - x0_) * per_m_ + 1e-3F;
   const float fy0 = (low.y() - slack_m - y0_) * per_m_ - 1e-3F,
@@ -335,7 +337,7 @@ float FrontMap::least_gap_under(const FrameTriangle& scene) const {
   const auto pixel = static_cast<float>(pixel_m_) * static_cast<float>(1 << level);
   const float half_px = 0.5F * pixel * (1.0F + 1e-3F) + slack_m;
 
-  // The plane's height over the middle of a pixel, less what it may fall towards the pixel's corners.
+  // The plane's height at the middle of a pixel, minus its greatest drop towards the pixel's corners.
   float gx = 0.0F, gy = 0.0F, at0 = low.z() - slack_m;
   const Eigen::Vector3f n = scene.normal.cast<float>();
   if (std::abs(n.z()) > 1e-2F) {
@@ -353,7 +355,7 @@ float FrontMap::least_gap_under(const FrameTriangle& scene) const {
     const float y = y0_ + (static_cast<float>(py) + 0.5F) * pixel;
     const float* row = &heights_[l.first + static_cast<std::size_t>(py) * static_cast<std::size_t>(l.width)];
     for (int px = px0; px <= px1; px += kLanes) {
-      // Without branches, so that compilers make it eight at a time; what is past px1 counts as outside.
+      // Branch-free, so compilers vectorise all eight; pixels past px1 count as outside.
       for (int i = 0; i < kLanes; ++i) {
         const float x = x_of_0 + static_cast<float>(px + i) * pixel;
         const float gap = std::max(low_z, at0 + gx * x + gy * y) - row[px + i];

@@ -1,4 +1,4 @@
-// front_map.hpp: M, the object's leading surface in pixels, from above: what may stand out there at most.
+// front_map.hpp: M, a conservative height map of the object's leading surface.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -7,33 +7,32 @@
 
 namespace roomradar {
 
-/// Greatest height (along the motion) of an object over the area of each pixel, never less than the truth,
-/// and the greatest over ever larger squares of pixels.
+/// Upper bound of an object's height (along the motion) over the area of each pixel, with a max pyramid
+/// above.
 ///
-/// It holds because every triangle is entered into all pixels that its box or its plane touches, rounding
-/// counted in, or is under a box that is; a node no larger than a pixel is entered as its box, so that the
-/// work grows with the pixels and not with the triangles (whatever detail there is below a pixel counts with
-/// its height); and what is passed over is not higher than what every one of its pixels holds already.
+/// Conservative: every triangle is entered into all pixels that its box or its plane touches, rounding
+/// included. A node no larger than a pixel is entered as its box, so the work grows with the pixels and not
+/// with the triangles. Detail smaller than a pixel thus counts with its greatest height. A node is skipped
+/// only if all its pixels already have at least its height.
 class FrontMap {
  public:
-  /// Finds bounds(), which may say how many pixels are worth it; the map is to be built after this. Does
-  /// nothing if the tree, the turn and the margin are those of the last time.
+  /// Computes bounds(), from which callers can choose a resolution; build() must follow. No effect if tree,
+  /// rotation and margin are unchanged.
   void turn(const TurnedTree& object);
-  /// Does nothing if the size, too, is that of the last time.
+  /// Builds the map; no effect if the resolution is unchanged, too.
   void build(const TurnedTree& object, int resolution_px);
 
-  /// Whether this is the map of this tree, turned so, with this margin, at whatever size.
+  /// Returns true if the map is of this tree, rotation and margin, at any resolution.
   [[nodiscard]] bool holds(const TurnedTree& object) const;
 
-  /// Greatest height under a rectangle, -infinity where no pixel is.
+  /// Returns the greatest height over a rectangle, -infinity if no pixel is under it.
   [[nodiscard]] float max_under(float x0_m, float x1_m, float y0_m, float y1_m) const;
 
-  /// How near a triangle of the scene can be: the least, over the pixels that it touches, of its plane's
-  /// height there less M. Infinite where it touches none. Never more than the truth; finer than what its box
-  /// says.
+  /// Returns a lower bound of the gap to a scene triangle: the minimum, over the pixels that it touches, of
+  /// its plane's height minus M. Infinite if it touches none. Tighter than the bound from the triangle's box.
   [[nodiscard]] float least_gap_under(const FrameTriangle& scene) const;
 
-  /// Of the whole object in the frame, the margin included, m.
+  /// Bounds of the whole object in the frame, margin included, m.
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
   /// Longer side across the motion, m.
   [[nodiscard]] double side_m() const { return pixel_m_ * resolution_px_; }
@@ -42,7 +41,7 @@ class FrontMap {
  private:
   struct Level {
     int width = 0, height = 0;
-    std::size_t first = 0;  // in heights_
+    std::size_t first = 0;  // index in heights_
   };
   std::uint64_t revision_ = 0;
   Eigen::Matrix3d R_frame_mesh_ = Eigen::Matrix3d::Zero();
@@ -63,8 +62,8 @@ class FrontMap {
   [[nodiscard]] bool is_under(int x0, int x1, int y0, int y1, float height) const;
 };
 
-/// Bounds of the tree's triangles in the turned frame, rounding and margin counted in, no more than
-/// tolerance_m too large: one search a side.
+/// Returns the bounds of the tree's triangles in the rotated frame, rounding and margin included, at most
+/// tolerance_m too large. Runs one search per side.
 Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, double tolerance_m,
                                   std::vector<PendingNode>& pending);
 

@@ -1,4 +1,4 @@
-// overlap_depth.cpp: step back from span to span until none holds.
+// overlap_depth.cpp: steps back from interval to interval until none contains the position.
 #include "radar/exact/overlap_depth.hpp"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 namespace roomradar {
 namespace {
 
-/// Where one scene triangle is crossed or inside at travel `at_m` (0: by more than touching_m), how far back
-/// that lasts; at_m if it is not.
+/// Returns how far back a scene triangle, crossed or inside at travel `at_m`, stays so; at_m if it is
+/// neither. At 0, crossing counts from touching_m on.
 double free_below(const TurnedTree& object, const FrameTriangle& scene, double at_m, OverlapScratch& scratch,
                   Eigen::Vector3d& point) {
   const double touching_m = object.touching_m;
@@ -29,7 +29,7 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
           crosses_now = crosses_now || (gap.low_m < at_m - touching_m && gap.high_m >= at_m - 1e-9);
         }
       });
-  // Layers over a point of the triangle tell what is inside between the spans.
+  // Crossings over a point of the triangle tell which intervals in between are inside.
   bool knows_inside = false;
   if (object.tree->is_closed()) {
     for (int which = 0; which < 5 && !knows_inside; ++which) {
@@ -51,7 +51,7 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
       return at_m;
     }
   }
-  // What reaches farthest ahead first: whatever is crossed at free_m is before what is not.
+  // Sort by far end: every interval that contains free_m precedes those that do not.
   std::sort(scratch.spans.begin(), scratch.spans.end(),
             [](const auto& a, const auto& b) { return a.high_m > b.high_m; });
   constexpr double kTogether_m = 1e-9;
@@ -95,7 +95,7 @@ Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFr
     scratch.items.clear();
     scene.enter(volume);
     scene.begin(bound, limit(), scratch.items);
-    // What may reach back farthest first: it rules out most of the rest.
+    // Items that may reach back farthest come first: they rule out most of the rest.
     const auto is_farther = [](const SceneItem& a, const SceneItem& b) { return a.low_m > b.low_m; };
     std::make_heap(scratch.items.begin(), scratch.items.end(), is_farther);
     while (!scratch.items.empty()) {

@@ -1,4 +1,4 @@
-// overlap_depth.hpp: how far back along the motion is an object free of what it overlaps?
+// overlap_depth.hpp: distance back along the motion until an object is clear of what it overlaps.
 #pragma once
 #include <vector>
 
@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// Scratch that is kept from query to query.
+/// Scratch memory kept between queries.
 struct OverlapScratch {
   struct Span {
     double low_m, high_m;
@@ -20,29 +20,29 @@ struct OverlapScratch {
   std::vector<SceneItem> items;
 };
 
-/// A triangle of the scene in the frame, and what it is of.
+/// A scene triangle in the frame, and its kind.
 struct OverlappedTriangle {
   FrameTriangle triangle;
   Touched kind = Touched::kNothing;
 };
 
 struct Overlap {
-  double depth_m = 0.0;                              ///< > 0; 0: they do not overlap
-  bool is_all = true;                                ///< false: at least so deep; the search was cut short
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the frame, where they part last
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the scene's triangle, by the winding
+  double depth_m = 0.0;  ///< > 0; 0: no overlap
+  bool is_all = true;    ///< false: depth_m is a lower bound, as the search was cut short
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the frame, where they separate last
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the scene's triangle, by its winding
   Touched kind = Touched::kNothing;
 };
 
 /// Work after which the search is cut short: a few milliseconds. An object that is sunk in the ground and
-/// moves along it would be free again only where the ground ends.
+/// moves along it would be clear only where the ground ends.
 inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 
-/// Each pair of triangles crosses over a span of travels, from its least gap to its greatest; a scene
-/// triangle is inside a closed object between the spans where more ways out of it than in are ahead. The
-/// depth is how far the union of these spans that holds 0 reaches back. Scene triangles that face along the
-/// motion do not count.
-/// @param known  one that is overlapped: what is told if the search is cut short before it comes to any
+/// Computes how deep the object overlaps the scene. A pair of triangles crosses over an interval of travel,
+/// from its least gap to its greatest. Between these intervals, a scene triangle is inside a closed object if
+/// more exits from the solid than entries are ahead of it. The depth is how far back the union of the
+/// intervals that contains 0 reaches. Back-facing scene triangles are ignored.
+/// @param known  an overlapped triangle, reported if the search is cut short before it finds one
 Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFrame& scene,
                       const OverlappedTriangle& known, OverlapScratch& scratch);
 

@@ -1,4 +1,4 @@
-// radar_pictures.cpp: draw the object's front, then what of the scene is first ahead of it.
+// radar_pictures.cpp: draws the object's front, then the first scene ahead of it.
 #include "radar/exact/radar_pictures.hpp"
 
 #include <algorithm>
@@ -13,15 +13,15 @@
 namespace roomradar {
 namespace {
 
-/// Pixels over the frame of a motion, drawn into by orthographic projection along it.
+/// Pixels in the frame of a motion, drawn into by orthographic projection along it.
 struct Raster {
   PixelGrid grid;
-  Eigen::Vector2d corner_m = Eigen::Vector2d::Zero();  ///< of the first pixel
+  Eigen::Vector2d corner_m = Eigen::Vector2d::Zero();  ///< corner of the first pixel
 
   /// Calls put(pixel, height) for each pixel whose sample lies on the triangle.
   template <typename Put>
   void draw(const FrameTriangle& triangle, const Put& put) const {
-    std::array<Eigen::Vector3d, 3> c;  // x and y in pixels from the first one's sample
+    std::array<Eigen::Vector3d, 3> c;  // x and y in pixels from the first pixel's sample
     for (std::size_t i = 0; i < 3; ++i) {
       c[i] = triangle.corners[i];
       c[i].x() = (c[i].x() - corner_m.x()) / grid.pixel_m - kSampleX_px;
@@ -71,7 +71,7 @@ RadarVolume volume_of(const RadarQuery& query, const Eigen::Matrix3d& R_frame_wo
   return volume;
 }
 
-/// Calls draw(triangle) for all of the scene that is under or ahead of the object in the volume.
+/// Calls draw(triangle) for all scene in the volume that is below or ahead of the object.
 template <typename Draw>
 void visit_scene(SceneInFrame& scene, const FrontMap& front, const Eigen::AlignedBox3d& volume,
                  const Draw& draw) {

@@ -1,4 +1,4 @@
-// scene_boxes.cpp: a tree over the boxes in Morton order of their middles.
+// scene_boxes.cpp: a tree over the boxes in Morton order of their centres.
 #include "radar/exact/scene_boxes.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// scene_boxes.hpp: which of many meshes in the world reach a box, without asking each.
+// scene_boxes.hpp: finds the meshes of a scene that reach a box, without testing each.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -12,25 +12,25 @@
 
 namespace roomradar {
 
-/// Boxes around the meshes of a scene, by place. Made anew for every frame: allocates nothing once as many
-/// meshes were held.
+/// Boxes around the meshes of a scene, in a spatial hierarchy. Rebuilt for every frame; allocates nothing
+/// once as many meshes were stored.
 class SceneBoxes {
  public:
-  /// Builds the tree over the boxes of a scene's meshes. Null or empty meshes and poses that are not finite
-  /// are left out.
+  /// Builds the hierarchy over a scene's meshes. Skips meshes that are null or empty, and poses that are not
+  /// finite.
   void build(std::span<const SceneTree> scene);
 
   /// The same in three steps for a scene of another type: clear(), add() per mesh with a surface, finish().
-  /// @param index        index in scene, as visit() passes it on; ascending
+  /// @param index        index in scene, passed on by visit(); ascending
   /// @param bounds_mesh  bounding box in the mesh's frame, m
   void clear();
   void add(std::size_t index, const Eigen::AlignedBox3d& bounds_mesh, const Eigen::Isometry3d& T_world_mesh);
   void finish();
 
-  /// Whether all poses were finite.
+  /// Returns true if all poses were finite.
   [[nodiscard]] bool are_finite() const { return are_finite_; }
 
-  /// Calls work(index in scene) for each mesh whose box meets `around_world`, always in the same order.
+  /// Calls work(index in scene) for each mesh whose box intersects `around_world`, always in the same order.
   template <typename Work>
   void visit(const Eigen::AlignedBox3d& around_world, const Work& work) const {
     tree_.visit([&](const Eigen::AlignedBox3d& box) { return box.intersects(around_world); },

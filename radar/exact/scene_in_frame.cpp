@@ -21,7 +21,7 @@ bool has_surface(const SceneDepth& s) { return s.depth_m != nullptr && !s.depth_
 bool is_usable(const SceneDepth& s) {
   const bool has_mask =
       s.mask == nullptr || (s.mask->width == s.depth_m->width && s.mask->height == s.depth_m->height);
-  const bool has_rule = s.max_jump_m >= 0.0F && s.max_jump_slope >= 0.0F;  // NaN is no rule either
+  const bool has_rule = s.max_jump_m >= 0.0F && s.max_jump_slope >= 0.0F;  // false for NaN too
   return can_project(s.camera) && has_mask && has_rule && s.stride_px >= 1 &&
          s.T_world_camera.matrix().allFinite();
 }
@@ -43,7 +43,7 @@ bool SceneInFrame::place(const RadarScene& scene, std::size_t own_tree, const Ei
                                    [](const SceneDepth& s) { return !has_surface(s) || is_usable(s); });
 }
 
-/// Keeps a tree if the ball around it reaches into the volume: of many objects most do not.
+/// Keeps a tree if its bounding sphere reaches the volume; most of many objects do not.
 void SceneInFrame::begin_tree(const SceneTree& s, const Eigen::AlignedBox3d& volume) {
   const TriangleTree& tree = *s.instance.tree;
   const Eigen::Vector3d centre_world = s.instance.T_world_mesh * (tree.origin() + tree.centre());
@@ -98,7 +98,7 @@ void SceneInFrame::begin(const SceneBound& bound, float limit_m, std::vector<Sce
 
 void SceneInFrame::expand(const SceneItem& item, const SceneBound& bound, float limit_m,
                           std::vector<SceneItem>& items) {
-  // The object is no higher under any part of a block than under all of it.
+  // The object is no higher under a part of a block than under the whole block.
   float most_m = std::numeric_limits<float>::infinity();
   if (item.kind == SceneItem::Kind::kBlock) {
     const float z0 = blocks_[item.first].box.z0;
@@ -108,7 +108,7 @@ void SceneInFrame::expand(const SceneItem& item, const SceneBound& bound, float 
     if (box.z0 - most_m >= limit_m) return;
     const float low_m = std::max(bound.low_m(box), item.low_m);
     if (!(low_m < limit_m)) return;
-    // Within a pixel its plane says hardly more than its box.
+    // Within a pixel, the plane's bound is hardly tighter than the box's.
     const bool is_bounded = kind == SceneItem::Kind::kTriangle && bound.is_within_a_pixel(box);
     items.push_back({low_m, is_bounded ? SceneItem::Kind::kBounded : kind, item.source, first, count});
   };

@@ -1,4 +1,4 @@
-// scene_in_frame.hpp: all that can be touched, placed in the frame of one motion, looked into step by step.
+// scene_in_frame.hpp: the scene in the frame of one motion, subdivided step by step.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -10,33 +10,33 @@
 
 namespace roomradar {
 
-/// Some of the scene that is not looked into yet, and what it cannot be nearer than.
+/// A part of the scene that is not examined further yet, and a lower bound of its distance to contact.
 struct SceneItem {
   enum class Kind : std::uint32_t {
-    kNode,      ///< of a tree
+    kNode,      ///< node of a tree
     kLeaf,      ///< `count` triangles of a tree
-    kBlock,     ///< of a depth image
-    kTriangle,  ///< one, of a tree or a depth image; low_m is its box's
-    kBounded    ///< one whose low_m is its plane's, pixel by pixel, or would be no more by that
+    kBlock,     ///< block of a depth image
+    kTriangle,  ///< triangle of a tree or depth image; low_m is from its box
+    kBounded    ///< triangle; low_m is from its plane in each pixel, or its box is within a pixel
   };
-  float low_m;  ///< no way to contact is shorter
+  float low_m;  ///< lower bound of the distance to contact
   Kind kind;
-  std::uint32_t source;  ///< trees first, then depth images
+  std::uint32_t source;  ///< index, trees first, then depth images
   std::uint32_t first, count;
 
   [[nodiscard]] bool is_triangle() const { return kind == Kind::kTriangle || kind == Kind::kBounded; }
 };
 
-/// How near a box of the scene can be: its least height less the greatest of the object under it. Nothing
-/// under the box is nearer, since FrontMap holds for the whole area of each pixel.
+/// Lower bound of the distance to a box of the scene: its least height minus the object's greatest height
+/// under it. It holds for everything in the box, since FrontMap covers the whole area of each pixel.
 struct SceneBound {
   const FrontMap* front = nullptr;
-  float behind_m = 0.0F;  ///< scene wholly under this height does not matter
+  float behind_m = 0.0F;  ///< scene wholly below this height is ignored
   [[nodiscard]] float low_m(const FrameBox& box) const {
     if (box.z1 < behind_m) return std::numeric_limits<float>::infinity();
     return box.z0 - front->max_under(box.x0, box.x1, box.y0, box.y1);
   }
-  /// The same for a triangle, finer: its plane instead of its box.
+  /// Tighter bound for a triangle, from its plane instead of its box.
   [[nodiscard]] float low_m(const FrameTriangle& triangle) const { return front->least_gap_under(triangle); }
   [[nodiscard]] bool is_within_a_pixel(const FrameBox& box) const {
     return std::max(box.x1 - box.x0, box.y1 - box.y0) < static_cast<float>(front->pixel_m());
@@ -45,20 +45,21 @@ struct SceneBound {
 
 class SceneInFrame {
  public:
-  /// The scene must stay while this is used.
-  /// @param own_tree  which of scene.trees is left out
-  /// @return false if a pose is not finite or a camera cannot be one; then nothing is placed
+  /// The scene must not change while this object is used.
+  /// @param own_tree  index in scene.trees of a tree to skip
+  /// @return false if a pose is not finite or a depth image is unusable (camera, mask size, stride,
+  ///         jump limits)
   bool place(const RadarScene& scene, std::size_t own_tree, const Eigen::Matrix3d& R_frame_world,
              const Eigen::Vector3d& origin_world);
-  /// Finds what reaches the volume: trees, and the part of each depth image that projects into it.
+  /// Finds the trees that reach the volume, and the part of each depth image that projects into it.
   void enter(const Eigen::AlignedBox3d& volume);
-  /// Cells of the depth images' grids that may be in the volume.
+  /// Number of depth image cells that may be in the volume.
   [[nodiscard]] std::size_t cell_count() const;
   [[nodiscard]] bool has_trees() const { return !trees_.empty(); }
-  /// Appends what can be nearer than limit_m in the volume, whole trees and blocks; items from before are not
-  /// to be used any more. After enter(), before expand().
+  /// Appends the parts of trees and the blocks that can be nearer than limit_m in the volume. Call after
+  /// enter() and before expand(). Items of earlier calls become invalid.
   void begin(const SceneBound& bound, float limit_m, std::vector<SceneItem>& items);
-  /// Appends those parts of an item (not a triangle) that can be nearer than limit_m.
+  /// Appends the parts of an item (not a triangle) that can be nearer than limit_m.
   void expand(const SceneItem& item, const SceneBound& bound, float limit_m, std::vector<SceneItem>& items);
 
   [[nodiscard]] FrameTriangle triangle(const SceneItem& item) const;
@@ -68,14 +69,14 @@ class SceneInFrame {
   struct TreeView {
     const SceneTree* scene;
     Eigen::Matrix3d R_frame_mesh;
-    Eigen::Vector3d t_frame_centre;  // of a point relative to the tree's centre
+    Eigen::Vector3d t_frame_centre;  // position of the tree's centre
     float slack_m;
   };
   Eigen::Matrix3d R_frame_world_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin_world_ = Eigen::Vector3d::Zero();
   RadarScene scene_;
   std::size_t own_tree_ = 0;
-  std::vector<TreeView> trees_;  // of those that reach the volume
+  std::vector<TreeView> trees_;  // trees that reach the volume
   std::vector<DepthView> views_;
   std::vector<DepthBlock> blocks_;
   std::vector<DepthTriangle> triangles_;

@@ -1,4 +1,4 @@
-// box_tree.cpp: each level is the boxes around eight of the level below.
+// box_tree.cpp: builds each level as the boxes around eight of the level below.
 #include "radar/geometry/box_tree.hpp"
 
 namespace roomradar {

@@ -1,4 +1,4 @@
-// box_tree.hpp: boxes in an order that keeps neighbours together, under boxes of eight, and so on up.
+// box_tree.hpp: an 8-wide hierarchy of bounding boxes over boxes given in spatial order.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,17 +8,17 @@
 
 namespace roomradar {
 
-/// Finds those of many boxes that something reaches without asking each. Not thread safe while built.
+/// Finds the boxes that satisfy a predicate without testing each of them. Building is not thread safe.
 class BoxTree {
  public:
-  /// O(n); allocates nothing once as many boxes were held. The better neighbours in the order lie together,
-  /// the more is left out.
+  /// O(n); allocates nothing if an earlier build had at least as many boxes. The closer consecutive boxes
+  /// lie, the more is pruned.
   void build(std::span<const Eigen::AlignedBox3d> boxes);
 
   [[nodiscard]] std::size_t size() const { return levels_.empty() ? 0 : levels_.front().count; }
 
-  /// Calls work(index) for each box that `reaches(box)` says yes to, in ascending order. Whatever holds for a
-  /// box must hold for every box around it.
+  /// Calls work(index) for each box for which `reaches(box)` is true, in ascending order. If `reaches` is
+  /// true for a box, it must be true for every box around it.
   template <typename Reaches, typename Work>
   void visit(const Reaches& reaches, const Work& work) const {
     if (!levels_.empty()) visit_range(levels_.size() - 1, 0, levels_.back().count, reaches, work);
@@ -30,7 +30,7 @@ class BoxTree {
     std::size_t first = 0;
     std::size_t count = 0;
   };
-  std::vector<Eigen::AlignedBox3d> boxes_;  // level by level, the given ones first
+  std::vector<Eigen::AlignedBox3d> boxes_;  // boxes of all levels, the given ones first
   std::vector<Level> levels_;
 
   template <typename Reaches, typename Work>

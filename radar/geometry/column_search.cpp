@@ -30,7 +30,7 @@ SceneColumn::SceneColumn(const TurnedTree& object, const FrameTriangle& scene) {
   out /= std::max(out.lpNorm<1>(), std::numeric_limits<double>::min());
   if (out.dot((c[(longest + 2) % 3] - c[longest]).head<2>()) > 0.0) out = -out;
   edge = (out.x() * R.row(0) + out.y() * R.row(1)).cast<float>();
-  double reach = -std::numeric_limits<double>::infinity();  // of the corner farthest out, whichever that is
+  double reach = -std::numeric_limits<double>::infinity();  // from the corner farthest out, whichever it is
   for (const Eigen::Vector3d& corner : c) reach = std::max(reach, out.dot(corner.head<2>()));
   edge_reach = static_cast<float>(reach) + slack_m;
 
@@ -41,10 +41,11 @@ SceneColumn::SceneColumn(const TurnedTree& object, const FrameTriangle& scene) {
     offset = static_cast<float>(scene.normal.dot(c[0]) / scene.normal.z());
     const float slope = plane.cwiseAbs().sum();
     plane_slack = kRounding * (slope * (size_m + near_m) + std::abs(offset)) + slope * margin_m;
-    constexpr float kSteep = 4.0F;  // the sum of three: 1 to 1.7 for a plane across the motion
+    constexpr float kSteep = 4.0F;  // sum of three components: 1 to 1.7 for a plane perpendicular to the
+                                    // motion
     is_steep = slope > kSteep;
   } else if (!scene.normal.isZero(0.0)) {
-    // What does not reach through its plane is slid along.
+    // Triangles that do not reach through its plane slide along it.
     is_edge_on = true;
     plane = (R.transpose() * scene.normal).cast<float>();
     offset = static_cast<float>(-scene.normal.dot(c[0]));

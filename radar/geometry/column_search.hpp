@@ -1,5 +1,4 @@
-// column_search.hpp: which of an object's triangles does a scene triangle have in its column along the
-// motion?
+// column_search.hpp: search for the object triangles in a scene triangle's column along the motion.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,15 +11,15 @@
 
 namespace roomradar {
 
-/// A tree seen in the frame of a motion: origin at the tree's centre, z along the direction, m.
+/// A tree in the frame of a motion: origin at the tree's centre, z along the direction of motion, m.
 struct TurnedTree {
   const TriangleTree* tree = nullptr;
   Eigen::Matrix3d R_frame_mesh = Eigen::Matrix3d::Identity();
-  double margin_m = 0.0;    ///< boxes are taken as larger by this
-  double touching_m = 0.0;  ///< closer surfaces touch: see meeting_of()
+  double margin_m = 0.0;    ///< boxes are inflated by this
+  double touching_m = 0.0;  ///< closer surfaces touch; see meeting_of()
 };
 
-/// Without its normal.
+/// Returns a triangle in the frame of the motion, with a zero normal.
 inline FrameTriangle turned_corners(const TurnedTree& object, std::uint32_t triangle) {
   FrameTriangle result;
   const Triangle& t = object.tree->triangles()[triangle];
@@ -37,7 +36,7 @@ inline FrameTriangle turned_triangle(const TurnedTree& object, std::uint32_t tri
   return result;
 }
 
-/// Eight linear functions at a time: f(p) = g . p over each box is value +- reach.
+/// Ranges of a linear function over eight boxes: f(p) = g . p lies in value[i] +- reach[i] over box i.
 struct LinearOverBoxes {
   alignas(32) std::array<float, TreeNode::kWidth> value, reach;
 };
@@ -50,19 +49,20 @@ inline void linear_over_boxes(const TreeNode& node, const Eigen::Vector3f& g, Li
   }
 }
 
-/// A node waiting to be looked into, and the least gap that it can hold.
+/// A node or leaf (count > 0) to be visited, and a lower bound of the gaps in it.
 struct PendingNode {
   float low_m;
   std::uint32_t first, count;
 };
 
-/// Scratch of searches, and how much they did.
+/// Scratch memory of searches, and a count of their work.
 struct ColumnScratch {
   std::vector<PendingNode> pending;
-  std::uint64_t work = 0;  ///< nodes looked into and triangles handed out, some 0.1 us each; grows
+  std::uint64_t work = 0;  ///< nodes visited and triangles passed to `leaf`, about 0.1 us each; accumulates
 };
 
-/// Sorts the nodes from `first` on, so that the nearest is the next. A handful: the children of one node.
+/// Sorts the nodes from `first` on by descending low_m, so the nearest is popped next. Insertion sort: they
+/// are the children of one node.
 inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t first) {
   for (std::size_t i = first + 1; i < pending.size(); ++i) {
     for (std::size_t j = i; j > first && pending[j].low_m > pending[j - 1].low_m; --j) {
@@ -71,25 +71,28 @@ inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t firs
   }
 }
 
-/// A scene triangle's column along the motion, as an object's tree is asked about it: linear functions of the
-/// points of the object's mesh, relative to the tree's centre, with all rounding in float counted in.
+/// A scene triangle's column along the motion, as linear functions of the object's points (mesh frame,
+/// relative to the tree's centre). All bounds include float rounding.
 struct SceneColumn {
   Eigen::Vector3f x_axis, y_axis, z_axis;
-  float x0, x1, y0, y1, z0, z1;  ///< around the triangle, m
-  /// Beyond the triangle's longest edge across the motion: edge . p > edge_reach.
+  float x0, x1, y0, y1, z0, z1;  ///< bounds of the triangle, rounding included, m; z0 and z1 are infinite
+                                 ///< unless is_steep
+  /// A point p with edge . p > edge_reach is outside the projected triangle, beyond its longest edge.
   Eigen::Vector3f edge;
   float edge_reach;
-  /// Height of the triangle's plane above a point: offset + plane . p, give or take plane_slack. Seen
-  /// edge-on: the distance from its plane; what is farther from it than -beside does not reach through it.
+  /// Height of the triangle's plane above a point p: offset + plane . p, +- plane_slack. For a triangle seen
+  /// edge-on, the expression is the signed distance from its plane instead. A box farther from that plane
+  /// than -beside does not reach through it.
   Eigen::Vector3f plane = Eigen::Vector3f::Zero();
   float offset = 0.0F, plane_slack = std::numeric_limits<float>::infinity();
   float beside = -std::numeric_limits<float>::infinity();
   bool is_edge_on = false;
-  bool is_steep = true;  ///< heights say more than the plane, or as much
+  bool is_steep = true;  ///< the triangle's heights bound the gap at least as tightly as its plane
 
   SceneColumn(const TurnedTree& object, const FrameTriangle& scene);
 
-  /// No gap between the triangle and this one of the object is less, whatever the triangle's outline.
+  /// Returns a lower bound of the gap between the scene triangle's plane and an object triangle; -infinity if
+  /// the scene triangle is edge-on.
   [[nodiscard]] float least_gap(const TriangleTree& tree, std::uint32_t triangle) const {
     if (is_edge_on) return -std::numeric_limits<float>::infinity();
     const Eigen::Vector3f centre = tree.centre().cast<float>();
@@ -101,18 +104,18 @@ struct SceneColumn {
   }
 };
 
-/// Goes through the object's triangles that may share a place across the motion with `scene`, those that can
-/// have the least gap first.
+/// Visits the object triangles that may overlap `scene` in projection along the motion, smallest possible gap
+/// first.
 ///
-/// The gap between the scene triangle's plane and a point is linear in the point, so that its least and
-/// greatest values over a box are exact; where the plane is steep the heights of both take over. Both hold
-/// with all rounding in float counted in. For a scene triangle seen edge-on, boxes that do not reach through
-/// its plane by touching_m are passed over: what is in them slides along it (see meeting_of()), if at all.
+/// The gap between the scene triangle's plane and a point is linear in the point, so its minimum and maximum
+/// over a box are exact. If the plane is steep, the heights of box and triangle bound the gap as well. All
+/// bounds include float rounding. If the scene triangle is edge-on, boxes that do not reach through its plane
+/// by touching_m are skipped: their triangles at most slide along the plane (see meeting_of()).
 ///
-/// @param limit_m   called with nothing; what cannot have a gap under it is passed over
-/// @param floor_m   what cannot have a gap of at least this is passed over
-/// @param leaf      called with the object's triangle's number
-/// @return whether a box was passed over because it lies ahead of the scene by more than -floor_m
+/// @param limit_m   callable without arguments; boxes and triangles without a gap below it are skipped
+/// @param floor_m   boxes without a gap of at least this are skipped
+/// @param leaf      callable with the index of an object triangle
+/// @return true if a box was skipped because it is ahead of the scene by more than -floor_m
 template <typename Limit, typename Leaf>
 bool search_column(const TurnedTree& object, const FrameTriangle& scene, const Limit& limit_m, double floor_m,
                    ColumnScratch& scratch, const Leaf& leaf) {
@@ -148,7 +151,7 @@ bool search_column(const TurnedTree& object, const FrameTriangle& scene, const L
     linear_over_boxes(node, column.edge, edge);
     linear_over_boxes(node, column.plane, gap);
     if (column.is_steep) linear_over_boxes(node, column.z_axis, z);
-    // Without branches, so that compilers make it eight at a time.
+    // Branch-free, so compilers vectorise the eight lanes.
     alignas(32) std::array<float, TreeNode::kWidth> low_m, high_m, apart;
     for (std::size_t i = 0; i < TreeNode::kWidth; ++i) {
       const float plane_at = column.offset + gap.value[i];

@@ -1,4 +1,4 @@
-// contact.hpp: what a moving object would touch first, and after how far, between bounds that hold.
+// contact.hpp: first contact of a moving object, with its distance between guaranteed bounds.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -8,32 +8,32 @@
 namespace roomradar {
 
 enum class ContactStatus {
-  kInvalidInput,  ///< direction zero or not finite, distance not finite or <= 0, object empty, a pose not
+  kInvalidInput,  ///< direction zero or not finite, distance not finite or <= 0, object empty, or a pose not
                   ///< finite
-  kNoAnswer,      ///< the renderer failed (out of memory, context lost): nothing is known
-  kNoTarget,      ///< nothing found in the way within the distance
-  kContact,       ///< touches after travel_m >= 0
-  kOverlap,       ///< a surface that opposes the motion is inside the object already; travel_m < 0
+  kNoAnswer,      ///< the renderer failed (out of memory, context lost); nothing is known
+  kNoTarget,      ///< no contact found within the distance
+  kContact,       ///< contact after travel_m >= 0
+  kOverlap,       ///< a surface facing against the motion is already inside the object; travel_m < 0
 };
 
-/// Which kind of surface was touched.
+/// Kind of a surface that can be touched.
 enum class Touched {
   kNothing,
   kStatic,           ///< the prescanned room
-  kDynamic,          ///< what moved since
+  kDynamic,          ///< dynamic foreground: things that moved since the prescan
   kObject,           ///< another virtual object
-  kUnknownFrontier,  ///< where seen free space ends and unseen space begins
-  kInferredBack,     ///< the back and the sides that a thing that moved is taken to have
+  kUnknownFrontier,  ///< boundary between observed free space and unobserved space
+  kInferredBack,     ///< assumed back and sides of a dynamic object
 };
 constexpr std::size_t kTouchedKinds = 6;
 
-/// Surfaces that nobody has seen are met from their outside only: they keep nothing in, so that what they
-/// came about, or was put behind them, can leave.
+/// Returns true for surfaces that were never observed. They block from their outside only, so an object that
+/// is inside when they appear, or is placed behind them, can leave.
 constexpr bool is_one_sided(Touched touched) {
   return touched == Touched::kUnknownFrontier || touched == Touched::kInferredBack;
 }
 
-/// As reports call it.
+/// Returns the name used in reports.
 constexpr std::string_view to_string(Touched touched) {
   switch (touched) {
     case Touched::kNothing:
@@ -54,21 +54,22 @@ constexpr std::string_view to_string(Touched touched) {
 
 struct [[nodiscard]] Contact {
   ContactStatus status = ContactStatus::kInvalidInput;  // unset means failed
-  /// Along the direction until touch; negative: depth of the overlap, how far back along the direction the
-  /// object is free again of what opposes the motion; kContact and kOverlap only.
+  /// Distance along the direction to contact, m; set for kContact and kOverlap only. Negative for an overlap:
+  /// minus the distance back along the direction until the object is clear of surfaces that face against the
+  /// motion.
   double travel_m = 0.0;
-  /// The true way to contact is not shorter than lower_m and not longer than upper_m. Where nothing was found
-  /// lower_m is what is free for certain, at most the distance asked for, and upper_m infinite. In an overlap
-  /// both are travel_m; where that is too deep to be told (see CyberRadar) lower_m is minus infinity.
+  /// Bounds of the true distance to contact, m. kNoTarget: lower_m is certainly free, at most the queried
+  /// distance, and upper_m is infinite. kOverlap: both are travel_m; if the overlap is too deep to be
+  /// measured (see CyberRadar), lower_m is -infinity.
   double lower_m = 0.0;
   double upper_m = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< on the scene's surface
-  /// Unit, of the scene's triangle, turned to face the object.
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< contact point on the scene's surface
+  /// Unit normal of the scene's triangle, turned to face the object.
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
   Touched touched = Touched::kNothing;
-  double pixel_m = 0.0;  ///< side of a radar pixel: how far apart the samples are across the direction
+  double pixel_m = 0.0;  ///< side of a radar pixel: sample spacing across the direction
 
-  /// Whether there is something to react to.
+  /// Returns true for kContact and kOverlap.
   explicit operator bool() const {
     return status == ContactStatus::kContact || status == ContactStatus::kOverlap;
   }

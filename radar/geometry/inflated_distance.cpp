@@ -1,4 +1,4 @@
-// thick_travel.cpp: the nearest points of two triangles, and steps along the plane between them.
+// thick_travel.cpp: closest points of two triangles, and steps along the plane between them.
 #include "radar/geometry/inflated_distance.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-/// The shortest way from one set to another that was seen so far, and where it begins.
+/// Shortest segment found so far from one set to another.
 struct Shortest {
   ShortestWay best;
   double length2 = kInfinity<double>;
@@ -26,7 +26,8 @@ struct Shortest {
   }
 };
 
-/// Between the segments a, a + u and b, b + v. Source: Ericson, Real-Time Collision Detection, 2004, 5.1.9.
+/// Considers the segment between the edges a, a + u and b, b + v. Source: Ericson, Real-Time Collision
+/// Detection, 2004, 5.1.9.
 void see_edges(const Eigen::Vector3d& a, const Eigen::Vector3d& u, const Eigen::Vector3d& b,
                const Eigen::Vector3d& v, Shortest& shortest) {
   const Eigen::Vector3d w = a - b;
@@ -38,8 +39,8 @@ void see_edges(const Eigen::Vector3d& a, const Eigen::Vector3d& u, const Eigen::
   shortest.see(a + s * u, t * v - s * u - w);
 }
 
-/// From the corners of `from` down to the face of `t`, where their feet lie in it; sign 1: the way to t, -1:
-/// the way from it.
+/// Considers the segments from the corners of `from` to their feet on the face of `t`. sign 1: directed to t;
+/// -1: directed away from it.
 void see_face(const Corners& from, const FrameTriangle& t, double sign, Shortest& shortest) {
   if (t.normal.isZero(0.0)) return;
   const Eigen::Vector3d& n = t.normal;
@@ -88,7 +89,7 @@ double thick_travel(const FrameTriangle& object, const FrameTriangle& scene, dou
       return kInfinity<double>;
     }
   }
-  if (object_low.z() - margin_m > scene_high.z()) return kInfinity<double>;  // behind
+  if (object_low.z() - margin_m > scene_high.z()) return kInfinity<double>;  // the scene is behind
 
   TriangleGap gap;
   if (find_gap(object, scene, gap)) {
@@ -101,7 +102,7 @@ double thick_travel(const FrameTriangle& object, const FrameTriangle& scene, dou
     const Eigen::Vector3d way = shortest_way(object, scene, travel_m).way;
     const double distance_m = way.norm();
     if (!(distance_m > margin_m + kClose_m)) return travel_m;
-    if (!(way.z() > 0.0)) return kInfinity<double>;  // it will only get farther
+    if (!(way.z() > 0.0)) return kInfinity<double>;  // the distance only grows from here
     travel_m += (distance_m - margin_m) / (way.z() / distance_m) * (1.0 - 1e-9);
   }
   return travel_m;

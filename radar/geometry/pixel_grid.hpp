@@ -1,4 +1,4 @@
-// pixel_grid.hpp: square pixels over a rectangle across a motion.
+// pixel_grid.hpp: grid of square pixels over a rectangle perpendicular to a motion.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@ struct PixelGrid {
   int width_px = 0, height_px = 0;
 };
 
-/// `resolution_px` pixels along the longer side and as many as it takes, but at least one, along the other. A
-/// rectangle without area (an object seen edge-on) still gets pixels.
+/// Returns a grid of `resolution_px` pixels along the longer side and as many as needed, at least one, along
+/// the other. A rectangle without area (an object seen edge-on) gets pixels too.
 inline PixelGrid fit_pixels(double width_m, double height_m, int resolution_px) {
   constexpr double kLeastSide_m = 1e-6;
   PixelGrid grid;

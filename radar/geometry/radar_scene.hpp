@@ -1,4 +1,4 @@
-// radar_scene.hpp: what can be touched: meshes under a tree, and depth images that need no mesh.
+// radar_scene.hpp: surfaces that can be touched, given as meshes with trees or as depth images.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// A mesh somewhere in the world. The tree is not owned and must stay while this is used.
+/// A mesh with a pose in the world. Does not own the tree, which must outlive it.
 struct TreeInstance {
   const TriangleTree* tree = nullptr;
   Eigen::Isometry3d T_world_mesh = Eigen::Isometry3d::Identity();
@@ -24,18 +24,18 @@ inline bool has_surface(const SceneTree& s) {
   return s.instance.tree != nullptr && !s.instance.tree->empty();
 }
 
-/// The surface through a depth image's pixels, never meshed as a whole: only where a volume projects into the
-/// image. Images are not owned.
+/// The surface through a depth image's pixels, triangulated only where a volume projects into the image. Does
+/// not own the images.
 ///
-/// Vertices: every stride-th pixel of every stride-th row that is measured (depth finite and > 0; mask, where
-/// given, not 0), back_project()ed and rounded to float in the camera frame. Of each cell of the grid (a top
-/// left, b top right, c bottom left, d bottom right) the triangles a, c, d and a, d, b, counter-clockwise
-/// seen from the camera, each where its corners' depths differ by at most max_jump_m + max_jump_slope * the
-/// least of them.
+/// Vertices: every stride-th pixel of every stride-th row that is measured (depth finite and > 0; mask, if
+/// given, not 0), back_project()ed and rounded to float in the camera frame. Each cell of the grid has
+/// corners a (top left), b (top right), c (bottom left) and d (bottom right). Its triangles are a, c, d and
+/// a, d, b, counter-clockwise seen from the camera. A triangle exists if its corners' depths differ by at
+/// most max_jump_m + max_jump_slope * (least depth).
 struct SceneDepth {
   const DepthImage* depth_m = nullptr;
   const MaskImage* mask = nullptr;  ///< same size as depth_m; null: all pixels
-  Intrinsics camera;                ///< its focal lengths and principal point are used, in depth_m's pixels
+  Intrinsics camera;                ///< only focal lengths and principal point are used, in depth_m's pixels
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int stride_px = 1;
   float max_jump_m = 0.05F;
@@ -45,12 +45,12 @@ struct SceneDepth {
 
 class SceneBoxes;
 
-/// Instances with a null or empty mesh, and images that are null or empty, are left out.
+/// Instances with a null or empty mesh, and images that are null or empty, are skipped.
 struct RadarScene {
   std::span<const SceneTree> trees;
   std::span<const SceneDepth> depths;
-  /// Built of these trees as they stand now, so that a query asks only those near it; null: asks all. Pays
-  /// from some tens of trees on, where many queries share it.
+  /// Built from these trees at their present poses, so a query visits only the trees near it; null: visits
+  /// all. Pays from some tens of trees on, if many queries share it.
   const SceneBoxes* boxes = nullptr;
 };
 

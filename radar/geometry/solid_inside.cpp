@@ -1,4 +1,4 @@
-// solid_inside.cpp: count the layers ahead of a point.
+// solid_inside.cpp: counts the crossings ahead of a point.
 #include "radar/geometry/solid_inside.hpp"
 
 namespace roomradar {
@@ -6,9 +6,8 @@ namespace {
 
 FrameTriangle at_point(const Eigen::Vector3d& p) { return {{p, p, p}, Eigen::Vector3d::Zero()}; }
 
-/// Distance from a point to a triangle.
-/// Source: Ericson, Real-Time Collision Detection, 2005, section 5.1.5: the plane's where the point is over
-/// the face, else the nearest edge's.
+/// Returns the distance from a point to a triangle. Source: Ericson, Real-Time Collision Detection, 2005,
+/// section 5.1.5: to the plane if the point is over the face, else to the nearest edge.
 double distance_to(const FrameTriangle& t, const Eigen::Vector3d& p) {
   const auto& c = t.corners;
   bool is_over_face = !t.normal.isZero(0.0);
@@ -38,7 +37,7 @@ bool is_near_surface(const TurnedTree& object, const Eigen::Vector3d& p, ColumnS
 }  // namespace
 
 Eigen::Vector3d inner_point(const FrameTriangle& triangle, int which) {
-  // Barycentric weights without a pattern that meshes would share.
+  // Barycentric weights in an irregular pattern, which meshes do not share.
   constexpr std::array<std::array<double, 2>, 5> kWeights{
       {{0.3141, 0.3585}, {0.6127, 0.2713}, {0.1919, 0.1733}, {0.1339, 0.5501}, {0.4447, 0.1031}}};
   const auto& w = kWeights[static_cast<std::size_t>(which) % kWeights.size()];

@@ -1,4 +1,4 @@
-// solid_inside.hpp: is a point in the solid that a closed mesh encloses?
+// solid_inside.hpp: point-in-solid test for closed meshes.
 #pragma once
 #include <vector>
 
@@ -6,27 +6,28 @@
 
 namespace roomradar {
 
-/// Where a line along the motion goes through an object's surface.
+/// Crossing of a line along the motion with an object's surface.
 struct Layer {
-  double gap_m;  ///< height of the point above the layer: negative where the layer is ahead of it
-  int way_out;   ///< 1 where the line leaves the solid there, -1 where it enters
+  double gap_m;  ///< height of the point above the crossing; negative if the crossing is ahead
+  int way_out;   ///< 1 if the line leaves the solid there, -1 if it enters
 };
 
-/// All of the object's layers over a point, ahead of it and up to limit_m behind it.
-/// @return false if the line along the motion through the point runs too near an edge to count layers
+/// Finds all crossings of the object's surface on the line through a point, ahead of it and up to limit_m
+/// behind it.
+/// @return false if the line runs too near an edge to count crossings
 bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 
-/// Whether a point travel_m back along the motion from the one whose layers these are is in a solid: more
-/// ways out than in are ahead of it, so that solids may overlap.
+/// Returns true if the point of `layers` is in the solid after the object has moved by travel_m. More exits
+/// than entries ahead of the point mean inside, so solids may overlap.
 bool is_within(const std::vector<Layer>& layers, double travel_m);
 
-/// Whether a triangle that does not cross the object's surface lies in the solid that it encloses, deeper
-/// than touching_m. By the layers ahead of it. False for an object that is not closed.
+/// Returns true if a triangle that does not cross the object's surface is inside its solid, deeper than
+/// touching_m. Counts the crossings ahead of it. False for an object that is not closed.
 bool is_inside(const TurnedTree& object, const FrameTriangle& scene, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 
-/// A point of the triangle, one of several, none of them special.
+/// Returns one of five points inside the triangle, at irregular positions.
 Eigen::Vector3d inner_point(const FrameTriangle& triangle, int which);
 
 }  // namespace roomradar

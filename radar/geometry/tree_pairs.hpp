@@ -1,5 +1,4 @@
-// tree_pairs.hpp: two trees side by side: which boxes, and at last which triangles, may have to do with each
-// other?
+// tree_pairs.hpp: simultaneous traversal of two trees, for pairs of boxes and finally of triangles.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,30 +15,29 @@
 
 namespace roomradar {
 
-/// A box of a tree, turned where the other tree is.
+/// A box of a tree, in the frame of the TreePair.
 struct PairBox {
   Eigen::Vector3f centre, half;
   std::uint32_t first, count;  ///< as in TreeNode; count 0: an inner node
-  bool is_within_faces;        ///< all of it
+  bool is_within_faces;        ///< all its triangles lie within flat faces
 };
 struct PendingPair {
   PairBox object, scene;
   float key;
 };
-/// Which pair of boxes is looked at next.
+/// Order in which pairs of boxes are visited.
 enum class PairOrder {
-  kAny,         ///< the one found last: the fewest are pending
-  kLeastFirst,  ///< the one with the least key: where a leaf rules out all keys above some bound, this finds
-                ///< it before it opens boxes for nothing
+  kAny,         ///< last found first: fewest pairs pending
+  kLeastFirst,  ///< least key first: if a leaf rules out all keys above a bound, no box above it is opened
 };
 
-inline constexpr std::size_t kLeafTriangles = 4;  // no leaf of a TriangleTree has more
+inline constexpr std::size_t kLeafTriangles = 4;  // max triangles per leaf of a TriangleTree
 
 inline bool is_usable(const TreeInstance& instance) {
   return instance.tree != nullptr && !instance.tree->empty() && instance.T_world_mesh.matrix().allFinite();
 }
 
-/// Whether the balls about two trees' boxes are farther apart than this: so are the trees.
+/// Returns true if the spheres around two trees' boxes are farther apart than `than_m`; so are the trees.
 inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other, double than_m) {
   constexpr double kRounding = 1.0 + 1e-5;  // of the boxes' float sizes
   const auto middle_world = [](const TreeInstance& instance) -> Eigen::Vector3d {
@@ -52,10 +50,10 @@ inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other
   return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
 }
 
-/// A leaf's triangles, made once for as long as the same leaf is asked for: the other tree's boxes go by.
+/// A leaf's triangles, computed once while calls repeat the same leaf with different boxes of the other tree.
 class LeafTriangles {
  public:
-  /// @param triangle  triangle(i) for each of the leaf's numbers, where it is another than the last time
+  /// @param triangle  callable that returns triangle i of the tree; called only if the leaf has changed
   template <typename MakeTriangle>
   std::span<const FrameTriangle> of(const PairBox& leaf, const MakeTriangle& triangle) {
     assert(leaf.count <= kLeafTriangles);
@@ -72,14 +70,14 @@ class LeafTriangles {
   std::uint32_t first_ = 0, count_ = 0;
 };
 
-/// An object's tree where it stands beside one of the scene's. Frame: the scene's mesh, about its tree's
-/// centre.
+/// An object's tree beside one of the scene's trees. Frame: the scene's mesh, with its tree's centre as
+/// origin.
 class TreePair {
  public:
   const TriangleTree& object;
   const TriangleTree& scene;
   Eigen::Isometry3d T_world_frame;
-  Eigen::Isometry3d T_frame_object;  ///< from the object's mesh, about its tree's centre
+  Eigen::Isometry3d T_frame_object;  ///< from the object's mesh, relative to its tree's centre
 
   TreePair(const TreeInstance& o, const TreeInstance& s)
       : object(*o.tree),
@@ -88,7 +86,7 @@ class TreePair {
         T_frame_object(T_world_frame.inverse() * o.T_world_mesh *
                        Eigen::Translation3d(object.origin() + object.centre())) {}
 
-  /// The triangles of a leaf of either tree; until the next call for the same tree.
+  /// Triangles of a leaf; valid until the next call for the same tree.
   [[nodiscard]] std::span<const FrameTriangle> of_object(const PairBox& leaf) {
     return object_leaf_.of(leaf, [this](std::uint32_t i) { return object_triangle(i); });
   }
@@ -118,12 +116,13 @@ class TreePair {
   }
 };
 
-/// Whether a leaf's triangles may tell more of the other tree's box than their own box does.
+/// Returns true if a leaf's triangles may bound the other tree's box more tightly than the leaf's own box:
+/// the leaf is more than twice as large.
 inline bool are_large_against(const PairBox& leaf, const PairBox& other) {
   return leaf.count > 0 && leaf.half.maxCoeff() > 2.0F * other.half.maxCoeff();
 }
 
-/// Whether all of a box is behind a triangle's plane.
+/// Returns true if the whole box is behind a triangle's plane.
 inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
   constexpr double kTouching_m = 1e-9;
   return t.normal.dot(box.centre.cast<double>() - t.corners[0]) +
@@ -131,15 +130,15 @@ inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
          -kTouching_m;
 }
 
-/// Goes through all pairs of leaves that key(object box, scene box) gives a finite number for, until leaf()
-/// returns -infinity; not through those of which both lie within flat faces (see TriangleTree). With
-/// PairOrder::kLeastFirst it ends where no key is less than what leaf() returned last.
+/// Visits all pairs of leaves for which key(object box, scene box) is finite, until leaf() returns -infinity.
+/// Skips pairs that both lie within flat faces (see TriangleTree). With PairOrder::kLeastFirst it stops once
+/// no key is less than the last value returned by leaf().
 template <PairOrder order, typename Key, typename Leaf>
 void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
   const TriangleTree& object = trees.object;
   const TriangleTree& scene = trees.scene;
-  // Boxes hold what is in them with the rounding of a float turn and shift counted in.
+  // Boxes are enlarged by the rounding of a float rotation and translation.
   const Eigen::Matrix3f R = trees.T_frame_object.linear().cast<float>();
   const Eigen::Matrix3f R_abs = R.cwiseAbs();
   const Eigen::Vector3f t = trees.T_frame_object.translation().cast<float>();

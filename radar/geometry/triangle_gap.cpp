@@ -1,4 +1,4 @@
-// triangle_gap.cpp: corners within the other triangle, edges across edges, and planes that keep them apart.
+// triangle_gap.cpp: corners within the other triangle, edges across edges, and separating planes.
 #include "radar/geometry/triangle_gap.hpp"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ double cross2(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::V
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Twice the areas that the corners of `other` span with the edges of `t`, positive inside; false if one edge
-/// has all of them outside.
+/// Computes twice the areas that the corners of `other` span with the edges of `t`, positive inside. Returns
+/// false if all corners are outside one edge.
 bool sides_of(const Corners& t, double sign, const Corners& other, double rounding_m2, Sides& sides) {
   for (std::size_t i = 0; i < 3; ++i) {
     double most = -1.0;
@@ -32,9 +32,9 @@ bool is_between(double a, double b, double rounding) {
   return (a >= -rounding && b <= rounding) || (a <= rounding && b >= -rounding);
 }
 
-/// Height of t at corner j of the other triangle, if that is inside.
+/// Returns the height of t at corner j of the other triangle if the corner is inside.
 std::optional<double> height_at(const Corners& t, const Sides& sides, std::size_t j, double rounding_m2) {
-  // Edge i is opposite to corner i + 2.
+  // Edge i is opposite corner i + 2.
   const double w2 = sides[0][j], w0 = sides[1][j], w1 = sides[2][j];
   if (w0 < -rounding_m2 || w1 < -rounding_m2 || w2 < -rounding_m2) return std::nullopt;
   const double v0 = std::max(w0, 0.0), v1 = std::max(w1, 0.0), v2 = std::max(w2, 0.0);
@@ -63,18 +63,18 @@ bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleG
     if (o_low > s_high || s_low > o_high) return false;
     size_m = std::max({size_m, o_high - o_low, s_high - s_low});
   }
-  // What cross2 may lose to rounding on corners that are this far apart.
+  // Max rounding error of cross2 for corners this far apart.
   const double rounding_m2 = 4e-15 * size_m * size_m;
   const auto sign_of = [&](const Corners& t) {
     const double area_m2 = cross2(t[0], t[1], t[2]);
-    if (std::abs(area_m2) <= rounding_m2) return 0.0;  // edge-on: its edges speak for it
+    if (std::abs(area_m2) <= rounding_m2) return 0.0;  // edge-on: handled by its edges alone
     return area_m2 > 0.0 ? 1.0 : -1.0;
   };
   const double o_sign = sign_of(o), s_sign = sign_of(s);
   Sides of_scene, of_object;
   if (!sides_of(s, s_sign, o, rounding_m2, of_scene)) return false;
   if (!sides_of(o, o_sign, s, rounding_m2, of_object)) return false;
-  // Edge-on triangles have no inside; their sides are still needed for the crossings.
+  // Edge-on triangles have no inside, but the crossings need their sides.
   if (s_sign == 0.0) sides_of(s, 1.0, o, 1e300, of_scene);
   if (o_sign == 0.0) sides_of(o, 1.0, s, 1e300, of_object);
 
@@ -116,8 +116,8 @@ Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, cons
                    double touching_m) {
   const double facing = scene.normal.z();
   const bool is_edge_on = std::abs(facing) <= kEdgeOn;
-  // How far the object's corners lie before the scene's plane (against the motion; for a plane seen edge-on:
-  // on its outside), and the scene's corners ahead of the object's plane.
+  // Distances of the object's corners in front of the scene's plane (against the motion; for a plane seen
+  // edge-on, on its outside), and of the scene's corners ahead of the object's plane.
   const auto heights = [](const FrameTriangle& plane, double sign, const FrameTriangle& other) {
     std::array<double, 2> low_high{1e300, -1e300};
     for (const Eigen::Vector3d& corner : other.corners) {
@@ -134,7 +134,7 @@ Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, cons
   if (has_scene_plane && (meets_now || is_edge_on))
     before = heights(scene, facing > 0.0 ? -1.0 : 1.0, object);
   if (is_edge_on && has_scene_plane) {
-    // Sliding along a plane that is parallel to the motion, now or further on.
+    // Slides along a plane parallel to the motion, now or later.
     if (before[0] >= -touching_m || before[1] <= touching_m) return Meeting::kNone;
   }
   if (!meets_now) return Meeting::kContact;

@@ -1,4 +1,4 @@
-// triangle_gap.hpp: two triangles, one moving along z: how far apart are they, and what happens next?
+// triangle_gap.hpp: gap between two triangles, one of them moving along z, and their kind of contact.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -7,21 +7,21 @@
 
 namespace roomradar {
 
-/// Corners in a frame whose z axis is the direction of motion, m, with the unit normal by the winding (zero
-/// for a triangle without area).
+/// Corners in a frame whose z axis is the direction of motion, m. The unit normal follows the winding; zero
+/// for a triangle without area.
 struct FrameTriangle {
   std::array<Eigen::Vector3d, 3> corners;
   Eigen::Vector3d normal;
 };
-/// Sets the normal from the corners.
+/// Computes the normal from the corners.
 void set_normal(FrameTriangle& triangle);
 
-/// A normal nearer to right angles with the motion than this is taken as edge-on.
+/// Triangles with |normal.z()| up to this count as edge-on.
 inline constexpr double kEdgeOn = 1e-9;
 
-/// Places where the outlines of two projected triangles meet: corners of one within the other and crossings
-/// of their edges. The gap (height of the scene's triangle above the object's) is linear over the common
-/// outline, so that its least and greatest values are among these.
+/// Vertices of the intersection of two projected triangles: corners of one inside the other, and crossings of
+/// their edges. The gap (height of the scene's triangle above the object's) is linear over the intersection,
+/// so its minimum and maximum are among the vertices.
 struct TriangleGap {
   struct Place {
     double x, y, scene_z, gap;
@@ -29,28 +29,29 @@ struct TriangleGap {
   std::array<Place, 18> places;
   std::size_t count = 0;
   double low_m = 0.0, high_m = 0.0;
-  std::size_t lowest = 0;  ///< the place of low_m
+  std::size_t lowest = 0;  ///< index of the place with gap low_m
 };
 
-/// @return nothing if their projections have no point in common. Corners within rounding of an outline count
-///         as on it, so that nothing slips through between triangles that share an edge.
+/// @return false if the projections have no point in common. Corners within rounding of an outline count
+///         as on it, so nothing slips between triangles that share an edge.
 bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleGap& gap);
 
 enum class Meeting {
-  kNone,      ///< they do not meet ahead
-  kContact,   ///< they touch after max(low_m, 0)
-  kCrossing,  ///< each is on both sides of the other already
-  kLeaving    ///< they cross, and the scene's triangle faces along the motion
+  kNone,      ///< no contact ahead
+  kContact,   ///< contact after max(low_m, 0)
+  kCrossing,  ///< each is already on both sides of the other
+  kLeaving    ///< they cross, and the scene's triangle is back-facing
 };
 
-/// What a gap means for an object that moves along +z.
+/// Classifies a gap for an object that moves along +z.
 ///
-/// low_m > touching_m: contact ahead. high_m < -touching_m: the scene is behind. Else they meet now: by less
-/// than touching_m (measured along the normal of either triangle: then it is touching, and what lies ahead of
-/// a plane between them is a contact, what lies behind it or slides along it is not), or they cross.
-/// A scene triangle seen edge-on that the object only grazes sideways by less than touching_m is slid along,
-/// however far ahead. A scene triangle that faces along the motion is what the object leaves: touching it now
-/// is no meeting, crossing it is kLeaving; ahead it is met like any other.
+/// low_m > touching_m: contact ahead. high_m < -touching_m: the scene is behind. Otherwise the triangles
+/// touch or cross now. They touch if they overlap by less than touching_m along the normal of either. Then
+/// scene ahead of the plane between them is a contact; scene behind the plane or sliding along it is not.
+///
+/// A scene triangle seen edge-on slides along an object that overlaps it sideways by less than touching_m, at
+/// any distance ahead. A back-facing scene triangle (normal.z() > 0) is what the object leaves: touching it
+/// now is kNone, crossing it is kLeaving, and ahead it is a contact like any other.
 Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, const TriangleGap& gap,
                    double touching_m);
 

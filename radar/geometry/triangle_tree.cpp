@@ -1,4 +1,4 @@
-// triangle_tree.cpp: build boxes over triangles, by place or in the order they come.
+// triangle_tree.cpp: builds boxes over triangles, spatially or in their given order.
 #include "radar/geometry/triangle_tree.hpp"
 
 #include <algorithm>
@@ -12,9 +12,8 @@
 namespace roomradar {
 namespace {
 
-constexpr std::uint32_t kLeafTriangles =
-    2;  // by place: fewer pairs are settled than with 4, fewer boxes than with 1
-constexpr std::uint32_t kRunTriangles = 4;  // in order: built in a quarter of the boxes
+constexpr std::uint32_t kLeafTriangles = 2;  // spatial: fewer pair tests than with 4, fewer boxes than with 1
+constexpr std::uint32_t kRunTriangles = 4;   // in order: a quarter of the boxes to build
 
 struct Bounds {
   Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
@@ -39,7 +38,7 @@ Bounds bounds_of(const Triangle& triangle, const std::vector<Eigen::Vector3f>& v
   return b;
 }
 
-/// Writes boxes into nodes, relative to a centre, widened by what rounding may have taken.
+/// Writes boxes into nodes, relative to a centre and enlarged by the rounding.
 struct NodeWriter {
   Eigen::Array3f centre;
   float rounding_m;
@@ -71,9 +70,9 @@ struct NodeWriter {
   }
 };
 
-/// Splits by the surface area heuristic over bins of centroids, eight ways a node.
-/// Source: Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, RT 2007; Wald, Benthin,
-/// Boulos, Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs, RT 2008.
+/// Splits by the surface area heuristic over bins of centroids, eight ways per node. Source: Wald, On fast
+/// Construction of SAH-based Bounding Volume Hierarchies, RT 2007; Wald, Benthin, Boulos, Getting Rid of
+/// Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs, RT 2008.
 class PlaceBuilder {
  public:
   PlaceBuilder(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
@@ -115,7 +114,7 @@ class PlaceBuilder {
     const std::uint32_t half = range.first + range.size() / 2;
     constexpr int kBins = 16;
     const float scale = static_cast<float>(kBins) / size;
-    if (!(size > 0.0F) || !std::isfinite(size) || !std::isfinite(scale)) return half;  // all at one place
+    if (!(size > 0.0F) || !std::isfinite(size) || !std::isfinite(scale)) return half;  // all at one position
     const auto bin_of = [&](std::uint32_t triangle) {
       return std::min(kBins - 1, static_cast<int>((middle_of(triangle)[axis] - middles.low[axis]) * scale));
     };
@@ -177,12 +176,12 @@ class PlaceBuilder {
   }
 };
 
-/// Nodes over runs of eight leaves, then over runs of eight nodes, and so on; the root first.
+/// Builds nodes over runs of eight leaves, then over runs of eight nodes, and so on; the root is first.
 void build_runs(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
                 const NodeWriter& writer, std::vector<TreeNode>& nodes) {
   const auto triangle_count = static_cast<std::uint32_t>(triangles.size());
   constexpr std::uint32_t kWidth = TreeNode::kWidth;
-  // Nodes of each level, the leaves' level first; the root's level has one.
+  // Number of nodes per level, leaves' parents first; the root's level has one.
   std::array<std::uint32_t, 16> level_sizes{};
   std::size_t level_count = 0;
   for (std::uint32_t n = (triangle_count + kRunTriangles - 1) / kRunTriangles; level_count == 0 || n > 1;) {
@@ -231,14 +230,14 @@ void build_runs(const std::vector<Triangle>& triangles, const std::vector<Eigen:
   }
 }
 
-/// A side of a triangle, 3 * triangle + the number of its first corner, on an edge between two places.
+/// A side of a triangle on an edge between two positions. side: 3 * triangle + index of its first corner.
 struct Side {
   std::uint64_t edge;
   std::uint32_t side;
-  int sense;  // +1 or -1: which way it goes along the edge
+  int sense;  // +1 or -1: direction along the edge
 };
 
-/// A number for each vertex; those at one place have the same.
+/// Returns a number per vertex, equal for vertices at the same position.
 std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& vertices) {
   std::vector<std::uint32_t> by_place(vertices.size());
   std::iota(by_place.begin(), by_place.end(), 0U);
@@ -255,7 +254,7 @@ std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& 
   return number;
 }
 
-/// Those of one edge next to each other.
+/// Returns the sides sorted by edge.
 std::vector<Side> sides_of(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& number) {
   std::vector<Side> sides;
   sides.reserve(triangles.size() * 3);
@@ -280,8 +279,7 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
     if (i + 1 < sides.size() && sides[i + 1].edge == sides[i].edge) continue;
     if (balance != 0) return false;
   }
-  // Parts that share no vertex are judged one by one: one that is inside out must not hide behind a larger
-  // one.
+  // Connected components are tested separately, so one that is inside out cannot hide behind a larger one.
   std::vector<std::uint32_t> part(vertices.size());
   std::iota(part.begin(), part.end(), 0U);
   const auto part_of = [&](std::uint32_t v) {
@@ -302,7 +300,7 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
   bool encloses = false;
   for (const Triangle& t : triangles) {
     const std::uint32_t a = number[t[0]], b = number[t[1]], c = number[t[2]];
-    if (a == b || b == c || c == a) continue;  // a point or a line bounds nothing
+    if (a == b || b == c || c == a) continue;  // a point or a line encloses nothing
     if (!(volume_m3[part_of(number[t[0]])] > 0.0)) return false;
     encloses = true;
   }
@@ -311,7 +309,7 @@ bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-/// The triangle beyond each side; kNone where there is not just one, facing the same way.
+/// Returns the triangle beyond each side; kNone unless there is exactly one with consistent orientation.
 std::vector<std::uint32_t> neighbours_of(std::size_t triangle_count, const std::vector<Side>& sides) {
   std::vector<std::uint32_t> beyond(3 * triangle_count, kNone);
   for (std::size_t i = 0; i < sides.size();) {
@@ -326,7 +324,7 @@ std::vector<std::uint32_t> neighbours_of(std::size_t triangle_count, const std::
   return beyond;
 }
 
-/// Grows flat faces triangle by triangle.
+/// Grows flat faces triangle by triangle (region growing).
 class FaceFinder {
  public:
   FaceFinder(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
@@ -336,7 +334,7 @@ class FaceFinder {
         beyond_(neighbours_of(triangles.size(), sides)),
         flat_m_(flat_m) {}
 
-  /// Whether each triangle lies within a face.
+  /// Returns for each triangle whether it is within a face.
   std::vector<bool> find() {
     face_.assign(triangles_.size(), kNone);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
@@ -352,7 +350,7 @@ class FaceFinder {
   }
 
  private:
-  /// Of the triangles taken so far, weighted by area: the more there are, the less their rounding tilts it.
+  /// Area-weighted plane of the triangles so far: the more triangles, the less their rounding tilts it.
   struct Plane {
     Eigen::Vector3d area_m2 = Eigen::Vector3d::Zero(), moment_m3 = Eigen::Vector3d::Zero();
     double weight_m2 = 0.0;
@@ -388,7 +386,7 @@ class FaceFinder {
   }
 
   void grow_from(std::uint32_t seed) {
-    constexpr double kSameWay = 0.99;  // cosine: slivers' normals are rough, those of folds are opposite
+    constexpr double kSameWay = 0.99;  // cosine: normals of slivers are rough, normals of folds are opposite
     Plane plane;
     plane.add(corners(seed), area(corners(seed)));
     face_[seed] = seed;
@@ -406,7 +404,7 @@ class FaceFinder {
         taken_.push_back(next);
       }
     }
-    // The plane may have turned away from those that came first.
+    // The plane may have tilted away from the first triangles.
     const bool is_flat = std::all_of(taken_.begin(), taken_.end(),
                                      [&](std::uint32_t t) { return plane.holds(corners(t), 2.0 * flat_m_); });
     if (!is_flat)
@@ -414,7 +412,7 @@ class FaceFinder {
   }
 };
 
-/// Children come after their parents.
+/// Sets within_faces of all nodes; children come after their parents.
 void mark_faces(const std::vector<bool>& within, std::vector<TreeNode>& nodes) {
   for (std::size_t n = nodes.size(); n-- > 0;) {
     TreeNode& node = nodes[n];
@@ -438,7 +436,7 @@ std::uint64_t next_revision() {
 
 }  // namespace
 
-/// Copies what is usable and sets everything but the nodes.
+/// Copies the usable triangles and sets every member except the nodes.
 void TriangleTree::take(const Mesh& mesh) {
   origin_ = mesh.origin;
   vertices_ = mesh.vertices;
@@ -461,7 +459,7 @@ void TriangleTree::take(const Mesh& mesh) {
     return;
   }
   const Eigen::Array3f centre = 0.5F * all.low + 0.5F * all.high;
-  // Three roundings of at most half a step of the largest number at hand, doubled.
+  // Three roundings of at most half a step of the largest number involved, doubled.
   const float reach_m = std::max(all.low.abs().maxCoeff(), all.high.abs().maxCoeff());
   rounding_m_ = 6.0F * std::numeric_limits<float>::epsilon() * reach_m + std::numeric_limits<float>::min();
   centre_ = centre.matrix().cast<double>();

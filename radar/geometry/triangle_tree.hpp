@@ -1,4 +1,4 @@
-// triangle_tree.hpp: a mesh at hand for exact questions: triangles under an 8-wide tree of boxes.
+// triangle_tree.hpp: a CPU mesh for exact queries, with an 8-wide tree of boxes over its triangles.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -11,62 +11,60 @@
 
 namespace roomradar {
 
-/// Eight boxes side by side, as loops over all eight want them. Boxes are relative to TriangleTree::centre()
-/// and hold what is under them with all rounding counted in. Unused places repeat the first box.
+/// Eight boxes as a structure of arrays, for SIMD. Boxes are relative to TriangleTree::centre() and contain
+/// everything under them, rounding included. Unused entries repeat the first box.
 struct alignas(32) TreeNode {
   static constexpr int kWidth = 8;
   std::array<float, kWidth> centre_x, centre_y, centre_z;  // m
   std::array<float, kWidth> half_x, half_y, half_z;        // m
-  std::array<std::uint32_t, kWidth>
-      first;  // of a leaf: its first triangle; else the child's place in nodes()
-  std::array<std::uint32_t, kWidth> count;  // of a leaf: its triangles; 0: an inner child
+  std::array<std::uint32_t, kWidth> first;  // leaf: its first triangle; inner child: index in nodes()
+  std::array<std::uint32_t, kWidth> count;  // leaf: number of triangles; inner child: 0
   std::uint32_t child_count = 0;
   std::uint32_t within_faces = 0;  // bit i: all triangles under box i lie within flat faces
 };
 
-/// A rigid mesh (a sensor object, a saved room) or one that lives a frame, on the processor's side. Vertices
-/// stay float, relative to the mesh's own double origin, so that nothing is lost far from zero. Triangles
-/// with an index past the last vertex or a vertex that is not finite are left out and counted; degenerate and
+/// A rigid mesh (a sensor object, a saved room) or a mesh of a single frame, on the CPU. Vertices are float,
+/// relative to the mesh's own double origin, so precision does not suffer far from zero. Triangles with an
+/// index past the last vertex or a vertex that is not finite are dropped and counted; degenerate and
 /// duplicate ones stay. No GL. Reading is thread safe, building is not.
 ///
-/// A triangle of a closed mesh lies within a flat face where no edge of its own is one of the shape's: beyond
-/// each lies another triangle of the same plane, as far as floats can say (twice rounding_m()). Where two
-/// shapes meet, or are nearest, an edge or a corner of one of them takes part: two triangles that both lie
-/// within flat faces have nothing to say to each other.
+/// A triangle of a closed mesh is within a flat face if none of its edges is an edge of the shape: every
+/// neighbour is in the same plane, within float precision (twice rounding_m()). Wherever two shapes touch or
+/// are closest, an edge or a corner of one of them takes part. Queries can therefore skip pairs of triangles
+/// that are both within flat faces.
 class TriangleTree {
  public:
-  /// Splits by place where the boxes get smallest: for meshes that stay. O(n log n). Finds out whether the
-  /// mesh is closed, and what of it lies within flat faces.
+  /// Splits by the surface area heuristic: for meshes that persist. O(n log n). Determines whether the mesh
+  /// is closed, and which triangles are within flat faces.
   void build_by_place(const Mesh& mesh);
-  /// Runs of consecutive triangles: for meshes that live one frame (rows of a depth image already lie near
-  /// each other). O(n), no allocation once as many were held. is_closed() is not looked at and false, as is
-  /// what lies within flat faces.
+  /// Groups runs of consecutive triangles: for meshes of a single frame (rows of a depth image are already
+  /// spatially ordered). O(n); allocates nothing once as many were stored. is_closed() is false, and no
+  /// triangle counts as within a flat face.
   void build_in_order(const Mesh& mesh);
 
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
   [[nodiscard]] std::size_t triangle_count() const { return triangles_.size(); }
   [[nodiscard]] std::size_t dropped_triangles() const { return dropped_triangles_; }
-  /// m, in the mesh's frame: a local point plus this is a point in the mesh's frame.
+  /// Origin in the mesh's frame, m: a local point plus the origin is a point in the mesh's frame.
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
   /// All of the mesh's vertices, local, in the mesh's order.
   [[nodiscard]] std::span<const Eigen::Vector3f> vertices() const { return vertices_; }
-  /// In the tree's order, which is not the mesh's after build_by_place().
+  /// In the tree's order, which differs from the mesh's after build_by_place().
   [[nodiscard]] std::span<const Triangle> triangles() const { return triangles_; }
-  /// Changes with every build of any tree, never 0 once built: keys caches.
+  /// Unique per build of any tree, 0 before the first build: a cache key.
   [[nodiscard]] std::uint64_t revision() const { return revision_; }
-  /// Every edge has as many triangles on one side as on the other (vertices at the same place are one) and
-  /// the volume inside each part that hangs together is positive: counter-clockwise seen from outside, so
-  /// that a point can be inside.
+  /// Returns true if the mesh is closed and counter-clockwise seen from outside, so points can be inside it.
+  /// Every edge is used equally often in both directions (vertices at the same position are one), and every
+  /// connected component has a positive volume.
   [[nodiscard]] bool is_closed() const { return is_closed_; }
 
   /// The root is the first node; empty without triangles.
   [[nodiscard]] std::span<const TreeNode> nodes() const { return nodes_; }
-  /// Local point at the middle of all triangles: what the nodes' boxes are relative to.
+  /// Local point at the centre of all triangles' box; the origin of the nodes' boxes.
   [[nodiscard]] const Eigen::Vector3d& centre() const { return centre_; }
   /// Half the size of the box around all triangles, about centre().
   [[nodiscard]] const Eigen::Vector3f& half_size() const { return half_size_; }
-  /// How far a box may be from what its triangles' corners say: rounding of float boxes, m. Already counted
-  /// into the boxes.
+  /// Max error of a float box around its triangles' corners, m. The boxes already include it.
   [[nodiscard]] float rounding_m() const { return rounding_m_; }
 
  private:

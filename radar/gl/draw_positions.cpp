@@ -1,4 +1,4 @@
-// draw_positions.cpp: one matrix, one draw.
+// draw_positions.cpp: sets the matrix and draws the mesh.
 #include "radar/gl/draw_positions.hpp"
 
 #define GL_GLEXT_PROTOTYPES

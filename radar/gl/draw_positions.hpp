@@ -1,4 +1,4 @@
-// draw_positions.hpp: drawing meshes where positions alone matter, as all depth passes do.
+// draw_positions.hpp: draws meshes with positions only, as all depth passes do.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -7,16 +7,16 @@
 
 namespace roomradar {
 
-/// Vertex shader of a program to be used with draw_positions: attribute 0 is the local position, uniform 0
-/// the matrix to clip space.
+/// Vertex shader of programs used with draw_positions(): attribute 0 is the local position, uniform 0 the
+/// matrix to clip space.
 inline constexpr const char* kPositionShader = R"(#version 450 core
 layout(location = 0) in vec3 p_local;
 layout(location = 0) uniform mat4 clip_from_local;
 void main() { gl_Position = clip_from_local * vec4(p_local, 1.0); }
 )";
 
-/// Draws the instance with the program in use. Its mesh must not be null.
-/// @return number of triangles handed to the renderer
+/// Draws the instance with the current program. Its mesh must not be null.
+/// @return number of triangles passed to the renderer
 std::size_t draw_positions(const MeshInstance& instance, const Eigen::Matrix4d& clip_from_world);
 
 }  // namespace roomradar

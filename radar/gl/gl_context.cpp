@@ -1,4 +1,4 @@
-// gl_context.cpp: try the machine's EGL devices, GPUs first, and keep the first that gives OpenGL 4.5.
+// gl_context.cpp: tries the machine's EGL devices, GPUs first, and takes the first with OpenGL 4.5.
 #include "radar/gl/gl_context.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -16,10 +16,10 @@
 namespace roomradar {
 namespace {
 
-/// One way to reach a renderer.
+/// A way to reach a renderer.
 struct Candidate {
   EGLDisplay display = EGL_NO_DISPLAY;
-  std::string name;  // for messages
+  std::string name;  // for error messages
   bool is_software = false;
 };
 
@@ -38,8 +38,8 @@ Function egl_function(const char* name) {
   return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-/// Devices in EGL's order, GPUs before software, and Mesa's surfaceless platform last (which needs no
-/// device).
+/// Returns the devices in EGL's order, GPUs before software, and last Mesa's surfaceless platform, which
+/// needs no device.
 std::vector<Candidate> candidates() {
   std::vector<Candidate> found;
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -68,7 +68,7 @@ std::vector<Candidate> candidates() {
     }
   }
   if (has_extension(client, "EGL_MESA_platform_surfaceless")) {
-    // Picks what Mesa would; whether that is software shows once a context names its renderer.
+    // Mesa chooses here; a context's renderer name shows whether it is software.
     found.push_back({get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr),
                      "EGL surfaceless platform", true});
   }
@@ -87,7 +87,7 @@ std::string gl_string(GLenum name) {
   return text != nullptr ? reinterpret_cast<const char*>(text) : "";
 }
 
-/// Makes a current context on the candidate's display, or returns EGL_NO_CONTEXT and says why in `fault`.
+/// Makes a current context on the candidate's display, or returns EGL_NO_CONTEXT and the reason in `fault`.
 EGLContext make_context(const Candidate& candidate, std::string& fault) {
   if (candidate.display == EGL_NO_DISPLAY || eglInitialize(candidate.display, nullptr, nullptr) != EGL_TRUE) {
     fault = "cannot be initialised";
@@ -116,12 +116,12 @@ EGLContext make_context(const Candidate& candidate, std::string& fault) {
                              EGL_NONE};
     return eglCreateContext(candidate.display, config, EGL_NO_CONTEXT, wanted);
   };
-  // So that glGetGraphicsResetStatus says when the GPU was reset, where that is offered.
+  // With loss notification if available, so glGetGraphicsResetStatus reports a GPU reset.
   EGLContext context = create(4, 5, true);
   if (context == EGL_NO_CONTEXT) context = create(4, 5, false);
   if (context == EGL_NO_CONTEXT) {
     fault = "gives no OpenGL 4.5 core context";
-    context = create(3, 1, false);  // to say what it has
+    context = create(3, 1, false);  // to report the version it has
     if (context == EGL_NO_CONTEXT) return EGL_NO_CONTEXT;
     if (eglMakeCurrent(candidate.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE) {
       fault += ", only " + gl_string(GL_VERSION) + " on " + gl_string(GL_RENDERER);
@@ -160,7 +160,7 @@ GlContext::GlContext(RendererChoice choice) {
     if (context != EGL_NO_CONTEXT) {
       const std::string name = gl_string(GL_RENDERER);
       const bool is_software = names_software(name);
-      // A card without a driver of its own draws in software, too, though there may be a better one after it.
+      // A GPU without a driver of its own also renders in software, though a better device may follow.
       const bool is_taken = choice == RendererChoice::kAuto
                                 ? !is_software || candidate.is_software
                                 : is_software == (choice == RendererChoice::kSoftware);
@@ -178,7 +178,7 @@ GlContext::GlContext(RendererChoice choice) {
       eglMakeCurrent(candidate.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
       eglDestroyContext(candidate.display, context);
       fault = "is " + name + ", not what was asked for";
-      if (choice == RendererChoice::kAuto) {  // after all others, then
+      if (choice == RendererChoice::kAuto) {  // retry it after all others
         all.push_back(candidate);
         all.back().is_software = true;
       }
@@ -195,7 +195,7 @@ GlContext::GlContext(RendererChoice choice) {
 }
 
 GlContext::~GlContext() {
-  // The display connection stays: EGL hands the same one to every context of a device.
+  // The display connection stays open: EGL returns the same one to every context of a device.
   if (eglGetCurrentContext() == context_) release();
   eglDestroyContext(display_, context_);
 }
@@ -211,7 +211,8 @@ void GlContext::make_current() const {
 void GlContext::release() const { eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
 
 void forget_gl_errors() {
-  while (glGetError() != GL_NO_ERROR && glGetGraphicsResetStatus() == GL_NO_ERROR) {  // a lost one has no end
+  // a lost context never runs out of errors
+  while (glGetError() != GL_NO_ERROR && glGetGraphicsResetStatus() == GL_NO_ERROR) {
   }
 }
 

@@ -1,4 +1,4 @@
-// gl_program.cpp: shaders in, program out, or the compiler's words.
+// gl_program.cpp: compiles shaders, links programs, reports the compiler's log.
 #include "radar/gl/gl_program.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -47,7 +47,7 @@ unsigned make_program(const char* name, std::initializer_list<ShaderSource> shad
     for (const ShaderSource& source : shaders) {
       const GLuint shader = make_shader(name, source);
       glAttachShader(program, shader);
-      glDeleteShader(shader);  // goes with the program
+      glDeleteShader(shader);  // freed with the program
     }
   } catch (...) {
     glDeleteProgram(program);

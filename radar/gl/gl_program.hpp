@@ -1,21 +1,21 @@
-// gl_program.hpp: compile and link shaders.
+// gl_program.hpp: compiles and links shader programs.
 #pragma once
 #include <initializer_list>
 
 namespace roomradar {
 
-/// One stage of a program.
+/// One shader stage of a program.
 struct ShaderSource {
-  unsigned stage = 0;  ///< GL_VERTEX_SHADER and so on
-  /// GLSL, in pieces that are put together.
+  unsigned stage = 0;  ///< GL_VERTEX_SHADER, ...
+  /// GLSL in pieces, which are concatenated.
   std::initializer_list<const char*> pieces;
 };
 
-/// @param name  for messages
-/// @return the GL name of the program, to be freed by glDeleteProgram; the context must be current
+/// @param name  for error messages
+/// @return GL name of the program, to be freed with glDeleteProgram; the context must be current
 /// @throws Error with the compiler's log
 unsigned make_program(const char* name, std::initializer_list<ShaderSource> shaders);
-/// The same of one vertex and one fragment shader.
+/// Makes a program of one vertex and one fragment shader.
 unsigned make_program(const char* name, const char* vertex_shader, const char* fragment_shader);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// gpu_mesh.cpp: buffers that are filled once or every frame, and drawn chunk by chunk.
+// gpu_mesh.cpp: buffers filled once or every frame, and drawn chunk by chunk.
 #include "radar/gl/gpu_mesh.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -15,15 +15,15 @@
 namespace roomradar {
 namespace {
 
-// Chunks of a static mesh: at 1 cm cells a run of 1,024 triangles is a patch of about 25 cm, the size of what
-// is thrown around. A streamed mesh's run is part of an image row or a few of them.
+// Triangles per chunk. Static mesh with 1 cm cells: 1,024 triangles are a patch of about 25 cm, the size of a
+// thrown object. Streamed mesh: a run is part of an image row, or a few rows.
 constexpr std::uint32_t kStaticChunkTriangles = 1024;
 constexpr std::uint32_t kStreamedChunkTriangles = 512;
 
 enum Buffer : GLuint { kPositions, kNormals, kColours, kIndices };
 
-/// Whether the box is wholly outside one of the clip planes. Conservative: a box near a corner may count as
-/// inside.
+/// Returns true if the box is wholly outside one of the clip planes. Conservative: a box near a corner may
+/// count as inside.
 bool is_outside(const Eigen::AlignedBox3d& box, const Eigen::Matrix4d& clip_from_local) {
   const Eigen::Vector3d centre = box.center();
   const Eigen::Vector3d half = 0.5 * box.sizes();
@@ -116,7 +116,7 @@ void GpuMesh::upload(const Mesh& mesh, MeshUsage usage, const TriangleTree& tree
   send(mesh, usage);
 }
 
-/// What is at hand to the renderer. Where that has no room, or is gone, nothing is left to be drawn.
+/// Uploads the CPU copy. If the renderer has no memory or is lost, the mesh is empty afterwards.
 void GpuMesh::send(const Mesh& mesh, MeshUsage usage) {
   forget_gl_errors();
   chunk_boxes_.clear();
@@ -162,7 +162,7 @@ void GpuMesh::fill_buffer(std::size_t which, const void* data, std::size_t size_
     capacity_bytes_[which] = size_bytes;
     return;
   }
-  glInvalidateBufferData(buffers_[which]);  // draws under way keep the old contents
+  glInvalidateBufferData(buffers_[which]);  // pending draws keep the old contents
   glNamedBufferSubData(buffers_[which], 0, static_cast<GLsizeiptr>(size_bytes), data);
 }
 

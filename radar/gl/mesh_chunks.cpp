@@ -1,4 +1,4 @@
-// mesh_chunks.cpp: check, order and box triangles.
+// mesh_chunks.cpp: checks, sorts and bounds triangles.
 #include "radar/gl/mesh_chunks.hpp"
 
 #include <algorithm>
@@ -31,9 +31,9 @@ void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriang
   };
   for (const Triangle& triangle : out.triangles) box.extend(centre(triangle));
 
-  // One scale for all axes: cells are cubes, and a flat room does not get slabs.
+  // One scale for all axes, so cells are cubes and a flat room is not cut into slabs.
   const float longest_m = box.isEmpty() ? 0.0F : box.sizes().maxCoeff();
-  constexpr float kCells = 1023.0F;  // of some centimetres, in a room
+  constexpr float kCells = 1023.0F;  // cells of some centimetres in a room
   const float scale = longest_m > 0.0F ? kCells / longest_m : 0.0F;
   std::vector<std::pair<std::uint64_t, Triangle>> keyed(out.triangles.size());
   for (std::size_t i = 0; i < keyed.size(); ++i) {

@@ -1,4 +1,4 @@
-// mesh_chunks.hpp: triangles in runs with bounding boxes, so that a pass can leave out what it cannot see.
+// mesh_chunks.hpp: triangles in runs with bounding boxes, so passes can skip invisible runs.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -20,19 +20,19 @@ struct MeshChunk {
 struct ChunkedTriangles {
   std::vector<Triangle> triangles;
   std::vector<MeshChunk> chunks;
-  Eigen::AlignedBox3f bounds_local;   ///< of all triangles; empty where there is none
-  std::size_t dropped_triangles = 0;  ///< left out: a vertex not finite or an index past the last vertex
+  Eigen::AlignedBox3f bounds_local;   ///< of all triangles; empty if there are none
+  std::size_t dropped_triangles = 0;  ///< skipped: a vertex not finite or an index past the last vertex
 };
 
-/// Puts triangles that lie near each other into the same run: Morton order of their centres, then runs of
-/// `max_triangles`. For meshes that stay. O(n log n).
+/// Groups nearby triangles: Morton order of their centres, then runs of `max_triangles`. For meshes that
+/// persist. O(n log n).
 void chunk_by_place(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out);
 
-/// Cuts the triangles into runs of `max_triangles` in the order they have. For meshes that live one frame:
-/// the rows of a depth image already lie near each other. O(n), no allocation once `out` has held as many.
+/// Cuts the triangles into runs of `max_triangles` in their given order. For meshes of a single frame: the
+/// rows of a depth image are already spatially ordered. O(n); allocates nothing once `out` has had as many.
 void chunk_in_order(const Mesh& mesh, std::uint32_t max_triangles, ChunkedTriangles& out);
 
-/// Makes out.chunks and out.bounds_local for triangles that are held elsewhere, all of them usable.
+/// Sets out.chunks and out.bounds_local for triangles stored elsewhere; all must be usable.
 void cut_into_chunks(std::span<const Eigen::Vector3f> vertices, std::span<const Triangle> triangles,
                      std::uint32_t max_triangles, ChunkedTriangles& out);
 

@@ -8,7 +8,7 @@
 namespace roomradar {
 
 PixelRect clamped(const PixelRect& rect, int width_px, int height_px) {
-  // In 64 bits: a rectangle from elsewhere may reach past what int holds.
+  // 64 bits, as a caller's rectangle may exceed the range of int.
   const auto cut = [](std::int64_t first, std::int64_t count, std::int64_t limit, int& out_first,
                       int& out_count) {
     const std::int64_t begin = std::clamp<std::int64_t>(first, 0, limit);
@@ -46,7 +46,7 @@ PixelRect pixels_of(const Eigen::AlignedBox3d& box, const Intrinsics& camera,
   }
   if (behind == 8) return {};
   if (behind > 0) return {0, 0, camera.width_px, camera.height_px};
-  // Pixels whose centres may be covered; one to spare for the renderer's snapping of vertices.
+  // Pixels whose centres may be covered, plus one for the renderer's vertex snapping.
   const auto whole_px = [](double at_px, double limit_px) {
     return static_cast<int>(std::clamp(at_px, -1.0, limit_px + 1.0));
   };
@@ -59,7 +59,7 @@ PixelRect pixels_of(const Eigen::AlignedBox3d& box, const Intrinsics& camera,
 
 Eigen::Matrix4d clip_from_camera(const Intrinsics& camera, double near_m, const PixelRect& rect) {
   Eigen::Matrix4d clip = Eigen::Matrix4d::Zero();
-  // Image coordinate u is viewport coordinate u + 0.5 - rect.x; x_clip / w = 2 * that / width - 1; w is z.
+  // Viewport coordinate v = u + 0.5 - rect.x for image coordinate u; x_clip / w = 2 v / width - 1; w is z.
   clip(0, 0) = 2.0 * camera.fx_px / rect.width;
   clip(0, 2) = 2.0 * (camera.cx_px + 0.5 - rect.x) / rect.width - 1.0;
   clip(1, 1) = 2.0 * camera.fy_px / rect.height;

@@ -1,4 +1,4 @@
-// near_places.cpp: corners over faces, edges across edges, and the outermost of what they give.
+// near_places.cpp: corners over faces, edges across edges, and selection of the outermost.
 #include "radar/motion/closest_features.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace roomradar {
 namespace {
 
 using Vec3 = Eigen::Vector3d;
-constexpr double kTouching_m = 1e-12;  // nearer than this, rounding says on which side
+constexpr double kTouching_m = 1e-12;  // below this, rounding decides the side
 
 bool is_over(const Vec3& p, const Face& t) {
   for (std::size_t i = 0; i < 3; ++i) {
@@ -19,7 +19,7 @@ bool is_over(const Vec3& p, const Face& t) {
   return true;
 }
 
-/// Farther from all edges than a touch.
+/// Returns true if p is farther than kTouching_m inside all edges.
 bool is_inside(const Vec3& p, const Face& t) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (t.inward[i].dot(p - t.corners[i]) <= kTouching_m * t.inward[i].norm()) return false;
@@ -27,7 +27,7 @@ bool is_inside(const Vec3& p, const Face& t) {
   return true;
 }
 
-/// +1 or -1; 0 of less than a touch.
+/// Returns +1 or -1; 0 within kTouching_m.
 double side_of(double height_m) {
   if (std::abs(height_m) <= kTouching_m) return 0.0;
   return height_m > 0.0 ? 1.0 : -1.0;
@@ -66,7 +66,7 @@ void PairPlaces::add(const Vec3& on_scene, const Vec3& normal, double gap_m, con
 
 Vec3 PairPlaces::off_scene(double height_m, const Face& o, const Face& s, const Range& heights) const {
   double side = side_of(height_m);
-  // It touches: the object is where the rest of its triangle is. One that lies in the plane faces the scene.
+  // Touching: the object is on the side of the rest of its triangle. A triangle in the plane faces the scene.
   if (side == 0.0) side = side_of(heights.low + heights.high);
   if (side == 0.0 && object_is_closed) side = -side_of(o.normal.dot(s.normal));
   if (side == 0.0) side = 1.0;
@@ -76,14 +76,14 @@ Vec3 PairPlaces::off_scene(double height_m, const Face& o, const Face& s, const 
 Vec3 PairPlaces::off_object(double height_m, const Vec3& corner, const Face& o, const Range& heights) const {
   double side = side_of(height_m);
   if (side == 0.0) {
-    if (!is_inside(corner, o)) return Vec3::Zero();  // what passes along an edge is not held by the face
+    if (!is_inside(corner, o)) return Vec3::Zero();  // a corner along an edge is not supported by the face
     side = object_is_closed ? 1.0 : side_of(heights.low + heights.high);
   }
   return -side * o.normal;
 }
 
 bool PairPlaces::look(const FrameTriangle& object, const FrameTriangle& scene) const {
-  // Heights of the corners of the one above the other's plane.
+  // Heights of each triangle's corners above the other's plane.
   std::array<double, 3> over_scene, over_object;
   Range of_object, of_scene;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -107,8 +107,8 @@ bool PairPlaces::look(const FrameTriangle& object, const FrameTriangle& scene) c
     if (std::abs(g) <= reach_m && !(object_is_closed && g < -kTouching_m) && is_over(s.corners[k], o))
       add(s.corners[k], off_object(g, s.corners[k], o, of_scene), std::abs(g), s);
   }
-  // Seen along the scene's normal, all of the one triangle may lie on one side of an edge of the other.
-  std::array<bool, 3> is_passed;  // by the scene's edges
+  // Seen along the scene's normal, all of one triangle may lie on one side of an edge of the other.
+  std::array<bool, 3> is_passed;  // the object is wholly beside this scene edge
   for (std::size_t j = 0; j < 3; ++j) {
     const Range side = range_along(s.inward[j], o.corners);
     const double at = s.inward[j].dot(s.corners[j]), reach = reach_m * s.inward[j].norm();
@@ -125,31 +125,31 @@ bool PairPlaces::look(const FrameTriangle& object, const FrameTriangle& scene) c
   return false;
 }
 
-/// Two edges that pass each other: the shortest way between them stands on both.
+/// Adds the shortest segment between two edges that pass each other; it is perpendicular to both.
 void PairPlaces::look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const {
   const Vec3& a = o.corners[i];
   const Vec3& b = s.corners[j];
   const Vec3 &u = o.edge[i], &v = s.edge[j], w = a - b;
   const double uu = u.squaredNorm(), vv = v.squaredNorm(), uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
   const double across = uu * vv - uv * uv;
-  if (!(across > 1e-6 * uu * vv)) return;  // parallel: their ends say it
+  if (!(across > 1e-6 * uu * vv)) return;  // parallel: their end points give the closest features
   const double along_u = (uv * vw - uw * vv) / across, along_v = (uu * vw - uv * uw) / across;
   if (!(along_u > 0.0 && along_u < 1.0 && along_v > 0.0 && along_v < 1.0)) return;
   const Vec3 on_scene = b + along_v * v;
   const Vec3 way = a + along_u * u - on_scene;
   const double gap_m = way.norm();
   if (!(gap_m <= reach_m)) return;
-  if (gap_m <= kTouching_m) {  // across both, towards the rest of the object's triangle
+  if (gap_m <= kTouching_m) {  // normal across both edges, towards the rest of the object's triangle
     const Vec3 normal = u.cross(v).normalized();
     return add(on_scene, side_of(normal.dot(o.corners[(i + 2) % 3] - a)) * normal, gap_m, s);
   }
-  // The way leaves a closed object inwards: another of its faces is nearer.
+  // The segment enters a closed object: another of its faces is nearer.
   if (object_is_closed && way.dot(o.normal) > 1e-9 * gap_m) return;
   add(on_scene, way / gap_m, gap_m, s);
 }
 
 void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kept) {
-  constexpr double kOutPerGap = 20.0;  // 1 mm farther away is worth 2 cm farther out
+  constexpr double kOutPerGap = 20.0;  // 1 mm farther away must be 2 cm farther out
   constexpr double kSameNormal = 0.9;
   constexpr std::size_t kMostNormals = 4, kDirections = 8;
   kept.clear();

@@ -1,4 +1,4 @@
-// near_places.hpp: where two triangles are near each other, and which of many such places hold up most.
+// near_places.hpp: closest features of two triangles, and selection of those that support an object most.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -10,18 +10,20 @@
 
 namespace roomradar {
 
-/// With what is asked of it again and again.
+/// A triangle with precomputed edges.
 struct Face : FrameTriangle {
-  std::array<Eigen::Vector3d, 3> edge, inward;  ///< from corner i on, and across it towards the third corner
+  std::array<Eigen::Vector3d, 3> edge, inward;  ///< edge from corner i, and the direction across it towards
+                                                ///< the third corner
 };
 
 Face face_of(const FrameTriangle& triangle);
-/// Whether an edge of the one goes through the other.
+/// Returns true if an edge of one triangle passes through the other.
 bool cross(const Face& a, const Face& b);
 
-/// Whether a unit direction leaves a triangle on its outside, within 60 degrees of its normal: of the faces
-/// of an edge whose normals are up to 120 degrees apart one at least has each direction between them, and
-/// what slides along the inside is not taken for outside by rounding.
+/// Returns true if a unit direction leaves a triangle on its outside, within 60 degrees of its normal. At an
+/// edge between faces whose normals are up to 120 degrees apart, every direction between the normals is
+/// outside of at least one face. The margin keeps rounding from taking a direction along the inside for
+/// outside.
 inline bool is_outside(const Eigen::Vector3d& direction, const FrameTriangle& t) {
   return direction.dot(t.normal) > 0.5 - 1e-9;
 }
@@ -40,7 +42,7 @@ inline Range range_along(const Eigen::Vector3d& direction, const std::array<Eige
   return range;
 }
 
-/// Collects the places of one pair of triangles.
+/// Collects the closest features of one pair of triangles.
 struct PairPlaces {
   double reach_m;
   bool object_is_closed;
@@ -49,26 +51,28 @@ struct PairPlaces {
   const Eigen::Isometry3d& T_world_frame;
   std::vector<NearPoint>& found;
 
-  /// Returns whether the triangles cross.
+  /// Adds the pair's closest features. Returns true if the triangles cross and the scene's is not one-sided.
   bool look(const FrameTriangle& object, const FrameTriangle& scene) const;
 
  private:
-  /// Nothing without a normal, nor inside of what is met from its outside only.
+  /// Adds a point unless it is beyond reach_m, its normal is zero, or it is on the inside of a one-sided
+  /// surface.
   void add(const Eigen::Vector3d& on_scene, const Eigen::Vector3d& normal, double gap_m, const Face& s) const;
-  /// The scene's normal on the side of an object's corner that is so high above it; zero where none can be
-  /// told.
+  /// Returns the scene's normal on the side of an object corner at this height above it.
   /// @param heights  of all corners of the object's triangle
   [[nodiscard]] Eigen::Vector3d off_scene(double height_m, const Face& o, const Face& s,
                                           const Range& heights) const;
-  /// The object's normal from a scene's corner that is so high above it, to the object; zero likewise.
+  /// Returns the object's normal, turned from a scene corner at this height towards the object; zero if the
+  /// side cannot be decided.
   /// @param heights  of all corners of the scene's triangle
   [[nodiscard]] Eigen::Vector3d off_object(double height_m, const Eigen::Vector3d& corner, const Face& o,
                                            const Range& heights) const;
   void look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const;
 };
 
-/// Of many places those that hold up most: for each of some normals the nearest, and in each direction across
-/// the normal the outermost, where a place that is farther away has to be farther out. `all` is used up.
+/// Selects the points that support an object most. For each of up to four normals: the nearest point, and the
+/// outermost point in each of eight directions across the normal. A more distant point has to be farther out.
+/// Consumes `all`.
 void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kept);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// free_time.cpp: how long planes between pairs of triangles keep a motion free.
+// free_time.cpp: how long planes between pairs of triangles keep a motion free of contact.
 #include <algorithm>
 #include <cmath>
 
@@ -13,8 +13,8 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-/// Until something that is allowed so far (m) and closes at this speed is there, if the turning adds
-/// quadratic_m_s2 t^2 at most.
+/// Returns the time until a point has approached by allowed_m. It closes in at closing_m_s now, and rotation
+/// adds at most quadratic_m_s2 t^2.
 double time_for(double allowed_m, double closing_m_s, double quadratic_m_s2) {
   const double root = std::sqrt(closing_m_s * closing_m_s + 4.0 * quadratic_m_s2 * allowed_m);
   const double denominator = closing_m_s + root;
@@ -25,17 +25,19 @@ double allowed_m(double distance_m, double keep_m) {
   return distance_m > 2.0 * keep_m ? distance_m - keep_m : 0.5 * distance_m;
 }
 
-/// A rigid motion in the frame of a scene's mesh, and what holds for how it closes in.
+/// A rigid motion in the frame of a scene's mesh, with bounds of its approach.
 struct RelativeMotion {
   Vec3 linear, angular, centre;
   double turn_rad_s;
-  double reach_m;  // from the centre to the farthest point of the object, across the axis
+  double reach_m;  // from the centre to the farthest point of the object
   double keep_m;
-  /// Of the turning, what moves along each axis of the frame: at most by the quadratic, ever at most so fast.
+  /// Displacement by rotation along each axis of the frame: at most quadratic_m_s2 t^2 beyond the present
+  /// velocity, and at most fastest_m_s t.
   Vec3 quadratic_m_s2, fastest_m_s;
 
   [[nodiscard]] Vec3 velocity_at(const Vec3& p) const { return linear + angular.cross(p - centre); }
-  /// Until boxes that axes keep apart can be as near as they may; 0 where none does.
+  /// Returns the time until two boxes separated along an axis can reach their minimum distance; 0 if no axis
+  /// separates them.
   [[nodiscard]] float free_s(const PairBox& o, const PairBox& s) const {
     const Vec3 o_centre = o.centre.cast<double>(), o_half = o.half.cast<double>();
     const Vec3 between = o_centre - s.centre.cast<double>();
@@ -55,7 +57,7 @@ struct RelativeMotion {
     }
     return static_cast<float>(free_s) * (1.0F - 1e-6F);
   }
-  /// The same for a box and a triangle of the scene, by the triangle's plane.
+  /// Returns the time for a box and a scene triangle, separated by the triangle's plane.
   [[nodiscard]] double free_s(const FrameTriangle& s, const PairBox& o) const {
     const Vec3 middle = o.centre.cast<double>(), half = o.half.cast<double>();
     const double side = s.normal.dot(middle - s.corners[0]) >= 0.0 ? 1.0 : -1.0;
@@ -65,12 +67,12 @@ struct RelativeMotion {
     const double closing = -direction.dot(velocity_at(middle)) + turning.cwiseAbs().dot(half);
     return time_for(allowed_m(apart_m, keep_m), closing, 0.5 * turning.norm() * turn_rad_s * reach_m);
   }
-  /// The same for two triangles and a direction from the scene's to the object's: for each corner from where
-  /// it is now. Negative where the direction does not keep them apart.
+  /// Returns the time for two triangles and a direction from the scene's to the object's, the least over the
+  /// corners. Negative if the direction does not separate them.
   [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, const FrameTriangle& s) const {
     return free_s(direction, o, range_along(direction, s.corners).high);
   }
-  /// The same for all that lies no farther along the direction than face_at.
+  /// Returns the time for everything that lies no farther along the direction than face_at.
   [[nodiscard]] double free_s(const Vec3& direction, const FrameTriangle& o, double face_at) const {
     const double turning = direction.cross(angular).norm();
     const double quadratic = 0.5 * turning * turn_rad_s * reach_m;
@@ -87,7 +89,7 @@ struct RelativeMotion {
   }
 };
 
-/// From the centre of turning to the farthest corner of the object's box.
+/// Returns the distance from the centre of rotation to the farthest corner of the object's box.
 double reach_of(const TreeInstance& object, const RigidMotion& motion) {
   double reach_m = 0.0;
   for (int i = 0; i < 8; ++i) {
@@ -117,15 +119,15 @@ RelativeMotion course_of(const TreeInstance& object, const RigidMotion& motion, 
           turning_m_s};
 }
 
-/// One tree of the scene: how long its pairs of triangles let the motion go on.
+/// Free time against one tree of the scene, from its pairs of triangles.
 struct TreeFreedom {
   TreePair& trees;
   const Touched kind;
-  const std::uint32_t number;  // among the scene's
+  const std::uint32_t number;  // index among the scene's trees
   const RelativeMotion course;
   FreeTime result;
 
-  /// Until when two boxes are free of each other; infinite where that is long enough.
+  /// Returns the free time of two boxes; infinite if it exceeds the least found so far.
   [[nodiscard]] float key(const PairBox& o, const PairBox& s) const {
     constexpr float kLongEnough = std::numeric_limits<float>::infinity();
     const float free_s = course.free_s(o, s);
@@ -148,7 +150,7 @@ struct TreeFreedom {
     return free_s;
   }
 
-  /// The best of the planes between two triangles.
+  /// Finds the best of the planes between two triangles.
   void look(const FrameTriangle& o, const FrameTriangle& s) {
     double free_s = -1.0;
     const auto is_long_enough = [&](const Vec3& direction) {
@@ -166,7 +168,7 @@ struct TreeFreedom {
       if (!(distance_m > 0.0) || cross(face_of(o), face_of(s))) return;
       free_s = 0.0;  // so near that rounding hides the plane between them
     }
-    if (!(distance_m > 0.0)) return;  // they touch: how they part is for contacts to say
+    if (!(distance_m > 0.0)) return;  // they touch: how they separate is for contacts to decide
     if (is_one_sided(kind) && !is_outside(-way / distance_m, s)) return;
     result.free_s = free_s;
     result.limit = {trees.T_world_frame * (from + way), trees.T_world_frame.linear() * (-way / distance_m),
@@ -186,7 +188,8 @@ FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& mot
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
   result.free_s = duration_s;
-  // No point of the object goes farther, and what is farther than twice keep_m may come as near as that.
+  // No point of the object travels farther than way_m. Pairs farther apart than twice keep_m may approach to
+  // keep_m.
   const double way_m =
       duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_of(object, motion));
   for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {

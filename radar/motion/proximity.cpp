@@ -1,4 +1,4 @@
-// near_field.cpp: the object's tree beside each of the scene's, and the places of each pair of triangles.
+// near_field.cpp: traverses the object's tree with each of the scene's and tests pairs of triangles.
 #include "radar/motion/proximity.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ bool is_far_from(const FrameTriangle& t, const PairBox& box, double reach_m) {
          reach_m;
 }
 
-/// Whether what is in two boxes may be within reach.
+/// Returns true if the contents of two boxes may be within reach.
 bool may_be_near(TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
   const double reach_m = places.reach_m;
   const Eigen::Array3f apart = (o.centre - s.centre).array().abs() - o.half.array() - s.half.array();
@@ -36,7 +36,7 @@ bool may_be_near(TreePair& trees, const PairBox& o, const PairBox& s, const Pair
   return true;
 }
 
-/// All pairs of two leaves' triangles. Returns whether any cross.
+/// Examines all pairs of two leaves' triangles. Returns true if any cross.
 bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
   bool crosses = false;
   for (const FrameTriangle& scene : trees.of_scene(s))

@@ -1,4 +1,4 @@
-// near_field.hpp: where does an object nearly touch, and for how long is it free while it moves and turns?
+// near_field.hpp: closest features of an object and the scene, and contact-free time of a rigid motion.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -12,47 +12,47 @@
 
 namespace roomradar {
 
-/// A place where the scene is near the object: the foot of a corner on a face, or where two edges pass.
+/// Closest features of scene and object: a corner and its foot on a face, or two edges that pass each other.
 struct NearPoint {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();   ///< on the scene
-  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from there to the object
-  double gap_m = 0.0;                                      ///< >= 0; 0: they touch
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from point_world to the object
+  double gap_m = 0.0;                                      ///< >= 0; 0: touching
   Touched kind = Touched::kNothing;
-  std::uint32_t tree = 0;  ///< on which of the scene's trees
+  std::uint32_t tree = 0;  ///< index of the scene's tree
 };
 
-/// Some kinds of surfaces, a bit each.
+/// Bit mask of surface kinds.
 using Kinds = std::uint32_t;
 constexpr Kinds bit_of(Touched kind) { return Kinds{1} << static_cast<unsigned>(kind); }
 
 struct FreeTime {
-  double free_s = 0.0;  ///< up to this time no pair of triangles comes nearer than it may
-  NearPoint limit;      ///< of the pair that allows no more, now; kNothing where all of the duration is free
+  double free_s = 0.0;  ///< until then every pair of triangles keeps its minimum distance
+  NearPoint limit;      ///< present closest features of the pair that limits free_s; kNothing if the whole
+                        ///< duration is free
 };
 
-/// Cyber Radar looks along one direction; near a contact, where an object turns over an edge, every direction
-/// counts. This goes through the object's tree and the scene's trees (its depth images are left out) side by
-/// side, and settles pairs of triangles in double. No GL. Not thread safe: one a thread; allocates nothing
-/// once as much was held.
+/// Proximity queries between an object and the scene's trees; the scene's depth images are ignored.
+/// CyberRadar looks along one direction; near a contact, where an object turns over an edge, every direction
+/// matters. Traverses both trees together and tests pairs of triangles exactly, in double. No GL. Not thread
+/// safe: use one per thread. Allocates nothing after queries as large.
 ///
-/// A surface that crosses the object has no side from which it is near: the radar's overlaps are what to ask
-/// about it. Of a one-sided surface (is_one_sided()) nothing counts but what is near on its outside, and it
-/// is never said to cross.
+/// A surface that crosses the object has no near side; use CyberRadar's overlaps for it. A one-sided surface
+/// (is_one_sided()) counts only on its outside and is never reported as crossing.
 class NearField {
  public:
-  /// Corners over faces and edges across edges within reach_m, at most kMostPoints of them: those that hold
-  /// up most for up to four directions that normals have, the nearest first. A closed object is near what it
-  /// faces only.
-  /// @param left_out  kinds that are not looked at
+  /// Finds corners over faces and edges across edges within reach_m, at most kMostPoints. For up to four
+  /// normal directions, returns the points that support the object most, nearest first. For a closed object
+  /// only features outside it count.
+  /// @param left_out  kinds to ignore
   /// @param points    out
-  /// @return kinds of surfaces that cross the object; of a tree that does, no point is given
+  /// @return kinds of surfaces that cross the object; a tree that crosses it gives no points
   Kinds near(const TreeInstance& object, const RadarScene& scene, double reach_m, Kinds left_out,
              std::vector<NearPoint>& points);
 
-  /// Until when a rigid motion is free of what does not cross the object now: each pair of triangles is
-  /// kept apart by a plane (that of the one, of the other, or across their nearest points), and no corner
-  /// moves towards it faster than its speed now plus what the turning can add. A pair may come as near as
-  /// keep_m, one that is nearer than twice that by half of its distance.
+  /// Computes how long a rigid motion is free of contact with surfaces that do not cross the object now. A
+  /// plane separates each pair of triangles: the plane of one of them, or the one across their nearest
+  /// points. No corner approaches the plane faster than its present speed plus what the rotation can add. The
+  /// minimum distance of a pair is keep_m, or half its present distance if that is under twice keep_m.
   /// Source: Mirtich, PhD thesis, Berkeley 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled
   /// conservative advancement, ICRA 2009.
   FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,

@@ -1,4 +1,4 @@
-// sweep.cpp: steps that a thickened object proves free, and poses that prove the contact.
+// sweep.cpp: steps that an inflated object proves free, and poses that prove the contact.
 #include "radar/motion/time_of_impact.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-constexpr double kNoTurn_m = 1e-9;  // carries nothing farther than double poses far from the origin can tell
+constexpr double kNoTurn_m = 1e-9;  // below the precision of double poses far from the origin
 
 bool is_valid(const RigidMotion& motion, double duration_s, const SweepConfig& config) {
   return motion.linear_m_s.allFinite() && motion.angular_rad_s.allFinite() &&
@@ -21,10 +21,11 @@ bool is_valid(const RigidMotion& motion, double duration_s, const SweepConfig& c
          std::isfinite(motion.angular_rad_s.stableNorm() * duration_s);
 }
 
-/// What holds the object however it turns: all points within radius_m of a piece of the axis.
+/// Capsule that contains the object in every orientation: all points within radius_m of a segment of the
+/// axis.
 struct Capsule {
   double radius_m = 0.0;
-  double from_m = 0.0, to_m = 0.0;  // along the axis, from the centre of turning
+  double from_m = 0.0, to_m = 0.0;  // along the axis, from the centre of rotation
 };
 
 Capsule capsule_of(const TreeInstance& object, const RigidMotion& motion) {
@@ -32,7 +33,7 @@ Capsule capsule_of(const TreeInstance& object, const RigidMotion& motion) {
       object.T_world_mesh.linear().transpose() * motion.angular_rad_s.stableNormalized();
   const Eigen::Vector3d middle = object.tree->origin() + object.tree->centre() - motion.centre_object;
   Capsule capsule{0.0, kInfinity<double>, -kInfinity<double>};
-  for (int i = 0; i < 8; ++i) {  // the corners of the box around it: both measures are convex
+  for (int i = 0; i < 8; ++i) {  // corners of the object's box suffice: both measures are convex
     const Eigen::Vector3d side((i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0,
                                (i & 4) != 0 ? 1.0 : -1.0);
     const Eigen::Vector3d corner = middle + side.cwiseProduct(object.tree->half_size().cast<double>());
@@ -43,7 +44,8 @@ Capsule capsule_of(const TreeInstance& object, const RigidMotion& motion) {
   return capsule;
 }
 
-/// The capsule's piece of axis as a mesh without area, about the centre of turning, turned as the world is.
+/// Returns the capsule's axis segment as a mesh without area, with the centre of rotation as origin and world
+/// axes.
 TriangleTree axis_tree(const Capsule& capsule, const RigidMotion& motion) {
   const Eigen::Vector3d axis = motion.angular_rad_s.stableNormalized();
   Mesh line;
@@ -62,7 +64,7 @@ SweepStatus failure(const Contact& contact) {
   return contact.status == ContactStatus::kNoAnswer ? SweepStatus::kNoAnswer : SweepStatus::kInvalidInput;
 }
 
-/// A sweep under way.
+/// A sweep in progress.
 struct Course {
   CyberRadar& radar;
   const TreeInstance& object;
@@ -70,20 +72,21 @@ struct Course {
   const RadarScene& scene;
   const SweepConfig& config;
   Capsule capsule;
-  TriangleTree axis;       // of the capsule
-  double speed_m_s = 0.0;  // of the centre
+  TriangleTree axis;       // axis segment of the capsule
+  double speed_m_s = 0.0;  // speed of the centre
   double turn_rad_s = 0.0;
   int queries = 0;
 
   [[nodiscard]] bool has_queries() const { return queries < config.max_queries; }
 
-  /// How far the turning of a step carries any point away from the straight motion in half-way orientation.
+  /// Returns how far a step's rotation carries any point away from the straight motion in half-way
+  /// orientation.
   [[nodiscard]] double straying_m(double step_s) const {
     constexpr double kRounding = 1.0 + 1e-9;
     return 2.0 * capsule.radius_m * std::sin(0.5 * std::min(0.5 * turn_rad_s * step_s, std::numbers::pi)) *
            kRounding;
   }
-  /// No point goes farther in the step.
+  /// Returns an upper bound of every point's path length in the step.
   [[nodiscard]] double way_m(double step_s) const {
     return (speed_m_s + turn_rad_s * capsule.radius_m) * step_s;
   }
@@ -96,7 +99,7 @@ struct Course {
         scene);
   }
 
-  /// The object at start_s, but turned as it is half-way through the step.
+  /// Returns the object's pose at start_s, but with its orientation half-way through the step.
   [[nodiscard]] Eigen::Isometry3d half_turned(double start_s, double step_s) const {
     Eigen::Isometry3d T_world_mesh = pose_after(object.T_world_mesh, motion, start_s + 0.5 * step_s);
     T_world_mesh.pretranslate(-0.5 * step_s * motion.linear_m_s);
@@ -109,15 +112,15 @@ struct Course {
   };
   Step try_step(double start_s, double step_s) {
     const double straight_m = speed_m_s * step_s;
-    // Slow or turning on the spot: what counts is whether anything is within the margin; a little way ahead
-    // is asked for since a query needs one.
+    // Slow, or rotating in place: only the margin matters, but a query needs a distance, so use a small one.
     const double distance_m = std::max(straight_m, 1e-3 * config.tolerance_m);
     const Eigen::Vector3d direction = speed_m_s > 0.0 ? motion.linear_m_s : motion.angular_rad_s;
     Step step;
     if (straying_m(step_s) > capsule.radius_m) {
       Eigen::Isometry3d T_world_axis = Eigen::Isometry3d::Identity();
       T_world_axis.translation() = object.T_world_mesh * motion.centre_object + start_s * motion.linear_m_s;
-      const double rounding_m = 1e-6 * (std::abs(capsule.from_m) + std::abs(capsule.to_m));  // float line
+      // float vertices of the segment
+      const double rounding_m = 1e-6 * (std::abs(capsule.from_m) + std::abs(capsule.to_m));
       step.contact = ask({&axis, T_world_axis}, direction, distance_m, capsule.radius_m + rounding_m);
     } else {
       step.contact =
@@ -133,8 +136,9 @@ struct Course {
     return step;
   }
 
-  /// kOverlap if the object as it is at time_s meets the scene already, kFree, or why that is not known.
-  /// Asked along the motion first, then along all axes, since what a direction leaves is no overlap for it.
+  /// Returns kOverlap if the object's pose at time_s overlaps the scene, kFree if not, or why that is
+  /// unknown. Queries along the motion first, then along all axes, since scene that an object leaves is no
+  /// overlap in that direction.
   SweepStatus state_at(double time_s, Contact& contact) {
     const Eigen::Isometry3d T_world_mesh = pose_after(object.T_world_mesh, motion, time_s);
     const std::array<Eigen::Vector3d, 7> directions = {motion.linear_m_s,         Eigen::Vector3d::UnitX(),
@@ -155,7 +159,7 @@ struct Course {
   bool meets(double time_s, Contact& contact) { return state_at(time_s, contact) == SweepStatus::kOverlap; }
 };
 
-/// Nothing turns: the radar's own bounds.
+/// Without rotation: uses the radar's own bounds.
 void sweep_straight(Course& course, double duration_s, SweepResult& result) {
   const Contact contact =
       course.ask(course.object, course.motion.linear_m_s, course.speed_m_s * duration_s, 0.0);
@@ -180,7 +184,7 @@ void sweep_straight(Course& course, double duration_s, SweepResult& result) {
   result.contact_s = time.upper_s;
 }
 
-/// The step that stopped the sweep was as short as they get: what is in the way, and by when is it met?
+/// Finds the contact and its time, after a step of least length stopped the sweep.
 void find_contact(Course& course, double step_s, double duration_s, const Contact& stopped_by,
                   SweepResult& result) {
   result.status = SweepStatus::kContact;
@@ -190,7 +194,7 @@ void find_contact(Course& course, double step_s, double duration_s, const Contac
     if (result.safe_s == 0.0) result.status = SweepStatus::kOverlap;
     return;
   }
-  constexpr int kProbes = 10;  // the last one 38 shortest steps ahead: past that it was a graze
+  constexpr int kProbes = 10;  // the last one is 38 shortest steps ahead; later contacts count as a graze
   for (int i = 0; i < kProbes; ++i) {
     const double time_s = std::min(result.safe_s + step_s * std::pow(1.5, i), duration_s);
     if (course.meets(time_s, result.contact)) {
@@ -207,7 +211,7 @@ void find_contact(Course& course, double step_s, double duration_s, const Contac
 }
 
 void sweep_turning(Course& course, double duration_s, SweepResult& result) {
-  // A turn on the spot comes back to where it began.
+  // A rotation in place returns to its start after a full turn.
   const double turn_s = 2.0 * std::numbers::pi / course.turn_rad_s;
   const double end_s = course.speed_m_s > 0.0 ? duration_s : std::min(duration_s, turn_s * (1.0 + 1e-9));
   double step_s = duration_s;
@@ -216,7 +220,7 @@ void sweep_turning(Course& course, double duration_s, SweepResult& result) {
       result.status = SweepStatus::kOutOfQueries;
       return;
     }
-    const bool is_last = step_s >= duration_s - result.safe_s;  // one query may well show all of it free
+    const bool is_last = step_s >= duration_s - result.safe_s;  // one query may show all the rest free
     if (is_last) step_s = duration_s - result.safe_s;
     const Course::Step step = course.try_step(result.safe_s, step_s);
     if (!is_answer(step.contact)) {
