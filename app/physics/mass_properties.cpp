@@ -1,11 +1,11 @@
 // mass_properties.cpp: sums over tetrahedra of a solid or triangles of a shell.
 #include "app/physics/mass_properties.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
@@ -39,12 +39,11 @@ MassProperties properties_of(const Moments& moments, const Vec3& from) {
   const Vec3 centre = moments.first / moments.mass;
   const Eigen::Matrix3d covariance = moments.second / moments.mass - centre * centre.transpose();
   const Eigen::Matrix3d inertia = covariance.trace() * Eigen::Matrix3d::Identity() - covariance;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(inertia);
+  const SymmetricEigen<3> axes = symmetric_eigen(inertia);
   constexpr double kLeastOfLargest = 1e-4, kLeast_m2 = 1e-12;
-  const double least = std::max(kLeastOfLargest * axes.eigenvalues().maxCoeff(), kLeast_m2);
+  const double least = std::max(kLeastOfLargest * axes.values.maxCoeff(), kLeast_m2);
   result.centre_object = from + centre;
-  result.inertia_m2 =
-      axes.eigenvectors() * axes.eigenvalues().cwiseMax(least).asDiagonal() * axes.eigenvectors().transpose();
+  result.inertia_m2 = axes.vectors * axes.values.cwiseMax(least).asDiagonal() * axes.vectors.transpose();
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/config_check.hpp"
 
 namespace roomradar {
@@ -165,7 +166,7 @@ Footprint footprint_at(const float* top_m, const FootprintCells& footprint, cons
     x_rises_m2 += cell.x_m * rise_m;
     y_rises_m2 += cell.y_m * rise_m;
   }
-  const Eigen::Vector3d plane = moments.ldlt().solve(Eigen::Vector3d(rises_m, x_rises_m2, y_rises_m2));
+  const Eigen::Vector3d plane = solve_symmetric(moments, Eigen::Vector3d(rises_m, x_rises_m2, y_rises_m2));
   if (!plane.allFinite() || plane.tail<2>().norm() > steepest_of(config)) return {};
 
   for (const FootprintCells::Cell& cell : footprint.cells) {

@@ -1,16 +1,14 @@
 // align.cpp: the pose of a depth (and intensity) image relative to views whose poses are known.
 #include "mapping/alignment/align.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "mapping/types/linear_algebra.hpp"
+
 namespace roomradar {
 namespace {
-
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 // Residuals of neighbouring pixels share their error: a Kinect v1 matches blocks of 9 x 9 pixels. The
 // information of all of them together is taken as that of one in fifty where the finest level is half as fine
@@ -178,29 +176,29 @@ Step solve(const System& depth, const System& colour, double length_m, double in
   scale << 1.0, 1.0, 1.0, 1.0 / length_m, 1.0 / length_m, 1.0 / length_m;
   const Matrix6d depth_H = fixed * (scale.asDiagonal() * depth.H * scale.asDiagonal()) * fixed;
   const Vector6d depth_g = fixed * scale.cwiseProduct(depth.g);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> by_depth(depth_H);
+  const SymmetricEigen<6> by_depth = symmetric_eigen(depth_H);
   fixed.setZero();
   Matrix6d H = scale.asDiagonal() * colour.H * scale.asDiagonal();
   Vector6d g = scale.cwiseProduct(colour.g);
   for (int i = 0; i < 6; ++i) {
-    const double strength = by_depth.eigenvalues()(i);
+    const double strength = by_depth.values(i);
     if (strength <= static_cast<double>(config.min_constraint) * depth.weight) continue;
-    const Vector6d direction = by_depth.eigenvectors().col(i);
+    const Vector6d direction = by_depth.vectors.col(i);
     H += strength * direction * direction.transpose();
     g += direction * direction.dot(depth_g);
     fixed += direction * direction.transpose();
   }
   const double least = 1.0 / (independent * static_cast<double>(config.max_uncertainty_m) *
                               static_cast<double>(config.max_uncertainty_m));
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> both(H);
+  const SymmetricEigen<6> both = symmetric_eigen(H);
   Step step;
   for (int i = 0; i < 6; ++i) {
-    const double strength = both.eigenvalues()(i);
+    const double strength = both.values(i);
     if (!(strength > least)) {
       ++step.held;
       continue;
     }
-    const Vector6d direction = both.eigenvectors().col(i);
+    const Vector6d direction = both.vectors.col(i);
     step.twist -= direction * (direction.dot(g) / strength);
     step.information += strength * direction * direction.transpose();
   }

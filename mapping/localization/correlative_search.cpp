@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "mapping/alignment/align.hpp"
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -156,8 +157,6 @@ Eigen::Isometry3d settled(const ShapeGrid& grid, const std::vector<Vector3f>& po
                           Eigen::Isometry3d T_world_camera) {
   constexpr int kIterations = 8;
   constexpr double kDamping = 0.02;  // of the mean strength: directions that nothing fixes stay
-  using Matrix6d = Eigen::Matrix<double, 6, 6>;
-  using Vector6d = Eigen::Matrix<double, 6, 1>;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Eigen::Isometry3f T = T_world_camera.cast<float>();
     Eigen::Matrix<float, 6, 6> H = Eigen::Matrix<float, 6, 6>::Zero();
@@ -174,7 +173,7 @@ Eigen::Isometry3d settled(const ShapeGrid& grid, const std::vector<Vector3f>& po
     }
     Matrix6d damped = H.cast<double>();
     damped.diagonal().array() += kDamping * damped.trace() / 6.0 + 1e-6;
-    const Vector6d twist = damped.ldlt().solve(g.cast<double>());
+    const Vector6d twist = solve_symmetric(damped, g.cast<double>());
     if (!twist.allFinite() || twist.norm() > 0.5) break;
     T_world_camera = T_world_camera * exp_twist(twist);
     if (twist.norm() < 2e-3) break;
@@ -251,8 +250,7 @@ std::vector<ShapeCandidate> propose_by_shape(const DepthImage& depth_m, const In
   const std::vector<Vector3f> points = points_of(depth_m, camera, 10, 8);
   if (points.size() < kMinPoints || known.empty() || !(std::abs(down_camera.norm() - 1.0) < 0.1))
     return candidates;
-  const Eigen::Matrix3d R_level_camera =
-      Eigen::Quaterniond::FromTwoVectors(down_camera, -Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Matrix3d R_level_camera = rotation_between(down_camera, -Vector3d::UnitZ()).toRotationMatrix();
   const ShapeGrid& grid = known.coarse;
   const auto R_world_camera = [&](int heading) -> Eigen::Matrix3d {
     const double angle_rad = 2.0 * std::numbers::pi * heading / kHeadings;

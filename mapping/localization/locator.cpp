@@ -1,12 +1,12 @@
 // locator.cpp: alignment with the static model, and a search of the whole map when that fails.
 #include "mapping/localization/locator.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "mapping/localization/depth_agreement.hpp"
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -61,7 +61,7 @@ void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPa
     H += weight * J.transpose() * J;
     g += weight * J.transpose() * gap;
   }
-  const Eigen::Matrix<double, 6, 1> twist = H.ldlt().solve(g);
+  const Eigen::Matrix<double, 6, 1> twist = solve_symmetric(H, g);
   if (!(twist.norm() < kFarthest)) return;
   tracking.T_world_camera = tracking.T_world_camera * exp_twist(twist);
   tracking.information = H;
@@ -73,9 +73,9 @@ bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double 
             const Eigen::Matrix<double, 6, 6>& information, const ExpectedDepth& expected_depth) {
   constexpr double kSlide_m = 0.06, kDistance_m = 2.0;  // of what turns past the camera
   constexpr double kMinLoss = 0.015;                    // of the fit: outlines shift by a few pixels
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(information);
-  for (int i = 0; i < 6 && solver.eigenvalues()(i) < 1e-3; ++i) {
-    const Eigen::Matrix<double, 6, 1> direction = solver.eigenvectors().col(i);
+  const SymmetricEigen<6> solved = symmetric_eigen(information);
+  for (int i = 0; i < 6 && solved.values(i) < 1e-3; ++i) {
+    const Eigen::Matrix<double, 6, 1> direction = solved.vectors.col(i);
     const double reach = direction.head<3>().norm() + kDistance_m * direction.tail<3>().norm();
     for (const double way : {-kSlide_m / reach, kSlide_m / reach}) {
       const Eigen::Isometry3d T_aside = T_world_camera * exp_twist(way * direction);

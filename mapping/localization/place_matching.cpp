@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mapping/types/depth_noise.hpp"
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -49,9 +50,7 @@ Eigen::Isometry3d rigid_motion(const std::vector<PointPair>& pairs, const std::v
     a.col(static_cast<Eigen::Index>(i)) = pairs[chosen[i]].a;
     b.col(static_cast<Eigen::Index>(i)) = pairs[chosen[i]].b;
   }
-  Eigen::Isometry3d T;
-  T.matrix() = Eigen::umeyama(b, a, false);
-  return T;
+  return fit_rigid(b, a);
 }
 
 std::vector<std::size_t> inliers_of(const std::vector<PointPair>& pairs, const Eigen::Isometry3d& T_a_b) {

@@ -1,11 +1,11 @@
 // tried_pose.cpp: what depth and look must say for a pose, and what they may say against it.
 #include "mapping/localization/pose_hypothesis.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -30,10 +30,10 @@ double support_of(const TriedPose& finding) {
 }
 
 double uncertainty_m(const Tracking& tracking) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(tracking.information);
-  if (!(solver.eigenvalues()(0) > 1e-3)) return std::numeric_limits<double>::infinity();
-  const Eigen::Matrix3d covariance_m2 = tracking.information.inverse().topLeftCorner<3, 3>();
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance_m2).eigenvalues()(2));
+  if (!(symmetric_eigen(tracking.information).values(0) > 1e-3))
+    return std::numeric_limits<double>::infinity();
+  const Eigen::Matrix3d covariance_m2 = inverse(tracking.information).topLeftCorner<3, 3>();
+  return std::sqrt(symmetric_eigen(covariance_m2).values(2));
 }
 
 bool is_proven_by_look(const TriedPose& finding) {

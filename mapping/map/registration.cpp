@@ -1,7 +1,6 @@
 // registration.cpp: views vote for a transform, the surface refines it and has the last word.
 #include "mapping/map/registration.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,12 +8,10 @@
 
 #include "mapping/alignment/align.hpp"
 #include "mapping/localization/place_matching.hpp"
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 /// One view of b found in a.
 struct Vote {
@@ -138,12 +135,12 @@ Eigen::Isometry3d lay_on(const StaticMap& a, std::span<const Eigen::Vector3d> su
       weights += weight;
     }
     if (weights < 50.0) break;
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> axes(H / weights);
+    const SymmetricEigen<6> axes = symmetric_eigen(Matrix6d(H / weights));
     Vector6d step = Vector6d::Zero();
     for (int i = 0; i < 6; ++i) {
-      const double constraint = axes.eigenvalues()[i];
+      const double constraint = axes.values[i];
       if (constraint < kMinConstraint) continue;
-      const Vector6d axis = axes.eigenvectors().col(i);
+      const Vector6d axis = axes.vectors.col(i);
       step -= axis * (axis.dot(g) / weights / constraint);
     }
     const Eigen::Vector3d turn = step.tail<3>() / spread_m;

@@ -1,12 +1,13 @@
 // mesh_borders.cpp: walking along the edges that have one triangle.
 #include "mapping/mesh/mesh_borders.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <unordered_map>
+
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -76,7 +77,7 @@ double longest_extent_m(const Mesh& mesh, const BorderLoop& loop) {
     const Eigen::Vector3d offset = place(mesh, v) - loop.centre_world;
     scatter += offset * offset.transpose();
   }
-  const Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+  const Eigen::Vector3d axis = symmetric_eigen(scatter).vectors.col(2);
   double low = 0.0;
   double high = 0.0;
   for (const std::uint32_t v : loop.vertices) {

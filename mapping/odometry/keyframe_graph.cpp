@@ -1,7 +1,6 @@
 // keyframe_graph.cpp: joining keyframes that see the same, and solving for their poses.
 #include "mapping/odometry/keyframe_graph.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <future>
@@ -9,6 +8,8 @@
 #include <optional>
 #include <span>
 #include <utility>
+
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -90,12 +91,12 @@ PoseConstraint weighed_by_likeness(PoseConstraint constraint) {
   constexpr double kNothing = 1e-9;                      // of the strongest direction
   const double distance = view_distance(constraint.T_a_b) / kAlike;
   const double weight = 1.0 / (1.0 + distance * distance * distance * distance);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> known(constraint.information);
-  if (!constraint.information.allFinite() || known.info() != Eigen::Success) return constraint;
+  const SymmetricEigen<6> known = symmetric_eigen(constraint.information);
+  if (!constraint.information.allFinite() || !known.converged) return constraint;
   Matrix6d says = Matrix6d::Zero();
   for (int i = 0; i < 6; ++i) {
-    if (known.eigenvalues()(i) > kNothing * known.eigenvalues()(5))
-      says += known.eigenvectors().col(i) * known.eigenvectors().col(i).transpose();
+    if (known.values(i) > kNothing * known.values(5))
+      says += known.vectors.col(i) * known.vectors.col(i).transpose();
   }
   Matrix6d worth = Matrix6d::Zero();
   worth.diagonal().head<3>().setConstant(weight / (kSigma_m * kSigma_m));

@@ -3,7 +3,6 @@
 
 #include <ceres/ceres.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <optional>
 
 #include "mapping/odometry/relative_pose_residual.hpp"
+#include "mapping/types/linear_algebra.hpp"
 
 namespace roomradar {
 namespace {
@@ -36,10 +36,10 @@ struct Measured {
 /// S with S' S = information, or nothing if the matrix is no information.
 std::optional<Matrix6d> square_root(const Matrix6d& information) {
   if (!information.allFinite()) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(0.5 * (information + information.transpose()));
-  const double most = solver.eigenvalues().maxCoeff();
-  if (most <= 0.0 || solver.eigenvalues().minCoeff() < -1e-9 * most) return std::nullopt;
-  return solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() * solver.eigenvectors().transpose();
+  const SymmetricEigen<6> solved = symmetric_eigen(Matrix6d(0.5 * (information + information.transpose())));
+  const double most = solved.values.maxCoeff();
+  if (most <= 0.0 || solved.values.minCoeff() < -1e-9 * most) return std::nullopt;
+  return solved.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() * solved.vectors.transpose();
 }
 
 std::optional<Measured> usable(std::size_t a, std::size_t b, std::size_t count,

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace roomradar {
+#include "mapping/types/linear_algebra.hpp"
 
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
+namespace roomradar {
 
 /// A measurement of where camera b stands in camera a.
 struct PoseConstraint {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mapping/types/linear_algebra.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -120,7 +122,7 @@ UpDirection UpEstimator::estimate() const {
 }
 
 Eigen::Isometry3d level_rotation(const Eigen::Vector3d& up_world) {
-  return Eigen::Isometry3d(Eigen::Quaterniond::FromTwoVectors(up_world, Eigen::Vector3d::UnitZ()));
+  return Eigen::Isometry3d(rotation_between(up_world, Eigen::Vector3d::UnitZ()));
 }
 
 }  // namespace roomradar

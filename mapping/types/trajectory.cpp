@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -85,7 +86,7 @@ TrajectoryError absolute_trajectory_error(const std::vector<TimedPose>& estimate
   if (estimated.cols() < 3) return {};
   TrajectoryError error;
   error.poses = static_cast<std::size_t>(estimated.cols());
-  error.T_reference_estimate.matrix() = Eigen::umeyama(estimated, expected, /*with_scaling=*/false);
+  error.T_reference_estimate = fit_rigid(estimated, expected);
   const Eigen::RowVectorXd squared_m2 =
       ((error.T_reference_estimate * estimated).eval() - expected).colwise().squaredNorm();
   error.rmse_m = std::sqrt(squared_m2.mean());
@@ -99,9 +100,7 @@ std::optional<Eigen::Isometry3d> pose_alignment(const std::vector<TimedPose>& es
   points_camera.rightCols<3>().setIdentity();
   const auto [estimated, expected] = matched_points(estimate, reference, points_camera);
   if (estimated.cols() == 0) return std::nullopt;
-  Eigen::Isometry3d T_reference_estimate;
-  T_reference_estimate.matrix() = Eigen::umeyama(estimated, expected, /*with_scaling=*/false);
-  return T_reference_estimate;
+  return fit_rigid(estimated, expected);
 }
 
 double end_gap_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference) {

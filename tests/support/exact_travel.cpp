@@ -14,14 +14,14 @@
 namespace roomradar {
 namespace {
 
-struct Corners {
+struct OutlinedCorners {
   ExactTriangle p;
   Eigen::AlignedBox2d outline;
   double min_z = 0.0, max_z = 0.0;  // rounded outwards, as the outline is
 };
 
-Corners corners_of(const ExactTriangle& p) {
-  Corners corners{p, {}, 0.0, 0.0};
+OutlinedCorners corners_of(const ExactTriangle& p) {
+  OutlinedCorners corners{p, {}, 0.0, 0.0};
   const ExactPoint low = p[0].cwiseMin(p[1]).cwiseMin(p[2]);
   const ExactPoint high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
   const Exact beyond = 1e-11L * (high - low).maxCoeff();  // more than exact_gap takes for touching
@@ -34,7 +34,7 @@ Corners corners_of(const ExactTriangle& p) {
 }
 
 /// Least travel >= -slack_m at which the two touch, or infinity.
-double travel_of_pair(const Corners& object, const Corners& scene, double slack_m) {
+double travel_of_pair(const OutlinedCorners& object, const OutlinedCorners& scene, double slack_m) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   if (!object.outline.intersects(scene.outline)) return kNever;
   const auto span = exact_gap(object.p, scene.p);
@@ -62,8 +62,8 @@ Frame frame_of(const Eigen::Isometry3d& T_world_object, const Mesh& object,
 }
 
 /// Those whose outline meets the area.
-std::vector<Corners> triangles_in_frame(const Mesh& mesh, const Eigen::Isometry3d& T_world_mesh,
-                                        const Frame& frame, const Eigen::AlignedBox2d& area) {
+std::vector<OutlinedCorners> triangles_in_frame(const Mesh& mesh, const Eigen::Isometry3d& T_world_mesh,
+                                                const Frame& frame, const Eigen::AlignedBox2d& area) {
   const Eigen::Matrix<Exact, 3, 3> R_world_mesh = T_world_mesh.linear().cast<Exact>();
   const Eigen::Matrix<Exact, 3, 3> R_frame_mesh = frame.R_frame_world * R_world_mesh;
   const ExactPoint t_world_mesh = T_world_mesh.translation().cast<Exact>();
@@ -72,13 +72,14 @@ std::vector<Corners> triangles_in_frame(const Mesh& mesh, const Eigen::Isometry3
   std::vector<ExactPoint> vertices;
   vertices.reserve(mesh.vertices.size());
   for (const Eigen::Vector3f& p : mesh.vertices) vertices.push_back(R_frame_mesh * p.cast<Exact>() + shift);
-  std::vector<Corners> result;
+  std::vector<OutlinedCorners> result;
   for (const Triangle& triangle : mesh.triangles) {
     const bool is_usable = std::all_of(triangle.begin(), triangle.end(), [&](std::uint32_t i) {
       return i < mesh.vertices.size() && mesh.vertices[i].allFinite();
     });
     if (!is_usable) continue;
-    const Corners corners = corners_of({vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]});
+    const OutlinedCorners corners =
+        corners_of({vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]});
     if (corners.outline.intersects(area)) result.push_back(corners);
   }
   return result;
@@ -89,16 +90,16 @@ Eigen::AlignedBox2d everywhere() {
   return {-far_m, far_m};
 }
 
-Eigen::AlignedBox2d outline_of(std::span<const Corners> object) {
+Eigen::AlignedBox2d outline_of(std::span<const OutlinedCorners> object) {
   Eigen::AlignedBox2d area;
-  for (const Corners& o : object) area.extend(o.outline);
+  for (const OutlinedCorners& o : object) area.extend(o.outline);
   return area;
 }
 
 /// Scene triangles by the cells of a square grid over the object's outline.
 class Grid {
  public:
-  Grid(const Eigen::AlignedBox2d& area, std::span<const Corners> scene) : area_(area) {
+  Grid(const Eigen::AlignedBox2d& area, std::span<const OutlinedCorners> scene) : area_(area) {
     side_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(scene.size()) / 2.0)), 1, 512);
     cells_.resize(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_));
     for (std::size_t i = 0; i < scene.size(); ++i) {
@@ -154,24 +155,26 @@ std::optional<double> exact_travel(const Mesh& object, const Eigen::Isometry3d& 
     throw Error("exact_travel: distance_m = " + std::to_string(distance_m) + ": must be finite and >= 0");
   }
   const Frame frame = frame_of(T_world_object, object, direction_world);
-  std::vector<Corners> object_triangles = triangles_in_frame(object, T_world_object, frame, everywhere());
+  std::vector<OutlinedCorners> object_triangles =
+      triangles_in_frame(object, T_world_object, frame, everywhere());
   const Eigen::AlignedBox2d area = outline_of(object_triangles);
-  const std::vector<Corners> scene_triangles = triangles_in_frame(scene, T_world_scene, frame, area);
+  const std::vector<OutlinedCorners> scene_triangles = triangles_in_frame(scene, T_world_scene, frame, area);
 
   double least_m = std::numeric_limits<double>::infinity();
   if (method == ExactMethod::kBruteForce) {
-    for (const Corners& o : object_triangles) {
-      for (const Corners& s : scene_triangles) least_m = std::min(least_m, travel_of_pair(o, s, slack_m));
+    for (const OutlinedCorners& o : object_triangles) {
+      for (const OutlinedCorners& s : scene_triangles)
+        least_m = std::min(least_m, travel_of_pair(o, s, slack_m));
     }
   } else {
     Grid grid(area, scene_triangles);
     // Foremost triangles first: the bound found early rules out most of the rest.
     std::sort(object_triangles.begin(), object_triangles.end(),
-              [](const Corners& a, const Corners& b) { return a.max_z > b.max_z; });
-    for (const Corners& o : object_triangles) {
+              [](const OutlinedCorners& a, const OutlinedCorners& b) { return a.max_z > b.max_z; });
+    for (const OutlinedCorners& o : object_triangles) {
       grid.visit(o.outline, [&](const std::vector<std::size_t>& cell) {
         for (const std::size_t i : cell) {
-          const Corners& s = scene_triangles[i];
+          const OutlinedCorners& s = scene_triangles[i];
           const bool is_behind = s.max_z - o.min_z < -slack_m;
           if (is_behind || s.min_z - o.max_z >= least_m) continue;
           least_m = std::min(least_m, travel_of_pair(o, s, slack_m));
@@ -187,13 +190,13 @@ std::vector<TravelSpan> exact_crossings(const Mesh& object, const Eigen::Isometr
                                         const Eigen::Vector3d& direction_world, const Mesh& scene,
                                         const Eigen::Isometry3d& T_world_scene) {
   const Frame frame = frame_of(T_world_object, object, direction_world);
-  const std::vector<Corners> object_triangles =
+  const std::vector<OutlinedCorners> object_triangles =
       triangles_in_frame(object, T_world_object, frame, everywhere());
   const Eigen::AlignedBox2d area = outline_of(object_triangles);
-  const std::vector<Corners> scene_triangles = triangles_in_frame(scene, T_world_scene, frame, area);
+  const std::vector<OutlinedCorners> scene_triangles = triangles_in_frame(scene, T_world_scene, frame, area);
   Grid grid(area, scene_triangles);
   std::vector<TravelSpan> spans;
-  for (const Corners& o : object_triangles) {
+  for (const OutlinedCorners& o : object_triangles) {
     grid.visit(o.outline, [&](const std::vector<std::size_t>& cell) {
       for (const std::size_t i : cell) {
         if (!o.outline.intersects(scene_triangles[i].outline)) continue;

@@ -1,7 +1,6 @@
 // prescan_work.cpp: one scan in a process of its own: its time, its memory, its errors.
 #include "app/evaluation/trade/prescan_work.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -16,6 +15,7 @@
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/octree/memory_use.hpp"
 #include "mapping/prescan.hpp"
+#include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {
@@ -62,9 +62,8 @@ Eigen::Isometry3d T_room_map_of(const std::vector<TimedPose>& trajectory, const 
         *frames[static_cast<std::size_t>(pose.frame_index)].T_world_camera;
     turns += T_room_camera.linear() * pose.T_world_camera.linear().transpose();
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turns, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Isometry3d T_room_map = Eigen::Isometry3d::Identity();
-  T_room_map.linear() = svd.matrixU() * svd.matrixV().transpose();
+  T_room_map.linear() = nearest_orthogonal(turns);
   Eigen::Vector3d shifts = Eigen::Vector3d::Zero();
   for (const TimedPose& pose : trajectory)
     shifts += frames[static_cast<std::size_t>(pose.frame_index)].T_world_camera->translation() -

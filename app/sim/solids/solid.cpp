@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "mapping/types/linear_algebra.hpp"
+
 namespace roomradar {
 namespace {
 
@@ -118,8 +120,7 @@ Solid sphere(const Vector3d& centre_world, double radius_m) {
 Solid capsule(const Vector3d& a_world, const Vector3d& b_world, double radius_m) {
   Solid solid{
       SolidShape::kBox, Eigen::Isometry3d::Identity(), {0, 0, 0.5 * (b_world - a_world).norm()}, radius_m};
-  solid.T_world_solid.linear() =
-      Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), b_world - a_world).toRotationMatrix();
+  solid.T_world_solid.linear() = rotation_between(Vector3d::UnitZ(), b_world - a_world).toRotationMatrix();
   solid.T_world_solid.translation() = 0.5 * (a_world + b_world);
   return solid;
 }

@@ -1,7 +1,6 @@
 // camera_rig.cpp: camera.json and camera-intrinsics.txt.
 #include "app/sources/formats/camera_rig.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 
 #include "app/sources/formats/camera_rig_json.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
+#include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -172,8 +172,7 @@ Intrinsics read_intrinsics_matrix(const std::filesystem::path& path, int width_p
 
 std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& almost) {
   if (!almost.allFinite()) return std::nullopt;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(almost, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
+  const Eigen::Matrix3d rotation = nearest_orthogonal(almost);
   if (rotation.determinant() < 0 || (rotation - almost).cwiseAbs().maxCoeff() > 0.01) return std::nullopt;
   return rotation;
 }

@@ -1,4 +1,5 @@
 // quality_test.cpp: what can be traded for time: its rules, its words, its JSON, and what it sets.
+#include "app/cli/apply_scan_quality.hpp"
 #include "app/quality/quality.hpp"
 
 #include <gtest/gtest.h>

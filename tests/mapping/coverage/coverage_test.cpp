@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "mapping/coverage/coverage_picture.hpp"
+#include "mapping/map/map_folder.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "tests/support/exact_depth.hpp"
 

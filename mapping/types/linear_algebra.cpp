@@ -1,0 +1,45 @@
+// linear_algebra.cpp: the instantiations of Eigen's decompositions.
+#include "mapping/types/linear_algebra.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+namespace roomradar {
+namespace {
+
+template <int N>
+SymmetricEigen<N> decomposed(const Eigen::Matrix<double, N, N>& A) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(A);
+  return {solver.info() == Eigen::Success, solver.eigenvalues(), solver.eigenvectors()};
+}
+
+}  // namespace
+
+SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A) { return decomposed<3>(A); }
+SymmetricEigen<6> symmetric_eigen(const Matrix6d& A) { return decomposed<6>(A); }
+
+Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& A, const Eigen::Vector3d& b) {
+  return A.ldlt().solve(b);
+}
+Vector6d solve_symmetric(const Matrix6d& A, const Vector6d& b) { return A.ldlt().solve(b); }
+
+Matrix6d inverse(const Matrix6d& A) { return A.inverse(); }
+
+Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& A) {
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(A, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
+}
+
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
+Eigen::Isometry3d fit_rigid(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  Eigen::Isometry3d T_b_a;
+  T_b_a.matrix() = Eigen::umeyama(a, b, /*with_scaling=*/false);
+  return T_b_a;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,45 @@
+// linear_algebra.hpp: small dense problems solved by Eigen, compiled once.
+//
+// Eigen's decompositions take seconds to compile in every source that instantiates them.
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace roomradar {
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Eigenvalues in ascending order, and the unit eigenvector of each in the column of the same index.
+template <int N>
+struct SymmetricEigen {
+  bool converged = false;
+  Eigen::Matrix<double, N, 1> values;
+  Eigen::Matrix<double, N, N> vectors;
+};
+
+/// Eigendecomposition of a symmetric matrix; only its lower triangle is read. Matrices that are not finite do
+/// not converge.
+SymmetricEigen<3> symmetric_eigen(const Eigen::Matrix3d& A);
+SymmetricEigen<6> symmetric_eigen(const Matrix6d& A);
+
+/// x with A x = b, A symmetric and positive or negative semidefinite (LDLT with pivoting). Not finite where A
+/// or b is not.
+Eigen::Vector3d solve_symmetric(const Eigen::Matrix3d& A, const Eigen::Vector3d& b);
+Vector6d solve_symmetric(const Matrix6d& A, const Vector6d& b);
+
+/// Inverse by LU decomposition; not finite where A is singular.
+Matrix6d inverse(const Matrix6d& A);
+
+/// Rotation R that is nearest to A in the least-squares sense, U V' of its singular value decomposition. Its
+/// determinant is -1 where A mirrors.
+Eigen::Matrix3d nearest_orthogonal(const Eigen::Matrix3d& A);
+
+/// Shortest rotation from one direction to another, neither of them zero.
+Eigen::Quaterniond rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+/// T_b_a of least squared distances |T_b_a a_i - b_i|, without scale; points in columns.
+/// Source: Umeyama, Least-squares estimation of transformation parameters, PAMI 1991.
+Eigen::Isometry3d fit_rigid(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b);
+
+}  // namespace roomradar
