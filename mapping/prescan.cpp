@@ -1,4 +1,4 @@
-// prescan.cpp: the prescan from first frame to finished map, top to bottom.
+// prescan.cpp: the stages of a prescan, from the first frame to the finished map.
 #include "mapping/prescan.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The next readable frame, or false at the end.
+/// Reads the next readable frame; returns false at the end.
 bool read(FrameSource& source, StageTimes& times, Frame& frame, PrescanCounts& counts) {
   for (;;) {
     const ReadResult result = times.timed("read", [&] { return source.next(frame); });
@@ -39,15 +39,15 @@ bool read(FrameSource& source, StageTimes& times, Frame& frame, PrescanCounts& c
   }
 }
 
-/// The pose that came with the frame, if a map round `middle` reaches there: one slip of the recording's
-/// writer, kilometres away, is no place of the room.
+/// Returns the frame's recorded pose if a map centred on `middle` reaches it. Rejects a corrupt pose,
+/// kilometres away.
 std::optional<Eigen::Isometry3d> recorded_pose(const Frame& frame, const Eigen::Vector3d& middle,
                                                double reach_m) {
   const auto& T = frame.T_world_camera;
   return T && ((T->translation() - middle).array().abs() < reach_m).all() ? T : std::nullopt;
 }
 
-/// Passes over frames that a checkpoint has behind it, without reading them where the source can.
+/// Skips frames that a checkpoint already covers, without reading them if the source can seek.
 void skip_frames(FrameSource& source, std::int64_t count, const char* stage,
                  const PrescanProgress& progress) {
   for (std::int64_t i = 0; progress && i < count; ++i) progress(stage, "resumed");
@@ -57,20 +57,22 @@ void skip_frames(FrameSource& source, std::int64_t count, const char* stage,
                 std::to_string(count) + "; is it the same recording?");
   };
   std::int64_t position = source.seek(count - 1) ? count - 1 : 0;
-  // Of a live scan the frames to pass over were kept: what the device shows now is none of them.
+  // A source that can seek, but not this far, has too few frames. A live scan's source would deliver new
+  // frames of the device instead of the stored ones.
   if (position < count - 1 && source.seek(0)) refuse("fewer");
   while (position < count && source.next(frame).status != ReadStatus::kEnd) ++position;
   if (position < count) refuse(std::to_string(position));
 }
 
-/// Whether more frames would take more memory than allowed. What comes after them needs some, too.
+/// Returns whether the memory in use, plus the memory that later stages need, exceeds the cap.
 bool is_full(const PrescanConfig& config, double needed_later_bytes) {
   return config.max_memory_bytes > 0 && static_cast<double>(resident_bytes()) + needed_later_bytes >
                                             static_cast<double>(config.max_memory_bytes);
 }
 
-/// Writes the state beside the work when it is time; between two frames that is put off while the last one is
-/// being written. At the end of a stage it is time sooner: what comes next may take seconds before it writes.
+/// Writes a checkpoint if one is due. Between two frames it is postponed while the last one is still being
+/// written. At the end of a stage a shorter interval applies, because the next stage may take seconds before
+/// its first checkpoint.
 template <typename Pass>
 void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, StageTimes& times,
           bool between_frames = true) {
@@ -81,38 +83,39 @@ void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, StageTimes& t
   });
 }
 
-/// The same in the first pass, where the odometry's thread may not be at work at the fork.
+/// Same in the first pass, where the odometry's thread must be idle at the fork.
 void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass, StageTimes& times) {
   if (!checkpoints || !checkpoints->is_due()) return;
   times.timed("checkpoint", [&] { pass.odometry.settle(); });
   keep(checkpoints, kTrackingStage, pass, times);
 }
 
-/// What all steps of one prescan share.
+/// State shared by all stages of one prescan.
 struct Work {
   FrameSource& source;
   const PrescanConfig& config;
   StageTimes& times;
   const PrescanProgress& progress;
   Checkpoints* checkpoints = nullptr;
-  double reach_m = 0.0;                          // of the octree, from its origin
-  bool maps_recorded_world = false;              // as it is: its origin is the octree's
+  double reach_m = 0.0;                          // max distance from the octree's origin along each axis
+  bool maps_recorded_world = false;              // recorded poses share the octree's origin
   std::map<std::int64_t, double> track_ms = {};  // by frame index
-  std::optional<FuseStatus> last_fused = {};     // what became of the last frame that was to be fused
+  std::optional<FuseStatus> last_fused = {};     // status of the last frame passed to fuse()
 
   void show(const std::string& stage, const std::string& note) const {
     if (progress) progress(stage, note);
   }
 };
 
-/// Where recorded poses lie about: the origin, if that is to be the map's, else the first of them.
+/// Returns the expected centre of the recorded poses: the origin if the map shares it, else the first
+/// position.
 Eigen::Vector3d middle_of_recorded(const Work& work, const TrackingPass& pass, const Frame& frame) {
   if (work.maps_recorded_world || !frame.T_world_camera) return Eigen::Vector3d::Zero();
   return pass.recorded.empty() ? frame.T_world_camera->translation()
                                : pass.recorded.front().T_world_camera.translation();
 }
 
-/// Reads the source to its end and says where the camera was in each frame.
+/// Reads the source to its end and returns the camera pose of each frame.
 Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
   const PrescanConfig& config = work.config;
   Frame frame;
@@ -132,12 +135,13 @@ Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
     work.track_ms[frame.index] = ms_since(start);
     work.times.add_ms("track", work.track_ms[frame.index]);
     if (tracking) pass.up.add(frame, tracking.T_world_camera);
-    if (work.progress) {  // nobody else asks how much was seen
+    if (work.progress) {  // only `progress` reports the observed area
       if (tracking) seen.add(frame, tracking.T_world_camera);
       work.progress(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
     }
     keep_tracking(work.checkpoints, pass, work.times);
-    // The octree and its surface come when the tracker has gone.
+    // Reserve a quarter of the cap for the octree and its surface, which are built after the tracker is
+    // freed.
     pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
     if (pass.counts.stopped_for_memory) break;
   }
@@ -151,13 +155,15 @@ Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
   return found;
 }
 
-/// From the tracker's world to the map's: to one that is there already, or else turned so that +z is up.
+/// Computes the transform from the tracker's world to the map's: to an existing map, or else a rotation to +z
+/// up.
 Eigen::Isometry3d place_in_world(const Odometry& odometry, const Whereabouts& found,
                                  const std::optional<SavedMap>& map, const std::string& source) {
   if (!map) return level_rotation(found.up.up_world);
   constexpr std::size_t kPoints = 12'000;
   const std::vector<Eigen::Vector3d> surface = surface_of(found.places, kPoints);
-  // Of a long scan that was recognised in the map and left it for other rooms, little lies in the map.
+  // A long scan may be localised in the map, then leave it for other rooms, so only a small fraction
+  // overlaps.
   RegistrationConfig located;
   located.min_overlap = 0.01;
   const Registration placed =
@@ -165,11 +171,12 @@ Eigen::Isometry3d place_in_world(const Odometry& odometry, const Whereabouts& fo
                             : register_to(map->octree, map->places, found.places, surface);
   if (!placed)
     throw Error(source + ": cannot be placed in the map that it is to be added to: " + describe(placed) +
-                "; the map is as it was. Begin where the map was scanned, or save as another map");
+                "; the map is unchanged. Begin where the map was scanned, or save as another map");
   return placed.T_a_b;
 }
 
-/// The first pass, from its start or from a checkpoint; or its result, as a checkpoint of the second has it.
+/// Runs the first pass, from its start or from a checkpoint. Returns the state of the second pass if the
+/// checkpoint is of that stage.
 FusingPass track(Work& work, std::optional<SavedMap>& map) {
   const std::optional<Checkpoint> checkpoint = work.checkpoints ? work.checkpoints->resume() : std::nullopt;
   if (checkpoint && checkpoint->stage == kFusingStage) {
@@ -196,7 +203,7 @@ FusingPass track(Work& work, std::optional<SavedMap>& map) {
   return fusing;
 }
 
-/// The trusted poses, in the map's world.
+/// Trusted poses, in the map's world.
 std::vector<TimedPose> trusted_poses(const FusingPass& pass) {
   std::vector<TimedPose> poses;
   for (const TrackedFrame& tracked : pass.found.frames) {
@@ -206,7 +213,8 @@ std::vector<TimedPose> trusted_poses(const FusingPass& pass) {
   return poses;
 }
 
-/// The second pass, from its start or from a checkpoint. Nothing where that is of what comes after it.
+/// Runs the second pass, from its start or from a checkpoint. Does nothing if the checkpoint was written
+/// after fusion.
 void fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass) {
   if (pass.revision || pass.ghost_voxels) return;
   std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
@@ -255,7 +263,7 @@ std::string why_none_fused(const Work& work) {
   return "no frame could be fused; the depth images hold no usable measurement";
 }
 
-/// What the map says of itself, but for what save_map fills in.
+/// Fills in the map's description, except for the fields that save_map sets.
 MapInfo describe_map(const Work& work, const FusingPass& pass, const std::vector<TimedPose>& trajectory) {
   MapInfo info;
   info.source = work.source.name();
@@ -291,18 +299,18 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;
 
-  // Where was the camera?
+  // First pass: camera poses.
   FusingPass pass = track(work, start.map);
   map.trajectory = trusted_poses(pass);
   if (map.trajectory.empty())
     throw Error(source.name() + ": no frame has a pose that can be trusted, so there is nothing to map; " +
                 why_none_trusted(work));
 
-  // What was there?
+  // Second pass: fusion.
   fuse(work, map.trajectory, pass);
   if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(work));
 
-  // What of that moved on?
+  // Ghost removal.
   if (config.remove_ghosts && !pass.ghost_voxels) {
     if (!pass.revision)
       pass.revision = take_out_ghosts(source, pass.fused, config.ghosts, pass.octree, times,
@@ -317,7 +325,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   }
   map.octree = std::move(pass.octree);
 
-  // Where is its surface?
+  // Surface extraction.
   map.mesh =
       times.timed("surface", [&] { return extract_surface(map.octree, config.surface, &result.surface); });
   if (map.mesh.triangles.empty())
@@ -344,7 +352,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
     map = std::move(*start.map);
   }
 
-  // What was not seen?
+  // Coverage: unobserved regions.
   Coverage coverage =
       times.timed("coverage", [&] { return survey_coverage(map.octree, map.mesh, map.trajectory); });
   map.coverage_png = std::move(coverage.picture_png);

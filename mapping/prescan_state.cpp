@@ -1,8 +1,8 @@
-// prescan_state.cpp: the fields of a prescan's state, and the files that hold them.
+// prescan_state.cpp: fields of a prescan's state, and the files that contain them.
 //
-// state.bin: as binary_file.hpp says, "RRPRSCAN", with the fields in the order of the functions below;
-// numbers little-endian, lists with their length (u64) before them. Beside it, in the first pass, odometry/
-// (odometry_checkpoint.cpp), and in the second octree.ot and places.bin as in a map.
+// state.bin: a file as in binary_file.hpp with magic "RRPRSCAN" and the fields in the order of the functions
+// below. Numbers are little-endian; lists are preceded by their length (u64). Beside it are odometry/ in the
+// first pass (odometry_checkpoint.cpp), and octree.ot and places.bin, as in a map, in the second.
 #include "mapping/prescan_state.hpp"
 
 #include <algorithm>
@@ -68,7 +68,7 @@ void transfer(Archive& archive, GhostRevision& revision) {
        {&verdicts.ghosts, &verdicts.absent, &verdicts.still, &verdicts.unseen}) {
     transfer(archive, *voxels);
     if constexpr (Archive::kReads) {
-      static constexpr int kReach = 32768;  // of an octree's keys
+      static constexpr int kReach = 32768;  // range of the octree's 16-bit keys
       const auto is_in_reach = [](const VoxelIndex& v) {
         return (v.array() >= -kReach).all() && (v.array() < kReach).all();
       };
@@ -134,7 +134,7 @@ void write_state(TrackingPass& pass, const fs::path& into, const fs::path& previ
 
 void write_state(FusingPass& pass, const fs::path& into, const fs::path& previous) {
   write_fields(pass, into / kState);
-  // The places do not change in this pass.
+  // The keyframe database does not change in this pass.
   if (previous.empty() || !fs::exists(previous / kOctree) || !carry_over(previous / kPlaces, into / kPlaces))
     write_places(pass.found.places, into / kPlaces);
   pass.octree.write_ot(into / kOctree);

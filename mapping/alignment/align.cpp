@@ -1,4 +1,4 @@
-// align.cpp: the pose of a depth (and intensity) image relative to views whose poses are known.
+// align.cpp: registers a depth (and intensity) image to views of known pose.
 #include "mapping/alignment/align.hpp"
 
 #include <algorithm>
@@ -10,9 +10,9 @@
 namespace roomradar {
 namespace {
 
-// Residuals of neighbouring pixels share their error: a Kinect v1 matches blocks of 9 x 9 pixels. The
-// information of all of them together is taken as that of one in fifty where the finest level is half as fine
-// as the sensor's image, and of more where its pixels lie farther apart.
+// Residuals of neighbouring pixels are correlated: a Kinect v1 matches blocks of 9 x 9 pixels. The summed
+// information is scaled by 1/50 if the finest level has half the sensor's resolution, and by more if its
+// pixels are farther apart.
 constexpr double kIndependentPart = 0.02;
 constexpr double kIndependentFocal_px = 292.5;
 
@@ -21,7 +21,7 @@ double independent_part(const Intrinsics& finest_camera) {
   return std::clamp(kIndependentPart * spacing * spacing, kIndependentPart, 1.0);
 }
 
-/// Normal equations of residuals r = r0 + J twist, J = (m, p x m), packed: 21 of J'wJ, 6 of J'wr.
+/// Normal equations of residuals r = r0 + J twist, J = (m, p x m), packed: 21 entries of J'wJ, 6 of J'wr.
 struct Normals {
   std::array<float, 27> sums{};
 
@@ -37,7 +37,7 @@ struct Normals {
   }
 };
 
-/// Sums in double of what Normals gathered a block of points at a time.
+/// Double-precision sum of Normals, which sum one block of points each in float.
 struct System {
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
@@ -53,30 +53,30 @@ struct System {
   void mirror() { H.triangularView<Eigen::StrictlyLower>() = H.transpose(); }
 };
 
-/// How a live intensity compares with one reference's: reference = gain * live + offset.
+/// Intensity mapping to one reference: reference = gain * live + offset.
 struct Exposure {
   float gain = 1.0F;
   float offset = 0.0F;
   bool known = false;
 };
 
-/// Sums over one pass of the points through one reference.
+/// Sums over all points and one reference.
 struct Pass {
   System depth, colour;
-  std::size_t met = 0;      ///< points that project on a reference pixel with a surface
-  std::size_t inliers = 0;  ///< of these, within three standard deviations and the gate
-  double squares = 0.0;     ///< of the inliers' distances
-  double n = 0.0, live = 0.0, reference = 0.0, live_live = 0.0, reference_reference = 0.0;  ///< intensities
+  std::size_t met = 0;      ///< points that project to a reference pixel with a surface
+  std::size_t inliers = 0;  ///< correspondences within the gate and three standard deviations
+  double squares = 0.0;     ///< sum of the inliers' squared distances
+  /// weighted sums of intensities
+  double n = 0.0, live = 0.0, reference = 0.0, live_live = 0.0, reference_reference = 0.0;
 };
 
 struct Limits {
   float gate_m;
   float inverse_soft;             ///< 1 / (standard deviations at which the weight is 1/4)
-  float inverse_intensity_sigma;  ///< 0: no colour
+  float inverse_intensity_sigma;  ///< 0: colour is ignored
 };
 
-/// Weight of a residual of x soft lengths (Geman and McClure): 1 at 0, 1/4 at 1, going to 0 with the fourth
-/// power.
+/// Geman-McClure weight of a residual: 1 at x = 0, 1/4 at 1, decreasing with the fourth power of x.
 float robust_weight(float x) {
   const float w = 1.0F / (1.0F + x * x);
   return w * w;
@@ -85,7 +85,7 @@ float robust_weight(float x) {
 void pass_points(const std::vector<LivePoint>& points, const ReferenceLevel& reference,
                  const Eigen::Isometry3d& T_view_camera, const Limits& limits, const Exposure& exposure,
                  Pass& pass) {
-  constexpr std::size_t kBlock = 512;  // few enough for float sums to keep five digits
+  constexpr std::size_t kBlock = 512;  // float sums over this many points keep five digits
   const Eigen::Matrix3f R = T_view_camera.linear().cast<float>();
   const Eigen::Matrix3f R_transposed = R.transpose();
   const Eigen::Vector3f t = T_view_camera.translation().cast<float>();
@@ -113,7 +113,7 @@ void pass_points(const std::vector<LivePoint>& points, const ReferenceLevel& ref
       if (std::abs(r_m) > limits.gate_m) continue;
       const float r = r_m * pixel.inverse_sigma_per_m;
       const float w = robust_weight(r * limits.inverse_soft);
-      if (std::abs(r) < 4.0F) {  // two measurements: three times the root of two
+      if (std::abs(r) < 4.0F) {  // difference of two measurements: 3 sqrt(2) standard deviations
         ++pass.inliers;
         squares += r_m * r_m;
       }
@@ -145,7 +145,7 @@ void pass_points(const std::vector<LivePoint>& points, const ReferenceLevel& ref
   }
 }
 
-/// Gain and offset that give the live intensities the mean and spread of the reference's.
+/// Computes the gain and offset that give the live intensities the mean and spread of the reference's.
 Exposure match_exposure(const Pass& pass) {
   if (pass.n < 50.0) return {};
   const double live_mean = pass.live / pass.n, reference_mean = pass.reference / pass.n;
@@ -165,11 +165,11 @@ struct Step {
   int held = 0;
 };
 
-/// Solves for the step. Rotation is scaled by the points' mean distance so that all directions are lengths.
-/// What the depth alone does not fix is taken out of its part, the colour's part is added, and what is still
-/// not fixed is held. `independent` is the part of the points whose errors are their own. `fixed` projects on
-/// the directions that coarser levels found fixed by depth; this level takes out of it what it does not find
-/// fixed, for finer ones, whose normals are noisier.
+/// Solves for the step. Rotation is scaled by the points' mean distance, so all directions are lengths.
+/// Directions that depth does not constrain are removed from the depth term. After the colour term is added,
+/// directions that are still unconstrained keep the guess. `independent` is the fraction of points with
+/// independent errors. `fixed` projects onto the directions that depth constrained at coarser levels. This
+/// level removes directions that it finds unconstrained, because the normals of finer levels are noisier.
 Step solve(const System& depth, const System& colour, double length_m, double independent,
            const AlignConfig& config, Matrix6d& fixed) {
   Vector6d scale;
@@ -272,7 +272,7 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
   const int last = static_cast<int>(live.levels.size()) - 1;
   Step step;
   Pass total;
-  Matrix6d fixed = Matrix6d::Identity();  // by depth, as far as coarser levels know
+  Matrix6d fixed = Matrix6d::Identity();  // directions constrained by depth at all coarser levels
   for (int level = std::min(config.coarsest_level, last); level >= std::min(config.finest_level, last);
        --level) {
     const std::vector<LivePoint>& points = live.levels[static_cast<std::size_t>(level)];
@@ -296,7 +296,7 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
               points.empty() ? 0.0 : static_cast<double>(pass.met) / static_cast<double>(points.size());
         }
       }
-      // Coarse levels have fewer points; 4^level fewer are asked for there.
+      // Coarser levels have fewer points, so the min count is divided by 4 per level.
       const int coarser = std::min(level - std::min(config.finest_level, last), 8);
       if (total.met < static_cast<std::size_t>(std::max(config.min_points >> (2 * coarser), 12))) {
         result.status = TrackStatus::kTooFewPoints;

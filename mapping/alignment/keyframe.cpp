@@ -1,4 +1,4 @@
-// keyframe.cpp: a view that later ones are aligned with, its depth made better by what follows.
+// keyframe.cpp: stored views that later frames are aligned with, and refinement of their depth.
 #include "mapping/alignment/keyframe.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace roomradar {
 namespace {
 
-constexpr int kMostMeasurements = 60;  // then the mean goes on as a moving one
+constexpr int kMostMeasurements = 60;  // then the mean becomes a moving average
 
 }  // namespace
 
@@ -67,8 +67,8 @@ void improve_depth(ViewPyramid& pyramid, Image<std::uint8_t>& measured, const Vi
     for (int x = 0; x < own.camera.width_px; ++x) {
       float& q = own.inverse_depth_per_m.at(x, y);
       if (q <= 0.0F) continue;
-      // Everything is divided by the own depth: the point is ray + q t, and its inverse depth there q
-      // / z.
+      // Everything is divided by this view's depth: the point is ray + q t, and its inverse depth in the
+      // other view is q / z.
       const Eigen::Vector3f ray = row_ray + static_cast<float>(x) * ray_step;
       const Eigen::Vector3f p = ray + q * t;
       if (p.z() < 0.1F) continue;

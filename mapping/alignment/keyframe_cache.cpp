@@ -1,4 +1,4 @@
-// warm_keyframes.cpp: the references of the keyframes that were used last; others are made anew when needed.
+// warm_keyframes.cpp: least-recently-used cache of keyframes prepared for alignment.
 #include "mapping/alignment/keyframe_cache.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// warm_keyframes.hpp: the references of the keyframes that were used last; others are made anew when needed.
+// warm_keyframes.hpp: least-recently-used cache of keyframes prepared for alignment.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -8,31 +8,31 @@
 
 namespace roomradar {
 
-/// A keyframe ready to be aligned with others, both ways. Its pose is the keyframe's; 4 MB at 320 x 240, of
-/// which 0.7 MB are the live view.
+/// Keyframe prepared for alignment, both as reference and as live view. Its T_world_view is the identity; the
+/// pose is in the Keyframe. 4 MB at 320 x 240, including 0.7 MB for the live view.
 struct WarmKeyframe {
   ReferenceView reference;
   LiveView live;
 };
 
-enum class WarmParts { kAll, kLive, kReference };  ///< the other part is empty
+enum class WarmParts { kAll, kLive, kReference };  ///< parts to prepare; the other stays empty
 
 std::shared_ptr<const WarmKeyframe> warm(const StoredView& view, const ViewConfig& config,
                                          WarmParts parts = WarmParts::kAll);
 
-/// Holds at most `capacity` of them, and forgets those that were not asked for the longest. What is handed
-/// out stays whole after it is forgotten. Copies share what they hold. Not thread safe; copies are apart.
+/// Caches at most `capacity` keyframes and evicts the least recently used. Entries stay valid for their
+/// holders after eviction. Copies share entries, but are otherwise independent. Not thread safe.
 class WarmKeyframes {
  public:
   explicit WarmKeyframes(std::size_t capacity, WarmParts parts = WarmParts::kAll)
       : capacity_(capacity), parts_(parts) {}
 
-  /// Null if it is not held.
+  /// Returns null if the keyframe is not cached.
   std::shared_ptr<const WarmKeyframe> find(std::size_t keyframe);
-  /// Made if it is not held.
+  /// Prepares and caches the keyframe if it is not cached.
   std::shared_ptr<const WarmKeyframe> get(std::size_t keyframe, const StoredView& view,
                                           const ViewConfig& config);
-  /// Takes the place of what was held of that keyframe.
+  /// Replaces the keyframe's entry, if any.
   void put(std::size_t keyframe, std::shared_ptr<const WarmKeyframe> made);
 
  private:
@@ -42,7 +42,7 @@ class WarmKeyframes {
   };
   std::size_t capacity_;
   WarmParts parts_;
-  std::vector<Entry> entries_;  // the one asked for last comes last
+  std::vector<Entry> entries_;  // most recently used last
 };
 
 }  // namespace roomradar

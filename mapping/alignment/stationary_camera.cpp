@@ -1,4 +1,4 @@
-// stillness.cpp: whether two pictures were taken by a camera that did not move between them.
+// stillness.cpp: detects that the camera did not move between two images.
 #include "mapping/alignment/stationary_camera.hpp"
 
 #include <cmath>
@@ -6,8 +6,8 @@
 namespace roomradar {
 
 bool shows_the_same(const Image<float>& before, const Image<float>& now) {
-  constexpr float kEdge = 10.0F;     // grey levels a pixel, well above a camera's noise
-  constexpr float kShift_px = 0.2F;  // an edge that moved by this changes a pixel by a fifth of its gradient
+  constexpr float kEdge = 10.0F;     // grey levels per pixel, well above a camera's noise
+  constexpr float kShift_px = 0.2F;  // an edge that moved this far changes a pixel by a fifth of its gradient
   constexpr int kFewest = 300;
   constexpr float kMostPart = 0.6F;
   if (before.width != now.width || before.height != now.height) return false;

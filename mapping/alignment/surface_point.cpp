@@ -1,4 +1,4 @@
-// surface_point.cpp: the surface point that a colour pixel shows.
+// surface_point.cpp: 3D surface point at a colour pixel.
 #include "mapping/alignment/surface_point.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace roomradar {
 namespace {
 
-/// Depth at a pixel as the middle one of its 3 x 3 surroundings; 0 if fewer than five of them have any.
+/// Returns the median depth of a pixel's 3 x 3 neighbourhood; 0 if fewer than five of its pixels have depth.
 float median_depth_m(const DepthImage& depth_m, int x, int y) {
   std::array<float, 9> around{};
   std::size_t count = 0;

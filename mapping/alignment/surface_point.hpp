@@ -1,4 +1,4 @@
-// surface_point.hpp: the surface point that a colour pixel shows.
+// surface_point.hpp: 3D surface point at a colour pixel.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// The point, in the depth camera, or nothing where there is no depth. Its depth decides where in the depth
-/// image to look for it, so it is searched for along the ray, from near and from far.
+/// Returns the point in the depth camera's frame, m; nullopt if there is no depth. The matching depth pixel
+/// depends on the point's depth, so the function iterates along the colour ray from two starts, near and far.
 std::optional<Eigen::Vector3f> surface_point_at(const Frame& frame, const Eigen::Isometry3d& T_depth_colour,
                                                 double u_px, double v_px);
 

@@ -1,4 +1,4 @@
-// view.cpp: depth and intensity images prepared for alignment with one another.
+// view.cpp: depth and intensity images prepared for alignment.
 #include "mapping/alignment/view.hpp"
 
 #include <algorithm>
@@ -9,26 +9,27 @@
 namespace roomradar {
 namespace {
 
-// Two depths belong to one surface if they differ by less than this part: 5 cm at 1 m, and a plane seen at 75
-// degrees over four pixels of a 320 pixel wide image.
+// Two depths belong to one surface if they differ by less than this fraction. It equals 5 cm at 1 m, or a
+// plane seen at 75 degrees over four pixels of a 320 pixel wide image.
 constexpr float kSameSurface = 0.05F;
 
-// Lateral noise of a Kinect v1, in radians: 0.8 pixels of 585. Source: Nguyen et al. 2012, section 3.
+// Lateral noise of a Kinect v1: 0.8 pixels at a focal length of 585 pixels. Source: Nguyen et al. 2012,
+// section 3.
 constexpr float kLateralSigma_rad = 0.8F / 585.0F;
 
-// What a Kinect's depth is off by however often it is measured: lens and baseline are not quite what they are
-// taken for. Chosen on the kitchen recording: 3 and 4 mm give an ATE of 22.3 and 21.9 mm, and an RPE over 30
+// Systematic depth error of a Kinect, from inexact calibration of lens and baseline; averaging does not
+// reduce it. Chosen on the kitchen recording: 3 and 4 mm give an ATE of 22.3 and 21.9 mm, and an RPE over 30
 // frames of 17.0 and 16.7 mm.
 constexpr float kDistortion_m = 0.004F;
 
-// Below this an intensity gradient (grey levels a pixel) is the colour camera's noise.
+// Smaller intensity gradients (grey levels per pixel) are noise of the colour camera.
 constexpr float kMinGradient = 3.0F;
 
 float inverse_depth(float depth_m, const ViewConfig& config) {
   return depth_m >= config.min_depth_m && depth_m <= config.max_depth_m ? 1.0F / depth_m : 0.0F;
 }
 
-/// Mean of those of four inverse depths that lie on the nearest one's surface; 0 if fewer than two do.
+/// Averages those of four inverse depths that lie on the nearest surface; returns 0 if fewer than two do.
 float nearest_surface(float a, float b, float c, float d) {
   const float least = std::max({a, b, c, d}) * (1.0F - kSameSurface);
   float sum = 0.0F;
@@ -42,7 +43,7 @@ float nearest_surface(float a, float b, float c, float d) {
   return count >= 2 ? sum / static_cast<float>(count) : 0.0F;
 }
 
-/// Inverse depth of half the image's size. `value` turns an input pixel into an inverse depth.
+/// Halves the size of an inverse depth image. `value` converts an input pixel to inverse depth.
 template <typename Value>
 void halve(const Image<float>& fine, const Value& value, Image<float>& coarse) {
   coarse.resize(fine.width / 2, fine.height / 2);
@@ -57,7 +58,7 @@ void halve(const Image<float>& fine, const Value& value, Image<float>& coarse) {
   }
 }
 
-/// Intensity of half the image's size: mean of those that belong to the surface that was kept.
+/// Halves the size of an intensity image; averages only pixels on the surface of the coarse depth.
 void halve_intensity_of(const ViewPyramid::Level& fine, ViewPyramid::Level& coarse) {
   coarse.intensity.resize(coarse.camera.width_px, coarse.camera.height_px, -1.0F);
   for (int y = 0; y < coarse.camera.height_px; ++y) {
@@ -80,7 +81,7 @@ void halve_intensity_of(const ViewPyramid::Level& fine, ViewPyramid::Level& coar
   }
 }
 
-/// Mean intensity of each block of `block` x `block` colour pixels.
+/// Averages the intensity over blocks of `block` x `block` colour pixels.
 void block_grey(const ColourImage& colour, int block, Image<float>& grey) {
   grey.resize(colour.width / block, colour.height / block);
   const float scale = 1.0F / static_cast<float>(256 * block * block);
@@ -97,7 +98,7 @@ void block_grey(const ColourImage& colour, int block, Image<float>& grey) {
   }
 }
 
-/// The intensity that the colour camera saw at each pixel with depth; -1 where it saw none.
+/// Registers the colour image's intensity to the depth pixels; -1 outside the colour camera's view.
 void register_intensity(const Frame& frame, int block, Image<float>& grey, ViewPyramid::Level& level) {
   block_grey(frame.colour, block, grey);
   const Intrinsics colour = scaled(frame.colour_camera, 1.0 / block);
@@ -128,7 +129,7 @@ void register_intensity(const Frame& frame, int block, Image<float>& grey, ViewP
   }
 }
 
-/// Fills the depth part of all levels and returns by how much the finest is smaller than the input.
+/// Fills in the depth of all levels; returns the ratio of the input's size to the finest level's.
 int make_depth_levels(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
                       ViewPyramid& pyramid) {
   pyramid.levels.resize(static_cast<std::size_t>(std::max(config.levels, 1)));
@@ -137,7 +138,7 @@ int make_depth_levels(const DepthImage& depth_m, const Intrinsics& camera, const
   int block = 1;
   const auto invert = [&](float depth) { return inverse_depth(depth, config); };
   const auto keep = [](float q) { return q; };
-  // An image of one row is not made smaller: there would be none.
+  // An image of one row is not halved: no row would remain.
   const auto is_too_wide = [&](const Intrinsics& c) {
     return c.width_px > config.finest_width_px && c.height_px > 1;
   };
@@ -161,8 +162,8 @@ int make_depth_levels(const DepthImage& depth_m, const Intrinsics& camera, const
   return block;
 }
 
-/// Plane through a pixel's surroundings: (2 kHalf + 1)^2 samples `step` apart, those on the pixel's surface.
-/// False if they are too few or do not lie on a plane within the noise.
+/// Fits a plane to the samples on the pixel's surface among (2 kHalf + 1)^2 samples, `step` apart. Returns
+/// false if there are too few, or if they are not coplanar within the noise.
 template <int kHalf>
 bool fit_plane(const Image<float>& inverse_depth, int x, int y, int step, float& value, float& slope_u,
                float& slope_v) {
@@ -190,7 +191,8 @@ bool fit_plane(const Image<float>& inverse_depth, int x, int y, int step, float&
   const float cuq = suq - su * sq * inverse_n, cvq = svq - sv * sq * inverse_n,
               cqq = sqq - sq * sq * inverse_n;
   const float determinant = cuu * cvv - cuv * cuv;
-  // Of all samples it is the square of each direction's sum of squares; near 0 they are nearly on one line.
+  // With all samples, the determinant is the square of one direction's sum of squares. Near 0, the samples
+  // are almost collinear.
   constexpr float kSquares = kHalf == 1 ? 6.0F : 50.0F;
   static_assert(kHalf == 1 || kHalf == 2);
   if (determinant < 0.012F * kSquares * kSquares) return false;
@@ -226,7 +228,7 @@ void make_reference_level(const ViewPyramid::Level& level, int step, ReferenceLe
       if (level.inverse_depth_per_m.at(x, y) <= 0.0F) continue;
       float q = 0, a = 0, b = 0;
       if (!fit_plane<kHalf>(level.inverse_depth_per_m, x, y, step, q, a, b)) continue;
-      // 1/z = n . ray / offset for a plane, so the slopes of 1/z give n / offset.
+      // On a plane 1/z = n . ray / offset, so the gradient of 1/z gives n / offset.
       const float du = static_cast<float>(x) - cx, dv = static_cast<float>(y) - cy;
       const Eigen::Vector3f n(a * fx, b * fy, q - a * du - b * dv);
       const float distance_m = 1.0F / n.norm();
@@ -234,7 +236,8 @@ void make_reference_level(const ViewPyramid::Level& level, int step, ReferenceLe
       pixel.normal = -distance_m * n;
       pixel.offset_m = -distance_m;
       const float z_m = 1.0F / q;
-      const float cosine = distance_m * q;  // of normal and ray, times the ray's length at z = 1
+      const float cosine = distance_m * q;  // of the angle between normal and ray, times the ray's length at
+                                            // z = 1
       const float along_m = cosine * depth_sigma_m(z_m);
       const float across_m = kLateralSigma_rad * z_m * std::sqrt(std::max(1.0F - cosine * cosine, 0.0F));
       pixel.inverse_sigma_per_m =

@@ -1,4 +1,4 @@
-// view.hpp: depth and intensity images prepared for alignment with one another.
+// view.hpp: depth and intensity images prepared for alignment.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -10,51 +10,50 @@
 namespace roomradar {
 
 struct ViewConfig {
-  int finest_width_px = 320;  ///< images wider than this are halved until they are not
-  int levels = 3;             ///< of the pyramid, each half the size of the one before
+  int finest_width_px = 320;  ///< wider images are halved until they fit
+  int levels = 3;             ///< number of pyramid levels, each half the size of the one before
   float min_depth_m = 0.3F;
   float max_depth_m = 6.0F;  ///< beyond this a Kinect v1 is off by more than 6 cm
-  /// A reference's planes are fitted to 5 x 5 samples this far to each side (finest level).
+  /// Reference planes are fitted to 5 x 5 samples that extend this far to each side, at the finest level.
   int normal_reach_px = 4;
-  bool noisy = true;  ///< false, for rendered depth: 3 x 3 neighbours do, at a third of the time
+  bool noisy = true;  ///< false for rendered depth: 3 x 3 neighbours suffice, in a third of the time
 };
 
-/// An image's depth and intensity at several resolutions, from fine to coarse.
-/// Inverse depth is what is averaged: of a plane it is linear over the image, and its noise is the same
-/// everywhere.
+/// Depth and intensity of an image at several resolutions, from fine to coarse. Inverse depth is stored and
+/// averaged: over a plane it is linear in the image, and its noise is uniform.
 struct ViewPyramid {
   struct Level {
     Intrinsics camera;
-    Image<float> inverse_depth_per_m;  ///< 0: none
-    Image<float> intensity;            ///< 0..255, -1: none; empty: no colour at all
+    Image<float> inverse_depth_per_m;  ///< 0: no depth
+    Image<float> intensity;            ///< 0..255, -1: none; empty image: no colour
   };
   std::vector<Level> levels;
-  /// Scratch: the colour image's intensity, averaged down to about the finest level's size.
+  /// Scratch: intensity of the colour image, averaged down to about the finest level's size.
   Image<float> grey;
 };
 
-/// Depth halved until it is at most finest_width_px wide, and colour as seen from the depth camera, in
-/// `levels` sizes. Depths outside min_depth_m..max_depth_m and pixels whose colour the colour camera does not
-/// see are left out. The frame's images must have their cameras' sizes. Reuses what `pyramid` has allocated.
+/// Builds a pyramid of depth, its finest level at most finest_width_px wide, and of intensity registered to
+/// the depth camera. Leaves out depths outside min_depth_m..max_depth_m, and intensity outside the colour
+/// camera's view. The frame's images must have their cameras' sizes. Reuses memory allocated in `pyramid`.
 void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyramid);
 
-/// The same without colour, for rendered depth.
+/// Same without colour, for rendered depth.
 void make_pyramid(const DepthImage& depth_m, const Intrinsics& camera, const ViewConfig& config,
                   ViewPyramid& pyramid);
 
-/// Makes the depth of all levels but the finest anew from the finest's.
+/// Recomputes the depth of all coarser levels from the finest.
 void halve_depth(ViewPyramid& pyramid);
 
-/// The same of the intensity, where the finest level has any; the depth of all levels must be there.
+/// Same for intensity, if the finest level has any; needs the depth of all levels.
 void halve_intensity(ViewPyramid& pyramid);
 
-/// What a reference pixel says about points near it. 32 bytes: looking one up touches one cache line.
+/// Plane and intensity at one reference pixel. 32 bytes, so one lookup touches one cache line.
 struct alignas(32) ReferencePixel {
-  Eigen::Vector3f normal;        ///< unit, towards the camera; zero: no surface here
-  float offset_m;                ///< normal . p for the points p of the surface's plane; < 0
-  float inverse_sigma_per_m;     ///< of the distance to the plane that one measurement of the surface has
-  float intensity;               ///< 0..255, or -1
-  float gradient_u, gradient_v;  ///< of the intensity, per pixel; 0 where the intensity is not known
+  Eigen::Vector3f normal;        ///< unit, towards the camera; zero: no surface
+  float offset_m;                ///< normal . p for points p on the plane, m; < 0
+  float inverse_sigma_per_m;     ///< 1 / standard deviation of a single measurement's distance to the plane
+  float intensity;               ///< 0..255; -1: none
+  float gradient_u, gradient_v;  ///< intensity gradient, per pixel; 0: unknown
 };
 
 struct ReferenceLevel {
@@ -62,29 +61,29 @@ struct ReferenceLevel {
   Image<ReferencePixel> pixels;
 };
 
-/// A view whose pose is known, levels from fine to coarse.
+/// View of known pose, levels from fine to coarse.
 struct ReferenceView {
   std::vector<ReferenceLevel> levels;
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Fits a plane to each pixel's surroundings; holes stay where there is no surface or it is not flat within
-/// the noise.
+/// Fits a plane to each pixel's neighbourhood. Pixels without depth, or not flat within the noise, get no
+/// surface.
 void make_reference(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world_view,
                     const ViewConfig& config, ReferenceView& reference);
 
 struct LivePoint {
   Eigen::Vector3f p_camera;  ///< m
-  float intensity;           ///< 0..255, or -1
+  float intensity;           ///< 0..255; -1: none
 };
 
-/// The points of an image to be aligned, levels from fine to coarse; the finest may be thinned.
+/// Points of an image to be aligned, levels from fine to coarse; the finest may be subsampled.
 struct LiveView {
   std::vector<std::vector<LivePoint>> levels;
 };
 
-/// `ignore`, unless empty, has the depth image's size; pixels that it has at 255 are left out.
-/// Of the finest level every `finest_step_px`-th pixel of every such row is taken.
+/// `ignore` is empty or has the depth image's size; its non-zero pixels are left out. The finest level uses
+/// every `finest_step_px`-th pixel of every `finest_step_px`-th row.
 void make_live(const ViewPyramid& pyramid, LiveView& live, const MaskImage& ignore = {},
                int finest_step_px = 2);
 

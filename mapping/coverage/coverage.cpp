@@ -1,4 +1,4 @@
-// coverage.cpp: holes of space and of the surface, and the picture of both.
+// coverage.cpp: holes in observed space and in the surface, and a picture of both.
 #include "mapping/coverage/coverage.hpp"
 
 #include "mapping/coverage/coverage_picture.hpp"

@@ -1,4 +1,4 @@
-// coverage.hpp: what a scan has seen of its room, and what it has not.
+// coverage.hpp: unobserved regions of a scan, and a picture of its coverage.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,8 +11,8 @@
 namespace roomradar {
 
 struct Coverage {
-  std::vector<Hole> holes;  ///< unknown space, surface borders, outer borders; each largest first
-  std::vector<std::uint8_t> picture_png;  ///< as draw_coverage draws it
+  std::vector<Hole> holes;  ///< unknown space, surface borders, outer borders; per kind, largest first
+  std::vector<std::uint8_t> picture_png;  ///< picture from draw_coverage()
 };
 
 /// Finds the holes of a finished map and draws its coverage. Takes some tenths of a second for a room.

@@ -1,4 +1,4 @@
-// coverage_picture.cpp: parallel projections of the mesh, with what is missing drawn over them.
+// coverage_picture.cpp: orthographic projections of the mesh, with holes drawn over them.
 #include "mapping/coverage/coverage_picture.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ constexpr int kWidth = 1600, kMostHeight = 1200, kMargin = 28, kPanelWidth = 420
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
 constexpr std::size_t kNumbered = 12;  // holes with a badge and a line in the list
 
-// Colours as OpenCV has them: blue, green, red.
+// OpenCV's colour order: blue, green, red.
 const cv::Scalar kPaper(250, 248, 246), kInk(60, 48, 40), kFaint(170, 160, 152), kOrange(40, 130, 245),
     kViolet(190, 40, 170), kBlue(215, 150, 70), kWay(60, 120, 40);
 
@@ -33,11 +33,11 @@ void put(cv::Mat3b& picture, const std::string& text, cv::Point at, double size,
   cv::putText(picture, text, at, kFont, size, colour, thickness, cv::LINE_AA);
 }
 
-// One parallel projection: the picture's right and down, and into the picture, in the world.
+// One orthographic projection. `right`, `down` and `into` are the picture's axes in the world.
 struct Projection {
   Vector3d right, down, into;
   double px_per_m = 1.0;
-  double left_m = 0.0, top_m = 0.0;  // of the panel's upper left corner along right and down
+  double left_m = 0.0, top_m = 0.0;  // panel's upper left corner, along `right` and `down`
   cv::Rect panel;
   std::string title;
 
@@ -47,7 +47,7 @@ struct Projection {
   }
 };
 
-// The angle by which most upright surfaces are turned from the world's axes, -45 to 45 degrees.
+// Returns the angle between most upright surfaces and the world's axes, -45 to 45 degrees, in radians.
 double yaw_of_walls_rad(const Mesh& mesh) {
   std::complex<double> sum = 0.0;
   for (const Triangle& t : mesh.triangles) {
@@ -61,7 +61,7 @@ double yaw_of_walls_rad(const Mesh& mesh) {
   return std::abs(sum) > 0.0 ? std::arg(sum) / 4.0 : 0.0;
 }
 
-// For each vertex whether its surface was seen well.
+// Returns per vertex whether its surface is well observed.
 std::vector<std::uint8_t> seen_well(const StaticMap& map, const Mesh& mesh) {
   const double sigma_1m = depth_sigma_m(1.0F);
   const double least_weight = (sigma_1m / kSeenWell_m) * (sigma_1m / kSeenWell_m);
@@ -102,7 +102,7 @@ void draw_surface(const Mesh& mesh, const std::vector<std::uint8_t>& well, const
       for (const std::uint32_t v : t)
         mean += cv::Vec3d(mesh.colours[v].b, mesh.colours[v].g, mesh.colours[v].r) / 3.0;
     }
-    mean = shade * (0.62 * mean + cv::Vec3d(92, 92, 92));  // lightened, so that marks stand out
+    mean = shade * (0.62 * mean + cv::Vec3d(92, 92, 92));  // lightened, so marks stand out
     if (well[t[0]] + well[t[1]] + well[t[2]] < 2)
       mean = 0.35 * mean + 0.65 * shade * cv::Vec3d(kOrange[0], kOrange[1], kOrange[2]);
     const cv::Vec3b colour(cv::saturate_cast<std::uint8_t>(mean[0]), cv::saturate_cast<std::uint8_t>(mean[1]),
@@ -131,7 +131,8 @@ void draw_surface(const Mesh& mesh, const std::vector<std::uint8_t>& well, const
 }
 
 void draw_border(const Frontier& frontier, const Projection& view, cv::Mat3b& picture) {
-  // Cells that look into or out of the picture would cover it; of the outer border only the outline is shown.
+  // Cells that face into or out of the picture would cover it, so only the outline of the outer border is
+  // drawn.
   cv::Mat1b inside(picture.size(), std::uint8_t{0}), outside = inside.clone();
   const double half_px = 0.5 * frontier.cell_m * view.px_per_m;
   for (const FrontierCell& cell : frontier.cells) {
@@ -211,7 +212,7 @@ void draw_scale(const Projection& view, cv::Mat3b& picture) {
   put(picture, "1 m", left + cv::Point(0, -9), 0.42);
 }
 
-// Answers where it ends.
+// Returns the y coordinate of its end.
 int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point panel, cv::Mat3b& picture) {
   int y = panel.y + 22;
   const auto line = [&](const std::string& text, int x, double size, const cv::Scalar& colour = kInk) {
@@ -233,7 +234,7 @@ int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point pane
   entry(kViolet, "not seen: unknown space, surface border");
   entry(kBlue, "the scan ends here");
   cv::line(picture, {panel.x, y - 5}, {panel.x + 22, y - 5}, kWay, 2, cv::LINE_AA);
-  line("the camera's way (dot: its start)", 32, 0.45);
+  line("camera path (dot: its start)", 32, 0.45);
   y += 40;
   if (holes.empty()) {
     line("No holes: all of the scan's inside was seen.", 0, 0.45);
@@ -264,7 +265,7 @@ int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point pane
   return y + 20;
 }
 
-// Gives the projections the panel that they share out, at one scale.
+// Lays out the three projections in their panel, at one scale.
 std::array<Projection, 3> lay_out(const Mesh& mesh, const Frontier& frontier,
                                   std::span<const TimedPose> trajectory) {
   const double yaw = yaw_of_walls_rad(mesh);
@@ -282,7 +283,7 @@ std::array<Projection, 3> lay_out(const Mesh& mesh, const Frontier& frontier,
   constexpr double kRim_m = 0.15;
   const Vector3d low = box.min().array() - kRim_m;
   const Vector3d size = box.sizes().array() + 2.0 * kRim_m;
-  // Plan above the view from the south; the view from the west to the right of the plan.
+  // The plan is above the view from the south; the view from the east is to the right of that view.
   const int inner_width = kWidth - kPanelWidth - 4 * kMargin, inner_height = kMostHeight - 3 * kMargin;
   const double px_per_m =
       std::min(inner_width / (size.x() + size.y()), inner_height / std::max(size.y() + size.z(), 0.1));
@@ -320,7 +321,7 @@ std::array<Projection, 3> lay_out(const Mesh& mesh, const Frontier& frontier,
 ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                           std::span<const Hole> holes, std::span<const TimedPose> trajectory) {
   cv::Mat3b picture(kMostHeight, kWidth);
-  int height = 0;  // that is used
+  int height = 0;  // of the used part
   picture.setTo(kPaper);
   if (surface.triangles.empty()) {
     put(picture, "There is no surface.", {kMargin, 2 * kMargin}, 0.8);

@@ -1,4 +1,4 @@
-// coverage_picture.hpp: a scan's room from above and from two sides: seen well, seen thinly, not seen.
+// coverage_picture.hpp: draws a scan's coverage from above and from two sides.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -12,20 +12,20 @@
 
 namespace roomradar {
 
-/// Surface whose distance is known to less than this (standard deviation, from the weights of the samples) is
-/// seen well: that takes 3 frames from 2 m, 15 from 3 m.
+/// Max standard deviation of a well observed surface's distance, from the samples' weights: 3 frames from 2
+/// m, or 15 from 3 m.
 inline constexpr double kSeenWell_m = 0.003;
 
-/// Draws the surface straight from above and from two sides, each as if what stands between the viewer and
-/// the inside of the room were not there (back faces are left out). The picture is turned so that most walls
-/// are upright in it; arrows show the world's axes. Where the surface was seen thinly it is orange; border
-/// cells of holes are marked, violet for unknown space and surface borders, blue where the scan ends; the
-/// largest holes have their numbers (1: the first of `holes`). The camera's way is a line. With scale and
-/// legend; some 1600 x 1000 pixels. An empty surface gives a picture that says so.
+/// Draws orthographic projections of the surface from above and from two sides. Back faces are left out, so
+/// walls and ceiling do not hide the room. The picture is rotated to make most walls upright in it; arrows
+/// show the world's axes. Thinly observed surface is orange. Border cells of holes are violet (unknown space,
+/// surface borders) or blue (end of the scan). The largest holes are numbered (1: the first of `holes`), and
+/// a line shows the camera's path. With scale and legend, about 1600 x 1000 pixels. An empty surface gives a
+/// picture that says so.
 ColourImage draw_coverage(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                           std::span<const Hole> holes, std::span<const TimedPose> trajectory);
 
-/// As a PNG file's bytes.
+/// Encodes a picture as a PNG file's bytes. Throws Error if the picture is empty.
 std::vector<std::uint8_t> encode_png(const ColourImage& picture);
 
 }  // namespace roomradar

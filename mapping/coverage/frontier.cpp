@@ -1,4 +1,4 @@
-// frontier.cpp: a coarse grid of what is known, and the patches of its border with the unknown.
+// frontier.cpp: coarse occupancy grid, and the patches of its border with unknown space.
 #include "mapping/coverage/frontier.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ enum class CellState : std::uint8_t { kUnknown, kFree, kOccupied };
 constexpr std::array<std::array<int, 3>, 6> kFaces = {
     {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
 
-// What is known, in cells of a whole number of voxels. Past its border everything is unknown.
+// Occupancy in cells of a whole number of voxels. Everything outside the grid is unknown.
 class Grid {
  public:
   Grid(const StaticMap& map, double cell_m) {
@@ -108,14 +108,14 @@ constexpr std::int32_t kNoBorder = -1;
 
 struct Border {
   std::vector<BorderCell> cells;
-  std::vector<std::int32_t> position;  // of each grid cell in `cells`
+  std::vector<std::int32_t> position;  // index in `cells` per grid cell
 };
 
 Border find_border(const Grid& grid) {
   Border border;
   const Vector3i size = grid.size();
   border.position.assign(static_cast<std::size_t>(size.cast<std::int64_t>().prod()), kNoBorder);
-  std::vector<Vector3d> faces;  // sums of the directions of a cell's faces to free cells
+  std::vector<Vector3d> faces;  // per border cell: sum of the unit vectors from its free neighbours to it
   for (int z = 0; z < size.z(); ++z)
     for (int y = 0; y < size.y(); ++y)
       for (int x = 0; x < size.x(); ++x) {
@@ -145,7 +145,7 @@ Border find_border(const Grid& grid) {
       if (at != kNoBorder) sum += faces[static_cast<std::size_t>(at)];
     }
     if (!(sum.norm() > 1e-9)) sum = faces[i];
-    if (!(sum.norm() > 1e-9)) sum = Vector3d::UnitZ();  // a slit: free on both sides, and so all round
+    if (!(sum.norm() > 1e-9)) sum = Vector3d::UnitZ();  // a slit, free on opposite sides
     own.normal = sum.normalized();
     for (const auto& face : kFaces) {
       const Vector3i step(face[0], face[1], face[2]);
@@ -156,7 +156,7 @@ Border find_border(const Grid& grid) {
   return border;
 }
 
-// Of the ways on into the unknown, the part that ends at a surface.
+// Returns the fraction of rays into the unknown that end at a surface.
 double enclosed_part(const Grid& grid, const BorderCell& from) {
   int ways = 0, ended = 0;
   for (int n = 0; n < kCellsRound; ++n) {
@@ -173,8 +173,8 @@ double enclosed_part(const Grid& grid, const BorderCell& from) {
   return ways > 0 ? static_cast<double>(ended) / ways : 0.0;
 }
 
-// Numbers the cells that touch and are alike; a patch reaches no further than max_size_m from where it began.
-// With an infinite size these are the connected parts.
+// Labels connected cells of the same kind; returns the number of labels. A patch extends at most max_size_m
+// from its first cell; an infinite size gives connected components.
 int number_patches(const Grid& grid, Border& border, double max_size_m) {
   for (BorderCell& cell : border.cells) cell.patch = -1;
   int patches = 0;
@@ -203,8 +203,8 @@ int number_patches(const Grid& grid, Border& border, double max_size_m) {
   return patches;
 }
 
-// The best free place with a free way to the hole: 0.5 to 1.8 m off, near the direction straight out of it,
-// and where a person can hold a camera.
+// Returns the best free place with a free line of sight to the hole: 0.5 to 1.8 m away, near the hole's axis,
+// and at a height where a person can hold a camera.
 std::optional<Vector3d> place_to_stand(const Grid& grid, const Vector3d& hole_world, const Vector3d& look,
                                        double floor_m) {
   constexpr double kNearest_m = 0.5, kFarthest_m = 1.8, kStep_m = 0.2;
@@ -216,7 +216,7 @@ std::optional<Vector3d> place_to_stand(const Grid& grid, const Vector3d& hole_wo
       const Vector3d way(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
       const double straight = way.dot(-look);
       if (straight < 0.4) continue;
-      // Up to the first cell that is not free; the first two cells may be the hole's own edge.
+      // Stop at the first cell that is not free; the first two cells may be the hole's own edge.
       double reach_m = 0.0;
       for (double t = 0.0; t <= kFarthest_m; t += 0.5 * grid.cell_m()) {
         const bool is_free = grid.at(grid.cell_of(hole_world + t * way)) == CellState::kFree;
@@ -257,7 +257,7 @@ Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {
   Border border = find_border(grid);
   for (BorderCell& cell : border.cells) cell.enclosed = enclosed_part(grid, cell) >= config.min_enclosed;
 
-  // What is open but small belongs to the inside: a corner that was left out.
+  // A small open component counts as inside: a corner that was left out.
   const Eigen::AlignedBox3d occupied_world = map.counts().occupied_world;
   if (occupied_world.isEmpty()) return {};
   const Vector3d extent_m = occupied_world.sizes().cwiseMax(Vector3d::Constant(grid.cell_m()));
@@ -303,7 +303,7 @@ Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {
     }
     if (!(hole.area_m2 >= config.min_area_m2) || !(hole.area_m2 > 0.0)) continue;
     middle /= hole.area_m2;
-    // The border cell nearest to the middle: the middle of a bent border may lie in free space.
+    // The border cell nearest to the centre: the centre of a bent border may lie in free space.
     const BorderCell& nearest =
         **std::min_element(patch.begin(), patch.end(), [&](const auto* a, const auto* b) {
           return (grid.middle_world(a->cell) - middle).squaredNorm() <

@@ -1,4 +1,4 @@
-// frontier.hpp: the border between free and unknown space: where a scan has not looked.
+// frontier.hpp: finds the frontier between free and unknown space, and groups it into holes.
 #pragma once
 #include <vector>
 
@@ -8,35 +8,38 @@
 namespace roomradar {
 
 struct FrontierConfig {
-  double cell_m = 0.08;       ///< of the grid that is searched; at least the map's voxels
-  double min_area_m2 = 0.06;  ///< less is what noise and edges leave
-  double max_size_m = 1.5;    ///< what is larger is listed in parts
-  /// A border cell lies inside the scan if so many of the ways from it into the unknown end at a surface ...
+  double cell_m = 0.08;       ///< edge of the search grid's cells; at least the map's resolution
+  double min_area_m2 = 0.06;  ///< smaller areas result from noise and edges
+  double max_size_m = 1.5;    ///< larger holes are split
+  /// A border cell is inside the scan if at least this fraction of rays from it into the unknown end at a
+  /// surface.
   double min_enclosed = 0.5;
-  /// ... and otherwise if all that hangs together there is less than this part of the scan's cross section.
+  /// Otherwise it is inside if its connected component's area is at most this fraction of the scan's cross
+  /// section.
   double max_open_part = 0.08;
 };
 
 /// Throws Error naming field, value and rule.
 void require_valid(const FrontierConfig& config);
 
-/// A cell of the border, for drawing.
+/// A border cell, for drawing.
 struct FrontierCell {
   Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();
-  int hole = -1;  ///< which of Frontier::holes it is part of; -1: of none, for it is too small
+  int hole = -1;  ///< index in Frontier::holes; -1: its component is too small
 };
 
 struct Frontier {
-  double cell_m = 0.0;      ///< edge of the cells, a whole number of the map's voxels
-  std::vector<Hole> holes;  ///< kUnknownSpace and, where the scan ends, kOuterBorder; each kind largest first
+  double cell_m = 0.0;      ///< edge of the cells, a multiple of the map's resolution
+  std::vector<Hole> holes;  ///< kUnknownSpace and, at the end of the scan, kOuterBorder; per kind, largest
+                            ///< first
   std::vector<FrontierCell> cells;
 };
 
-/// The octree is read once into a grid of cells (coarser ones if there would be more than 16 million):
-/// occupied where any voxel is, else free where half of the cell is. Border cells are unknown and share a
-/// face with a free one; those that touch are one hole. An area counts each face by its share in the border's
-/// slope, so that a slanted border is not counted as its steps. An empty map has none. Throws Error if the
-/// config is out of its rules.
+/// Reads the octree once into a grid of cells (coarser ones if there would be more than 16 million). A cell
+/// is occupied if any of its voxels is, else free if half of it is. Border cells are unknown and share a face
+/// with a free cell; adjacent border cells form one hole. Each face's area is projected along the border's
+/// normal, so a slanted border does not count as its steps. Returns no holes for an empty map. Throws Error
+/// if the config is invalid.
 Frontier find_frontier(const StaticMap& map, const FrontierConfig& config = {});
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// holes.cpp: holes of the surface beside those of space, and all of them in words.
+// holes.cpp: finds holes of the surface in addition to the frontier's, and describes them.
 #include "mapping/coverage/holes.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::string_view to_string(HoleKind kind) {
 
 std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Frontier& frontier,
                              double min_border_size_m) {
-  constexpr double kLook_m = 1.2;  // from so far one sees a hole and what is round it
+  constexpr double kLook_m = 1.2;  // from this distance a person sees a hole and its surroundings
   std::vector<Hole> holes = frontier.holes;
   const double known_within_m = 3.0 * frontier.cell_m;
   for (const BorderLoop& loop : border_loops(surface)) {
@@ -51,7 +51,7 @@ std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Fr
 }
 
 std::string describe(const Hole& hole) {
-  char text[512];  // five numbers of up to 42 digits, and words
+  char text[512];  // room for five numbers of up to 42 digits, and words
   const auto& p = hole.position_world;
   const auto& look = hole.look_direction_world;
   int length = std::snprintf(

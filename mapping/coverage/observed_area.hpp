@@ -1,4 +1,4 @@
-// seen_area.hpp: how much surface a scan has seen so far, cheaply, while it runs.
+// seen_area.hpp: estimates how much surface a running scan has observed.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -11,16 +11,16 @@
 
 namespace roomradar {
 
-/// Counts the cells of 10 cm in which surface was measured, from every 16th pixel in both directions, at most
-/// 4 m away. A cell counts as 0.01 m2: true for surface along the world's axes, up to 1.7 times too much
-/// across them. It takes some 50 microseconds a frame. While the camera is tracked its poses are not final; a
-/// place seen again after some drift may count twice.
+/// Counts cells of 10 cm with measured surface, from every 16th pixel in both directions, at most 4 m away. A
+/// cell counts as 0.01 m2: exact for surface along the world's axes, up to 1.7 times too much for diagonal
+/// surface. Takes about 50 microseconds per frame. Poses during tracking are not final; surface seen again
+/// after drift may count twice.
 class SeenArea {
  public:
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   [[nodiscard]] double total_m2() const;
-  /// What the last second of frames added, by their stamps.
+  /// Area added by the last second of frames, by their time stamps.
   [[nodiscard]] double last_second_m2() const;
 
  private:
@@ -32,7 +32,7 @@ class SeenArea {
   std::deque<Gain> last_second_;
 };
 
-/// "12.4 m2 seen, 0.3 of it in the last second"
+/// Returns text such as "12.4 m2 seen, 0.30 of it in the last second".
 std::string describe(const SeenArea& seen);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// shape_search.cpp: a depth image's points laid on a grid of the room at every position and heading.
+// shape_search.cpp: scores a depth image's points on a grid of the room at every position and heading.
 #include "mapping/localization/correlative_search.hpp"
 
 #include <algorithm>
@@ -16,11 +16,12 @@ using Eigen::Vector3f;
 
 constexpr double kCoarse_m = 0.15;
 constexpr double kMostCells = 5e5;
-constexpr float kNearest_m = 0.4F, kFarthest_m = 5.0F;  // beyond it a Kinect's noise is a cube's size
-constexpr float kWidest = 10.0F;  // a ray's length, of its depth: at 84 degrees from the optical axis
+constexpr float kNearest_m = 0.4F, kFarthest_m = 5.0F;  // beyond 5 m a Kinect's noise exceeds a cube
+constexpr float kWidest = 10.0F;  // max ratio of a ray's length to its depth: 84 degrees from the optical
+                                  // axis
 constexpr int kHeadings = 72;
 
-/// Points of an image at the crossings of so many columns and rows; none of an image too small for that.
+/// Returns points of an image on a lattice of `columns` x `rows` pixels; empty if the image is too small.
 std::vector<Vector3f> points_of(const DepthImage& depth_m, const Intrinsics& camera, int columns, int rows) {
   std::vector<Vector3f> points;
   if (depth_m.width < 2 * columns || depth_m.height < 2 * rows) return points;
@@ -36,7 +37,7 @@ std::vector<Vector3f> points_of(const DepthImage& depth_m, const Intrinsics& cam
   return points;
 }
 
-/// Points of all previews, in the world; none that a damaged camera casts kilometres away.
+/// Returns points of all previews, in the world, except points that a damaged camera places kilometres away.
 std::vector<Vector3f> points_of(const Places& places) {
   constexpr int kStep_px = 2;
   std::vector<Vector3f> points;
@@ -62,8 +63,8 @@ std::size_t index_in(const ShapeGrid& grid, int x, int y, int z) {
          static_cast<std::size_t>(x);
 }
 
-/// Squared distances (cells) to the nearest zero along one axis added to what is there.
-/// Source: Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions, 2012, within a reach.
+/// One pass of a squared distance transform (cells) along one axis, limited to kReach_cells. Source:
+/// Felzenszwalb and Huttenlocher, Distance Transforms of Sampled Functions, 2012.
 void spread(std::vector<int>& squares, int count, std::size_t stride, std::size_t first) {
   constexpr int kReach = ShapeGrid::kReach_cells;
   std::vector<int> line(static_cast<std::size_t>(count));
@@ -78,13 +79,13 @@ void spread(std::vector<int>& squares, int count, std::size_t stride, std::size_
 
 constexpr double kRim_cells = 2.0;
 
-/// Cubes along x, y, z of a grid with a rim round a box of these edges.
+/// Returns the number of cubes along x, y, z for a box with these edges and a rim.
 Eigen::Array3d cells_across(const Vector3d& edges_m, double cell_m) {
   return (edges_m.array() / cell_m + 2.0 * kRim_cells).floor() + 1.0;
 }
 
 ShapeGrid grid_of(const std::vector<Vector3f>& points, const Eigen::AlignedBox3f& box, double cell_m) {
-  constexpr int kFew = 3;  // points of a cube that may be noise
+  constexpr int kFew = 3;  // cubes with fewer points may be noise
   constexpr int kFar = ShapeGrid::kReach_cells * ShapeGrid::kReach_cells;
   ShapeGrid grid;
   grid.cell_m = cell_m;
@@ -113,7 +114,7 @@ ShapeGrid grid_of(const std::vector<Vector3f>& points, const Eigen::AlignedBox3f
   return grid;
 }
 
-/// Nearness (0 to 1) between the cubes' middles and its slope (1/m); 0 outside.
+/// Nearness (0..1) interpolated between the cubes' centres, and its gradient (1/m); 0 outside.
 struct Near {
   float value = 0.0F;
   Vector3f slope_per_m = Vector3f::Zero();
@@ -152,11 +153,11 @@ double mean_nearness(const ShapeGrid& grid, const std::vector<Vector3f>& points,
   return static_cast<double>(sum) / static_cast<double>(points.size());
 }
 
-/// Moves a pose so that its points come nearer to surfaces (Gauss-Newton, all six directions).
+/// Refines a pose to bring its points nearer to surfaces (Gauss-Newton, six degrees of freedom).
 Eigen::Isometry3d settled(const ShapeGrid& grid, const std::vector<Vector3f>& points,
                           Eigen::Isometry3d T_world_camera) {
   constexpr int kIterations = 8;
-  constexpr double kDamping = 0.02;  // of the mean strength: directions that nothing fixes stay
+  constexpr double kDamping = 0.02;  // of the mean diagonal: unconstrained directions stay
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     const Eigen::Isometry3f T = T_world_camera.cast<float>();
     Eigen::Matrix<float, 6, 6> H = Eigen::Matrix<float, 6, 6>::Zero();
@@ -167,7 +168,7 @@ Eigen::Isometry3d settled(const ShapeGrid& grid, const std::vector<Vector3f>& po
       const Vector3f m = T.linear().transpose() * near.slope_per_m;
       Eigen::Matrix<float, 6, 1> J;
       J << m, p.cross(m);
-      const float weight = near.value * near.value;  // what lies on no surface has no say
+      const float weight = near.value * near.value;  // points on no surface have no weight
       H += weight * J * J.transpose();
       g += weight * (1.0F - near.value) * J;
     }
@@ -181,14 +182,14 @@ Eigen::Isometry3d settled(const ShapeGrid& grid, const std::vector<Vector3f>& po
   return T_world_camera;
 }
 
-/// A cube where the camera may be, with a heading.
+/// Candidate pose: the camera's cube and heading.
 struct Vote {
   int score = 0;
   int heading = 0;
   std::array<int, 3> cell{};
 };
 
-/// Adds the grid, moved by so many cubes, to the scores: what the point would meet from every cube.
+/// Adds the grid, shifted by this many cubes, to the scores: one point's nearness for every camera cube.
 void add_shifted(const ShapeGrid& grid, const Eigen::Vector3i& shift, std::vector<std::uint16_t>& scores) {
   const auto begin = [&](int axis) { return std::max(0, -shift(axis)); };
   const auto end = [&](int axis) {
@@ -207,7 +208,7 @@ void add_shifted(const ShapeGrid& grid, const Eigen::Vector3i& shift, std::vecto
   }
 }
 
-/// The best cubes of each square metre or so and heading.
+/// Appends the best cube of each block of 5 x 5 columns, about a square metre, for one heading.
 void take_best(const ShapeGrid& grid, const std::vector<std::uint16_t>& scores, int heading,
                std::vector<Vote>& votes) {
   constexpr int kBlock = 5;  // cubes

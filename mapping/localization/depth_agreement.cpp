@@ -1,4 +1,4 @@
-// evidence.cpp: whether a depth image bears out that the camera stands where it is taken to be.
+// evidence.cpp: agreement of a depth image with the depth expected at a pose.
 #include "mapping/localization/depth_agreement.hpp"
 
 #include <cmath>
@@ -7,7 +7,7 @@ namespace roomradar {
 
 Evidence evidence_of(const DepthImage& depth_m, const DepthImage& expected_m) {
   constexpr int kStep_px = 4;
-  constexpr float kAlike_per_m = 0.02F;  // of inverse depth; 5 steps of a Kinect's disparity are 0.014
+  constexpr float kAlike_per_m = 0.02F;  // in inverse depth; 5 steps of a Kinect's disparity are 0.014
   Evidence evidence;
   for (int y = 0; y < depth_m.height; y += kStep_px) {
     for (int x = 0; x < depth_m.width; x += kStep_px) {

@@ -1,24 +1,24 @@
-// evidence.hpp: whether a depth image bears out that the camera stands where it is taken to be.
+// evidence.hpp: agreement of a depth image with the depth expected at a pose.
 #pragma once
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
 
-/// Counts of pixels of the depth image, every fourth of every fourth row.
+/// Pixel counts over every fourth pixel of every fourth row of the depth image.
 struct Evidence {
-  int valid = 0;    ///< with a measurement
-  int both = 0;     ///< of these, where the room's model has a surface too
-  int alike = 0;    ///< of these, the same surface: apart by no more than noise and a distorted map make them
-  int farther = 0;  ///< of both, where the camera looks through the model's surface
+  int valid = 0;    ///< pixels with a measurement
+  int both = 0;     ///< valid pixels where the room's model has a surface
+  int alike = 0;    ///< pixels of `both` on the same surface, within noise and distortion of the map
+  int farther = 0;  ///< pixels of `both` where the camera looks through the model's surface
 
   [[nodiscard]] double alike_part() const { return both > 0 ? static_cast<double>(alike) / both : 0.0; }
   [[nodiscard]] double farther_part() const { return both > 0 ? static_cast<double>(farther) / both : 0.0; }
-  /// From 1, all is explained, down. What is nearer may have come into the room; what is farther speaks
-  /// against the pose, though things can be taken away.
+  /// Agreement; at most 1, if everything is explained. Nearer pixels may be objects that came into the room.
+  /// Farther pixels contradict the pose, though objects can be taken away.
   [[nodiscard]] double score() const { return valid > 0 ? (alike - 2.0 * farther) / valid : 0.0; }
 };
 
-/// Both images are of one size.
+/// Both images must have the same size.
 Evidence evidence_of(const DepthImage& depth_m, const DepthImage& expected_m);
 
 }  // namespace roomradar

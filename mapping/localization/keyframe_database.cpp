@@ -1,4 +1,4 @@
-// places.cpp: what is remembered of a room to find the camera in it again.
+// places.cpp: keyframe database for relocalisation in a known room.
 #include "mapping/localization/keyframe_database.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ void describe_features(const Frame& frame, int most, Place& place) {
   std::memcpy(colour.data, frame.colour.pixels.data(), frame.colour.pixels.size() * sizeof(Rgb));
   cv::Mat1b grey;
   cv::cvtColor(colour, grey, cv::COLOR_RGB2GRAY);
-  constexpr int kFastThreshold = 12;  // of 255; rooms have dim, plain walls
+  constexpr int kFastThreshold = 12;  // of 255; low, because rooms have dim, plain walls
   const cv::Ptr<cv::ORB> orb =
       cv::ORB::create(most, 1.2F, 8, 31, 0, 2, cv::ORB::HARRIS_SCORE, 31, kFastThreshold);
   std::vector<cv::KeyPoint> keypoints;
@@ -59,7 +59,7 @@ Place describe_place(const Frame& frame, const Eigen::Isometry3d& T_world_camera
                    return q > 0.0F ? static_cast<std::uint16_t>(std::lround(std::min(1000.0F / q, 65535.0F)))
                                    : std::uint16_t{0};
                  });
-  // ORB needs 31 pixels of surroundings and OpenCV's pyramid some more.
+  // ORB needs a neighbourhood of 31 pixels, and OpenCV's pyramid some more.
   constexpr int kSmallest_px = 64;
   place.patches = describe_patches(frame, std::min(config.patches, kMostDescribed));
   if (config.features > 0 && std::min(frame.colour.width, frame.colour.height) >= kSmallest_px) {

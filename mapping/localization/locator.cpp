@@ -1,4 +1,4 @@
-// locator.cpp: alignment with the static model, and a search of the whole map when that fails.
+// locator.cpp: alignment with the static model, and a search of the whole map if alignment fails.
 #include "mapping/localization/locator.hpp"
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 namespace roomradar {
 namespace {
 
-constexpr int kLiveStep_px = 1;  // all pixels of the finest level: a still camera's pose shakes the less
+constexpr int kLiveStep_px = 1;  // all pixels of the finest level: less pose jitter
 
-/// A Kinect that recalibrates itself bends its depth from one frame to the next, and alignment takes that for
-/// a motion, by which edges come to stand where they are not seen. So a motion that nothing announced has to
-/// explain no fewer pixels than a camera that stood still would.
+/// Returns whether the depth of a recalibrating Kinect bent, instead of the camera moving. Alignment takes
+/// such a bend for a motion, which puts edges in wrong places. So a motion that was not predicted must
+/// explain at least as many pixels as a stationary camera.
 bool is_bend_not_motion(const Tracking& tracking, const Eigen::Isometry3d& T_world_predicted,
                         const Eigen::Isometry3d& T_world_before, const DepthImage& depth_m,
                         const ExpectedDepth& expected_depth) {
@@ -26,8 +26,9 @@ bool is_bend_not_motion(const Tracking& tracking, const Eigen::Isometry3d& T_wor
   return evidence_of(depth_m, expected_depth(T_world_before)).alike_part() > by_motion + kMoreExplained;
 }
 
-/// Aligns the live view with the model as seen from T_world_view, from the guess on; once more from where
-/// that led if it is far from the view, for then the model showed other surfaces than the camera sees.
+/// Aligns the live view with the model rendered at T_world_view, starting from the guess. If the result is
+/// far from T_world_view, the model showed other surfaces than the camera sees, so it renders and aligns once
+/// more.
 Tracking align_with_model(Locator& locator, const AlignConfig& config, const Intrinsics& camera,
                           Eigen::Isometry3d T_world_view, const Eigen::Isometry3d& T_world_camera_guess,
                           const ExpectedDepth& expected_depth) {
@@ -44,20 +45,21 @@ Tracking align_with_model(Locator& locator, const AlignConfig& config, const Int
   return tracking;
 }
 
-/// Moves an aligned pose so that patches come to lie on those they look like, as far as the depth leaves that
-/// open: the least squares of both.
+/// Moves an aligned pose in the directions that depth leaves unconstrained, to bring patches onto their
+/// matches. Solves the least squares of both.
 void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPair>& pairs,
           Tracking& tracking) {
-  constexpr double kIndependent = 0.25;  // patches of several sizes share a corner, neighbours their depth
-  constexpr double kFarthest = 0.3;      // m and rad; what goes farther is not fixed by the pairs either
+  constexpr double kIndependent = 0.25;  // patches share corners, and neighbours share depth errors
+  constexpr double kFarthest = 0.3;      // m and rad; beyond it, the pairs do not constrain the pose either
   Eigen::Matrix<double, 6, 6> H = by_depth;
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
   for (const PointPair& pair : pairs) {
-    Eigen::Matrix<double, 3, 6> J;  // of a point in the camera, to the camera's twist
+    Eigen::Matrix<double, 3, 6> J;  // Jacobian of a point in the camera by the camera's twist
     J.leftCols<3>().setIdentity();
     for (int k = 0; k < 3; ++k) J.col(3 + k) = Eigen::Vector3d::Unit(k).cross(pair.b);
     const Eigen::Vector3d gap = tracking.T_world_camera.inverse() * pair.a - pair.b;
-    const double weight = kIndependent * 9.0 / (pair.gate_m * pair.gate_m);  // a gate is three deviations
+    const double weight = kIndependent * 9.0 / (pair.gate_m * pair.gate_m);  // a gate is three standard
+                                                                             // deviations
     H += weight * J.transpose() * J;
     g += weight * J.transpose() * gap;
   }
@@ -67,11 +69,12 @@ void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPa
   tracking.information = H;
 }
 
-/// Whether the camera could stand 6 cm farther along a direction that `information` leaves open, or turn
-/// about as much, and the model would explain its depth as well.
+/// Returns whether the model explains the depth as well if the camera moves 6 cm, or rotates about as much,
+/// along a direction that `information` leaves unconstrained.
 bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double fit,
             const Eigen::Matrix<double, 6, 6>& information, const ExpectedDepth& expected_depth) {
-  constexpr double kSlide_m = 0.06, kDistance_m = 2.0;  // of what turns past the camera
+  constexpr double kSlide_m = 0.06, kDistance_m = 2.0;  // kDistance_m: distance at which rotations are
+                                                        // measured
   constexpr double kMinLoss = 0.015;                    // of the fit: outlines shift by a few pixels
   const SymmetricEigen<6> solved = symmetric_eigen(information);
   for (int i = 0; i < 6 && solved.values(i) < 1e-3; ++i) {
@@ -85,8 +88,8 @@ bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double 
   return false;
 }
 
-/// Tries a pose: aligned with the model, and where that leaves a direction open, moved by what patches say:
-/// the pairs that proposed it, then those that lie near each other.
+/// Tests a hypothesis. Aligns it with the model, then moves unconstrained directions by patches: first by the
+/// pairs that proposed the pose, then by the pairs that coincide at the aligned pose.
 TriedPose tried(Locator& locator, const Frame& frame, const std::vector<SurfacePatch>& seen,
                 const PoseCandidate& guess, const ExpectedDepth& expected_depth) {
   constexpr std::size_t kEnough = 10;
@@ -117,7 +120,7 @@ TriedPose tried(Locator& locator, const Frame& frame, const std::vector<SurfaceP
     align_from(guess.T_world_camera, locator.strict_align);
   finding.evidence = evidence_of(frame.depth_m, expected_depth(finding.tracking.T_world_camera));
   if (!is_proven_by_look(finding) && finding.tracking && fit_of(finding.evidence) > kGoodFit) {
-    // The depth alone must fix it.
+    // Depth alone must constrain the pose.
     const Eigen::Isometry3d& T_found = finding.tracking.T_world_camera;
     const Tracking strict =
         align_with_model(locator, locator.strict_align, frame.depth_camera, T_found, T_found, expected_depth);
@@ -130,11 +133,11 @@ TriedPose tried(Locator& locator, const Frame& frame, const std::vector<SurfaceP
   return finding;
 }
 
-/// The pixels that moved as seen from a pose that no longer holds may be anything.
+/// Uses all pixels: the mask of moved pixels belongs to a pose that is no longer valid.
 void look_at_all(Locator& locator) { make_live(locator.live_pyramid, locator.live, {}, kLiveStep_px); }
 
-/// Looks for the camera in all of the map: where patches lead, and, if that is not certain, where the depth's
-/// shape fits; without gravity and colour only where remembered views are like the frame.
+/// Searches the whole map: by patches and, if these give no certain pose, by the depth's shape. Without
+/// gravity and colour, finds only poses near keyframes with a similar view.
 Tracking search(Locator& locator, const Frame& frame, const Places& places,
                 const ExpectedDepth& expected_depth) {
   constexpr std::size_t kByLook = 4, kByShape = 8;
@@ -177,9 +180,9 @@ Tracking search(Locator& locator, const Frame& frame, const Places& places,
   return found;
 }
 
-/// From the last pose and motion.
+/// Tracks from the last pose and motion.
 Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expected_depth) {
-  // So near, the view from the last pose shows what the camera sees now, and it was drawn already.
+  // This near, the view rendered at the last pose shows the same surfaces, and it exists already.
   constexpr double kNear_m = 0.04, kNear_rad = 0.04;
   const Eigen::Isometry3d& T_world_last = *locator.T_world_camera;
   const Eigen::Isometry3d T_world_predicted = T_world_last * locator.T_last_now;
@@ -195,7 +198,7 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
   return tracking;
 }
 
-/// Whether the frame shows patches enough where patches are known, and what is known to be there.
+/// Returns whether enough patches of the frame coincide with known ones and look like them.
 bool is_borne_out_by_look(Locator& locator, const Frame& frame, const Places& places,
                           const Eigen::Isometry3d& T_world_camera) {
   if (locator.known.empty()) locator.known = known_patches(places);
@@ -204,8 +207,8 @@ bool is_borne_out_by_look(Locator& locator, const Frame& frame, const Places& pl
   return is_borne_out(look);
 }
 
-/// Where the camera was lost some frames ago it may still be: a hand was before the lens. Before a wall the
-/// depth would say so too where it was moved along, so there the look has to.
+/// Resumes at the pose at which tracking was lost some frames ago, such as when a hand covered the lens. In
+/// front of a wall, depth would agree even after a motion along the wall, so patches must agree, too.
 Tracking resume(Locator& locator, const Frame& frame, const Places& places,
                 const ExpectedDepth& expected_depth) {
   constexpr int kLongest_frames = 30;
@@ -222,9 +225,10 @@ Tracking resume(Locator& locator, const Frame& frame, const Places& places,
   return tracking;
 }
 
-/// What was followed into a place that the depth speaks against for some frames is searched for; what is not
-/// found then is lost, unless a good part of the view still fits: things may have been taken away. From where
-/// it was to another place there was no motion. False: all of the map was searched, and it is lost.
+/// Verifies the tracked pose. If the depth contradicts the pose for some frames, searches the map. If the
+/// search fails, the camera is lost, unless a good part of the view still fits, because objects may have been
+/// taken away. If the search finds another place, the predicted motion is reset. Returns false if the map was
+/// searched and the camera is lost.
 bool doubt(Locator& locator, const Frame& frame, const Places& places, const ExpectedDepth& expected_depth,
            Tracking& tracking) {
   constexpr double kMinAlike = 0.3, kMaxFarther = 0.25, kHopeless = 0.3;
@@ -263,7 +267,7 @@ std::string_view to_string(SearchEnd end) {
     case SearchEnd::kNotCertain:
       return "not certain";
     case SearchEnd::kRivalled:
-      return "rivalled";
+      return "ambiguous";
   }
   return "unknown";
 }
@@ -274,7 +278,7 @@ Tracking locate(Locator& locator, const Frame& frame, const Places& places, cons
   make_live(locator.live_pyramid, locator.live, moved_mask, kLiveStep_px);
 
   Tracking tracking;
-  bool may_be_found = true;  // by a search; one a frame is enough
+  bool may_be_found = true;  // by a search; one per frame is enough
   if (locator.T_world_camera) {
     tracking = follow(locator, frame, expected_depth);
     if (has_pose(tracking)) may_be_found = doubt(locator, frame, places, expected_depth, tracking);

@@ -1,4 +1,4 @@
-// patch_matching.cpp: where a camera may stand that sees known patches of surface.
+// patch_matching.cpp: camera pose hypotheses from matched surface patches.
 #include "mapping/localization/patch_matching.hpp"
 
 #include <algorithm>
@@ -14,9 +14,9 @@
 namespace roomradar {
 namespace {
 
-constexpr int kMaxPatchDistance_bits = 70;    // of 256; of unrelated patches one in 10,000 is this near
-constexpr std::uint64_t kMaxFirst_bits = 24;  // of the first 64, which pass one in 30 of the unrelated
-constexpr std::size_t kAlike = 3;             // known patches that each one seen is compared with
+constexpr int kMaxPatchDistance_bits = 70;    // of 256; one in 10,000 unrelated patches is this similar
+constexpr std::uint64_t kMaxFirst_bits = 24;  // of the first 64; one in 30 unrelated patches passes
+constexpr std::size_t kAlike = 3;             // max matches per patch of the frame
 constexpr float kSamePlace_m = 0.05F;
 
 struct Alike {
@@ -32,8 +32,8 @@ std::uint64_t first_bits(const Descriptor& bits) {
   return first;
 }
 
-/// Ones in each of so many numbers that differ from `seen`: written so that compilers work on several at a
-/// time. Source: Warren, Hacker's Delight, section 5-1.
+/// Counts the bits in which each of `count` numbers differs from `seen`; written for automatic vectorisation.
+/// Source: Warren, Hacker's Delight, section 5-1.
 void count_differing(std::uint64_t seen, const std::uint64_t* known, std::size_t count, std::uint64_t* bits) {
   for (std::size_t k = 0; k < count; ++k) {
     std::uint64_t x = seen ^ known[k];
@@ -47,7 +47,7 @@ void count_differing(std::uint64_t seen, const std::uint64_t* known, std::size_t
   }
 }
 
-/// The known patches, at places of their own, that look most like one.
+/// Appends the known patches, at distinct places, that look most like this one.
 void add_alike(const SurfacePatch& seen, int seen_index, const KnownPatches::OfSize& known,
                std::vector<Alike>& alike) {
   std::array<Alike, kAlike> best;
@@ -66,7 +66,7 @@ void add_alike(const SurfacePatch& seen, int seen_index, const KnownPatches::OfS
       continue;
     std::size_t at = 0;
     bool is_worse = false;
-    for (std::size_t i = 0; i < count; ++i) {  // one of each place
+    for (std::size_t i = 0; i < count; ++i) {  // one per place
       if ((best[i].known->point - candidate.point).squaredNorm() > kSamePlace_m * kSamePlace_m) continue;
       is_worse = best[i].distance_bits <= bits;
       if (!is_worse) {
@@ -95,11 +95,11 @@ Eigen::Matrix3f axes_of(const SurfacePatch& patch) {
   return axes;
 }
 
-/// Pairs that agree with the pose that one pair implies, as far as a patch's own axes say it.
+/// Returns the pairs that agree with the pose that one pair implies, within the accuracy of a patch's axes.
 std::vector<std::size_t> agreeing_with(std::size_t vote, std::span<const Alike> alike,
                                        std::span<const Eigen::Matrix3f> R_known_seen) {
-  constexpr float kMinCosine = 0.9F;                   // 25 degrees between two pairs' rotations
-  constexpr float kGate_m = 0.05F, kGatePer_m = 0.2F;  // a patch's axes are off by 10 degrees or so
+  constexpr float kMinCosine = 0.9F;                   // 25 degrees between the rotations of two pairs
+  constexpr float kGate_m = 0.05F, kGatePer_m = 0.2F;  // a patch's axes are off by about 10 degrees
   const Eigen::Matrix3f& R = R_known_seen[vote];
   const Eigen::Vector3f p = alike[vote].seen->point, q = alike[vote].known->point;
   std::vector<std::size_t> agreeing;
@@ -113,12 +113,12 @@ std::vector<std::size_t> agreeing_with(std::size_t vote, std::span<const Alike> 
   return agreeing;
 }
 
-/// How far the two points of a pair may lie apart, both measured.
+/// Max distance between the points of a pair, both measured.
 double gate_m(const SurfacePatch& seen) {
   return 0.02 + 3.0 * static_cast<double>(depth_sigma_m(seen.point.z()));
 }
 
-/// Of one patch seen only one pair counts.
+/// Counts the distinct patches of the frame among the chosen pairs.
 int seen_in(const std::vector<std::size_t>& chosen, std::span<const Alike> alike) {
   int count = 0, last = -1;
   for (const std::size_t i : chosen) {
@@ -134,7 +134,7 @@ Eigen::Vector3i cell_of(const Eigen::Vector3f& point_world) {
   return (point_world / kCell_m).array().floor().cast<int>();
 }
 
-/// Calls visit(patch) for the known patches in the cells within half a cell of a point.
+/// Calls visit(patch) for known patches in the cells within half a cell of a point.
 template <typename Visit>
 void visit_near(const KnownPatches::OfSize& known, const Eigen::Vector3f& point_world, const Visit& visit) {
   const Eigen::Vector3i low = cell_of(point_world - Eigen::Vector3f::Constant(0.5F * kCell_m));
@@ -171,7 +171,7 @@ KnownPatches known_patches(const Places& places) {
     const Eigen::Isometry3f T_world_camera = place.T_world_camera.cast<float>();
     for (const SurfacePatch& in_camera : place.patches) {
       const SurfacePatch patch = moved_by(T_world_camera, in_camera);
-      // Views overlap; what several saw alike is kept once.
+      // Keyframes overlap; a patch that several saw alike is stored once.
       KnownPatches::OfSize& of_size = known.by_size[patch.size];
       bool is_known = false;
       visit_near(of_size, patch.point, [&](const SurfacePatch& other) {
@@ -191,8 +191,8 @@ KnownPatches known_patches(const Places& places) {
 PatchProof prove_with_patches(std::span<const SurfacePatch> seen, const KnownPatches& known,
                               const Eigen::Isometry3d& T_world_camera) {
   constexpr float kReach_m = 0.03F;
-  constexpr float kMinCosine = 0.8F;  // between normals, and between the ways to the brighter side
-  constexpr int kAlike_bits = 80;     // of 256, of two that lie in one place
+  constexpr float kMinCosine = 0.8F;  // between normals, and between directions to the brighter side
+  constexpr int kAlike_bits = 80;     // of 256; max for two matching patches at one place
   PatchProof proof;
   for (const SurfacePatch& in_camera : seen) {
     const SurfacePatch patch = moved_by(T_world_camera.cast<float>(), in_camera);
@@ -252,7 +252,7 @@ std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, con
   std::size_t tried = 0;
   for (const Group& group : groups) {
     if (tried == kTried) break;
-    // What a pose that was found explains already is no vote for another: it leaves the tries to rivals.
+    // A vote that a pose already found explains is skipped, which leaves the tries to alternatives.
     const bool is_explained =
         std::any_of(candidates.begin(), candidates.end(), [&](const PoseCandidate& found) {
           return (found.T_world_camera * alike[group.vote].seen->point.cast<double>() -

@@ -1,4 +1,4 @@
-// patch_matching.hpp: where a camera may stand that sees known patches of surface.
+// patch_matching.hpp: camera pose hypotheses from matched surface patches.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -14,13 +14,12 @@
 
 namespace roomradar {
 
-/// All patches of all places, in the world, by size.
+/// All patches of the keyframe database, in the world, grouped by size.
 struct KnownPatches {
   struct OfSize {
-    std::vector<std::uint64_t> first_bits;  ///< of each patch's descriptor, close together in memory
+    std::vector<std::uint64_t> first_bits;  ///< first 64 bits of each descriptor, contiguous in memory
     std::vector<SurfacePatch> patches;
-    std::unordered_multimap<std::uint64_t, std::uint32_t>
-        by_cell;  ///< positions of patches by where they are
+    std::unordered_multimap<std::uint64_t, std::uint32_t> by_cell;  ///< indices in `patches`, by 5 cm cell
   };
   std::array<OfSize, kPatchSizes> by_size;
   [[nodiscard]] bool empty() const;
@@ -29,21 +28,21 @@ KnownPatches known_patches(const Places& places);
 
 struct PoseCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  int agreeing = 0;              ///< patches of the frame that lie where known ones do that look alike
-  std::vector<PointPair> pairs;  ///< of these, as in PatchProof::alike
+  int agreeing = 0;              ///< patches of the frame that coincide with known ones of similar appearance
+  std::vector<PointPair> pairs;  ///< their points, as in PatchProof::alike
 };
 
-/// Poses that at least `min_agreeing` patches agree on, the best first, none twice. Each pair of patches that
-/// look alike votes for the whole pose that it implies, roughly; among those that agree with a vote, triples
-/// of points say exactly. Deterministic.
+/// Returns distinct poses that at least `min_agreeing` patches agree on, best first. Each pair of similar
+/// patches votes for the approximate pose that it implies. RANSAC over point triples of the agreeing pairs
+/// then gives the exact pose. Deterministic.
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const KnownPatches& known,
                                          std::size_t most, int min_agreeing);
 
-/// What a frame's patches say of a pose: of those that would lie on known ones, how many look like one of
-/// them.
+/// Agreement of a frame's patches with the known patches at a pose. `compared` counts patches that coincide
+/// with known ones; `alike` lists those that also look similar.
 struct PatchProof {
   int compared = 0;
-  std::vector<PointPair> alike;  ///< the known one's point in the world, the seen one's in the camera
+  std::vector<PointPair> alike;  ///< a: known point in the world; b: frame's point in the camera
   [[nodiscard]] double alike_part() const {
     return compared > 0 ? static_cast<double>(alike.size()) / compared : 0.0;
   }

@@ -1,4 +1,4 @@
-// patches.cpp: corners with depth, straightened, and compared with themselves.
+// patches.cpp: corners with depth, rectified and described by brightness comparisons.
 #include "mapping/localization/patches.hpp"
 
 #include <algorithm>
@@ -16,23 +16,23 @@
 namespace roomradar {
 namespace {
 
-constexpr int kSide = 32;  // samples along a patch
-constexpr int kBox = 2;    // brightness is that of (2 kBox + 1)^2 samples
+constexpr int kSide = 32;  // samples along a patch's edge
+constexpr int kBox = 2;    // brightness is the mean of (2 kBox + 1)^2 samples
 
 using Samples = std::array<float, kSide * kSide>;
 
-/// A patch's two axes, in the depth camera.
+/// Axes of a patch, in the depth camera.
 struct Axes {
   Eigen::Vector3f along, across;
 };
 
 struct ColourView {
   std::vector<cv::Mat1b> mips;  ///< each half the size of the one before
-  Intrinsics camera;            ///< of the first
+  Intrinsics camera;            ///< camera of the first
   Eigen::Isometry3f T_colour_depth;
 };
 
-/// The patch's brightness, or nothing where it reaches out of the image.
+/// Samples the patch's brightness; returns false if the patch extends beyond the image.
 bool sample(const ColourView& view, const Eigen::Vector3f& point, const Axes& axes, float width_m,
             Samples& samples) {
   const float spacing_m = width_m / kSide;
@@ -69,8 +69,8 @@ bool sample(const ColourView& view, const Eigen::Vector3f& point, const Axes& ax
   return true;
 }
 
-/// Turns the axes so that the first points to the patch's brighter side; false for a patch that is much the
-/// same all over. Source: Rosin, Measuring corner properties, 1999 (intensity centroid).
+/// Rotates the axes so the first points to the patch's brighter side; returns false for an almost uniform
+/// patch. Source: Rosin, Measuring corner properties, 1999 (intensity centroid).
 bool turn_to_brightness(const Samples& samples, Axes& axes) {
   constexpr float kMinDeviation = 4.0F;  // grey levels
   constexpr float kRadius = 0.5F * kSide;
@@ -93,14 +93,14 @@ bool turn_to_brightness(const Samples& samples, Axes& axes) {
 }
 
 struct Comparison {
-  std::array<int, 4> at;  ///< u and v of the one, u and v of the other
+  std::array<int, 4> at;  ///< u and v of the first sample, u and v of the second
 };
 
 const std::array<Comparison, 256>& comparisons() {
   static const std::array<Comparison, 256> drawn = [] {
     std::array<Comparison, 256> pairs{};
     std::mt19937 random(7);
-    const auto coordinate = [&random] {  // bell-shaped, within the patch
+    const auto coordinate = [&random] {  // bell-shaped distribution within the patch
       int sum = 0;
       for (int k = 0; k < 3; ++k) sum += static_cast<int>(random() % (kSide - 2 * kBox));
       return kBox + sum / 3;
@@ -137,7 +137,8 @@ Descriptor compare(const Samples& samples) {
   return bits;
 }
 
-/// Corners, in turn the most cornered of those left in the whole image and in each part of it.
+/// Returns corners in the order of selection: alternately the strongest remaining one of the image and of a
+/// cell.
 std::vector<cv::KeyPoint> corners_of(const cv::Mat1b& grey, int most) {
   constexpr int kFastThreshold = 10, kCell_px = 40;
   const cv::Ptr<cv::ORB> orb =
@@ -148,7 +149,7 @@ std::vector<cv::KeyPoint> corners_of(const cv::Mat1b& grey, int most) {
                    [](const cv::KeyPoint& a, const cv::KeyPoint& b) { return a.response > b.response; });
   const int columns = grey.cols / kCell_px + 1, rows = grey.rows / kCell_px + 1;
   std::vector<int> of_cell(static_cast<std::size_t>(columns * rows), 0);
-  std::vector<std::pair<int, std::size_t>> by_cell;  // the first of every cell, then the second ...
+  std::vector<std::pair<int, std::size_t>> by_cell;  // the strongest of every cell, then the second ...
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const int cell =
         static_cast<int>(corners[i].pt.y) / kCell_px * columns + static_cast<int>(corners[i].pt.x) / kCell_px;
@@ -199,7 +200,7 @@ std::vector<SurfacePatch> describe_patches(const Frame& frame, int most) {
     const int x = static_cast<int>(std::lround(at_px.x())), y = static_cast<int>(std::lround(at_px.y()));
     if (!level.pixels.contains(x, y)) continue;
     const ReferencePixel& plane = level.pixels.at(x, y);
-    // Seen at more than 75 degrees, a patch is a few pixels high.
+    // A patch seen at more than 75 degrees is only a few pixels high.
     if (plane.inverse_sigma_per_m <= 0.0F || -plane.normal.dot(p->normalized()) < 0.26F) continue;
     const float seen_m = corner.size * p->z() / static_cast<float>(frame.colour_camera.fx_px);
     const int size = static_cast<int>(std::lround(std::log2(seen_m / patch_width_m(0))));

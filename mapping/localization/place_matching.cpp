@@ -1,4 +1,4 @@
-// place_matching.cpp: which remembered views look like this one, and how they stand to each other.
+// place_matching.cpp: finds keyframes that look like a view, and their relative poses.
 #include "mapping/localization/place_matching.hpp"
 
 #include <algorithm>
@@ -15,13 +15,13 @@ namespace {
 
 constexpr int kMaxFeatureDistance_bits = 60;  // of 256
 constexpr float kRatio = 0.85F;
-// With a third of the matches right, 1 - (1 - 1/27)^400 = 0.9999997 to hit a good triple.
+// If a third of the matches is correct, one triple is with probability 1 - (1 - 1/27)^400 = 0.9999997.
 constexpr int kSamples = 400;
 constexpr std::size_t kMinMatches = 6;
 
 using Descriptors = std::span<const Descriptor>;
 
-/// Pairs (of `from`, of `to`): each feature with its nearest, where the second nearest is clearly further.
+/// Returns index pairs (from, to): each feature and its nearest, if the second nearest is clearly farther.
 std::vector<std::pair<std::size_t, std::size_t>> matches(Descriptors from, Descriptors to) {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t i = 0; i < from.size(); ++i) {
@@ -43,7 +43,7 @@ std::vector<std::pair<std::size_t, std::size_t>> matches(Descriptors from, Descr
   return pairs;
 }
 
-/// Best rigid motion of the chosen pairs' b onto a.
+/// Computes the best rigid motion of the chosen pairs' b onto a.
 Eigen::Isometry3d rigid_motion(const std::vector<PointPair>& pairs, const std::vector<std::size_t>& chosen) {
   Eigen::Matrix3Xd a(3, static_cast<Eigen::Index>(chosen.size())), b = a;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -62,7 +62,7 @@ std::vector<std::size_t> inliers_of(const std::vector<PointPair>& pairs, const E
   return inliers;
 }
 
-/// Three pairs span a triangle that fixes a rotation, and it has the same sides in both.
+/// Returns whether three pairs span a triangle that constrains the rotation, with equal sides in both frames.
 bool is_usable_triple(const std::vector<PointPair>& pairs, const std::vector<std::size_t>& triple) {
   constexpr double kMinSide_m = 0.1;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// place_matching.hpp: which remembered views look like this one, and how they stand to each other.
+// place_matching.hpp: finds keyframes that look like a view, and their relative poses.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -9,30 +9,30 @@
 
 namespace roomradar {
 
-/// Positions in `places` of at most `count` views with the most features in common with `place`, the most
-/// alike first; only those with at least `min_matches`. Looks at each view's `strongest` features.
+/// Returns the indices in `places` of at most `count` keyframes with the most features in common with
+/// `place`, best first, each with at least `min_matches`. Compares only each view's `strongest` features.
 std::vector<std::size_t> most_alike(const Place& place, std::span<const Place> places, std::size_t count,
                                     int min_matches, std::size_t strongest = 300);
 
-/// A rigid motion that takes `inliers` of b's matched feature points onto a's.
+/// Rigid motion that maps `inliers` of b's matched feature points onto a's.
 struct PlaceMatch {
   int inliers = 0;
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< only if inliers > 0
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< valid only if inliers > 0
 };
 
-/// One point in two frames.
+/// Corresponding points in two frames.
 struct PointPair {
   Eigen::Vector3d a, b;  ///< m
-  double gate_m;         ///< how far they may be apart once moved onto each other
+  double gate_m;         ///< max distance between the points after alignment
 };
 
-/// The motion that most pairs agree on, by RANSAC over so many triples with a fixed seed, refined over all
-/// inliers.
+/// Computes the motion with the most inliers, by RANSAC over `samples` triples with a fixed seed, refined
+/// over all inliers.
 PlaceMatch motion_of(const std::vector<PointPair>& pairs, int samples);
 
-/// Matches all features (nearest descriptor, clearly nearer than the second) and finds the motion that most
-/// of their points agree on within the depth noise, by RANSAC over triples with a fixed seed, refined over
-/// all inliers. Source: Fischler and Bolles 1981; Umeyama 1991; Lowe 2004 (ratio test).
+/// Matches all features (nearest descriptor, ratio test) and computes the motion that most of their points
+/// agree on within the depth noise. RANSAC over triples with a fixed seed, refined over all inliers. Source:
+/// Fischler and Bolles 1981; Umeyama 1991; Lowe 2004 (ratio test).
 PlaceMatch match_places(const Place& a, const Place& b);
 
 }  // namespace roomradar

@@ -1,10 +1,10 @@
-// places_file.cpp: the places of a map as one binary file.
+// places_file.cpp: reads and writes the keyframe database as one binary file.
 //
-// All numbers little-endian. "RRPLACES", version (u32), number of views (u32); then each view: frame index
-// (i64), pose (12 f64: rotation row by row, translation), preview camera (2 u32, 4 f64), preview depth (u16
-// each pixel), number of features (u32), their points (3 f32 each), their descriptors (32 bytes each), number
-// of patches (u32), of each point, normal and direction (3 f32 each), size (u8) and descriptor (32 bytes). At
-// the end the FNV-1a hash (u64) of all bytes before it.
+// All numbers are little-endian. Header: "RRPLACES", version (u32), number of views (u32). Each view: frame
+// index (i64), pose (12 f64: rotation by rows, translation), preview camera (2 u32, 4 f64), preview depth
+// (u16 per pixel), number of features (u32), their points (3 f32 each), their descriptors (32 bytes each),
+// number of patches (u32), patches. Each patch: point, normal and direction (3 f32 each), size (u8),
+// descriptor (32 bytes). The file ends with the FNV-1a hash (u64) of all bytes before it.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -18,9 +18,9 @@ namespace roomradar {
 namespace {
 
 constexpr std::string_view kMagic = "RRPLACES";
-constexpr std::uint32_t kVersion = 2;           // 1 had no patches
-constexpr std::uint32_t kMaxPreview_px = 4096;  // a side
-constexpr double kMaxPlace_m = 1e5;             // no map reaches farther: 32,768 voxels of 1 m
+constexpr std::uint32_t kVersion = 2;           // version 1 had no patches
+constexpr std::uint32_t kMaxPreview_px = 4096;  // per side
+constexpr double kMaxPlace_m = 1e5;             // a map reaches at most 32,768 voxels of 1 m
 
 void put_place(std::string& out, const Place& place) {
   put(out, place.frame_index);
@@ -62,7 +62,7 @@ SurfacePatch take_patch(BinaryReader& in) {
   return patch;
 }
 
-/// Of items that follow, all of them there.
+/// Takes the number of items that follow, and fails unless all of them are there.
 std::uint32_t take_count(BinaryReader& in, const char* what, std::size_t item_bytes) {
   const auto count = in.take<std::uint32_t>(what);
   if (count > static_cast<std::uint32_t>(kMostDescribed))

@@ -1,4 +1,4 @@
-// tried_pose.cpp: what depth and look must say for a pose, and what they may say against it.
+// tried_pose.cpp: thresholds on the agreement in depth and appearance that accept a pose.
 #include "mapping/localization/pose_hypothesis.hpp"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace roomradar {
 namespace {
 
-constexpr int kFewPatches = 12;        // of which no part can be told, and which contradict nothing
-constexpr double kContradicted = 0.2;  // of more patches: with no larger part of them alike a pose is wrong
+constexpr int kFewPatches = 12;  // with fewer, the fraction alike is meaningless and contradicts nothing
+constexpr double kContradicted = 0.2;  // with more patches, a pose with a smaller fraction alike is wrong
 
 }  // namespace
 
@@ -22,7 +22,7 @@ bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_worl
 }
 
 double support_of(const TriedPose& finding) {
-  constexpr double kEnough = 0.4;  // of the depth, that the model must have an answer to
+  constexpr double kEnough = 0.4;  // fraction of the depth that the model must cover
   const Evidence& evidence = finding.evidence;
   const double covered = std::min(1.0, evidence.both / (kEnough * std::max(evidence.valid, 1)));
   return covered * fit_of(evidence) +
@@ -39,7 +39,7 @@ double uncertainty_m(const Tracking& tracking) {
 bool is_proven_by_look(const TriedPose& finding) {
   constexpr std::size_t kMany = 15, kManyAlone = 40, kManyUndisputed = 25;
   constexpr double kMinAlike = 0.35;
-  constexpr double kUndisputed = 0.75, kUndisputedFit = 0.9;  // wrong poses have the one or the other
+  constexpr double kUndisputed = 0.75, kUndisputedFit = 0.9;  // no wrong pose exceeds both
   const PatchProof& look = finding.look;
   const bool is_undisputed = look.alike_part() > kUndisputed && fit_of(finding.evidence) > kUndisputedFit;
   const std::size_t enough = finding.tracking ? kMany : is_undisputed ? kManyUndisputed : kManyAlone;
@@ -51,12 +51,12 @@ bool is_borne_out(const PatchProof& look) {
 }
 
 bool is_certain(const TriedPose& finding) {
-  constexpr double kMostUncertain_m = 0.015;  // three and more of it are 5 cm
-  // People stand before what is known, never behind it. Where the depth leaves a direction open, floorboards
-  // repeat along it, and it is for the few edges to say that the pose is wrong.
+  constexpr double kMostUncertain_m = 0.015;  // 5 cm are more than three standard deviations
+  // People stand in front of known surfaces, never behind them. If depth leaves a direction unconstrained,
+  // floorboards repeat along it, and only a few edges can show that the pose is wrong.
   constexpr double kMostFarther = 0.12, kMostFartherOpen = 0.05;
-  // There two thirds of some hundred patches may be alike in a wrong place, of which the depth says so, too:
-  // the depth has to be clear, or both together.
+  // In this case two thirds of some hundred patches may be alike at a wrong pose, but the depth then agrees
+  // less. So the depth must agree clearly, or depth and patches together.
   constexpr double kClearTogether = 1.53, kClearDepth = 0.95;
   const Evidence& evidence = finding.evidence;
   const PatchProof& look = finding.look;
@@ -77,7 +77,8 @@ bool is_certain(const TriedPose& finding) {
 }
 
 bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings) {
-  constexpr double kClear = 0.08, kChance = 0.8;  // two deviations of a part of one patch
+  constexpr double kClear = 0.08, kChance = 0.8;  // two standard deviations of the fraction alike for one
+                                                  // patch
   return std::any_of(findings.begin(), findings.end(), [&](const TriedPose& other) {
     const int compared = std::min(best.look.compared, other.look.compared);
     const double chance = compared >= kFewPatches ? kChance / std::sqrt(compared) : 0.0;

@@ -1,4 +1,4 @@
-// tried_pose.hpp: is the camera where a search of the map would have it?
+// tried_pose.hpp: pose hypotheses of a map search, and the tests that accept them.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>
@@ -9,10 +9,10 @@
 
 namespace roomradar {
 
-/// A pose that a search of the map tried, and what speaks for it.
+/// Pose that a search of the map tried, with its agreement in appearance and depth.
 struct TriedPose {
   Tracking tracking;
-  double uncertainty_m = 0.0;  ///< of the position, one standard deviation, as far as depth and patches say
+  double uncertainty_m = 0.0;  ///< result of uncertainty_m() after alignment and patches
   PatchProof look;
   Evidence evidence;
 };
@@ -20,35 +20,36 @@ struct TriedPose {
 bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
              double reach_rad);
 
-/// How well the model's depth explains the frame's, of what it has an answer to: from 1, all of it, down.
+/// Returns the depth agreement, at most 1, over pixels where the model has a surface. Pixels that see through
+/// the model count against the pose twice.
 inline double fit_of(const Evidence& evidence) {
   return evidence.alike_part() - 2.0 * evidence.farther_part();
 }
-/// The same by depth and by look: from 2 down.
+/// Returns the sum of the agreement in depth and in appearance, at most 2.
 double support_of(const TriedPose& finding);
 
-/// The standard deviation of the camera's position in the direction in which it is greatest, of what the
-/// depth and the patches fix; infinite if that is not all.
+/// Returns the standard deviation of the camera's position in its most uncertain direction, from depth and
+/// patches. Infinite if a direction is unconstrained.
 double uncertainty_m(const Tracking& tracking);
 
-/// Whether enough patches lie where ones like them are known. Where boards or tiles repeat, some twenty do in
-/// a wrong place, so where the depth leaves a direction to them there must be more, or next to nothing may
-/// speak against the pose.
+/// Returns whether enough patches match known ones at this pose. Where boards or tiles repeat, about twenty
+/// match at a wrong pose. So if depth leaves a direction unconstrained, more must match, or almost nothing
+/// may contradict the pose.
 bool is_proven_by_look(const TriedPose& finding);
 
-/// Whether a part of them is alike, of enough to tell, that patches in a wrong place do not have.
+/// Returns whether enough patches were compared, and a larger fraction of them is alike than at wrong poses.
 bool is_borne_out(const PatchProof& look);
 
-/// Whether a pose is certain enough by itself: many patches lie where ones like them are known, and the depth
-/// does not speak against it; or the depth alone fixes it, next to nothing of the model is seen through, and
-/// the patches do not speak against it.
+/// Returns whether the pose is certain by itself. Either many patches match known ones and the depth does not
+/// contradict the pose; or depth alone constrains the pose, almost no pixel sees through the model, and the
+/// patches do not contradict it.
 bool is_certain(const TriedPose& finding);
 
-/// Whether another pose explains the frame about as well, so that nobody can say which is the right one: of
-/// few patches a good part may be alike in one place and not in its twin by chance.
+/// Returns whether the best pose is ambiguous: another pose explains the frame about as well. The margin is
+/// larger for few patches, because their agreement differs between identical places by chance.
 bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings);
 
-/// Poses so near each other are one place.
+/// Returns whether two poses are close enough to be the same place.
 inline bool is_same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double kSame_m = 0.1, kSame_rad = 0.1;
   return is_near(a, b, kSame_m, kSame_rad);

@@ -1,4 +1,4 @@
-// relocalise.cpp: where in a known room a frame was taken.
+// relocalise.cpp: localises a frame in the keyframe database.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -20,7 +20,7 @@ void make_preview_pyramid(const Place& place, const ViewConfig& view, ViewPyrami
   make_pyramid(depth_m, place.preview_camera, view, pyramid);
 }
 
-/// The preview as something to align with, at the origin.
+/// Makes the preview a reference, posed at the identity.
 ReferenceView reference_of(const ViewPyramid& preview, const ViewConfig& view) {
   ReferenceView reference;
   make_reference(preview, Eigen::Isometry3d::Identity(), view, reference);
@@ -35,8 +35,8 @@ struct Proof {
 
 double angle_rad(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
 
-/// Refines a pose found by features with the view's depth: these must agree with each other and with the
-/// depth.
+/// Refines a feature-based pose with the keyframe's depth. The refined pose must agree with the depth and
+/// with the features.
 Proof prove_with_features(const LiveView& live, const Place& place, const PlaceMatch& match,
                           const RelocaliseConfig& config, const ViewConfig& view) {
   constexpr double kMaxCorrection_m = 0.12, kMaxCorrection_rad = 0.12;
@@ -52,8 +52,8 @@ Proof prove_with_features(const LiveView& live, const Place& place, const PlaceM
   return proof;
 }
 
-/// Without features a pose must be found from the view's own, fixed in all directions, overlap well, and come
-/// out the same when the view is aligned with the frame instead.
+/// Verifies a keyframe without features. Alignment starts at the keyframe's pose, must constrain all
+/// directions, overlap well, and agree with the reverse alignment.
 Proof prove_with_depth(const LiveView& live, const ReferenceView& live_reference, const Place& place,
                        const ViewConfig& view) {
   constexpr double kMinAgreement = 0.85, kMinOverlap = 0.6, kMaxGap_m = 0.03, kMaxGap_rad = 0.03;
@@ -75,10 +75,10 @@ Proof prove_with_depth(const LiveView& live, const ReferenceView& live_reference
   return proof;
 }
 
-/// Positions of at most `count` places whose depth is most like the frame's, ray by ray. Alignment with the
-/// others, which begins where they were taken, would have next to nothing within its gate.
+/// Returns the indices of at most `count` keyframes whose depth is most similar to the frame's, ray by ray.
+/// For other keyframes, alignment starting at their pose would have almost no points within its gate.
 std::vector<std::size_t> nearest_in_depth(const Frame& frame, const Places& places, std::size_t count) {
-  constexpr int kEvery_px = 8;  // of a preview
+  constexpr int kEvery_px = 8;  // pixels of a preview
   constexpr float kGate_m = 0.3F;
   std::vector<std::pair<int, std::size_t>> unlike;
   for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
@@ -105,15 +105,15 @@ std::vector<std::size_t> nearest_in_depth(const Frame& frame, const Places& plac
   return nearest;
 }
 
-/// A view that was proven to be where the frame was taken.
+/// Keyframe that verified the frame's pose.
 struct Witness {
-  std::size_t position = 0;  ///< in places.keyframes
+  std::size_t position = 0;  ///< index in places.keyframes
   int feature_inliers = 0;
   Proof proof;
 };
 
-/// The answer of the best witness, refined over the depth of all that agree with it: each remembered pose has
-/// an error of its own.
+/// Returns the best witness's pose, refined over the depth of all witnesses that agree with it, because each
+/// keyframe's pose has an error.
 Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& live, const Places& places,
                       const ViewConfig& view) {
   constexpr double kAgree_m = 0.15, kAgree_rad = 0.1;
@@ -155,13 +155,13 @@ std::string_view to_string(RelocalisationStatus status) {
     case RelocalisationStatus::kFound:
       return "found";
     case RelocalisationStatus::kNoPlaces:
-      return "no places";
+      return "no keyframes";
     case RelocalisationStatus::kNoDepth:
       return "no depth";
     case RelocalisationStatus::kNoMatch:
       return "no match";
     case RelocalisationStatus::kUnproven:
-      return "unproven";
+      return "not verified";
   }
   return "unknown";
 }
@@ -199,7 +199,7 @@ Relocalisation relocalise(const Frame& frame, const Places& places, const Reloca
       if (proof.holds) witnesses.push_back({i, match.inliers, proof});
     }
   } else {
-    constexpr std::size_t kMostByDepth = 40;  // each some milliseconds
+    constexpr std::size_t kMostByDepth = 40;  // each takes some milliseconds
     const ReferenceView live_reference = reference_of(pyramid, view);
     for (const std::size_t i : nearest_in_depth(frame, places, kMostByDepth)) {
       const Proof proof = prove_with_depth(live, live_reference, places.keyframes[i], view);

@@ -1,4 +1,4 @@
-// map_diff.cpp: surface of one map in the free space of the other, and what of it hangs together.
+// map_diff.cpp: surface of one map in the other's free space, grouped into connected components.
 #include "mapping/map/map_diff.hpp"
 
 #include <algorithm>
@@ -14,14 +14,14 @@
 namespace roomradar {
 namespace {
 
-/// A surface voxel of one map where the other knows free space.
+/// A surface voxel of one map in free space of the other.
 struct Suspect {
-  bool clear = false;  ///< free all round, too
-  int steps = -1;      ///< from the nearest clear one; -1: further than the clearance
+  bool clear = false;  ///< the other map is also free all round
+  int steps = -1;      ///< from the nearest clear voxel; -1: farther than the clearance
   int thing = -1;
 };
 
-/// Six faces and eight corners of a cube in a ball of radius 1.
+/// Returns unit vectors to the six faces and eight corners of a cube.
 std::array<Eigen::Vector3d, 14> directions() {
   std::array<Eigen::Vector3d, 14> all;
   std::size_t n = 0;
@@ -43,7 +43,7 @@ class ThingFinder {
         clearance_m_(std::max(config.clearance_m, config.clearance_voxels *
                                                       std::max(has.resolution_m(), lacks.resolution_m()))) {}
 
-  /// Surfaces in the world of the map that has them.
+  /// Returns each object's surface voxels, in the grid of the map that has the object.
   std::vector<std::vector<VoxelIndex>> find() {
     collect();
     reach_out();
@@ -64,7 +64,7 @@ class ThingFinder {
       for (int z = 0; z <= last; ++z)
         for (int y = 0; y <= last; ++y)
           for (int x = 0; x <= last;
-               x += is_rim(y) || is_rim(z) ? 1 : last) {  // what is inside is no surface
+               x += is_rim(y) || is_rim(z) ? 1 : last) {  // a leaf's interior is not surface
             const VoxelIndex voxel = leaf.lowest_voxel + VoxelIndex(x, y, z);
             const Eigen::Vector3d p = T_lacks_has_ * centre(voxel);
             if (lacks_.occupancy_at(p) != Occupancy::kFree) continue;
@@ -92,7 +92,7 @@ class ThingFinder {
         }
   }
 
-  /// From clear surface to the surface round it that is nearer to what else is there.
+  /// Extends clear surface to the surface around it that is closer to other surfaces.
   void reach_out() {
     const int most = static_cast<int>(std::ceil(clearance_m_ / has_.resolution_m())) + 1;
     std::vector<VoxelIndex> rim;
@@ -114,7 +114,7 @@ class ThingFinder {
     }
   }
 
-  /// What hangs together, and has enough clear surface.
+  /// Returns the connected components with enough clear surface, except those that pose errors explain.
   std::vector<std::vector<VoxelIndex>> gather() {
     constexpr int kBridged_voxels = 2;
     std::vector<std::vector<VoxelIndex>> things;
@@ -151,7 +151,7 @@ class ThingFinder {
            box.sizes().maxCoeff() + voxel_m >= config_.min_size_m;
   }
 
-  /// Whether the other map has the thing, too, a little aside.
+  /// Returns whether the other map also has the object, slightly shifted.
   [[nodiscard]] bool is_there_aside(const std::vector<VoxelIndex>& thing) const {
     constexpr std::size_t kLooked = 150;
     const double step_m = std::max(0.02, lacks_.resolution_m());
@@ -184,10 +184,10 @@ class ThingFinder {
   DiffConfig config_;
   double clearance_m_;
   std::unordered_map<std::uint64_t, Suspect> suspects_;
-  std::vector<VoxelIndex> order_;  ///< of the octree, so that the answer does not depend on hashing
+  std::vector<VoxelIndex> order_;  ///< in the octree's order, so the result does not depend on hashing
 };
 
-/// @param T_world_has  the world that the answer is given in
+/// @param T_world_has  to the world of the result
 Change describe_thing(ChangeKind kind, const std::vector<VoxelIndex>& thing, const StaticMap& has,
                       const StaticMap& lacks, const Eigen::Isometry3d& T_world_has,
                       const Eigen::Isometry3d& T_world_lacks) {
@@ -206,7 +206,7 @@ Change describe_thing(ChangeKind kind, const std::vector<VoxelIndex>& thing, con
   change.box_world.max().array() += 0.5 * voxel_m;
 
   const Eigen::Isometry3d T_has_world = T_world_has.inverse(), T_lacks_world = T_world_lacks.inverse();
-  constexpr double kMostCells = 4e6;  // some seconds
+  constexpr double kMostCells = 4e6;  // takes some seconds
   Eigen::Array3d cells = (change.box_world.sizes().array() / voxel_m).round().max(1.0);
   while (cells.prod() > kMostCells) cells = (0.8 * cells).floor().max(1.0);
   const Eigen::Vector3d step = (change.box_world.sizes().array() / cells).matrix();

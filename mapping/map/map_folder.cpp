@@ -1,4 +1,4 @@
-// map_folder.cpp: saving, checking, loading and exporting a map.
+// map_folder.cpp: saves, verifies, loads and exports a map.
 #include "mapping/map/map_folder.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ constexpr const char* kMesh = "mesh.ply";
 constexpr const char* kPlaces = "places.bin";
 constexpr const char* kTrajectory = "trajectory.txt";
 constexpr std::array<const char*, 5> kParts = {kOctree, kPlainOctree, kMesh, kPlaces, kTrajectory};
-constexpr const char* kCoverage = "coverage.png";  // the only one that a map may lack
+constexpr const char* kCoverage = "coverage.png";  // the only optional file
 constexpr std::uintmax_t kMaxPictureBytes = 1U << 26U;
 constexpr std::uintmax_t kMaxInfoBytes = 1U << 20U;
 
@@ -47,7 +47,7 @@ bool is_part(const std::string& name) {
   return name == kCoverage || std::find(kParts.begin(), kParts.end(), name) != kParts.end();
 }
 
-// What save_map may replace: nothing, an empty folder, or one that holds a map and nothing else.
+// Throws Error unless `folder` is missing, empty, or contains a map and nothing else.
 void require_replaceable(const fs::path& folder) {
   require_outside_maps(folder);
   std::error_code fault;
@@ -68,8 +68,8 @@ void require_replaceable(const fs::path& folder) {
          std::string("exists and has no ") + kInfo + ", so it is no map; choose another name for the map");
 }
 
-// Size and checksum; nothing if they are as map.json says. A file that no memory can hold is not read
-// through.
+// Compares a file's size and checksum with map.json; returns the fault, or nullopt if they agree. Does not
+// read a file that exceeds the machine's memory.
 std::optional<std::string> fault_of(const fs::path& path, const MapFile& expected) {
   std::error_code fault;
   const fs::file_status status = fs::symlink_status(path, fault);
@@ -93,8 +93,8 @@ std::optional<std::string> fault_of(const fs::path& path, const MapFile& expecte
   return std::nullopt;
 }
 
-// map.json names the parts, all of them, perhaps the picture, and nothing else: no path out of the folder can
-// come from it.
+// Checks that map.json lists all required parts, optionally the picture, and nothing else. Thus no listed
+// path can lead out of the folder.
 void require_parts(const MapInfo& info, const fs::path& where) {
   for (const char* part : kParts)
     if (!info.files.contains(part)) fail(where, std::string("does not list \"") + part + "\"");
@@ -176,7 +176,7 @@ void require_contents_outside_maps(const fs::path& folder) {
 void require_can_become_map(const fs::path& folder, std::initializer_list<fs::path> outputs) {
   const fs::path map = tidy_map_name(folder);
   require_replaceable(map);
-  std::error_code ignored;  // what cannot be found out is refused where it is written
+  std::error_code ignored;  // paths that cannot be resolved are rejected when they are written
   const fs::path whole = fs::weakly_canonical(fs::absolute(map), ignored);
   for (const fs::path& output : outputs) {
     if (output.empty()) continue;
@@ -239,7 +239,7 @@ MapInfo read_info(const fs::path& folder) {
   const fs::file_status status = fs::symlink_status(path, fault);
   if (!fs::exists(status)) fail(path, "is missing, so the folder is no map");
   if (!fs::is_regular_file(status))
-    fail(path, "is no file of its own (a link, or a folder); a map has no such");
+    fail(path, "is not a plain file, but a link or a folder; a map contains only plain files");
   MapInfo info = parse_map_info(read_bytes(path, "a map's description", kMaxInfoBytes), path.string());
   require_parts(info, path);
   return info;
@@ -347,7 +347,7 @@ std::string describe(const MapInfo& info) {
   line("known", extents(info.counts.known_world));
   line("occupied", extents(info.counts.occupied_world));
   line("mesh", std::to_string(info.triangles) + " triangles, " + std::to_string(info.vertices) + " vertices");
-  line("places", std::to_string(info.keyframes) + " keyframes");
+  line("database", std::to_string(info.keyframes) + " keyframes");
   line("trajectory", std::to_string(info.poses) + " poses");
   for (const auto& [name, file] : info.files) line(name.c_str(), in_megabytes(file.bytes));
   for (const auto& [name, value] : info.settings) line(name.substr(0, 15).c_str(), value);

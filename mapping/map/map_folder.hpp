@@ -1,4 +1,4 @@
-// map_folder.hpp: a prescanned room on disk, saved whole or not at all. The format is in maps/README.md.
+// map_folder.hpp: a prescanned room on disk, saved atomically. The format is in maps/README.md.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -18,27 +18,27 @@ namespace roomradar {
 
 inline constexpr int kMapFormatVersion = 1;
 
-// Of MapInfo::settings, what is asked for later.
+// Keys of MapInfo::settings that are read back.
 inline constexpr const char* kDeviationSetting = "deviation_m";  ///< SurfaceConfig::max_deviation_m
-inline constexpr const char* kPosesSetting = "poses";            ///< PoseOrigin, by its name
+inline constexpr const char* kPosesSetting = "poses";            ///< name of the PoseOrigin
 inline constexpr const char* kStoppedSetting =
-    "stopped_for_memory";  ///< the source of which not all is in it
+    "stopped_for_memory";  ///< source of which only a part is in the map
 
-/// One file of the folder as map.json lists it.
+/// Entry of one file in map.json.
 struct MapFile {
   std::uint64_t bytes = 0;
   std::string sha256;  ///< 64 hexadecimal digits
 };
 
-/// map.json. What is said of the parts (from `format_version` on) is filled in by save_map and load_map.
+/// Content of map.json. save_map and load_map fill in the fields from `format_version` on.
 struct MapInfo {
-  std::string source;  ///< the recordings (folders in full) or devices, "; " between them
+  std::string source;  ///< recordings (full paths) or devices, separated by "; "
   std::int64_t frames_read = 0;
   std::int64_t frames_fused = 0;
   std::string up_source = "none";  ///< accelerometer, plane or none
-  /// Recording's world to the map's, +z up.
+  /// From the recording's world to the map's, +z up.
   Eigen::Isometry3d T_world_recorded = Eigen::Isometry3d::Identity();
-  std::map<std::string, std::string> settings;  ///< what prescan ran with, by name
+  std::map<std::string, std::string> settings;  ///< prescan's settings, by name
 
   int format_version = kMapFormatVersion;
   std::string tool_version;
@@ -48,7 +48,8 @@ struct MapInfo {
   std::uint64_t triangles = 0;
   std::uint64_t keyframes = 0;
   std::uint64_t poses = 0;
-  /// By name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt, and coverage.png if there is one.
+  /// By file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt, and coverage.png if there is
+  /// one.
   std::map<std::string, MapFile> files;
 };
 
@@ -58,52 +59,54 @@ struct SavedMap {
   Mesh mesh;
   Places places;
   std::vector<TimedPose> trajectory;
-  std::vector<std::uint8_t> coverage_png;  ///< a picture of what was seen; empty: none
+  std::vector<std::uint8_t> coverage_png;  ///< coverage picture; empty: none
 };
 
-/// Tells whether T_world_recorded relates recorded poses to the map: the scan used recorded poses, or its
-/// recording had them.
+/// Returns whether info.T_world_recorded locates recorded poses in the map. True if the map was scanned with
+/// recorded poses, or from a recording that had them.
 bool knows_recorded_world(const MapInfo& info);
 
-/// How the map's surface is to be extracted anew: as closely as prescan was asked to, where its settings say
-/// so. Throws Error if they say what cannot be.
+/// Returns the settings for extracting the map's surface again, with prescan's max deviation if info.settings
+/// has it. Throws Error if this setting is invalid.
 SurfaceConfig surface_config_of(const MapInfo& info);
 
-/// The folder's name without `.`, `..` and a slash at its end. Throws Error if that is no name for a map.
+/// Returns the folder's path without `.`, `..` and a trailing slash. Throws Error if no usable name for a map
+/// remains.
 std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
 
-/// Throws Error if the file or folder would lie in a map's folder, which holds nothing but the map's own. An
-/// empty path is fine.
+/// Throws Error if the file or folder would be directly in a map's folder, which may contain only the map's
+/// files. An empty path is allowed.
 void require_outside_maps(const std::filesystem::path& path);
-/// The same for what will be put into a folder, which may be a map's itself.
+/// Same for files to be written into `folder`; also throws if `folder` itself is a map.
 void require_contents_outside_maps(const std::filesystem::path& folder);
 
-/// Throws Error with the reason if save_map would refuse `folder` by its name or by what is in it, or if one
-/// of `outputs`, the files and folders that are written besides (empty: none), would lie in it: a check to
-/// make before minutes of work.
+/// Checks, before minutes of work, whether a map can be saved to `folder`. Throws Error if save_map would
+/// refuse its name or its content, or if one of `outputs` would be in it. `outputs` are the other files and
+/// folders to be written; empty paths are ignored.
 void require_can_become_map(const std::filesystem::path& folder,
                             std::initializer_list<std::filesystem::path> outputs);
 
-/// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step:
-/// afterwards `folder` is the whole new map, or, after an Error, whatever it was before. Parent folders are
-/// made. Throws Error if `folder` exists and is not a map (its files are left alone), or the disk does not
-/// take the map.
+/// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step.
+/// Afterwards `folder` is the complete new map or, after an Error, unchanged. Creates parent folders. Throws
+/// Error if `folder` exists and is not a map (its files are left alone), the map has no surface or too many
+/// triangles, or the disk fails.
 void save_map(const std::filesystem::path& folder, const SavedMap& map);
 
-/// Reads a map, every file checked against its checksum first. Throws Error naming the file and the fault.
+/// Reads a map after verifying the checksum of every file. Throws Error naming the file and the fault.
 SavedMap load_map(const std::filesystem::path& folder);
 
-/// Reads and checks map.json alone.
+/// Reads and checks only map.json.
 MapInfo load_map_info(const std::filesystem::path& folder);
 
-/// All faults found, one sentence each naming the file; empty for a sound map. Never throws for a broken map.
+/// Returns one sentence per fault, naming the file; empty for an intact map. Never throws for a damaged map.
 std::vector<std::string> verify_map(const std::filesystem::path& folder);
 
-/// Writes one part of the saved map by extension: .ot and .bt the octree; .ply .obj .stl .glb the mesh.
-/// Throws Error if the extension is none of these, the map is broken, or `path` lies in a map's folder.
+/// Exports one part of a saved map, chosen by extension: the octree for .ot and .bt, the mesh for .ply .obj
+/// .stl .glb. Throws Error if the extension is none of these, the map is damaged, or `path` is in a map's
+/// folder.
 void export_map(const std::filesystem::path& folder, const std::filesystem::path& path);
 
-/// The lines of `roomradar map info`.
+/// Returns the output of `roomradar map info`.
 std::string describe(const MapInfo& info);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// map_info_json.cpp: MapInfo to and from JSON.
+// map_info_json.cpp: converts MapInfo to and from JSON.
 #include "mapping/map/map_info_json.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ Json corners(const Eigen::AlignedBox3d& box) {
   return {{"min_m", {low.x(), low.y(), low.z()}}, {"max_m", {high.x(), high.y(), high.z()}}};
 }
 
-// Reads fields with a sentence for each way in which one can be wrong.
+// Reads fields; throws an Error that names the fault if a field is missing or invalid.
 class Fields {
  public:
   Fields(const Json& json, std::string where) : json_(json), where_(std::move(where)) {

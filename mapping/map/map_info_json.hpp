@@ -1,4 +1,4 @@
-// map_info_json.hpp: map.json as text.
+// map_info_json.hpp: converts MapInfo to and from the text of map.json.
 #pragma once
 #include <string>
 
@@ -8,8 +8,9 @@ namespace roomradar {
 
 std::string to_json(const MapInfo& info);
 
-/// The text is not trusted. Throws Error that starts with `where` (the file's path) and names the fault: not
-/// JSON, not a map, of a later format version, a field that is missing, of another type or out of its range.
+/// Parses map.json; the text is not trusted. Throws Error that starts with `where` (the file's path) and
+/// names the fault: not JSON, not a map, a later format version, or a field that is missing, of the wrong
+/// type or out of range.
 MapInfo parse_map_info(const std::string& text, const std::string& where);
 
 }  // namespace roomradar

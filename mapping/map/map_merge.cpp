@@ -1,4 +1,4 @@
-// map_merge.cpp: one octree's leaves and samples resampled in the other's grid.
+// map_merge.cpp: resamples one octree's leaves and samples in the other's grid.
 #include "mapping/map/map_merge.hpp"
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 namespace roomradar {
 namespace {
 
-/// Visits the cubes of a grid that together are the voxels whose centres lie in a box of another frame: each
-/// voxel once, as large cubes as fit.
+/// Visits the voxels of a grid whose centres are in a box of another frame: each voxel once, in cubes as
+/// large as fit.
 class Cover {
  public:
   Cover(const Eigen::Isometry3d& T_grid_box, double voxel_m)
@@ -29,7 +29,7 @@ class Cover {
 
   template <typename Visit>
   void operator()(const Eigen::AlignedBox3d& box, const Visit& visit) const {
-    // Corners of the box in the grid, in voxels.
+    // Bounds of the box in the grid, in voxels.
     const Eigen::Vector3d centre = T_grid_box_ * box.center() / voxel_m_;
     const Eigen::Vector3d half = T_grid_box_.linear().cwiseAbs() * box.sizes() / (2.0 * voxel_m_);
     const auto across = static_cast<unsigned>(std::max(std::floor(box.sizes().minCoeff() / voxel_m_), 1.0));
@@ -73,8 +73,9 @@ bool same_grid(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& 
   return T.matrix().isIdentity(1e-12) && std::abs(a.resolution_m() - b.resolution_m()) < 1e-12;
 }
 
-// The distance at a point in a sample's own voxel, along straight lines through the samples on its sides: so
-// that the thin layer of samples does not lose its outermost ones. Nothing where an axis has none.
+// Extrapolates the distance at a point in a sample's own voxel, linearly along each axis from the adjacent
+// samples. This keeps the outermost samples of the thin layer. Returns nullopt if an axis has no adjacent
+// sample.
 std::optional<double> distance_beside(const StaticMap& map, const SurfaceSample& sample,
                                       const Eigen::Vector3d& p_world) {
   const double voxel_m = map.resolution_m();
@@ -119,7 +120,7 @@ void add_map(const StaticMap& from, const Eigen::Isometry3d& T_into_from, Static
       const auto between = distance_at(from, p_from);
       const auto distance_m =
           between ? std::optional(between->distance_m) : distance_beside(from, sample, p_from);
-      if (!distance_m) return;  // at the rim of what is known
+      if (!distance_m) return;  // at the edge of the sampled layer
       SurfaceSample resampled = sample;
       resampled.voxel = voxel;
       resampled.distance_m = static_cast<float>(*distance_m);
@@ -160,7 +161,7 @@ Registration register_into(const SavedMap& a, const SavedMap& b, const Registrat
   if (!there) return there;
   const Registration back =
       judge_registration(b.octree, sample_surface(a.mesh, config.points), there.T_a_b.inverse(), config);
-  // How little of a lies in b says nothing: b may be one corner of it.
+  // A small part of a in b proves nothing: b may be one corner of a.
   if (back.status == RegistrationStatus::kNoOverlap) return there;
   there.agreement = std::min(there.agreement, back.agreement);
   there.status = back.status;
@@ -172,7 +173,7 @@ Registration register_into(const SavedMap& a, const SavedMap& b, const Registrat
 Registration register_maps(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config) {
   const Registration found = register_into(a, b, config);
   if (found.status != RegistrationStatus::kNoOverlap) return found;
-  // Or a may be one corner of b.
+  // Conversely, a may be one corner of b.
   Registration turned = register_into(b, a, config);
   turned.T_a_b = turned.T_a_b.inverse();
   return turned ? turned : found;
@@ -180,18 +181,18 @@ Registration register_maps(const SavedMap& a, const SavedMap& b, const Registrat
 
 namespace {
 
-/// Throws Error if the cells of one would be so many of the other's that both are better scanned alike.
+/// Throws Error if the resolutions differ so much that one of the maps should be scanned again.
 void require_alike(const SavedMap& a, const SavedMap& b) {
-  constexpr double kMostTimes = 4.0;  // 64 cells for one
+  constexpr double kMostTimes = 4.0;  // 64 voxels for one
   const double finer_m = std::min(a.octree.resolution_m(), b.octree.resolution_m());
   const double coarser_m = std::max(a.octree.resolution_m(), b.octree.resolution_m());
   if (coarser_m <= kMostTimes * finer_m * (1.0 + 1e-9)) return;
   throw Error("the cells of one map are " + number_text(finer_m) + " m and of the other " +
               number_text(coarser_m) + " m; to be joined they may differ by " + number_text(kMostTimes) +
-              " times: scan one of them anew");
+              " times: scan one of them again");
 }
 
-/// Throws Error if a map, seen from the merged one, lies past the reach of cells of that size.
+/// Throws Error if a map, in the merged map's world, is out of reach at this resolution.
 void require_in_reach(const SavedMap& map, const Eigen::Isometry3d& T_merged_map, double resolution_m) {
   const Eigen::AlignedBox3d known = map.octree.counts().known_world;
   if (known.isEmpty()) return;

@@ -1,4 +1,4 @@
-// registration.cpp: views vote for a transform, the surface refines it and has the last word.
+// registration.cpp: views vote for a transform; the surface refines and verifies it.
 #include "mapping/map/registration.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace roomradar {
 namespace {
 
-/// One view of b found in a.
+/// Transform implied by one view of b that matches a view of a.
 struct Vote {
   std::size_t view_b = 0;
   int inliers = 0;
@@ -43,14 +43,14 @@ std::vector<Vote> collect_votes(const Places& a, const Places& b, const Registra
   return votes;
 }
 
-/// Whether two transforms put a view of b at nearly the same place in a.
+/// Returns whether two transforms give a view of b nearly the same pose in a.
 bool agree(const Vote& vote, const Eigen::Isometry3d& T_a_b, const Place& view) {
   constexpr double kNear_m = 0.15, kNear_rad = 0.1;
   const Eigen::Isometry3d gap = (vote.T_a_b * view.T_world_camera).inverse() * T_a_b * view.T_world_camera;
   return gap.translation().norm() < kNear_m && Eigen::AngleAxisd(gap.linear()).angle() < kNear_rad;
 }
 
-/// Views of b, each counted once, that agree with a transform.
+/// Counts the views of b that agree with a transform, each view once.
 int count_agreeing(const std::vector<Vote>& votes, const Eigen::Isometry3d& T_a_b, const Places& b) {
   int agreeing = 0;
   std::size_t last = b.keyframes.size();
@@ -62,14 +62,14 @@ int count_agreeing(const std::vector<Vote>& votes, const Eigen::Isometry3d& T_a_
   return agreeing;
 }
 
-/// What a knows at b's points.
+/// Result of testing b's points against a's surface and free space.
 struct Judgement {
   std::size_t on_surface = 0;
   std::size_t in_free_space = 0;
   double residual_m = 0.0;
 };
 
-/// Distances are gated at what noise and drift can make of one surface.
+/// Max distance that noise and drift cause between two measurements of one surface.
 constexpr double kGate_m = 0.05;
 
 Judgement judge(const StaticMap& a, std::span<const Eigen::Vector3d> surface_b,
@@ -97,12 +97,12 @@ Judgement judge(const StaticMap& a, std::span<const Eigen::Vector3d> surface_b,
   return judgement;
 }
 
-/// Gauss-Newton on the distances of b's points to a's surface, robust to what was moved. Directions in which
-/// the surface does not change are left alone.
+/// Minimises the distances of b's points to a's surface by Gauss-Newton, robust to moved objects. Directions
+/// in which the surface is uniform stay unchanged.
 Eigen::Isometry3d lay_on(const StaticMap& a, std::span<const Eigen::Vector3d> surface_b,
                          const Eigen::Isometry3d& T_a_b_start) {
   constexpr int kIterations = 15;
-  constexpr double kSoft_m = 0.015;         // distance past which a point counts less
+  constexpr double kSoft_m = 0.015;         // distance at which a point's weight is 1/4
   constexpr double kMinConstraint = 0.005;  // mean squared cosine, lever arms in units of their spread
   Eigen::Vector3d centre_b = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& p : surface_b) centre_b += p / static_cast<double>(surface_b.size());
@@ -127,7 +127,7 @@ Eigen::Isometry3d lay_on(const StaticMap& a, std::span<const Eigen::Vector3d> su
       if (std::abs(distance_m) > 2.0 * kGate_m) continue;
       const Eigen::Vector3d normal = at->gradient / slope;
       const double ratio = distance_m / kSoft_m;
-      const double weight = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));  // Geman and McClure's
+      const double weight = 1.0 / ((1.0 + ratio * ratio) * (1.0 + ratio * ratio));  // Geman-McClure
       Vector6d row;
       row << normal, (p_a - centre_a).cross(normal) / spread_m;
       H += weight * row * row.transpose();
@@ -159,7 +159,7 @@ Eigen::Isometry3d lay_on(const StaticMap& a, std::span<const Eigen::Vector3d> su
 std::optional<DistanceAt> distance_at(const StaticMap& map, const Eigen::Vector3d& p_world) {
   const double voxel_m = map.resolution_m();
   const Eigen::Vector3d p =
-      p_world / voxel_m - Eigen::Vector3d::Constant(0.5);  // centres are at whole numbers
+      p_world / voxel_m - Eigen::Vector3d::Constant(0.5);  // voxel centres at integer coordinates
   if (!p.allFinite()) return std::nullopt;
   const Eigen::Vector3d low = p.array().floor();
   const Eigen::Vector3d t = p - low;
@@ -245,8 +245,7 @@ std::string describe(const Registration& registration) {
     case RegistrationStatus::kNoFeatures:
       return "one of them has no views with colour, so nothing can be recognised";
     case RegistrationStatus::kNotRecognised:
-      std::snprintf(text.data(), text.size(),
-                    "%d views agree on how they stand to each other, and more are needed",
+      std::snprintf(text.data(), text.size(), "only %d views agree on the relative pose; more are needed",
                     registration.agreeing_views);
       break;
     case RegistrationStatus::kNoOverlap:
@@ -283,7 +282,7 @@ std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count)
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     passed_m2 += area_m2[i];
     for (; next_m2 < passed_m2; next_m2 += step_m2) {
-      // Within the triangle by a low-discrepancy sequence. Source: Roberts, R2 sequence, 2018.
+      // Position in the triangle from a low-discrepancy sequence. Source: Roberts, R2 sequence, 2018.
       const auto n = static_cast<double>(points.size());
       double u = std::fmod(0.5 + 0.7548776662466927 * n, 1.0),
              v = std::fmod(0.5 + 0.5698402909980532 * n, 1.0);
@@ -299,7 +298,7 @@ std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count)
 }
 
 std::vector<Eigen::Vector3d> surface_of(const Places& places, std::size_t count) {
-  constexpr std::uint16_t kFarthest_mm = 3000;  // beyond, one measurement is off by 1.5 cm and more
+  constexpr std::uint16_t kFarthest_mm = 3000;  // farther measurements are off by 1.5 cm and more
   std::size_t pixels = 0;
   for (const Place& place : places.keyframes) pixels += place.preview_depth_mm.pixels.size();
   const std::size_t stride = 1 + pixels / std::max<std::size_t>(count, 1);

@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// An edge to collapse, and the state of its ends that the cost is for.
+/// An edge to collapse, with the versions of its vertices at the time the cost was computed.
 struct Candidate {
   float cost = 0.0F;
   std::uint32_t kept = 0;
@@ -18,8 +18,9 @@ struct Candidate {
   std::uint32_t gone_version = 0;
 };
 
-/// Takes candidates out in the order of their costs, rounded to a quarter of an octave; first in, first out
-/// among equals, so that flat parts thin out evenly. A heap takes longer than all the rest.
+/// Bucket queue: pops candidates in order of cost, rounded to a quarter of an octave. Equal candidates are
+/// first in, first out, so flat areas thin out evenly. A heap takes longer than all other work of the
+/// simplification.
 class CandidateQueue {
  public:
   void push(const Candidate& candidate) {

@@ -1,4 +1,4 @@
-// mesh_pieces.cpp: union of triangles by shared vertices.
+// mesh_pieces.cpp: union-find over shared vertices.
 #include "mapping/mesh/components.hpp"
 
 #include <Eigen/Geometry>

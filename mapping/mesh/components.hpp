@@ -1,15 +1,14 @@
-// mesh_pieces.hpp: the connected pieces of a mesh, and which of them are specks.
+// mesh_pieces.hpp: connected components of a mesh, and removal of small ones.
 #pragma once
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
-/// A mesh of these triangles of `mesh` (three indices each), with only the vertices that they use, in the
-/// order of their use.
+/// Returns a mesh with only the given triangles (vertex indices into `mesh`) and the vertices they use, in
+/// order of first use.
 Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles);
 
-/// Drops connected pieces (by shared vertices) with less area than given, and all vertices that no triangle
-/// uses.
+/// Drops connected components (by shared vertices) with less than min_component_area_m2, and unused vertices.
 Mesh without_specks(const Mesh& mesh, float min_component_area_m2);
 
 }  // namespace roomradar

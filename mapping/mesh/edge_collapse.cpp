@@ -1,4 +1,4 @@
-// edge_collapse.cpp: a queue of edges by quadric error, and the checks that a collapse must pass.
+// edge_collapse.cpp: candidate queue by quadric error, and the tests that accept or reject a collapse.
 #include "mapping/mesh/edge_collapse.hpp"
 
 #include <Eigen/Geometry>
@@ -16,10 +16,10 @@ namespace roomradar {
 namespace {
 
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
-constexpr float kThinnest_m = 1e-4F;  // least height of a new triangle, unless the old one was as thin
-constexpr float kLarge = 12.0F;       // a side of so many tolerances makes a triangle large
-constexpr float kMostTurn = 0.3F;     // cosine of how far a collapse may turn a triangle
-// An open border is held by planes across it that weigh so many times its triangles.
+constexpr float kThinnest_m = 1e-4F;  // min height of a new triangle
+constexpr float kLarge = 12.0F;       // a triangle with a side above this many tolerances counts as large
+constexpr float kMostTurn = 0.3F;     // min cosine between a triangle's normals before and after a collapse
+// Weight of the planes across an open border that constrain it, relative to triangle planes.
 constexpr double kBorderWeight = 2.0;
 
 class EdgeCollapser {
@@ -71,21 +71,22 @@ class EdgeCollapser {
   }
 
  private:
-  // What was merged into a vertex.
+  // Accumulated data of all vertices merged into one.
   struct Merged {
     Quadric quadric;
     Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();
     Eigen::Vector3f colour_sum = Eigen::Vector3f::Zero();
     std::uint32_t count = 0;
-    std::uint32_t version = 0;  // changes with every collapse; of a vertex that is gone it fits no candidate
-    float tolerance_m = 0.0F;   // the least of all; 0: may not move
+    std::uint32_t version = 0;  // incremented by every collapse; kNone once removed, which matches no
+                                // candidate
+    float tolerance_m = 0.0F;   // minimum over the merged vertices; 0: constrained
     bool on_border = false;
   };
 
   [[nodiscard]] bool is_alive(std::uint32_t triangle) const { return mesh_.triangles[triangle][0] != kNone; }
   [[nodiscard]] const Eigen::Vector3f& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
 
-  // Corners by vertex, and each vertex as a point of one of its triangles.
+  // Builds the list of corners per vertex, and assigns each vertex as a point to one of its triangles.
   void link() {
     for (std::uint32_t t = 0; t < full_.triangles.size(); ++t)
       for (std::uint32_t k = 0; k < 3; ++k) {
@@ -99,7 +100,7 @@ class EdgeCollapser {
       }
   }
 
-  // The live triangles round a vertex, unlinking those that are gone.
+  // Collects the live triangles around a vertex and unlinks the removed ones.
   void star_of(std::uint32_t vertex, std::vector<std::uint32_t>& star) {
     star.clear();
     std::uint32_t* link = &first_corner_[vertex];
@@ -169,7 +170,8 @@ class EdgeCollapser {
     return (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]);
   }
 
-  // Where the two would meet; what may not move stays. False if they may not meet at all.
+  // Computes the position of the merged vertex; a constrained vertex stays in place, as does a border vertex
+  // merged with an inner one. Returns false if the edge may not be collapsed.
   bool place(std::uint32_t kept, std::uint32_t gone, const Quadric& both, Eigen::Vector3f& p) const {
     const bool hold_kept =
         merged_[kept].tolerance_m == 0.0F || (merged_[kept].on_border && !merged_[gone].on_border);
@@ -188,7 +190,7 @@ class EdgeCollapser {
   }
 
   void push(std::uint32_t kept, std::uint32_t gone) {
-    if (merged_[gone].tolerance_m == 0.0F) std::swap(kept, gone);  // what may not move keeps its name
+    if (merged_[gone].tolerance_m == 0.0F) std::swap(kept, gone);  // a constrained vertex keeps its index
     Quadric both = merged_[kept].quadric;
     both += merged_[gone].quadric;
     Eigen::Vector3f p;
@@ -196,7 +198,7 @@ class EdgeCollapser {
     const double error = both.at(p.cast<double>());
     const float tolerance_m = std::max(merged_[kept].tolerance_m, merged_[gone].tolerance_m);
     if (error > tolerance_m * tolerance_m * both.weight) return;
-    // Among equals the short ones first, which keeps the triangles of flat parts in shape.
+    // Among equal errors short edges come first, which keeps the triangles of flat areas well shaped.
     const double shortness =
         1e-5 * both.weight * (position(kept) - position(gone)).cast<double>().squaredNorm();
     queue_.push(
@@ -214,15 +216,15 @@ class EdgeCollapser {
       }
   }
 
-  // The surface stays a surface of the same kind: the edge's ends have no neighbours in common but those of
-  // its triangles, and no two borders meet across a piece of surface.
+  // Link condition, preserves topology: the edge's ends share no neighbours except the apexes of its
+  // triangles, and two borders are not merged across a strip of surface.
   bool keeps_kind(std::uint32_t kept, std::uint32_t gone) {
     const auto shared = static_cast<std::size_t>(std::count_if(
         star_kept_.begin(), star_kept_.end(), [&](std::uint32_t t) { return has_corner(t, gone); }));
     if (shared != 1 && shared != 2) return false;
     if (shared == 2 && merged_[kept].on_border && merged_[gone].on_border) return false;
     if (star_kept_.size() == shared || star_gone_.size() == shared)
-      return false;  // nothing would be left of it
+      return false;  // no triangle of that star would remain
     if (shared == 2 && star_kept_.size() == 3 && star_gone_.size() == 3) return false;
     const std::uint32_t beside_kept = ++stamp_;
     const std::uint32_t beside_gone = ++stamp_;
@@ -233,7 +235,7 @@ class EdgeCollapser {
       for (const std::uint32_t v : mesh_.triangles[t]) {
         if (v == kept || v == gone || mark_[v] == beside_gone) continue;
         if (mark_[v] == beside_kept) ++common;
-        // Another mesh may share these two and join them, too.
+        // A neighbouring block may share both constrained vertices and connect them, too.
         else if (merged_[kept].tolerance_m == 0.0F && merged_[v].tolerance_m == 0.0F)
           return false;
         mark_[v] = beside_gone;
@@ -241,7 +243,7 @@ class EdgeCollapser {
     return common == shared;
   }
 
-  // The triangles that would be there afterwards; false if one would turn over or lose its height.
+  // Builds the triangles after the collapse in made_; returns false if one would flip or become too thin.
   bool make_new_triangles(std::uint32_t kept, std::uint32_t gone, const Eigen::Vector3f& p) {
     made_.clear();
     for (const auto* star : {&star_kept_, &star_gone_})
@@ -264,7 +266,8 @@ class EdgeCollapser {
     return true;
   }
 
-  // Finds a near enough triangle for every vertex of the full mesh that belongs to one that changes.
+  // Assigns every original vertex on a changing triangle to a new triangle within its tolerance. Returns
+  // false if a vertex has none.
   bool rehome_points() {
     homes_.clear();
     for (const auto* star : {&star_kept_, &star_gone_})
@@ -273,7 +276,7 @@ class EdgeCollapser {
             std::find_if(made_.begin(), made_.end(), [&](const Made& m) { return m.triangle == t; }) -
             made_.begin());
         for (std::uint32_t v = first_point_[t]; v != kNone; v = next_point_[v]) {
-          if (mark_[v] == stamp_) continue;  // of a triangle in both stars
+          if (mark_[v] == stamp_) continue;  // already done: its triangle is in both stars
           mark_[v] = stamp_;
           const float limit_m2 = tolerance_m_[v] * tolerance_m_[v];
           const auto is_near = [&](const Made& m) {
@@ -291,8 +294,8 @@ class EdgeCollapser {
     return true;
   }
 
-  // Is the new vertex (where planes meet may be outside of a rounded edge), or the middle of a large new
-  // triangle (which may span a notch), too far from the full surface?
+  // Returns true if the new vertex or the centroid of a large new triangle is farther than tolerance_m from
+  // the full surface. Planes may intersect outside a rounded edge; a large triangle may span a notch.
   [[nodiscard]] bool bulges(const Eigen::Vector3f& p, float tolerance_m) const {
     const auto is_far = [&](const Eigen::Vector3f& q) {
       return full_surface_.distance_m(q, tolerance_m) > tolerance_m;
@@ -362,10 +365,10 @@ class EdgeCollapser {
   const Mesh& full_;
   const SurfaceNear& full_surface_;
   const std::vector<float>& tolerance_m_;
-  Mesh mesh_;  // triangles that are gone have corners kNone
+  Mesh mesh_;  // removed triangles have corners kNone
   std::vector<Merged> merged_;
-  std::vector<std::uint32_t> first_corner_, next_corner_;  // corner 3 t + k, by vertex
-  std::vector<std::uint32_t> first_point_, next_point_;    // vertices of the full mesh, by triangle
+  std::vector<std::uint32_t> first_corner_, next_corner_;  // linked lists per vertex of corners 3 t + k
+  std::vector<std::uint32_t> first_point_, next_point_;    // linked lists per triangle of original vertices
   std::vector<std::uint32_t> mark_;
   std::uint32_t stamp_ = 0;
   CandidateQueue queue_;

@@ -1,4 +1,4 @@
-// edge_collapse.hpp: collapsing a mesh's edges one after the other, cheapest first, within a bound.
+// edge_collapse.hpp: greedy edge collapse of a mesh, cheapest edge first, within a distance bound.
 #pragma once
 #include <vector>
 
@@ -7,11 +7,10 @@
 
 namespace roomradar {
 
-/// The mesh after all collapses that keep every vertex of `full` within its own tolerance (one each, m, >= 0)
-/// of the triangles that took the place of its own. Vertices without tolerance stay where they are, and no
-/// two of them get a new edge; new vertices are as near to `full_surface`, which is that of `full`. The
-/// result has all vertices of `full`, moved, and fewer triangles. Private to the simplification, which says
-/// more.
+/// Collapses edges while every vertex of `full` stays within tolerance_m (one per vertex, m, >= 0) of the
+/// triangles that replace its own. Vertices with tolerance 0 are constrained: they do not move, and no new
+/// edge connects two of them. New vertices stay within the same tolerances of `full_surface`, the surface of
+/// `full`. The result has all vertices of `full`, moved, and fewer triangles. Used by mesh_simplify.cpp only.
 Mesh collapsed(const Mesh& full, const SurfaceNear& full_surface, const std::vector<float>& tolerance_m);
 
 }  // namespace roomradar

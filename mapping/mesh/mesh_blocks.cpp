@@ -1,4 +1,4 @@
-// mesh_blocks.cpp: halving at the median, and renaming vertices.
+// mesh_blocks.cpp: median splits and vertex renumbering.
 #include "mapping/mesh/mesh_blocks.hpp"
 
 #include <Eigen/Geometry>

@@ -1,4 +1,4 @@
-// mesh_blocks.hpp: a mesh cut into blocks of triangles that can be worked on one by one.
+// mesh_blocks.hpp: splits a mesh into spatial blocks of triangles that can be processed independently.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,17 +9,18 @@
 
 namespace roomradar {
 
-/// Reorders the triangles so that each block of at most so many (>= 1) lies together in space: halved at the
-/// median of the longest side of their box until they are few enough. The blocks are in mesh.triangles.
+/// Reorders mesh.triangles into spatially compact blocks of at most most_triangles (>= 1) triangles each.
+/// Recursively splits at the median of the longest side of the bounding box. The blocks are spans of
+/// mesh.triangles.
 std::vector<std::span<Triangle>> sort_into_blocks(Mesh& mesh, std::size_t most_triangles);
 
-/// By vertex: is it a corner of triangles in more than one block?
+/// For each vertex: true if it is a corner of triangles in more than one block.
 std::vector<bool> seam_vertices(const Mesh& mesh, const std::vector<std::span<Triangle>>& blocks);
 
-/// A block as a mesh of its own.
+/// A block as a separate mesh.
 struct BlockMesh {
   Mesh mesh;
-  std::vector<std::uint32_t> name;  ///< by vertex: its index in the whole mesh, ascending
+  std::vector<std::uint32_t> name;  ///< for each vertex its index in the whole mesh, ascending
 };
 BlockMesh block_mesh(const Mesh& whole, std::span<const Triangle> block);
 

@@ -1,4 +1,4 @@
-// mesh_borders.cpp: walking along the edges that have one triangle.
+// mesh_borders.cpp: walks along the edges that have only one triangle.
 #include "mapping/mesh/mesh_borders.hpp"
 
 #include <Eigen/Geometry>
@@ -32,7 +32,7 @@ class HalfEdges {
   [[nodiscard]] std::uint32_t end(std::uint32_t half_edge) const {
     return start(next_in_triangle(half_edge));
   }
-  /// The same edge in the triangle on its other side, or kNoEdge.
+  /// The opposite half-edge in the neighbouring triangle, or kNoEdge.
   [[nodiscard]] std::uint32_t opposite(std::uint32_t half_edge) const {
     const auto found = by_ends_.find(code(end(half_edge), start(half_edge)));
     return found == by_ends_.end() ? kNoEdge : found->second;
@@ -40,8 +40,8 @@ class HalfEdges {
   [[nodiscard]] bool is_border(std::uint32_t half_edge) const {
     return by_ends_.at(code(start(half_edge), end(half_edge))) == half_edge && opposite(half_edge) == kNoEdge;
   }
-  /// The border edge that goes on where this one ends, round the triangles that meet there; kNoEdge if the
-  /// fan does not end, which takes an edge of more than two triangles.
+  /// Returns the next border half-edge, found by rotating through the triangles around this one's end.
+  /// Returns kNoEdge if the triangle fan has no end, which requires a non-manifold edge.
   [[nodiscard]] std::uint32_t next_on_border(std::uint32_t half_edge) const {
     std::uint32_t candidate = next_in_triangle(half_edge);
     for (std::size_t turns = 0; turns <= mesh_.triangles.size(); ++turns) {
@@ -70,7 +70,7 @@ Eigen::Vector3d doubled_area(const Mesh& mesh, const Triangle& t) {
   return (mesh.vertices[t[1]].cast<double>() - a).cross(mesh.vertices[t[2]].cast<double>() - a);
 }
 
-// Extent of the loop along the direction in which it is longest.
+// Extent of the loop along its largest principal axis.
 double longest_extent_m(const Mesh& mesh, const BorderLoop& loop) {
   Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
   for (const std::uint32_t v : loop.vertices) {
@@ -115,7 +115,7 @@ std::vector<BorderLoop> border_loops(const Mesh& mesh) {
   const HalfEdges edges(mesh);
   std::vector<bool> walked(3 * mesh.triangles.size(), false);
   std::vector<std::uint32_t> place_on_path(mesh.vertices.size(), kNoEdge);
-  std::vector<std::uint32_t> path;  // border edges walked that are in no loop yet
+  std::vector<std::uint32_t> path;  // visited border edges that are not in a loop so far
   std::vector<BorderLoop> loops;
   const auto close_loop = [&](std::size_t from) {
     BorderLoop loop;
@@ -132,7 +132,7 @@ std::vector<BorderLoop> border_loops(const Mesh& mesh) {
   for (std::uint32_t first = 0; first < walked.size(); ++first) {
     if (walked[first] || !edges.is_border(first)) continue;
     for (std::uint32_t e = first; e != kNoEdge && !walked[e]; e = edges.next_on_border(e)) {
-      // A path that comes back to a vertex has gone round a hole that touches another one there.
+      // A path that returns to one of its vertices has closed a hole that touches another hole there.
       if (place_on_path[edges.start(e)] != kNoEdge) close_loop(place_on_path[edges.start(e)]);
       place_on_path[edges.start(e)] = static_cast<std::uint32_t>(path.size());
       walked[e] = true;

@@ -1,4 +1,4 @@
-// mesh_distance.cpp: triangles in a hashed grid, and points spread over a mesh.
+// mesh_distance.cpp: hashed grid of triangles, and sampling of a mesh.
 #include "mapping/mesh/mesh_distance.hpp"
 
 #include <algorithm>
@@ -14,11 +14,12 @@ namespace roomradar {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kReachesACube = 4.0F;  // a query looks into one to eight cubes
-// However short the reach: else a triangle would lie in countless cubes, or they be too small for a float.
+constexpr float kReachesACube = 4.0F;  // cube edge / reach: a query visits one to eight cubes
+// Min cube edge, for very short reaches: mean triangle side / kCubesASide and mesh extent / kCubesAcross.
+// Smaller cubes would put a triangle into countless cubes, or exceed float precision.
 constexpr float kCubesASide = 8.0F, kCubesAcross = 1e5F;
 
-// Mean of the triangles' longest extents along an axis.
+// Mean over triangles of the longest side of their bounding boxes.
 float mean_side_m(const Mesh& mesh) {
   double sum_m = 0.0;
   for (const auto& [i, j, k] : mesh.triangles) {
@@ -31,7 +32,8 @@ float mean_side_m(const Mesh& mesh) {
 }
 
 std::uint64_t mixed(std::uint64_t code) { return code * 0x9E3779B97F4A7C15U; }
-// A hash is its upper bits. Tells cubes of one hash apart; two that it does not cost time, not truth.
+// Distinguishes cubes with equal hash (the upper bits of a mixed code). Cubes with equal hash and tag cost
+// time but leave results correct.
 std::uint32_t tag_of(std::uint64_t mixed_code) { return static_cast<std::uint32_t>(mixed_code >> 14U); }
 
 }  // namespace
@@ -57,7 +59,7 @@ SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
       parts.push_back({mixed(cube), t});
     });
   }
-  // About a hash a triangle, more where triangles lie in very many cubes.
+  // About one hash value per triangle, more if triangles overlap very many cubes.
   const std::size_t hashes = std::max(mesh.triangles.size(), parts.size() / 4);
   hash_shift_ = 64 - static_cast<int>(std::bit_width(hashes | 1U));
   first_of_hash_.assign((std::size_t{1} << (64 - hash_shift_)) + 1, 0);
@@ -69,7 +71,7 @@ SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
     entries_[next[hash_of(part.mixed_code)]++] = {tag_of(part.mixed_code), part.triangle};
 }
 
-// A large triangle is halved along its longest side until its parts' boxes touch few cubes.
+// Splits a large triangle along its longest side until its parts' boxes overlap few cubes.
 template <typename Visit>
 void SurfaceNear::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                                 const Visit& visit) const {
@@ -149,7 +151,7 @@ std::optional<std::uint32_t> SurfaceNear::nearest_facing(const Eigen::Vector3f& 
 
 float greatest_distance_m(const Mesh& mesh, const SurfaceNear& other, float spacing_m, float limit_m,
                           std::vector<FarPoint>& beyond_limit) {
-  float greatest = 0.0F;  // what is nearer than this does not change it
+  float greatest = 0.0F;  // smaller distances cannot raise it, so their search stops early
   const auto ask = [&](const Eigen::Vector3f& p) {
     const float distance = other.distance_m(p, greatest);
     if (distance <= limit_m) greatest = std::max(greatest, distance);
@@ -163,7 +165,7 @@ float greatest_distance_m(const Mesh& mesh, const SurfaceNear& other, float spac
     const Eigen::Vector3f ac = mesh.vertices[k] - a;
     const float longest = std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}));
     const int parts = std::max(2, static_cast<int>(std::ceil(longest / spacing_m)));
-    // Sides included, which is where surfaces bend; corners come later, each once.
+    // Includes the sides, along which surfaces bend; corners follow below, each once.
     const float step = 1.0F / static_cast<float>(parts);
     for (int u = 0; u <= parts; ++u)
       for (int v = u == 0 ? 1 : 0; u + v <= parts - (u == 0 || v == 0 ? 1 : 0); ++v)

@@ -1,4 +1,4 @@
-// mesh_distance.hpp: how far the surfaces of two meshes lie apart, as a measured fact.
+// mesh_distance.hpp: nearest-surface queries on a mesh, and measured distances between two meshes.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,32 +9,32 @@
 
 namespace roomradar {
 
-/// A mesh's triangles sorted into cubes, to find the surface near a point. Keeps a reference to the mesh.
+/// Hashed grid of a mesh's triangles, for nearest-surface queries. Keeps a reference to the mesh.
 class SurfaceNear {
  public:
-  /// Distances up to reach_m (> 0) can be asked for.
+  /// @param reach_m  max distance (> 0) that queries can find
   SurfaceNear(const Mesh& mesh, float reach_m);
 
-  /// From a point, relative to the mesh's origin, to the nearest surface (m), or infinity if that is farther
-  /// than reach_m. What is not farther than enough_m need not be the nearest: the search ends there.
+  /// Distance (m) from a point, relative to the mesh's origin, to the nearest surface; infinity if above
+  /// reach_m. The search stops at the first distance not above enough_m, which need not be the smallest.
   [[nodiscard]] float distance_m(const Eigen::Vector3f& p, float enough_m = 0.0F) const;
 
-  /// The triangle nearest to a point among those within reach_m whose front is turned less than 90 degrees
-  /// from `facing` (any length): of a thin sheet not the other side. None if there is none.
+  /// Nearest triangle within reach_m whose normal is less than 90 degrees from `facing` (any length), which
+  /// skips the far side of a thin sheet. nullopt if there is none.
   [[nodiscard]] std::optional<std::uint32_t> nearest_facing(const Eigen::Vector3f& p,
                                                             const Eigen::Vector3f& facing) const;
 
  private:
   struct Entry {
-    std::uint32_t cube;  // part of its code
+    std::uint32_t cube;  // some bits of the cube's hashed code
     std::uint32_t triangle;
   };
-  /// Calls visit(code) for each cube that the triangle's parts touch with their boxes.
+  /// Calls visit(code) for each cube overlapped by the bounding boxes of the triangle's parts.
   template <typename Visit>
   void for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
                      const Visit& visit) const;
 
-  /// Calls visit(triangle) for each that may be within reach of the point, until it says true.
+  /// Calls visit(triangle) for each candidate within reach of the point, until visit returns true.
   template <typename Visit>
   void visit_near(const Eigen::Vector3f& p, const Visit& visit) const;
 
@@ -45,19 +45,19 @@ class SurfaceNear {
   float edge_m_;
   int hash_shift_ = 63;
   Eigen::Vector3f low_ = Eigen::Vector3f::Zero();
-  std::vector<std::uint32_t> first_of_hash_;  ///< in entries_
-  std::vector<Entry> entries_;                ///< by the hash of their cubes
+  std::vector<std::uint32_t> first_of_hash_;  ///< first index into entries_ per hash
+  std::vector<Entry> entries_;                ///< sorted by the hash of their cubes
 };
 
-/// A point of `mesh` that lies too far from another surface.
+/// A point of one mesh that is too far from the surface of another.
 struct FarPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< relative to the mesh's origin
-  float distance_m = 0.0F;                             ///< infinity beyond the reach of `other`
+  float distance_m = 0.0F;                             ///< infinity if beyond the reach of `other`
 };
 
-/// Asks at all corners of `mesh` and on a lattice over its triangles no wider than spacing_m how far `other`
-/// is (of the same origin). Gives the greatest distance not above limit_m; the points farther than that are
-/// added to beyond_limit.
+/// Measures the distance to `other` (same origin) at all corners of `mesh` and on a lattice over its
+/// triangles with at most spacing_m between points. Returns the greatest distance not above limit_m; points
+/// farther away are appended to beyond_limit.
 float greatest_distance_m(const Mesh& mesh, const SurfaceNear& other, float spacing_m, float limit_m,
                           std::vector<FarPoint>& beyond_limit);
 

@@ -1,4 +1,4 @@
-// mesh_file.cpp: meshes through assimp, with its limits made explicit.
+// mesh_file.cpp: reads and writes meshes through assimp, with explicit limits.
 #include "mapping/mesh/mesh_file.hpp"
 
 #include <assimp/config.h>
@@ -27,11 +27,11 @@
 namespace roomradar {
 namespace {
 
-constexpr std::uintmax_t kMaxFileBytes = 512U << 20U;  // 2 million triangles as text take some 300 MB
+constexpr std::uintmax_t kMaxFileBytes = 512U << 20U;  // 2 million triangles as text take about 300 MB
 
 struct Format {
   const char* extension;
-  const char* assimp_id;  // for writing; null: written by ourselves
+  const char* assimp_id;  // exporter name; null: written by ply_writer
 };
 constexpr Format kFormats[] = {{".ply", nullptr}, {".obj", "objnomtl"}, {".stl", "stlb"}, {".glb", "glb2"}};
 
@@ -54,9 +54,9 @@ const Format& format_of(const std::filesystem::path& path) {
                  std::to_string(kMaxMeshTriangles) + "; simplify it first");
 }
 
-// assimp counts to what a .ply's header says, however short the file is.
+// Checks the header's element counts: assimp loops up to them even if the file is far shorter.
 void check_ply_counts(const std::filesystem::path& path, std::istream& file, std::uintmax_t bytes) {
-  std::string start(64U << 10U, '\0');  // longer than any header that is one
+  std::string start(64U << 10U, '\0');  // longer than any valid header
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
   start.resize(static_cast<std::size_t>(file.gcount()));
   std::istringstream header(start);
@@ -74,7 +74,7 @@ void check_ply_counts(const std::filesystem::path& path, std::istream& file, std
   if (!header) fail(path, "its header has no end; wanted a .ply");
 }
 
-// Refuses what is too large by its own word, before any memory is taken for it.
+// Rejects files whose size or header counts are too large, before memory is allocated for them.
 void check_claimed_size(const std::filesystem::path& path, const Format& format) {
   std::error_code unreadable;
   if (!std::filesystem::exists(path, unreadable)) fail(path, "there is no such file");
@@ -100,8 +100,8 @@ void check_claimed_size(const std::filesystem::path& path, const Format& format)
 
 bool is_gltf(const Format& format) { return std::strcmp(format.extension, ".glb") == 0; }
 
-/// In a .glb y points up, and colours are linear; here z does, and they are sRGB.
-/// Source: glTF 2.0 specification, 3.3 and 3.7.2.1; IEC 61966-2-1 for sRGB.
+/// .glb has y up and linear colours; roomradar has z up and sRGB. Source: glTF 2.0 specification, 3.3 and
+/// 3.7.2.1; IEC 61966-2-1 for sRGB.
 aiVector3D with_y_up(const aiVector3D& p) { return {p.x, p.z, -p.y}; }
 aiMatrix4x4 z_up_from_y_up() { return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}; }
 float linear_of(float srgb01) {
@@ -115,7 +115,7 @@ std::uint8_t channel_of(float value01) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value01, 0.0F, 1.0F) * 255.0F));
 }
 
-// Collects the meshes below a node, moved by its transforms.
+// Collects the meshes below a node, with the node transforms applied.
 class Collector {
  public:
   Collector(const std::filesystem::path& path, const aiScene& scene, const Format& format)
@@ -141,7 +141,8 @@ class Collector {
     const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
     if (mesh_.triangles.size() + part.mNumFaces > kMaxMeshTriangles)
       fail_for_size(path_, mesh_.triangles.size() + part.mNumFaces);
-    // A node may name a mesh any number of times; what has no triangles is no reason to copy it so often.
+    // Nodes may reference one mesh any number of times; a mesh without triangles would be copied without
+    // limit.
     if (mesh_.vertices.size() + part.mNumVertices > 3 * kMaxMeshTriangles)
       fail(path_, "has more than " + std::to_string(3 * kMaxMeshTriangles) + " vertices; simplify it first");
     const aiMatrix3x3 R = aiMatrix3x3(T_file_node);
@@ -202,7 +203,7 @@ void require_writable(const Mesh& mesh, const std::filesystem::path& path) {
   if (mesh.vertices.empty() || mesh.triangles.empty()) fail(path, "not written: the mesh has no triangles");
   if ((!mesh.normals.empty() && mesh.normals.size() != mesh.vertices.size()) ||
       (!mesh.colours.empty() && mesh.colours.size() != mesh.vertices.size()))
-    fail(path, "not written: the mesh has not one normal or one colour a vertex");
+    fail(path, "not written: its normals or colours are not one per vertex");
   for (const Triangle& triangle : mesh.triangles)
     for (const std::uint32_t vertex : triangle)
       if (vertex >= mesh.vertices.size())
@@ -245,7 +246,7 @@ aiMesh* assimp_mesh(const Mesh& mesh, bool for_gltf) {
   return part.release();
 }
 
-// Through memory, because assimp does not notice a full disk.
+// Exports to memory because assimp does not detect a full disk.
 std::string assimp_bytes(const Mesh& mesh, const Format& format, const std::filesystem::path& path) {
   aiScene scene;  // owns everything below
   scene.mMaterials = new aiMaterial* [1] { new aiMaterial() };
@@ -262,9 +263,10 @@ std::string assimp_bytes(const Mesh& mesh, const Format& format, const std::file
   return {static_cast<const char*>(blob->data), blob->size};
 }
 
-// assimp drops a newline that the data of a binary .ply begin with: it may be left of a header that ends in
-// "\r\n". One in 256 files begins its first number so, and all that follows would be read a byte too early.
-// Returns such a file with a newline more, and nothing of any other. Source: assimp issue 5341.
+// assimp drops a newline at the start of a binary .ply's data, as if it belonged to a header ending in
+// "\r\n". In one of 256 files the first number starts with that byte, and all data would be read one byte too
+// early. Returns the bytes of such a file with an extra newline; empty for any other file. Source: assimp
+// issue 5341.
 std::string ply_with_newline_to_drop(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string header, line;
@@ -281,8 +283,7 @@ std::string ply_with_newline_to_drop(const std::filesystem::path& path) {
 }
 
 Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
-  // An .stl repeats its corners and knows facet normals only: corners are joined by place, normals left to
-  // the user.
+  // An .stl repeats its corners and has facet normals only: equal corners are merged and normals dropped.
   const bool facets = std::strcmp(format.extension, ".stl") == 0;
   Assimp::Importer importer;
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
@@ -297,7 +298,7 @@ Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
   const aiScene* scene = mended.empty()
                              ? importer.ReadFile(path.string(), kChecked)
                              : importer.ReadFileFromMemory(mended.data(), mended.size(), kChecked, "ply");
-  // assimp takes a face without corners for a polygon, and ends the process when it turns out to be none.
+  // assimp treats a face without corners as a polygon and terminates the process when triangulating it.
   if (scene && has_empty_face(*scene)) fail(path, "has a face without corners; is it damaged?");
   if (scene)
     scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
@@ -313,7 +314,7 @@ Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
   return mesh;
 }
 
-// All bytes at once: item by item a large mesh would take seconds.
+// Copies all items as one block; item by item, a large mesh would take seconds.
 template <typename Archive, typename Item>
 void transfer_items(Archive& archive, std::vector<Item>& items) {
   std::uint64_t count = items.size();
@@ -339,7 +340,7 @@ void transfer(Archive& archive, Mesh& mesh) {
 Mesh read_mesh(const std::filesystem::path& path) {
   const Format& format = format_of(path);
   check_claimed_size(path, format);
-  // assimp crashes over damaged files, or never ends; so it reads them apart.
+  // assimp crashes or hangs on damaged files, so it runs sandboxed.
   const std::uintmax_t bytes = std::filesystem::file_size(path);
   const auto most_s = static_cast<unsigned>(3 + (bytes >> 20U));
   const std::size_t most_bytes = (std::size_t{1} << 30U) + 64 * bytes;

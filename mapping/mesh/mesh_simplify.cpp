@@ -1,4 +1,4 @@
-// mesh_simplify.cpp: block by block, collapse, measure, and do again with less tolerance where too far apart.
+// mesh_simplify.cpp: per block: collapse, measure, repeat with lower tolerance where the bound is exceeded.
 #include "mapping/mesh/mesh_simplify.hpp"
 
 #include <algorithm>
@@ -19,15 +19,15 @@
 namespace roomradar {
 namespace {
 
-// Vertices are held nearer than the bound, as the surface between them lies farther off here and there; with
-// more, repairs cost more triangles than this saves.
+// Vertex tolerance as a fraction of the bound; below 1 because the surface between vertices deviates more in
+// places. With a larger fraction, repairs cost more triangles than the collapses save.
 constexpr float kOfBound = 0.6F;
-constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};  // of a triangle that is gone
+constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};  // marks removed triangles
 constexpr int kMostRounds = 10;
 constexpr float kTightening = 0.4F;
-constexpr float kLeastOfBound = 0.2F;  // below, a vertex is kept as it is
+constexpr float kLeastOfBound = 0.2F;  // below this fraction of the bound a vertex is constrained
 
-// Lessens the tolerance of all vertices within radius_m of a far point.
+// Lowers the tolerance of all vertices within radius_m of a far point.
 void tighten_around(const Mesh& mesh, const std::vector<FarPoint>& far, float radius_m, float least_m,
                     std::vector<float>& tolerance_m) {
   const auto cube_of = [&](const Eigen::Vector3f& p) -> Eigen::Vector3i {
@@ -52,8 +52,8 @@ void tighten_around(const Mesh& mesh, const std::vector<FarPoint>& far, float ra
   }
 }
 
-// One block, its vertices in place: fewer triangles, and how far they lie from what it was. Vertices on a
-// seam stay. A block that comes out too far apart in all rounds is left as it is.
+// Simplifies one block; vertices keep their indices. Seam vertices stay fixed. A block that exceeds the bound
+// in all rounds is returned unchanged.
 SimplifiedMesh simplified_block(const Mesh& mesh, std::vector<float> tolerance_m, float max_deviation_m,
                                 float spacing_m) {
   const SurfaceNear full_surface(mesh, max_deviation_m);
@@ -73,8 +73,8 @@ SimplifiedMesh simplified_block(const Mesh& mesh, std::vector<float> tolerance_m
   return {mesh, 0.0F};
 }
 
-// Takes turns with others at the blocks of one mesh. Each writes to its own triangles and to the vertices
-// that no other block uses.
+// Simplifies the blocks of one mesh; several threads may call work(). Each block writes only its own
+// triangles and the vertices that no other block uses.
 class BlockSimplifier {
  public:
   BlockSimplifier(Mesh& mesh, float max_deviation_m, float spacing_m, std::size_t block_triangles)
@@ -84,7 +84,7 @@ class BlockSimplifier {
         blocks_(sort_into_blocks(mesh, block_triangles)),
         on_seam_(seam_vertices(mesh, blocks_)) {}
 
-  /// The greatest deviation (m) in the blocks that this call did.
+  /// Returns the greatest deviation (m) among the blocks processed by this call.
   float work() {
     float deviation_m = 0.0F;
     for (std::size_t b = next_++; b < blocks_.size(); b = next_++)

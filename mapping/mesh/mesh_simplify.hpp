@@ -1,4 +1,4 @@
-// mesh_simplify.hpp: fewer triangles for the same surface, within a bound that is kept.
+// mesh_simplify.hpp: mesh simplification within a guaranteed distance bound.
 #pragma once
 #include <cstddef>
 
@@ -6,27 +6,31 @@
 
 namespace roomradar {
 
-/// A mesh with fewer triangles, and how far it lies from the one it was made from.
+/// A simplified mesh and its measured distance from the original.
 struct SimplifiedMesh {
   Mesh mesh;
-  /// Greatest distance from either surface to the other that was measured (m), on points spacing_m apart on
-  /// both, all vertices included. Not above the bound; between those points it may be a little more.
+  /// Greatest measured distance between the surfaces, in both directions, m: at all vertices and at points
+  /// spacing_m apart. Never above the bound; between the points the distance may be slightly larger.
   float deviation_m = 0.0F;
 };
 
-inline constexpr std::size_t kBlockTriangles = 6000;  ///< fit the cache
+inline constexpr std::size_t kBlockTriangles = 6000;  ///< its data fits the CPU cache
 
-/// Collapses edges, cheapest first by their quadric error, to where the planes round them meet best: flat
-/// parts become few large triangles, bent ones keep small ones. Every vertex of `mesh` stays within
-/// max_deviation_m (> 0) of the triangles that take its place, collapse by collapse. Then both surfaces are
-/// measured against each other; where they lie farther apart than the bound, `mesh` is kept as it is and the
-/// rest done again. A mesh with more triangles than block_triangles (>= 1) is done in blocks of so many, by
-/// two threads; vertices on the seams between blocks stay, so that nothing tears: small blocks fit the cache
-/// and are done again alone, large ones have less seam. The surface's pieces, holes and handles stay, and
-/// edges with two triangles keep two. Colours and normals are means over what was merged. Triangles flatter
-/// than 0.01 mm are not made. Source: Garland and Heckbert, Surface Simplification Using Quadric Error
-/// Metrics, SIGGRAPH 1997; Klein, Liebich, Strasser, Mesh reduction with error control, IEEE Visualization
-/// 1996 (the bound).
+/// Collapses edges in order of quadric error, placing each new vertex where the planes around it intersect
+/// best: flat areas become few large triangles, curved ones keep small ones.
+///
+/// Bound: during collapses, every vertex of `mesh` stays within max_deviation_m (> 0) of the triangles that
+/// replace its own. Afterwards both surfaces are measured against each other, at points spacing_m apart. If
+/// they exceed the bound somewhere, tolerances there are lowered and the block is simplified again; a block
+/// that fails in all rounds is left unchanged.
+///
+/// Two threads process meshes above block_triangles (>= 1) in blocks of at most that many. Vertices on seams
+/// between blocks stay fixed, so no cracks appear. Small blocks fit the cache and are repeated separately;
+/// large blocks have fewer seam vertices. Components, holes and handles are preserved, and edges with two
+/// triangles keep two. Colours and normals are averaged over merged vertices. New triangles less than 0.1 mm
+/// high are rejected. Source: Garland and Heckbert, Surface Simplification Using Quadric Error Metrics,
+/// SIGGRAPH 1997; bound: Klein, Liebich, Strasser, Mesh reduction with error control, IEEE Visualization
+/// 1996.
 SimplifiedMesh simplified(Mesh mesh, float max_deviation_m, float spacing_m,
                           std::size_t block_triangles = kBlockTriangles);
 

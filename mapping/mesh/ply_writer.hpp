@@ -1,4 +1,4 @@
-// ply_writer.hpp: a mesh as binary .ply.
+// ply_writer.hpp: encodes a mesh as binary .ply.
 #pragma once
 #include <string>
 
@@ -6,9 +6,9 @@
 
 namespace roomradar {
 
-/// The bytes of a little-endian .ply: x y z and, where the mesh has them, nx ny nz as float, red green blue
-/// as uchar; triangles as `vertex_indices`. The origin is added back. Written here because assimp 5.2
-/// declares colours as bytes but writes them as floats, which nobody can read.
+/// Returns the bytes of a little-endian .ply: x y z and, if present, nx ny nz as float, red green blue as
+/// uchar; triangles as `vertex_indices`. The origin is added back. Hand-written because assimp 5.2 declares
+/// colours as bytes but writes floats, which no reader can parse.
 std::string ply_bytes(const Mesh& mesh);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// quadric.hpp: the sum of squared distances to a set of weighted planes, as a function of the point.
+// quadric.hpp: quadric error metric: weighted sum of squared distances from a point to a set of planes.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/LU>
@@ -11,9 +11,9 @@ struct Quadric {
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   double c = 0.0;
-  double weight = 0.0;  ///< of all planes together
+  double weight = 0.0;  ///< sum of the planes' weights
 
-  /// The plane through `point` with this unit normal.
+  /// Adds the plane through `point` with this unit normal.
   void add_plane(const Eigen::Vector3d& unit_normal, const Eigen::Vector3d& point, double plane_weight) {
     const double offset = -unit_normal.dot(point);
     A += plane_weight * unit_normal * unit_normal.transpose();
@@ -33,9 +33,10 @@ struct Quadric {
     const double sum = p.dot(A * p) + 2.0 * b.dot(p) + c;
     return sum > 0.0 ? sum : 0.0;
   }
-  /// The point nearest to all planes; along directions that the planes hardly fix, near `guess`.
+  /// Least-squares point of all planes; stays near `guess` along poorly constrained directions.
   [[nodiscard]] Eigen::Vector3d nearest_to_all(const Eigen::Vector3d& guess) const {
-    constexpr double kHardly = 5e-3;  // of the best fixed direction; noise on a flat wall fixes less
+    constexpr double kHardly = 5e-3;  // regularisation relative to trace(A); above what noise on a flat wall
+                                      // constrains
     const double trace = A.trace();
     if (!(trace > 0.0)) return guess;
     const Eigen::Matrix3d held = A + kHardly * trace * Eigen::Matrix3d::Identity();

@@ -1,25 +1,26 @@
-// triangle_distance.hpp: from a point to a triangle.
+// triangle_distance.hpp: point-to-segment and point-to-triangle distance.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
 
 namespace roomradar {
 
-/// Squared distance from p to the nearest point of the segment from a along ab, in their units squared.
+/// Squared distance from p to the segment from a to a + ab, in the inputs' units squared.
 inline float squared_distance_to_segment(const Eigen::Vector3f& p, const Eigen::Vector3f& a,
                                          const Eigen::Vector3f& ab) {
   const float along = ab.dot(p - a) / std::max(ab.squaredNorm(), 1e-30F);
   return (p - a - std::clamp(along, 0.0F, 1.0F) * ab).squaredNorm();
 }
 
-/// Squared distance from p to the nearest point of the triangle a, b, c, in its units squared; right also for
-/// triangles without area. Source: Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
+/// Squared distance from p to the triangle a, b, c, in the inputs' units squared; also correct for degenerate
+/// triangles. Source: Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
 inline float squared_distance_to_triangle(const Eigen::Vector3f& p, const Eigen::Vector3f& a,
                                           const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   const Eigen::Vector3f ab = b - a;
   const Eigen::Vector3f ac = c - a;
   const Eigen::Vector3f normal = ab.cross(ac);
-  // Of triangles as thin as this (height by length), where a point is beside them is lost in rounding.
+  // Triangles this thin (height / length) are treated as segments: rounding errors make region tests
+  // meaningless.
   constexpr float kThin = 1e-4F;
   const float longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (c - b).squaredNorm()});
   if (normal.squaredNorm() <= kThin * kThin * longest2 * longest2)

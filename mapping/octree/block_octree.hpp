@@ -1,7 +1,7 @@
-// block_octree.hpp: OctoMap's octree with eight siblings in one block: what the static map is fused into.
-// Private to the static map. Keys, depth, log-odds and pruning are OctoMap's; its file forms are written from
-// here by static_map_file.cpp. A frame touches some 50,000 groups of eight voxels, and memory decides how
-// long that takes: the eight are one line of the processor's cache, where OctoMap's nodes are nine places.
+// block_octree.hpp: the octree that depth frames are fused into; private to StaticMap. Keys, depth, log-odds
+// and pruning are OctoMap's, and static_map_file.cpp writes OctoMap's file formats from it. Eight siblings
+// share one block: a frame touches about 50,000 groups of eight voxels, and memory access dominates its time.
+// A block of eight voxels is one cache line; in OctoMap it is nine separately allocated nodes.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -18,11 +18,11 @@ namespace roomradar {
 inline constexpr unsigned kLeafDepth = 16;  // OctoMap's, from its 16-bit keys
 inline constexpr int kKeyOrigin = 32768;    // key of the voxel whose lower corner is the world's origin
 
-/// Log-odds in units of BlockUnits::log_odds. 0 is unknown; what is known and even is the least above it,
-/// since OctoMap takes a probability of one half as occupied.
+/// Log-odds in units of BlockUnits::log_odds. 0 means unknown; a known voxel whose log-odds come out as 0
+/// stores 1, since OctoMap treats a probability of one half as occupied.
 using LogOdds = std::int16_t;
 
-/// What a node is: unknown, a cube of one log-odds, or a block of children.
+/// State of a node: unknown, a cube of uniform log-odds, or a block of children.
 class Slot {
  public:
   Slot() = default;
@@ -34,9 +34,9 @@ class Slot {
   [[nodiscard]] bool is_unknown() const { return bits_ == 0; }
   [[nodiscard]] bool is_cube() const { return (bits_ & kCube) != 0; }
   [[nodiscard]] bool is_block() const { return bits_ != 0 && !is_cube(); }
-  /// Of a cube; 0 of what is unknown.
+  /// Log-odds of a cube; 0 if unknown.
   [[nodiscard]] LogOdds log_odds() const { return static_cast<LogOdds>(static_cast<std::uint16_t>(bits_)); }
-  /// Number of the block: of inner blocks above depth 15, of leaf blocks at depth 15.
+  /// Block number, in the pool of inner blocks for nodes above depth 15, of leaf blocks at depth 15.
   [[nodiscard]] std::uint32_t number() const { return bits_; }
   friend bool operator==(const Slot&, const Slot&) = default;
 
@@ -52,7 +52,7 @@ struct alignas(32) InnerBlock {
 };
 static_assert(sizeof(InnerBlock) == 32);
 
-/// The eight voxels of a node of depth 15. A voxel behind a surface may be unknown and have a signed
+/// The eight voxels of a node at depth 15. A voxel behind a surface may be unknown and still have a signed
 /// distance.
 struct alignas(64) LeafBlock {
   std::array<LogOdds, 8> log_odds{};
@@ -65,13 +65,13 @@ struct alignas(64) LeafBlock {
 };
 static_assert(sizeof(LeafBlock) == 64);
 
-/// The colours of a leaf block: away from it, since most blocks have none, or have it settled.
+/// Colours of a leaf block, stored separately since most blocks have none or rarely update it.
 struct ColourBlock {
   std::array<Rgb, 8> colours;
 };
 
-/// What one step of the whole numbers in the blocks is worth: the range of each that a config allows, in 15
-/// or 16 bits. By default, at 1 cm: 1e-4, 5 micrometres, and half of what a frame weighs at 5 m.
+/// Step sizes of the integers in the blocks: 15 or 16 bits span each range that the config allows. With
+/// default settings at 1 cm: log-odds 1e-4, distance 3 micrometres, weight half that of a frame at 5 m.
 struct BlockUnits {
   BlockUnits(double resolution_m, const FusionConfig& config);
   float log_odds;
@@ -79,7 +79,7 @@ struct BlockUnits {
   float weight;
 };
 
-/// A node's place in the tree: how deep it is, and the key of its lowest voxel (kKeyOrigin + its index).
+/// A node's position in the tree: its depth and the key of its lowest voxel (kKeyOrigin + voxel index).
 struct NodePlace {
   unsigned depth = 0;
   Eigen::Array3i key = Eigen::Array3i::Zero();
@@ -89,7 +89,7 @@ struct NodePlace {
     const int edge = edge_voxels() / 2;
     return {depth + 1, key + Eigen::Array3i(i & 1U ? edge : 0, i & 2U ? edge : 0, i & 4U ? edge : 0)};
   }
-  /// Which child of it holds a voxel.
+  /// Index of the child that contains a voxel.
   [[nodiscard]] unsigned towards(const Eigen::Array3i& voxel_key) const {
     const auto digit = [&](int axis) {
       return static_cast<unsigned>(voxel_key[axis] >> (kLeafDepth - 1 - depth)) & 1U;
@@ -114,7 +114,7 @@ class BlockOctree {
   const InnerBlock& inner(Slot slot) const { return inner_[slot.number()]; }
   LeafBlock& leaves(Slot slot) { return leaves_[slot.number()]; }
   const LeafBlock& leaves(Slot slot) const { return leaves_[slot.number()]; }
-  /// The block's colours, made where there are none.
+  /// The block's colours, allocated if it has none.
   ColourBlock& colours(LeafBlock& block) {
     if (block.colours == 0) block.colours = colours_.take();
     return colours_[block.colours];
@@ -123,8 +123,9 @@ class BlockOctree {
     return (block.coloured >> i & 1U) != 0 ? colours_[block.colours].colours[i] : Rgb{};
   }
 
-  /// What a node has become whose children are now `block`: a cube, or unknown, where the eight are alike;
-  /// else a block, which is `block` itself where the node was that already.
+  /// Prunes: returns the new state of `node`, given its children `block`. If all eight are equal, the node
+  /// becomes a cube or unknown and its block is freed. Otherwise the node stays a block (then `block` must be
+  /// that block) or gets a new block, a copy of `block`.
   Slot settle(Slot node, const InnerBlock& block) {
     if (alike(block)) {
       if (node.is_block()) inner_.give_back(node.number());
@@ -149,7 +150,7 @@ class BlockOctree {
   }
 
  private:
-  // No two slots name the same block: alike are cubes, or unknown.
+  // True only for equal cubes or all unknown, since no two slots share a block.
   static bool alike(const InnerBlock& block) {
     bool same = true;
     for (const Slot slot : block.slots) same &= slot == block.slots[0];
@@ -170,10 +171,10 @@ class BlockOctree {
 };
 
 struct SubtreeSize {
-  std::size_t nodes = 0;  ///< that OctoMap would have: its file forms store these
-  std::size_t bytes = 0;  ///< of the blocks that they lie in, colours included
+  std::size_t nodes = 0;  ///< number of OctoMap nodes, as stored in its file formats
+  std::size_t bytes = 0;  ///< memory of the blocks in use, colours included
 };
-/// Of a node and all below it.
+/// Size of a node and all its descendants.
 SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth);
 
 inline void forget_sample(LeafBlock& block, unsigned i) {
@@ -182,7 +183,7 @@ inline void forget_sample(LeafBlock& block, unsigned i) {
   block.coloured &= static_cast<std::uint8_t>(~(1U << i));
 }
 
-/// The children of a node that is no block: each is what it is.
+/// Children of a node that is not a block: each equals the node.
 inline InnerBlock opened(Slot node) {
   InnerBlock block;
   block.slots.fill(node);
@@ -194,7 +195,8 @@ inline LeafBlock opened_leaves(Slot node) {
   return block;
 }
 
-/// Visits what is below a node in Morton order: on_cube(place, log-odds), on_leaves(place, LeafBlock).
+/// Visits a node's subtree in Morton order: on_cube(place, log-odds) for cubes, on_leaves(place, LeafBlock)
+/// for leaf blocks.
 template <typename OnCube, typename OnLeaves>
 void for_each_part(const BlockOctree& tree, Slot node, const NodePlace& place, const OnCube& on_cube,
                    const OnLeaves& on_leaves) {
@@ -214,8 +216,8 @@ void for_each_leaf(const BlockOctree& tree, const Visit& visit) {
   });
 }
 
-/// Lets change(LeafBlock&) change the voxels of a node of depth 15, made where there are none. Gives what the
-/// node has become.
+/// Calls change(LeafBlock&) on the voxels of a node at depth 15, expanding the node if needed. Returns the
+/// node's new state, pruned.
 template <typename Change>
 Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
   LeafBlock made;
@@ -225,8 +227,8 @@ Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
   return tree.settle(node, block);
 }
 
-/// Lets change(slot) say what the node at `target`, which is at or below `place`, becomes; makes what is
-/// above it. Gives what the node at `place` has become.
+/// Replaces the node at `target`, which is at or below `place`, by change(slot); creates the nodes in
+/// between. Returns the new state of the node at `place`, pruned.
 template <typename Change>
 Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const NodePlace& target,
                  const Change& change) {

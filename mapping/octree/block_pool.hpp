@@ -1,4 +1,4 @@
-// block_pool.hpp: many small equal blocks of memory, found by 32-bit numbers.
+// block_pool.hpp: pool allocator of equal blocks addressed by 32-bit numbers.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,14 +10,14 @@
 
 namespace roomradar {
 
-/// Blocks never move, so that references hold while others are taken. Number 0 is never given: it means none.
+/// Blocks never move, so references stay valid while others are allocated. Number 0 is reserved for "none".
 template <typename Block>
 class BlockPool {
  public:
-  /// At most `limit` blocks at a time; their numbers stay below 2^31.
+  /// @param limit  max blocks in use at a time; numbers stay below 2^31
   explicit BlockPool(std::uint32_t limit = (1U << 31U) - 1) : limit_(limit) {}
 
-  /// The number of a block as Block{} makes it. Throws Error if the limit is reached.
+  /// Allocates a block, initialised to Block{}, and returns its number. Throws Error if the limit is reached.
   std::uint32_t take() {
     std::uint32_t number = 0;
     if (free_.empty()) {
@@ -39,7 +39,7 @@ class BlockPool {
   const Block& operator[](std::uint32_t number) const { return chunks_[number / kChunk][number % kChunk]; }
 
   [[nodiscard]] std::size_t in_use() const { return next_ - 1 - free_.size(); }
-  /// Of all that was ever taken; what is given back is kept for the next.
+  /// Memory of all blocks ever allocated; freed blocks are kept for reuse.
   [[nodiscard]] std::size_t memory_bytes() const {
     return chunks_.size() * kChunk * sizeof(Block) + free_.capacity() * sizeof(std::uint32_t);
   }

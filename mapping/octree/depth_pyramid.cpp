@@ -1,4 +1,4 @@
-// depth_pyramid.cpp: building and asking the pyramid of depth bounds.
+// depth_pyramid.cpp: builds the pyramid of depth bounds.
 #include "mapping/octree/depth_pyramid.hpp"
 
 #include <algorithm>
@@ -11,22 +11,22 @@ namespace roomradar {
 namespace {
 
 constexpr float kNothing_m = std::numeric_limits<float>::infinity();
-// Front of a cell that leaves it to its neighbours.
+// Front of a cell without depth; neutral, so the neighbours decide.
 constexpr std::int16_t kNoWord = std::numeric_limits<std::int16_t>::max();
 constexpr float kFarthestStep = 32'000.0F;
-constexpr int kHoleLevel = 2;  // cells of 4 x 4 pixels must hold some depth
+constexpr int kHoleLevel = 2;  // from this level on (4 x 4 pixels) cells must contain some depth
 
 DepthBounds merged(const DepthBounds& a, const DepthBounds& b) {
   return {std::min(a.front, b.front), std::min(a.nearest, b.nearest), std::min(a.behind, b.behind),
           std::min(a.unused, b.unused)};
 }
 
-// The row of cells that two rows of the image give.
+// Computes the row of level-1 cells that two image rows give.
 void bound_rows(const float* upper, const float* lower, int width, double resolution_m,
                 const FusionConfig& config, DepthPyramid& pyramid, DepthBounds* cells) {
-  float* nearest = pyramid.row_nearest_m.data();    // of what was measured
-  float* farthest = pyramid.row_farthest_m.data();  // likewise, within max_range_m
-  float* deepest = pyramid.row_deepest_m.data();    // at any range
+  float* nearest = pyramid.row_nearest_m.data();    // min over the measured pixels
+  float* farthest = pyramid.row_farthest_m.data();  // max over the pixels within max_range_m
+  float* deepest = pyramid.row_deepest_m.data();    // max over all pixels
   const float max_range_m = config.max_range_m;
   for (int x = 0; x < width; ++x) {
     const float a = upper[x], b = lower[x];
@@ -64,7 +64,7 @@ void halve(DepthPyramid& pyramid, int level) {
   }
 }
 
-// A cell without any depth leaves its word to others no longer: nothing is free there.
+// From this level on, cells without any depth are no longer neutral: nothing is free there.
 void block_holes(DepthPyramid& pyramid, int level) {
   for (int y = 0; y < pyramid.cells_down(level); ++y)
     for (int x = 0; x < pyramid.cells_across(level); ++x) {
@@ -78,7 +78,7 @@ void resize(int width_px, int height_px, DepthPyramid& pyramid) {
   pyramid.width_px = width_px;
   pyramid.height_px = height_px;
   pyramid.levels = std::bit_width(static_cast<unsigned>(std::max({width_px, height_px, 2}) - 1));
-  pyramid.stride = pyramid.cells_across(1) + 1;  // pairs of cells are read, also at the end of a row
+  pyramid.stride = pyramid.cells_across(1) + 1;  // cells are read in pairs, also at the end of a row
   pyramid.cells.assign((std::size_t{1} << pyramid.levels) * static_cast<std::size_t>(pyramid.stride),
                        {kNoWord, kNoWord, kNoWord, kNoWord});
   const auto even_width = 2 * static_cast<std::size_t>(pyramid.cells_across(1));

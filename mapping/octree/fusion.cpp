@@ -1,4 +1,4 @@
-// fusion.cpp: the descent that fuses one depth frame.
+// fusion.cpp: the octree descent that fuses one depth frame.
 #include "mapping/octree/fusion.hpp"
 
 #include <algorithm>
@@ -14,13 +14,13 @@ namespace {
 
 using HitRange = std::span<const BlockHits>;
 
-// A sample fades only where a box so many times its node is seen through: at an edge, poses that are a little
-// off see past what is there.
+// A sample fades only if a box this many times the size of its node is seen through: at depth edges, small
+// pose errors let rays pass surfaces that are still there.
 constexpr float kClearance = 3.0F;
 
-// The hits in each child of a node. They are sorted: those of child i come before those of child i + 1.
+// The hits in each child of a node. Input is sorted, so those of child i precede those of child i + 1.
 struct ChildHits {
-  unsigned mask = 0;  // bit i: there are some in child i
+  unsigned mask = 0;  // bit i: child i has hits
   std::array<HitRange, 8> in;
 
   ChildHits(HitRange hits, unsigned child_depth) {
@@ -48,13 +48,13 @@ class Descent {
         leaves_(tree, frame, config),
         frame_index_(static_cast<std::uint64_t>(frame.index)) {}
 
-  /// root_centre: of the whole tree, in the camera frame, m.
+  /// @param root_centre  centre of the whole tree in the camera frame, m
   void run(const Eigen::Vector3d& root_centre, HitRange hits) {
     tree_.root = update(tree_.root, 0, cell_at(0, root_centre, 0, hits));
   }
 
  private:
-  // A node above depth 15 that is looked into.
+  // A node above depth 15 being descended into.
   struct Cell {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // in the camera frame, m
     std::uint64_t code = 0;                            // Morton code
@@ -69,7 +69,7 @@ class Descent {
                  config_.max_range_m, pyramid_);
   }
 
-  /// Gives what the node has become.
+  /// Returns the node's new state.
   Slot update(Slot node, unsigned depth, const Cell& cell) {
     const ChildHits hits(cell.hits, depth + 1);
     InnerBlock made;
@@ -105,7 +105,7 @@ class Descent {
     return tree_.settle(node, block);
   }
 
-  // All are judged before the first is changed: the processor works on one while it waits for another.
+  // All children are classified before the first is changed, so the CPU overlaps their memory accesses.
   void update_children(InnerBlock& block, unsigned split, unsigned depth, const Cell& cell,
                        const ChildHits& hits) {
     std::array<Cell, 8> cells;
@@ -133,7 +133,7 @@ class Descent {
     }
   }
 
-  // The whole node is seen through; clear: and so is what is round it.
+  // Marks a node that is wholly seen through; clear: the space around it is seen through, too.
   Slot mark_free(Slot node, unsigned depth, float weight, bool clear) {
     if (!node.is_block()) return leaves_.missed(node);
     if (depth == kLeafDepth - 1) return leaves_.mark_free(node, weight, clear);
@@ -155,7 +155,8 @@ class Descent {
     return bits;
   }
 
-  // A settled colour is looked at by one frame in sixteen; which one, differs from block to block.
+  // True in one frame of sixteen, in which even a settled colour is updated; the phase differs between
+  // blocks.
   [[nodiscard]] bool is_colours_turn(std::uint64_t code) const {
     return (((code * 0x9E37'79B9'7F4A'7C15U) >> 60U) + frame_index_) % 16 == 0;
   }
@@ -184,7 +185,7 @@ template <typename Float8>
 void descend(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera,
              const FusionConfig& config, const FusionScratch& scratch) {
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  const Eigen::Vector3d world_origin = T_camera_world.translation();  // the middle of the tree
+  const Eigen::Vector3d world_origin = T_camera_world.translation();  // centre of the tree
   Descent<Float8>(tree, frame, T_camera_world, config, scratch.pyramid).run(world_origin, scratch.hits);
 }
 

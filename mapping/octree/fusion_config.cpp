@@ -1,4 +1,4 @@
-// fusion_config.cpp: the rules that a fusion configuration must keep.
+// fusion_config.cpp: range checks of the fusion settings.
 #include "mapping/octree/fusion_config.hpp"
 
 #include <cmath>

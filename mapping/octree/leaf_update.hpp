@@ -1,4 +1,4 @@
-// fusion_leaves.hpp: what a frame does to the eight voxels of a leaf block. Private to the fusion.
+// fusion_leaves.hpp: updates the eight voxels of a leaf block with a frame. Private to the fusion.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,20 +13,20 @@
 
 namespace roomradar {
 
-/// What a measurement weighs: the variance at 1 m over its own, at most 1.
+/// Weight of a measurement: the variance at 1 m divided by its own variance, at most 1.
 inline float weight_at(float depth_m) {
   const float ratio = depth_sigma_m(1.0F) / depth_sigma_m(depth_m);
   return std::min(ratio * ratio, 1.0F);
 }
 
-/// What the pixels that the centres of eight voxels fall on say about them.
+/// Measurements for eight voxels, from the pixels that their centres project to.
 template <typename Float8>
 struct Observed {
-  EightPoints<Float8> p_camera;  ///< the centres
-  Float8 distance_m;             ///< the measured depth less the centre's
-  Float8 sigma_m;                ///< of the measured depth
+  EightPoints<Float8> p_camera;  ///< voxel centres
+  Float8 distance_m;             ///< measured depth minus the centre's depth
+  Float8 sigma_m;                ///< standard deviation of the measured depth
   unsigned free = 0;             ///< bit i: centre i is seen through
-  unsigned sampled = 0;          ///< it is within the truncation of the measured surface
+  unsigned sampled = 0;          ///< bit i: centre i is within the truncation of the measured surface
 };
 
 template <typename Float8>
@@ -51,7 +51,7 @@ class LeafUpdate {
                   colour.height == frame.colour_camera.height_px;
   }
 
-  /// A cube that another miss would not change.
+  /// Free cube at the minimum log-odds, which further misses do not change.
   [[nodiscard]] Slot settled_free() const { return Slot::cube(static_cast<LogOdds>(min_)); }
   [[nodiscard]] Slot missed(Slot cube) const {
     const float after = std::max(static_cast<float>(cube.log_odds()) + miss_, min_);
@@ -74,8 +74,9 @@ class LeafUpdate {
     return {p_camera, distance_m, sigma_m, free.bits(), sampled.bits()};
   }
 
-  /// hit: bit i: a ray ends in voxel i. refresh_colour: a colour that is settled is averaged on, too. Gives
-  /// what the node of the eight has become.
+  /// Updates the eight voxels of `node` and returns the node's new state.
+  /// @param hit  bit i: a ray ends in voxel i
+  /// @param refresh_colour  updates colours even if this frame has less than kSettledPart of their weight
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
@@ -91,13 +92,14 @@ class LeafUpdate {
     return tree_.settle(node, block);
   }
 
-  /// All eight are seen through, from so far that the frame weighs `weight`; clear: and so is what is round
-  /// them: then a sample's distance is at least the truncation. Once this is settled the sample goes, so that
-  /// the voxel can merge with the free space around it. A voxel seen through by its own pixel alone keeps its
-  /// sample: beside an edge, and on surfaces seen obliquely, that is noise more often than change. Only what
-  /// lies behind a surface cannot be seen through unless that has gone: there the frames that saw it and
-  /// those that see through it cancel each other. Else what moved on from before a wall, too near to it to be
-  /// clear, would leave its back behind.
+  /// Marks eight voxels that are all seen through, by a frame of this weight. `clear`: the space around them
+  /// is seen through, too. Their samples then fade: the distance is averaged towards the truncation, and the
+  /// sample is erased once the voxel is saturated free, so it can merge with the free space around it.
+  ///
+  /// Without `clear`, samples are kept: beside edges and on obliquely seen surfaces, seeing through a voxel
+  /// is noise more often than change. The exception are samples behind a surface, which are seen through only
+  /// if the surface has gone: frames that see through them cancel frames that measured them. Otherwise an
+  /// object that was too close to a wall for `clear` would leave its back side behind after moving away.
   Slot mark_free(Slot node, float weight, bool clear) {
     LeafBlock& block = tree_.leaves(node);
     add_log_odds(block, 0, 0xFFU);
@@ -109,22 +111,24 @@ class LeafUpdate {
   }
 
  private:
-  // Samples so far from the surface take its colour: its triangles' corners lie among them.
+  // Samples within this many voxels of the surface take its colour; the mesh's vertices are interpolated from
+  // them.
   static constexpr float kColourVoxels = 1.5F;
-  // A measurement that weighs less than this part of all before leaves the colour as it is, but now and then;
-  // then it counts as this part: rounded to whole levels, less would change nothing.
+  // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
+  // refresh. It then counts as this fraction: smaller changes would be lost in rounding to 8 bits.
   static constexpr float kSettledPart = 1.0F / 8.0F;
 
-  // A sample is behind a surface from here on: nearer, noise and poses see past it too often.
+  // Samples at least this far behind a surface count as behind it; nearer ones are seen past too often
+  // because of noise and pose errors.
   static constexpr float kBehind_voxels = 0.5F;
-  // A frame that sees through such a sample takes back so many that measured it: the first ones only make the
-  // voxel free, and what was there for half of the frames is to go.
+  // A frame that sees through such a sample cancels this many frames that measured it. Above 1, because the
+  // first ones only make the voxel free, and an object present in half of the frames should disappear.
   static constexpr float kCancelled = 2.0F;
 
   static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
   [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }
 
-  // depth_sigma_m() of each.
+  // depth_sigma_m() of each element.
   static Float8 sigma_of(const Float8& depth_m) {
     const Float8 beyond_m = max(depth_m - 0.4F, 0.0F);
     return beyond_m * beyond_m * 0.0019F + 0.0012F;
@@ -143,18 +147,20 @@ class LeafUpdate {
     select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
   }
 
-  // What is occupied keeps its sample: without one it would be out of sight for the votes on ghosts.
+  // Returns the samples behind a surface whose voxels are not occupied. Occupied voxels keep their samples:
+  // without one they would be invisible to the ghost votes.
   [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
     return ((Float8::load(block.distance) < Float8(behind_)) & (Float8::load(block.log_odds) <= 0.0F)).bits();
   }
-  // Of those, the ones that this frame measures something farther than the truncation behind.
+  // Returns those of behind_surface() for which this frame measures a surface more than the truncation
+  // farther away.
   [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
     const Float8 further =
         observed.distance_m * (1.0F / tree_.units().distance_m) - Float8::load(block.distance);
     return behind_surface(block) & (Float8(truncation_m_ / tree_.units().distance_m) < further).bits();
   }
 
-  // Takes the weight of a frame that sees through the samples in `gone` from them. Gives those that are left.
+  // Subtracts the weight of a frame that sees through the samples in `gone`. Returns those that remain.
   unsigned cancel_samples(LeafBlock& block, const Float8& weight, unsigned gone) const {
     const Float8 own_weight = Float8::load(block.weight);
     const Float8 cancelled = max(weight * (kCancelled / tree_.units().weight), 1.0F);
@@ -239,8 +245,8 @@ class LeafUpdate {
   Pinhole camera_, colour_camera_;
   Eigen::Matrix4f T_colour_depth_;
   float truncation_m_, colour_distance_m_;
-  float behind_;                  // a distance, in the tree's steps
-  float hit_, miss_, min_, max_;  // log-odds, in the tree's steps
+  float behind_;                  // distance, in the tree's units
+  float hit_, miss_, min_, max_;  // log-odds, in the tree's units
   bool has_colour_ = false;
 };
 

@@ -1,4 +1,4 @@
-// memory_use.cpp: what the system says of this process, and what single frames say of the whole scan.
+// memory_use.cpp: reads memory use from the system, and extrapolates from single frames to a whole scan.
 #include "mapping/octree/memory_use.hpp"
 
 #include <malloc.h>
@@ -32,8 +32,8 @@ void release_unused_memory() {
 
 void keep_large_blocks_apart() {
 #ifdef __GLIBC__
-  // Above what decoding one 640 x 480 image takes, below a keyframe's reference. Unless it is set glibc puts
-  // it up to whatever was freed last.
+  // Larger than what decoding one 640 x 480 image allocates, smaller than a keyframe's target view. By
+  // default glibc raises the threshold to the size of the last freed block.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
 #endif
 }
@@ -42,7 +42,7 @@ std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolu
   constexpr std::int64_t kLooks = 4, kTries = 5, kMinute = 1800;
   constexpr double kFramesAnew = 80.0, kWholeRoom = 20.0;
   constexpr double kTracking_bytes = 60e6,
-                   kKeyframe_bytes = 0.05e6;  // the latter a frame: one in eight is one
+                   kKeyframe_bytes = 0.05e6;  // per frame; one frame in eight becomes a keyframe
   const std::optional<std::int64_t> count = source.frame_count();
   MemoryEstimate estimate{.frames = count.value_or(kMinute), .length_known = count.has_value()};
   double sum_bytes = 0.0;

@@ -1,5 +1,5 @@
-// fusion_view.hpp: where eight siblings stand before the camera, and what the depth image proves about them.
-// Private to the fusion; Float8 is how the eight are computed with (float8.hpp).
+// fusion_view.hpp: visibility of eight sibling nodes in a depth image. Private to the fusion; the template
+// parameter Float8 selects a version from float8.hpp.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -12,12 +12,12 @@
 
 namespace roomradar {
 
-/// No depth camera measures anything as near; a pixel that says so is taken for one that measured nothing.
+/// Depth below this is treated as no measurement: no depth camera measures at such short range.
 inline constexpr float kLeastDepth_m = 0.05F;
 
-inline constexpr float kNearest_m = 0.01F;  // nothing is projected from nearer to the camera's plane
+inline constexpr float kNearest_m = 0.01F;  // min z for projection into the image
 
-/// A pinhole camera in float.
+/// Pinhole camera in float.
 struct Pinhole {
   explicit Pinhole(const Intrinsics& camera)
       : fx(static_cast<float>(camera.fx_px)),
@@ -35,7 +35,7 @@ struct EightPoints {
   Float8 x, y, z;
 };
 
-/// The children of nodes of each depth, in the camera's frame.
+/// Offsets from a node's centre to its children's centres in the camera frame, for each depth.
 class ChildOffsets {
  public:
   ChildOffsets(const Eigen::Matrix3d& R_camera_world, double resolution_m) {
@@ -51,12 +51,12 @@ class ChildOffsets {
       }
     }
   }
-  /// From the centre of a node at `depth` to that of its child i, m.
+  /// Offset from the centre of a node at `depth` to that of its child i, m.
   [[nodiscard]] const Eigen::Vector3d& to_child(unsigned depth, unsigned i) const {
     return to_child_[depth][i];
   }
-  /// Half the box along the camera's axes that holds the centres of all voxels in a child of a node at
-  /// `depth`, m: what is asked about a voxel is asked about its centre.
+  /// Half extents, in the camera frame, of the box of all voxel centres in a child of a node at `depth`, m.
+  /// Voxels are classified by their centres.
   [[nodiscard]] const Eigen::Vector3f& half_extent(unsigned depth) const { return half_extent_[depth]; }
   template <typename Float8>
   [[nodiscard]] EightPoints<Float8> centres(unsigned depth, const Eigen::Vector3d& parent_camera) const {
@@ -72,15 +72,16 @@ class ChildOffsets {
   std::array<std::array<std::array<float, 8>, 3>, kLeafDepth> eight_;
 };
 
-/// About eight siblings that no ray ends in, a bit for each. What is in none of them may hold surface.
+/// Visibility of eight siblings that no ray ends in, one bit each. A sibling in none of the masks may contain
+/// surface.
 struct Verdicts {
-  unsigned nothing = 0;    ///< hidden, or out of sight
-  unsigned free = 0;       ///< seen through as a whole
-  unsigned part_free = 0;  ///< what is seen of it is seen through; the rest is out of sight or has no depth
+  unsigned nothing = 0;    ///< occluded or out of view
+  unsigned free = 0;       ///< wholly seen through
+  unsigned part_free = 0;  ///< its measured part is seen through; the rest is out of view or has no depth
 };
 
-/// From the siblings' boxes in the camera frame and the image rectangles that these fall into. half: half the
-/// extents of a box, m.
+/// Classifies siblings from their boxes in the camera frame and the image rectangles these project to.
+/// @param half  half extents of a box, m
 template <typename Float8>
 Verdicts judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,
                float max_range_m, const DepthPyramid& pyramid) {
@@ -89,8 +90,8 @@ Verdicts judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, 
   const Float8 low_y = centres.y - half.y(), high_y = centres.y + half.y();
   unsigned nothing = ((far_z <= kNearest_m) | (Float8(2.0F * max_range_m) < near_z)).bits();
 
-  // Where a box straddles the camera's plane: outside only if the image's border planes have it wholly on
-  // their far side.
+  // A box that straddles the camera plane counts as outside only if it is wholly outside one of the planes
+  // through the image borders.
   const unsigned straddles = (near_z <= kNearest_m).bits();
   if (straddles != 0) {
     const auto outside = (far_z * (camera.width - camera.cx) < low_x * camera.fx) |
@@ -120,7 +121,7 @@ Verdicts judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, 
 
   const auto in_sight = (zero <= left) & (zero <= top) & (right <= camera.width) & (bottom <= camera.height);
   const unsigned whole = in_sight.bits();
-  // The rectangles, in whole pixels within the image, and the finest cells of which they span four.
+  // Image rectangles in whole pixels, and the finest pyramid level at which each spans at most four cells.
   const Float8 x_end(camera.width - 1.0F), y_end(camera.height - 1.0F);
   const Float8 left_px = floor(min(max(left, zero), x_end)), right_px = floor(min(max(right, zero), x_end));
   const Float8 top_px = floor(min(max(top, zero), y_end)), bottom_px = floor(min(max(bottom, zero), y_end));

@@ -1,4 +1,4 @@
-// room_octree.cpp: the node's data, and OctoMap's acquaintance with the tree.
+// room_octree.cpp: serialization of nodes, and registration of the tree type with OctoMap.
 #include "mapping/octree/octomap_tree.hpp"
 
 #include <istream>
@@ -17,12 +17,12 @@ void get(std::istream& stream, Value& value) {
   stream.read(reinterpret_cast<char*>(&value), sizeof(value));
 }
 
-// Makes OctoMap's factory know the tree type, so that octomap::AbstractOcTree::read() opens our .ot files
-// too.
+// Registers the tree type with OctoMap's factory, so octomap::AbstractOcTree::read() opens roomradar's .ot
+// files.
 class TreeType : public RoomOcTree {
  public:
   static bool register_it() {
-    auto* tree = new RoomOcTree(0.1);  // the factory keeps it for the whole run
+    auto* tree = new RoomOcTree(0.1);  // owned by the factory until the process ends
     registerTreeType(tree);
     return true;
   }
@@ -75,7 +75,7 @@ std::istream& RoomNode::readData(std::istream& stream) {
 
 RoomOcTree::RoomOcTree(double resolution_m) : OccupancyOcTreeBase<RoomNode>(resolution_m) {
   static_cast<void>(kRegistered);
-  clearKeyRays();  // OctoMap's scratch for casting rays, 0.6 MB a thread, which nothing here uses
+  clearKeyRays();  // frees OctoMap's ray casting buffers, 0.6 MB per thread, unused here
 }
 
 bool RoomOcTree::isNodeCollapsible(const RoomNode* node) const {

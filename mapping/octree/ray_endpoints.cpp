@@ -1,4 +1,4 @@
-// fusion_hits.cpp: the voxels that a frame's rays end in, block by block.
+// fusion_hits.cpp: collects a frame's ray endpoints per leaf block.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kNoKey = -1;
 
-// Least-significant-digit radix sort by code, over the bits that differ at all: a frame sees a small part of
+// Least-significant-digit radix sort by code, only over the bits that differ: a frame covers a small part of
 // the tree.
 void sort_by_code(std::vector<BlockHits>& hits, std::vector<BlockHits>& buffer) {
   constexpr int kDigitBits = 11;
@@ -32,7 +32,7 @@ void sort_by_code(std::vector<BlockHits>& hits, std::vector<BlockHits>& buffer) 
   }
 }
 
-// Each block once, with the voxels of all its hits.
+// Merges the hits of each block into one entry.
 void merge_sorted(std::vector<BlockHits>& hits) {
   std::size_t merged = 0;
   for (std::size_t i = 1; i < hits.size(); ++i) {
@@ -44,16 +44,17 @@ void merge_sorted(std::vector<BlockHits>& hits) {
   if (!hits.empty()) hits.resize(merged + 1);
 }
 
-// Keys of the voxels that one row's rays end in. They are float offsets from the camera's own voxel, which is
-// found in double: exact enough anywhere in the tree.
+// Computes the endpoint keys of one image row as float offsets from the camera's own voxel, which is computed
+// in double; precise enough anywhere in the tree.
 struct RowOfRays {
-  Eigen::Vector3f per_x, at_zero;  // voxels for each metre of depth: direction(x) = per_x * ray_x + at_zero
+  Eigen::Vector3f per_x, at_zero;  // voxels per metre of depth: direction(x) = per_x * ray_x + at_zero
   Eigen::Vector3f camera_within_voxel;
   Eigen::Vector3i camera_key;
   float max_range_m = 0.0F;
 };
 
-// Writes one coordinate of the keys, kNoKey where nothing is hit. Returns bits that no key has.
+// Writes one coordinate of the keys, kNoKey for pixels without a hit. Returns non-zero if a key is out of
+// range.
 int end_voxels(const RowOfRays& rays, int axis, const float* depth_m, const float* ray_x, int width,
                int* keys) {
   const float per_x = rays.per_x[axis], at_zero = rays.at_zero[axis];
@@ -62,7 +63,7 @@ int end_voxels(const RowOfRays& rays, int axis, const float* depth_m, const floa
   int out_of_reach = 0;
   for (int x = 0; x < width; ++x) {
     const float z = depth_m[x];
-    const float ahead_m = z > 0.0F ? z : 0.0F;  // -infinity and NaN are no numbers of voxels
+    const float ahead_m = z > 0.0F ? z : 0.0F;  // -infinity and NaN cannot be cast to int
     const float within_range_m = ahead_m < max_range_m ? ahead_m : max_range_m;
     const float voxels = (per_x * ray_x[x] + at_zero) * within_range_m + within;
     const int truncated = static_cast<int>(voxels);
@@ -74,7 +75,8 @@ int end_voxels(const RowOfRays& rays, int axis, const float* depth_m, const floa
   return out_of_reach;
 }
 
-// Most neighbours share their voxel; what still comes twice goes after sorting.
+// Marks pixels whose voxel differs from that of the left and upper neighbour. Most neighbours share their
+// voxel; remaining duplicates are merged after sorting.
 void mark_new(const std::vector<int> (&above)[3], const std::vector<int> (&row)[3], int width,
               std::uint8_t* is_new) {
   // Each row has a kNoKey before its first pixel.
@@ -87,7 +89,7 @@ void mark_new(const std::vector<int> (&above)[3], const std::vector<int> (&row)[
   }
 }
 
-// The columns that are marked. Always written, so that the processor has nothing to guess.
+// Collects the marked columns, with unconditional writes to avoid branch misprediction.
 std::size_t marked(const std::vector<std::uint8_t>& is_new, std::vector<std::uint32_t>& columns) {
   std::size_t count = 0;
   for (std::size_t x = 0; x < is_new.size(); ++x) {

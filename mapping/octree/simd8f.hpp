@@ -1,6 +1,6 @@
-// float8.hpp: eight numbers at once, one for each of eight siblings: by AVX2, and plainly, with one answer.
-// Neither fuses a product with a sum, so that a map is the same, bit for bit, on every machine; the files
-// that compute with them are compiled with -ffp-contract=off.
+// float8.hpp: eight floats at a time, one per sibling voxel, in AVX2 and portable versions with equal
+// results. Neither version fuses multiply and add, so maps are bit-identical on every machine; files that use
+// them are compiled with -ffp-contract=off.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,8 +14,7 @@
 
 namespace roomradar {
 
-/// One yes or no for each of the eight, and eight floats. The loops are what a compiler makes its own vector
-/// instructions of. NaN compares as false.
+/// Portable mask and vector of eight; compilers vectorise the loops. Comparisons with NaN are false.
 struct PlainMask8 {
   std::array<bool, 8> v;
   static PlainMask8 of_bits(unsigned bits) {
@@ -43,11 +42,11 @@ struct PlainFloat8 {
     return out;
   }
   void store(std::array<float, 8>& to) const { to = v; }
-  /// Towards zero; must be within int.
+  /// Rounds towards zero; values must be within the range of int.
   void store_truncated(std::array<int, 8>& to) const {
     for (unsigned i = 0; i < 8; ++i) to[i] = static_cast<int>(v[i]);
   }
-  /// To the nearest, a half upwards; what is outside the 16 bits becomes the nearest within.
+  /// Rounds to nearest, halves upwards; saturates to the 16-bit range.
   template <typename Int16>
   void store_rounded(std::array<Int16, 8>& to) const {
     for (unsigned i = 0; i < 8; ++i) {
@@ -57,7 +56,7 @@ struct PlainFloat8 {
       to[i] = static_cast<Int16>(within);
     }
   }
-  /// base[index], 0 where the mask says no; indices are whole and below 2^24.
+  /// base[index], or 0 if masked out; indices are integers below 2^24.
   static PlainFloat8 gather(const float* base, const PlainFloat8& index, const Mask& mask) {
     PlainFloat8 out;
     for (unsigned i = 0; i < 8; ++i) out.v[i] = mask.v[i] ? base[static_cast<int>(index.v[i])] : 0.0F;
@@ -92,7 +91,7 @@ inline PlainFloat8 operator*(const PlainFloat8& a, const PlainFloat8& b) {
 inline PlainFloat8 operator/(const PlainFloat8& a, const PlainFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x / y; });
 }
-/// The second where one is NaN.
+/// min() and max() return b if either is NaN.
 inline PlainFloat8 min(const PlainFloat8& a, const PlainFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x < y ? x : y; });
 }
@@ -102,7 +101,7 @@ inline PlainFloat8 max(const PlainFloat8& a, const PlainFloat8& b) {
 inline PlainFloat8 floor(const PlainFloat8& a) {
   return plain::each(a, a, [](float x, float) { return std::floor(x); });
 }
-/// The greatest power of two that is not above each, of its magnitude; for normal numbers.
+/// Largest power of two not above |a|, for each element; for normal numbers.
 inline PlainFloat8 power_of_two_within(const PlainFloat8& a) {
   return plain::each(a, a, [](float x, float) {
     return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0x7F80'0000U);
@@ -216,7 +215,7 @@ inline Avx2Float8 select(const Avx2Mask8& mask, const Avx2Float8& yes, const Avx
 
 #endif
 
-/// The fastest of what the compiler may use.
+/// The fastest version available to the compiler.
 #if defined(__AVX2__)
 using Float8 = Avx2Float8;
 #else

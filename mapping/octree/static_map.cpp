@@ -1,4 +1,4 @@
-// static_map.cpp: fusing into and asking the octree.
+// static_map.cpp: fusion into the octree, and queries on it.
 #include "mapping/octree/static_map.hpp"
 
 #include <algorithm>
@@ -31,7 +31,7 @@ SurfaceSample sample_of(const BlockOctree& tree, const LeafBlock& block, unsigne
           .has_colour = (block.coloured >> i & 1U) != 0};
 }
 
-// What holds one voxel: a leaf block and the voxel's place in it, or a node that is no block.
+// Node that contains a voxel: a leaf block and the voxel's index in it, or a node that is not a block.
 struct Found {
   Key key = Key::Zero();
   Slot node;
@@ -54,7 +54,7 @@ Found find(const BlockOctree& tree, const Eigen::Vector3d& p_world) {
   return found;
 }
 
-// Adding log-odds to all there is in a node, within the clamping.
+// Adds log-odds to everything in a node, with clamping.
 class AddLogOdds {
  public:
   AddLogOdds(BlockOctree& tree, const FusionConfig& config, float log_odds)
@@ -108,7 +108,7 @@ void add_sample(BlockOctree& tree, LeafBlock& block, unsigned i, const SurfaceSa
   block.weight[i] = static_cast<std::uint16_t>(std::min(sum, 65535.0F));
 }
 
-// The keys of the voxels whose centres lie in a box.
+// Keys of the voxels whose centres are in a box.
 struct KeyRange {
   Key first = Key::Zero();
   Key last = Key::Constant(65535);
@@ -128,7 +128,7 @@ KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m) {
   return {.first = to_key(low.ceil()), .last = to_key(high.floor())};
 }
 
-// Decides on every sample below a node that is in the range. Gives what the node has become.
+// Calls `decide` on every sample of the subtree that is in the range. Returns the node's new state.
 Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, const KeyRange& range,
             const std::function<SampleFate(const SurfaceSample&)>& decide) {
   if (!node.is_block() || !range.meets(place)) return node;
@@ -150,7 +150,7 @@ Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, 
   return tree.settle(node, block);
 }
 
-// Visits the samples below a node that are in the range.
+// Visits the samples of the subtree that are in the range.
 void visit_in(const BlockOctree& tree, Slot node, const NodePlace& place, const KeyRange& range,
               const std::function<void(const SurfaceSample&)>& visit) {
   if (!node.is_block() || !range.meets(place)) return;
@@ -202,7 +202,7 @@ StaticMap::StaticMap(StaticMap&&) noexcept = default;
 StaticMap& StaticMap::operator=(StaticMap&&) noexcept = default;
 
 FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
-  constexpr int kMaxSide_px = 4096;  // pixels are counted in floats
+  constexpr int kMaxSide_px = 4096;  // pixel indices are computed in float
   if (!depth_fault_of(frame).empty() || std::max(frame.depth_m.width, frame.depth_m.height) > kMaxSide_px)
     return FuseStatus::kInvalidFrame;
   if (!is_rigid(T_world_camera, 1e-3)) return FuseStatus::kInvalidPose;

@@ -1,4 +1,4 @@
-// static_map_file.cpp: the octree to and from OctoMap's file forms.
+// static_map_file.cpp: reads and writes the octree in OctoMap's file formats.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -26,8 +26,7 @@ constexpr std::size_t kMaxHeaderLines = 100;
   throw Error(path.string() + ": " + fault);
 }
 
-// OctoMap prints the resolution with the stream's precision, and reports failed writes only through the
-// stream.
+// Writes a file through a stream with 17 digits, which keep the resolution exact.
 template <typename Write>
 void write_stream(const std::filesystem::path& path, const Write& write) {
   WholeFile file(path);
@@ -36,14 +35,14 @@ void write_stream(const std::filesystem::path& path, const Write& write) {
   file.put_in_place();
 }
 
-// Writes nodes in the form of OctoMap's writeNodesRecurs: each node, the mask of its children, these in turn.
+// Writes the format of OctoMap's writeNodesRecurs: each node, the mask of its children, then its children.
 class NodeWriter {
  public:
   NodeWriter(const BlockOctree& tree, std::ostream& stream) : tree_(tree), stream_(stream) {}
 
   void write(Slot node, unsigned depth) {
     if (!node.is_block()) return put(leaf(node.log_odds()), 0);
-    RoomNode inner;  // as OctoMap has it: its log-odds are the greatest below it
+    RoomNode inner;  // OctoMap convention: log-odds of an inner node are the maximum of its leaves
     inner.setLogOdds(greatest(node, depth));
     if (depth == kLeafDepth - 1) return write_voxels(inner, tree_.leaves(node));
     const InnerBlock& block = tree_.inner(node);
@@ -78,7 +77,7 @@ class NodeWriter {
       put(node, 0);
     }
   }
-  // Looks at every node once for each level above it: some tenths of a second a million nodes.
+  // Visits every node once per level above it: some tenths of a second per million nodes.
   [[nodiscard]] float greatest(Slot node, unsigned depth) const {
     LogOdds found = std::numeric_limits<LogOdds>::min();
     for_each_part(
@@ -95,8 +94,8 @@ class NodeWriter {
   std::ostream& stream_;
 };
 
-// Free and occupied alone, in the form of OctoMap's writeBinaryNode: two bits for each child of a node, then
-// what is below the children in turn.
+// Writes free and occupied only, in the format of OctoMap's writeBinaryNode: two bits for each child of a
+// node, then the children's subtrees.
 class PlainWriter {
  public:
   enum Kind : unsigned { kUnknown = 0, kFree = 1, kOccupied = 2, kMixed = 3 };
@@ -105,7 +104,7 @@ class PlainWriter {
     const Kind kind = write(tree.root, 0);
     if (kind == kUnknown) return;
     ++nodes_;
-    if (kind != kMixed) {  // the form has no word for a root without children
+    if (kind != kMixed) {  // the format cannot express a root without children
       bytes_.assign(2, static_cast<char>(0b01010101U * kind));
       nodes_ += 8;
     }
@@ -118,7 +117,7 @@ class PlainWriter {
     return log_odds == 0 ? kUnknown : log_odds < 0 ? kFree : kOccupied;
   }
 
-  // Appends what is below a node if it is not all of one kind.
+  // Appends a node's subtree unless it is uniform; returns the node's kind.
   Kind write(Slot node, unsigned depth) {
     if (!node.is_block()) return kind_of(node.log_odds());
     const std::size_t start = bytes_.size();
@@ -147,7 +146,7 @@ class PlainWriter {
   std::size_t nodes_ = 0;
 };
 
-// Numbers one after the other from bytes that may end anywhere.
+// Reads consecutive values from bytes that may end anywhere.
 class ByteReader {
  public:
   ByteReader(const std::filesystem::path& path, std::string bytes) : path_(path), bytes_(std::move(bytes)) {}
@@ -207,13 +206,14 @@ Header read_header(const std::filesystem::path& path, ByteReader& bytes) {
   fail(path, "its header has no end");
 }
 
-// The form of OctoMap's readNodesRecurs, which trusts its input: here depth, ends and numbers are checked.
+// Reads the format of OctoMap's readNodesRecurs. Unlike OctoMap, checks depth, ends and numbers.
 class NodeReader {
  public:
   NodeReader(const std::filesystem::path& path, ByteReader& bytes, BlockOctree& tree)
       : path_(path), bytes_(bytes), tree_(tree) {}
 
-  /// What the next node and all below it are. An inner node's own log-odds follow from its children.
+  /// Reads the next node and its subtree. Ignores an inner node's own log-odds, which follow from its
+  /// children.
   Slot read(unsigned depth) {
     const Leaf node = read_fields();
     if (node.sample || depth >= kLeafDepth) fault();
@@ -280,8 +280,8 @@ class NodeReader {
     }
   }
 
-  // A sensor sees free space cube by cube, and of what is solid the skin. What walks the voxels of such a
-  // cube comes to an end.
+  // A sensor observes free space in small cubes and only the surface of solids, so larger cubes mean a
+  // damaged file. The limits also bound loops over the voxels of a cube.
   [[nodiscard]] bool is_cube_of_a_room(LogOdds log_odds, unsigned depth) const {
     constexpr int kMaxFree_voxels = 8192;
     constexpr double kMaxSolid_m = 4.0;
@@ -295,7 +295,7 @@ class NodeReader {
   }
   [[noreturn]] void fault() const {
     fail(path_,
-         "is damaged: node " + std::to_string(nodes_) + " cannot be one; scan the room again or take a copy");
+         "is damaged: node " + std::to_string(nodes_) + " is invalid; scan the room again or use a copy");
   }
   const std::filesystem::path& path_;
   ByteReader& bytes_;

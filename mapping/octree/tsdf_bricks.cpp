@@ -1,4 +1,4 @@
-// sample_bricks.cpp: sorting an octree's samples into bricks.
+// sample_bricks.cpp: sorts an octree's samples into bricks.
 #include "mapping/octree/tsdf_bricks.hpp"
 
 #include <optional>
@@ -21,7 +21,8 @@ SampleBricks::SampleBricks(const StaticMap& map, float min_weight, const Eigen::
     : SampleBricks([&](const auto& visit) { map.visit_samples(box_world, visit); }, min_weight) {}
 
 SampleBricks::SampleBricks(const VisitSamples& visit_samples, float min_weight) {
-  // The octree's order visits each brick once. All are counted first: a vector that grows holds them twice.
+  // In the octree's order each brick is visited once. A first pass counts the bricks: a growing vector would
+  // temporarily hold them twice.
   std::optional<VoxelIndex> last;
   std::size_t count = 0;
   visit_samples([&](const SurfaceSample& sample) {

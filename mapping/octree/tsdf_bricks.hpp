@@ -1,4 +1,4 @@
-// sample_bricks.hpp: a static map's signed distances in small dense cubes, to find neighbours fast.
+// sample_bricks.hpp: a static map's signed distances (TSDF) in small dense bricks, for fast neighbour access.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -14,10 +14,10 @@ namespace roomradar {
 
 struct BrickSample {
   float distance_m = 0.0F;
-  float weight = 0.0F;  ///< as SurfaceSample's; 0: nothing is known here
+  float weight = 0.0F;  ///< as SurfaceSample::weight; 0: unknown
   Rgb colour;
   bool has_colour : 1 = false;
-  bool guessed : 1 = false;  ///< from its neighbours: nothing was measured here
+  bool guessed : 1 = false;  ///< extrapolated from its neighbours, not measured
 
   [[nodiscard]] bool known() const { return weight > 0.0F; }
 };
@@ -26,22 +26,22 @@ inline constexpr int kBrickEdge = 8;                                     // voxe
 inline constexpr int kBrickSize = kBrickEdge * kBrickEdge * kBrickEdge;  // voxels
 
 struct Brick {
-  VoxelIndex first = VoxelIndex::Zero();  ///< its lowest voxel, a multiple of kBrickEdge
+  VoxelIndex first = VoxelIndex::Zero();  ///< lowest voxel of the brick, a multiple of kBrickEdge
   std::array<BrickSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
 };
 
-/// Bricks that hold at least one sample, in the order of the octree.
+/// All bricks with at least one sample of min_weight or more, in the octree's order.
 class SampleBricks {
  public:
   SampleBricks(const StaticMap& map, float min_weight);
-  /// Of the samples in a box alone.
+  /// As above, only from samples whose voxel centre is in the box.
   SampleBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world);
 
   [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
-  /// Samples may be changed; where the bricks are may not.
+  /// Callers may change samples but must not add, remove or move bricks.
   [[nodiscard]] std::vector<Brick>& bricks() { return bricks_; }
   static constexpr std::size_t kNone = ~std::size_t{0};
-  /// Position in bricks() of the brick whose lowest voxel is `first`, or kNone.
+  /// Index in bricks() of the brick whose lowest voxel is `first`, or kNone.
   [[nodiscard]] std::size_t find(const VoxelIndex& first) const;
 
  private:
@@ -52,17 +52,17 @@ class SampleBricks {
   std::unordered_map<std::uint64_t, std::size_t> by_place_;
 };
 
-/// The lowest voxel of the brick that a voxel lies in.
+/// Lowest voxel of the brick that contains a voxel.
 inline VoxelIndex brick_of(const VoxelIndex& voxel) {
   return voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
 }
 
-/// Position of a voxel in its brick's arrays; offsets in 0..kBrickEdge-1.
+/// Index into a brick's samples; coordinates of `offset` in 0..kBrickEdge-1.
 inline std::size_t brick_offset(const Eigen::Vector3i& offset) {
   return static_cast<std::size_t>((offset.z() * kBrickEdge + offset.y()) * kBrickEdge + offset.x());
 }
 
-/// A brick and its 26 neighbours, to read across its borders.
+/// A brick and its 26 neighbours, for access across brick borders.
 class BrickNeighbourhood {
  public:
   BrickNeighbourhood(const SampleBricks& bricks, std::size_t centre);
@@ -71,7 +71,8 @@ class BrickNeighbourhood {
     std::size_t brick = SampleBricks::kNone;
     std::size_t offset = 0;
   };
-  /// Of a voxel given relative to the centre brick's lowest, each coordinate in -kBrickEdge..2*kBrickEdge-1.
+  /// Brick and index of a voxel given relative to the centre brick's lowest voxel, each coordinate in
+  /// -kBrickEdge..2*kBrickEdge-1.
   [[nodiscard]] Place place(const Eigen::Vector3i& relative) const;
 
  private:

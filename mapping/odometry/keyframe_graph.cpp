@@ -1,4 +1,4 @@
-// keyframe_graph.cpp: joining keyframes that see the same, and solving for their poses.
+// keyframe_graph.cpp: connects keyframes with overlapping views, and optimises their poses.
 #include "mapping/odometry/keyframe_graph.hpp"
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 namespace roomradar {
 namespace {
 
-constexpr std::size_t kNeighbours = 3;  // keyframes closer in number than this are neighbours, not loops
+constexpr std::size_t kNeighbours = 3;  // keyframes closer in sequence than this are neighbours, not loops
 
 bool is_joint(const Tracking& t, const KeyframeGraphConfig& config) {
   return has_pose(t) && t.overlap >= config.min_overlap && t.inlier_fraction >= config.min_inliers;
 }
 
-/// `count` of the items, evenly spread from the first to the last.
+/// Returns `count` of the items, evenly spread.
 std::vector<std::size_t> spread(const std::vector<std::size_t>& items, std::size_t count) {
   if (items.size() <= count) return items;
   std::vector<std::size_t> chosen;
@@ -28,7 +28,8 @@ std::vector<std::size_t> spread(const std::vector<std::size_t>& items, std::size
   return chosen;
 }
 
-/// Both constraints between two keyframes from how each was aligned with the other, if they can be joined.
+/// Returns both constraints between two keyframes from their alignments in both directions, or nullopt if
+/// these are too poor or disagree.
 std::optional<std::array<PoseConstraint, 2>> agreement(const KeyframeGraph& graph, std::size_t older,
                                                        std::size_t newer, const Tracking& newer_in_older,
                                                        const Tracking& older_in_newer,
@@ -46,7 +47,7 @@ std::optional<std::array<PoseConstraint, 2>> agreement(const KeyframeGraph& grap
       PoseConstraint{newer, older, older_in_newer.T_world_camera, older_in_newer.information, loop}};
 }
 
-/// Takes over what two keyframes agreed on, and counts. Returns whether they did.
+/// Adds a pair of constraints, if any, and counts loops. Returns whether there was a pair.
 bool add(KeyframeGraph& graph, std::size_t older, std::size_t newer,
          const std::optional<std::array<PoseConstraint, 2>>& pair) {
   if (pair) graph.constraints.insert(graph.constraints.end(), pair->begin(), pair->end());
@@ -54,7 +55,7 @@ bool add(KeyframeGraph& graph, std::size_t older, std::size_t newer,
   return pair.has_value();
 }
 
-/// At most `most` keyframes older than this one that look where it looks.
+/// Returns at most `most` older keyframes with a similar view.
 std::vector<std::size_t> older_near(const KeyframeGraph& graph, std::size_t newer, int most,
                                     double furthest) {
   std::vector<std::size_t> older = keyframes_near(graph, graph.keyframes[newer].T_world_camera, furthest);
@@ -75,20 +76,21 @@ void solve_free(KeyframeGraph& graph, const std::vector<PoseConstraint>& constra
   for (std::size_t i = 0; i < poses.size(); ++i) graph.keyframes[i].T_world_camera = poses[i];
 }
 
-/// None but the first, unless anchors say where in the world the keyframes are.
+/// Holds the first pose constant, unless anchors locate the keyframes in the world.
 std::vector<bool> first_held(const KeyframeGraph& graph) {
   std::vector<bool> held(graph.keyframes.size(), false);
   if (!held.empty() && graph.anchors.empty()) held.front() = true;
   return held;
 }
 
-/// The constraint as certain as its keyframes look alike, in all directions in which it says anything.
+/// Reweights a constraint by the similarity of its keyframes' views, in all directions in which it has
+/// information.
 PoseConstraint weighed_by_likeness(PoseConstraint constraint) {
-  // Chosen on the kitchen recording, together with what keyframes are aligned with: ATE 24.4 to 21.9 mm, RPE
-  // over 30 frames 17.9 to 16.7 mm.
-  constexpr double kSigma_m = 0.02, kSigma_rad = 0.063;  // of two keyframes that look the same way
-  constexpr double kAlike = 0.3;                         // view_distance() at which half of that is left
-  constexpr double kNothing = 1e-9;                      // of the strongest direction
+  // Chosen on the kitchen recording, together with OdometryConfig::align_keyframes: ATE fell from 24.4 to
+  // 21.9 mm, RPE over 30 frames from 17.9 to 16.7 mm.
+  constexpr double kSigma_m = 0.02, kSigma_rad = 0.063;  // for two identical viewpoints
+  constexpr double kAlike = 0.3;                         // view_distance() at which the weight is halved
+  constexpr double kNothing = 1e-9;                      // relative to the strongest direction
   const double distance = view_distance(constraint.T_a_b) / kAlike;
   const double weight = 1.0 / (1.0 + distance * distance * distance * distance);
   const SymmetricEigen<6> known = symmetric_eigen(constraint.information);
@@ -153,7 +155,7 @@ void join_newest(KeyframeGraph& graph, const JoinConfig& config, WarmKeyframes& 
 }
 
 void join_all(KeyframeGraph& graph, const JoinConfig& config) {
-  // Sorted by reference, so that each is made once and only one is held.
+  // Sorted by reference, so each thread prepares a reference once and keeps only one in memory.
   struct Half {
     std::size_t reference, live;
     Tracking live_in_reference;
@@ -206,8 +208,8 @@ void solve_positions_then_turns(KeyframeGraph& graph) {
     weighed.push_back(weighed_by_likeness(constraint));
   solve_free(graph, weighed, graph.anchors, first_held(graph));
 
-  // No turn is held now, not even the first one's: that would keep what the first step made of it.
-  constexpr double kSigma_m = 1e-4;  // anchors give way where many alignments insist
+  // No pose is constant now: a constant first pose would keep its rotation from the first step.
+  constexpr double kSigma_m = 1e-4;  // not 0: many consistent alignments may still move a position
   Matrix6d position = Matrix6d::Zero();
   position.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
   std::vector<PoseAnchor> anchors = graph.anchors;

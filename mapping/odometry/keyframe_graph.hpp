@@ -1,4 +1,4 @@
-// keyframe_graph.hpp: keyframes, measured motions between them, and the poses that fit all.
+// keyframe_graph.hpp: pose graph of keyframes and the measured motions between them.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -13,73 +13,72 @@
 namespace roomradar {
 
 struct KeyframeGraphConfig {
-  int joins = 12;             ///< at most, of a keyframe with older ones, when all are joined anew
-  int joins_at_once = 6;      ///< of a new keyframe with older ones, while tracking goes on
-  double furthest = 1.5;      ///< view_distance() past which two keyframes are not joined
-  double min_overlap = 0.25;  ///< of a keyframe's points, those that must meet the other
-  double min_inliers = 0.5;   ///< and of those, the part that must agree
-  double max_gap_m = 0.05;    ///< between the motion there and the motion back
+  int joins = 12;             ///< max edges from a keyframe to older ones on a full rebuild
+  int joins_at_once = 6;      ///< max edges from a new keyframe to older ones during tracking
+  double furthest = 1.5;      ///< max view_distance() of two connected keyframes
+  double min_overlap = 0.25;  ///< min fraction of a keyframe's points with a correspondence in the other
+  double min_inliers = 0.5;   ///< min fraction of these correspondences that agree
+  double max_gap_m = 0.05;    ///< max difference between the alignments in both directions
   double max_gap_rad = 0.05;
-  /// How wrong the poses may be between two keyframes, from which a loop closure that says more is refused:
-  /// this, and a part of the way between them. Two places that look alike are further apart.
+  /// Max pose correction (m and rad) by a loop closure: drift_m plus drift_part of the path between the two
+  /// keyframes. Places that only look alike are farther apart.
   double drift_m = 0.15;
   double drift_part = 0.05;
-  std::size_t warm = 8;  ///< keyframes of which everything is at hand, 4 MB each
+  std::size_t warm = 8;  ///< keyframes in the cache, 4 MB each
 };
 
 struct KeyframeGraph {
-  std::vector<Keyframe> keyframes;  ///< the first one's pose is held, unless there are anchors
+  std::vector<Keyframe> keyframes;  ///< the first pose is constant, unless there are anchors
   std::vector<PoseConstraint> constraints;
-  std::vector<PoseAnchor> anchors;  ///< where keyframes stand in a map that is known already
-  std::int64_t loops_found = 0;     ///< pairs of keyframes, not neighbours in number, that are joined
+  std::vector<PoseAnchor> anchors;  ///< poses of keyframes in a known map
+  std::int64_t loops_found = 0;     ///< connected pairs that are not neighbours in sequence
   std::int64_t loops_rejected = 0;
 };
 
-/// What views are made and aligned with.
+/// Settings for preparing and aligning keyframes.
 struct JoinConfig {
   ViewConfig view;
   AlignConfig align;
   KeyframeGraphConfig graph;
 };
 
-/// How differently two cameras look: 1 where they stand 0.8 m or 35 degrees apart, and hardly see the same
-/// any more.
+/// Returns how much two viewpoints differ. At 1, such as 0.8 m or 35 degrees apart, the views hardly overlap.
 double view_distance(const Eigen::Isometry3d& T_a_b);
 
-/// Positions of the keyframes with view_distance() below `furthest`, nearest first.
+/// Returns the indices of the keyframes with view_distance() below `furthest`, nearest first.
 std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen::Isometry3d& T_world_camera,
                                         double furthest);
 
-/// Whether the poses may be that wrong: T_older_newer against what they say now.
+/// Returns whether T_older_newer differs from the current poses by no more than the assumed drift.
 bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t newer,
                      const Eigen::Isometry3d& T_older_newer, const KeyframeGraphConfig& config);
 
-/// Aligns two keyframes both ways, starting from T_older_newer. If both agree with each other, and with what
-/// the poses can be wrong by, the graph gets both as constraints. Returns whether it did. Keyframes that are
-/// not neighbours in number are counted as loops, found or rejected.
+/// Aligns two keyframes both ways, starting from T_older_newer. If the results agree with each other, and
+/// with the current poses within drift, adds both as constraints and returns true. Pairs that are not
+/// neighbours in sequence count as loops, found or rejected.
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
           const JoinConfig& config, WarmKeyframes& warm);
 
-/// Joins the newest keyframe with older ones near it, few of many being spread over all distances.
+/// Connects the newest keyframe to older ones near it; if there are too many, to a selection over all
+/// distances.
 void join_newest(KeyframeGraph& graph, const JoinConfig& config, WarmKeyframes& warm);
 
-/// Forgets all constraints and joins all keyframes anew, with the depth that they have by now, on two
-/// threads; the answer does not depend on them.
+/// Rebuilds all constraints from the keyframes' current depth, on two threads; deterministic.
 void join_all(KeyframeGraph& graph, const JoinConfig& config);
 
-/// Moves all keyframes to where the constraints and anchors want them.
+/// Optimises all keyframe poses to fit the constraints and anchors.
 void solve(KeyframeGraph& graph);
 
-/// Moves all keyframes to where the constraints and anchors want them for good, in two steps. Averaged over
-/// as many points as two keyframes share, noise is nothing; what is left is the depth's own distortion, fixed
-/// to the camera. It cancels where two keyframes look alike, and bends the motion between them the more they
-/// differ, mostly into a turn about what is seen, which to the alignment looks well measured. So positions
-/// come first, with constraints that weigh by how alike their keyframes look (view_distance()) and not by
-/// their information, but for directions that have none; then the turns that fit these positions best, by
-/// information.
+/// Computes the final poses of all keyframes in two steps. Over the many points that two keyframes share,
+/// noise averages out, but distortion of the depth, constant in the camera frame, remains. Distortion cancels
+/// between similar views. Between different views it bends the relative motion, mostly into a rotation about
+/// the observed surface, and alignment reports this rotation as well constrained. So the first step finds the
+/// positions: it weights constraints by the similarity of their views (view_distance()), and uses their
+/// information only to exclude unconstrained directions. The second step finds the rotations that best fit
+/// these positions, weighted by information.
 void solve_positions_then_turns(KeyframeGraph& graph);
 
-/// The same as solve(), but only those that look about where the newest looks are moved.
+/// Same as solve(), but moves only keyframes with view_distance() to the newest below `furthest`.
 void solve_near_newest(KeyframeGraph& graph, double furthest);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// keyframe_job.cpp: what a new keyframe is put through beside tracking: described, found alike, joined.
+// keyframe_job.cpp: background processing of a new keyframe: description, place recognition, graph edges.
 #include "mapping/odometry/keyframe_job.hpp"
 
 #include <span>
@@ -9,7 +9,7 @@
 namespace roomradar {
 namespace {
 
-/// Returns whether any was joined.
+/// Connects the newest keyframe to distant ones that look alike; returns whether any was connected.
 bool join_alike(KeyframeGraph& graph, const Place& newest, const Places& places, const JoinConfig& config,
                 WarmKeyframes& warm) {
   constexpr int kMinMatches = 25, kMinInliers = 30;

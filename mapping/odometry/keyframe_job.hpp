@@ -1,4 +1,4 @@
-// keyframe_job.hpp: what a new keyframe is put through beside tracking: described, found alike, joined.
+// keyframe_job.hpp: background processing of a new keyframe: description, place recognition, graph edges.
 #pragma once
 #include <optional>
 
@@ -14,25 +14,25 @@ struct KeyframeJobConfig {
   RelocaliseConfig relocalise;
 };
 
-/// A job owns all that it looks at but the places, which nobody may change while it runs.
+/// Input of run(). Owns its data except for the two keyframe databases, which must not change while it runs.
 struct KeyframeJob {
-  Frame frame;                     ///< that became the newest keyframe
-  KeyframeGraph graph;             ///< with the newest keyframe, not joined yet
-  WarmKeyframes warm;              ///< among them the newest
-  const Places* places = nullptr;  ///< one a keyframe but the newest
-  const Places* known = nullptr;   ///< of a map made before; null: none
+  Frame frame;                     ///< frame of the newest keyframe
+  KeyframeGraph graph;             ///< includes the newest keyframe, not connected yet
+  WarmKeyframes warm;              ///< includes the newest keyframe
+  const Places* places = nullptr;  ///< one per keyframe except the newest
+  const Places* known = nullptr;   ///< database of an earlier map; null: none
 };
 
 struct KeyframeJobResult {
-  KeyframeGraph graph;  ///< joined and solved
-  Place place;          ///< of the newest keyframe
-  /// Where the newest keyframe is in the known places' world, if it was found there.
+  KeyframeGraph graph;  ///< connected and optimised
+  Place place;          ///< database entry of the newest keyframe
+  /// Pose of the newest keyframe in the earlier map's world, if it was localised there.
   std::optional<Eigen::Isometry3d> T_known_camera;
 };
 
-/// Joins the newest keyframe with those near it, and with those that look alike but are thought to be far
-/// away: where the poses have drifted apart, appearance still knows the place. Then solves: for the poses
-/// near the newest, or for all where one was joined that was thought to be far away.
+/// Connects the newest keyframe to those near it, and to distant ones that look alike: after drift,
+/// appearance still recognises a place. Then optimises the poses near the newest keyframe, or all poses if a
+/// distant keyframe was connected.
 KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config);
 
 }  // namespace roomradar

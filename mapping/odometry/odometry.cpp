@@ -1,4 +1,4 @@
-// odometry.cpp: where the camera was, frame by frame, in a room that is not known yet.
+// odometry.cpp: tracks a camera in an unknown room with keyframes and loop closure.
 #include "mapping/odometry/odometry.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace roomradar {
 namespace {
 
-/// A radian counts as a metre.
+/// Length of a motion; a radian counts as a metre.
 double length(const Eigen::Isometry3d& T) {
   return T.translation().norm() + Eigen::AngleAxisd(T.linear()).angle();
 }
@@ -23,8 +23,7 @@ KeyframeJobConfig job_config(const OdometryConfig& config) {
   return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
 }
 
-/// Takes over the keyframes' poses. What is known of the camera's pose moves with the current keyframe.
-/// Returns how that moved.
+/// Applies new keyframe poses. The camera's poses move with the current keyframe, whose motion is returned.
 Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept) {
   const Eigen::Isometry3d before = kept.graph.keyframes[kept.current].T_world_camera;
   for (std::size_t i = 0; i < moved.size(); ++i) {
@@ -38,7 +37,7 @@ Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySna
 }
 
 void anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera, OdometrySnapshot& kept) {
-  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // of a relocalised pose
+  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // standard deviations of a relocalised pose
   Matrix6d information = Matrix6d::Zero();
   information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
   information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
@@ -46,7 +45,7 @@ void anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera, Odome
   ++kept.counts.anchored;
 }
 
-/// Moves the keyframes to where the second thread found them.
+/// Applies the second thread's result; returns the motion of the current keyframe.
 Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
   const std::size_t newest = result.graph.keyframes.size() - 1;
   kept.graph.constraints = std::move(result.graph.constraints);
@@ -74,15 +73,15 @@ struct Odometry::State {
   OdometryConfig config;
   Places known;
   OdometrySnapshot kept;
-  ViewPyramid pyramid;  ///< of the present frame, and so is `live`
+  ViewPyramid pyramid;  ///< of the current frame, like `live`
   LiveView live;
   WarmKeyframes warm;
-  ViewPyramid open;  ///< the current keyframe's, with the depth of the views since it was taken up
+  ViewPyramid open;  ///< the current keyframe's, refined by the views since it became current
   Image<std::uint8_t> open_measured;
-  bool open_is_newer = false;  ///< than what is stored
+  bool open_is_newer = false;  ///< newer than the stored view
   std::future<KeyframeJobResult> job;
-  std::optional<KeyframeJobResult> joined;  ///< what it came to, where that was waited for
-  int job_frames = 0;                       ///< since it was begun
+  std::optional<KeyframeJobResult> joined;  ///< the job's result, once it has been waited for
+  int job_frames = 0;                       ///< frames since the job began
 
   explicit State(const OdometryConfig& chosen) : config(chosen), warm(chosen.graph.warm) {}
 
@@ -114,9 +113,9 @@ Tracking Odometry::State::start(const Frame& frame) {
   return tracking;
 }
 
-/// Against one keyframe and those next to it; of the latter at most one is made ready for it.
+/// Aligns the frame with a keyframe and its neighbours; prepares at most one neighbour that is not cached.
 Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess) {
-  // view_distance(); past it too little of the frame meets the keyframe.
+  // Max view_distance(); beyond it the frame overlaps the keyframe too little.
   constexpr double kUsefulReference = 0.7;
   const auto most = static_cast<std::size_t>(std::max(config.references, 1));
   const std::vector<Keyframe>& keyframes = kept.graph.keyframes;
@@ -139,7 +138,7 @@ Tracking Odometry::State::recover(const Frame& frame) {
   if (standing && is_plausible(standing)) return standing;
   standing.status = TrackStatus::kDiverged;
   if (frame.colour.empty() && !kept.last_moved_grey.empty())
-    return standing;  // a frame that lost its colour on the way
+    return standing;  // this frame alone has lost its colour
   const Relocalisation found = relocalise(frame, kept.places, config.relocalise);
   if (!found) return standing;
   const auto keyframe = static_cast<std::size_t>(found.keyframe);
@@ -147,13 +146,13 @@ Tracking Odometry::State::recover(const Frame& frame) {
   if (!tracking) return standing;
   ++kept.counts.relocalised;
   take_up(keyframe);
-  // It did not get here from where it was seen last by a motion that goes on.
+  // The jump from the last pose is not a motion to predict from.
   kept.T_world_last = tracking.T_world_camera;
   return tracking;
 }
 
-/// A hand does not change a camera's speed by more than this from one frame to the next; a sensor that
-/// recalibrates itself seems to.
+/// Limits the change of motion between frames to what a hand can do. A recalibrating sensor seems to exceed
+/// it.
 bool Odometry::State::is_plausible(const Tracking& tracking) const {
   constexpr double kMost_m = 0.10, kMost_rad = 0.05;
   if (!has_pose(tracking)) return false;
@@ -215,7 +214,7 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking)
   job_frames = 0;
 }
 
-/// Makes another keyframe the one that frames are aligned with first and that their depth goes to.
+/// Makes another keyframe current: frames are aligned with it first, and refine its depth.
 void Odometry::State::take_up(std::size_t keyframe) {
   if (keyframe == kept.current) return;
   store_open();
@@ -236,8 +235,8 @@ void Odometry::State::wait_for_job() {
   if (job.valid()) joined = job.get();
 }
 
-/// Waits for the second thread and moves the keyframes to where it found them. Returns what that does to
-/// poses near the current keyframe.
+/// Waits for the second thread and applies its result. Returns the resulting motion of poses near the current
+/// keyframe.
 Eigen::Isometry3d Odometry::State::take_over_job() {
   wait_for_job();
   if (!joined) return Eigen::Isometry3d::Identity();
@@ -353,7 +352,7 @@ std::vector<TrackedFrame> Odometry::optimise() {
   s.store_open();
   if (!s.kept.graph.keyframes.empty()) {
     KeyframeGraph graph = s.kept.graph;
-    s.warm = WarmKeyframes(s.config.graph.warm);  // of no use now, and large
+    s.warm = WarmKeyframes(s.config.graph.warm);  // no longer needed, and large
     join_all(graph, job_config(s.config).join);
     solve_positions_then_turns(graph);
     move_keyframes(graph.keyframes, s.kept);

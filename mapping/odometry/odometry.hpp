@@ -1,4 +1,4 @@
-// odometry.hpp: where the camera was, frame by frame, in a room that is not known yet.
+// odometry.hpp: tracks a camera in an unknown room with keyframes and loop closure.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -15,50 +15,53 @@ namespace roomradar {
 
 struct OdometryConfig {
   ViewConfig view;
-  /// Colour says less than its noise: its camera is not where it is taken for, and walls shine.
+  /// Colour has less weight than its noise justifies: the colour camera's calibration is inexact, and walls
+  /// are glossy.
   AlignConfig align = {.intensity_sigma = 16.0F, .max_correction_m = 0.25F};
-  /// Of keyframes with one another. They are further apart, where the depth's distortion shows: a wide soft
-  /// edge lets it average out. Chosen on the kitchen recording, as is the weight of colour above: each
-  /// changes ATE and RPE over 30 frames by 0.3 mm or less.
+  /// For alignment of keyframes with one another. They are farther apart, where the depth's distortion shows;
+  /// a wide robust kernel averages it out. Chosen on the kitchen recording, like the weight of colour above:
+  /// each changes ATE and RPE over 30 frames by 0.3 mm or less.
   AlignConfig align_keyframes = {.robust_sigma = 4.0F, .intensity_sigma = 8.0F, .max_correction_m = 0.25F};
   KeyframeGraphConfig graph;
   PlaceConfig place;
   RelocaliseConfig relocalise;
-  double keyframe_distance_m = 0.10;  ///< a view further than this from every keyframe becomes one
+  /// A view becomes a keyframe if every keyframe is farther away than this or turned by more than
+  /// keyframe_angle_deg.
+  double keyframe_distance_m = 0.10;
   double keyframe_angle_deg = 8.0;
-  double keyframe_overlap = 0.7;  ///< or one that has less than this in common with the nearest
-  int references = 2;             ///< keyframes that a frame is aligned with at once
-  int improve_every = 5;          ///< views averaged into a keyframe before its reference is made anew
-  int join_frames = 4;            ///< after so many frames a new keyframe is joined with the others
+  double keyframe_overlap = 0.7;  ///< below this overlap with the current keyframe, another one is used
+  int references = 2;             ///< max keyframes that a frame is aligned with
+  int improve_every = 5;          ///< views averaged into a keyframe before its reference is rebuilt
+  int join_frames = 4;            ///< frames after which a new keyframe's background result is applied
 };
 
-/// A frame's place in the trajectory.
+/// Trajectory entry of one frame.
 struct TrackedFrame {
   std::int64_t frame_index = 0;
   double stamp_s = 0.0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   TrackStatus status = TrackStatus::kDiverged;
-  bool trusted = false;  ///< only then is the frame to be fused
+  bool trusted = false;  ///< only trusted frames may be fused
 };
 
 struct OdometryCounts {
   std::int64_t frames = 0;
-  std::int64_t tracked = 0;      ///< trusted ones
-  std::int64_t degenerate = 0;   ///< frames in which some direction was held
+  std::int64_t tracked = 0;      ///< frames with a trusted pose
+  std::int64_t degenerate = 0;   ///< frames with an unconstrained direction
   std::int64_t lost = 0;         ///< frames without a pose
-  std::int64_t relocalised = 0;  ///< times that tracking came back by recognising a place
+  std::int64_t relocalised = 0;  ///< recoveries from a loss by place recognition
   std::int64_t keyframes = 0;
-  std::int64_t loops_found = 0;     ///< pairs of keyframes, not neighbours in time, that are joined
-  std::int64_t loops_rejected = 0;  ///< pairs that should see the same and did not align both ways
-  std::int64_t anchored = 0;        ///< keyframes that were found in the known places
+  std::int64_t loops_found = 0;     ///< connected pairs of keyframes that are not neighbours in sequence
+  std::int64_t loops_rejected = 0;  ///< pairs that should overlap, but did not align both ways
+  std::int64_t anchored = 0;        ///< keyframes that were localised in the known map
 };
 
 struct OdometrySnapshot;
 
-/// Tracks a camera against keyframes, closes loops, and gives all poses at the end. The world is the first
-/// usable frame's camera, unless frames come with poses (add_posed) or the camera is found in known places.
-/// New keyframes are joined with the others on a second thread; when their answer is taken over is counted in
-/// frames, so that the poses do not depend on the threads. Not thread safe.
+/// Tracks a camera against keyframes, closes loops, and returns all poses at the end. The world is the first
+/// usable frame's camera, unless frames come with poses (add_posed) or the camera is localised in a known
+/// map. A second thread connects new keyframes to the others. Its results are applied after a fixed number of
+/// frames, so poses do not depend on timing. Not thread safe.
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config = {});
@@ -66,36 +69,38 @@ class Odometry {
   Odometry& operator=(Odometry&&) noexcept;
   ~Odometry();
 
-  /// Gives places of a map made before, in its world and held there; before the first frame. Frames are
-  /// looked for in them, and once one is found the odometry's world is the map's, also for the frames before.
+  /// Sets the keyframe database of an earlier map, whose poses stay constant; call before the first frame.
+  /// New keyframes are searched for in it. Once one is found, the odometry's world is the map's, for earlier
+  /// frames too.
   void know(Places known);
-  /// Whether the world is that of the known places.
+  /// Returns whether the world is that of the known map.
   [[nodiscard]] bool is_located() const;
 
-  /// The pose of the next frame, as far as it is known now. After a loss the frame is looked for near where
-  /// the camera was and in all keyframes. The frame's images must have its cameras' sizes.
+  /// Returns the current estimate of the next frame's pose. After a loss, searches near the last pose, then
+  /// in all keyframes. The frame's images must have its cameras' sizes.
   Tracking track(const Frame& frame);
 
-  /// Takes the pose as given: places are chosen and described, nothing is aligned and nothing optimised.
+  /// Adds a frame with a given pose: keyframes are selected and described, but nothing is aligned or
+  /// optimised.
   void add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Joins the keyframes anew with all that is known now, optimises their poses, and returns all frames so
-  /// far with their final poses.
+  /// Rebuilds all constraints from the current depth, optimises the keyframes' poses, and returns all frames
+  /// so far with their final poses.
   std::vector<TrackedFrame> optimise();
 
-  /// The keyframes as places, with their present poses; call optimise() first. They are no longer held here.
+  /// Moves the keyframe database out, with current poses; call optimise() first.
   Places take_places();
 
   [[nodiscard]] OdometryCounts counts() const;
 
-  /// Waits until the second thread has nothing to do; before a snapshot or a fork. Moves no pose: what it
-  /// found is taken over when it would have been anyway.
+  /// Waits until the second thread is idle; call before a snapshot or a fork. Changes no pose: the thread's
+  /// result is applied at its usual frame.
   void settle();
-  /// All that is known, to go on from, with what the second thread found taken over. Views are shared, not
-  /// copied. Only after settle().
+  /// Returns the complete state, with the second thread's result applied. Views are shared, not copied. Call
+  /// only after settle().
   [[nodiscard]] OdometrySnapshot snapshot() const;
-  /// Goes on from a snapshot; known places must be given again. What it holds must fit together
-  /// (load_odometry() sees to that).
+  /// Resumes from a snapshot; the known map must be set again. The snapshot must be consistent
+  /// (load_odometry() checks this).
   Odometry(const OdometryConfig& config, OdometrySnapshot snapshot);
 
  private:

@@ -1,6 +1,6 @@
-// odometry_checkpoint.cpp: an odometry on disk, to go on with after the program ends.
+// odometry_checkpoint.cpp: saves an odometry to disk and restores it.
 //
-// All numbers little-endian; each file has a magic word, a version (u32), a body, and a checksum (u64).
+// All numbers are little-endian; each file has a magic word, a version (u32), a body, and a checksum (u64).
 #include "mapping/odometry/odometry_checkpoint.hpp"
 
 #include <string>
@@ -99,7 +99,7 @@ StoredView read_view(const fs::path& path) {
 
 TrackStatus take_status(BinaryReader& in) {
   const auto status = in.take<std::uint32_t>("status");
-  if (status > static_cast<std::uint32_t>(TrackStatus::kDiverged)) in.fail("a frame's status is none");
+  if (status > static_cast<std::uint32_t>(TrackStatus::kDiverged)) in.fail("a frame's status is invalid");
   return static_cast<TrackStatus>(status);
 }
 
@@ -165,7 +165,7 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
     keyframe.frame_index = in.take<std::int64_t>("frame index");
     keyframe.T_world_camera = take_pose(in, "a keyframe's pose");
     keyframe.revision = in.take<std::uint32_t>("revision");
-    keyframe.way_m = in.take_finite("way");
+    keyframe.way_m = in.take_finite("path length");
     keyframe.view = std::make_shared<const StoredView>(read_view(folder / view_name(i, keyframe.revision)));
   }
   graph.constraints.resize(take_count(in, kPose_bytes + kInformation_bytes, "constraints"));
@@ -189,12 +189,12 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
 
 Places take_places(BinaryReader& in, const fs::path& folder) {
   Places places;
-  places.keyframes.resize(take_count(in, kPose_bytes, "places"));
+  places.keyframes.resize(take_count(in, kPose_bytes, "database entries"));
   for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
     Places one = read_places(folder / place_name(i));
-    if (one.keyframes.size() != 1) in.fail(place_name(i).string() + " does not hold one place");
+    if (one.keyframes.size() != 1) in.fail(place_name(i).string() + " does not contain one database entry");
     places.keyframes[i] = std::move(one.keyframes.front());
-    places.keyframes[i].T_world_camera = take_pose(in, "a place's pose");
+    places.keyframes[i].T_world_camera = take_pose(in, "a database entry's pose");
   }
   return places;
 }
@@ -269,7 +269,7 @@ Odometry load_odometry(const fs::path& folder, const OdometryConfig& config) {
   const std::size_t keyframes = kept.graph.keyframes.size();
   kept.places = take_places(in, folder);
   if (keyframes > 0 && kept.places.keyframes.size() != keyframes)
-    in.fail("keyframes and places differ in number");
+    in.fail("keyframes and database entries differ in number");
   kept.frames = take_frames(in, keyframes);
   const auto current = in.take<std::uint64_t>("keyframe");
   if (keyframes > 0 && current >= keyframes) in.fail("the current keyframe is not there");
@@ -277,7 +277,7 @@ Odometry load_odometry(const fs::path& folder, const OdometryConfig& config) {
   kept.improved = in.take<int>("views");
   kept.T_world_last = take_pose(in, "the last pose");
   kept.T_last_next = take_pose(in, "the last motion");
-  kept.way_m = in.take_finite("way");
+  kept.way_m = in.take_finite("path length");
   kept.last_moved_grey = take_image<float>(in, "picture");
   kept.last_moved.status = take_status(in);
   kept.last_moved.T_world_camera = take_pose(in, "the pose when the camera last moved");

@@ -1,4 +1,4 @@
-// odometry_snapshot.hpp: all that an odometry knows between two frames, as plain data.
+// odometry_snapshot.hpp: complete state of an odometry between two frames, as plain data.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -12,11 +12,11 @@
 
 namespace roomradar {
 
-/// A frame as it is kept: relative to a keyframe, so that it moves when the keyframe is moved.
+/// Frame with its pose relative to a keyframe, so the frame moves with the keyframe.
 struct KeptFrame {
   std::int64_t frame_index = 0;
   double stamp_s = 0.0;
-  std::optional<std::size_t> keyframe;  ///< none: the pose is in the world, and fixed
+  std::optional<std::size_t> keyframe;  ///< unset: T_keyframe_camera is the pose in the world, and constant
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
   TrackStatus status = TrackStatus::kDiverged;
   bool trusted = false;
@@ -25,16 +25,16 @@ struct KeptFrame {
 struct OdometrySnapshot {
   OdometryCounts counts;
   KeyframeGraph graph;
-  Places places;  ///< one a keyframe; of frames with given poses there are places alone
+  Places places;  ///< one per keyframe; add_posed() adds entries without keyframes
   std::vector<KeptFrame> frames;
-  std::size_t current = 0;  ///< the keyframe that the last frame was aligned with first
-  int improved = 0;         ///< views averaged into it since its reference was made
+  std::size_t current = 0;  ///< keyframe that the last frame was aligned with first
+  int improved = 0;         ///< views averaged into it since its reference was built
   Eigen::Isometry3d T_world_last = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< the last motion from frame to frame
+  Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< predicted motion to the next frame
   double way_m = 0.0;                                             ///< see Keyframe
-  Image<float> last_moved_grey;                                   ///< what the camera saw when it last moved
-  Tracking last_moved;   ///< the answer for that frame; its pose is trusted
-  bool located = false;  ///< the world is that of the known places
+  Image<float> last_moved_grey;  ///< intensity image when the camera last moved
+  Tracking last_moved;           ///< result for that frame; its pose is trusted
+  bool located = false;          ///< the world is that of the known map
 };
 
 }  // namespace roomradar

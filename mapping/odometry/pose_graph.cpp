@@ -1,4 +1,4 @@
-// pose_graph.cpp: the poses that agree best with many measured relative poses.
+// pose_graph.cpp: optimises poses to fit measured relative poses.
 #include "mapping/odometry/pose_graph.hpp"
 
 #include <ceres/ceres.h>
@@ -15,8 +15,8 @@
 namespace roomradar {
 namespace {
 
-// Residuals of robust constraints past this many standard deviations (of six together) count linearly, then
-// less.
+// Scale of the robust constraints' Cauchy loss, in standard deviations of the whole 6D residual. Larger
+// residuals count linearly, then less.
 constexpr double kRobustSigma = 4.0;
 
 struct PoseBlock {
@@ -24,7 +24,7 @@ struct PoseBlock {
   Eigen::Quaterniond q;
 };
 
-/// A usable measurement of b in a; a may be the world, whose index is the number of poses.
+/// A usable measurement of b in a. The world's index, for a, is the number of poses.
 struct Measured {
   std::size_t a, b;
   Eigen::Isometry3d T_a_b;
@@ -33,7 +33,8 @@ struct Measured {
   bool robust;
 };
 
-/// S with S' S = information, or nothing if the matrix is no information.
+/// Returns S with S' S = information; nullopt if the matrix is not finite, zero, or not positive
+/// semidefinite.
 std::optional<Matrix6d> square_root(const Matrix6d& information) {
   if (!information.allFinite()) return std::nullopt;
   const SymmetricEigen<6> solved = symmetric_eigen(Matrix6d(0.5 * (information + information.transpose())));
@@ -55,7 +56,7 @@ std::size_t root_of(std::vector<std::size_t>& parent, std::size_t i) {
   return i;
 }
 
-/// What a twist at camera a does to camera b's place in a, as a twist at b: -Ad(T_b_a).
+/// Jacobian of b's pose in a, as a twist at b, with respect to a twist at a: -Ad(T_b_a).
 Matrix6d seen_from_b(const Eigen::Isometry3d& T_a_b) {
   const Eigen::Isometry3d T_b_a = T_a_b.inverse();
   const Eigen::Vector3d& t = T_b_a.translation();
@@ -67,12 +68,12 @@ Matrix6d seen_from_b(const Eigen::Isometry3d& T_a_b) {
   return J;
 }
 
-/// How many directions of all free poses together the measurements leave open: pivots of the normal equations
-/// that are next to nothing. `place` gives each pose its number among the free ones, or -1.
+/// Counts the unconstrained directions of all free poses together: near-zero pivots of the normal equations.
+/// `place` gives each pose's index among the free poses, or -1.
 std::size_t count_free_directions(const std::vector<Measured>& measured, const std::vector<int>& place,
                                   int free_poses) {
   if (free_poses == 0) return 0;
-  constexpr double kNothing = 1e-9;  // of the strongest direction
+  constexpr double kNothing = 1e-9;  // relative to the strongest direction
   std::vector<Eigen::Triplet<double>> entries;
   double most = 0.0;
   const auto add = [&](int row, int column, const Matrix6d& block) {
@@ -106,15 +107,14 @@ std::string describe(const PoseGraphResult& result) {
     case PoseGraphStatus::kSolved:
       return "the poses agree with what was measured between them";
     case PoseGraphStatus::kUnderdetermined:
-      return "nothing measured fixes " + std::to_string(result.untied) + " poses and " +
-             std::to_string(result.free_directions) +
-             " directions of the others; these were kept as they were";
+      return "no measurement constrains " + std::to_string(result.untied) + " poses and " +
+             std::to_string(result.free_directions) + " directions of the others; these are unchanged";
     case PoseGraphStatus::kNothingToSolve:
-      return "nothing usable was measured between the poses; they were left as they were";
+      return "no usable measurement connects the poses; they are unchanged";
     case PoseGraphStatus::kNotFinite:
-      return "a pose is not a number; all were left as they were";
+      return "a pose is not a number; all poses are unchanged";
     case PoseGraphStatus::kFailed:
-      return "the poses cannot be made to agree; they were left as they were";
+      return "the poses cannot be made to agree; they are unchanged";
   }
   return "unknown";
 }
@@ -138,10 +138,10 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
 
   const auto is_held = [&](std::size_t i) { return held.empty() ? i == 0 : i < held.size() && held[i]; };
   std::vector<Measured> measured;
-  std::vector<std::size_t> constraint_of;  // of the measured ones that are constraints, their numbers
+  std::vector<std::size_t> constraint_of;  // index in `constraints` of each measured constraint
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     const PoseConstraint& c = constraints[i];
-    if (c.a >= count || (is_held(c.a) && is_held(c.b))) continue;  // nothing could move by it
+    if (c.a >= count || (is_held(c.a) && is_held(c.b))) continue;  // both constant: moves nothing
     if (const auto m = usable(c.a, c.b, count, c.T_a_b, c.information, c.robust)) {
       measured.push_back(*m);
       constraint_of.push_back(i);
@@ -157,7 +157,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
     return result;
   }
 
-  // What is tied, by whatever chain, to something that is held?
+  // Find the poses that a chain of measurements connects to a constant pose or the world.
   std::vector<std::size_t> parent(count + 1);
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   for (std::size_t i = 0; i < count; ++i) {

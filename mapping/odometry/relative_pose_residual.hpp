@@ -1,4 +1,4 @@
-// relative_pose_residual.hpp: how far two poses are from a measured relative pose.
+// relative_pose_residual.hpp: Ceres residual of two poses against their measured relative pose.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -9,8 +9,8 @@ namespace roomradar {
 /// w). With E = T_a_b(measured)^-1 * T_world_a^-1 * T_world_b:
 ///   residual = S * (translation of E, 2 * vector part of E's quaternion with its w made positive)
 /// where S' S is the information of the measurement, so the residual is in standard deviations and has no
-/// unit. Neither pose is held fixed here. Source: Ceres' pose_graph_3d example; Grisetti et al., A Tutorial
-/// on Graph-Based SLAM, 2010.
+/// unit. Neither pose is constant here. Source: Ceres' pose_graph_3d example; Grisetti et al., A Tutorial on
+/// Graph-Based SLAM, 2010.
 struct RelativePoseResidual {
   Eigen::Isometry3d T_b_a_measured;
   Eigen::Matrix<double, 6, 6> sqrt_information;

@@ -1,4 +1,4 @@
-// up_direction.cpp: mean gravity, or the mode of the surface normals near the cameras' own up.
+// up_direction.cpp: mean gravity, or the mode of the surface normals near the cameras' up direction.
 #include "mapping/odometry/up_direction.hpp"
 
 #include <algorithm>
@@ -10,18 +10,18 @@
 namespace roomradar {
 namespace {
 
-// Normals from pixels 1/20 of the width apart, some 10 cm: nearer ones are mostly noise, which leans towards
-// the camera.
+// Normals are computed from pixels 1/20 of the width apart, about 10 cm. From closer pixels they are mostly
+// noise, which leans towards the camera.
 constexpr int kStepsAcross = 20;
-constexpr double kMaxSlope = 4.0;  // depth change over lateral distance: 76 degrees; steeper is an edge
-constexpr std::size_t kMaxNormals = 400'000;  // 5 MB; even, see keep()
+constexpr double kMaxSlope = 4.0;  // depth change / lateral distance: 76 degrees; steeper is a discontinuity
+constexpr std::size_t kMaxNormals = 400'000;  // 5 MB; must be even, see keep()
 constexpr double kConeAboutCameraUp_deg = 60.0;
 constexpr double kModeWindow_deg = 5.0;
 constexpr double kMinSupport = 0.05;
 
 double cos_deg(double angle_deg) { return std::cos(angle_deg * std::numbers::pi / 180.0); }
 
-/// Mean of the normals within the window of `axis`; how many they are goes to `count`.
+/// Returns the mean of the normals within window_deg of `axis`, and their number in `count`.
 Eigen::Vector3d mean_near(const std::vector<Eigen::Vector3f>& normals, const Eigen::Vector3d& axis,
                           double window_deg, std::size_t& count) {
   const auto cos_window = static_cast<float>(cos_deg(window_deg));
@@ -98,7 +98,7 @@ UpDirection UpEstimator::estimate() const {
   const bool upright_known = camera_up_sum_world_.norm() > 1e-6;
   const Eigen::Vector3d camera_up = upright_known ? Eigen::Vector3d(camera_up_sum_world_.normalized())
                                                   : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
-  // Each of a subset of the normals is tried as the mode; the best is refined to the mean of its window.
+  // Try each of a subset of the normals as the mode, then refine the best to the mean of its window.
   const double cos_cone = cos_deg(kConeAboutCameraUp_deg);
   const std::size_t stride = std::max<std::size_t>(1, normals_world_.size() / 400);
   Eigen::Vector3d best = camera_up;

@@ -1,4 +1,4 @@
-// up_direction.hpp: which way is up in a recording, from the accelerometer or from the planes seen.
+// up_direction.hpp: estimates the up direction of a recording, from the accelerometer or from planes.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>
@@ -9,31 +9,31 @@
 namespace roomradar {
 
 enum class UpSource {
-  kNone,           ///< nothing usable was seen: the mean of the cameras' -y is taken
+  kNone,           ///< nothing usable: mean of the cameras' -y
   kAccelerometer,  ///< gravity measured by the device
-  kPlane,          ///< normal of the dominant plane that lies roughly level for a camera held upright
+  kPlane,          ///< normal of the dominant plane that is roughly level for an upright camera
 };
 std::string_view to_string(UpSource source);
 
 struct UpDirection {
   UpSource source = UpSource::kNone;
   Eigen::Vector3d up_world = Eigen::Vector3d::UnitZ();  ///< unit
-  double support = 0.0;  ///< kPlane: part of all measured normals within 5 degrees of up_world; else 1 or 0
+  double support = 0.0;  ///< kPlane: fraction of all normals within 5 degrees of up_world; else 1 or 0
 };
 
-/// Collects evidence frame by frame; frames whose pose is not trusted are not to be added.
+/// Accumulates measurements frame by frame; callers add only frames with trusted poses.
 class UpEstimator {
  public:
-  /// Takes the frame's gravity, and the normals of its depth at a grid of 20 across, both turned into the
+  /// Adds the frame's gravity, and normals of its depth on a grid 20 columns wide, both rotated into the
   /// world.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Gravity's mean where at least half of the frames had one, else the strongest normal direction within 60
-  /// degrees of the cameras' mean -y (a hand-held camera may look down at a table, but is seldom on its
-  /// head), if at least 5 % of the normals support it; else that mean itself with kNone.
+  /// Returns the mean of gravity if at least half of the frames have it. Otherwise returns the most frequent
+  /// normal within 60 degrees of the cameras' mean -y, if at least 5 % of the normals support it. A hand-held
+  /// camera may look down at a table, but is rarely upside down. Otherwise returns the mean -y with kNone.
   [[nodiscard]] UpDirection estimate() const;
 
-  /// All of its state, to or from a ByteWriter or ByteReader.
+  /// Serialises the complete state to a ByteWriter, or from a ByteReader.
   template <typename Archive>
   void transfer_fields(Archive& archive) {
     transfer(archive, normals_world_);
@@ -49,8 +49,8 @@ class UpEstimator {
   }
 
  private:
-  /// Keeps the first of each keep_every_ normals. Full, it gives up every second one and takes half as many
-  /// from then on, so that all frames keep an equal say, however many there are.
+  /// Keeps the first of each keep_every_ normals. When full, drops every second one and doubles keep_every_,
+  /// so all frames keep equal weight, however many there are.
   void keep(const Eigen::Vector3f& normal_world);
 
   std::vector<Eigen::Vector3f> normals_world_;
@@ -62,7 +62,7 @@ class UpEstimator {
   std::size_t frames_with_gravity_ = 0;
 };
 
-/// The rotation that takes `up_world` to +z by the shortest way; up_world = -z turns about x.
+/// Returns the shortest rotation from `up_world` to +z; if up_world = -z, a rotation about x.
 Eigen::Isometry3d level_rotation(const Eigen::Vector3d& up_world);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// depth_windows.cpp: a table of minima over squares, each level from the one below.
+// depth_windows.cpp: table of minima over squares, each level computed from the one below.
 #include "mapping/revision/depth_windows.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kLevels = std::bit_width(static_cast<unsigned>(2 * kMaxWindowRadius_px + 1));
 
-// Squares of twice the side; what reaches past the image's border is left out.
+// Computes minima over squares of twice the side; ignores parts beyond the image's border.
 void double_side(const DepthImage& fine, int side, DepthImage& coarse) {
   coarse.width = fine.width;
   coarse.height = fine.height;

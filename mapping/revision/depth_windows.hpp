@@ -1,4 +1,4 @@
-// depth_windows.hpp: the nearest depth in any square window of a depth image, at four lookups each.
+// depth_windows.hpp: minimum depth of any square window of a depth image, by four lookups (sparse table).
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -9,24 +9,25 @@ namespace roomradar {
 
 inline constexpr int kMaxWindowRadius_px = 31;
 
-/// nearest_m[k] holds, for each pixel, the least depth of the 2^k x 2^k pixels that it is the upper left
-/// corner of (infinity where none of them has depth). Two such squares cover any longer side below 2^(k+1).
+/// nearest_m[k] contains, for each pixel, the min depth of the 2^k x 2^k pixels whose upper left corner it is
+/// (infinity if none has depth). Two such squares cover any longer side below 2^(k+1).
 struct DepthWindows {
   std::vector<DepthImage> nearest_m;
-  Image<std::int32_t> measured;  ///< how many pixels above and to the left of each corner have depth
+  Image<std::int32_t> measured;  ///< integral image: number of pixels with depth above and left of each
+                                 ///< corner
 };
 
 struct WindowDepth {
-  float nearest_m = 0.0F;  ///< infinity if nothing in the window has depth
+  float nearest_m = 0.0F;  ///< infinity if no pixel of the window has depth
   float measured_share =
-      0.0F;  ///< pixels with depth, of all pixels of the window, those outside the image too
+      0.0F;  ///< pixels with depth / all pixels of the window, including those outside the image
 };
 
-/// Reuses the memory of `windows`.
+/// Builds the tables, reusing the memory of `windows`.
 void build_windows(const DepthImage& depth_m, DepthWindows& windows);
 
-/// The window of (2 radius + 1)^2 pixels round a pixel of the image; the radius is within 0 and
-/// kMaxWindowRadius_px. At the image's border some pixels beside the window may count as in it.
+/// Queries the window of (2 radius + 1)^2 pixels around pixel x, y of the image, with a radius in
+/// 0..kMaxWindowRadius_px. At the image's border some pixels beside the window may be included.
 WindowDepth window_depth(const DepthWindows& windows, int x, int y, int radius_px);
 
 }  // namespace roomradar

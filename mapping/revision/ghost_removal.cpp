@@ -1,4 +1,4 @@
-// ghost_removal.cpp: two more passes over the recording: find the ghosts, then look again at where they were.
+// ghost_removal.cpp: two more passes over the recording: finds ghosts, then fuses their surroundings again.
 #include "mapping/revision/ghost_removal.hpp"
 
 #include "mapping/revision/ghost_zone.hpp"
@@ -7,14 +7,14 @@
 namespace roomradar {
 namespace {
 
-// Reads chosen frames in the order of the recording, without those between where the source can.
+// Reads selected frames in recording order; seeks past the frames between if the source can.
 class ChosenFrames {
  public:
   ChosenFrames(FrameSource& source, StageTimes& times) : source_(source), times_(times) {
     if (!source.rewind()) throw Error(source.name() + ": cannot be read once more");
   }
 
-  // False if the source does not deliver it now as it did before.
+  // Returns false if the source does not deliver the same frame as before.
   bool read(const FusedFrame& chosen, Frame& frame) {
     return times_.timed("read", [&] {
       if (position_ != chosen.position && source_.seek(chosen.position)) position_ = chosen.position;
@@ -39,7 +39,7 @@ class ChosenFrames {
 GhostRevision take_out_ghosts(FrameSource& source, std::span<const FusedFrame> fused,
                               const GhostConfig& config, StaticMap& map, StageTimes& times,
                               const GhostProgress& progress) {
-  // What is seen through?
+  // Find the voxels that frames see through.
   GhostVotes votes(map, config);
   Frame frame;
   const std::size_t stride = 1 + (fused.size() - 1) / static_cast<std::size_t>(config.max_looks);
@@ -50,7 +50,7 @@ GhostRevision take_out_ghosts(FrameSource& source, std::span<const FusedFrame> f
     if (progress) progress("looked");
   }
 
-  // Out with it, and with all samples that it may have spoiled.
+  // Erase them, and all samples that they may have corrupted.
   GhostRevision revision;
   times.timed("ghosts", [&] {
     revision.verdicts = votes.verdicts();

@@ -1,4 +1,4 @@
-// ghost_zone.cpp: marking the bricks round ghosts, and the pixels that they are seen in.
+// ghost_zone.cpp: marks the bricks around ghosts and computes the pixels they project to.
 #include "mapping/revision/ghost_zone.hpp"
 
 #include <algorithm>
@@ -11,16 +11,16 @@
 namespace roomradar {
 namespace {
 
-constexpr int kNear = 2;      // voxels: rounding, and noise where samples are averages
+constexpr int kNear = 2;      // voxels; covers rounding, and the noise of averaged samples
 constexpr int kCellEdge = 4;  // voxels, half a brick
 constexpr double kNearest_m =
-    0.1;  // bricks with a corner nearer to the camera's plane are taken to fill the image
+    0.1;  // a brick with a corner nearer to the camera plane is treated as filling the image
 
 std::size_t offset_of(const VoxelIndex& voxel) {
   return brick_offset(voxel.unaryExpr([](int v) { return v & (kBrickEdge - 1); }));
 }
 
-// Which of its brick's cells a voxel lies in.
+// Index of the voxel's cell within its brick.
 std::size_t cell_of(const VoxelIndex& voxel) {
   const auto half = [&](int axis) { return static_cast<std::size_t>(voxel[axis] >> 2 & 1); };
   return half(0) | half(1) << 1U | half(2) << 2U;
@@ -30,7 +30,7 @@ struct Rectangle {
   int left = 0, top = 0, right = -1, bottom = -1;  // borders included
 };
 
-// Of the image, what a brick's projection lies in; nothing if it is out of sight.
+// Image rectangle that contains a brick's projection; nullopt if it is out of view.
 std::optional<Rectangle> covered_by(const VoxelIndex& first, double resolution_m, const Intrinsics& camera,
                                     const Eigen::Isometry3d& T_camera_world) {
   Eigen::Array2d low = Eigen::Array2d::Constant(1e9);

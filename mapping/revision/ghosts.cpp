@@ -1,4 +1,4 @@
-// ghosts.cpp: the votes of frames on the map's surface, brick by brick.
+// ghosts.cpp: collects the votes of frames on the map's surface, brick by brick.
 #include "mapping/revision/ghosts.hpp"
 
 #include <algorithm>
@@ -17,26 +17,26 @@
 namespace roomradar {
 namespace {
 
-constexpr float kNearestProjected_m = 0.1F;  // nothing is projected from nearer to the camera's plane
-// Surface that is nearer gives no depth, and hides what is behind.
+constexpr float kNearestProjected_m = 0.1F;  // min z for projection into the image
+// Surface nearer than this gives no depth, and hides what is behind it.
 constexpr float kTooNear_m = 0.8F;
-constexpr int kHiddenCell_px = 8;  // a voxel of a centimetre at that distance
+constexpr int kHiddenCell_px = 8;  // about the size of a 1 cm voxel at that distance
 
-// A group of ghosts that covers a square of this edge is no error of tracking. Round it, and no farther away,
-// less evidence is enough; without both limits rows of static edges go along.
+// A ghost that covers a square of this edge is too large for a tracking error. Within kReach_m around it,
+// weaker evidence is enough. Without both limits, rows of voxels at static edges would be removed, too.
 constexpr double kSureExtent_m = 0.5;
 constexpr double kReach_m = 0.1;
-constexpr int kHardlySeen = 3;  // looks: what hangs together with such a group stays only if more saw it
+constexpr int kHardlySeen = 3;  // a voxel connected to such a group is kept only if more frames saw it
 
 constexpr std::size_t kEveryColour =
-    4;  // of so many voxels one looks at its colour: it is a group's that counts
+    4;  // one voxel in this many has its colour tracked: groups are judged, not single voxels
 
-// False if nothing within radius_m of the centre can be in the image.
+// Returns false if nothing within radius_m of the centre can be in the image.
 bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_camera, double radius_m) {
   if (centre_camera.z() < kNearestProjected_m - radius_m) return false;
   const double nearest_z = std::max(centre_camera.z() - radius_m, static_cast<double>(kNearestProjected_m));
   const double margin_px = 2.0 * radius_m * std::max(camera.fx_px, camera.fy_px) / nearest_z;
-  if (centre_camera.z() < 2.0 * radius_m) return true;  // too near to tell so simply
+  if (centre_camera.z() < 2.0 * radius_m) return true;  // too near for the test below
   const Eigen::Vector2d pixel = project(camera, centre_camera);
   return pixel.x() > -margin_px && pixel.y() > -margin_px && pixel.x() < camera.width_px + margin_px &&
          pixel.y() < camera.height_px + margin_px;
@@ -47,7 +47,8 @@ Eigen::Vector3i in_brick(std::uint16_t offset) {
   return {offset & 7, offset >> 3 & 7, offset >> 6};
 }
 
-// For each voxel, how many hang together with it, itself among them: those in cells of 4^3 voxels that touch.
+// Returns for each voxel the number of voxels connected to it, itself included. Voxels are connected if they
+// are in the same cell of 4^3 voxels or in touching cells.
 std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) {
   const auto cell_of = [](const VoxelIndex& voxel) -> VoxelIndex {
     return voxel.unaryExpr([](int v) { return v >> 2; });
@@ -55,7 +56,7 @@ std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) 
   struct Cell {
     VoxelIndex index;
     std::size_t voxels = 0;
-    std::size_t together = 0;  // voxels of all cells that it hangs together with
+    std::size_t together = 0;  // voxels of all cells connected to it
   };
   std::vector<Cell> cells;
   std::unordered_map<std::uint64_t, std::size_t> position;
@@ -137,7 +138,8 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
 
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   const Eigen::Matrix3f R_camera_voxels = (T_camera_world.linear() * resolution_m_).cast<float>();
-  std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps;  // from the middle of a brick's first voxel
+  std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps;  // offsets from the centre of a brick's first
+                                                                 // voxel
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < kBrickEdge; ++i)
       steps[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] =
@@ -152,7 +154,8 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
   const float least_margin_m =
       std::max(config_.margin_m, config_.margin_voxels * static_cast<float>(resolution_m_));
 
-  // Calls visit(position, centre in the camera frame, pixel) for the voxels in the image, nearer than that.
+  // Calls visit(index of votes, centre in the camera frame, pixel x, y) for voxels in the image nearer than
+  // farthest_m.
   const auto for_each_nearer = [&](float farthest_m, const auto& visit) {
     std::size_t begin = 0;
     for (const Brick& brick : bricks_) {
@@ -252,7 +255,7 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
   };
   const double min_voxels = voxels_of(static_cast<double>(config_.min_extent_m));
 
-  // Enough evidence, and enough of them together.
+  // Voxels with enough evidence, in groups that are large enough.
   const auto may_be_gone = those(
       [](const Votes& votes, const AbsenceVotes& absence) { return may_be_absent(absence, votes.seen); });
   const auto seen_through = those([this](const Votes& votes, const AbsenceVotes&) {
@@ -267,7 +270,7 @@ std::vector<GhostVotes::Fate> GhostVotes::fates() const {
     if (size >= voxels_of(kSureExtent_m)) sure.push_back(seen_through[i]);
   }
 
-  // What hangs together with those goes along on less.
+  // Voxels connected to those groups need less evidence.
   std::vector<VotedVoxel> moved_on;
   const auto add = [&](const std::vector<VotedVoxel>& more) {
     moved_on.insert(moved_on.end(), more.begin(), more.end());

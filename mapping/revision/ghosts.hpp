@@ -1,5 +1,4 @@
-// ghosts.hpp: which parts of the static map are of things that moved on: what is static is never seen
-// through.
+// ghosts.hpp: finds ghosts in the static map: surface of objects that moved away during the scan.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -12,76 +11,78 @@
 namespace roomradar {
 
 struct GhostConfig {
-  /// A sample is seen through where the measured depth is greater than its own by this much, and by this many
-  /// standard deviations of the measurement: noise and tracking errors are less.
+  /// A sample is seen through if the measured depth exceeds the sample's by more than the largest of four
+  /// margins. The first two (metres, and standard deviations of depth) cover noise and tracking errors.
   float margin_m = 0.03F;
   float margin_sigmas = 4.0F;
-  /// And by this more a metre of depth: a pose that is off by 1.7 degrees shifts a slanted surface by so
-  /// much, and sensors other than the Kinect are noisier far away.
+  /// Margin per metre of depth: a pose error of 1.7 degrees shifts a slanted surface this much, and sensors
+  /// other than the Kinect are noisier at long range.
   float margin_per_m = 0.03F;
-  /// And by so many edges of the map's cells: what is measured lies up to one before or behind a sample.
+  /// Margin in voxels: samples are up to one voxel in front of or behind the measured surface.
   float margin_voxels = 1.5F;
-  /// ... in every pixel of a window of this radius at the sample's depth, so that a pose that is a little off
-  /// does not see past the edges of static things.
+  /// Radius, at the sample's depth, of the window in which every pixel must see through it. Otherwise small
+  /// pose errors would let rays pass the edges of static objects.
   float window_radius_m = 0.03F;
-  float min_measured_share = 0.5F;  ///< of the window's pixels must have depth, the middle one always
-  int min_through = 3;              ///< so many frames must see through a sample
-  float min_through_share = 0.1F;   ///< and so many of those that see it or see through it
-  /// Samples seen through that hang together are a ghost if they cover a square of this edge, at two samples
-  /// for each face of a voxel; fewer are tracking errors at the edges of static things.
+  float min_measured_share = 0.5F;  ///< fraction of the window's pixels that must have depth; the centre
+                                    ///< always must
+  int min_through = 3;              ///< min frames that see through a ghost's sample
+  float min_through_share = 0.1F;   ///< min fraction of these among frames that see it or see through it
+  /// A connected group of seen-through samples is a ghost if it covers a square of this edge, at two samples
+  /// per voxel face. Smaller groups are tracking errors at the edges of static objects.
   float min_extent_m = 0.15F;
-  int max_looks = 170;  ///< frames looked at, spread over the recording
+  int max_looks = 170;  ///< max frames used, spread over the recording
 };
 
-/// Throws Error naming field, value and rule.
+/// Throws Error naming field, value and rule if a setting is out of range.
 void require_valid(const GhostConfig& config);
 
-/// Counts, for each voxel of the map that holds surface, how many frames see it and how many see through it.
-/// A hand that rested on the table for half of the recording is as well measured as the table; that the table
-/// is seen through it in the other half tells it from what is static. Frames without depth there count as
+/// Counts, for each surface voxel of the map, the frames that see it and the frames that see through it. A
+/// hand that rested on the table for half of the recording is measured as well as the table; only frames that
+/// see the table through it distinguish it from static surface. Frames without depth there count as
 /// AbsenceVotes.
 class GhostVotes {
  public:
-  /// Takes the map's surface as it is now: samples within a voxel of the surface, and occupied ones. Throws
-  /// Error if the config is out of its rules.
+  /// Copies the map's current surface: samples within a voxel of the surface, and occupied ones. Throws Error
+  /// if the config is invalid.
   explicit GhostVotes(const StaticMap& map, const GhostConfig& config = {});
 
-  /// Adds one frame's votes. The frame is one that was fused at this pose.
+  /// Adds one frame's votes; the frame must have been fused at this pose.
   void look(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// What moved on are voxels with enough evidence that are enough together, and what hangs together with
-  /// them on less: little round a small group, more round one that is too large to be an error of tracking.
+  /// Departed objects are large enough groups of voxels with enough evidence, plus connected voxels with
+  /// weaker evidence. The latter extend little around small groups, and more around groups too large to be
+  /// tracking errors.
   struct Verdicts {
-    std::vector<VoxelIndex> ghosts;  ///< of that, what is seen through
-    std::vector<VoxelIndex> absent;  ///< of that, what is gone with nothing measured behind
-    std::vector<VoxelIndex> still;   ///< other surface that is occupied, and was looked at
-    std::vector<VoxelIndex> unseen;  ///< surface that no look measured, or saw through: of an earlier scan
+    std::vector<VoxelIndex> ghosts;  ///< voxels of departed objects that are seen through
+    std::vector<VoxelIndex> absent;  ///< voxels of departed objects with nothing measured behind
+    std::vector<VoxelIndex> still;   ///< other occupied surface that a frame observed
+    std::vector<VoxelIndex> unseen;  ///< surface of an earlier scan, which no frame measured or saw through
   };
-  /// Each in the octree's order.
+  /// Classifies all voxels; each list is in the octree's order.
   [[nodiscard]] Verdicts verdicts() const;
 
  private:
   enum class Fate : std::uint8_t { kStill, kGhost, kAbsent };
-  [[nodiscard]] std::vector<Fate> fates() const;  // in the votes' order
+  [[nodiscard]] std::vector<Fate> fates() const;  // in the order of votes_
   struct Votes {
-    std::uint16_t offset : 9 = 0;  // in its brick
+    std::uint16_t offset : 9 = 0;  // index in its brick
     std::uint16_t occupied : 1 = 0;
     std::uint16_t seen = 0;
     std::uint16_t through = 0;
-    std::uint16_t glimpsed = 0;  // its own pixel sees through it, but not all of the window
+    std::uint16_t glimpsed = 0;  // frames whose centre pixel sees through it, but not the whole window
   };
   struct Brick {
     VoxelIndex first = VoxelIndex::Zero();
-    std::size_t end = 0;  // of its votes; they begin where those of the brick before end
+    std::size_t end = 0;  // end of its votes; they begin at the end of the previous brick's
   };
-  // Whether so many of all of them are min_through_share or more, and one at least.
+  // True if `part` > 0 and at least min_through_share of part + others.
   [[nodiscard]] bool is_share(int part, int others) const;
 
   double resolution_m_;
   GhostConfig config_;
   std::vector<Brick> bricks_;
   std::vector<Votes> votes_;
-  std::vector<AbsenceVotes> absence_;  // in the same order
+  std::vector<AbsenceVotes> absence_;  // in the order of votes_
   AbsenceLooks absence_looks_;
   DepthWindows windows_;
 };

@@ -1,4 +1,4 @@
-// region_renewal.cpp: mask the frames, forget what they contradict, fuse them.
+// region_renewal.cpp: masks the frames, erases what they contradict, fuses them.
 #include "mapping/revision/refuse_region.hpp"
 
 #include <algorithm>
@@ -9,15 +9,15 @@
 namespace roomradar {
 namespace {
 
-// A surface that came into view behind what went is part of the change if it is as near as this; a wall far
-// behind it is a matter of another day's scan.
+// Surface revealed behind a removed object is part of the change up to this distance from the region; a wall
+// far behind is left to a later scan.
 constexpr double kNewSurface_m = 1.0;
 
 Eigen::Vector3i cell_of(const Eigen::Vector3d& p_world, double cell_m) {
   return (p_world / cell_m).array().floor().cast<int>();
 }
 
-// The frames with nothing but the pixels that concern the region.
+// Copies of the frames with only the pixels that concern the region.
 std::vector<Frame> masked(const WorldRegion& region, std::span<const RegionView> views) {
   std::vector<Frame> frames;
   for (const RegionView& view : views) {
@@ -30,7 +30,7 @@ std::vector<Frame> masked(const WorldRegion& region, std::span<const RegionView>
       for (int x = 0; x < frame.depth_m.width; ++x) {
         float& depth_m = frame.depth_m.at(x, y);
         const float expected_m = view.expected_depth_m.at(x, y);
-        // What is nearer than a part of the map that went is something else that passes by.
+        // A measurement in front of the expected surface is another object passing by.
         const bool sees_past = depth_m > expected_m && is_in(x, y, expected_m);
         if (depth_m > 0.0F && !sees_past && !is_in(x, y, depth_m)) depth_m = 0.0F;
       }
@@ -39,7 +39,7 @@ std::vector<Frame> masked(const WorldRegion& region, std::span<const RegionView>
   return frames;
 }
 
-// The nearest depth measured at a pixel or beside it; 0 if none is.
+// Nearest depth at a pixel or its neighbours; 0 if none has depth.
 float nearest_round(const DepthImage& depth_m, int x, int y) {
   float nearest = 0.0F;
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, depth_m.height - 1); ++v)
@@ -50,10 +50,10 @@ float nearest_round(const DepthImage& depth_m, int x, int y) {
   return nearest;
 }
 
-// What the masked frames say about a point.
+// Votes of the masked frames on a point.
 struct Votes {
-  int through = 0;  // they see clearly past it
-  int at = 0;       // they see a surface there, or right before it
+  int through = 0;  // frames that clearly see past it
+  int at = 0;       // frames that see surface at it or right in front of it
 };
 
 class Voters {
@@ -87,7 +87,7 @@ class Voters {
   double reach_m_;
 };
 
-// The region, and all points near it that the masked pixels measure.
+// Bounds of the region and of all points near it that the masked pixels measure.
 Eigen::AlignedBox3d seen_box(const std::vector<Frame>& frames, std::span<const RegionView> views,
                              const Eigen::AlignedBox3d& region_world) {
   const Eigen::Vector3d reach = Eigen::Vector3d::Constant(kNewSurface_m);

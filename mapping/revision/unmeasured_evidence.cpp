@@ -1,4 +1,4 @@
-// absence.cpp: votes by colour and missing depth, and the groups of voxels that they tell are gone.
+// absence.cpp: votes from colour and missing depth, and groups of voxels that are gone by these votes.
 #include "mapping/revision/unmeasured_evidence.hpp"
 
 #include <algorithm>
@@ -12,23 +12,24 @@ namespace {
 
 using State = AbsenceVotes::State;
 
-constexpr float kNearestMeasured_m = 0.6F;  // nearer, sensors may give no depth of what is there
-constexpr float kFarthest_m = 4.5F;         // and farther
+constexpr float kNearestMeasured_m = 0.6F;  // below this distance sensors may give no depth
+constexpr float kFarthest_m = 4.5F;         // above this distance, too
 constexpr float kUnmeasuredShare = 0.5F;
-constexpr float kGoneShare = 0.25F;    // of the pixels round a voxel may have depth
-constexpr int kBorder = 32;            // the outermost 1/32 of the image, where sensors have no depth
-constexpr double kOnePlace = 0.1;      // camera centres, by the distance of what is seen: 6 degrees
-constexpr int kMinGone = 3;            // frames
-constexpr int kSeenForUnmeasured = 2;  // frames that may see a voxel for each that does not
-constexpr double kTurnChange = 30.0;   // of 255, more than between two looks at what stays
-constexpr double kMinTurned = 0.1;     // of a group's voxels that have colour
+constexpr float kGoneShare = 0.25F;  // max fraction of pixels around a gone voxel that have depth
+constexpr int kBorder = 32;        // the outermost 1/32 of the image is ignored: sensors have no depth there
+constexpr double kOnePlace = 0.1;  // max distance of camera centres counted as one place, relative to the
+                                   // surface's depth: 6 degrees
+constexpr int kMinGone = 3;        // frames
+constexpr int kSeenForUnmeasured = 2;  // max frames that measure a voxel per frame that does not
+constexpr double kTurnChange = 30.0;   // of 255; larger than between two observations of static surface
+constexpr double kMinTurned = 0.1;     // min fraction of a group's voxels with colour
 
 template <typename Count>
 void add(Count& count, int n = 1) {
   count = static_cast<Count>(std::min<int>(count + n, std::numeric_limits<Count>::max()));
 }
 
-// Voxels by place, each handed out once.
+// Spatial index of voxels; returns each voxel once.
 class Unreached {
  public:
   explicit Unreached(std::span<const VotedVoxel> voxels) : voxels_(voxels) {
@@ -37,7 +38,7 @@ class Unreached {
   }
 
   void take(const VoxelIndex& voxel) { index_of_.erase(cell_code(voxel)); }
-  // Takes a voxel and its 26 neighbours, those that are there.
+  // Takes a voxel and its 26 neighbours, as far as they are in the set.
   template <typename Take>
   void take_round(const VoxelIndex& voxel, const Take& take) {
     for (int i = 0; i < kCellsRound; ++i) {
@@ -54,11 +55,11 @@ class Unreached {
   std::unordered_map<std::uint64_t, std::size_t> index_of_;
 };
 
-// Mean change of colour at the group's turns, beyond that between two looks at it; negative if too few
-// turned.
+// Mean colour change at the group's turns minus the mean change between steady looks; negative if too few
+// voxels turned.
 double turn_change(std::span<const VotedVoxel> group, std::span<const AbsenceVotes> all_votes) {
   double turns = 0.0, turn_sum = 0.0, steadies = 0.0, steady_sum = 0.0;
-  double coloured = 0.0, turned = 0.0;  // voxels
+  double coloured = 0.0, turned = 0.0;  // numbers of voxels
   for (const VotedVoxel& one : group) {
     const AbsenceVotes& votes = all_votes[one.position];
     coloured += votes.state != State::kUnknown ? 1.0 : 0.0;

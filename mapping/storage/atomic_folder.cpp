@@ -1,4 +1,5 @@
-// folder_swap.cpp: write beside, sync, rename, by Linux calls: the standard library can only rename.
+// folder_swap.cpp: writes beside the target, syncs and renames. Uses Linux calls, because the standard
+// library can only rename.
 #include "mapping/storage/atomic_folder.hpp"
 
 #include <fcntl.h>
@@ -36,7 +37,7 @@ fs::path beside(const fs::path& target, const char* word) {
   return parent_of(target) / (target.filename().string() + "." + word + "-" + std::to_string(::getpid()));
 }
 
-/// What processes that are gone have left beside the target, under such a word.
+/// Returns the folders beside the target with this suffix whose processes have ended.
 std::vector<fs::path> abandoned(const fs::path& target, const std::string& word) {
   const std::string prefix = target.filename().string() + "." + word + "-";
   std::vector<fs::path> found;
@@ -53,7 +54,7 @@ std::vector<fs::path> abandoned(const fs::path& target, const std::string& word)
   return found;
 }
 
-/// What was moved aside comes back where nothing took its place; all else that was abandoned goes.
+/// Restores a folder that was moved aside if nothing replaced it; removes all other abandoned folders.
 void clear_abandoned(const fs::path& target) {
   if (const fs::path aside = set_aside_of(target); !aside.empty()) {
     if (::rename(aside.c_str(), target.c_str()) != 0) fail(target, "cannot be brought back", errno);
@@ -79,13 +80,13 @@ PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_
   fs::create_directories(parent_of(target), fault);
   if (fault) fail(parent_of(target), "the folder cannot be made", fault.value());
   clear_abandoned(target);
-  fs::remove_all(partial_, fault);  // of an earlier process with this number
+  fs::remove_all(partial_, fault);  // left by an earlier process with the same PID
   fs::create_directory(partial_, fault);
   if (fault) fail(partial_, "the folder cannot be made", fault.value());
 }
 
 PartialFolder::~PartialFolder() {
-  std::error_code ignored;  // nothing can be done about it here, and the name tells what it is
+  std::error_code ignored;  // no remedy here; the folder's name marks it as partial
   fs::remove_all(partial_, ignored);
 }
 
@@ -98,8 +99,8 @@ void PartialFolder::put_in_place() {
       fail(target_, "cannot be put in place", errno);
   } else if (::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) {
     if (errno != EINVAL && errno != ENOSYS) fail(target_, "cannot be put in place", errno);
-    // A file system that cannot exchange: for a moment neither name is there, but one of them is whole at all
-    // times.
+    // This file system cannot exchange names: for a moment the target's name is missing, but a complete
+    // folder always exists.
     const fs::path aside = beside(target_, kBefore);
     if (::rename(target_.c_str(), aside.c_str()) != 0) fail(target_, "cannot be moved aside", errno);
     if (::rename(partial_.c_str(), target_.c_str()) != 0) {
@@ -112,8 +113,7 @@ void PartialFolder::put_in_place() {
   }
   try {
     sync_to_disk(parent_of(target_));
-  } catch (
-      const Error&) {  // it is in place; what is lost if the power fails now is the new name, not the map
+  } catch (const Error&) {  // already in place: a power failure now could lose the new name, not the map
   }
 }
 

@@ -1,4 +1,4 @@
-// folder_swap.hpp: a folder that appears whole or not at all.
+// folder_swap.hpp: atomic replacement of a folder.
 #pragma once
 #include <exception>
 #include <filesystem>
@@ -6,15 +6,14 @@
 
 namespace roomradar {
 
-/// Waits until a file, or the list of names in a folder, is on the disk. Throws Error if it does not get
-/// there.
+/// Waits until a file's content, or a folder's list of names, is on disk. Throws Error on failure.
 void sync_to_disk(const std::filesystem::path& path);
 
-/// A new folder beside `target` (target.partial-PID), removed again unless it is put in place.
+/// New folder beside `target` (target.partial-PID); the destructor removes it unless it was put in place.
 class PartialFolder {
  public:
-  /// Makes it, and the folders above. Those that processes left beside `target` when they were killed go, but
-  /// what set_aside_of() says is made `target` again. Throws Error if that cannot be done.
+  /// Creates the folder and its parents. Removes partial folders that killed processes left beside `target`,
+  /// but restores the folder that set_aside_of() returns as `target`. Throws Error on failure.
   explicit PartialFolder(const std::filesystem::path& target);
   ~PartialFolder();
   PartialFolder(const PartialFolder&) = delete;
@@ -22,8 +21,8 @@ class PartialFolder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
 
-  /// Waits until all its files are on the disk, then makes it `target` in one step; what was there is removed
-  /// afterwards. Throws Error, with `target` as it was, if the disk or the file system does not do it.
+  /// Waits until all files are on disk, then makes the folder `target` in one step and removes the old
+  /// `target`. Throws Error, with `target` unchanged, if the disk or the file system fails.
   void put_in_place();
 
  private:
@@ -31,18 +30,20 @@ class PartialFolder {
   std::filesystem::path partial_;
 };
 
-/// Where `target` is as it was, if a process was killed while it exchanged it on a file system that can only
-/// rename: between two renames neither the old nor the new is there (target.before-PID). Else empty.
+/// Returns the old version of `target` (target.before-PID) if a process was killed while replacing it by two
+/// renames, on a file system that cannot exchange names. Empty if `target` exists or nothing was set aside.
 std::filesystem::path set_aside_of(const std::filesystem::path& target);
 
-/// Which folder has a name now: another one after it was put in place anew. Empty if there is none.
+/// Returns an identifier that changes when another folder is put in place under this name. Empty if there is
+/// no folder.
 std::string swap_mark_of(const std::filesystem::path& folder);
 
-/// Throws Error: the folder is put in place anew faster than it can be read.
+/// Throws Error: the folder is replaced faster than it can be read.
 [[noreturn]] void fail_as_never_still(const std::filesystem::path& folder);
 
-/// What read() gives of a folder that another process may replace meanwhile: all of it of one and the same
-/// folder. What read() throws counts only if the folder was not replaced.
+/// Returns read()'s result from a single version of a folder that another process may replace meanwhile.
+/// Retries if the folder was replaced during read(), at most 100 times. Rethrows exceptions of read() only if
+/// the folder was not replaced.
 template <typename Read>
 auto read_of_one(const std::filesystem::path& folder, const Read& read) {
   constexpr int kAttempts = 100;

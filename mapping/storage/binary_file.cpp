@@ -1,4 +1,4 @@
-// binary_file.cpp: numbers to and from binary files, the reading side trusting nothing.
+// binary_file.cpp: writes numbers to binary files and reads them without trusting the file.
 #include "mapping/storage/binary_file.hpp"
 
 #include <cmath>

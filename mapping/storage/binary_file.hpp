@@ -1,4 +1,4 @@
-// binary_file.hpp: numbers to and from binary files, the reading side trusting nothing.
+// binary_file.hpp: writes numbers to binary files and reads them without trusting the file.
 #pragma once
 #include <bit>
 #include <cstddef>
@@ -23,14 +23,14 @@ void put(std::string& out, Number number) {
   put(out, &number, 1);
 }
 
-/// Takes numbers from the front of a file's bytes; what is not there is an Error that names the file. Bytes
+/// Takes numbers from the front of a file's bytes. Throws Error naming the file if bytes are missing. Bytes
 /// and path must outlive the reader.
 class BinaryReader {
  public:
   BinaryReader(std::string_view bytes, const std::filesystem::path& path) : bytes_(bytes), path_(path) {}
 
   [[noreturn]] void fail(const std::string& fault) const;
-  /// Before memory is taken for `count` items: are they there?
+  /// Fails if fewer than `count` items remain. Call it before allocating memory for them.
   void require(std::size_t count, std::size_t item_bytes, const char* what) const {
     if (count > bytes_.size() / item_bytes) fail(std::string("cut short: ") + what + " missing");
   }
@@ -47,7 +47,7 @@ class BinaryReader {
     take(&number, 1, what);
     return number;
   }
-  /// The same, and fails if it is not finite.
+  /// Same, and fails if the number is not finite.
   double take_finite(const char* what);
   [[nodiscard]] std::size_t left() const { return bytes_.size(); }
   [[nodiscard]] std::string path() const { return path_.string(); }
@@ -57,12 +57,12 @@ class BinaryReader {
   const std::filesystem::path& path_;
 };
 
-/// `magic`, then `version`, then `body`, then a checksum of all that. Throws Error if it cannot be written.
+/// Writes `magic`, `version`, `body` and a checksum of all three. Throws Error if the file cannot be written.
 void write_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
                   std::string_view body);
 
-/// The body of such a file. Throws Error naming the file and the fault if it is missing, cut short, altered,
-/// of another kind or of another version.
+/// Returns the body of a file from write_binary(). Throws Error naming the file and the fault if the file is
+/// missing, truncated, altered, or of another kind or version.
 std::string read_binary(const std::filesystem::path& path, std::string_view magic, std::uint32_t version);
 
 }  // namespace roomradar

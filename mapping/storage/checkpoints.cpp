@@ -1,4 +1,4 @@
-// checkpoints.cpp: numbered folders, each written by a forked child: beside, synced, renamed.
+// checkpoints.cpp: numbered folders that a forked child writes under a temporary name, syncs and renames.
 #include "mapping/storage/checkpoints.hpp"
 
 #include <fcntl.h>
@@ -45,16 +45,16 @@ constexpr std::uintmax_t kMaxJsonBytes = 16U << 20U;
 
 Json read_json(const fs::path& path) {
   std::error_code fault;
-  if (fs::is_symlink(path, fault)) fail(path, "is a link; a checkpoint has no such");
+  if (fs::is_symlink(path, fault)) fail(path, "is a link; checkpoints contain no links");
   Json json = Json::parse(read_bytes(path, "a checkpoint's description", kMaxJsonBytes), nullptr,
                           /*allow_exceptions=*/false);
   if (json.is_discarded() || !json.is_object())
     fail(path,
-         "is damaged" + std::string(path.filename() == kWork ? "; delete the folder to begin anew" : ""));
+         "is damaged" + std::string(path.filename() == kWork ? "; delete the folder to start again" : ""));
   return json;
 }
 
-/// Relative to the folder.
+/// Returns sorted paths relative to the folder.
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
@@ -64,7 +64,8 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
-/// What was carried over keeps its description: it need not be read again.
+/// Returns a file's size and checksum. For a file linked from the previous checkpoint, reuses the old entry
+/// instead of reading it.
 Json description_of(const fs::path& into, const fs::path& file, const fs::path& previous,
                     const Json& before) {
   const auto was = before.find(file.generic_string());
@@ -73,7 +74,7 @@ Json description_of(const fs::path& into, const fs::path& file, const fs::path& 
   return {{"bytes", fs::file_size(into / file)}, {"sha256", sha256_of_file(into / file)}};
 }
 
-/// Checks all files; throws Error naming the one that is not as it was written.
+/// Verifies all files; throws Error naming the first that is missing or altered.
 Checkpoint read_checkpoint(const fs::path& folder) {
   const Json manifest = read_json(folder / kManifest);
   const auto stage = manifest.find("stage");
@@ -99,7 +100,7 @@ Checkpoint read_checkpoint(const fs::path& folder) {
   return {stage->get<std::string>(), folder};
 }
 
-/// Numbers of the checkpoints in a folder, the newest first.
+/// Returns the numbers of the folder's checkpoints, newest first.
 std::vector<std::int64_t> numbers_in(const fs::path& folder) {
   std::vector<std::int64_t> numbers;
   std::error_code fault;
@@ -115,13 +116,13 @@ std::vector<std::int64_t> numbers_in(const fs::path& folder) {
   return numbers;
 }
 
-/// Waits until all that was written in a folder and those in it since a moment is on the disk.
+/// Waits until all subfolders, and all files written since `since`, are on disk.
 void sync_new_files(const fs::path& folder, fs::file_time_type since) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
     if (entry.is_directory() || entry.last_write_time() >= since) sync_to_disk(entry.path());
 }
 
-/// Whether the open file is the one of that name: whoever has the lock may remove the folder.
+/// Returns whether the path still names the open file; the lock's last owner may have removed the folder.
 bool is_still_there(int file, const fs::path& path) {
   struct stat opened {
   }, named{};
@@ -129,7 +130,7 @@ bool is_still_there(int file, const fs::path& path) {
          opened.st_dev == named.st_dev;
 }
 
-/// One that was just made.
+/// True for a newly created folder.
 bool holds_nothing_to_go_on_from(const fs::path& folder) {
   std::error_code fault;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault))
@@ -160,7 +161,7 @@ void Checkpoints::take_lock() {
   const fs::path path = folder_ / kLock;
   lock_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock_ < 0) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
-  // The writer of a process that was killed has the lock for a moment longer.
+  // The writer child of a killed process keeps the lock for a moment longer.
   for (int attempt = 0; attempt < 30; ++attempt) {
     if (::flock(lock_, LOCK_EX | LOCK_NB) == 0) {
       if (is_still_there(lock_, path)) return;
@@ -192,7 +193,7 @@ void Checkpoints::require_same_work() const {
     if (was != found.end() && was->second == value) continue;
     fail(folder_, "the scan there was begun with " + name + " " +
                       (was == found.end() ? "not set" : "\"" + was->second + "\"") + ", and now it is \"" +
-                      value + "\"; resume it with the same, or delete the folder to begin anew");
+                      value + "\"; resume it with the same, or delete the folder to start again");
   }
 }
 
@@ -207,7 +208,7 @@ std::optional<Checkpoint> Checkpoints::resume() {
       last_number_ = number;
       return checkpoint;
     } catch (const std::exception& fault) {
-      faults_.push_back(std::string(fault.what()) + "; the checkpoint is passed over");
+      faults_.push_back(std::string(fault.what()) + "; the checkpoint is skipped");
       std::error_code ignored;
       fs::remove_all(numbered(number), ignored);
     }
@@ -243,12 +244,12 @@ void Checkpoints::write(const std::string& stage, const WriteFiles& write_files)
   const pid_t parent = ::getpid();
   writer_ = ::fork();
   if (writer_ > 0) return;
-  if (writer_ < 0) {  // no memory for a child: then the work has to wait
+  if (writer_ < 0) {  // no memory for a child: the work has to wait
     note_written(try_to_write(stage, write_files));
     return;
   }
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  std::signal(SIGINT, SIG_IGN);  // whether to go on after a Ctrl-C is the parent's to say
+  std::signal(SIGINT, SIG_IGN);  // the parent decides whether to continue after Ctrl-C
   if (::getppid() != parent) ::_exit(1);
   static_cast<void>(::nice(5) + 1);
   ::_exit(try_to_write(stage, write_files) ? 0 : 1);
@@ -278,7 +279,7 @@ void Checkpoints::write_numbered(std::int64_t number, const std::string& stage,
     manifest["files"][file.generic_string()] = description_of(into, file, previous, before);
   write_bytes(into / kManifest, manifest.dump(1) + "\n");
   sync_new_files(folder_, on_disk_until_);
-  fs::remove_all(numbered(number));  // damaged, or of a count that began anew
+  fs::remove_all(numbered(number));  // damaged, or from an earlier numbering
   fs::rename(into, numbered(number));
   sync_to_disk(folder_);
   for (const std::int64_t other : numbers_in(folder_)) {
@@ -301,15 +302,15 @@ void Checkpoints::reap(bool wait) {
 void Checkpoints::note_written(bool is_written) {
   if (!is_written) return fail_to_write();
   ++last_number_;
-  constexpr std::chrono::seconds kClockStep{2};  // of file systems that count coarsely
+  constexpr std::chrono::seconds kClockStep{2};  // coarsest time stamps of file systems
   on_disk_until_ = being_written_since_ - kClockStep;
 }
 
 void Checkpoints::fail_to_write() {
   if (++failures_ > 1 || !tell_) return;
-  tell_(folder_.string() +
-        ": a checkpoint could not be written; is the disk full? The scan goes on, and if " +
-        "it is cut off " + (last_number_ > 0 ? "it resumes from the checkpoint before" : "it begins anew"));
+  tell_(
+      folder_.string() + ": a checkpoint could not be written; is the disk full? The scan goes on, and if " +
+      "it is cut off " + (last_number_ > 0 ? "it resumes from the previous checkpoint" : "it starts again"));
 }
 
 bool Checkpoints::has_any() {
@@ -327,7 +328,7 @@ void Checkpoints::forget() {
 void Checkpoints::remove() {
   reap(/*wait=*/true);
   if (lock_ < 0 && !fs::exists(folder_)) return;
-  // In one step, so that work that is done is never taken for work that was cut off.
+  // Rename in one step, so completed work is never mistaken for interrupted work.
   std::error_code ignored;
   fs::remove_all(done_beside(folder_), ignored);
   fs::rename(folder_, done_beside(folder_), ignored);
@@ -359,7 +360,7 @@ void require_checkpoints_only(const fs::path& folder, std::string_view beside) {
 std::map<std::string, std::string> identity_of(const fs::path& folder) {
   const Json json = read_json(folder / kWork);
   const auto work = json.find("work");
-  const char* const kDamaged = "is damaged; delete the folder to begin anew";
+  const char* const kDamaged = "is damaged; delete the folder to start again";
   if (work == json.end() || !work->is_object()) fail(folder / kWork, kDamaged);
   std::map<std::string, std::string> identity;
   for (const auto& [name, value] : work->items()) {

@@ -1,4 +1,4 @@
-// checkpoints.hpp: the state of long work on disk, so that work that was cut off can go on where it was.
+// checkpoints.hpp: checkpoints on disk, from which long work can resume after an interruption.
 #pragma once
 #include <sys/types.h>
 
@@ -15,70 +15,70 @@
 
 namespace roomradar {
 
-/// A state that was read back: every file's size and checksum are right.
+/// A checkpoint that was read back, with sizes and checksums of all files verified.
 struct Checkpoint {
-  std::string stage;             ///< as it was given to write()
-  std::filesystem::path folder;  ///< holds the files that were written; only to be read
+  std::string stage;             ///< as passed to write()
+  std::filesystem::path folder;  ///< contains the written files; read-only
 };
 
-/// The folder of one unfinished piece of work: `work.json` (what the work is), `lock`, and the last two
-/// checkpoints, each a folder that appears whole or not at all, and only once all that was written beside it
-/// before (as a live scan's frames) is on the disk, too. A checkpoint is written by a forked child,
-/// which sees the state as it was and lets the work go on; it dies with its parent. The folder comes into
-/// being with the first checkpoint. One process at a time may have it.
+/// Folder of one unfinished piece of work: `work.json` (identity of the work), `lock`, and the last two
+/// checkpoints. Each checkpoint is a folder that appears atomically, after everything written earlier in the
+/// folder (such as a live scan's frames) is on disk. A forked child writes the checkpoint from a snapshot of
+/// the state while the work continues; the child dies with its parent. The folder is created with the first
+/// checkpoint. Only one process at a time can own it.
 class Checkpoints {
  public:
-  /// Writes a state's files into `into`, an empty folder. `previous`, unless empty, is the checkpoint before:
-  /// files that have not changed may be linked from there with carry_over(). Runs in a child process: what it
-  /// changes in memory is lost.
+  /// Writes a state's files into `into`, an empty folder. `previous` is the preceding checkpoint's folder, or
+  /// empty; unchanged files can be linked from it with carry_over(). Runs in a child process: changes to
+  /// memory are lost.
   using WriteFiles =
       std::function<void(const std::filesystem::path& into, const std::filesystem::path& previous)>;
 
-  /// @param folder    where checkpoints go
-  /// @param identity  what the work is, by name: source, settings. Work of another identity cannot go on
-  ///                  from a checkpoint.
-  /// @param every_s   seconds between two checkpoints, at least
+  /// @param folder    where checkpoints are stored
+  /// @param identity  name-value pairs (source, settings); only work with equal pairs can resume
+  /// @param every_s   min time between two checkpoints, s
   Checkpoints(std::filesystem::path folder, std::map<std::string, std::string> identity, double every_s);
-  /// Waits for a checkpoint that is being written. The folder stays, unless remove() was called or there is
-  /// nothing in it to go on from.
+  /// Waits for a checkpoint that is being written. Keeps the folder, unless remove() was called or it
+  /// contains only `work.json` and `lock`.
   ~Checkpoints();
   Checkpoints(const Checkpoints&) = delete;
   Checkpoints& operator=(const Checkpoints&) = delete;
 
-  /// The newest sound checkpoint in the folder. Damaged ones are passed over, and named in faults(). Nothing
-  /// if there is none. Throws Error if the folder holds other work than `identity` says, naming the
-  /// difference, or another process has it.
+  /// Returns the newest intact checkpoint, or nullopt if there is none. Deletes damaged ones and lists them
+  /// in faults(). Throws Error if the folder's identity differs (naming the difference) or another process
+  /// has the lock.
   std::optional<Checkpoint> resume();
 
-  /// Throws Error if the folder holds other work than `identity` says, naming the difference.
+  /// Throws Error naming the difference if the folder belongs to work with another identity.
   void require_same_work() const;
 
-  /// Whether the time for a checkpoint has come and the last one is written.
+  /// Returns whether `every_s` has passed since the last checkpoint began and that checkpoint is complete.
   bool is_due();
-  /// Whether it has come at the end of a stage, where a third of the time is enough; waits for the last one.
+  /// Same at the end of a stage, where a third of `every_s` is enough; waits for the last checkpoint to
+  /// complete.
   bool is_due_at_end();
-  /// Writes a checkpoint beside the work; takes some milliseconds itself. A failure (disk full) leaves the
-  /// one before, is counted in failures(), and the first one is told.
+  /// Starts a child that writes a checkpoint; takes some milliseconds itself. A failure (disk full) keeps the
+  /// previous checkpoint and is counted in failures(); only the first failure is reported (tell_failure()).
   void write(const std::string& stage, const WriteFiles& write_files);
-  /// Whether there is one to go on from, after the one that is being written.
+  /// Returns whether there is a checkpoint to resume from; waits for the one that is being written.
   [[nodiscard]] bool has_any();
-  /// The work is done: the folder goes.
+  /// Removes the folder of completed work.
   void remove();
-  /// The work is to begin anew: the checkpoints go, and what their owner keeps beside them stays.
+  /// Deletes the checkpoints, so the work starts from the beginning; other files in the folder stay.
   void forget();
 
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Makes the folder and takes its lock now, for whoever puts files of its own beside the checkpoints.
+  /// Creates and locks the folder now, for callers that store other files in it.
   void ensure_folder();
-  /// One sentence for each damaged checkpoint that resume() passed over.
+  /// One sentence per damaged checkpoint that resume() skipped.
   [[nodiscard]] const std::vector<std::string>& faults() const { return faults_; }
   [[nodiscard]] std::int64_t failures() const { return failures_; }
-  /// Whom to tell, in one sentence, as soon as a checkpoint could not be written; nobody by default.
+  /// Sets a callback for the first checkpoint that cannot be written; none by default.
   void tell_failure(std::function<void(const std::string& sentence)> tell) { tell_ = std::move(tell); }
 
  private:
   void take_lock();
-  /// Since the last one was begun, or this object made.
+  /// Time since the last checkpoint began, or since construction.
   [[nodiscard]] double since_last_s() const;
   void note_written(bool is_written);
   void fail_to_write();
@@ -93,7 +93,7 @@ class Checkpoints {
   std::chrono::steady_clock::time_point last_start_;
   std::filesystem::file_time_type being_written_since_;
   std::filesystem::file_time_type on_disk_until_ = std::filesystem::file_time_type::min();
-  std::int64_t last_number_ = 0;  ///< of the last whole checkpoint; 0: none
+  std::int64_t last_number_ = 0;  ///< number of the last complete checkpoint; 0: none
   int lock_ = -1;
   pid_t writer_ = -1;
   std::int64_t failures_ = 0;
@@ -101,18 +101,19 @@ class Checkpoints {
   std::vector<std::string> faults_;
 };
 
-/// What such a folder is called while it is removed; one that a crash left behind is of no use.
+/// Returns the name that the folder has while it is being removed. If a crash leaves a folder of this name,
+/// it can be deleted.
 std::filesystem::path done_beside(const std::filesystem::path& folder);
 
-/// Throws Error if something of that name is there that is no such folder, or that holds anything but
-/// checkpoints and `beside`, what else their owner keeps there: somebody else's, which must not be removed.
+/// Throws Error if `folder` exists and is not a folder, or contains anything other than checkpoints and
+/// `beside`, an entry of their owner. Protects other files from removal.
 void require_checkpoints_only(const std::filesystem::path& folder, std::string_view beside);
 
-/// What the work in such a folder is. Throws Error if its work.json is missing or damaged.
+/// Returns the identity in the folder's work.json. Throws Error if the file is missing or damaged.
 std::map<std::string, std::string> identity_of(const std::filesystem::path& folder);
 
-/// Makes `to` the same file as `from` without copying it (by a hard link; a copy where links fail). False if
-/// there is no such file.
+/// Makes `to` a hard link to `from`, or a copy if linking fails. Returns false if `from` does not exist or
+/// cannot be copied.
 bool carry_over(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace roomradar

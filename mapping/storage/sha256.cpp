@@ -1,4 +1,4 @@
-// sha256.cpp: OpenSSL's SHA-256 over a file, a block at a time.
+// sha256.cpp: OpenSSL's SHA-256 over a file, block by block.
 #include "mapping/storage/sha256.hpp"
 
 #include <openssl/evp.h>

@@ -1,4 +1,4 @@
-// sha256.hpp: the checksum of a file.
+// sha256.hpp: SHA-256 checksum of a file.
 #pragma once
 #include <filesystem>
 #include <string>

@@ -1,4 +1,4 @@
-// voxel_bits.cpp: boxes of bits, shifted, joined and opened word by word.
+// voxel_bits.cpp: set operations, shifts, flood fill and opening, a word at a time.
 #include "mapping/surface/bit_grid.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-// The voxels whose coordinates are all multiples of a number.
+// The voxels whose coordinates are all multiples of `spacing`.
 VoxelBits lattice_points(const Eigen::Vector3i& size, int spacing) {
   VoxelBits points(size, false);
   for (int z = 0; z < size.z(); z += spacing)
@@ -126,7 +126,7 @@ void VoxelBits::spread(const VoxelBits& where, const std::array<VoxelBits, 3>& b
     for (int y = 0; y < size_.y(); ++y) spread_to_row(before, where, barred, y, z);
 }
 
-// In place, up and down in turn, so that a straight way of any length takes one pass.
+// In place, alternately upwards and downwards, so a straight path of any length takes one pass.
 void VoxelBits::flood(const VoxelBits& where, const std::array<VoxelBits, 3>& barred) {
   for (bool any = true; any;) {
     any = false;
@@ -141,7 +141,7 @@ void VoxelBits::flood(const VoxelBits& where, const std::array<VoxelBits, 3>& ba
 }
 
 VoxelBits opened(const VoxelBits& bits, int edge, int lattice) {
-  VoxelBits cubes = bits;  // after this the lowest voxels of whole cubes
+  VoxelBits cubes = bits;  // after the loop: the lowest voxels of whole cubes
   for (int axis = 0; axis < 3; ++axis) {
     VoxelBits ahead = cubes;
     for (int i = 1; i < edge; ++i) {

@@ -1,4 +1,4 @@
-// voxel_bits.hpp: a box of voxels with one bit each, 64 of a row in a word, and what is done to all at once.
+// voxel_bits.hpp: a 3D bit grid, 64 voxels of a row per word, with set and morphological operations.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -9,38 +9,38 @@
 
 namespace roomradar {
 
-/// Rows run along x. All voxels outside the box are clear, for every function here; so are the bits past a
-/// row's end in its last word.
+/// Rows run along x. All functions treat voxels outside the grid as clear. Unused bits in the last word of a
+/// row are always clear.
 class VoxelBits {
  public:
   VoxelBits() = default;
-  /// All in the box are `value`. No coordinate of size may be negative.
+  /// Sets all voxels to `value`. Sizes must be >= 0.
   VoxelBits(const Eigen::Vector3i& size, bool value);
 
   [[nodiscard]] const Eigen::Vector3i& size() const { return size_; }
   [[nodiscard]] std::size_t memory_bytes() const { return words_.size() * sizeof(std::uint64_t); }
   [[nodiscard]] bool at(const Eigen::Vector3i& p) const;
-  /// p must be in the box.
+  /// p must be in the grid.
   void set(const Eigen::Vector3i& p, bool value) { set_box(p, p + Eigen::Vector3i::Ones(), value); }
-  /// From `low` to before `high`, as far as that lies in the box.
+  /// Sets the voxels in [low, high), clipped to the grid.
   void set_box(const Eigen::Vector3i& low, const Eigen::Vector3i& high, bool value);
 
-  /// Both must be of one size.
+  /// Both grids must have the same size.
   VoxelBits& operator&=(const VoxelBits& other);
   VoxelBits& operator|=(const VoxelBits& other);
   VoxelBits& subtract(const VoxelBits& other);
   friend bool operator==(const VoxelBits&, const VoxelBits&) = default;
 
-  /// Each voxel as its neighbour `step` (-1 or 1) along the axis is.
+  /// Returns a grid in which each voxel has the value of its neighbour `step` (-1 or 1) along the axis.
   [[nodiscard]] VoxelBits shifted(int axis, int step) const;
 
-  /// Adds the voxels of `where` that are one step along an axis from set ones. A step between a voxel that is
-  /// set in `barred` of that axis and the next one is not made. All are of one size.
+  /// Dilates by one step along the axes, restricted to `where`. A voxel set in barred[axis] blocks the step
+  /// between it and the next voxel along that axis, in both directions. All grids have the same size.
   void spread(const VoxelBits& where, const std::array<VoxelBits, 3>& barred);
-  /// The same for as many steps as add anything.
+  /// Repeats spread() until nothing changes.
   void flood(const VoxelBits& where, const std::array<VoxelBits, 3>& barred);
 
-  /// Calls visit(p) for each set voxel of the box, z slowest, x fastest.
+  /// Calls visit(p) for each set voxel, z slowest, x fastest.
   template <typename Visit>
   void for_each_set(const Visit& visit) const {
     for (int z = 0; z < size_.z(); ++z)
@@ -61,7 +61,7 @@ class VoxelBits {
     return words_.data() + row_index(y, z) * words_a_row_;
   }
   void clear_row_ends();
-  /// Spreads from voxels of `source`, which may be this, into one row. Says whether that added any.
+  /// Spreads from voxels of `source`, which may be this grid, into one row. Returns true if that added any.
   bool spread_to_row(const VoxelBits& source, const VoxelBits& where, const std::array<VoxelBits, 3>& barred,
                      int y, int z);
 
@@ -70,9 +70,9 @@ class VoxelBits {
   std::vector<std::uint64_t> words_;
 };
 
-/// Morphological opening by a cube: the voxels that lie in a cube of edge x edge x edge set voxels. What is
-/// thinner is gone, the rest is where it was. With lattice > 1 only cubes count whose lowest voxel has
-/// multiples of it as coordinates. edge and lattice must be >= 1.
+/// Morphological opening by a cube: keeps the voxels that are in a cube of edge x edge x edge set voxels and
+/// removes thinner parts. With lattice > 1 only cubes whose lowest voxel's coordinates are multiples of it
+/// count. edge and lattice must be >= 1.
 VoxelBits opened(const VoxelBits& bits, int edge, int lattice = 1);
 
 }  // namespace roomradar

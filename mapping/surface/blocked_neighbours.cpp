@@ -1,4 +1,4 @@
-// barred_steps.cpp: each triangle is met with the lines through the cells' middles, axis by axis.
+// barred_steps.cpp: intersects triangles with the lines through cell centres, one axis at a time.
 #include "mapping/surface/blocked_neighbours.hpp"
 
 #include <algorithm>
@@ -11,12 +11,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 
-// So far off, in cells, a line still meets a triangle's edge: rather both triangles of an edge than none.
+// Tolerance in cells for lines that pass a triangle's edge: intersecting both triangles of an edge is better
+// than neither.
 constexpr double kEdge = 1e-6;
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-// The whole numbers from a to b that lie from 0 to before size; none if first > last.
+// The integers within [a, b] and [0, size - 1]; empty if first > last.
 struct Span {
   int first, last;
   Span(double a, double b, int size)
@@ -24,13 +25,13 @@ struct Span {
         last(static_cast<int>(std::floor(std::clamp(b + kEdge, -1.0, size - 1.0)))) {}
 };
 
-// Corners in cells, with the middles of cells at whole numbers.
+// @param corners  in cells; cell centres at integer coordinates
 void bar_along(int axis, const std::array<Vector3d, 3>& corners, VoxelBits& barred) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   std::array<Vector2d, 3> p;
   for (std::size_t i = 0; i < 3; ++i) p[i] = {corners[i][u], corners[i][v]};
   const double area = cross(p[1] - p[0], p[2] - p[0]);
-  if (area == 0.0) return;  // the lines run along it
+  if (area == 0.0) return;  // the lines are parallel to the triangle
   const Vector2d low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
   const Vector3i& size = barred.size();
   const Span in_u(low.x(), high.x(), size[u]), in_v(low.y(), high.y(), size[v]);

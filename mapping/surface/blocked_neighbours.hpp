@@ -1,4 +1,4 @@
-// barred_steps.hpp: the steps between neighbouring cells of a grid that a surface bars.
+// barred_steps.hpp: finds the steps between neighbouring grid cells that a surface blocks.
 #pragma once
 #include <array>
 
@@ -8,8 +8,9 @@
 
 namespace roomradar {
 
-/// By axis: a cell is set if the straight way from its middle to that of the next cell along the axis meets
-/// the surface. Triangles count with their edges; one with a corner that is not finite does not count at all.
+/// Returns one bit grid per axis: a cell is set if the segment from its centre to the centre of the next cell
+/// along that axis intersects the surface. Triangles include their edges; triangles with a non-finite corner
+/// are ignored.
 std::array<VoxelBits, 3> barred_steps(const Mesh& surface_world, const CellGrid& grid);
 
 }  // namespace roomradar

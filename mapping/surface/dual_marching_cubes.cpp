@@ -12,11 +12,11 @@ namespace roomradar {
 namespace {
 
 constexpr std::uint32_t kNoVertex = ~std::uint32_t{0};
-// Weight of a guessed crossing in a vertex's place: two cells that share their one measured crossing still
-// have their vertices apart, along the surface.
+// Weight of an extrapolated crossing in a vertex's position. Above 0, so two cells that share their only
+// measured crossing get distinct vertices along the surface.
 constexpr float kOfGuess = 0.05F;
 
-// Corner i of a cell stands at its lowest voxel + (bit 0, bit 1, bit 2); edge 4 a + k runs along axis a.
+// Corner i of a cell is at its lowest voxel + (bit 0, bit 1, bit 2); edge 4 a + k runs along axis a.
 constexpr std::array<std::array<unsigned, 2>, 12> kCellEdges{
     {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}};
 
@@ -26,7 +26,7 @@ unsigned edge_between(unsigned a, unsigned b) {
   return 12;
 }
 
-// The four corners of a face, in turn. Face 2 a + s is the side s of axis a.
+// The four corners of a face, in cyclic order. Face 2 a + s is side s of axis a.
 std::array<unsigned, 4> face_corners(unsigned face) {
   const unsigned axis = face / 2;
   const unsigned second = 1U << (axis + 1) % 3;
@@ -37,14 +37,15 @@ std::array<unsigned, 4> face_corners(unsigned face) {
 
 bool is_inside(unsigned signs, unsigned corner) { return (signs >> corner & 1U) != 0; }
 
-// Which sheet of surface crosses each edge of a cell.
+// Maps each crossed edge of a cell to its surface sheet.
 struct Sheets {
   std::array<std::uint8_t, 12> of_edge{};
   int count = 0;
-  unsigned joined_faces = 0;  // bit mask: diagonal faces whose four crossings are one sheet
+  unsigned joined_faces = 0;  // bit mask: ambiguous faces whose four crossings are one sheet
 };
 
-// Bit i of `signs`: corner i is inside. Faces in `outsides_parted` part their outside corners if diagonal.
+// @param signs  bit i: corner i is inside
+// @param outsides_parted  bit mask of faces that, if ambiguous, separate their outside corners
 Sheets sheets_of(unsigned signs, unsigned outsides_parted) {
   std::array<unsigned, 12> parent{};
   std::iota(parent.begin(), parent.end(), 0U);
@@ -110,7 +111,7 @@ Eigen::Vector3f corner_position(unsigned corner) {
           static_cast<float>(corner >> 2U & 1U)};
 }
 
-// The gradient of the trilinear distance at a position in the cell (0..1), unit.
+// Unit gradient of the trilinear distance at a position in the cell (0..1).
 Eigen::Vector3f normal_at(const CellCorners& corners, const Eigen::Vector3f& position) {
   Eigen::Vector3f gradient = Eigen::Vector3f::Zero();
   for (unsigned corner = 0; corner < 8; ++corner) {
@@ -122,7 +123,7 @@ Eigen::Vector3f normal_at(const CellCorners& corners, const Eigen::Vector3f& pos
                                                               share.x() * sign.y() * share.z(),
                                                               share.x() * share.y() * sign.z());
   }
-  return gradient.normalized();  // all-zero only if the distances cancel; Eigen keeps zero then
+  return gradient.normalized();  // zero only if the distances cancel; Eigen then keeps zero
 }
 
 struct SheetVertex {
@@ -177,14 +178,14 @@ class Net {
   Mesh take() { return std::move(mesh_); }
 
  private:
-  // Of the cells whose lowest voxel is in one brick.
+  // The cells whose lowest voxel is in one brick.
   struct BrickCells {
     std::array<std::uint8_t, kBrickSize> signs{};    // 0: not crossed, or a corner is unknown
-    std::array<std::uint16_t, kBrickSize> vertex{};  // the cell's first, from first_vertex on
+    std::array<std::uint16_t, kBrickSize> vertex{};  // the cell's first vertex, relative to first_vertex
     std::uint32_t first_vertex = 0;
     [[nodiscard]] std::uint32_t first_of(std::size_t offset) const { return first_vertex + vertex[offset]; }
   };
-  // Samples (or cells) of a brick and one voxel more on one side of each axis.
+  // Samples (or cells) of a brick plus one voxel on one side of each axis.
   static constexpr int kWindow = kBrickEdge + 1;
   using SampleWindow = std::array<const BrickSample*, kWindow * kWindow * kWindow>;
 
@@ -198,7 +199,7 @@ class Net {
         for (int x = 0; x < kBrickEdge; ++x) visit(x, y, z);
   }
 
-  // The brick's samples and those one past its upper sides; null where nothing is known.
+  // Collects the brick's samples and those one voxel beyond its upper sides; null if unknown.
   void fill_window(std::size_t b, SampleWindow& window) const {
     const BrickNeighbourhood around(bricks_, b);
     for (int z = 0; z < kWindow; ++z)
@@ -230,7 +231,8 @@ class Net {
     });
   }
 
-  // A vertex a crossed cell, two triangles a vertex: few more if any. What grows holds its content twice.
+  // One vertex per crossed cell and two triangles per vertex, rarely more. A growing vector would temporarily
+  // hold its content twice.
   void reserve() {
     std::size_t crossed = 0;
     for (const BrickCells& brick : cells_)
@@ -246,7 +248,8 @@ class Net {
     return brick == SampleBricks::kNone ? 0U : cells_[brick].signs[offset];
   }
 
-  // With the faces turned that would have four quads on one edge. `cell` relative to the brick's lowest.
+  // Sheets of a cell, with those faces switched that would otherwise give an edge four quads. `cell` is
+  // relative to the brick's lowest voxel.
   [[nodiscard]] Sheets sheets_at(const BrickNeighbourhood& around, const Eigen::Vector3i& cell,
                                  unsigned signs) const {
     const Sheets& usual = sheet_table()[signs];
@@ -274,7 +277,7 @@ class Net {
           static_cast<std::uint16_t>(mesh_.vertices.size() - cells_[b].first_vertex);
       for (int sheet = 0; sheet < sheets.count; ++sheet) {
         const SheetVertex vertex = place_vertex(corners, sheets, sheet);
-        // A sample speaks for its voxel's centre.
+        // Samples are at voxel centres, hence + 0.5.
         const Eigen::Vector3d voxels = (bricks_.bricks()[b].first + voxel).cast<double>() +
                                        vertex.position.cast<double>() + Eigen::Vector3d::Constant(0.5);
         mesh_.vertices.emplace_back((voxels * resolution_m_ - mesh_.origin).cast<float>());
@@ -295,7 +298,7 @@ class Net {
         const Eigen::Vector3i end = voxel + Eigen::Vector3i::Unit(axis);
         const BrickSample* to = window_[in_window(end.x(), end.y(), end.z())];
         if (!to || !is_measured_crossing(*from, *to)) continue;
-        // The four cells round the edge, counter-clockwise seen from its far end.
+        // The four cells around the edge, counter-clockwise seen from its far end.
         const int second = (axis + 1) % 3;
         const int third = (axis + 2) % 3;
         std::array<std::uint32_t, 4> quad{};
@@ -305,13 +308,13 @@ class Net {
               kBack[i][0] * Eigen::Vector3i::Unit(second) + kBack[i][1] * Eigen::Vector3i::Unit(third);
           quad[i] = vertex_across(around, voxel - back, back, axis);
         }
-        if (to->distance_m < 0.0F) std::swap(quad[1], quad[3]);  // the free side is the near end
+        if (to->distance_m < 0.0F) std::swap(quad[1], quad[3]);  // the free side is at `from`
         add_quad(quad);
       }
     });
   }
 
-  // The vertex of the cell's sheet that crosses the edge along `axis` from the corner at `from`.
+  // Vertex of the cell's sheet that crosses the edge along `axis` starting at corner `from`.
   [[nodiscard]] std::uint32_t vertex_across(const BrickNeighbourhood& around, const Eigen::Vector3i& cell,
                                             const Eigen::Vector3i& from, int axis) const {
     const auto [brick, offset] = around.place(cell);
@@ -325,7 +328,7 @@ class Net {
     return cells_[brick].first_of(offset) + sheets_at(around, cell, signs).of_edge[edge];
   }
 
-  // Cut along the shorter diagonal.
+  // Splits the quad along its shorter diagonal.
   void add_quad(const std::array<std::uint32_t, 4>& q) {
     for (const std::uint32_t v : q)
       if (v == kNoVertex) return;
@@ -341,7 +344,7 @@ class Net {
 
   const SampleBricks& bricks_;
   double resolution_m_;
-  std::vector<BrickCells> cells_;  // by brick
+  std::vector<BrickCells> cells_;  // one per brick
   SampleWindow window_{};
   Mesh mesh_;
 };

@@ -1,22 +1,23 @@
-// surface_net.hpp: the zero crossings of signed distances as a closed net of triangles, one voxel fine.
+// surface_net.hpp: dual marching cubes: extracts the zero surface of signed distances at voxel resolution.
 #pragma once
 #include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
-/// A vertex for each sheet of surface that passes between eight neighbouring samples, at the mean of the
-/// sheet's zero crossings on the cell's edges; a quad, as two triangles, across each crossed edge whose four
-/// cells have their vertices. A cell with an unknown corner has none, so that what was not seen stays open;
-/// guessed samples only complete cells: no quad crosses an edge with one, and they hardly move a vertex.
-/// Vertices are in the world (mesh.origin + vertex), triangles and normals (the gradient of the trilinear
-/// distance) look to the free side, colours are those of the samples, grey where they have none.
+/// Each cell of eight neighbouring samples gets one vertex per surface sheet, at the mean of the sheet's zero
+/// crossings on the cell's edges. Each crossed edge whose four cells have vertices gets a quad (two
+/// triangles). A cell with an unknown corner has no vertex, so unobserved areas stay open. Extrapolated
+/// samples only complete cells: an edge with an extrapolated end gets no quad, and its crossing hardly moves
+/// a vertex. Vertices are in the world (mesh.origin + vertex). Triangles and normals (gradient of the
+/// trilinear distance) face the free side. Colours are the samples', grey if they have none.
 ///
-/// Each edge has two triangles, or one where the samples end: sheets are told apart by how the cell's faces
-/// are crossed (diagonal faces part the insides), and where two cells would share a face whose four crossings
-/// are one sheet in both, that face parts the outsides instead.
-/// Source: Gibson, Constrained Elastic Surface Nets, MICCAI 1998 (placement); Nielson, Dual Marching Cubes,
-/// IEEE Visualization 2004 (sheets); Wenger, Isosurfaces, CRC Press 2013, chapter 3 (manifold faces).
+/// Edges are manifold: each has two triangles, or one where the samples end. Sheets are separated by
+/// the crossings of the cell's faces; an ambiguous face (equal signs on each diagonal) separates its inside
+/// corners. If all four crossings of such a face are one sheet in both of its cells, the face separates its
+/// outside corners instead. Source: Gibson, Constrained Elastic Surface Nets, MICCAI 1998 (placement);
+/// Nielson, Dual Marching Cubes, IEEE Visualization 2004 (sheets); Wenger, Isosurfaces, CRC Press 2013,
+/// chapter 3 (manifold faces).
 Mesh surface_net(const SampleBricks& bricks, double resolution_m);
 
 }  // namespace roomradar

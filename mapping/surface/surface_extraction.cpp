@@ -1,4 +1,4 @@
-// surface.cpp: smooth the signed distances, span the net, specks out, then fewer triangles.
+// surface.cpp: smooths the signed distances, extracts the surface, drops small components, simplifies.
 #include "mapping/surface/surface_extraction.hpp"
 
 #include <algorithm>
@@ -18,10 +18,11 @@ namespace roomradar {
 namespace {
 
 constexpr int kSweeps = 6;  // more change the surface by less than 0.1 mm
-// Samples so far round a box are looked at: beyond, they move the surface in it by less than 0.1 mm.
+// Margin around a box in which samples are used; samples beyond move the surface in the box by less than 0.1
+// mm.
 constexpr double kMargin_voxels = 12.0;
 constexpr double kOverlap_voxels = 1.0;
-constexpr float kSpacing_voxels = 1.5F;  // of the points at which the simplified surface is measured
+constexpr float kSpacing_voxels = 1.5F;  // spacing of the points at which the deviation is measured
 
 void require_valid(const SurfaceConfig& config) {
   const SettingRules rules{"surface"};
@@ -40,7 +41,7 @@ Mesh full_surface(const StaticMap& map, const SurfaceConfig& config, SampleBrick
   return surface_net(bricks, map.resolution_m());
 }
 
-// Those with a corner in the box.
+// Returns the triangles that have a corner in the box.
 std::vector<Triangle> triangles_in(const Mesh& mesh, const Eigen::AlignedBox3d& box_world) {
   const Eigen::AlignedBox3f box((box_world.min() - mesh.origin).cast<float>(),
                                 (box_world.max() - mesh.origin).cast<float>());

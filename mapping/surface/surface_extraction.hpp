@@ -1,4 +1,4 @@
-// surface.hpp: the static map's surface as triangles, placed by signed distance.
+// surface.hpp: extracts the static map's surface as a mesh from its signed distances.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -9,36 +9,36 @@
 namespace roomradar {
 
 struct SurfaceConfig {
-  /// Samples with less are taken as unknown: the least is what one frame says from 2.9 m, or eight frames
-  /// from 5 m, and stands for a standard deviation of 9 mm.
+  /// Samples with less weight count as unknown. Default: the weight of one frame at 2.9 m or about ten frames
+  /// at 5 m, a standard deviation of 13 mm.
   float min_weight = 0.02F;
-  /// Strength of the averaging over neighbours, in measurements from 1 m: what is better measured keeps its
-  /// detail, what is worse is smoothed over more voxels. 0: none.
+  /// Strength of smoothing, in measurements from 1 m; 0: none. Samples of higher weight keep their detail,
+  /// those of lower weight are averaged over more voxels.
   float smoothing = 0.4F;
-  float min_component_area_m2 = 4e-3F;  ///< connected pieces with less area are specks (about 6 x 6 cm)
-  /// No point of the surface lies farther from the one with all triangles, nor the other way; 0 keeps every
-  /// triangle.
+  float min_component_area_m2 = 4e-3F;  ///< smaller connected components are dropped (default about 6 x 6 cm)
+  /// Simplification bound: max distance between the simplified and the full surface, in both directions; 0
+  /// keeps every triangle.
   float max_deviation_m = 2e-3F;
 };
 
-/// What became of the triangles.
+/// Triangle counts and error of the simplification.
 struct SurfaceFacts {
-  std::size_t full_triangles = 0;  ///< one voxel fine, specks taken out
+  std::size_t full_triangles = 0;  ///< at voxel resolution, small components dropped
   std::size_t triangles = 0;
-  float deviation_m = 0.0F;  ///< measured between the two, both ways; not above max_deviation_m
+  float deviation_m = 0.0F;  ///< measured in both directions; not above max_deviation_m
 };
 
-/// The zero surface of the map's signed distances, smoothed where they are poorly measured, without specks,
-/// with as few triangles as max_deviation_m allows: large ones where it is flat, small ones where it bends.
-/// No cracks: every edge has two triangles, or one along a border of what was seen, so that holes stay open.
-/// Vertices are in the world (mesh.origin + vertex), normals point to the free side, colours are the
-/// samples'. An empty map gives an empty mesh. Throws Error if the config is out of its rules (values finite
-/// and >= 0). Source: in surface_net.hpp, sample_smoothing.hpp and mesh_simplify.hpp.
+/// Extracts the zero level set of the map's signed distances: smoothed where poorly measured, without small
+/// components, and simplified within max_deviation_m into large triangles on flat areas and small ones on
+/// curved ones. Crack-free: every edge has two triangles, or one along a border of the observed surface, so
+/// holes stay open. Vertices are in the world (mesh.origin + vertex), normals point to the free side, colours
+/// come from the samples. An empty map gives an empty mesh. Throws Error if a setting is not finite and >= 0.
+/// Sources: surface_net.hpp, sample_smoothing.hpp and mesh_simplify.hpp.
 Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceFacts* facts = nullptr);
 
-/// The part of it in a box, and up to two voxels round it: triangles with a corner in the box grown by one
-/// voxel. Samples farther from the box than 12 voxels are not looked at; they would move this part by less
-/// than 0.1 mm. Pieces are judged as specks by what of them lies within those 12 voxels.
+/// Extracts the part of the surface in a box: all triangles with a corner in the box grown by one voxel, so
+/// up to two voxels beyond the box. Samples farther than 12 voxels from the box are ignored; they would move
+/// the result by less than 0.1 mm. The area of components is also measured within those 12 voxels only.
 Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
                      const SurfaceConfig& config = {});
 

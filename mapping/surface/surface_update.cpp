@@ -1,4 +1,4 @@
-// surface_patch.cpp: cut a box out of a mesh, span the net in it, and put the two together.
+// surface_patch.cpp: cuts a box out of a mesh, re-extracts the surface in it, and joins both.
 #include "mapping/surface/surface_update.hpp"
 
 #include <algorithm>
@@ -12,22 +12,22 @@
 namespace roomradar {
 namespace {
 
-// One corner of a polygon being cut.
+// One corner of a polygon being clipped.
 struct Corner {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  // relative to the mesh's origin
   Eigen::Vector3f normal = Eigen::Vector3f::UnitZ();
   Eigen::Vector3f colour = Eigen::Vector3f::Zero();
 };
 
-// A convex polygon: a triangle cut by up to six planes.
+// A convex polygon: a triangle clipped by up to six planes.
 struct Polygon {
   std::array<Corner, 9> corners;
   std::size_t count = 0;
   void add(const Corner& corner) { corners[count++] = corner; }
 };
 
-// Where the edge meets the plane. The same point whichever way round the edge is given, so that two triangles
-// that share it are cut alike.
+// Intersects an edge with a plane. The result does not depend on the edge's direction, so two triangles that
+// share an edge are cut at the same point.
 Corner between(const Corner& a, const Corner& b, Eigen::Index axis, float at) {
   const bool swapped = a.position[axis] > b.position[axis];
   const Corner& low = swapped ? b : a;
@@ -42,7 +42,7 @@ Corner between(const Corner& a, const Corner& b, Eigen::Index axis, float at) {
   return cut;
 }
 
-// Parts a polygon at a plane across an axis.
+// Splits a polygon at a plane across an axis.
 void part(const Polygon& polygon, Eigen::Index axis, float at, Polygon& below, Polygon& above) {
   below.count = above.count = 0;
   for (std::size_t i = 0; i < polygon.count; ++i) {
@@ -137,7 +137,7 @@ class Cutter {
   Mesh out_;
 };
 
-// Adds a mesh's triangles to another's; normals and colours as far as both have them.
+// Appends a mesh to another; keeps normals and colours only if both have them.
 void append(const Mesh& patch, Mesh& mesh) {
   const bool normals = mesh.normals.size() == mesh.vertices.size() && !patch.normals.empty();
   const bool colours = mesh.colours.size() == mesh.vertices.size() && !patch.colours.empty();

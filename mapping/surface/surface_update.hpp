@@ -1,4 +1,4 @@
-// surface_patch.hpp: a part of the map's surface made anew, in the place of the old one.
+// surface_patch.hpp: replaces part of the map's surface mesh by a newly extracted one.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -8,19 +8,18 @@
 
 namespace roomradar {
 
-/// Makes the surface anew in a box, from what the map says now, and leaves the mesh as it is outside: old
-/// triangles are cut where they enter the box, new ones reach a voxel or two out of it, so that no gap stays
-/// between the two; there both lie within twice config.max_deviation_m of the full surface. Costs by the
-/// box's content, and by the mesh's triangles as far as they must be looked at.
+/// Re-extracts the surface in a box from the current map and leaves the mesh outside unchanged. Old triangles
+/// are cut at the box; new ones extend one or two voxels beyond it, so no gap remains. In the overlap both
+/// are within twice config.max_deviation_m of the full surface. Cost: the content of the box, plus one pass
+/// over the mesh's triangles. No change if the box is empty. Throws Error if the config is invalid.
 ///
-/// @param mesh  as extract_surface() gives it, in the world; normals and colours stay only if it has one a
-///              vertex
-/// Nothing changes if the box is empty. Throws Error if the config is out of its rules.
+/// @param mesh  as from extract_surface(), in the world; normals and colours are kept only if present per
+/// vertex
 void renew_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world, const SurfaceConfig& config,
                    Mesh& mesh);
 
-/// What of a mesh lies outside of a box: triangles across its sides are cut there, vertices interpolated.
-/// Vertices that no triangle uses stay out.
+/// Returns the part of a mesh outside a box: triangles across the box's sides are cut there, with
+/// interpolated vertices. Unused vertices are dropped.
 Mesh outside_of(const Mesh& mesh, const Eigen::AlignedBox3d& box_world);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// sample_guess.cpp: two rings of guesses round the measured samples.
+// sample_guess.cpp: extrapolates two layers around the measured samples.
 #include "mapping/surface/tsdf_extrapolation.hpp"
 
 #include <array>
@@ -34,7 +34,7 @@ void guess_neighbours(SampleBricks& bricks) {
           for (int x = 0; x < kBrickEdge; ++x) {
             const Eigen::Vector3i voxel(x, y, z);
             if (all[b].samples[brick_offset(voxel)].known()) continue;
-            float on_lines = 0.0F, beside = 0.0F;  // sums
+            float on_lines = 0.0F, beside = 0.0F;  // sums of distances
             int lines = 0, count = 0;
             for (int side = 0; side < 6; ++side) {
               const Eigen::Vector3i step = (side % 2 == 0 ? 1 : -1) * Eigen::Vector3i::Unit(side / 2);

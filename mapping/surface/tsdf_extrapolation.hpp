@@ -1,13 +1,14 @@
-// sample_guess.hpp: distances for the voxels next to measured ones.
+// sample_guess.hpp: extrapolates signed distances to voxels next to measured ones.
 #pragma once
 #include "mapping/octree/tsdf_bricks.hpp"
 
 namespace roomradar {
 
-/// Gives each unknown voxel beside a known one (by faces, then once more from those) a distance and marks it
-/// as guessed: the mean over the sides with two known voxels of the straight line through them, or if there
-/// is no such side, over the voxels beside it. Only within the bricks that there are. So the cells round a
-/// measured crossing have all their corners, and the net reaches as far as the measurements.
+/// Extrapolates a distance to each unknown voxel that shares a face with a known one, in two rounds, and
+/// marks it as guessed. The distance is the mean of the linear extrapolations from the sides with two known
+/// voxels in line, or, without such a side, the mean of the known face neighbours. Adds no bricks. All cells
+/// around a measured zero crossing then have complete corners, so the surface extends as far as the
+/// measurements.
 void guess_neighbours(SampleBricks& bricks);
 
 }  // namespace roomradar

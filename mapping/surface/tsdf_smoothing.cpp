@@ -8,13 +8,13 @@
 namespace roomradar {
 namespace {
 
-// Samples with this many times the strength behind them would move by less than a tenth of their neighbours'
-// difference.
+// Samples with a weight above this many times the strength are skipped: they would move by less than a tenth
+// of the difference to their neighbours.
 constexpr float kFirm = 30.0F;
 
 struct Stencil {
   std::size_t axis;
-  int step;  // in a brick's arrays
+  int step;  // index step in a brick's arrays
 };
 constexpr std::array<Stencil, 3> kAxes{{{0, 1}, {1, kBrickEdge}, {2, kBrickEdge* kBrickEdge}}};
 
@@ -37,7 +37,7 @@ void smooth(SampleBricks& bricks, float strength, int sweeps) {
     }
     for (std::size_t i = 0; i < kBrickSize; ++i) measured_m[b][i] = all[b].samples[i].distance_m;
   }
-  // The sample one step from i along an axis, in brick b or the next; null where unknown.
+  // The sample one step from i along an axis, in brick b or the next; null if unknown.
   const auto neighbour = [&](std::size_t beyond, std::size_t b, std::size_t i, int step,
                              bool leaves_brick) -> const BrickSample* {
     const std::size_t brick = leaves_brick ? beyond : b;

@@ -1,4 +1,4 @@
-// unknown_surface.cpp: which unknown cells count, which of them can be come to, and their faces.
+// unknown_surface.cpp: selects the unknown cells that count and are reachable, and meshes their faces.
 #include "mapping/surface/unknown_surface.hpp"
 
 #include <algorithm>
@@ -18,16 +18,16 @@ namespace {
 using Eigen::Vector3i;
 
 constexpr double kMostCells = 2e8;  // 25 MB of bits
-constexpr int kGridsAtOnce = 15;    // of bits; most of them when the faces are sought
+constexpr int kGridsAtOnce = 15;    // bit grids alive at the same time; most while faces are collected
 
-// What the map knows, in cells of one voxel, or of more where the map is very large.
+// State of the map in cells of one voxel, or of several if the map is very large.
 struct Known {
   CellGrid grid;
-  VoxelBits free;     // some voxel of the cell is
-  VoxelBits unknown;  // all voxels of the cell are
+  VoxelBits free;     // any voxel of the cell is free
+  VoxelBits unknown;  // all voxels of the cell are unknown
 };
 
-// The box of what is known and a margin round it, from one multiple of `lattice` cells to another.
+// Bounds of the known space plus a margin, aligned to multiples of `lattice` cells.
 CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world, int margin, int lattice,
                     int& cell_voxels) {
   const auto voxel = [&](const Eigen::Vector3d& p) -> Vector3i {
@@ -49,7 +49,7 @@ CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world
 
 Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
                   const UnknownSurfaceConfig& config) {
-  // So wide that all unknown cells of the margin count by what is in the box.
+  // Wide enough that all unknown cells of the margin count, whatever is in the box.
   const int margin = std::max(config.least_voxels, config.cube_voxels);
   Known known;
   int edge = 1;
@@ -67,11 +67,11 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
   return known;
 }
 
-// Takes out of `unknown` the pieces of less than pocket_voxels that hang in free space.
+// Removes from `unknown` the components of less than pocket_voxels that are surrounded by free space.
 void leave_out_pockets(const Known& known, const std::array<VoxelBits, 3>& barred,
                        const UnknownSurfaceConfig& config, VoxelBits& unknown) {
   const VoxelBits everywhere(known.grid.size, true);
-  VoxelBits held = everywhere;  // by something occupied, or by the margin
+  VoxelBits held = everywhere;  // connected to something occupied or to the margin
   held.subtract(known.unknown).subtract(known.free);
   for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, barred);
   held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
@@ -99,8 +99,8 @@ void leave_out_pockets(const Known& known, const std::array<VoxelBits, 3>& barre
   });
 }
 
-// Where an object can be that comes from free space: through free voxels as far as they go, then on for
-// rim_voxels through whatever does not count as unknown.
+// Cells that an object coming from free space can reach: any distance through free voxels, then rim_voxels
+// further through anything that does not count as unknown.
 VoxelBits reachable(const VoxelBits& free, const VoxelBits& unknown, const std::array<VoxelBits, 3>& barred,
                     const UnknownSurfaceConfig& config) {
   VoxelBits reached = opened(free, config.least_voxels);
@@ -111,7 +111,7 @@ VoxelBits reachable(const VoxelBits& free, const VoxelBits& unknown, const std::
   return reached;
 }
 
-// The faces of unknown cells towards reached ones that no surface parts from them.
+// Faces of unknown cells towards reached ones, unless a surface separates the two.
 std::vector<CellFaces> faces_between(const VoxelBits& unknown, const VoxelBits& reached,
                                      const std::array<VoxelBits, 3>& barred) {
   std::vector<CellFaces> faces;

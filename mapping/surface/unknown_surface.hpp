@@ -1,4 +1,4 @@
-// unknown_surface.hpp: a surface where seen free space ends and space begins that nobody has seen.
+// unknown_surface.hpp: extracts the border between observed free space and unknown space as a surface.
 #pragma once
 #include <cstddef>
 
@@ -10,46 +10,46 @@
 namespace roomradar {
 
 struct UnknownSurfaceConfig {
-  /// Unknown space counts where a cube of so many voxels a side fits into it, and free space is a place to
-  /// come from where one fits into that. Thinner unknown space (gaps between rays, slivers beside depth
-  /// edges, single voxels) is taken as what is round it. 1 to 16.
+  /// Side of a cube, voxels, 1 to 16. Unknown space counts only where such a cube fits, and free space is a
+  /// starting point only where one fits. Thinner unknown space (gaps between rays, slivers beside depth
+  /// edges, single voxels) is treated like its surroundings.
   int least_voxels = 3;
-  /// The surface is made of the faces of cubes of so many voxels a side, all of them unknown: it stands less
-  /// than a cube behind the border of what counts. 1 to 6.
+  /// Side, voxels, of the wholly unknown cubes whose faces form the surface, 1 to 6. The surface is less than
+  /// one cube behind the border of unknown space that counts.
   int cube_voxels = 2;
-  /// The surface goes on for so many voxels behind the rim of what was seen, and through occupied voxels that
-  /// the static surface leaves open. 1 to 16, and at least 3 * (cube_voxels - 1): so many steps the nearest
-  /// cube may be away from the border.
+  /// The surface continues for this many voxels behind the rim of observed surfaces, and through occupied
+  /// voxels that the static surface leaves open. 1 to 16, and at least 3 * (cube_voxels - 1), the max number
+  /// of steps from the border to the nearest cube.
   int rim_voxels = 4;
-  /// A piece of unknown space with fewer voxels, and nothing occupied within cube_voxels steps of
-  /// it, does not count: rays passed on all sides and met nothing, so only depth was missing there, as before
-  /// something dark. 0 to 10^9.
+  /// Connected components of unknown space with fewer voxels do not count if nothing is occupied within
+  /// cube_voxels steps. Rays passed them on all sides without a hit, so only depth was missing, as in front
+  /// of something dark. 0 to 10^9.
   int pocket_voxels = 1000;
 };
 
-/// Throws Error naming field, value and rule.
+/// Throws Error naming field, value and rule if a setting is out of range.
 void require_valid(const UnknownSurfaceConfig& config);
 
 struct UnknownSurface {
-  Mesh mesh_world;    ///< no colours, no normals; triangles look away from the unknown
-  CellGrid grid;      ///< of the map's voxels; of a map too large for a bit a voxel, of cubes of them
-  VoxelBits unknown;  ///< the grid's cells that are unknown and count; so is all outside of it
-  std::size_t memory_bytes = 0;  ///< that making it took, about, besides the mesh
+  Mesh mesh_world;  ///< no colours, no normals; triangles face away from unknown space
+  CellGrid grid;  ///< the map's voxels; cubes of several voxels if the map is too large for one bit per voxel
+  VoxelBits unknown;  ///< cells of unknown space that counts; everything outside the grid is unknown, too
+  std::size_t memory_bytes = 0;  ///< approximate temporary memory of the extraction, without the mesh
 };
 
-/// The border of the unknown space that counts, as far as it can be come to from free space without crossing
-/// `surface_world`, the map's own surface. What lies past all that the map knows is unknown too.
+/// Extracts the border of the unknown space that counts, where it is reachable from free space without
+/// crossing `surface_world`, the map's own surface. Space outside the known bounds of the map is unknown,
+/// too.
 ///
-/// It stands in unknown space, never in free: along each axis less than cube_voxels voxels behind the border
-/// of what counts. A straight way from free space that counts into unknown cubes crosses it or the static
-/// surface, which it overlaps at the rim; only where the static surface itself has a hole smaller than a
-/// voxel may something as thin come through. Rectangles are as large as the cubes allow. Empty for a map
-/// without free space. Some 0.4 s for 50 million voxels. Throws Error if the config is out of its rules.
+/// The result is inside unknown space, never in free space: less than cube_voxels voxels behind the border
+/// along each axis. A straight path from free space that counts into unknown cubes crosses this surface or
+/// the static one, which it overlaps at the rim. Only through a static surface's hole smaller than a voxel
+/// may an equally thin object pass. Rectangles are as large as the cubes allow. Empty for a map without free
+/// space. Takes about 0.4 s for 50 million voxels. Throws Error if the config is invalid.
 UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
                                const UnknownSurfaceConfig& config = {});
 
-/// Whether a point lies in unknown space that counts. True for what is not finite; false everywhere if the
-/// map had no free space.
+/// True if a point is in unknown space that counts, or not finite. Always false if the map had no free space.
 bool is_unknown(const UnknownSurface& surface, const Eigen::Vector3d& p_world);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// cell_faces.cpp: faces, plane by plane, joined to rectangles.
+// cell_faces.cpp: merges faces into rectangles, one plane at a time.
 #include "mapping/surface/voxel_face_mesh.hpp"
 
 #include <algorithm>
@@ -10,12 +10,12 @@ namespace {
 
 using Eigen::Vector3i;
 
-// A face in its plane: u and v are the two axes after its own.
+// A face in its plane: u and v are the next two axes after the face's own.
 struct Face {
   int plane, v, u;
 };
 
-// Planes ascending, row by row in each.
+// Sorted by plane, then by row.
 std::vector<Face> sorted_faces(const CellFaces& faces) {
   const int u = (faces.axis + 1) % 3, v = (faces.axis + 2) % 3;
   std::vector<Face> sorted;
@@ -26,7 +26,7 @@ std::vector<Face> sorted_faces(const CellFaces& faces) {
   return sorted;
 }
 
-// The faces of a plane that no rectangle has yet.
+// The faces of a plane that are not in a rectangle so far.
 class OpenFaces {
  public:
   OpenFaces(int width, int height)
@@ -36,13 +36,13 @@ class OpenFaces {
 
   void open(int u, int v) { open_[index(u, v)] = 1; }
   [[nodiscard]] bool is_open(int u, int v) const { return open_[index(u, v)] != 0; }
-  /// The largest u before which all from from_u on are open.
+  /// Returns the end of the run of open faces that starts at from_u.
   [[nodiscard]] int row_end(int from_u, int v) const {
     int u = from_u;
     while (u < width_ && is_open(u, v)) ++u;
     return u;
   }
-  /// The largest v before which all rows from from_v on are open from from_u to before to_u.
+  /// Returns the end of the run of rows, from from_v on, in which all faces in [from_u, to_u) are open.
   [[nodiscard]] int column_end(int from_u, int to_u, int from_v) const {
     int v = from_v;
     while (v < height_ && row_end(from_u, v) >= to_u) ++v;

@@ -1,13 +1,14 @@
-// cell_faces.hpp: faces of a grid's cells as a mesh of few triangles.
+// cell_faces.hpp: meshes faces of grid cells with few triangles.
 #pragma once
 #include "mapping/surface/bit_grid.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
-/// A box of cubes that stand on a lattice in the world.
+/// A box of cubic cells on a lattice in the world.
 struct CellGrid {
-  Eigen::Vector3i first_cell = Eigen::Vector3i::Zero();  ///< its lowest corner is at first_cell * cell_m
+  Eigen::Vector3i first_cell = Eigen::Vector3i::Zero();  ///< the box's lowest corner is at first_cell *
+                                                         ///< cell_m
   Eigen::Vector3i size = Eigen::Vector3i::Zero();
   double cell_m = 0.0;
 };
@@ -19,10 +20,9 @@ struct CellFaces {
   int step = 1;
 };
 
-/// Faces of one plane are joined to rectangles: each as long as it can be, then as broad. Triangles look the
-/// way of their faces' step; no normals, no colours. Where rectangles of different length meet, a corner of
-/// one lies within a side of the other, exactly: both have the same two coordinates, so nothing passes
-/// between.
+/// Greedy meshing: merges the faces of a plane into rectangles, each first extended in length, then in width.
+/// Triangles face in the direction of `step`; no normals, no colours. T-junctions between rectangles leave no
+/// gaps: the corner is exactly on the other rectangle's side, since both share two coordinates.
 Mesh mesh_of(const std::vector<CellFaces>& faces, const CellGrid& grid);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// frame.hpp: what a depth sensor delivers at one instant.
+// frame.hpp: depth, colour, cameras and pose delivered by a sensor at one instant.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -9,21 +9,21 @@
 
 namespace roomradar {
 
-/// "The camera" of a frame is its depth camera; the colour camera stands beside it, T_colour_depth away.
+/// Names with `camera` alone mean the depth camera; T_colour_depth leads to the colour camera.
 struct Frame {
-  std::int64_t index = 0;  ///< position in the recording, counted from 0, skipped frames counted too
-  double stamp_s = 0.0;    ///< sensor time; a recording without stamps gets index / 30
+  std::int64_t index = 0;  ///< index in the recording from 0, skipped frames included
+  double stamp_s = 0.0;    ///< sensor time; index / 30 in a recording without timestamps
 
-  DepthImage depth_m;  ///< of depth_camera's size
+  DepthImage depth_m;  ///< same size as depth_camera
   Intrinsics depth_camera;
 
-  ColourImage colour;  ///< of colour_camera's size, or empty where the source has none
+  ColourImage colour;  ///< same size as colour_camera; empty if the source has none
   Intrinsics colour_camera;
-  double colour_after_depth_s = 0.0;  ///< how much later the colour was taken; 0 where the source cannot say
-  /// Depth-camera points to colour-camera points.
+  double colour_after_depth_s = 0.0;  ///< colour time minus depth time; 0 if unknown
+  /// Maps depth-camera points to colour-camera points.
   Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();
 
-  std::optional<Eigen::Isometry3d> T_world_camera;  ///< of the depth camera, in the recording's own world
+  std::optional<Eigen::Isometry3d> T_world_camera;  ///< depth camera's pose in the recording's world
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame
 };
 

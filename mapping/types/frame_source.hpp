@@ -1,4 +1,4 @@
-// frame_source.hpp: the one seam with virtual functions: where frames come from.
+// frame_source.hpp: interface of recordings and live devices that deliver frames.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,17 +10,17 @@ namespace roomradar {
 
 enum class ReadStatus {
   kFrame,    ///< `frame` was filled
-  kSkipped,  ///< one bad frame was passed over; `fault` says which and why; go on with the next
-  kEnd,      ///< no more frames; `frame` is as it was
+  kSkipped,  ///< one bad frame was skipped; `fault` names it and the reason; call next() again
+  kEnd,      ///< no more frames; `frame` is unchanged
 };
 
 struct [[nodiscard]] ReadResult {
   ReadStatus status = ReadStatus::kEnd;
-  std::string fault;     ///< a sentence, only if skipped
-  bool waiting = false;  ///< skipped, but no frame was passed over: a live source has had none for a while
+  std::string fault;     ///< a sentence; only with kSkipped
+  bool waiting = false;  ///< with kSkipped: no frame was lost, a live source has delivered none for a while
 };
 
-/// Frames in the order of their stamps. Not thread safe.
+/// Delivers frames in the order of their timestamps. Not thread safe.
 class FrameSource {
  public:
   FrameSource() = default;
@@ -28,21 +28,21 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
   virtual ~FrameSource() = default;
 
-  /// Fills `frame`, reusing its allocations. A single unreadable frame is kSkipped; a source that cannot go
-  /// on (device gone, disk error, ten unreadable frames one after the other) throws Error.
+  /// Fills `frame`, reusing its allocations. Returns kSkipped for a single unreadable frame. Throws Error if
+  /// the source cannot continue: device gone, disk error, or ten unreadable frames in a row.
   virtual ReadResult next(Frame& frame) = 0;
 
-  /// Goes back to the first frame and returns true, or returns false if this source cannot (a live device).
+  /// Goes back to the first frame and returns true; returns false if this source cannot (a live device).
   virtual bool rewind() = 0;
 
-  /// Goes to frame `index` (0 .. frame_count() - 1) without reading those between, so that next() delivers
-  /// it, and returns true; or returns false, changing nothing, if this source can only go frame by frame.
+  /// Jumps to frame `index` (0 .. frame_count() - 1) without reading the frames between; next() then delivers
+  /// it. Returns false and changes nothing if this source only reads sequentially.
   virtual bool seek(std::int64_t /*index*/) { return false; }
 
-  /// Frames from first to last, bad ones included, where known beforehand.
+  /// Total number of frames, bad ones included; nullopt if unknown in advance.
   [[nodiscard]] virtual std::optional<std::int64_t> frame_count() const = 0;
 
-  /// As the user named it, for messages and reports.
+  /// The source as the user named it, for messages and reports.
   [[nodiscard]] virtual std::string name() const = 0;
 };
 

@@ -12,7 +12,7 @@ struct Rgb {
   friend bool operator==(const Rgb&, const Rgb&) = default;
 };
 
-/// height x width pixels, row by row from the top left, no padding between rows.
+/// height x width pixels, row-major from the top left, without padding between rows.
 template <typename Pixel>
 struct Image {
   int width = 0;
@@ -22,7 +22,7 @@ struct Image {
   Image() = default;
   Image(int width_px, int height_px, Pixel fill = Pixel{}) { resize(width_px, height_px, fill); }
 
-  /// Gives the image this size and sets every pixel; keeps the allocation when it is large enough.
+  /// Resizes the image and sets every pixel; keeps the allocation if it is large enough.
   void resize(int width_px, int height_px, Pixel fill = Pixel{}) {
     assert(width_px >= 0 && height_px >= 0);
     width = width_px;
@@ -40,11 +40,11 @@ struct Image {
   const Pixel* row(int y) const { return pixels.data() + index(0, y); }
 };
 
-/// Metres along the optical axis; 0 means that nothing was measured. Never NaN, negative or infinite:
-/// the sources see to that, and everything behind them relies on it.
+/// Depth along the optical axis, m; 0: no measurement. Never NaN, negative or infinite: frame sources
+/// guarantee this and all other code relies on it.
 using DepthImage = Image<float>;
 using ColourImage = Image<Rgb>;
-/// One byte a pixel, 0 or 255.
+/// One byte per pixel, 0 or 255.
 using MaskImage = Image<std::uint8_t>;
 
 }  // namespace roomradar

@@ -1,12 +1,12 @@
-// intrinsics.hpp: the pinhole camera, and the frame that its points live in.
+// intrinsics.hpp: the pinhole camera and its coordinate frame.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
 
 namespace roomradar {
 
-/// Pinhole camera without distortion. Camera frame: x right, y down, z forward (OpenCV's).
-/// Pixel (0, 0) has its centre at image coordinates (0, 0): u = fx * x / z + cx.
+/// Pinhole camera without distortion. Camera frame: x right, y down, z forward (OpenCV convention). The
+/// centre of pixel (0, 0) is at image coordinates (0, 0): u = fx * x / z + cx.
 struct Intrinsics {
   int width_px = 0;
   int height_px = 0;
@@ -17,7 +17,7 @@ struct Intrinsics {
   friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
 };
 
-/// Point in the camera frame (m) seen at image coordinates (u, v) at depth_m along the optical axis.
+/// Point in the camera frame, m, for image coordinates (u, v) and depth_m along the optical axis.
 inline Eigen::Vector3d back_project(const Intrinsics& camera, double u_px, double v_px, double depth_m) {
   return {(u_px - camera.cx_px) / camera.fx_px * depth_m, (v_px - camera.cy_px) / camera.fy_px * depth_m,
           depth_m};
@@ -29,9 +29,8 @@ inline Eigen::Vector2d project(const Intrinsics& camera, const Eigen::Vector3d& 
           camera.fy_px * p_camera.y() / p_camera.z() + camera.cy_px};
 }
 
-/// The same camera with its image made `factor` times as large (0.5: half the width, half the height, rounded
-/// down). Pixel centres stay where they are in the world: centres are at whole numbers, so cx' = (cx + 0.5) *
-/// factor - 0.5.
+/// The same camera with its image scaled by `factor` (0.5: half the width, half the height, rounded down).
+/// Pixel centres are at integer coordinates, so cx' = (cx + 0.5) * factor - 0.5.
 inline Intrinsics scaled(const Intrinsics& camera, double factor) {
   return {static_cast<int>(std::floor(camera.width_px * factor)),
           static_cast<int>(std::floor(camera.height_px * factor)),
@@ -41,8 +40,8 @@ inline Intrinsics scaled(const Intrinsics& camera, double factor) {
           (camera.cy_px + 0.5) * factor - 0.5};
 }
 
-/// Throws Error naming `where`, the field and the rule if the camera cannot be one: sizes in 1..16384, focal
-/// lengths finite and > 0, principal point finite and within one image size of the image.
+/// Throws Error naming `where`, the field and the rule if the camera is invalid. Valid: sizes in 1..16384,
+/// focal lengths finite and > 0, principal point finite and within one image size of the image.
 void require_valid(const Intrinsics& camera, const char* where);
 
 }  // namespace roomradar

@@ -1,24 +1,24 @@
-// lens.hpp: how a real lens bends the pinhole camera's rays.
+// lens.hpp: lens distortion and its inverse.
 #pragma once
 #include <cmath>
 
 namespace roomradar {
 
-/// Radial and tangential distortion as OpenCV writes it, k1 k2 p1 p2 k3; all 0: a pinhole.
-/// Source: Brown, Decentering distortion of lenses, Photogrammetric Engineering 1966.
+/// Radial and tangential distortion, OpenCV's k1 k2 p1 p2 k3; all 0 means a pinhole. Source: Brown,
+/// Decentering distortion of lenses, Photogrammetric Engineering 1966.
 struct Lens {
   double k1 = 0.0, k2 = 0.0, p1 = 0.0, p2 = 0.0, k3 = 0.0;
   friend bool operator==(const Lens&, const Lens&) = default;
 };
 
-/// A point of the image plane at distance 1 before the camera: x right, y down, no unit.
+/// Normalised image coordinates: the image plane at z = 1, x right, y down, no unit.
 template <typename Scalar>
 struct PlanePoint {
   Scalar x{}, y{};
 };
 
-/// Where the lens puts what a pinhole would show at `p`. Works on any Scalar, also one that carries
-/// derivatives; k1 to k3 are given apart for that reason.
+/// Distorts the normalised point `p`. Scalar and Coefficient may be automatic-differentiation types,
+/// independently of each other; therefore the coefficients are separate parameters.
 template <typename Scalar, typename Coefficient>
 PlanePoint<Scalar> distorted(const PlanePoint<Scalar>& p, const Coefficient& k1, const Coefficient& k2,
                              const Coefficient& p1, const Coefficient& p2, const Coefficient& k3) {
@@ -31,8 +31,8 @@ inline PlanePoint<double> distorted(const PlanePoint<double>& p, const Lens& len
   return distorted(p, lens.k1, lens.k2, lens.p1, lens.p2, lens.k3);
 }
 
-/// The other way, by a fixed number of Newton's steps. Within 1e-12 for lenses that move no point of the
-/// image by more than a tenth of its distance from the middle.
+/// Inverse of distorted(), by a fixed number of Newton steps. Accurate to 1e-12 for lenses that move no image
+/// point by more than a tenth of its distance from the centre.
 template <typename Scalar, typename Coefficient>
 PlanePoint<Scalar> undistorted(const PlanePoint<Scalar>& p_distorted, const Coefficient& k1,
                                const Coefficient& k2, const Coefficient& p1, const Coefficient& p2,
@@ -44,12 +44,13 @@ PlanePoint<Scalar> undistorted(const PlanePoint<Scalar>& p_distorted, const Coef
     const Scalar missing_x = p_distorted.x - there.x, missing_y = p_distorted.y - there.y;
     const Scalar r2 = p.x * p.x + p.y * p.y;
     const Scalar radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-    const Scalar growth = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3));  // of radial, by half of r2
+    const Scalar growth = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3));  // 2 d(radial)/d(r2)
     const Scalar xx = radial + p.x * p.x * growth + 2.0 * p1 * p.y + 6.0 * p2 * p.x;
     const Scalar xy = p.x * p.y * growth + 2.0 * p1 * p.x + 2.0 * p2 * p.y;
     const Scalar yy = radial + p.y * p.y * growth + 6.0 * p1 * p.y + 2.0 * p2 * p.x;
     const Scalar determinant = xx * yy - xy * xy;
-    if (!(determinant > Scalar(0.1))) {  // the lens folds the image here: no lens does, but a file may say so
+    // The model folds the image here. No real lens does, but a file may contain such coefficients.
+    if (!(determinant > Scalar(0.1))) {
       p = {p.x + missing_x, p.y + missing_y};
       continue;
     }

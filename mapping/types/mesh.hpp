@@ -1,4 +1,4 @@
-// mesh.hpp: triangles in the world, kept near a local origin so that float vertices stay exact.
+// mesh.hpp: triangle meshes with float vertices relative to a local origin, which keeps them precise.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -9,16 +9,15 @@
 
 namespace roomradar {
 
-/// Counter-clockwise seen from outside (from where the sensor stood).
+/// Counter-clockwise seen from outside (the sensor's side).
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Indexed triangles. A vertex stands at origin + vertices[i] in the mesh's frame (world, or an object's
-/// own).
+/// Indexed triangles. Vertex i is at origin + vertices[i] in the mesh's frame (world or object frame).
 struct Mesh {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m; vertices are float and relative to it
-  std::vector<Eigen::Vector3f> vertices;             ///< m
-  std::vector<Eigen::Vector3f> normals;              ///< unit, outward; empty or one a vertex
-  std::vector<Rgb> colours;                          ///< empty or one a vertex
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< m
+  std::vector<Eigen::Vector3f> vertices;             ///< m, relative to origin
+  std::vector<Eigen::Vector3f> normals;              ///< unit, outward; empty or one per vertex
+  std::vector<Rgb> colours;                          ///< empty or one per vertex
   std::vector<Triangle> triangles;
 };
 

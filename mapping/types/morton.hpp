@@ -1,4 +1,4 @@
-// morton.hpp: a cell of a cube as one number, so that neighbouring numbers are mostly neighbouring cells.
+// morton.hpp: Morton codes (Z-order) of grid cells.
 #pragma once
 #include <cstdint>
 
@@ -14,8 +14,8 @@ constexpr std::uint64_t spread_bits(std::uint32_t key) {
   return x;
 }
 
-/// Coordinates in 0..65535. The octal digits are the child indices in an octree from the root down, x with
-/// weight 1, y 2, z 4, as OctoMap numbers the children of its 16-bit keys.
+/// Coordinates in 0..65535. Octal digits are the child indices from an octree's root down, x with weight 1, y
+/// 2, z 4, which is OctoMap's child numbering for 16-bit keys.
 constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
   return spread_bits(x) | spread_bits(y) << 1U | spread_bits(z) << 2U;
 }

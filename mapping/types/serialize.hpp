@@ -1,4 +1,4 @@
-// byte_archive.hpp: values to bytes and back, each type's fields listed once for both ways.
+// byte_archive.hpp: binary serialization; transfer() lists each type's fields once, for writing and reading.
 #pragma once
 #include <Eigen/Geometry>
 #include <bit>
@@ -30,8 +30,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what a ByteWriter wrote. Not trusted: ends and sizes are checked before memory is taken; what cannot
-/// be right throws Error naming the file.
+/// Reads what a ByteWriter wrote. The input is not trusted: ends and sizes are checked before memory is
+/// allocated. Invalid values throw Error naming the file.
 class ByteReader {
  public:
   static constexpr bool kReads = true;
@@ -41,11 +41,11 @@ class ByteReader {
     if (count > 0) std::memcpy(to, bytes_.data(), count);
     bytes_.remove_prefix(count);
   }
-  /// Are there bytes for `count` items of at least so many?
+  /// Throws Error if fewer than `count` * `item_bytes` bytes are left.
   void require(std::uint64_t count, std::size_t item_bytes) const {
     if (count > bytes_.size() / item_bytes) fail("is cut short");
   }
-  /// The next bytes, passed over.
+  /// Returns the next `count` bytes and moves past them.
   std::string_view take(std::size_t count) {
     require(count, 1);
     const std::string_view taken = bytes_.substr(0, count);
@@ -79,7 +79,7 @@ void transfer(Archive& archive, Number& number) {
   }
 }
 
-/// An enumeration whose values run from 0 to `last`.
+/// Enumeration whose values run from 0 to `last`.
 template <typename Archive, typename Enum>
 requires std::is_enum_v<Enum>
 void transfer(Archive& archive, Enum& value, Enum last) {
@@ -102,7 +102,7 @@ void transfer(Archive& archive, std::string& text) {
   archive.raw(text.data(), size);
 }
 
-/// Matrices of a fixed size.
+/// Fixed-size matrices, as raw scalars in Eigen's storage order.
 template <typename Archive, typename Scalar, int kRows, int kColumns>
 void transfer(Archive& archive, Eigen::Matrix<Scalar, kRows, kColumns>& matrix) {
   static_assert(kRows > 0 && kColumns > 0);
@@ -139,7 +139,7 @@ void transfer(Archive& archive, std::vector<Item>& items) {
   std::uint64_t size = items.size();
   transfer(archive, size);
   if constexpr (Archive::kReads) {
-    archive.require(size, 1);  // every item has a byte at least
+    archive.require(size, 1);  // every item has at least one byte
     items.clear();
     for (std::uint64_t i = 0; i < size; ++i) transfer(archive, items.emplace_back());
   } else {

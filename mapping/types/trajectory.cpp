@@ -1,4 +1,4 @@
-// trajectory.cpp: reading, writing and scoring poses over time.
+// trajectory.cpp: reads, writes and scores poses over time.
 #include "mapping/types/trajectory.hpp"
 
 #include <array>
@@ -19,7 +19,7 @@ struct MatchedPoints {
   Eigen::Matrix3Xd estimated, expected;
 };
 
-/// Points of the camera where the two have them, of the frames that both know.
+/// Transforms points of the camera by both trajectories, for the frames that both contain.
 MatchedPoints matched_points(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& reference,
                              const Eigen::Matrix3Xd& points_camera) {
   std::map<std::int64_t, const Eigen::Isometry3d*> T_reference_camera;

@@ -1,4 +1,4 @@
-// validity.cpp: the rules that cameras and frames from outside must keep.
+// validity.cpp: rules for cameras and frames from outside.
 #include "mapping/types/validity.hpp"
 
 #include <cmath>
@@ -26,7 +26,7 @@ std::optional<Fault> projection_fault(const Intrinsics& c) {
 }
 
 std::optional<Fault> fault_of(const Intrinsics& c) {
-  constexpr int kMaxSize_px = 16384;  // what every GL renderer we know can draw in one pass
+  constexpr int kMaxSize_px = 16384;  // all GL renderers known to us can draw this in one pass
   const auto is_size = [](int size_px) { return size_px >= 1 && size_px <= kMaxSize_px; };
   const auto is_near = [](double centre_px, int size_px) {
     return centre_px >= -size_px && centre_px <= 2.0 * size_px;
@@ -66,7 +66,7 @@ bool is_rigid(const Eigen::Isometry3d& T, double tolerance) {
 }
 
 std::string_view depth_fault_of(const Frame& frame) {
-  if (!is_valid(frame.depth_camera)) return "its depth camera cannot be one";
+  if (!is_valid(frame.depth_camera)) return "its depth camera is invalid";
   if (!fits(frame.depth_m, frame.depth_camera)) return "its depth image and its depth camera differ in size";
   return {};
 }
@@ -74,7 +74,7 @@ std::string_view depth_fault_of(const Frame& frame) {
 std::string_view fault_of(const Frame& frame) {
   const std::string_view of_depth = depth_fault_of(frame);
   if (!of_depth.empty() || frame.colour.empty()) return of_depth;
-  if (!is_valid(frame.colour_camera)) return "its colour camera cannot be one";
+  if (!is_valid(frame.colour_camera)) return "its colour camera is invalid";
   if (!fits(frame.colour, frame.colour_camera))
     return "its colour image and its colour camera differ in size";
   return {};

@@ -1,14 +1,14 @@
-// cell_code.hpp: the cells of a grid: which one a voxel is in, as keys of a hash table, and those round one.
+// cell_code.hpp: integer grid cells: floor division, hash keys, and the 27-cell neighbourhood.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
 
 namespace roomradar {
 
-/// a / b rounded down, below zero, too; b > 0.
+/// a / b rounded towards minus infinity; b > 0.
 inline int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
-/// One number a cell; different for cells that are less than 2^21 apart along each axis.
+/// Hash key of a cell; distinct for cells less than 2^21 apart along each axis.
 inline std::uint64_t cell_code(std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto field = [](std::int64_t i) { return static_cast<std::uint64_t>(i + (1 << 20)) & 0x1F'FFFFU; };
   return field(x) | field(y) << 21U | field(z) << 42U;
@@ -19,7 +19,7 @@ inline std::uint64_t cell_code(const Eigen::Vector3i& cell) {
 
 inline constexpr int kCellsRound = 27;
 inline constexpr int kOwnCell = 13;
-/// From a cell to the i-th of those round it, itself (kOwnCell) among them.
+/// Offset from a cell to its i-th neighbour, 0 <= i < 27; kOwnCell is the offset zero.
 inline Eigen::Vector3i cell_round(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
 
 }  // namespace roomradar

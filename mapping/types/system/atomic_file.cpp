@@ -1,4 +1,4 @@
-// whole_file.cpp: write beside, sync, rename.
+// whole_file.cpp: writes a partial file, syncs, renames.
 #include "mapping/types/system/atomic_file.hpp"
 
 #include <fcntl.h>
@@ -31,7 +31,7 @@ bool reaches_disk(const fs::path& path) {
   return synced;
 }
 
-/// Of stdout and stderr the one that goes to the file; -1 if none does.
+/// Returns STDOUT_FILENO or STDERR_FILENO if that stream is redirected to the file, else -1.
 int stream_of_process(const fs::path& path) {
   struct stat file {
   }, stream{};
@@ -48,7 +48,7 @@ WholeFile::WholeFile(const fs::path& target) : target_(target) {
   std::error_code fault;
   if (fs::is_symlink(target, fault) && fs::exists(target, fault)) {
     const fs::path real = fs::canonical(target, fault);
-    if (!fault) target_ = real;  // none has the pipe behind /dev/stdout
+    if (!fault) target_ = real;  // canonical() fails for the pipe behind /dev/stdout
   }
   const bool is_plain = !fs::exists(target_, fault) || fs::is_regular_file(target_, fault);
   if (is_plain) stream_of_process_ = stream_of_process(target_);
@@ -72,7 +72,9 @@ void WholeFile::put_in_place() {
   errno = 0;
   stream_.close();
   if (!stream_) fail(target_, errno != 0 ? std::strerror(errno) : "not all of it was taken");
-  if (stream_of_process_ >= 0) ::lseek(stream_of_process_, 0, SEEK_END);  // it has a place of its own
+  if (stream_of_process_ >= 0)
+    ::lseek(stream_of_process_, 0, SEEK_END);  // stdout keeps a separate file
+                                               // offset
   if (partial_ == target_) return;
   std::error_code fault;
   if (fs::exists(target_, fault) && !reaches_disk(partial_)) fail(target_, std::strerror(errno));

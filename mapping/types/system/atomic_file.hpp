@@ -1,33 +1,34 @@
-// whole_file.hpp: a file that appears whole or not at all.
+// whole_file.hpp: atomic file writing.
 #pragma once
 #include <filesystem>
 #include <fstream>
 
 namespace roomradar {
 
-/// A file that is written beside `target` (target.partial-PID) and takes its place when it is whole; until
-/// then, and after any fault, `target` is what it was. What is no plain file (a pipe, a device) is written as
-/// it comes; a file that stdout or stderr goes to is written on, in line with what these say.
+/// Writes to target.partial-PID and renames it to `target` once complete; until then, and after any error,
+/// `target` is unchanged. A `target` that is not a regular file (a pipe, a device) is written directly. A
+/// file that stdout or stderr is redirected to is appended to directly, in order with their output.
 class WholeFile {
  public:
-  /// Throws Error, with the system's reason, if nothing can be written there.
+  /// Throws Error, with the system's reason, if the file cannot be opened.
   explicit WholeFile(const std::filesystem::path& target);
-  /// Takes away what was not put in place.
+  /// Deletes the partial file unless put_in_place() succeeded.
   ~WholeFile();
   WholeFile(const WholeFile&) = delete;
   WholeFile& operator=(const WholeFile&) = delete;
 
-  /// To write to, in binary mode.
+  /// Binary stream to write to.
   [[nodiscard]] std::ostream& stream() { return stream_; }
 
-  /// Makes it `target` in one step; a file that it replaces goes only when this one is on the disk. Throws
-  /// Error if not all that was written could be, or the file system does not do it.
+  /// Renames the partial file to `target` atomically. A file being replaced is dropped only after the new one
+  /// is synced to disk. Throws Error if writing, syncing or renaming fails.
   void put_in_place();
 
  private:
   std::filesystem::path target_;
-  std::filesystem::path partial_;  ///< the target itself, if that is not to be replaced
-  int stream_of_process_ = -1;     ///< that goes to the target, too; -1: none
+  std::filesystem::path partial_;  ///< equals target_ if written directly
+  int stream_of_process_ = -1;     ///< descriptor of the stdout or stderr that is redirected to the target;
+                                   ///< -1: none
   std::ofstream stream_;
 };
 

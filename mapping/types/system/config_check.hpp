@@ -1,4 +1,4 @@
-// setting_rules.hpp: the one sentence for a setting that breaks its rule.
+// setting_rules.hpp: range checks of settings, with one form of error message.
 #pragma once
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace roomradar {
 
-/// The rules of one group of settings. Called with a rule that does not hold it throws Error:
-/// "fusion.max_range_m = -1: must be in 0..100 m".
+/// Rules of one group of settings. A call with `holds` false throws Error: "fusion.max_range_m = -1: must be
+/// in 0..100 m".
 struct SettingRules {
   const char* group;
   template <typename Number>

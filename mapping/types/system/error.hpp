@@ -1,12 +1,12 @@
-// error.hpp: the one exception type of the project, for where it meets files, devices and arguments.
+// error.hpp: the project's only exception type, for failures with files, devices and arguments.
 #pragma once
 #include <stdexcept>
 #include <string>
 
 namespace roomradar {
 
-/// A failure that a user can act on. The message says what failed, where (file, field, frame) and what to do
-/// about it. Thrown at the boundary only; the per-frame path answers with status values.
+/// A failure that a user can act on. The message says what failed, in which file, field or frame, and what to
+/// do about it. Thrown only at the program's boundary; per-frame code returns status values.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

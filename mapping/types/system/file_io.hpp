@@ -1,4 +1,4 @@
-// file_bytes.hpp: a file's bytes, all of them or an Error.
+// file_bytes.hpp: reads and writes whole files as bytes.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -9,19 +9,19 @@
 
 namespace roomradar {
 
-/// All bytes of the plain file `path`, or of the one that it links to. Memory is taken only for what is
-/// there.
-/// @param what  that it should be, for messages: "a camera file"
-/// @throws Error naming the file if it is missing, is no plain file (a folder, a pipe), has more bytes than
+/// Reads the regular file `path`, following links. Allocates no more than the file's size.
+/// @param what  expected content, for messages: "a camera file"
+/// @throws Error naming the file if it is missing, not a regular file (a folder, a pipe), larger than
 /// `most_bytes`, or cannot be read to its end
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::string_view what,
                                      std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
 
-/// Makes them the file `path`, in place of what it held. Not in one step: see WholeFile for that.
-/// @throws Error naming the file if not all of them could be written; half of it is not left
+/// Replaces the contents of the file `path`. Not atomic: use WholeFile for that.
+/// @throws Error naming the file if some bytes could not be written; the partial file is removed
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 
-/// After writing to `path` as it comes: throws Error naming the file if `stream` has failed.
+/// Throws Error naming the file if `stream` has failed; for use after writing to `path` through a plain
+/// stream.
 void require_written(const std::ios& stream, const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// number_text.hpp: a number as text that reads back as the same number.
+// number_text.hpp: locale-independent formatting of numbers.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -8,21 +8,21 @@
 
 namespace roomradar {
 
-/// The shortest such text, whatever the locale: "0.1", "-3", "1e-09", "nan".
+/// Shortest text that reads back as the same number, in any locale: "0.1", "-3", "1e-09", "nan".
 template <typename Number>
 std::string number_text(Number value) {
-  std::array<char, 32> text;  // what a double needs at most is 24
+  std::array<char, 32> text;  // a double needs at most 24
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-/// With so many digits after the point (0..20), whatever the locale, as "%.6f" has it in the C locale.
+/// Formats with `digits` (0..20) digits after the point, like "%.6f" in the C locale.
 inline std::string fixed_text(double value, int digits) {
-  std::array<char, 340> text;  // the greatest double has 309 before it
+  std::array<char, 340> text;  // the largest double has 309 digits before the point
   return {text.data(),
           std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, digits).ptr};
 }
 
-/// With so many digits that count (1..20), whatever the locale, as "%.6g" has it in the C locale.
+/// Formats with `digits` (1..20) significant digits, like "%.6g" in the C locale.
 inline std::string general_text(double value, int digits) {
   std::array<char, 40> text;
   return {
@@ -30,7 +30,7 @@ inline std::string general_text(double value, int digits) {
       std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, digits).ptr};
 }
 
-/// A frame's number in the names of files: six digits, more where it has more.
+/// A frame's number for file names: zero-padded to six digits, longer if needed.
 inline std::string frame_number_text(std::int64_t number) {
   std::string text = std::to_string(number);
   return text.insert(0, 6 - std::min<std::size_t>(text.size(), 6), '0');

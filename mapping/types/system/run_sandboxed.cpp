@@ -1,4 +1,4 @@
-// run_apart.cpp: fork, limits, and a pipe for the answer.
+// run_apart.cpp: fork, resource limits, and a pipe for the result.
 #include "mapping/types/system/run_sandboxed.hpp"
 
 #include <fcntl.h>
@@ -25,7 +25,7 @@ namespace roomradar {
 namespace {
 
 constexpr char kAnswer = 'a', kError = 'e';
-// Sanitizers keep a map of all addresses there are: no limit fits.
+// Sanitizers reserve most of the address space, so no limit fits.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kMemoryCanBeLimited = false;
 #elif defined(__has_feature)
@@ -42,12 +42,12 @@ void write_all(int to, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(to, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return;  // nobody listens any more
+    if (written < 0) return;  // the reading end is closed
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
 }
 
-/// What an answer begins with: what it is, and its bytes after that.
+/// Start of an answer: its kind, and the number of bytes that follow.
 struct Head {
   char kind;
   std::uint64_t size_bytes;
@@ -66,8 +66,8 @@ bool is_whole(std::string_view answer) {
   return answer.size() - Head::kBytes >= size_bytes;
 }
 
-/// An answer, or what came of it until the other end was closed; nothing if that takes longer than most_s.
-/// Does not wait for the other end: another thread's child may hold it, too.
+/// Returns an answer, or the bytes received until the pipe was closed; nullopt if this takes longer than
+/// most_s. Does not wait for the pipe to close, because another thread's child may also have it open.
 std::optional<std::string> read_answer(int from, std::chrono::seconds most_s) {
   const auto end = std::chrono::steady_clock::now() + most_s;
   std::string bytes;
@@ -87,7 +87,7 @@ std::optional<std::string> read_answer(int from, std::chrono::seconds most_s) {
   }
 }
 
-/// Addresses that this process has taken.
+/// Address space in use by this process.
 std::size_t taken_bytes() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -96,10 +96,10 @@ std::size_t taken_bytes() {
 
 [[noreturn]] void be_child(const std::function<std::string()>& work, int to, unsigned most_s,
                            std::size_t most_bytes, pid_t parent) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nobody else would end it
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // otherwise an orphan would never be ended
   if (::getppid() != parent) _exit(1);
   for (const int number : {SIGINT, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) std::signal(number, SIG_DFL);
-  const int nowhere = ::open("/dev/null", O_WRONLY);  // it may complain at length
+  const int nowhere = ::open("/dev/null", O_WRONLY);  // discards output of `work`
   dup2(nowhere, STDOUT_FILENO);
   dup2(nowhere, STDERR_FILENO);
   const rlimit no_core{0, 0}, time{most_s, most_s};
@@ -120,7 +120,7 @@ std::size_t taken_bytes() {
   } catch (...) {
     _exit(1);  // most likely out of memory
   }
-  _exit(0);  // what the parent has to do at its end is not done twice
+  _exit(0);  // skips the parent's exit handlers
 }
 
 }  // namespace
@@ -138,7 +138,7 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
   }
   const int fork_fault = errno;
   ::close(ends[1]);
-  // One that waits for something takes no processor time; on a busy machine a second of that lasts longer.
+  // A waiting child uses no processor time, and on a busy machine a second of processor time takes longer.
   constexpr unsigned kWallPerProcessor = 10;
   std::optional<std::string> read =
       child > 0 ? read_answer(ends[0], std::chrono::seconds(kWallPerProcessor * most_s)) : std::string{};
@@ -151,7 +151,7 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
   }
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    const bool took_long = signal == SIGXCPU || signal == SIGKILL;  // so ends one without memory, too
+    const bool took_long = signal == SIGXCPU || signal == SIGKILL;  // the OOM killer sends SIGKILL, too
     fail(took_long ? "it takes more than " + std::to_string(most_s) + " s, or too much memory"
                    : std::string("crashed: ") + strsignal(signal));
   }

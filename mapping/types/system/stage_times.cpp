@@ -1,4 +1,4 @@
-// stage_times.cpp: percentiles of the collected times.
+// stage_times.cpp: log histograms of times, and percentiles from them.
 #include "mapping/types/system/stage_times.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// stage_times.hpp: how long each stage of a pipeline took, frame by frame.
+// stage_times.hpp: per-frame run times of each stage of a pipeline.
 #pragma once
 #include <chrono>
 #include <cstddef>
@@ -23,8 +23,8 @@ inline double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Collects wall-clock times by stage name, in memory that does not grow with the number of frames. One call
-/// a stage from outside: `times.timed("fuse", [&] { fuse(...); });`
+/// Collects wall-clock times by stage name in constant memory. Usage: `times.timed("fuse", [&] { fuse(...);
+/// });`
 class StageTimes {
  public:
   template <typename Work>
@@ -33,8 +33,8 @@ class StageTimes {
     return std::forward<Work>(work)();
   }
   void add_ms(std::string_view stage, double elapsed_ms);
-  /// Nearest-rank percentiles of each stage, within 0.3 % (from 1 us to an hour); an empty map if nothing was
-  /// timed. Count and maximum are exact.
+  /// Nearest-rank percentiles of each stage, accurate to 0.3 % between 1 us and an hour. Count and maximum
+  /// are exact. The map is empty if nothing was timed.
   [[nodiscard]] std::map<std::string, StageSummary> summaries() const;
   /// Calls work(stage, count, newest_ms) for each stage.
   template <typename Work>
@@ -52,7 +52,7 @@ class StageTimes {
   struct Samples {
     std::size_t count = 0;
     float newest_ms = 0.0F, min_ms = 0.0F, max_ms = 0.0F;
-    std::vector<std::uint32_t> histogram;  ///< by logarithm
+    std::vector<std::uint32_t> histogram;  ///< logarithmic bins
   };
   std::map<std::string, Samples, std::less<>> stages_;
 };

@@ -1,4 +1,4 @@
-// second_thread.hpp: one more thread that works beside the caller's for as long as a call lasts.
+// second_thread.hpp: a worker thread that runs one piece of work beside the caller's.
 #pragma once
 #include <atomic>
 #include <exception>
@@ -6,9 +6,9 @@
 
 namespace roomradar {
 
-/// Owns the thread, which sleeps between calls. Where the machine has one processor there is no thread, and
-/// the two pieces of work are done one after the other: whoever splits work must not depend on which. Calls
-/// from one thread only, and none from within a call.
+/// Owns the thread, which sleeps between calls. A machine with one processor gets no thread: the two pieces
+/// of work run one after the other, and results must not depend on which. Call run() from one thread only,
+/// and not from inside run().
 class SecondThread {
  public:
   SecondThread();
@@ -16,8 +16,8 @@ class SecondThread {
   SecondThread(const SecondThread&) = delete;
   SecondThread& operator=(const SecondThread&) = delete;
 
-  /// Calls here() on the caller's thread and beside() on the other; returns when both are done. What either
-  /// throws is thrown then, here()'s first.
+  /// Calls here() on the caller's thread and beside() on the worker; returns when both are done. Exceptions
+  /// are rethrown then; here()'s takes precedence.
   template <typename Here, typename Beside>
   void run(const Here& here, const Beside& beside) {
     start([](const void* work) { (*static_cast<const Beside*>(work))(); }, &beside);
@@ -39,8 +39,8 @@ class SecondThread {
   std::atomic<int> state_{kIdle};
   Call call_ = nullptr;
   const void* work_ = nullptr;
-  std::exception_ptr fault_;  ///< of the last call's beside()
-  std::thread thread_;        ///< last: it uses the others
+  std::exception_ptr fault_;  ///< thrown by the last call's beside()
+  std::thread thread_;        ///< declared last because it uses the members above
 
   void start(Call call, const void* work);
   void finish();

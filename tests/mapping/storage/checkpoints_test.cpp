@@ -124,7 +124,7 @@ TEST_F(CheckpointsTest, AWriterThatFailsLeavesTheOneBefore) {
     EXPECT_EQ(checkpoints.failures(), failures);
     ASSERT_EQ(told.size(), 1U);  // at once, and once
   }
-  EXPECT_NE(told[0].find("the checkpoint before"), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("the previous checkpoint"), std::string::npos) << told[0];
   const auto newest = checkpoints.resume();
   ASSERT_TRUE(newest);
   EXPECT_EQ(text_of(newest->folder / "state"), "1");

@@ -83,7 +83,7 @@ TEST(Frame, ImagesThatDoNotFitTheirCamerasAreNamed) {
   EXPECT_NE(depth_fault_of(frame), "");
   frame.depth_m.resize(640, 480, 1.0F);
   frame.colour.resize(320, 240);
-  EXPECT_EQ(fault_of(frame), "its colour camera cannot be one");
+  EXPECT_EQ(fault_of(frame), "its colour camera is invalid");
   frame.colour_camera = kKinect;
   EXPECT_EQ(fault_of(frame), "its colour image and its colour camera differ in size");
   EXPECT_EQ(depth_fault_of(frame), "");
