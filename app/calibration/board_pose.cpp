@@ -1,4 +1,4 @@
-// board_pose.cpp: the board's corners and the camera in OpenCV's form.
+// board_pose.cpp: converts corners and camera for OpenCV's solvePnP.
 #include "app/calibration/board_pose.hpp"
 
 #include <opencv2/calib3d.hpp>

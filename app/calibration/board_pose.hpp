@@ -1,4 +1,4 @@
-// board_pose.hpp: where a checkerboard stands before a camera, from its corners in one image.
+// board_pose.hpp: pose of a checkerboard from its corners in one image.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace roomradar {
 
-/// T_camera_board by OpenCV's solvePnP.
-/// @param corners_px  in the real image, row by row, all of the board's
+/// Computes T_camera_board with OpenCV's solvePnP.
+/// @param corners_px  all of the board's corners, row by row, in the distorted image
 Eigen::Isometry3d pose_of_board(const std::vector<Eigen::Vector2d>& corners_px, const Board& board,
                                 const Intrinsics& camera, const Lens& lens);
 

@@ -1,4 +1,4 @@
-// board_views.cpp: OpenCV finds the corners; what is left is to choose.
+// board_views.cpp: finds corners with OpenCV, and selects views.
 #include "app/calibration/board_views.hpp"
 
 #include <Eigen/Geometry>
@@ -17,10 +17,10 @@
 namespace roomradar {
 namespace {
 
-constexpr double kStill_px = 6.0;    // from one frame to the next, root mean square over the corners
-constexpr double kNew_px = 22.0;     // to every view before
-constexpr int kDepthStep_px = 5;     // noise is alike over some 3 pixels
-constexpr double kNearPlane = 0.06;  // of the depth: farther from the board than any sensor error
+constexpr double kStill_px = 6.0;    // max motion between frames, RMS over the corners
+constexpr double kNew_px = 22.0;     // min difference from every earlier view
+constexpr int kDepthStep_px = 5;     // noise is correlated over some 3 pixels
+constexpr double kNearPlane = 0.06;  // fraction of the depth: larger than any sensor error
 constexpr std::size_t kLeastDepthSamples = 40;
 
 double distance_px(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b) {
@@ -29,18 +29,18 @@ double distance_px(const std::vector<Eigen::Vector2d>& a, const std::vector<Eige
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-/// The same board the other way up shows the same corners in reverse.
+/// Compares corners in both orders: a board upside down gives the same corners in reverse.
 double distance_either_way_px(const std::vector<Eigen::Vector2d>& a, std::vector<Eigen::Vector2d> b) {
   const double one_way_px = distance_px(a, b);
   std::reverse(b.begin(), b.end());
   return std::min(one_way_px, distance_px(a, b));
 }
 
-/// Depth pixels whose rays, by the cameras that the frame says, meet the board well inside of its corners'
+/// Depth pixels whose rays, by the frame's declared cameras, hit the board well inside its corners'
 /// rectangle.
 struct DepthOnBoard {
-  std::vector<DepthSample> samples;  ///< whose depth is about the board's
-  std::vector<double> ratios;        ///< of all depth there, to the board's
+  std::vector<DepthSample> samples;  ///< with a depth close to the board's
+  std::vector<double> ratios;        ///< of all measured depths there to the board's
 };
 
 DepthOnBoard depth_on_board(const Frame& frame, const Board& board, const Eigen::Isometry3d& T_colour_board) {
@@ -85,17 +85,17 @@ void require_valid(const Board& board) {
 
 std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colour, const Board& board) {
   const cv::Mat rgb(colour.height, colour.width, CV_8UC3,
-                    const_cast<Rgb*>(colour.pixels.data()));  // only read
+                    const_cast<Rgb*>(colour.pixels.data()));  // read only
   cv::Mat grey;
   cv::cvtColor(rgb, grey, cv::COLOR_RGB2GRAY);
   std::vector<cv::Point2f> found;
   const cv::Size size(board.columns, board.rows);
-  // The quick search says no within milliseconds where there is no board.
+  // CALIB_CB_FAST_CHECK returns within milliseconds if there is no board.
   if (!cv::findChessboardCorners(
           grey, size, found,
           cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_FAST_CHECK))
     return std::nullopt;
-  // A window as large as half a square at most, or the next corner pulls at this one.
+  // The refinement window is smaller than a square, otherwise adjacent corners bias the result.
   double least_px = std::numeric_limits<double>::infinity();
   const auto columns = static_cast<std::size_t>(board.columns);
   for (std::size_t i = 1; i < found.size(); ++i) {
@@ -114,8 +114,8 @@ BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t
                             const std::function<void(std::size_t)>& progress) {
   require_valid(board);
   BoardViews result;
-  std::vector<std::vector<Eigen::Vector2d>> off_plane_px;  // corners of each of result.off_plane_ratios
-  std::vector<Eigen::Vector2d> before;  // the corners of the frame before; empty: it had none
+  std::vector<std::vector<Eigen::Vector2d>> off_plane_px;  // corners of each entry of result.off_plane_ratios
+  std::vector<Eigen::Vector2d> before;  // corners of the previous frame; empty if it had none
   Frame frame;
   while (result.views.size() < most) {
     const ReadResult read = source.next(frame);

@@ -1,5 +1,4 @@
-// board_views.hpp: the frames of a recording in which a checkerboard can be seen, one for each way it is
-// held.
+// board_views.hpp: selects the frames of a recording that show a checkerboard, one per board pose.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -12,47 +11,47 @@
 
 namespace roomradar {
 
-/// A printed checkerboard, counted by the corners at which four squares meet.
+/// A printed checkerboard, measured by its inner corners.
 struct Board {
-  int columns = 8, rows = 6;  ///< 3 to 30 each, and not the same
+  int columns = 8, rows = 6;  ///< inner corners, 3 to 30 each, not equal
   double square_m = 0.03;
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const Board& board);
 
-/// Corner (column, row) in the board's frame: z = 0, x along the columns.
+/// Returns corner (column, row) in the board's frame: z = 0, x along the columns.
 inline Eigen::Vector3d corner_board(const Board& board, int column, int row) {
   return {column * board.square_m, row * board.square_m, 0.0};
 }
 
 struct DepthSample {
-  double x_px, y_px;  ///< of the real depth image
+  double x_px, y_px;  ///< in the distorted depth image
   double reported_m;
 };
 
 struct BoardView {
   std::int64_t frame = 0;
-  std::vector<Eigen::Vector2d> corners_px;  ///< in the real colour image, row by row
-  std::vector<DepthSample> depth;           ///< where the depth image shows the board
+  std::vector<Eigen::Vector2d> corners_px;  ///< in the distorted colour image, row by row
+  std::vector<DepthSample> depth;           ///< depth pixels on the board
 };
 
 struct BoardViews {
   std::vector<BoardView> views;
-  Frame first;                  ///< the first frame with colour: sizes, and the cameras that it says
-  std::int64_t frames = 0;      ///< read
-  std::int64_t with_board = 0;  ///< of those that were searched
-  /// Of frames that would be views, had they the depth that the board's size makes of its corners: the median
-  /// of what they have over that.
+  Frame first;                  ///< first frame with colour; gives image sizes and nominal cameras
+  std::int64_t frames = 0;      ///< number of frames read
+  std::int64_t with_board = 0;  ///< number of frames in which the board was found
+  /// Median ratio of measured depth to the depth expected from corners and square size, one per frame that
+  /// was rejected for this ratio alone. A common ratio other than 1 indicates a wrong square_m.
   std::vector<double> off_plane_ratios;
 };
 
-/// Corners of the board to a fraction of a pixel, or nothing.
+/// Finds the board's corners with subpixel precision, or returns nothing.
 std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colour, const Board& board);
 
-/// Reads the source to its end, or until `most` views are found. A frame becomes a view if the board is whole
-/// in the colour image, hardly moves (colour and depth are not of the very same instant), stands elsewhere or
-/// otherwise than in the views before, and the depth image shows it. Throws Error if the source has no
-/// colour.
+/// Reads the source to its end, or until `most` views are found. A frame becomes a view if it meets all of
+/// these: the whole board is in the colour image, it hardly moves (colour and depth are not taken at the same
+/// instant), its pose differs from all earlier views, and the depth image measures it. Throws Error if the
+/// source has no colour.
 /// @param progress  called after every frame with the number of views so far
 BoardViews find_board_views(FrameSource& source, const Board& board, std::size_t most,
                             const std::function<void(std::size_t)>& progress);

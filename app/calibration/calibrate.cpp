@@ -1,4 +1,4 @@
-// calibrate.cpp: one least-squares problem, its start, and what is left after it.
+// calibrate.cpp: a joint least-squares fit, its initial values, and its residuals.
 #include "app/calibration/calibrate.hpp"
 
 #include <ceres/ceres.h>
@@ -23,17 +23,17 @@ namespace {
 
 constexpr std::size_t kLeastViews = 12;
 constexpr double kCornerSigma_px = 0.15;
-// Neighbouring samples share most of their noise, and the board is no perfect plane.
+// Depth sigmas are inflated: adjacent samples share most of their noise, and the board is not perfectly flat.
 constexpr double kDepthSigmas = 2.0;
-// The correction changes by about so much from node to node, and is of about this size.
+// Priors on the correction: its sigma, and the sigma of the difference between adjacent nodes.
 constexpr double kNodeStep_per_m = 8e-4;
 constexpr double kNodeSize_per_m = 0.02;
 constexpr double kRobust_sigmas = 3.0;
 constexpr double kTilt_rad = 12.0 * M_PI / 180.0;
 constexpr std::ptrdiff_t kLeastTilted = 6;
-constexpr double kMostUnsure = 0.01;  // of a focal length
+constexpr double kMostUnsure = 0.01;  // max relative sigma of a focal length
 
-/// x_a = rotation by turn of x_b, plus shift.
+/// x_a = R x_b + t, with R as a rotation vector.
 struct Pose {
   std::array<double, 6> turn_and_shift{};
 };
@@ -79,7 +79,9 @@ struct CornerError {
     std::array<T, 3> p;
     ceres::AngleAxisRotatePoint(T_colour_board, on_board.data(), p.data());
     for (std::size_t i = 0; i < 3; ++i) p[i] += T_colour_board[3 + i];
-    if (!(p[2] > T(1e-3))) p[2] = T(1e-3);  // a step that turned the board behind the camera: a huge error
+    if (!(p[2] > T(1e-3)))
+      p[2] = T(1e-3);  // large residual if a solver step moves the board behind the
+                       // camera
     const PlanePoint<T> at = distorted(PlanePoint<T>{p[0] / p[2], p[1] / p[2]}, camera[4], camera[5],
                                        camera[6], camera[7], camera[8]);
     residual[0] = (camera[0] * at.x + camera[2] - seen_px.x()) / kCornerSigma_px;
@@ -93,7 +95,7 @@ struct DepthError {
   GridPlace place;
   double sigma_per_m;
 
-  /// @param nodes  of the depth correction: up left, up right, down left, down right
+  /// The last four parameters are nodes of the depth correction.
   template <typename T>
   bool operator()(const T* camera, const T* T_colour_depth, const T* T_colour_board, const T* inverse_scale,
                   const T* up_left, const T* up_right, const T* down_left, const T* down_right,
@@ -101,7 +103,7 @@ struct DepthError {
     const PlanePoint<T> ray_plane = undistorted(
         PlanePoint<T>{(sample.x_px - camera[2]) / camera[0], (sample.y_px - camera[3]) / camera[1]},
         camera[4], camera[5], camera[6], camera[7], camera[8]);
-    // The plane in the colour camera: n . p = distance; a point at depth z of the ray is R ray z + t.
+    // Plane in the colour camera's frame: n . p = distance; the point at depth z of the ray is R ray z + t.
     const std::array<T, 3> z_board{T(0), T(0), T(1)};
     std::array<T, 3> n, ray;
     ceres::AngleAxisRotatePoint(T_colour_board, z_board.data(), n.data());
@@ -115,14 +117,14 @@ struct DepthError {
     const T inverse_of_plane = along / distance;
     const T offset = (1.0 - place.down) * ((1.0 - place.right) * *up_left + place.right * *up_right) +
                      place.down * ((1.0 - place.right) * *down_left + place.right * *down_right);
-    // What ought to be reported, against what is: noise must not stand beside an unknown factor, which it
-    // would pull towards 0.
+    // The residual is in reported depth, expected minus measured. With inverse_scale applied to the measured
+    // value, noise would bias the scale towards 0.
     residual[0] = ((inverse_of_plane - offset) / *inverse_scale - 1.0 / sample.reported_m) / sigma_per_m;
     return true;
   }
 };
 
-/// Keeps a node near its neighbour, or near 0.
+/// Priors that pull a node towards its neighbour (NodeDifference) or towards 0 (NodeSize).
 struct NodeDifference {
   double sigma_per_m;
   template <typename T>
@@ -147,7 +149,7 @@ double inverse_sigma_per_m(double depth_m) {
 struct Unknowns {
   CameraBlock colour, depth;
   Pose T_colour_depth;
-  std::vector<Pose> T_colour_board;  // one a view
+  std::vector<Pose> T_colour_board;  // one per view
   double inverse_scale = 1.0;
   std::vector<double> nodes;
 };
@@ -191,7 +193,7 @@ void add_smoothness(const CalibrateConfig& config, Unknowns& unknowns, ceres::Pr
     }
 }
 
-/// The colour camera alone, by OpenCV, as a start.
+/// Calibrates the colour camera alone with OpenCV, as the initial value.
 CameraBlock start_of_colour(const std::vector<const BoardView*>& views, const Board& board,
                             const Intrinsics& said) {
   std::vector<std::vector<cv::Point3f>> on_board;
@@ -218,8 +220,7 @@ CameraBlock start_of_colour(const std::vector<const BoardView*>& views, const Bo
           distortion[1], distortion[2], distortion[3], distortion[4]};
 }
 
-/// By how much what is left of the errors is larger than what was taken for one standard deviation; not less
-/// than 1.
+/// Returns the ratio of the residuals' standard deviation to the assumed one, at least 1.
 double excess_of(const ceres::Solver::Summary& summary) {
   const double freedom = summary.num_residuals_reduced - summary.num_effective_parameters_reduced;
   return freedom > 0.0 ? std::max(1.0, std::sqrt(2.0 * summary.final_cost / freedom)) : 1.0;
@@ -234,7 +235,7 @@ CalibrationSigmas sigmas_of(ceres::Problem& problem, const Unknowns& unknowns, d
   const double* pose = unknowns.T_colour_depth.turn_and_shift.data();
   if (!covariance.Compute({{colour, colour}, {depth, depth}, {pose, pose}}, &problem))
     throw Error(
-        "calibrate: the views do not fix all that is asked for; show the board near and far, tilted "
+        "calibrate: the views do not constrain all parameters; show the board near and far, tilted "
         "every way, and in all parts of the image");
   Eigen::Matrix<double, 9, 9, Eigen::RowMajor> of_colour, of_depth;
   Eigen::Matrix<double, 6, 6, Eigen::RowMajor> of_pose;
@@ -254,7 +255,7 @@ CalibrationSigmas sigmas_of(ceres::Problem& problem, const Unknowns& unknowns, d
   return sigmas;
 }
 
-/// Planes that all look the same way do not tell focal length from distance.
+/// Rejects views that are all parallel: these do not separate focal length from distance.
 void require_tilted(const std::vector<Pose>& T_colour_board) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> normals;
@@ -275,8 +276,9 @@ void require_tilted(const std::vector<Pose>& T_colour_board) {
 
 void require_sure(const char* which, double focal_px, double sigma_px) {
   if (sigma_px <= kMostUnsure * focal_px) return;
-  throw Error(std::string("calibrate: the views leave the ") + which + " camera's focal length unsure by " +
-              std::to_string(std::lround(sigma_px)) + " px of " + std::to_string(std::lround(focal_px)) +
+  throw Error(std::string("calibrate: the views leave the ") + which +
+              " camera's focal length uncertain by " + std::to_string(std::lround(sigma_px)) + " px of " +
+              std::to_string(std::lround(focal_px)) +
               "; tilt the board more, by 30 to 50 degrees, near and far");
 }
 
@@ -302,8 +304,8 @@ void require_views(const BoardViews& views, const Board& board) {
               "away");
 }
 
-/// What a file with this would not be read for: a lens that was seen in the image's middle alone may do
-/// anything in its corners.
+/// Rejects a fit that read_calibration() would reject: a lens observed only in the image's centre may be
+/// arbitrary in its corners.
 void require_readable(const Calibration& calibration) {
   try {
     require_valid(calibration, "calibrate: the fit");
@@ -355,12 +357,12 @@ CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config)
   for (std::size_t i = 0; i < making.size(); ++i)
     add_view(*making[i], i, config, views.first.depth_m, unknowns, problem);
   add_smoothness(config, unknowns, problem);
-  // r^6 cannot be told from r^4 where the depth camera's noise is a pixel.
+  // k3 of the depth lens is constrained to 0: with a pixel of noise, r^6 cannot be told from r^4.
   problem.SetManifold(unknowns.depth.data(), new ceres::SubsetManifold(9, {8}));
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   options.max_num_iterations = 200;
-  options.function_tolerance = 1e-9;  // focal length and distance trade slowly
+  options.function_tolerance = 1e-9;  // focal length and distance are strongly correlated and converge slowly
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (summary.termination_type != ceres::CONVERGENCE)

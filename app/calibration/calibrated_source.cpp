@@ -1,4 +1,4 @@
-// calibrated_source.cpp: one table a camera, from where its ideal pixels look to where the real ones are.
+// calibrated_source.cpp: remaps images with one table per camera, from ideal to real pixels.
 #include "app/calibration/calibrated_source.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-/// Where the real camera's image shows what pixel (x, y) of the ideal one sees.
+/// Returns where pixel (x, y) of the ideal camera is in the real image.
 PlanePoint<double> real_pixel(const Intrinsics& camera, const Lens& lens, int x, int y) {
   const PlanePoint<double> p =
       distorted({(x - camera.cx_px) / camera.fx_px, (y - camera.cy_px) / camera.fy_px}, lens);
@@ -53,7 +53,7 @@ class CalibratedSource final : public FrameSource {
     const ReadResult result = source_->next(frame);
     if (result.status != ReadStatus::kFrame) return result;
     correct_depth(frame);
-    // Also of a frame that came without its colour: all of a recording's frames have the same cameras.
+    // Also for a frame without colour image: all frames of a recording must have the same cameras.
     const bool has_colour_camera = !frame.colour.empty() || frame.colour_camera.width_px > 0;
     if (calibration_.rig.colour_camera && has_colour_camera) correct_colour(frame);
     return result;
@@ -65,7 +65,7 @@ class CalibratedSource final : public FrameSource {
 
  private:
   struct RealPixel {
-    int index = -1;  ///< into the real image; -1: outside of it
+    int index = -1;  ///< in the real image; -1: outside
     float offset_per_m = 0.0F;
   };
 

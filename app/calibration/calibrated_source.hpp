@@ -1,4 +1,4 @@
-// calibrated_source.hpp: a source whose frames are as ideal cameras would have taken them.
+// calibrated_source.hpp: a frame source that corrects lens distortion and depth errors.
 #pragma once
 #include <memory>
 
@@ -7,10 +7,10 @@
 
 namespace roomradar {
 
-/// Takes lens distortion and depth errors out of every frame and gives it the calibrated cameras. Depth
-/// pixels move to the nearest place and are not mixed; colour is interpolated; what no pixel saw is 0. Next
-/// to nothing is allocated after the first frame. next() throws Error if the images are not of the
-/// calibration's size.
+/// Removes lens distortion and depth errors from every frame and sets the calibrated cameras. Depth is
+/// resampled to the nearest pixel, never interpolated; colour is interpolated; pixels outside the original
+/// image are 0. Allocates almost nothing after the first frame. next() throws Error if the images do not
+/// match the calibration's size.
 std::unique_ptr<FrameSource> calibrated(std::unique_ptr<FrameSource> source, const Calibration& calibration);
 
 }  // namespace roomradar

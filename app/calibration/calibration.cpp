@@ -1,4 +1,4 @@
-// calibration.cpp: the correction's grid, and the file.
+// calibration.cpp: evaluates the depth correction's grid, and reads and writes the file.
 #include "app/calibration/calibration.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 constexpr const char* kFormat = "roomradar calibration";
 constexpr int kVersion = 1;
-constexpr int kMostNodes = 256;  // along one side
+constexpr int kMostNodes = 256;  // per side
 constexpr double kLargestOffset_per_m = 0.2;
 
 Json json_of(const Lens& lens) {

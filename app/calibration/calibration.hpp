@@ -1,4 +1,4 @@
-// calibration.hpp: what a calibration knows of a Kinect, and its file.
+// calibration.hpp: calibration of a Kinect, and its file format.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -9,26 +9,29 @@
 
 namespace roomradar {
 
-/// 1 / depth = inverse_scale / reported depth + offset(x, y): an error of the disparity, which is what a
-/// structured-light sensor measures. The offset (1/m) is bilinear between nodes that span the image from the
-/// middle of its first pixel to the middle of its last, row by row; without nodes it is 0.
+/// Depth correction 1 / depth = inverse_scale / reported depth + offset(x, y), an error in disparity, which a
+/// structured-light sensor measures. The offset (1/m) is interpolated bilinearly between nodes, stored row by
+/// row. The nodes span the image from the centre of its first pixel to the centre of its last; without nodes
+/// the offset is 0.
 struct DepthCorrection {
   double inverse_scale = 1.0;
   int columns = 0, rows = 0;  ///< both 0, or both 2 to 256
   std::vector<double> offset_per_m;
 };
 
-/// Where pixel (x, y) lies between the nodes: the node up and left of it, and how far from there, 0 to 1.
+/// Position of pixel (x, y) in the node grid: the node above left, and the fraction of a cell from there, 0
+/// to 1.
 struct GridPlace {
   int column = 0, row = 0;
   double right = 0.0, down = 0.0;
 };
 GridPlace grid_place(int columns, int rows, int width_px, int height_px, double x_px, double y_px);
 
-/// Offset (1/m) at a pixel of images of that size.
+/// Returns the offset (1/m) at a pixel of an image of the given size.
 double offset_per_m(const DepthCorrection& correction, int width_px, int height_px, double x_px, double y_px);
 
-/// Depth (m) of a reported depth; 0 for 0, and where the correction leaves no depth in front of the camera.
+/// Returns the corrected depth (m); 0 if the reported depth is 0, or if the result is not in front of the
+/// camera or beyond 1 km.
 inline float corrected_depth_m(float reported_m, double inverse_scale, double offset_per_m) {
   if (!(reported_m > 0.0F)) return 0.0F;
   const double inverse = inverse_scale / reported_m + offset_per_m;
@@ -41,13 +44,14 @@ struct Calibration {
   DepthCorrection depth_correction;
 };
 
-/// {"format": "roomradar calibration", "version": 1, "depth", "colour", "T_colour_depth": as in camera.json,
-///  "depth_lens", "colour_lens": {"k1", "k2", "p1", "p2", "k3"},
-///  "depth_correction": {"inverse_scale", "columns", "rows", "offset_per_m": [columns * rows numbers]}}
+/// Reads and writes calibration.json:
+///  {"format": "roomradar calibration", "version": 1, "depth", "colour", "T_colour_depth": as in camera.json,
+///   "depth_lens", "colour_lens": {"k1", "k2", "p1", "p2", "k3"},
+///   "depth_correction": {"inverse_scale", "columns", "rows", "offset_per_m": [columns * rows numbers]}}
 /// Throws Error naming the file, and the field that is missing, of the wrong type or impossible (a lens that
-/// moves a corner of the image by more than half of its distance from the middle; an offset past 0.2 / m).
+/// moves a corner of the image by more than half its distance from the centre; an offset beyond 0.2 / m).
 Calibration read_calibration(const std::filesystem::path& path);
-/// Throws Error "WHERE, depth_lens: ..." if read_calibration() would refuse these numbers.
+/// Throws Error "WHERE, depth_lens: ..." if read_calibration() would reject these numbers.
 void require_valid(const Calibration& calibration, const std::string& where);
 void write_calibration(const Calibration& calibration, const std::filesystem::path& path);
 

@@ -1,4 +1,4 @@
-// calibration_plot.cpp: four panels with OpenCV's lines and letters.
+// calibration_plot.cpp: draws four panels with OpenCV.
 #include "app/calibration/calibration_plot.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace roomradar {
 namespace {
 
 constexpr int kPanelWidth_px = 600, kPanelHeight_px = 450, kMargin_px = 50;
-constexpr double kShownAt_m = 2.0;  // the distance at which the correction is drawn
+constexpr double kShownAt_m = 2.0;  // depth at which the correction is plotted
 const cv::Scalar kInk(40, 40, 40), kFaint(215, 215, 215), kBefore(200, 70, 50), kAfter(40, 90, 180);
 
 /// A panel's frame and title, and the mapping from its values to pixels.

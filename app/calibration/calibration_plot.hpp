@@ -1,13 +1,13 @@
-// calibration_plot.hpp: a calibration at a glance, to see where it can be trusted.
+// calibration_plot.hpp: a plot that shows where a calibration is supported by data.
 #pragma once
 #include "app/calibration/calibrate.hpp"
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
 
-/// Four panels: where in the colour image corners were seen; where in the depth image the board was; each
-/// view's depth error over its distance, before and after, held-out views as rings; and the depth correction
-/// over the image, as mm at 2 m.
+/// Draws four panels: corner positions in the colour image; board pixels in the depth image; each view's
+/// depth error over distance before and after, with held-out views as rings; the depth correction over the
+/// image, in mm at 2 m.
 ColourImage calibration_plot(const BoardViews& views, const CalibrationFit& fit);
 
 }  // namespace roomradar

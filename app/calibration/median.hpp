@@ -1,4 +1,4 @@
-// median.hpp: the middle one of some numbers.
+// median.hpp: median of a list of numbers.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// Of an even number the upper of the two in the middle. There must be at least one, and no NaN.
+/// Returns the median; the upper one for an even count. The list must not be empty nor contain NaN.
 inline double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

@@ -1,4 +1,4 @@
-// canvas.cpp: drawing by OpenCV where it has it, by hand where it has not.
+// canvas.cpp: draws with OpenCV where it suffices, otherwise by hand.
 #include "app/media/canvas.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace roomradar {
 namespace {
 
-/// The picture's own pixels; colours are in the order red, green, blue.
+/// Wraps the picture's pixels as RGB, without copying.
 cv::Mat view_of(ColourImage& picture) {
   return {picture.height, picture.width, CV_8UC3, picture.pixels.data()};
 }
@@ -17,7 +17,7 @@ cv::Scalar scalar(Rgb colour) {
   return {static_cast<double>(colour.r), static_cast<double>(colour.g), static_cast<double>(colour.b)};
 }
 
-constexpr double kFarAway_px = 1e4;  // what reaches farther is cut there, so that it fits OpenCV's numbers
+constexpr double kFarAway_px = 1e4;  // coordinates are clamped to this, to fit OpenCV's integers
 
 cv::Point fixed_point(const Eigen::Vector2d& p) {
   constexpr double kSixteenths = 16.0;
@@ -56,7 +56,7 @@ void fill_triangle(MaskImage& mask, const Eigen::Vector2d& a, const Eigen::Vecto
     return p.x() * q.y() - p.y() * q.x();
   };
   const double area = cross(b - a, c - a);
-  if (!(std::abs(area) > 0.0)) return;  // also where a corner is not finite
+  if (!(std::abs(area) > 0.0)) return;  // also rejects corners that are not finite
   const Eigen::Vector2d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
   const auto within = [](double of, int most) {
     return static_cast<int>(std::clamp(of, 0.0, static_cast<double>(most)));

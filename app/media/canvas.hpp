@@ -1,4 +1,4 @@
-// canvas.hpp: lines, triangles and words on a picture.
+// canvas.hpp: draws lines, triangles and text on a picture.
 #pragma once
 #include <Eigen/Core>
 #include <string>
@@ -7,24 +7,24 @@
 
 namespace roomradar {
 
-/// `part` of the pixel's colour gives way to another; outside of the picture nothing happens.
+/// Blends a colour into a pixel with opacity `part`; does nothing outside the picture.
 void blend(ColourImage& picture, int x, int y, Rgb colour, double part = 1.0);
 
-/// A smooth line, in pixels; clipped.
+/// Draws an antialiased line between pixel coordinates; clipped.
 void draw_line(ColourImage& picture, const Eigen::Vector2d& a, const Eigen::Vector2d& b, Rgb colour,
                int width_px = 1);
 
-/// Words whose lower left corner is at (x, y), `size` 1 is 22 pixels high.
+/// Draws text with its lower left corner at (x, y); `size` 1 is 22 pixels high.
 void draw_text(ColourImage& picture, const std::string& text, int x, int y, double size, Rgb colour);
 
 /// Sets the mask where the triangle covers a pixel's centre.
 void fill_triangle(MaskImage& mask, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                    const Eigen::Vector2d& c);
 
-/// Tints what the mask covers, and draws its outline.
+/// Tints the masked pixels with opacity `part`, and draws the mask's outline.
 void tint(ColourImage& picture, const MaskImage& mask, Rgb colour, double part);
 
-/// Copies `part` to where its upper left corner is at (x, y); clipped.
+/// Copies `part` into the picture with its upper left corner at (x, y); clipped.
 void paste(const ColourImage& part, int x, int y, ColourImage& picture);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// map_picture.cpp: triangles and voxels into a depth buffer, without GL.
+// map_picture.cpp: rasterises triangles and points with a depth buffer, without GL.
 #include "app/media/map_picture.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace roomradar {
 namespace {
 
-/// World to picture: x to the right, y down, z the depth; all in pixels.
+/// World to picture: x to the right, y down, z is depth; all in pixels.
 Eigen::Affine3d looking_down(const Mesh& mesh, std::span<const Change> changes, int width_px,
                              int& height_px) {
   constexpr double kTurn_rad = 0.6, kTilt_rad = 0.9;  // about the vertical; from the horizontal
@@ -22,7 +22,7 @@ Eigen::Affine3d looking_down(const Mesh& mesh, std::span<const Change> changes, 
   for (const Change& change : changes)
     for (const Eigen::Vector3d& p_world : change.surface_world) box.extend(R * p_world);
   constexpr double kMargin_px = 20.0;
-  // Wide, but a narrow strip of a room no higher than four times that.
+  // Fits the width, but limits the height of a narrow room's picture to four times the width.
   const double scale = std::min((width_px - 2.0 * kMargin_px) / std::max(box.sizes().x(), 1e-3),
                                 (4.0 * width_px - 2.0 * kMargin_px) / std::max(box.sizes().y(), 1e-3));
   height_px = static_cast<int>(box.sizes().y() * scale + 2.0 * kMargin_px);
@@ -44,7 +44,7 @@ struct Canvas {
 void draw_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c, Rgb colour,
                    Canvas& canvas) {
   const double area = (b - a).x() * (c - a).y() - (b - a).y() * (c - a).x();
-  if (area >= 0.0) return;  // looks away: y points down
+  if (area >= 0.0) return;  // back face: y points down
   const Eigen::Vector3d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
   const int right = std::min(canvas.picture.width - 1, static_cast<int>(high.x()));
   const int bottom = std::min(canvas.picture.height - 1, static_cast<int>(high.y()));
@@ -57,7 +57,7 @@ void draw_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
     }
 }
 
-/// Half way to white, and darker the less the surface faces the viewer.
+/// Returns the colour paled half-way to white, and darker the less the surface faces the viewer.
 Rgb paled(Rgb colour, double facing) {
   const auto pale = [&](std::uint8_t of) {
     return static_cast<std::uint8_t>((0.5 + 0.5 * facing) * (0.6 * of + 100.0));
@@ -83,7 +83,7 @@ ColourImage draw_changes(const Mesh& mesh, std::span<const Change> changes, int 
     const Rgb colour = mesh.colours.empty() ? Rgb{180, 180, 180} : mesh.colours[triangle[0]];
     draw_triangle(a, b, c, paled(colour, std::abs(normal.z())), canvas);
   }
-  constexpr double kAhead_px = 4.0;  // so that a change is not hidden by the surface that it is of
+  constexpr double kAhead_px = 4.0;  // so that a change is not hidden by its own surface
   for (const Change& change : changes) {
     const Rgb colour = change.kind == ChangeKind::kAppeared ? Rgb{20, 160, 60} : Rgb{210, 40, 40};
     for (const Eigen::Vector3d& p_world : change.surface_world) {

@@ -1,4 +1,4 @@
-// map_picture.hpp: a map's surface seen obliquely from above, with what changed painted over.
+// map_picture.hpp: renders a map's surface obliquely from above, with changes highlighted.
 #pragma once
 #include <span>
 
@@ -8,8 +8,8 @@
 
 namespace roomradar {
 
-/// An orthographic view from above and one side; surfaces that look away (the ceiling, the near walls) are
-/// left out. The mesh is drawn in its own colours, paled; what appeared is green, what vanished red.
+/// Renders an orthographic view from above and one side; faces turned away (the ceiling, the near walls) are
+/// culled. The mesh has its own colours, paled; appeared surfaces are green, vanished ones red.
 /// @param width_px  of the picture; its height follows from the map
 /// @return an empty image for an empty mesh
 ColourImage draw_changes(const Mesh& mesh, std::span<const Change> changes, int width_px = 1200);

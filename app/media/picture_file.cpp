@@ -1,4 +1,4 @@
-// picture_file.cpp: images to PNG files, encoded in memory and then written whole.
+// picture_file.cpp: encodes PNG files in memory, then writes them atomically.
 #include "app/media/picture_file.hpp"
 
 #include <opencv2/imgcodecs.hpp>
@@ -26,7 +26,7 @@ void require_pixels(const Image<Pixel>& image, const std::filesystem::path& path
   if (image.empty()) throw Error(path.string() + ": the image to be written is empty");
 }
 
-/// The image's pixels seen by OpenCV, which only reads them.
+/// Wraps the image's pixels for OpenCV, which only reads them.
 template <typename Pixel>
 cv::Mat view_of(const Image<Pixel>& image, int type) {
   return {image.height, image.width, type, const_cast<Pixel*>(image.pixels.data())};

@@ -1,4 +1,4 @@
-// picture_file.hpp: images to PNG files, for looking at.
+// picture_file.hpp: writes images to PNG files for viewing.
 #pragma once
 #include <filesystem>
 
@@ -6,11 +6,11 @@
 
 namespace roomradar {
 
-/// Throws Error if a PNG picture should not have that name: it would be taken for another format. An empty
-/// one is fine.
+/// Throws Error if a file name is not empty and does not end in .png, which would suggest another format.
 void require_png_name(const std::filesystem::path& path);
 
-/// 8-bit RGB. Both throw Error naming the path if the image is empty or the file cannot be written whole.
+/// 8-bit RGB. Both overloads throw Error naming the path if the image is empty or the file cannot be written
+/// completely.
 void write_png(const ColourImage& picture, const std::filesystem::path& path);
 
 /// 8-bit grey.

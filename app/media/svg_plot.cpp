@@ -1,4 +1,4 @@
-// svg_plot.cpp: axes, lines and cells, written number by number.
+// svg_plot.cpp: writes axes, lines and table cells as text.
 #include "app/media/svg_plot.hpp"
 
 #include <algorithm>
@@ -66,7 +66,7 @@ std::string percent_plot(const std::string& title, const std::string& x_name, do
   double legend_y = kTop + 12.0;
   bool is_dashed = false;
   for (const PlotLine& line : lines) {
-    is_dashed = !is_dashed;  // every second one: what lies under it shows
+    is_dashed = !is_dashed;  // every second line, so that lines below remain visible
     svg += "<polyline fill=\"none\" stroke-width=\"2\"";
     if (is_dashed) svg += " stroke-dasharray=\"7 7\"";
     svg += " stroke=\"" + line.colour + "\" points=\"";

@@ -1,4 +1,4 @@
-// svg_plot.hpp: small charts as SVG text, to be put into a page.
+// svg_plot.hpp: small charts as SVG text, to be embedded in a web page.
 #pragma once
 #include <string>
 #include <utility>
@@ -8,16 +8,16 @@ namespace roomradar {
 
 struct PlotLine {
   std::string name;
-  std::string colour;                             ///< as CSS has it
+  std::string colour;                             ///< in CSS syntax
   std::vector<std::pair<double, double>> points;  ///< x ascending
 };
 
-/// Lines over a logarithmic x axis, y in percent from 0 to 100, with a legend. Points with x below x_least
-/// are drawn there.
+/// Plots lines over a logarithmic x axis, y in percent from 0 to 100, with a legend. Points with x below
+/// x_least are drawn at x_least.
 std::string percent_plot(const std::string& title, const std::string& x_name, double x_least, double x_most,
                          const std::vector<PlotLine>& lines);
 
-/// A table of shares as coloured cells: one row a name, one column a name, NaN for none.
+/// A table of fractions as coloured cells with row and column names; NaN: empty cell.
 struct ShareTable {
   std::string title;
   std::vector<std::string> rows, columns;
@@ -25,7 +25,7 @@ struct ShareTable {
 };
 std::string share_cells(const ShareTable& table);
 
-/// `<`, `>`, `&` and quotes as HTML has them.
+/// Escapes `<`, `>`, `&` and double quotes for HTML.
 std::string escaped(const std::string& text);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// video_writer.cpp: pictures to a video file through OpenCV, with the checks that OpenCV leaves out.
+// video_writer.cpp: writes video through OpenCV, with the checks that OpenCV lacks.
 #include "app/media/video_writer.hpp"
 
 #include <unistd.h>
@@ -19,7 +19,7 @@ namespace roomradar {
 namespace {
 
 constexpr std::int64_t kFramesBetweenSpaceChecks = 15;
-// An encoder's buffers and the file's index must still fit.
+// Space for an encoder's buffers and the file's index.
 constexpr std::uintmax_t kMinFreeBytes = 4U << 20U;
 
 std::vector<std::string> codecs_for(const std::string& extension) {
@@ -29,7 +29,7 @@ std::vector<std::string> codecs_for(const std::string& extension) {
   return {};
 }
 
-/// What is written until the video is whole; its extension tells the encoder what it is to be.
+/// Returns the temporary file's path; its extension selects the encoder.
 std::filesystem::path partial_of(const std::filesystem::path& target) {
   std::error_code fault;
   if (std::filesystem::exists(target, fault) && !std::filesystem::is_regular_file(target, fault))
@@ -42,8 +42,8 @@ std::filesystem::path partial_of(const std::filesystem::path& target) {
 }  // namespace
 
 struct VideoWriter::State {
-  std::filesystem::path path;     // of the whole video
-  std::filesystem::path partial;  // what is written
+  std::filesystem::path path;     // final path
+  std::filesystem::path partial;  // file being written
   double frames_per_s = 30.0;
   std::vector<std::string> codecs;
   cv::VideoWriter writer;
@@ -62,7 +62,7 @@ struct VideoWriter::State {
       if (writer.open(partial.string(), cv::CAP_FFMPEG, fourcc, frames_per_s, size)) return;
     }
     throw Error(path.string() +
-                ": no video can be made here; may the folder be written, and is OpenCV built with FFmpeg?");
+                ": the video cannot be created; is the folder writable, and is OpenCV built with FFmpeg?");
   }
 
   void require_space() const {
@@ -79,7 +79,7 @@ VideoWriter::VideoWriter(std::filesystem::path path, double frames_per_s)
   state_->codecs = codecs_for(path.extension().string());
   if (state_->codecs.empty()) throw Error(path.string() + ": a video's name ends in .mp4, .avi or .mkv");
   if (!(frames_per_s >= 1.0 && frames_per_s <= 240.0))
-    throw Error(path.string() + ": " + number_text(frames_per_s) + " frames a second: must be in 1..240");
+    throw Error(path.string() + ": " + number_text(frames_per_s) + " frames per second: must be in 1..240");
   std::error_code fault;
   if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), fault))
     throw Error(path.string() + ": its folder does not exist; make it first");
@@ -95,7 +95,7 @@ VideoWriter::VideoWriter(std::filesystem::path path, double frames_per_s)
 VideoWriter::~VideoWriter() {
   try {
     close();
-  } catch (const Error&) {  // what there is stays beside
+  } catch (const Error&) {  // the temporary file remains
   }
 }
 
@@ -136,9 +136,9 @@ void VideoWriter::close() {
   State& s = *state_;
   if (std::exchange(s.is_closed, true) || s.frames_written == 0) return;
   s.writer.release();
-  if (s.partial == s.path) return;  // a pipe or a device: what went through it cannot be asked
-  // OpenCV does not say when a write failed, so the file is asked: one that was cut short has no index, or
-  // fewer frames.
+  if (s.partial == s.path) return;  // a pipe or a device cannot be read back
+  // OpenCV does not report failed writes, so the file is read back: a truncated one has no index, or fewer
+  // frames.
   cv::VideoCapture reader(s.partial.string(), cv::CAP_FFMPEG);
   const double frames_held = reader.isOpened() ? reader.get(cv::CAP_PROP_FRAME_COUNT) : 0.0;
   if (frames_held + 1.5 < static_cast<double>(s.frames_written))

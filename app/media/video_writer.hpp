@@ -1,4 +1,4 @@
-// video_writer.hpp: pictures to a video file, chosen by its extension.
+// video_writer.hpp: writes pictures to a video file, in the format of its extension.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -8,30 +8,30 @@
 
 namespace roomradar {
 
-/// .mp4 (H.264 where there is an encoder, else MPEG-4), .avi (Motion JPEG), .mkv (MPEG-4). An odd last row or
-/// column is left out, for the encoders want even sizes. It is written beside (NAME.partial-PID.avi) and
-/// takes its place, and that of a video that was there, when it is finished.
+/// Writes .mp4 (H.264 if an encoder is available, else MPEG-4), .avi (Motion JPEG) or .mkv (MPEG-4). An odd
+/// last row or column is dropped, since encoders need even sizes. The video is written to a temporary file
+/// beside (NAME.partial-PID.avi), which replaces any previous video when finished.
 class VideoWriter {
  public:
-  /// Throws Error for another extension, a folder that does not exist, or frames_per_s not in 1..240.
-  /// The file is made with the first picture.
+  /// Throws Error for another extension, a folder that does not exist, or frames_per_s not in 1..240. The
+  /// file is created with the first picture.
   VideoWriter(std::filesystem::path path, double frames_per_s);
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
-  ~VideoWriter();  ///< close() without complaint
+  ~VideoWriter();  ///< calls close(), ignoring errors
 
-  /// A picture of another size than the first (depth is shown until colour comes) is scaled to that. Throws
-  /// Error if the file cannot be made, or the disk is full.
+  /// Writes a picture as the next frame, scaled to the first picture's size if different (depth is shown
+  /// until colour comes). Throws Error if the file cannot be created, or the disk is full.
   void write(const ColourImage& picture);
 
-  /// The same as often as it takes for the video to go as fast as the stamps do: twice of a source of half
-  /// the video's rate, not at all where two pictures fall together. Stamps that jump, back or by more than a
-  /// second, are taken for the next picture's.
+  /// Writes a picture zero, one or more times, so that the video runs at the speed of the stamps: twice if
+  /// the source has half the video's rate, zero times if two pictures coincide. After stamps that jump
+  /// backwards or by more than a second, the picture is written as the next frame.
   void write_at(const ColourImage& picture, double stamp_s);
 
-  /// Finishes the file, reads it back and puts it in its place. If it holds fewer frames than were written
-  /// (disk full) or cannot be put there, throws Error that says where it is instead. Nothing happens the
-  /// second time, or if nothing was written.
+  /// Finishes the file, reads it back and moves it to its final name. Throws Error with its actual location
+  /// if it has fewer frames than were written (disk full) or cannot be moved. A second call, or a call before
+  /// any write, does nothing.
   void close();
 
   [[nodiscard]] std::int64_t frames_written() const;

@@ -1,4 +1,4 @@
-// fit_normals.cpp: one linear least-squares problem for the normals of all vertices.
+// fit_normals.cpp: solves one linear least-squares problem for the normals of all vertices.
 #include "app/objects/fit_normals.hpp"
 
 #include <Eigen/Geometry>
@@ -13,8 +13,8 @@
 namespace roomradar {
 namespace {
 
-constexpr double kAsItWas = 0.002;  // what a vertex's own normal weighs, of a vertex's share of the surface
-constexpr int kMostParts = 64;      // of a triangle's side
+constexpr double kAsItWas = 0.002;  // weight of a vertex's original normal, relative to its share of the area
+constexpr int kMostParts = 64;      // per side of a triangle
 
 struct Corners {
   Eigen::Vector3f a, b, c;
@@ -28,8 +28,8 @@ Corners corners_of(const std::vector<Eigen::Vector3f>& values, const Triangle& t
   return {values[t[0]], values[t[1]], values[t[2]]};
 }
 
-/// Weights of the corners whose mean is the triangle's point nearest to p, or, beside the triangle, near
-/// that.
+/// Returns the barycentric weights of the triangle's point nearest to p; approximate if p projects outside
+/// the triangle.
 Eigen::Vector3f weights_at(const Corners& triangle, const Eigen::Vector3f& p) {
   const Eigen::Vector3f normal = (triangle.b - triangle.a).cross(triangle.c - triangle.a);
   const auto part = [&](const Eigen::Vector3f& from, const Eigen::Vector3f& to) {
@@ -41,7 +41,7 @@ Eigen::Vector3f weights_at(const Corners& triangle, const Eigen::Vector3f& p) {
   return sum > 0.0F ? Eigen::Vector3f(weights / sum) : Eigen::Vector3f::Constant(1.0F / 3.0F);
 }
 
-/// Calls visit(weights of the corners, area) for points that stand for equal parts of the triangle.
+/// Calls visit(barycentric weights, area) for sample points that represent equal parts of the triangle.
 template <typename Visit>
 void for_each_part(const Corners& triangle, float spacing_m, const Visit& visit) {
   const Eigen::Vector3f ab = triangle.b - triangle.a, ac = triangle.c - triangle.a;
@@ -65,8 +65,8 @@ void for_each_part(const Corners& triangle, float spacing_m, const Visit& visit)
 
 void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse) {
   struct Sums {
-    Eigen::Matrix3d weights = Eigen::Matrix3d::Zero();  // of two corners at one point, m^2
-    Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();  // a row a corner
+    Eigen::Matrix3d weights = Eigen::Matrix3d::Zero();  // sums of products of two corners' weights, m^2
+    Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();  // one row per corner
   };
   std::vector<Sums> sums(coarse.triangles.size());
   const SurfaceNear coarse_surface(coarse, reach_m);

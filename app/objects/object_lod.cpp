@@ -1,4 +1,4 @@
-// object_levels.cpp: simplify step by step, each level from the one before.
+// object_lod.cpp: simplifies a mesh step by step, each level from a finer one.
 #include "app/objects/object_lod.hpp"
 
 #include <Eigen/Geometry>
@@ -18,22 +18,23 @@ namespace roomradar {
 namespace {
 
 constexpr std::size_t kFewTriangles = 100;
-constexpr std::size_t kManyTriangles = 1000;  // fewer are drawn as they are, within a tenth of a millisecond
+constexpr std::size_t kManyTriangles = 1000;  // smaller meshes render within a tenth of a millisecond
 constexpr float kFinestOfSize = 1.0F / 1024.0F;
 constexpr float kCoarsestOfSize = 1.0F / 8.0F;
-constexpr float kCoarser = 1.41421356F;  // how much farther off each level may lie than the one before
-constexpr float kBaseOfBound = 0.25F;    // so far off may lie what a level is made from, or it is the finest
-constexpr std::size_t kWholeTriangles =
-    30'000;                              // what is left is done in one, with no vertices kept on seams
-constexpr float kSpacingOfSize = 0.02F;  // of the points at which deviations are measured
-constexpr float kWorthHaving = 0.75F;    // of the triangles of the level before
+constexpr float kCoarser = 1.41421356F;  // ratio of the max deviations of successive levels
+constexpr float kBaseOfBound =
+    0.25F;  // max deviation of a level's base mesh, over its bound; the finest is exempt
+// Smaller meshes are simplified as one block, without seams whose vertices must stay.
+constexpr std::size_t kWholeTriangles = 30'000;
+constexpr float kSpacingOfSize = 0.02F;  // between sample points that measure deviations
+constexpr float kWorthHaving = 0.75F;    // max triangle count relative to the previous level
 
 Eigen::Vector3f area_normal(const Mesh& mesh, const Triangle& t) {
   const Eigen::Vector3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
   return (b - a).cross(c - a);
 }
 
-/// Every index names a vertex, and every vertex is somewhere.
+/// Returns true if all indices are in range and all vertices are finite.
 bool is_sound(const Mesh& mesh) {
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
                      [](const Eigen::Vector3f& p) { return p.allFinite(); }) &&
@@ -41,7 +42,7 @@ bool is_sound(const Mesh& mesh) {
                      [&](const Triangle& t) { return is_usable(mesh, t); });
 }
 
-/// Vertices at one place become one: some files have three for each triangle, and nothing hangs together.
+/// Merges coincident vertices: some files have three per triangle, so no triangles are connected.
 void weld(Mesh& mesh) {
   std::map<std::array<float, 3>, std::uint32_t> known;
   std::vector<std::uint32_t> name(mesh.vertices.size());
@@ -74,9 +75,9 @@ void set_mean_normals(Mesh& mesh) {
   }
 }
 
-/// Gives corners at the thing's edges a vertex of their own with the face's normal.
+/// Gives corners at sharp edges a vertex of their own with the face's normal.
 void sharpen(Mesh& mesh) {
-  constexpr float kCosSmooth = 0.906F;  // of 25 degrees
+  constexpr float kCosSmooth = 0.906F;  // 25 degrees
   for (Triangle& t : mesh.triangles) {
     const Eigen::Vector3f along = area_normal(mesh, t);
     const float length = along.norm();
@@ -94,7 +95,8 @@ void sharpen(Mesh& mesh) {
 
 bool is_large(const Mesh& mesh) { return mesh.triangles.size() > kWholeTriangles; }
 
-/// What a level is made from: the coarsest that leaves most of the bound, but no large mesh twice.
+/// Returns the mesh to simplify a level from: the coarsest one that leaves most of the bound; a large mesh is
+/// used only once.
 const ObjectLevel& base_of(float bound_m, const ObjectLevel& full, std::span<const ObjectLevel> levels) {
   const ObjectLevel* base = is_large(full.mesh) && !levels.empty() ? levels.data() : &full;
   for (const ObjectLevel& level : levels)
@@ -122,7 +124,7 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
   std::size_t triangles = full.mesh.triangles.size();
   for (float bound_m = kFinestOfSize * size_m;
        bound_m <= kCoarsestOfSize * size_m && triangles > kFewTriangles; bound_m *= kCoarser) {
-    // This one may lie so far off the one it is made from that both together stay within the bound.
+    // The deviation allowed here, plus the base mesh's own, stays within the bound.
     const ObjectLevel& finer = base_of(bound_m, full, levels);
     SimplifiedMesh simple =
         simplified(finer.mesh, bound_m - finer.deviation_m, kSpacingOfSize * size_m,
@@ -131,7 +133,8 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
       continue;
     triangles = simple.mesh.triangles.size();
     const float off_m = finer.deviation_m + simple.deviation_m;
-    while (!levels.empty() && levels.back().deviation_m >= off_m) levels.pop_back();  // fewer lie nearer
+    // fewer triangles and no larger deviation
+    while (!levels.empty() && levels.back().deviation_m >= off_m) levels.pop_back();
     levels.push_back({std::move(simple.mesh), off_m});
   }
 

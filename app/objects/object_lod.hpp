@@ -1,5 +1,4 @@
-// object_levels.hpp: a virtual object's mesh in several finenesses, so that what is drawn is as fine as the
-// pixels and not as the file.
+// object_lod.hpp: levels of detail of a virtual object's mesh, chosen by pixel size.
 #pragma once
 #include <vector>
 
@@ -7,21 +6,20 @@
 
 namespace roomradar {
 
-/// A mesh with fewer triangles, no point of which lies farther than deviation_m from the one with all, nor
-/// the other way.
+/// A simplified mesh. Its two-sided distance to the full mesh is at most deviation_m.
 struct ObjectLevel {
   Mesh mesh;
   float deviation_m = 0.0F;
 };
 
-/// The levels between a mesh and about a hundred triangles, finest first; none for a mesh of less than 1,000.
-/// Each may lie 1.4 times as far off as the one before; the first a 1,024th of the mesh's size. They have
-/// normals that light them as the full mesh is lit (fit_normals.hpp); where that has none, it counts as lit
-/// by the means of the faces round a vertex, or, where a face is turned from that mean by more than 25
-/// degrees (an edge of the thing), by the face's own.
+/// Computes levels from the full mesh down to about a hundred triangles, finest first; none for a mesh with
+/// fewer than 1,000. The max deviation starts at 1/1,024 of the mesh's size and grows by a factor of 1.4 per
+/// level. Levels have normals that reproduce the full mesh's shading (fit_normals.hpp). A full mesh without
+/// normals is taken as shaded by vertex normals averaged over the adjacent faces. At faces that deviate from
+/// that mean by more than 25 degrees (sharp edges), the face normal is used.
 std::vector<ObjectLevel> object_levels(const Mesh& mesh);
 
-/// Whether a level lies off by no more than so much of what a pixel shows of it.
+/// Returns true if a level's deviation is at most error_px pixels of the given size.
 inline bool is_fine_enough(float deviation_m, double pixel_m, double error_px) {
   return static_cast<double>(deviation_m) <= error_px * pixel_m;
 }

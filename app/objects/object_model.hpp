@@ -1,5 +1,4 @@
-// object_model.hpp: what virtual objects of one mesh share: a shape to touch and to draw, a mass, a shadow's
-// points.
+// object_model.hpp: data shared by all virtual objects of one mesh.
 #pragma once
 #include <Eigen/Geometry>
 #include <memory>
@@ -16,42 +15,42 @@
 
 namespace roomradar {
 
-/// Of a model what needs no renderer, to be made on any thread.
+/// The parts of a model that need no renderer; can be made on any thread.
 struct ObjectParts {
   Mesh mesh;
-  TriangleTree touched;  ///< built by place
+  TriangleTree touched;  ///< collision shape, spatially sorted
   MassProperties mass;
-  SurfacePoints surface;            ///< what its shadow is made of
+  SurfacePoints surface;            ///< source of its contact shadow
   std::vector<ObjectLevel> levels;  ///< finest first
 };
 
-/// Takes some tenths of a second for the levels of a mesh of many triangles.
-/// @param name  of the object, for messages
-/// Throws Error if the mesh has no triangles that could be touched.
+/// Makes the parts. Levels of a mesh with many triangles take some tenths of a second.
+/// @param name  object name for messages
+/// Throws Error if the mesh has no valid triangles.
 ObjectParts object_parts(const std::string& name, Mesh mesh);
 
-/// A coarser mesh of an object, for the picture.
+/// A simplified mesh of an object, for rendering.
 struct DrawnLevel {
-  float deviation_m = 0.0F;  ///< how far it lies off the full one, at most
+  float deviation_m = 0.0F;  ///< max distance from the full mesh
   std::unique_ptr<GpuMesh> mesh;
 };
 
-/// Made once for a mesh and then only read, by any number of objects.
+/// Made once per mesh and then read only, shared by any number of objects.
 struct ObjectModel {
-  Mesh mesh;  ///< that it was made from
+  Mesh mesh;  ///< source of the model
   Shape shape;
-  /// Vertices of triangles, each once, in the mesh's frame.
+  /// Vertices used by triangles, each once, in the mesh's frame.
   std::vector<Eigen::Vector3d> corners;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of its bounding box, in the mesh's frame
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< centre of its bounding box, in the mesh's frame
   MassProperties mass;
-  SurfacePoints surface;           ///< what its shadow is made of
+  SurfacePoints surface;           ///< source of its contact shadow
   std::vector<DrawnLevel> levels;  ///< finest first
 
-  /// Throws Error if the mesh cannot be drawn (triangles with vertices that are not finite or not there).
+  /// Throws Error if the mesh cannot be rendered (vertices not finite, or indices out of range).
   ObjectModel(GlContext& context, ObjectParts parts);
 };
 
-/// Whether it was made from a mesh that is the same in every number.
+/// Returns true if the model was made from a mesh identical to this one.
 bool is_model_of(const ObjectModel& model, const Mesh& mesh);
 
 }  // namespace roomradar

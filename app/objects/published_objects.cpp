@@ -1,4 +1,4 @@
-// published_objects.cpp: fixed shapes; changing any breaks comparison with old numbers.
+// published_objects.cpp: fixed shapes; changing them would break comparison with earlier results.
 #include "app/objects/published_objects.hpp"
 
 #include <Eigen/Geometry>

@@ -1,5 +1,4 @@
-// published_objects.hpp: virtual objects with as many triangles as those that the published radar was timed
-// with.
+// published_objects.hpp: virtual objects with the triangle counts of the published radar benchmarks.
 #pragma once
 #include <Eigen/Core>
 #include <vector>
@@ -8,13 +7,13 @@
 
 namespace roomradar {
 
-/// Closed, centred, 12 triangles.
+/// A closed, centred box of 12 triangles.
 Mesh box_mesh(const Eigen::Vector3f& size_m);
-/// Closed, centred, 25 cm across: 2 * around * across triangles.
+/// A closed, centred torus, 25 cm across, of 2 * around * across triangles.
 Mesh bumpy_torus(int around, int across);
 
-/// 12 (the published 6 are a box's rectangles), 6,256 and 181,412 triangles: a box as large as the torus, the
-/// torus coarse and fine.
+/// Objects of 12, 6,256 and 181,412 triangles: a box as large as the torus, then the torus coarse and fine.
+/// The published count of 6 for a box counts rectangles.
 std::vector<Mesh> published_objects();
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// shape.cpp: one mesh to the renderer and under a tree.
+// shape.cpp: uploads a mesh to the GPU and builds its tree.
 #include "app/objects/shape.hpp"
 
 #include <utility>

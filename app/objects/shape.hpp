@@ -1,4 +1,4 @@
-// shape.hpp: a mesh twice: on the renderer, to be drawn, and at hand, to be touched.
+// shape.hpp: a mesh as collision shape and as GPU mesh.
 #pragma once
 #include "mapping/types/mesh.hpp"
 #include "radar/geometry/triangle_tree.hpp"
@@ -8,14 +8,14 @@
 namespace roomradar {
 
 struct Shape {
-  TriangleTree touched;  ///< what the radar sees
-  GpuMesh drawn;         ///< what picture and depth pass see; shares the tree's vertices and triangles
+  TriangleTree touched;  ///< collision shape, for the radar
+  GpuMesh drawn;  ///< render shape, for picture and depth pass; shares the tree's vertices and triangles
 
   explicit Shape(GlContext& context) : drawn(context) {}
 
-  /// Replaces both. Throws Error as GpuMesh::upload does; then neither is to be used.
+  /// Replaces both. Throws Error as GpuMesh::upload() does; both are then unusable.
   void set(const Mesh& mesh, MeshUsage usage);
-  /// The same with a tree that was built by place from this mesh, elsewhere.
+  /// Same, with a tree already built from this mesh by build_by_place().
   void set(const Mesh& mesh, TriangleTree tree);
 };
 

@@ -1,4 +1,4 @@
-// teapot.cpp: Newell's teapot patch by patch: evaluate, orient, weld.
+// teapot.cpp: evaluates, orients and welds Newell's teapot patch by patch.
 #include "app/objects/teapot.hpp"
 
 #include <Eigen/Geometry>
@@ -18,18 +18,18 @@ namespace {
 
 using Patch = std::array<std::array<Eigen::Vector3d, 4>, 4>;  // control points, [along v][along u]
 
-constexpr double kKnobTop = 3.15;  // height of the published teapot, in its own units; its bottom is at 0
+constexpr double kKnobTop = 3.15;  // height of the published teapot in its own units; its bottom is at 0
 
-// The published 306 control points are these rings and ribs with their mirror images: rim, body, lid and
-// bottom are 24 patches over the profiles below (4 quarter turns each), handle and spout 4 patches each (2
-// along, mirrored at y = 0).
+// The published 306 control points are these rings and ribs and their mirror images. Rim, body, lid and
+// bottom are 24 patches over the profiles below (4 quarter turns each); handle and spout are 4 patches each
+// (2 along, mirrored at y = 0).
 
 /// Four control points over a quarter turn: (radius, 0), (radius, handle), (handle, radius), (0, radius) at
 /// height z.
 struct Ring {
   double radius, handle, z;
 };
-using Profile = std::array<Ring, 4>;  // from the inside of the rim or the top of the knob outward and down
+using Profile = std::array<Ring, 4>;  // from the inside of the rim, or the top of the knob, outward and down
 constexpr std::array<Profile, 6> kProfiles = {{
     {{{1.4, 0.784, 2.4}, {1.3375, 0.749, 2.53125}, {1.4375, 0.805, 2.53125}, {1.5, 0.84, 2.4}}},  // rim
     {{{1.5, 0.84, 2.4}, {1.75, 0.98, 1.875}, {2.0, 1.12, 1.35}, {2.0, 1.12, 0.9}}},    // upper body
@@ -39,7 +39,7 @@ constexpr std::array<Profile, 6> kProfiles = {{
     {{{0.2, 0.112, 2.7}, {0.4, 0.224, 2.55}, {1.3, 0.728, 2.55}, {1.3, 0.728, 2.4}}},  // lid
 }};
 
-/// Four control points over half a tube: (upper), (upper moved by -y), (lower moved by -y), (lower).
+/// Four control points over half a tube: upper, upper shifted by -y, lower shifted by -y, lower.
 struct Rib {
   double upper_x, upper_z, lower_x, lower_z, half_width;
 };
@@ -61,17 +61,17 @@ constexpr std::array<Tube, 2> kTubes = {{
       {2.8, 2.4, 3.2, 2.4, 0.15}}},
 }};
 
-/// Patches that share borders: body with rim and bottom, lid with knob, handle, spout. Where pieces run into
-/// each other they merely cross.
+/// Patches that share borders: body with rim and bottom, lid with knob, handle, spout. Different pieces
+/// simply intersect.
 using Piece = std::vector<Patch>;
 
-/// All 32 patches, turned so that d/du x d/dv points outward.
+/// Returns all 32 patches, oriented so that d/du x d/dv points outward.
 std::array<Piece, 4> pieces() {
   std::array<Piece, 4> result;
   for (std::size_t which = 0; which < kProfiles.size(); ++which) {
     const Profile& profile = kProfiles[which];
     for (int quarter = 0; quarter < 4; ++quarter) {
-      // Exact quarter turns, so that neighbours share their border to the last bit.
+      // Exact quarter turns, so that adjacent patches share their border bit for bit.
       constexpr std::array<std::array<double, 2>, 4> kCosSin = {{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
       const auto [c, s] = kCosSin[static_cast<std::size_t>(quarter)];
       Patch patch;
@@ -79,7 +79,7 @@ std::array<Piece, 4> pieces() {
         const Ring& ring = profile[i];
         const std::array<std::array<double, 2>, 4> xy = {
             {{ring.radius, 0.0}, {ring.radius, ring.handle}, {ring.handle, ring.radius}, {0.0, ring.radius}}};
-        // u runs against the turn and v down the profile: at the front that is -y x -z, outward.
+        // u runs against the turn and v down the profile: at the front this is -y x -z, outward.
         for (std::size_t j = 0; j < 4; ++j) {
           patch[i][3 - j] = {c * xy[j][0] - s * xy[j][1], s * xy[j][0] + c * xy[j][1], ring.z};
         }
@@ -98,7 +98,7 @@ std::array<Piece, 4> pieces() {
                                                           {rib.upper_x, side * rib.half_width, rib.upper_z},
                                                           {rib.lower_x, side * rib.half_width, rib.lower_z},
                                                           {rib.lower_x, 0.0, rib.lower_z}}};
-          const bool reverse = side > 0.0;  // mirroring turns a patch inside out
+          const bool reverse = side > 0.0;  // mirroring reverses a patch's orientation
           for (std::size_t j = 0; j < 4; ++j) patch[i][j] = across[reverse ? 3 - j : j];
         }
         result[2 + which].push_back(patch);
@@ -127,7 +127,8 @@ Eigen::Vector3d weighted(const Patch& patch, const std::array<double, 4>& along_
   return sum;
 }
 
-/// Outward normal at (u, v); where a side of the patch has shrunk to a point, the normal just beside it.
+/// Returns the outward normal at (u, v); where a side of the patch is degenerate to a point, the normal just
+/// beside it.
 Eigen::Vector3d normal_at(const Patch& patch, double u, double v) {
   for (const double step_in : {0.0, 1e-4}) {
     const Weights wu = bernstein(u + step_in * (0.5 - u));
@@ -152,9 +153,9 @@ Mesh utah_teapot(int tessellation, double height_m) {
   const int n = tessellation;
   Mesh mesh;
   std::vector<Eigen::Vector3d> normal_sums;
-  // Vertices of the piece at hand by place, to weld.
+  // The piece's vertices by quantised position, for welding.
   std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::uint32_t> seen;
-  // The teapot's own units are a few cm: 1e-6 of one is far below its detail and far above rounding.
+  // One unit is a few cm: 1e-6 units is far below the teapot's detail and far above rounding.
   const auto key = [](double v) { return static_cast<std::int64_t>(std::llround(v * 1e6)); };
   const auto welded = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& normal) {
     const auto [entry, is_new] = seen.try_emplace({key(p.x()), key(p.y()), key(p.z())},
@@ -177,7 +178,7 @@ Mesh utah_teapot(int tessellation, double height_m) {
       }
     }
     const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-      if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});  // at a pole two corners are one
+      if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});  // two corners coincide at a pole
     };
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {

@@ -1,11 +1,11 @@
-// teapot.hpp: the Utah teapot from its published Bezier patches, as a virtual object to play with.
+// teapot.hpp: the Utah teapot from its published Bezier patches, as a built-in virtual object.
 #pragma once
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
-/// The Utah teapot, standing on z = 0, its body's axis on the z axis, spout along +x, handle along -x, +z up;
-/// counter-clockwise seen from outside, with a smooth normal a vertex. Neighbouring patches share their
+/// Builds the Utah teapot: stands on z = 0, body axis along z, spout along +x, handle along -x, +z up.
+/// Triangles are counter-clockwise from outside, with smooth vertex normals. Adjacent patches share their
 /// vertices.
 ///
 /// @param tessellation  n segments along each side of each of the 32 patches, 1 to 256; from n = 2 on that is

@@ -1,4 +1,4 @@
-// virtual_object.cpp: makes virtual objects of models, and says how they are seen and how far they reach.
+// virtual_object.cpp: makes virtual objects from models, and computes their extents and levels of detail.
 #include "app/objects/virtual_object.hpp"
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace roomradar {
 namespace {
 
-constexpr int kTeapotTessellation = 10;  // 6,320 triangles: round at arm's length
+constexpr int kTeapotTessellation = 10;  // 6,320 triangles: looks smooth at arm's length
 constexpr double kTeapotHeight_m = 0.15;
 
-/// Null: none was made from this mesh.
+/// Returns null if no object was made from this mesh.
 std::shared_ptr<const ObjectModel> model_among(std::span<const std::unique_ptr<VirtualObject>> objects,
                                                const Mesh& mesh) {
   const auto same = std::find_if(objects.begin(), objects.end(),
@@ -61,7 +61,7 @@ const GpuMesh& drawn_mesh(const VirtualObject& object, const Intrinsics& camera,
 
 namespace {
 
-/// How far the object's farthest point along a direction of its own frame is from its origin.
+/// Returns the farthest extent of the object from its origin along a direction of its own frame.
 double farthest_m(const VirtualObject& object, const Eigen::Vector3d& direction_object) {
   double farthest = -std::numeric_limits<double>::infinity();
   for (const Eigen::Vector3d& corner : object.model->corners)

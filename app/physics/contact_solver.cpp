@@ -1,4 +1,4 @@
-// contact_solver.cpp: projected Gauss-Seidel over the contacts of one body with what stands and with others.
+// contact_solver.cpp: projected Gauss-Seidel over a body's contacts with static surfaces and other bodies.
 #include "app/physics/contact_solver.hpp"
 
 #include <Eigen/LU>
@@ -15,8 +15,8 @@ constexpr double kSettled_mps = 1e-9;
 constexpr std::size_t kMostContacts = 32;
 
 struct Effective {
-  Vec3 x, y;                        // across the normal
-  double normal, along_x, along_y;  // kg
+  Vec3 x, y;                        // tangents
+  double normal, along_x, along_y;  // effective masses, per kg of the body
 };
 
 }  // namespace
@@ -69,7 +69,7 @@ void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& in
     other.velocity.angular_rad_s -=
         other.gives * other.inverse_inertia_m2 * contact.other_arm_m.cross(impulse);
   };
-  Vec3 held_back = Vec3::Zero();  // angular impulse of rolling
+  Vec3 held_back = Vec3::Zero();  // angular impulse of rolling resistance
   for (int round = 0; round < kMostRounds; ++round) {
     double change_mps = 0.0;
     if (rubbing.rolling > 0.0) {

@@ -1,4 +1,4 @@
-// mass_properties.cpp: sums over tetrahedra of a solid or triangles of a shell.
+// mass_properties.cpp: sums over tetrahedra of a solid, triangles of a shell, or vertices.
 #include "app/physics/mass_properties.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct Moments {
   Vec3 first = Vec3::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
 
-  /// A simplex with its mass spread evenly: `per` is (corners + 1) (corners) of the second moment's formula.
+  /// Adds a simplex of N corners with uniform density.
   template <std::size_t N>
   void add(const std::array<Vec3, N>& corners, double simplex_mass) {
     Vec3 sum = Vec3::Zero();
@@ -50,7 +50,7 @@ MassProperties properties_of(const Moments& moments, const Vec3& from) {
 }  // namespace
 
 MassProperties mass_properties(const Mesh& mesh, bool is_closed) {
-  // About the middle of the used vertices, so that nothing is lost far from the mesh's origin.
+  // Relative to the centre of the used vertices, to keep precision far from the mesh's origin.
   Eigen::AlignedBox3f box;
   for (const Triangle& t : mesh.triangles) {
     if (!is_usable(mesh, t)) continue;

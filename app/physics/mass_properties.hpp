@@ -1,4 +1,4 @@
-// mass_properties.hpp: how a body's mass lies in it, from its mesh.
+// mass_properties.hpp: mass, centre of mass and inertia of a body, from its mesh.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -6,23 +6,23 @@
 
 namespace roomradar {
 
-/// Inertia is of 1 kg: what falls, slides and rolls does so alike, whatever it weighs. What the body weighs
-/// matters to other bodies only.
+/// Inertia is per kg, since falling, sliding and rolling do not depend on mass. Mass matters only in contact
+/// with other bodies.
 struct MassProperties {
-  Eigen::Vector3d centre_object = Eigen::Vector3d::Zero();  ///< of mass, in the mesh's frame, m
-  /// About the centre, along the mesh's axes, m^2. Positive definite.
+  Eigen::Vector3d centre_object = Eigen::Vector3d::Zero();  ///< centre of mass in the mesh's frame, m
+  /// About the centre of mass, in the mesh's axes, m^2 (per kg). Positive definite.
   Eigen::Matrix3d inertia_m2 = 0.0025 * Eigen::Matrix3d::Identity();
-  double radius_m = 0.1;  ///< from the centre to the farthest vertex
-  double mass_kg = 1.0;   ///< of water where the mesh is solid, else of a shell of 5 kg/m^2; > 0
+  double radius_m = 0.1;  ///< from the centre of mass to the farthest vertex
+  double mass_kg = 1.0;   ///< density of water if the mesh is closed, else a shell of 5 kg/m^2; > 0
 };
 
-/// Of the solid inside where that is closed (TriangleTree::is_closed()), else of the surface as a thin shell
-/// of even thickness: an open mesh has no inside, and a pot or a sheet is a shell. Of no area either: of the
-/// vertices.
+/// Computes the properties of a solid if the mesh is closed (TriangleTree::is_closed()), else of a thin shell
+/// of uniform thickness: an open mesh has no inside, and a pot or a sheet is a shell. A mesh without area is
+/// treated as point masses at its vertices.
 ///
-/// Each principal moment is at least a 10,000th of the largest, that of a rod 100 times as long as thick: a
-/// line would turn about itself for nothing.
-/// Source: Eberly, Polyhedral mass properties (revisited), 2002.
+/// Each principal moment is at least 1/10,000 of the largest, as for a rod 100 times as long as thick; a line
+/// would otherwise have no inertia about itself. Source: Eberly, Polyhedral mass properties (revisited),
+/// 2002.
 MassProperties mass_properties(const Mesh& mesh, bool is_closed);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// physics.cpp: move a virtual object by what the radar answers.
+// physics.cpp: moves a virtual object by radar queries.
 #include "app/physics/physics.hpp"
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr double kShortest_m = 1e-13;  // less than this is no motion
-constexpr double kGrazing = 0.05;  // cosine below which a margin is not measured along the motion any more
-constexpr double kDoubtful_m = 0.003;  // deeper overlap along gravity: the way out may be sideways
+constexpr double kShortest_m = 1e-13;  // shorter moves count as none
+constexpr double kGrazing = 0.05;      // min cosine that converts the margin to a distance along the motion
+constexpr double kDoubtful_m = 0.003;  // deeper overlap along gravity: sideways exits are tested too
 
 bool is_finite(const Body& body) {
   return body.T_world_object.matrix().allFinite() && body.velocity_world_mps.allFinite() &&
@@ -28,13 +28,13 @@ bool is_finite(const Body& body) {
          body.mass.inertia_m2.allFinite();
 }
 
-/// Whether the radar's answer can be built on. A normal that is missing or does not face the object is
-/// replaced by the direction back, in place.
+/// Returns false if the radar's result is unusable. Replaces a normal that is missing or does not face the
+/// object by -direction.
 bool make_usable(Contact& contact, const Vec3& direction) {
   if (contact.status == ContactStatus::kInvalidInput || contact.status == ContactStatus::kNoAnswer)
     return false;
   if (!contact) return true;
-  // An overlap may be deeper than the radar looked.
+  // lower_m of an overlap may be -infinity: deeper than the radar searched.
   const bool has_lower = std::isfinite(contact.lower_m) || contact.status == ContactStatus::kOverlap;
   if (!std::isfinite(contact.travel_m) || !has_lower) return false;
   const double length = contact.normal_world.norm();
@@ -44,7 +44,7 @@ bool make_usable(Contact& contact, const Vec3& direction) {
   return true;
 }
 
-/// One call of advance: the body, the radar, and what is reported.
+/// State of one call of advance().
 class Stepper {
  public:
   Stepper(Body& body, const BodyProbe& probe, const PhysicsConfig& config, StepReport& report)
@@ -53,16 +53,16 @@ class Stepper {
     if (g > 0.0) down_ = config.gravity_world_mps2 / g;
   }
 
-  /// Looks below, and moves out of surfaces that came into the body, by the shortest way among gravity's and
-  /// the given.
+  /// Queries below the body, and moves it out of surfaces that entered it, along the shortest of gravity and
+  /// the given directions.
   void leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world);
 
-  /// Whether what leave_overlaps saw below still holds the body up, within the noise.
+  /// Returns true if the support found by leave_overlaps() still holds the body, within noise.
   [[nodiscard]] bool is_held_up() const;
-  /// Whether another body, which it touched when it came to rest, is not where it was.
+  /// Returns true if a body in contact when this one fell asleep has moved or disappeared.
   [[nodiscard]] bool has_lost_a_neighbour() const;
 
-  /// One piece of motion, and perhaps rest.
+  /// Simulates one substep, and may put the body to sleep.
   void move(double dt_s);
 
   void wake();
@@ -75,10 +75,11 @@ class Stepper {
     Contact contact;
   };
 
-  /// Without turning, from surface to surface along the radar's directions; whether one held it up.
+  /// Moves without rotation, by radar queries along the path. Returns true if a surface supported the body.
   bool slide(double dt_s);
   Contact ask(const Vec3& direction, double distance_m);
-  /// Whether what seems to be in the body only lies between its parts, as in a handle: it crosses none.
+  /// Returns true if the overlap is only a surface between the body's parts, as in a handle, that crosses
+  /// none of them.
   [[nodiscard]] bool is_in_a_hollow(const Way& way);
   static Way overlap_in(const Contact& contact, const Vec3& direction);
   void hold();
@@ -91,7 +92,7 @@ class Stepper {
   StepReport& report_;
   Vec3 down_ = Vec3::Zero();
   Contact below_;                 // along gravity, before any motion
-  std::optional<Kinds> crossed_;  // by what, before any motion, once that was asked
+  std::optional<Kinds> crossed_;  // kinds that cross the body before any motion, once queried
   std::optional<Push> push_;
   RigidScratch scratch_;
   std::array<Vec3, 2> met_normals_;
@@ -145,7 +146,8 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   }
   for (const Vec3& direction : push_directions_world)
     if (direction.allFinite() && direction.norm() > 0.5) look(direction.normalized());
-  // A wall that grazes the body's side looks deep along gravity: look sideways before jumping on top of it.
+  // A wall that grazes the body's side overlaps deeply along gravity: test sideways before lifting the body
+  // onto it.
   if (way.depth_m > kDoubtful_m && way.direction == down_) {
     const Vec3 across = down_.unitOrthogonal();
     const Vec3 other_across = down_.cross(across);
@@ -166,7 +168,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
       push_ = Push{way.contact.point_world, -way.direction, push_m / dt_s, way.contact.touched};
     if (way.direction != down_) return;
   }
-  // What stands behind stops the push: the body is squeezed, and the next call asks again.
+  // A surface behind the body limits the push: the body stays squeezed until the next call.
   const Contact behind = ask(-way.direction, push_m + config_.contact_margin_m);
   if (failed()) return;
   double free_m = push_m;
@@ -191,8 +193,8 @@ bool Stepper::has_lost_a_neighbour() const {
   });
 }
 
-/// Takes out what goes into the surface, of the velocity by restitution and friction, of the motion that
-/// remains wholly; where two surfaces are met, along their crease; where three are, all of it.
+/// Removes the velocity into the surface (with restitution and friction), and the remaining motion into it.
+/// With two surfaces, the motion continues along their crease; with three, it ends.
 void Stepper::collide(const Contact& contact, Vec3& remaining) {
   const Vec3& normal = contact.normal_world;
   Vec3& velocity = body_.velocity_world_mps;
@@ -226,8 +228,8 @@ void Stepper::collide(const Contact& contact, Vec3& remaining) {
   note_contact(contact.touched, report_);
 }
 
-/// Counts time on a support, from where the body first lingered; there for long enough, it is at rest. What
-/// is not balanced has to stay for longer: it may be about to tip.
+/// Advances the sleep timer of a supported body, and puts it to sleep when it expires. An unbalanced body
+/// takes longer, since it may be about to tip.
 void Stepper::linger(double dt_s, bool is_balanced) {
   constexpr double kLongerUnbalanced = 4.0;
   if (body_.lingered_s <= 0.0 || !(strayed_m(body_, body_.lingers_at) <= config_.rest_drift_m)) {
@@ -239,7 +241,7 @@ void Stepper::linger(double dt_s, bool is_balanced) {
   body_.at_rest = true;
   body_.leans.clear();
   for (const Body* other : scratch_.bodies) body_.leans.push_back({other, other->T_world_object});
-  body_.lingered_s = 0.0;  // whoever sets it in motion again has not lingered
+  body_.lingered_s = 0.0;  // the timer restarts when the body is set in motion again
   body_.velocity_world_mps.setZero();
   body_.spin_world_rad_s.setZero();
 }
@@ -275,7 +277,7 @@ bool Stepper::slide(double dt_s) {
     const Vec3 direction = remaining / distance_m;
     const Contact contact = ask(direction, distance_m + config_.contact_margin_m / kGrazing);
     if (failed()) return false;
-    // The gap is kept across the surface; seen along a grazing motion it is longer.
+    // The gap is kept perpendicular to the surface; along a grazing motion it is longer.
     const double steepness = std::max(-contact.normal_world.dot(direction), kGrazing);
     const double free_m = contact ? contact.lower_m - config_.contact_margin_m / steepness : contact.lower_m;
     if (free_m >= distance_m) {
@@ -284,7 +286,7 @@ bool Stepper::slide(double dt_s) {
     }
     const Vec3 moved = std::max(free_m, 0.0) * direction;
     position += moved;
-    if (!contact) break;  // the radar did not look farther
+    if (!contact) break;  // limited by the radar's search distance
     remaining -= moved;
     if (contact.normal_world.dot(down_) < -kSupportCosine) {
       is_supported = true;
@@ -374,7 +376,7 @@ StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const Physic
   if (body.at_rest && is_still && stepper.is_held_up() && !stepper.has_lost_a_neighbour()) return report;
   stepper.wake();
 
-  constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two pieces of 1/60 s, not three
+  constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two substeps of 1/60 s, not three
   const int pieces = std::max(static_cast<int>(std::ceil(dt_s / config.max_step_s - kOver)), 1);
   for (int piece = 0; piece < pieces && !body.at_rest && !stepper.failed(); ++piece)
     stepper.move(dt_s / pieces);
@@ -409,7 +411,7 @@ PushDirections push_directions(std::initializer_list<const Mesh*> moving_world,
     for (const Eigen::Vector3f& vertex : mesh->vertices) {
       const Vec3 offset = vertex.cast<double>() - centre;
       const double distance_m2 = offset.squaredNorm();
-      if (!(distance_m2 <= reach_m * reach_m)) continue;  // NaN is not near either
+      if (!(distance_m2 <= reach_m * reach_m)) continue;  // also rejects NaN
       sum += offset;
       ++count;
       if (distance_m2 <= nearest_m2) {
@@ -423,7 +425,9 @@ PushDirections push_directions(std::initializer_list<const Mesh*> moving_world,
   for (const Vec3& offset : {nearest, Vec3(sum / static_cast<double>(count))}) {
     const Vec3 level = offset - offset.dot(up_world) * up_world;
     const double length = level.norm();
-    if (length < 0.2 * offset.norm() || length < 1e-6) continue;  // straight above or below: gravity's affair
+    if (length < 0.2 * offset.norm() || length < 1e-6)
+      continue;  // directly above or below: handled along
+                 // gravity
     const Vec3 direction = level / length;
     if (result.count == 1 && direction.dot(result.direction_world[0]) > 0.97) continue;
     result.direction_world[static_cast<std::size_t>(result.count++)] = direction;

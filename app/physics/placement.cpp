@@ -1,4 +1,4 @@
-// placement.cpp: find a level surface in view, on a grid of heights seen from above.
+// placement.cpp: finds a level surface in view, on a height map seen from above.
 #include "app/physics/placement.hpp"
 
 #include <algorithm>
@@ -16,19 +16,20 @@ namespace {
 
 constexpr float kUnseen = -std::numeric_limits<float>::infinity();
 
-/// What is seen from above: the height of the topmost surface in each cell of a level grid about what is
-/// seen, with `margin` more cells, unseen ones, on each side; no cells where nothing is.
+/// Height map of the view: the height of the topmost surface in each cell of a horizontal grid around the
+/// visible points, padded by `margin` unseen cells on each side; without cells if nothing is visible.
 class HeightGrid {
  public:
   HeightGrid(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
              const PlacementConfig& config, int margin)
       : cell_m_(config.cell_m), origin_world_(T_world_camera.translation()) {
     struct Seen {
-      int i, j;  // of the cell: 0 below the camera, until the grid is laid
+      int i, j;  // cell indices relative to the camera
       float height_m;
     };
     std::vector<Seen> points;
-    // Of a row as many pixels as the farthest cells need; of a column more, for floors are seen at a slant.
+    // Subsampling: enough pixels per row for the farthest cells; more per column, since floors are seen at a
+    // slant.
     constexpr double kOfCell = 0.75;
     const double apart_px = kOfCell * cell_m_ * camera.fx_px / config.max_range_m;
     const int across = static_cast<int>(std::clamp(apart_px, 1.0, static_cast<double>(camera.width_px)));
@@ -39,7 +40,7 @@ class HeightGrid {
     const auto per_m = static_cast<float>(1.0 / cell_m_);
     const auto nearest_m = static_cast<float>(config.min_range_m),
                farthest_m = static_cast<float>(config.max_range_m);
-    // A wide lens sees farther sideways.
+    // A wide-angle lens sees farther to the sides.
     const int most = static_cast<int>(std::ceil(1.5 * config.max_range_m / cell_m_));
     Eigen::AlignedBox2i seen;
     for (int y = 0; y < camera.height_px; y += down) {
@@ -57,7 +58,7 @@ class HeightGrid {
     }
     if (points.empty()) return;
 
-    // A square about what is seen.
+    // A square around the visible points.
     half_ = (seen.sizes().maxCoeff() + 1) / 2 + margin;
     size_ = 2 * half_ + 1;
     const Eigen::Vector2i middle = seen.min() + seen.sizes() / 2;
@@ -71,7 +72,7 @@ class HeightGrid {
     };
     for (const Seen& point : points)
       highest_m[cell_of(point)] = std::max(highest_m[cell_of(point)], point.height_m);
-    // The mean of the topmost layer rather than its highest point, which is the noisiest.
+    // The mean of the topmost layer; its highest point would be the noisiest.
     const auto layer_m = static_cast<float>(2.0 * config.flatness_m);
     for (const Seen& point : points) {
       const std::size_t cell = cell_of(point);
@@ -88,8 +89,8 @@ class HeightGrid {
   [[nodiscard]] std::size_t index(int i, int j) const {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
   }
-  /// Above the camera's height (m), usually negative; kUnseen where nothing is. Row by row: where something
-  /// is seen, cells up to the margin away can be reached from here.
+  /// Returns a pointer to a cell's height above the camera (m), usually negative; kUnseen if nothing was
+  /// seen. Row by row: from a seen cell, cells up to the margin away can be addressed relative to it.
   [[nodiscard]] const float* top_m(int i, int j) const { return &top_m_[index(i, j)]; }
   [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {
     return origin_world_ + Eigen::Vector3d((i - half_) * cell_m_, (j - half_) * cell_m_, height_m);
@@ -103,15 +104,15 @@ class HeightGrid {
   std::vector<float> top_m_;
 };
 
-/// The cells of a grid that an object covers, from its middle.
+/// Cells of the grid that an object covers, relative to its centre.
 struct FootprintCells {
   struct Cell {
-    std::ptrdiff_t away;  // in the grid
+    std::ptrdiff_t away;  // offset in the grid
     double x_m, y_m;
-    float most_rise_m;  // against the middle, of a surface on which the object can stand
+    float most_rise_m;  // max height difference from the centre of a surface on which the object can stand
   };
-  std::vector<Cell> cells;                            // from the rim inwards: there an edge shows first
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();  // sums of 1, x, y by 1, x, y
+  std::vector<Cell> cells;  // from the rim inwards, since edges show first at the rim
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();  // sums of (1, x, y) (1, x, y)^T
 };
 
 double steepest_of(const PlacementConfig& config) {
@@ -138,11 +139,11 @@ FootprintCells cells_under(double radius_cells, int grid_size, const PlacementCo
 
 struct Footprint {
   bool is_level = false;
-  double height_m = 0.0;  // of the fitted plane at the middle
+  double height_m = 0.0;  // of the fitted plane, at the centre
 };
 
-/// Fits z = a + b x + c y to the tops under the footprint, and tells whether an object can stand there.
-/// @param top_m  of the middle, in a grid whose margin is as wide as the footprint reaches
+/// Fits z = a + b x + c y to the heights under the footprint, and decides if an object can stand there.
+/// @param top_m  of the centre, in a grid whose margin is at least the footprint's radius
 Footprint footprint_at(const float* top_m, const FootprintCells& footprint, const PlacementConfig& config) {
   const float middle_m = *top_m;
   if (middle_m == kUnseen) return {};
@@ -161,7 +162,7 @@ Footprint footprint_at(const float* top_m, const FootprintCells& footprint, cons
       continue;
     }
     const float rise_m = cell_top_m - middle_m;
-    if (std::abs(rise_m) > cell.most_rise_m) return {};  // an edge: no need to fit
+    if (std::abs(rise_m) > cell.most_rise_m) return {};  // an edge: no fit needed
     rises_m += rise_m;
     x_rises_m2 += cell.x_m * rise_m;
     y_rises_m2 += cell.y_m * rise_m;
@@ -178,7 +179,7 @@ Footprint footprint_at(const float* top_m, const FootprintCells& footprint, cons
   return {true, middle_m + plane[0]};
 }
 
-/// Distance (cells, chamfer 1 and sqrt 2) of each place to the nearest one that is none.
+/// Computes each valid cell's distance to the nearest invalid one (in cells, chamfer 1 and sqrt 2).
 std::vector<float> distance_inside(const std::vector<char>& is_place, int size) {
   constexpr float kDiagonal = std::numbers::sqrt2_v<float>;
   std::vector<float> distance(is_place.size());
@@ -204,7 +205,7 @@ std::vector<float> distance_inside(const std::vector<char>& is_place, int size) 
   return distance;
 }
 
-/// 1 in the middle of the picture, falling towards its edge; 0 outside.
+/// Returns 1 at the picture's centre, less towards its edge; 0 outside.
 double centrality(const Eigen::Vector3d& p_camera, const Intrinsics& camera) {
   if (p_camera.z() <= 0.0) return 0.0;
   const Eigen::Vector2d p = project(camera, p_camera);
@@ -252,8 +253,8 @@ std::optional<Eigen::Vector3d> find_support(const DepthImage& depth_m, const Int
 
   const std::vector<float> inside_cells = distance_inside(is_place, grid.size());
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  constexpr double kAmple_m = 0.15;      // more room than this is no better
-  constexpr double kFloorIsWorth = 0.2;  // as a place for things, against a table
+  constexpr double kAmple_m = 0.15;      // more room than this gives no higher score
+  constexpr double kFloorIsWorth = 0.2;  // score factor of the floor, relative to a table
   double best_worth = 0.0;
   std::optional<Eigen::Vector2i> best;
   for (int j = 0; j < grid.size(); ++j) {

@@ -1,4 +1,4 @@
-// surface_hit.cpp: down the tree of boxes, nearer than the best so far.
+// ray_hit.cpp: traverses the tree of boxes, pruned by the nearest hit so far.
 #include "app/physics/ray_hit.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-/// Where along origin + t * direction the triangle is met, t > 0; infinite where it is not.
+/// Returns t > 0 at which origin + t * direction hits the triangle; infinite if it misses.
 double meeting_of(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
   constexpr double kMiss = std::numeric_limits<double>::infinity();
   const Vec3 ab = b - a, ac = c - a;
@@ -25,7 +25,7 @@ double meeting_of(const Vec3& origin, const Vec3& direction, const Vec3& a, cons
   const Vec3 turned = from_a.cross(ab);
   const double v = direction.dot(turned) / determinant;
   const double t = ac.dot(turned) / determinant;
-  constexpr double kRounding = 1e-9;  // no ray slips through between two triangles
+  constexpr double kRounding = 1e-9;  // no ray slips between two triangles
   return u >= -kRounding && v >= -kRounding && u + v <= 1.0 + kRounding && t > 0.0 ? t : kMiss;
 }
 
@@ -40,7 +40,7 @@ std::optional<SurfaceHit> surface_hit(const TreeInstance& mesh, const Ray& ray, 
   if (mesh.tree == nullptr || mesh.tree->empty()) return std::nullopt;
   const TriangleTree& tree = *mesh.tree;
   const Eigen::Isometry3d T_mesh_world = mesh.T_world_mesh.inverse();
-  const Vec3 origin = T_mesh_world * ray.origin_world - tree.origin();  // local, as the vertices are
+  const Vec3 origin = T_mesh_world * ray.origin_world - tree.origin();  // in the vertices' frame
   const Vec3 direction = T_mesh_world.linear() * ray.direction_world;
   if (!origin.allFinite() || !direction.allFinite() || direction.isZero()) return std::nullopt;
   const Vec3 from_centre = origin - tree.centre();

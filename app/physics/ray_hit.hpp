@@ -1,4 +1,4 @@
-// surface_hit.hpp: where a ray meets a mesh: what a user points at.
+// ray_hit.hpp: ray casting against a mesh, to find the point a user points at.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -11,7 +11,7 @@ namespace roomradar {
 struct SurfaceHit {
   double distance_m = 0.0;  ///< from the ray's origin
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, turned to face the origin
+  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, facing the ray's origin
 };
 
 struct Ray {
@@ -19,12 +19,12 @@ struct Ray {
   Eigen::Vector3d direction_world = Eigen::Vector3d::UnitZ();  ///< unit
 };
 
-/// The ray from the camera through image coordinates (u, v); pixel (0, 0) is centred at (0, 0).
+/// Returns the ray from the camera through image coordinates (u, v); pixel (0, 0) has its centre at (0, 0).
 Ray ray_through(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, double u_px, double v_px);
 
-/// The first triangle that the ray meets, from either side, no farther away than reach_m. Nothing for a null
-/// or empty mesh, or a ray that is not finite. Möller and Trumbore, Fast, minimum storage ray-triangle
-/// intersection, 1997, in double.
+/// Returns the first triangle that the ray hits, on either side, within reach_m. Returns nothing for a null
+/// or empty mesh, or a ray that is not finite. Source: Möller and Trumbore, Fast, minimum storage
+/// ray-triangle intersection, 1997, in double.
 std::optional<SurfaceHit> surface_hit(const TreeInstance& mesh, const Ray& ray, double reach_m);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// rigid_motion.cpp: from contact to contact, each time as far as is free.
+// rigid_motion.cpp: alternates contact impulses and motion up to the time of impact.
 #include "app/physics/rigid_motion.hpp"
 
 #include <Eigen/LU>
@@ -11,10 +11,10 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr double kTouchingBand = 0.5;  // of the margin: so much farther away than it is still a contact
-constexpr double kKept = 0.5;          // of the margin: what approaches is stopped there
+constexpr double kTouchingBand = 0.5;  // fraction of the margin by which contacts may exceed it
+constexpr double kKept = 0.5;          // fraction of the margin at which approaching surfaces stop the motion
 constexpr double kNoTime_s = 1e-12;
-constexpr double kNudge_mps = 0.05;  // what is slower does not wake a body that it meets
+constexpr double kNudge_mps = 0.05;  // slower impacts do not wake the body hit
 
 void limit(Vec3& v, double most) {
   const double size = v.norm();
@@ -23,7 +23,7 @@ void limit(Vec3& v, double most) {
 
 Velocity velocity_of(const Body& body) { return {body.velocity_world_mps, body.spin_world_rad_s}; }
 
-/// One piece: the body, what it touches now, and what is left of the time.
+/// State of one substep: the body, its contacts, and the time left.
 class Piece {
  public:
   Piece(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
@@ -73,7 +73,8 @@ class Piece {
   Kinds left_out_ = 0;
 };
 
-/// Contacts at the pose as it is; false where a surface crosses the body that does not push it.
+/// Finds contacts at the present pose. Returns false if a surface other than the pushing one crosses the
+/// body.
 bool Piece::find_contacts() {
   const double margin_m = config_.contact_margin_m;
   const double reach_m = (1.0 + kTouchingBand) * margin_m;
@@ -109,7 +110,7 @@ bool Piece::find_contacts() {
   return true;
 }
 
-/// The body that is touched there, among those that are.
+/// Returns the index of the body in contact at p, adding it if new; kNoOther for a static surface.
 std::size_t Piece::other_on(const NearPoint& p) {
   if (p.tree >= probe_.others.size() || probe_.others[p.tree].body == nullptr) return kNoOther;
   const auto& [body, gives] = probe_.others[p.tree];
@@ -120,7 +121,7 @@ std::size_t Piece::other_on(const NearPoint& p) {
   return scratch_.bodies.size() - 1;
 }
 
-/// Of the body and what it touches, for each kilogram of the body.
+/// Returns the energy of the body and all bodies in contact, per kg of the body.
 double Piece::energy_of_all() const {
   double sum = energy(velocity_, inertia_);
   for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
@@ -130,7 +131,7 @@ double Piece::energy_of_all() const {
   return sum;
 }
 
-/// What rests and is met too gently stays where it is.
+/// Keeps sleeping bodies static that are hit more slowly than kNudge_mps.
 void Piece::let_sleepers_lie() {
   for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
     if (!scratch_.bodies[i]->at_rest || !scratch_.others[i].velocity.linear_mps.isZero()) continue;
@@ -143,7 +144,8 @@ void Piece::let_sleepers_lie() {
   }
 }
 
-/// Turns back what enters a contact before the time is over: what is fast with restitution.
+/// Cancels the velocity into contacts that would close within the time left, with restitution for fast
+/// impacts.
 void Piece::bounce() {
   bool enters = false, is_fast = false;
   let_sleepers_lie();
@@ -165,7 +167,7 @@ void Piece::bounce() {
   const Rubbing rubbing{config_.friction, 0.0};
   solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_, scratch_.others);
   if (is_fast && !push_ && energy_of_all() > kSame * before) {
-    // Several contacts with friction may gain by Newton's restitution: then there is none.
+    // Newton's restitution with friction at several contacts may add energy: repeat without restitution.
     velocity_ = entering;
     for (std::size_t i = 0; i < scratch_.others.size(); ++i)
       scratch_.others[i].velocity = velocity_of(*scratch_.bodies[i]);
@@ -176,14 +178,14 @@ void Piece::bounce() {
     scratch_.bodies[i]->velocity_world_mps = scratch_.others[i].velocity.linear_mps;
     scratch_.bodies[i]->spin_world_rad_s = scratch_.others[i].velocity.angular_rad_s;
   }
-  std::array<bool, kTouchedKinds> is_met{};  // each by any number of points
+  std::array<bool, kTouchedKinds> is_met{};  // each kind counts once, whatever its number of points
   for (std::size_t i = 0; i < scratch_.contacts.size(); ++i)
     if (scratch_.contacts[i].impulse_mps > 0.0) is_met[static_cast<std::size_t>(scratch_.kinds[i])] = true;
   for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
     if (is_met[kind]) note_contact(static_cast<Touched>(kind), report_);
 }
 
-/// Lets contacts be entered as fast as their gaps have room for, in dt_s.
+/// Allows each contact to close its gap, down to the margin, within dt_s.
 void Piece::set_room(double dt_s) {
   for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
     const bool is_push = i >= scratch_.near.size();
@@ -192,7 +194,7 @@ void Piece::set_room(double dt_s) {
   }
 }
 
-/// The velocity after dt_s of gravity on these contacts; what is touched goes on as it goes.
+/// Returns the velocity after dt_s of gravity supported by the contacts; bodies in contact are unaffected.
 Velocity Piece::held_up_after(Velocity velocity, double dt_s) {
   velocity.linear_mps += config_.gravity_world_mps2 * dt_s;
   set_room(dt_s);
@@ -201,7 +203,7 @@ Velocity Piece::held_up_after(Velocity velocity, double dt_s) {
   return velocity;
 }
 
-/// A motion, without momentum, that brings contacts nearer than the margin back to it.
+/// Returns a position correction, without momentum, that restores the margin at contacts nearer than it.
 Velocity Piece::lift_back(double dt_s) {
   constexpr double kAtOnce = 0.3, kFastest_mps = 0.1, kLeft = 0.05;
   Velocity lift;
@@ -229,8 +231,8 @@ void Piece::see_support(RigidPiece& piece) {
   }
 }
 
-/// The mean of the velocities before and after, but not into other bodies: they stand until their turn comes,
-/// however they go.
+/// Returns the mean of the velocities before and after, without motion into other bodies: these keep their
+/// pose until they are advanced themselves.
 Velocity Piece::mean_with(const Velocity& after) {
   Velocity mean{0.5 * (velocity_.linear_mps + after.linear_mps),
                 0.5 * (velocity_.angular_rad_s + after.angular_rad_s)};
@@ -240,7 +242,7 @@ Velocity Piece::mean_with(const Velocity& after) {
   return mean;
 }
 
-/// On with the mean of the velocities, as far as that is free.
+/// Moves with the mean velocity for as long as the motion is free.
 void Piece::go(const Velocity& after) {
   const Velocity mean = mean_with(after);
   RigidMotion motion;
@@ -248,7 +250,7 @@ void Piece::go(const Velocity& after) {
   motion.linear_m_s = mean.linear_mps;
   motion.angular_rad_s = mean.angular_rad_s;
   if (scratch_.contacts.empty()) {
-    // What turns freely keeps its angular momentum, not its angular velocity: half-way that is another one.
+    // Free rotation conserves angular momentum, not angular velocity: use the angular velocity half-way.
     const Eigen::Isometry3d T_half = pose_after(body_.T_world_object, motion, 0.5 * left_s_);
     const Eigen::Matrix3d inertia_half =
         T_half.linear() * body_.mass.inertia_m2 * T_half.linear().transpose();

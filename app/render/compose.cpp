@@ -1,4 +1,4 @@
-// compose.cpp: put the virtual objects into the camera's picture.
+// compose.cpp: composes virtual objects into the camera's picture.
 #include "app/render/compose.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-/// Pixels that may show the space in which the shadow is tabulated.
+/// Returns the pixels that may show the volume in which the shadow is tabulated.
 PixelRect shadowed_pixels(const ShadowCaster& caster, const Intrinsics& camera,
                           const Eigen::Isometry3d& T_world_camera) {
   const ContactShadow& shadow = *caster.shadow;
@@ -33,7 +33,7 @@ void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m, float strength,
                  ColourImage& picture) {
   const PixelRect rect = shadowed_pixels(caster, camera, T_world_camera);
-  // From pixel and depth straight to the shadow's axes, which are the world's with an origin of its own.
+  // From pixel and depth directly to the shadow's frame, with world axes and its own origin.
   const Eigen::Matrix3f R_world_camera = T_world_camera.linear().cast<float>();
   const Eigen::Vector3f camera_from_object_m =
       (T_world_camera.translation() - origin_world(*caster.shadow, caster.T_world_object)).cast<float>();
@@ -75,7 +75,7 @@ void lay_over(const ObjectLayer& layer, const Occlusion& occlusion, ColourImage&
       const int u = layer.rect.x + x - occlusion.rect.x, v = layer.rect.y + y - occlusion.rect.y;
       const float hidden = occlusion.hidden.at(u, v);
       const Rgb& front = occlusion.front.at(u, v);
-      const float object_part = (1.0F - hidden) * part_a_sample;  // of each covered sub-pixel
+      const float object_part = (1.0F - hidden) * part_a_sample;  // per covered sub-pixel
       const float front_part = hidden * covered;
       const float beside_part = 1.0F - covered;
       Rgb& pixel = picture.at(layer.rect.x + x, layer.rect.y + y);
@@ -92,7 +92,7 @@ template <typename Pixel>
 void require_size(const char* what, const Image<Pixel>& image, int width_px, int height_px) {
   if (image.width == width_px && image.height == height_px) return;
   throw Error(std::string("compose: ") + what + " is " + std::to_string(image.width) + " x " +
-              std::to_string(image.height) + " pixels, wanted are " + std::to_string(width_px) + " x " +
+              std::to_string(image.height) + " pixels; must be " + std::to_string(width_px) + " x " +
               std::to_string(height_px));
 }
 
@@ -136,7 +136,7 @@ void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const
   require_size("the real depth", real_depth_m, picture.width, picture.height);
   if (layer.rect.width <= 0 || layer.rect.height <= 0) return;
   if (!(clamped(layer.rect, picture.width, picture.height) == layer.rect))
-    throw Error("compose: the objects' layer reaches past the picture");
+    throw Error("compose: the objects' layer exceeds the picture");
   require_size("the layer's colour", layer.colour, layer.rect.width * layer.samples,
                layer.rect.height * layer.samples);
   require_size("the layer's depth", layer.depth_m, layer.rect.width * layer.samples,
@@ -147,12 +147,12 @@ void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const
 
 void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture) {
   picture.resize(depth_m.width, depth_m.height, Rgb{24, 26, 30});
-  constexpr int kReach_px = 2;  // a wider baseline than the neighbours': quantised depth has stairs
+  constexpr int kReach_px = 2;  // a wider baseline than adjacent pixels, since quantised depth has steps
   for (int y = 0; y < depth_m.height; ++y) {
     for (int x = 0; x < depth_m.width; ++x) {
       const float z_m = depth_m.at(x, y);
       if (!(z_m > 0.0F)) continue;
-      // Slope along an axis from the sides that belong to the same surface.
+      // Slope along an axis, from the sides that belong to the same surface.
       const auto slope = [&](int dx, int dy) {
         float rise_m = 0.0F;
         int span = 0;

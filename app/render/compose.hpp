@@ -1,4 +1,4 @@
-// compose.hpp: put the virtual objects into the camera's picture, hidden by what is nearer, and with shadows.
+// compose.hpp: composes virtual objects into the camera's picture, with occlusion and shadows.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -13,49 +13,49 @@ namespace roomradar {
 
 struct ComposeConfig {
   OcclusionConfig occlusion;
-  float shadow_strength = 0.75F;  ///< 0 none .. 1: black where the object covers the whole sky
+  float shadow_strength = 0.75F;  ///< 0: none; 1: black where the object occludes the whole sky
 };
-/// Throws Error "compose.shadow_strength = 2: must be in 0..1" and the like.
+/// Throws Error such as "compose.shadow_strength = 2: must be in 0..1".
 void require_valid(const ComposeConfig& config);
 
-/// An object that darkens what is below it.
+/// An object that casts a shadow on surfaces below it.
 struct ShadowCaster {
   const ContactShadow* shadow = nullptr;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
 
-/// The pixels whose real depth shadows and objects look at: those of the layer, about it, and of the shadows.
-/// Only these need rendering.
+/// Returns the pixels whose real depth is needed: those of the layer with the occlusion margin, and of the
+/// shadows.
 PixelRect pixels_to_compose(std::span<const ShadowCaster> casters, const Intrinsics& camera,
                             const Eigen::Isometry3d& T_world_camera, const ObjectLayer& layer,
                             const OcclusionConfig& config);
 
-/// The picture of the room with the objects' shadows in it, and not yet the objects.
+/// Copies the background with the objects' shadows, without the objects themselves.
 ///
-/// @param background       the camera's picture, of its size: the live colour, or the depth by shade_depth
+/// @param background       the camera's picture, of its size: live colour, or depth shaded by shade_depth()
 /// @param camera           the (colour) camera
 /// @param T_world_camera   its pose
-/// @param real_depth_m     real surfaces as this camera sees them, of its size; 0 takes no shadow
+/// @param real_depth_m     real surfaces in this camera, of its size; pixels of 0 get no shadow
 /// @param casters          objects that cast a soft shadow on real surfaces
-/// @param strength         0 none .. 1: black where an object covers the whole sky
-/// @param picture          out, of the camera's size; may not be `background`
+/// @param strength         0: none; 1: black where an object occludes the whole sky
+/// @param picture          out, of the camera's size; must not be `background`
 /// @throws Error if sizes disagree
-/// Only the shadows' rectangles cost time beyond one copy.
+/// Beyond one copy, only the shadows' rectangles cost time.
 void cast_shadows(const ColourImage& background, const Intrinsics& camera,
                   const Eigen::Isometry3d& T_world_camera, const DepthImage& real_depth_m,
                   std::span<const ShadowCaster> casters, float strength, ColourImage& picture);
 
-/// Lays the objects over the picture that has their shadows.
+/// Blends the objects over the picture that already has their shadows.
 ///
-/// @param layer         the objects as the picture's camera sees them (ObjectDrawer)
-/// @param real_depth_m  real surfaces, of the picture's size; 0 hides nothing
-/// @param occlusion     what hides the objects; buffers that are reused
-/// @throws Error if sizes disagree, or the layer reaches past the picture
+/// @param layer         the objects in the picture's camera (ObjectDrawer)
+/// @param real_depth_m  real surfaces, of the picture's size; 0 occludes nothing
+/// @param occlusion     out: occlusion of the objects; reused buffers
+/// @throws Error if sizes disagree, or the layer exceeds the picture
 void lay_objects(const ObjectLayer& layer, const DepthImage& real_depth_m, const OcclusionConfig& config,
                  Occlusion& occlusion, ColourImage& picture);
 
-/// A grey picture of a depth image, lit from the camera, for sources without colour. Pixels without depth are
-/// dark.
+/// Renders a depth image as a grey picture lit from the camera, for sources without colour. Pixels without
+/// depth are dark.
 void shade_depth(const DepthImage& depth_m, const Intrinsics& camera, ColourImage& picture);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// contact_shadow.cpp: tabulate how much of the sky an object's underside takes, and look it up.
+// contact_shadow.cpp: tabulates and samples ambient occlusion by an object's underside.
 #include "app/render/contact_shadow.hpp"
 
 #include <algorithm>
@@ -14,19 +14,21 @@ namespace roomradar {
 namespace {
 
 constexpr int kPoints = 8000;
-constexpr float kSpread = 1.0F;  // the table reaches this many longer sides past the footprint and below it
-// A noisy surface may stand this much above the object's lowest point.
+constexpr float kSpread = 1.0F;  // table extent beyond and below the footprint, over its longer side
+// Max height of shadowed points above the object's lowest point: a noisy surface may reach this high.
 constexpr float kAboveBottom_m = 0.04F;
 constexpr float kFadeAbove_m = 0.02F;
-constexpr std::array<float, 8> kLevels = {0.0F, 0.02F, 0.05F, 0.1F, 0.2F, 0.4F, 0.7F, 1.0F};  // of extent_m
+// fractions of extent_m
+constexpr std::array<float, 8> kLevels = {0.0F, 0.02F, 0.05F, 0.1F, 0.2F, 0.4F, 0.7F, 1.0F};
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 
-/// One piece of the underside: its middle relative to the table's first cell, and its height over the bottom.
+/// A patch of the underside: its centre relative to the table's first cell, and its height above the lowest
+/// point.
 struct Patch {
   float x_m, y_m, height_m;
 };
 
-/// The lowest point over each cell, where there is any.
+/// Returns the lowest point over each cell, if there is one.
 std::vector<Patch> underside(const std::vector<Eigen::Vector3f>& points, const ContactShadow& table) {
   std::vector<float> lowest_m(static_cast<std::size_t>(table.columns) * static_cast<std::size_t>(table.rows),
                               kNothing);
@@ -52,20 +54,20 @@ std::vector<Patch> underside(const std::vector<Eigen::Vector3f>& points, const C
   return patches;
 }
 
-/// Goes to 0 over the outer fifth of the table, so that the shadow has no edge.
+/// Fades to 0 over the outer fifth of the table, so that the shadow has no edge.
 float window(int i, int count) {
   const float from_edge = static_cast<float>(std::min(i, count - 1 - i)) / static_cast<float>(count);
   return std::clamp(from_edge / 0.1F, 0.0F, 1.0F);
 }
 
-/// Form factor of a small level piece of the underside, as a level point below sees it.
+/// Returns the form factor of a small horizontal patch of the underside, seen from a horizontal point below.
 float form_factor(float dx_m, float dy_m, float h_m, float area_m2) {
   const float d2 = dx_m * dx_m + dy_m * dy_m + h_m * h_m;
   return h_m * h_m * area_m2 / (std::numbers::pi_v<float> * d2 * d2);
 }
 
-/// Adds a patch's form factors at the level points of a row that is clearance_m below the bottom. What is
-/// near against the patch's size sees it as nine pieces.
+/// Adds a patch's form factors at a row of horizontal points, clearance_m below the lowest point. For points
+/// close to the patch relative to its size, the patch is split into nine pieces.
 void add_patch(const Patch& patch, float y_m, float clearance_m, float cell_m, std::span<float> row) {
   const float area_m2 = cell_m * cell_m;
   const float third_m = cell_m / 3.0F;
@@ -104,8 +106,8 @@ SurfacePoints spread_points(const Mesh& mesh) {
     if (is_usable(mesh, triangle)) total_m2 += area_m2(triangle);
   if (!(total_m2 > 0.0)) return spread;
 
-  // Every kPoints-th part of the area in the order of the triangles, at places of an even sequence within
-  // them. Source: Roberts, The unreasonable effectiveness of quasirandom sequences, 2018 (R2).
+  // One point per 1/kPoints of the area, in the order of the triangles, at quasirandom positions within them.
+  // Source: Roberts, The unreasonable effectiveness of quasirandom sequences, 2018 (R2).
   constexpr double kStepU = 0.7548776662466927, kStepV = 0.5698402909980532;
   spread.p_object_m.reserve(kPoints + 1);
   double owed = 0.5, u = 0.5, v = 0.5;
@@ -147,7 +149,7 @@ void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_w
     return static_cast<int>(std::ceil((side_m + 2.0F * spread_m) / shadow.cell_m)) + 1;
   };
   shadow.cell_m = longer_side_m / static_cast<float>(cells_across);
-  // Cells begin where the object does: half a cell off they would make it larger.
+  // Cells are aligned with the object's bounds; shifted by half a cell they would enlarge it.
   shadow.x0_m = bounds.min().x() - spread_m + 0.5F * shadow.cell_m;
   shadow.y0_m = bounds.min().y() - spread_m + 0.5F * shadow.cell_m;
   shadow.columns = cells(bounds.sizes().x());
@@ -156,7 +158,7 @@ void make_contact_shadow(const SurfacePoints& object, const Eigen::Matrix3d& R_w
   shadow.extent_m = spread_m;
   const std::vector<Patch> patches = underside(turned, shadow);
 
-  const float least_clearance_m = 0.4F * shadow.cell_m;  // nearer, the pieces of a patch would be told apart
+  const float least_clearance_m = 0.4F * shadow.cell_m;  // closer, a patch's pieces would become visible
   const auto row_length = static_cast<std::size_t>(shadow.columns);
   for (const float level : kLevels) {
     shadow.clearances_m.push_back(level * shadow.extent_m);

@@ -1,4 +1,4 @@
-// draw.cpp: draw the virtual objects as a camera sees them.
+// draw.cpp: renders virtual objects with OpenGL.
 #include "app/render/draw.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -23,8 +23,8 @@ layout(location = 0) in vec3 p_local;
 layout(location = 1) in vec3 normal_local;
 layout(location = 2) in vec3 colour_srgb;
 layout(location = 0) uniform mat4 clip_from_local;
-layout(location = 1) uniform mat4 eye_from_local;  // world axes, the camera at 0
-layout(location = 2) uniform vec4 plain_srgb;      // w 1: instead of the vertices' colours
+layout(location = 1) uniform mat4 eye_from_local;  // world axes, camera at the origin
+layout(location = 2) uniform vec4 plain_srgb;      // used if w is 1, else the vertices' colours
 out vec3 p_eye;
 out vec3 normal_eye;
 out vec3 albedo;
@@ -33,13 +33,12 @@ void main() {
   p_eye = (eye_from_local * vec4(p_local, 1.0)).xyz;
   normal_eye = mat3(eye_from_local) * normal_local;
   albedo = mix(colour_srgb, plain_srgb.rgb, plain_srgb.a);
-  albedo *= albedo;  // a gamma of 2 stands for sRGB's: no powers a pixel
+  albedo *= albedo;  // gamma 2 approximates sRGB without a pow() per pixel
 }
 )";
 
-// A lit room: light from all sides that is stronger from above, one broad lamp, and its reflection in the
-// glaze. Highlight: Blinn's, normalised. Reflection at grazing angles: Schlick's approximation of Fresnel's
-// law.
+// Lighting of a room: ambient light, stronger from above, one broad lamp, and reflections on glaze.
+// Highlight: normalised Blinn-Phong. Grazing reflection: Schlick's approximation of the Fresnel term.
 constexpr const char* kFragmentShader = R"(#version 450 core
 in vec3 p_eye;
 in vec3 normal_eye;
@@ -57,11 +56,11 @@ void main() {
   vec3 facet = normalize(cross(dFdx(p_eye), dFdy(p_eye)));
   if (dot(facet, to_eye) < 0.0) facet = -facet;
   vec3 n = has_normals && dot(normal_eye, normal_eye) > 0.0 ? normalize(normal_eye) : facet;
-  if (dot(n, facet) < 0.0) n = -n;  // the inside of an open mesh
+  if (dot(n, facet) < 0.0) n = -n;  // back side of an open mesh
   vec3 ambient = mix(ground, sky, 0.5 + 0.5 * dot(n, up));
   float lambert = max(dot(n, to_light), 0.0);
   vec3 halfway = normalize(to_light + to_eye);
-  float highlight = max(dot(n, halfway), 0.0);  // to the 64th
+  float highlight = max(dot(n, halfway), 0.0);  // to the power of 64
   highlight *= highlight; highlight *= highlight; highlight *= highlight;
   highlight *= highlight; highlight *= highlight; highlight *= highlight;
   highlight *= 2.5 * step(0.0, dot(n, to_light));
@@ -83,13 +82,13 @@ struct ObjectDrawer::State {
   std::array<unsigned, 2> textures{};  // colour, depth
   int width_px = 0;
   int height_px = 0;
-  int most_px = 0;  ///< that a texture may have along a side
+  int most_px = 0;  ///< max texture size along a side
 
   void fit(int wanted_width_px, int wanted_height_px) {
     if (wanted_width_px <= width_px && wanted_height_px <= height_px) return;
     const int wide_px = std::max(wanted_width_px, width_px);
     const int high_px = std::max(wanted_height_px, height_px);
-    width_px = height_px = 0;  // until they are there
+    width_px = height_px = 0;  // until the textures are created
     glDeleteTextures(2, textures.data());
     glCreateTextures(GL_TEXTURE_2D, 2, textures.data());
     glTextureStorage2D(textures[0], 1, GL_RGBA8, wide_px, high_px);
@@ -162,7 +161,7 @@ void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics&
     const GpuMesh& mesh = *object.instance.mesh;
     const Eigen::Matrix4d clip = clip_from_local(object.instance, clip_from_world);
     const Eigen::Matrix4f clip_float = clip.cast<float>();
-    // Relative to the camera in double first, so that a room far from zero keeps its digits.
+    // Relative to the camera, in double, to keep precision in a room far from the world's origin.
     Eigen::Isometry3d eye = object.instance.T_world_mesh * Eigen::Translation3d(mesh.origin());
     eye.translation() -= T_world_camera.translation();
     const Eigen::Matrix4f eye_float = eye.matrix().cast<float>();
@@ -175,7 +174,7 @@ void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics&
     object.is_closed ? glEnable(GL_CULL_FACE) : glDisable(GL_CULL_FACE);
     mesh.draw(clip);
   }
-  require_drawn("virtual objects");  // before others forget what went wrong
+  require_drawn("virtual objects");  // before later calls clear GL errors
   glFlush();
 }
 

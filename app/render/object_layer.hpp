@@ -1,17 +1,17 @@
-// object_layer.hpp: the virtual objects' picture and depth, finer than the camera's pixels.
+// object_layer.hpp: supersampled colour and depth of the rendered virtual objects.
 #pragma once
 #include "mapping/types/image.hpp"
 #include "radar/gl/projection.hpp"
 
 namespace roomradar {
 
-/// Pixel (x, y) of the camera's image, if in rect, is covered by samples x samples sub-pixels: those at
-/// ((x - rect.x) * samples + i, (y - rect.y) * samples + j) with i, j < samples.
+/// Pixel (x, y) of the camera's image, if inside rect, has samples x samples sub-pixels: ((x - rect.x) *
+/// samples + i, (y - rect.y) * samples + j) with i, j < samples.
 struct ObjectLayer {
-  PixelRect rect;      ///< of the camera's image; width 0: nothing is in view
-  int samples = 2;     ///< sub-pixels a pixel and axis
-  ColourImage colour;  ///< sub-pixels; meaningless where depth_m is 0
-  DepthImage depth_m;  ///< sub-pixels, along the optical axis; 0 where no object is
+  PixelRect rect;      ///< in the camera's image; width 0: nothing in view
+  int samples = 2;     ///< sub-pixels per pixel and axis
+  ColourImage colour;  ///< sub-pixels; undefined where depth_m is 0
+  DepthImage depth_m;  ///< sub-pixels, along the optical axis; 0 = no object
 };
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// occlusion.cpp: depth says what hides the objects, colour says where its edge is.
+// occlusion.cpp: finds occluders by depth, and their edges by colour.
 #include "app/render/occlusion.hpp"
 
 #include <Eigen/Core>
@@ -12,13 +12,13 @@
 namespace roomradar {
 namespace {
 
-constexpr int kTapStep_px = 3;     // between the neighbours whose colours are looked at
-constexpr int kPastBand_taps = 3;  // they reach this far past the band
+constexpr int kTapStep_px = 3;     // spacing of colour samples
+constexpr int kPastBand_taps = 3;  // samples beyond the band
 
 int taps_each_way(int reach_px) { return (reach_px + kTapStep_px - 1) / kTapStep_px + kPastBand_taps; }
 
-/// The objects' depth at the pixels of `rect`, and which they cover; those that no object covers get the
-/// depth of a covered one nearby.
+/// Computes the objects' depth and coverage at the pixels of `rect`. Pixels that no object covers get the
+/// depth of a covered pixel nearby.
 void spread_object_depth(const ObjectLayer& layer, const PixelRect& rect, Image<float>& object_m,
                          MaskImage& covered_mask) {
   object_m.resize(rect.width, rect.height);
@@ -57,7 +57,7 @@ void spread_object_depth(const ObjectLayer& layer, const PixelRect& rect, Image<
   }
 }
 
-/// Sum over the (2 reach + 1)^2 pixels about each, as far as they lie in the image.
+/// Sums the (2 reach + 1)^2 pixels around each pixel, clipped to the image.
 void sum_about(const Image<std::uint8_t>& image, int reach, std::vector<int>& column_sums, Image<int>& sums) {
   sums.resize(image.width, image.height);
   column_sums.assign(static_cast<std::size_t>(image.width), 0);
@@ -83,15 +83,15 @@ void sum_about(const Image<std::uint8_t>& image, int reach, std::vector<int>& co
   }
 }
 
-/// Where a surface that hides the object ends before one that does not.
+/// Returns true where an occluding surface ends next to one that does not occlude.
 bool is_edge(float a_m, float b_m, std::uint8_t hidden_a, std::uint8_t hidden_b) {
-  constexpr float kJump = 0.02F;  // of the depth; a table seen at 20 degrees falls by 0.005 a pixel
+  constexpr float kJump = 0.02F;  // fraction of the depth; a table seen at 20 degrees: 0.005 per pixel
   if (std::abs(int{hidden_a} - int{hidden_b}) < 128) return false;
   if (!(a_m > 0.0F && b_m > 0.0F)) return true;
   return std::abs(a_m - b_m) > kJump * std::min(a_m, b_m);
 }
 
-/// Colours of one side of an edge: a Gaussian alike in all directions.
+/// Colours on one side of an edge: an isotropic Gaussian.
 struct SideColours {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float squares = 0.0F;
@@ -103,7 +103,7 @@ struct SideColours {
     count += 1.0F;
   }
   [[nodiscard]] Eigen::Vector3f mean() const { return sum / count; }
-  [[nodiscard]] float variance() const {  // of one channel
+  [[nodiscard]] float variance() const {  // per channel
     constexpr float kCameraNoise2 = 64.0F;
     return std::max(0.0F, squares / count - mean().squaredNorm()) / 3.0F + kCameraNoise2;
   }
@@ -124,9 +124,9 @@ bool look_alike(const SideColours& front, const SideColours& behind) {
   return (front.mean() - behind.mean()).squaredNorm() < front.variance() + behind.variance();
 }
 
-/// What a colour says for the hidden side, as the logarithm of a ratio of likelihoods.
+/// Returns the log likelihood ratio of a colour, occluder against background.
 float said_by(const Eigen::Vector3f& colour, const SideColours& front, const SideColours& behind) {
-  constexpr float kMostSaid = 2.5F;  // things have more than one colour
+  constexpr float kMostSaid = 2.5F;  // limited, since surfaces have more than one colour
   const float front_variance = front.variance(), behind_variance = behind.variance();
   const float said = 0.5F * ((colour - behind.mean()).squaredNorm() / behind_variance -
                              (colour - front.mean()).squaredNorm() / front_variance) +
@@ -170,7 +170,7 @@ bool find_edges(const DepthImage& real_depth_m, Occlusion& occlusion) {
   return found;
 }
 
-/// Colours of the two sides about a pixel of the rectangle, from pixels that no edge is near.
+/// Collects the colours of both sides around a pixel of the rectangle, from pixels away from edges.
 void look_about(const ColourImage& background, const Occlusion& occlusion, int x, int y, int taps,
                 SideColours& front, SideColours& behind) {
   front = behind = {};
@@ -185,11 +185,11 @@ void look_about(const ColourImage& background, const Occlusion& occlusion, int x
   }
 }
 
-/// Lists the pixels near edges, with what depth and colour say of each by itself.
+/// Lists the pixels near edges, with each pixel's own odds from depth and colour.
 void judge_alone(const ColourImage& background, int reach_px, Occlusion& occlusion) {
-  constexpr int kCell_px = 4;  // whose pixels share the sides' colours
+  constexpr int kCell_px = 4;  // pixels of a cell share the sides' colours
   constexpr float kDepthWeight = 1.5F;
-  constexpr float kFewest = 4.0F;  // neighbours, to know the colours of a side
+  constexpr float kFewest = 4.0F;  // min samples to estimate a side's colours
   const PixelRect& rect = occlusion.rect;
   sum_about(occlusion.edges, reach_px, occlusion.column_sums, occlusion.near_edges);
   sum_about(occlusion.by_depth, reach_px, occlusion.column_sums, occlusion.near_hidden);
@@ -223,10 +223,10 @@ void judge_alone(const ColourImage& background, int reach_px, Occlusion& occlusi
   }
 }
 
-/// Neighbours of like colour are taken to the same side: some rounds of the mean field of a Potts model.
+/// Assigns adjacent pixels of similar colour to the same side: some rounds of mean field on a Potts model.
 void agree_with_neighbours(const ColourImage& background, Occlusion& occlusion) {
   constexpr int kRounds = 4;
-  constexpr float kPull = 1.5F;             // of one neighbour of the very same colour
+  constexpr float kPull = 1.5F;             // weight of a neighbour of identical colour
   constexpr float kAlike2 = 2.0F * 144.0F;  // twice the variance of colour differences within a surface
   const PixelRect& rect = occlusion.rect;
   Image<float>& hidden = occlusion.unsoftened;
@@ -253,8 +253,8 @@ void agree_with_neighbours(const ColourImage& background, Occlusion& occlusion) 
   }
 }
 
-/// The mean over 3 x 3 pixels, the middle ones weighing more. What no object covers has the depth of one that
-/// may be another: there the pixel itself counts.
+/// Averages over 3 x 3 pixels with more weight at the centre. Neighbours that no object covers have a depth
+/// borrowed from elsewhere, so the pixel's own value is used instead.
 void soften(const Image<float>& hidden, const MaskImage& covered, Image<float>& softened) {
   softened.resize(hidden.width, hidden.height);
   for (int y = 0; y < hidden.height; ++y) {

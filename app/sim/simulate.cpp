@@ -1,4 +1,4 @@
-// simulate.cpp: frames to the recording writer, truth to files of its own.
+// simulate.cpp: passes frames to the recording writer, and writes ground truth to separate files.
 #include "app/sim/simulate.hpp"
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
-// furniture.cpp: tables, chairs, shelves and what lies on them, of solids that touch and do not overlap.
+// furniture.cpp: builds tables, chairs, shelves and objects on them from solids that touch but do not
+// overlap.
 #include "app/sim/room/furniture.hpp"
 
 #include <algorithm>
@@ -59,7 +60,7 @@ void add_shell(Room& room, const Material& floor, const Material& wall, const Ma
   const Vector3d slab(size.x() + 2 * kThick_m, size.y() + 2 * kThick_m, kThick_m);
   add(room, world, box({middle.x(), middle.y(), low.z() - 0.5 * kThick_m}, slab), floor);
   add(room, world, box({middle.x(), middle.y(), high.z() + 0.5 * kThick_m}, slab), ceiling);
-  // Each wall stands in a frame whose -y looks into the room, so that patterns are upright and not mirrored.
+  // Each wall's frame has -y into the room, so patterns are upright and not mirrored.
   const auto add_wall = [&](double x_m, double y_m, double yaw_rad, double length_m, std::uint32_t seed) {
     Material paint = wall;
     paint.seed += seed;
@@ -216,7 +217,7 @@ void add_sofa(Room& room, const Isometry3d& T_world_sofa, double width_m, const 
     add(room, T_world_sofa,
         rounded_box({side * 0.25 * inner_m, -0.09, 0.365}, {0.5 * inner_m - 0.006, 0.65, 0.17}, 0.05),
         fabric);
-  // A pillow that leans on the back: its lowest edge rests on the seat cushion, its back touches the sofa's.
+  // A pillow leaning on the back: its lowest edge rests on the seat cushion, its back touches the sofa's.
   constexpr double kLean_rad = 0.3;
   constexpr double kPillowRound_m = 0.055;
   const Vector3d core_half(0.13, 0.005, 0.13);

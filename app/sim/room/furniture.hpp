@@ -1,4 +1,4 @@
-// furniture.hpp: pieces of a room, each put down at a pose; z = 0 is the floor or board below.
+// furniture.hpp: adds furniture to a simulated room; each piece's origin is on the surface it stands on.
 #pragma once
 #include <cstdint>
 
@@ -6,35 +6,35 @@
 
 namespace roomradar {
 
-/// Upright pose at a point with a turn about z.
+/// Upright pose at a point, rotated about z.
 Eigen::Isometry3d standing_at(double x_m, double y_m, double z_m, double yaw_rad = 0.0);
 
-/// Adds a solid given in the frame of a piece that stands at T_world_piece.
+/// Adds a solid given in the frame of a piece of furniture.
 void add(Room& room, const Eigen::Isometry3d& T_world_piece, Solid solid_piece, const Material& material);
 
-/// Floor, ceiling and four walls, 10 cm thick, round the room's interior, with skirting boards.
+/// Adds floor, ceiling and four walls, 10 cm thick, around the room's interior, with skirting boards.
 void add_shell(Room& room, const Material& floor, const Material& wall, const Material& ceiling);
 
-/// A thin framed picture flat on a wall. Pose: the middle of the picture's back on the wall; x to the
-/// viewer's right, z up, so that -y points into the room.
+/// Adds a thin framed picture to a wall. Pose: origin at the centre of the picture's back; x to the viewer's
+/// right, z up, -y into the room.
 void add_picture(Room& room, const Eigen::Isometry3d& T_world_picture, double width_m, double height_m,
                  const Material& picture, const Material& frame);
 
 void add_table(Room& room, const Eigen::Isometry3d& T_world_table, const Eigen::Vector3d& size_m,
                const Material& material);
-/// Looks along +y, seat at 0.45 m, back up to 0.9 m.
+/// Faces +y; seat at 0.45 m, back up to 0.9 m.
 void add_chair(Room& room, const Eigen::Isometry3d& T_world_chair, const Material& wood,
                const Material& cushion);
-/// Front towards -y, open, with boards `shelves` levels high and books and boxes on them by seed.
+/// Open front towards -y, with `levels` boards and randomly drawn books and boxes on them.
 void add_shelf(Room& room, const Eigen::Isometry3d& T_world_shelf, const Eigen::Vector3d& size_m, int levels,
                const Material& wood, std::uint32_t seed);
-/// Closed cupboard with two doors, front towards -y.
+/// Closed, with two doors; front towards -y.
 void add_cupboard(Room& room, const Eigen::Isometry3d& T_world_cupboard, const Eigen::Vector3d& size_m,
                   const Material& wood);
-/// Seat towards -y.
+/// Faces -y.
 void add_sofa(Room& room, const Eigen::Isometry3d& T_world_sofa, double width_m, const Material& fabric,
               const Material& pillow);
-/// Lying books, the largest below, each turned a little.
+/// Books lying flat, largest at the bottom, each slightly rotated.
 void add_book_pile(Room& room, const Eigen::Isometry3d& T_world_pile, int books, std::uint32_t seed);
 void add_mug(Room& room, const Eigen::Isometry3d& T_world_mug, const Material& material);
 void add_cactus(Room& room, const Eigen::Isometry3d& T_world_pot);

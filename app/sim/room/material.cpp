@@ -1,4 +1,4 @@
-// material.cpp: wood, tiles, carpets, posters and the rest, from hashed noise on metres of surface.
+// material.cpp: computes wood, tiles, carpets, posters etc. from hashed noise, in metres of surface.
 #include "app/sim/room/material.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ float cell_value(int x, int y, std::uint32_t seed) {
   return static_cast<float>(cell_hash(x, y, seed) >> 8) * 0x1.0p-24F;
 }
 
-/// Smooth noise, -1 to 1, with features of about one unit.
+/// Returns smooth noise, -1 to 1, with features of about one unit.
 float noise(float x, float y, std::uint32_t seed) {
   const float fx = std::floor(x), fy = std::floor(y);
   const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
@@ -46,7 +46,7 @@ float noise(float x, float y, std::uint32_t seed) {
   return 2.0F * (low * (1 - ay) + high * ay) - 1.0F;
 }
 
-/// Three octaves of noise, about -1 to 1.
+/// Returns three octaves of noise, about -1 to 1.
 float fractal(float x, float y, std::uint32_t seed) {
   return 0.57F * noise(x, y, seed) + 0.29F * noise(2.03F * x, 2.03F * y, seed + 1) +
          0.14F * noise(4.1F * x, 4.1F * y, seed + 2);
@@ -159,7 +159,7 @@ Colour poster(const Material& m, float u_m, float v_m, float width_m, float heig
                                         : std::abs(dx + dy) < 0.18F * size && std::abs(dx - dy) < 2.2F * size;
     if (inside) colour = paint;
   }
-  const float line = (-0.32F - y) / 0.045F;  // lines of writing at the foot
+  const float line = (-0.32F - y) / 0.045F;  // lines of text at the bottom
   if (line > 0.0F && line < 3.0F && std::abs(x) < 0.4F) {
     const int row = static_cast<int>(line);
     const int letter = static_cast<int>(std::floor((x + 0.5F) * 42.0F));
@@ -175,7 +175,7 @@ Colour poster(const Material& m, float u_m, float v_m, float width_m, float heig
 }
 
 Colour landscape(const Material& m, float u_m, float v_m, float width_m, float height_m) {
-  const float x = u_m / height_m, y = v_m / height_m + 0.5F;  // y: 0 at the foot, 1 at the top
+  const float x = u_m / height_m, y = v_m / height_m + 0.5F;  // y: 0 at the bottom, 1 at the top
   const Colour sky = colour_of(m.first), meadow = colour_of(m.second);
   const float offset = static_cast<float>(m.seed % 53U);
   Colour colour = mixed_colour(mixed_colour(sky, {1, 1, 1}, 0.55F), sky, step_between(0.4F, 1.0F, y));
@@ -231,13 +231,13 @@ Colour fabric(const Material& m, float u_m, float v_m) {
                   1.0F + 0.05F * weave + 0.09F * noise(u_m * 120.0F, v_m * 120.0F, m.seed) + 0.06F * fold);
 }
 
-/// Black squares in the middle of a white margin, the corners symmetrical about the middle. Edges are as soft
-/// as a texel is wide, so that where they lie does not depend on the texels.
+/// Draws a checkerboard centred in a white margin. Edges are blurred by a texel's width, so that their
+/// position does not depend on the texel grid.
 Colour checker(const Material& m, float u_m, float v_m, float width_m, float height_m) {
   constexpr float kSoft_m = 0.003F;
   const float columns = std::floor(width_m / kCheckerSquare_m - 1.0F);
   const float rows = std::floor(height_m / kCheckerSquare_m - 1.0F);
-  // 1 in the middle of even squares, -1 in that of odd ones, 0 at the edges, white outside.
+  // 1 at the centre of even squares, -1 at the centre of odd ones, 0 at the edges, white outside.
   const auto side = [](float at, float count) {
     const float nearest_edge = std::clamp(std::round(at), 0.0F, count);
     const float beyond = std::clamp((at - nearest_edge) * kCheckerSquare_m / kSoft_m, -1.0F, 1.0F);

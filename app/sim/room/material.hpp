@@ -1,4 +1,4 @@
-// material.hpp: what a surface looks like: procedural patterns on metres of surface.
+// material.hpp: procedural surface patterns, with coordinates in metres.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -20,7 +20,8 @@ enum class Pattern {
   kFabric,     ///< weave with stripes
   kStone,      ///< speckled stone
   kSkin,       ///< for hands and faces
-  kChecker,    ///< squares of kCheckerSquare_m in the middle of a margin at least half as wide
+  kChecker,    ///< checkerboard with squares of kCheckerSquare_m, centred, with a margin at least half a
+               ///< square wide
 };
 
 inline constexpr float kCheckerSquare_m = 0.06F;
@@ -30,11 +31,11 @@ struct Material {
   Rgb first{200, 200, 200};
   Rgb second{120, 120, 120};
   std::uint32_t seed = 0;
-  float infrared = 0.6F;  ///< part of the projector's light that comes back; dark, glossy things have little
+  float infrared = 0.6F;  ///< reflected fraction of the projector's light; low for dark or glossy surfaces
 };
 
-/// Colour (0 to 1, linear in what the eye calls even steps) of a point (u, v) in metres on a face of the
-/// given size, measured from the face's centre; v is up on upright faces.
+/// Returns the colour (gamma-encoded, 0 to 1) of a point on a face of the given size. (u, v) is in metres
+/// from the face's centre; v is up on upright faces.
 std::array<float, 3> pattern_colour(const Material& material, float u_m, float v_m, float width_m,
                                     float height_m);
 

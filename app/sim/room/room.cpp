@@ -1,4 +1,4 @@
-// room.cpp: rooms by name, and exact distances and rays in them.
+// room.cpp: makes rooms by name, with exact distances and rays in them.
 #include "app/sim/room/room.hpp"
 
 #include <algorithm>

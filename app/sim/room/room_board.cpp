@@ -1,4 +1,4 @@
-// room_board.cpp: a checkerboard on a stand in a bare room, to calibrate cameras with.
+// room_board.cpp: a checkerboard on a stand in a bare room, for camera calibration.
 #include <numbers>
 
 #include "app/sim/room/furniture.hpp"
@@ -14,7 +14,7 @@ Room make_board_room() {
   add_shell(room, {Pattern::kPlanks, {196, 158, 112}, {140, 104, 66}, 301, 0.6F},
             {Pattern::kPlaster, {206, 204, 198}, {190, 186, 176}, 302, 0.7F},
             {Pattern::kPlaster, {236, 236, 234}, {226, 226, 222}, 303, 0.7F});
-  // 9 by 7 squares, so 8 by 6 inner corners, and a white margin of more than half a square.
+  // 9 by 7 squares, hence 8 by 6 inner corners, and a white margin of more than half a square.
   const Eigen::Vector3d board_m{10.2 * kCheckerSquare_m, 0.02, 8.2 * kCheckerSquare_m};
   constexpr double kMiddle_m = 1.4;
   add(room, Eigen::Isometry3d::Identity(), box({0, 0.01, kMiddle_m}, board_m),

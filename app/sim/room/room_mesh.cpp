@@ -1,4 +1,5 @@
-// room_mesh.cpp: grown boxes as lattices of core corners and directions, grown cylinders as turned profiles.
+// room_mesh.cpp: meshes inflated boxes as lattices of core corners and directions, cylinders as surfaces of
+// revolution.
 #include "app/sim/room/room_mesh.hpp"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Adds triangles of one convex solid; each is turned so that it looks away from the solid's middle.
+/// Adds triangles of one convex solid, each oriented away from the solid's centre.
 struct ConvexBuilder {
   const Solid& solid;
   Rgb colour;
@@ -39,7 +40,7 @@ struct ConvexBuilder {
   }
 };
 
-/// Parts of a quarter turn such that a chord stays within deviation_m of a circle of this radius.
+/// Returns the number of segments per quarter turn that keeps chords within deviation_m of the circle.
 int quarter_parts(double radius_m, double deviation_m) {
   if (radius_m <= deviation_m) return 1;
   return std::clamp(static_cast<int>(std::ceil(0.5 / std::acos(1.0 - deviation_m / radius_m))), 1, 128);
@@ -47,9 +48,8 @@ int quarter_parts(double radius_m, double deviation_m) {
 
 void append_box(ConvexBuilder& builder, double deviation_m) {
   const Solid& solid = builder.solid;
-  // Along each axis: positions on the core and components of a direction. The surface point of a lattice
-  // point on the hull is core + round * direction; flat faces lie between the two ends of the core, where the
-  // component is 0.
+  // Per axis: positions on the core, and components of a direction. The surface point of a lattice point on
+  // the hull is core + round * direction. Flat faces span the two ends of the core, where the component is 0.
   struct Tick {
     double core, direction;
   };
@@ -109,7 +109,7 @@ void append_cylinder(ConvexBuilder& builder, double deviation_m) {
       const double part = parts == 0 ? 0.0 : static_cast<double>(side < 0 ? parts - i : i) / parts;
       const double angle = 0.5 * std::numbers::pi * part;
       const double radius_m = solid.half_m.x() + solid.round_m * std::cos(angle);
-      if (radius_m < 1e-12) continue;  // the cap's middle is added below
+      if (radius_m < 1e-12) continue;  // the cap's centre is added below
       rings.push_back({radius_m, side * (solid.half_m.z() + solid.round_m * std::sin(angle))});
     }
   std::vector<std::uint32_t> below, ring;

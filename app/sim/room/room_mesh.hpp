@@ -1,17 +1,17 @@
-// room_mesh.hpp: triangles of a room's solids, as ground truth of a mapped surface.
+// room_mesh.hpp: triangle mesh of a room's solids, the ground truth of a mapped surface.
 #pragma once
 #include "app/sim/room/room.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
 
-/// How far a flat triangle may be from the round surface it stands for. Vertices lie on the surface.
+/// Max distance of a triangle from the curved surface it approximates. Vertices lie on the surface.
 inline constexpr double kMeshDeviation_m = 0.0005;
 
-/// Appends one solid's surface, closed, counter-clockwise from outside, relative to the mesh's origin.
+/// Appends one solid's closed surface, counter-clockwise from outside, relative to the mesh's origin.
 void append_mesh(const Solid& solid, Rgb colour, double deviation_m, Mesh& mesh);
 
-/// All solids of a room, each closed by itself: where one stands on another both surfaces are there.
+/// Meshes all solids of a room, each closed: where two solids touch, both surfaces are included.
 Mesh room_mesh(const Room& room, double deviation_m = kMeshDeviation_m);
 
 }  // namespace roomradar

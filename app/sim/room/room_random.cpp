@@ -1,4 +1,4 @@
-// room_random.cpp: a room of drawn size, with drawn furniture where it finds a place, and things on it.
+// room_random.cpp: a room of random size, with random furniture where it fits, and objects on it.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A room on its way: what is kept free in it, and the numbers that it is drawn from.
+/// A room under construction: volumes kept free, and the random numbers it is drawn from.
 struct Furnishing {
   Room room;
   std::vector<Solid> kept_free;
@@ -32,7 +32,7 @@ struct Furnishing {
   }
   std::uint32_t look() { return ++next_look; }
 
-  /// Puts a piece down unless it would touch anything but what it stands on.
+  /// Adds a piece unless it would touch anything except its support.
   bool try_add(const std::function<void(Room&)>& put_down) {
     constexpr double kLift_m = 0.002, kGap_m = 0.001;
     Room piece;
@@ -48,7 +48,7 @@ struct Furnishing {
   }
 };
 
-/// Small things on a level board of this size, whose middle is at `board`.
+/// Puts small objects on a horizontal board of this size, centred at T_world_board.
 void put_things_on(Furnishing& f, const Eigen::Isometry3d& T_world_board, double wide_m, double deep_m,
                    int count) {
   constexpr double kMargin_m = 0.16;
@@ -80,7 +80,7 @@ void put_things_on(Furnishing& f, const Eigen::Isometry3d& T_world_board, double
   }
 }
 
-/// In the middle: a table with chairs, a sofa with a low table, or crates. Says where things may stand.
+/// Furnishes the centre with a table and chairs, a sofa and a low table, or crates; sets where movers may go.
 void furnish_middle(Furnishing& f) {
   const double kind = f.random.uniform(), yaw_rad = f.random.uniform(-0.3, 0.3);
   const Material wood = f.material(Pattern::kWood), cloth = f.material(Pattern::kFabric);
@@ -134,8 +134,8 @@ void furnish_middle(Furnishing& f) {
   }
 }
 
-/// One drawn piece of furniture or picture at a drawn place of a wall. Walls are numbered as they are turned:
-/// a quarter turn each; -y of the wall's frame looks into the room.
+/// Adds a random piece of furniture or picture at a random position along a wall. Wall i is rotated by i
+/// quarter turns; -y of the wall's frame points into the room.
 void furnish_wall(Furnishing& f, int wall) {
   const Vector3d half = 0.5 * (f.room.interior_max_world - f.room.interior_min_world);
   const bool along_x = wall % 2 == 0;
@@ -181,7 +181,8 @@ void furnish_wall(Furnishing& f, int wall) {
 
 }  // namespace
 
-// What is drawn is drawn into names, one after the other: the order of a call's arguments is the compiler's.
+// Every random value is drawn into a variable of its own statement: the evaluation order of function
+// arguments depends on the compiler.
 Room make_random_room(std::uint64_t seed) {
   Furnishing f{{}, {}, CounterRandom(seed, 0x726f6f6d)};
   Room& room = f.room;
@@ -197,7 +198,7 @@ Room make_random_room(std::uint64_t seed) {
 
   room.walk_centre_world = {0.0, 0.0, 1.5};
   room.walk_half_m = {half.x() - 1.05, half.y() - 1.0};
-  // A lane between the middle and one wall, for who walks and what rolls.
+  // A free lane between the centre and one wall, for a walking person and a rolling ball.
   const double lane_y = (f.random.uniform() < 0.5 ? -1.0 : 1.0) * (half.y() - 0.95);
   room.person_from_world = {-0.35 * half.x(), lane_y, 0.0};
   room.person_to_world = {0.35 * half.x(), lane_y, 0.0};

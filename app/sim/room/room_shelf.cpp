@@ -1,4 +1,4 @@
-// room_shelf.cpp: a living room: book shelves, a sofa, a coffee table with things on it.
+// room_shelf.cpp: a living room: book shelves, a sofa, and a coffee table with objects on it.
 #include <numbers>
 
 #include "app/sim/room/furniture.hpp"

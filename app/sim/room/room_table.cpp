@@ -1,4 +1,4 @@
-// room_table.cpp: a dining room: a table with four chairs and things on it, a cupboard, pictures.
+// room_table.cpp: a dining room: a table with four chairs and objects on it, a cupboard, pictures.
 #include <numbers>
 
 #include "app/sim/room/furniture.hpp"
@@ -19,7 +19,7 @@ Room make_table_room() {
   const Material white_wood{Pattern::kPlain, {236, 234, 228}, {210, 206, 198}, 9, 0.7F};
   const Material frame{Pattern::kWood, {70, 52, 40}, {46, 34, 26}, 10, 0.35F};
 
-  // A rug, and on it the table and its chairs.
+  // A rug with the table and its chairs.
   constexpr double kRug_m = 0.008;
   const auto world = Eigen::Isometry3d::Identity();
   add(room, world, box({0, 0, 0.5 * kRug_m}, {2.6, 2.1, kRug_m}),
@@ -32,7 +32,7 @@ Room make_table_room() {
   add_chair(room, standing_at(-0.40, 0.62, kRug_m, std::numbers::pi - 0.08), walnut, blue_cloth);
   add_chair(room, standing_at(0.42, 0.64, kRug_m, std::numbers::pi + 0.1), walnut, blue_cloth);
 
-  // On the table; its front middle stays free.
+  // On the table; the middle of its front stays free.
   add_book_pile(room, standing_at(-0.56, 0.08, top_m, 0.3), 4, 40);
   add_mug(room, standing_at(-0.33, -0.24, top_m, 0.9),
           {Pattern::kTiles, {226, 226, 220}, {44, 100, 150}, 41, 0.6F});

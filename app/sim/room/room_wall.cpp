@@ -1,4 +1,5 @@
-// room_wall.cpp: a nearly empty room with one big wall: geometry alone does not tell where the camera is.
+// room_wall.cpp: a nearly empty room with one big wall, in which geometry alone does not determine the
+// camera's pose.
 #include <numbers>
 
 #include "app/sim/room/furniture.hpp"
@@ -18,7 +19,7 @@ Room make_wall_room() {
   const auto paper = [](std::uint32_t seed, Rgb ground, Rgb ink) {
     return Material{Pattern::kPoster, ground, ink, seed, 0.65F};
   };
-  // Posters without frames: colour for a tracker to hold on to, and hardly any shape.
+  // Posters without frames, which give a tracker colour but hardly any shape.
   const auto add_sheet = [&](double x_m, double z_m, double width_m, double height_m, const Material& sheet) {
     add(room, standing_at(x_m, 2.6, z_m), box({0, -0.001, 0}, {width_m, 0.002, height_m}), sheet);
   };
@@ -32,7 +33,7 @@ Room make_wall_room() {
               paper(216, {200, 160, 120}, {40, 60, 90}), poster_frame);
   add(room, Eigen::Isometry3d::Identity(), box({-1.6, -2.6 + 0.02, 1.02}, {0.9, 0.04, 2.04}),
       {Pattern::kWood, {200, 182, 150}, {166, 146, 112}, 217, 0.6F});
-  // One crate on the floor, a visitor's target, and a bench far from it.
+  // One crate on the floor, the view's focus, and a bench far from it.
   const double crate_top_m = 0.4;
   add(room, standing_at(0.0, 1.2, 0, 0.2), box({0, 0, 0.5 * crate_top_m}, {0.7, 0.5, crate_top_m}),
       {Pattern::kPlanks, {190, 150, 100}, {130, 94, 56}, 218, 0.55F});

@@ -1,4 +1,4 @@
-// surface_look.cpp: bakes textures and light, and looks them up.
+// surface_appearance.cpp: precomputes textures and lighting, and samples them.
 #include "app/sim/room/surface_appearance.hpp"
 
 #include <algorithm>
@@ -21,8 +21,8 @@ int face_of(const Solid& solid, const Vector3d& normal) {
   return 2 * axis + (normal[axis] < 0.0 ? 1 : 0);
 }
 
-/// Coordinates (m) on a face of a point in the solid's frame: u to the right of someone who looks at the face
-/// from outside, v up (z) on side faces.
+/// Returns face coordinates (m) of a point in the solid's frame: u to the right as seen from outside, v up
+/// (z) on side faces.
 Eigen::Vector2d on_face(const Solid& solid, int face, const Vector3d& p) {
   switch (face) {
     case 0:
@@ -50,7 +50,7 @@ Eigen::Vector2d face_half_m(const Solid& solid, int face) {
   return {half.x(), half.y()};
 }
 
-/// Surface point under (u, v) of a face: the inverse of on_face, dropped onto rounded edges.
+/// Returns the surface point at (u, v) of a face: inverse of on_face(), projected onto rounded edges.
 Vector3d from_face(const Solid& solid, int face, double u, double v) {
   const Vector3d half = bounds_half_m(solid);
   Vector3d p;
@@ -80,8 +80,8 @@ Vector3d from_face(const Solid& solid, int face, double u, double v) {
   return p - signed_distance_local_m(solid, p) * normal_local(solid, p);
 }
 
-/// Whether nobody in the room can see the face: the outside of a wall, the foot of a cupboard, the side of a
-/// book between books. Judged at the points of a grid, so that a face of which a part is free counts as free.
+/// Returns true if the face is invisible inside the room: the outside of a wall, the bottom of a cupboard,
+/// the side of a book between books. Tests a grid of points; a partly visible face counts as visible.
 bool is_covered(const Room& room, const Solid& solid, int face) {
   constexpr int kGrid = 8;
   constexpr double kBefore_m = 0.001;
@@ -103,7 +103,7 @@ std::uint8_t to_byte(float of) {
   return static_cast<std::uint8_t>(std::clamp(of, 0.0F, 1.0F) * 255.0F + 0.5F);
 }
 
-/// The light of a lamp is sampled at these points of its unit ball.
+/// Sample points of a lamp, in its unit ball.
 constexpr double kLampPoints[6][3] = {{0.8, 0.2, 0.1},  {-0.5, 0.6, -0.2}, {-0.3, -0.8, 0.2},
                                       {0.2, 0.1, -0.8}, {0.4, -0.5, 0.4},  {-0.3, 0.2, 0.7}};
 
@@ -130,7 +130,7 @@ void SurfaceLook::add_solid(const Solid& solid, const Material& material, double
     if (lit && is_covered(room_, solid, index)) continue;
     face.width_m = static_cast<float>(2.0 * half.x());
     face.height_m = static_cast<float>(2.0 * half.y());
-    // Walls and floors are seldom looked at from 1 m.
+    // Walls and floors are rarely seen from as near as 1 m.
     face.texel_m = static_cast<float>(half.minCoeff() > 1.0 ? 1.5 * texel_m : texel_m);
     Level level;
     level.width = std::max(1, static_cast<int>(std::ceil(face.width_m / face.texel_m)));
@@ -175,7 +175,7 @@ void SurfaceLook::light_face(const Solid& solid, int face_index, Face& face) con
   face.light_rows = nodes(face.height_m);
   for (int row = 0; row < face.light_rows; ++row)
     for (int column = 0; column < face.light_columns; ++column) {
-      // Nodes on the very edge stand a little inside of it, where neighbours do not cover them.
+      // Nodes on a face's edge are moved slightly inside, where adjacent solids do not cover them.
       const auto inside = [](int i, int n, float extent_m) {
         const double edge_m = std::min(0.004, 0.05 * extent_m);
         return std::clamp((static_cast<double>(i) / (n - 1) - 0.5) * extent_m, -0.5 * extent_m + edge_m,
@@ -200,7 +200,7 @@ float SurfaceLook::light_at(const Vector3d& p_world, const Vector3d& normal_worl
                                   0.0, 1.0);
     open = 1.0 - 0.85 * closed;
   }
-  // Light from everywhere, a little more from above.
+  // Ambient light, slightly stronger from above.
   double light = (0.28 + 0.07 * normal_world.z()) * open;
   for (const Lamp& lamp : room_.lamps) {
     double seen = 0.0;

@@ -1,4 +1,4 @@
-// surface_look.hpp: colour of any surface point: textures and light worked out once, then looked up.
+// surface_appearance.hpp: colour of surface points from precomputed textures and lighting.
 #pragma once
 #include <cstdint>
 #include <span>
@@ -8,21 +8,21 @@
 
 namespace roomradar {
 
-/// Textures with mip levels, and the light of the room's lamps (shadows and ambient occlusion by rays and
-/// distances in the room) on a coarse grid, for every face of every solid that can be seen from inside the
-/// room.
+/// Textures with mip levels, and lighting on a coarse grid, for every face of every solid that is visible
+/// inside the room. Lighting consists of the lamps' shadows, by ray casting, and ambient occlusion, by
+/// distances to the room.
 class SurfaceLook {
  public:
-  /// The room's own solids.
-  /// @param texel_m  finest texture detail; what is finer than a pixel is wasted
+  /// For the room's own solids.
+  /// @param texel_m  finest texture detail; detail below pixel size is wasted
   SurfaceLook(const Room& room, double texel_m);
-  /// Solids that move through the room: textures alone; their light is worked out for every pixel.
+  /// For solids that move through the room: only textures are precomputed; lighting is computed per pixel.
   SurfaceLook(const Room& room, std::span<const Solid> solids, std::span<const Material> materials,
               double texel_m);
 
-  /// Colour of a surface point, in the frame of solid `index`.
-  /// @param footprint_m     width that one pixel covers on the surface, which selects the mip level
-  /// @param T_world_solid   where the solid is now (used for those that move)
+  /// Returns the colour of a surface point given in the frame of solid `index`.
+  /// @param footprint_m     width of one pixel on the surface, which selects the mip level
+  /// @param T_world_solid   current pose of the solid (used for moving solids)
   [[nodiscard]] Rgb shade(std::size_t index, const Eigen::Vector3d& p_solid,
                           const Eigen::Vector3d& normal_solid, double footprint_m,
                           const Eigen::Isometry3d& T_world_solid) const;
@@ -36,9 +36,9 @@ class SurfaceLook {
   struct Face {
     float width_m = 0.0F, height_m = 0.0F;
     float texel_m = 0.0F;
-    std::vector<Level> levels;  ///< each half of the one before; empty: the face cannot be seen
+    std::vector<Level> levels;  ///< each half the size of the previous one; empty: the face is hidden
     int light_columns = 0, light_rows = 0;
-    /// Factor on the colour at the nodes of a grid that spans the face; empty: moves.
+    /// Factors on the colour at the nodes of a grid over the face; empty for moving solids.
     std::vector<float> light;
   };
   static constexpr int kFaces = 7;  ///< +x, -x, +y, -y, +z, -z, and a cylinder's side
@@ -50,7 +50,7 @@ class SurfaceLook {
 
   const Room& room_;
   std::vector<Solid> solids_;
-  std::vector<Face> faces_;  ///< kFaces a solid
+  std::vector<Face> faces_;  ///< kFaces per solid
 };
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// scenario_frame.cpp: what the camera delivers while a scenario's object moves.
+// scenario_frame.cpp: renders the camera's frames while a scenario's object moves.
 #include <vector>
 
 #include "app/sim/scenarios/scenarios.hpp"

@@ -1,5 +1,4 @@
-// scenario_hiding.cpp: rays from surface points to the prescan's cameras and to the one that must not see
-// them.
+// scenario_hiding.cpp: casts rays from surface points to the prescan's cameras and to the scenario's camera.
 #include "app/sim/scenarios/scenario_hiding.hpp"
 
 #include <algorithm>
@@ -25,7 +24,7 @@ bool is_in_image(const Intrinsics& camera, const Vector3d& p_camera, double marg
          uv.y() > margin * camera.height_px && uv.y() < (1.0 - margin) * camera.height_px;
 }
 
-/// Points of a part's core, on all sides, a lattice of at most `spacing_m` along each straight edge.
+/// Samples a part's core on all sides, with at most `spacing_m` between points along each straight edge.
 std::vector<Vector3d> core_points(const Solid& part, double spacing_m) {
   std::vector<Vector3d> points;
   const Vector3d& half_m = part.half_m;
@@ -54,8 +53,8 @@ std::vector<Vector3d> core_points(const Solid& part, double spacing_m) {
   return points;
 }
 
-/// Whether three of the prescan's views have the point in their image, nothing between, from 0.6 to 3.5 m and
-/// not grazing to the normal, where there is one.
+/// Returns true if three prescan views see the point: in their image, unoccluded, from 0.6 to 3.5 m, and not
+/// grazing to the normal unless it is zero.
 bool is_seen_by_views(const ScenarioRoom& from, const Vector3d& p_world, const Vector3d& normal_world) {
   constexpr int kViews = 3;
   const double least_cosine = normal_world.isZero(0.0) ? -1.0 : 0.3;
@@ -71,7 +70,8 @@ bool is_seen_by_views(const ScenarioRoom& from, const Vector3d& p_world, const V
   return false;
 }
 
-/// Some `count` directions to the side of u; twice as many, all round, if u is zero.
+/// Returns some `count` directions in the hemisphere around u, or twice as many in all directions if u is
+/// zero.
 std::vector<Vector3d> ball_directions(const Vector3d& u, int count) {
   std::vector<Vector3d> directions;
   for (int i = 0; i < 2 * count; ++i) {
@@ -83,7 +83,7 @@ std::vector<Vector3d> ball_directions(const Vector3d& u, int count) {
   return directions;
 }
 
-/// Points that cover where the object looks along its direction, in the world.
+/// Samples the object's front, the side facing its direction of motion, in the world.
 std::vector<Vector3d> front_points(const Scenario& scenario) {
   constexpr double kWidest_m = 0.04;
   std::vector<Vector3d> points;
@@ -114,7 +114,7 @@ bool draw_camera(const ScenarioRoom& from, CounterRandom& random, Scenario& scen
   return is_in_image(scenario.depth_camera, scenario.T_world_camera.inverse() * scenario.contact_world, 0.1);
 }
 
-/// A box carried at `part` of the way from the contact to the eye, its broad side to the camera.
+/// Adds a box at fraction `part` of the way from the contact to the eye, its broad side to the camera.
 void add_box(double part, CounterRandom& random, Scenario& scenario) {
   const Vector3d eye_world = scenario.T_world_camera.translation();
   const double size_m = random.uniform(0.2, 0.45);
@@ -127,8 +127,8 @@ void add_box(double part, CounterRandom& random, Scenario& scenario) {
   scenario.occluder_materials = {{Pattern::kPoster, {206, 176, 132}, {120, 84, 50}, 401, 0.6F}};
 }
 
-/// A hand at `part` of the way, any of it from the palm to the forearm before the contact; every other one
-/// moves by.
+/// Adds a hand at fraction `part` of the way, with any point from palm to forearm in front of the contact. In
+/// every other scenario of this kind the hand moves past.
 void add_hand(double part, CounterRandom& random, Scenario& scenario) {
   const Vector3d to_eye = scenario.T_world_camera.translation() - scenario.contact_world;
   Mover hand;
@@ -150,7 +150,7 @@ void add_hand(double part, CounterRandom& random, Scenario& scenario) {
     solid.T_world_solid.pretranslate(-shown_s * scenario.occluder_velocity_world);
 }
 
-/// A person who stands at `part` of the way. False if there is no place for one.
+/// Adds a person standing at fraction `part` of the way. Returns false if there is no space.
 bool add_person(const Room& room, double part, CounterRandom& random, Scenario& scenario) {
   const Vector3d to_eye = scenario.T_world_camera.translation() - scenario.contact_world;
   Mover person;
@@ -164,14 +164,14 @@ bool add_person(const Room& room, double part, CounterRandom& random, Scenario& 
   person.from_world = foot_world - way;
   person.to_world = foot_world + way;
   person.period_s = 8.0;
-  person.phase_rad = 0.25 * kTurn_rad;  // half of the way: at foot_world, but for the lane's small width
+  person.phase_rad = 0.25 * kTurn_rad;  // mid-path, close to foot_world
   append_solids(person, 0.0, scenario.occluder_solids);
   scenario.occluder_materials.assign(scenario.occluder_solids.size(),
                                      {Pattern::kFabric, {176, 62, 54}, {226, 210, 190}, 403, 0.55F});
   return true;
 }
 
-/// Whether the object keeps 4 cm from the occluder for as long as it is judged.
+/// Returns true if the object keeps 4 cm from the occluder up to kBeyond_m past the true contact.
 bool keeps_clear(const Scenario& scenario) {
   constexpr double kKeep_m = 0.04;
   const double until_m = scenario.true_travel_m + kBeyond_m;
@@ -182,7 +182,7 @@ bool keeps_clear(const Scenario& scenario) {
                          until_m)
                 .touches;
   }
-  // What a frame shows stays until the next, while the object moves on: both are judged in steps of 1 cm.
+  // A frame's occluder stays until the next frame while the object moves on: test in steps of 1 cm.
   constexpr double kStep_m = 0.01;
   for (int frame = 0; frame * step_m(scenario) < until_m; ++frame) {
     const std::vector<Solid> occluder = occluder_at(scenario, frame);
@@ -197,8 +197,8 @@ bool keeps_clear(const Scenario& scenario) {
   return true;
 }
 
-/// Puts the occluder between camera and contact. False if it would stand in the room's things, before the
-/// lens or in the object's way.
+/// Places the occluder between camera and contact. Returns false if it would intersect the room, be too close
+/// to the camera, or block the object's path.
 bool place_occluder(const ScenarioRoom& from, CounterRandom& random, Scenario& scenario) {
   scenario.occluder_solids.clear();
   scenario.occluder_materials.clear();
@@ -235,14 +235,15 @@ bool place_occluder(const ScenarioRoom& from, CounterRandom& random, Scenario& s
   return keeps_clear(scenario);
 }
 
-/// Whether something stands before the point, 5 mm or more: an edge does not hide itself.
+/// Returns true if something blocks the view of the point, at least 5 mm in front, so an edge does not hide
+/// itself.
 bool is_hidden(const std::vector<Solid>& solids, const SolidTree& tree, const Vector3d& eye_world,
                const Vector3d& point_world) {
   return tree.is_blocked(solids, eye_world, point_world + 0.005 * (eye_world - point_world).normalized());
 }
 
-/// All patches are hidden, and if there is an occluder, it hides at least half of them that the room does
-/// not.
+/// Returns true if all patches are hidden and the room alone hides at most half of them, unless furniture is
+/// the occluder.
 bool is_hidden_as_meant(const ScenarioRoom& from, const Scenario& scenario,
                         const std::vector<Patch>& patches) {
   const std::vector<Solid> occluder = occluder_at(scenario, contact_frame(scenario));
@@ -285,7 +286,7 @@ bool was_seen(const ScenarioRoom& from, const Patch& patch) {
 
 bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario) {
   constexpr double kStep_m = 0.06, kSpacing_m = 0.15;
-  std::vector<Vector3d> points;  // of the object at its start, in the world
+  std::vector<Vector3d> points;  // on the object at its start, in the world
   for (Solid part : scenario.object.parts) {
     part.T_world_solid = scenario.T_world_object * part.T_world_solid;
     points.push_back(part.T_world_solid.translation());
@@ -295,7 +296,7 @@ bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario) {
       for (const Vector3d& outward : ball_directions(Vector3d::Zero(), 20))
         points.push_back(part.T_world_solid.translation() + part.round_m * outward);
   }
-  const double end_m = scenario.true_travel_m - 0.002;  // before the surface, not in it
+  const double end_m = scenario.true_travel_m - 0.002;  // just in front of the surface
   for (double travel_m = 0.0; travel_m < end_m + kStep_m; travel_m += kStep_m)
     for (const Vector3d& p_world : points)
       if (!is_seen_by_views(from, p_world + std::min(travel_m, end_m) * scenario.direction_world,

@@ -1,4 +1,5 @@
-// scenario_hiding.hpp: which of a room's surface was seen before, and what hides it from a camera now.
+// scenario_hiding.hpp: visibility of room surfaces in the prescan, and placement of occluders in front of
+// them.
 #pragma once
 #include <optional>
 #include <vector>
@@ -8,7 +9,7 @@
 
 namespace roomradar {
 
-/// What could stop the object this far behind the true contact must be hidden too.
+/// Surfaces that could stop the object up to this far behind the true contact must be hidden too.
 inline constexpr double kBeyond_m = 0.05;
 
 /// A surface point and its normal.
@@ -18,21 +19,23 @@ struct Patch {
 
 Eigen::Vector3d random_unit(CounterRandom& random);
 
-/// The surface point that some pixel of some prescan frame saw.
+/// Returns the surface point seen by a random pixel of a random prescan frame; nothing if the ray hits
+/// nothing.
 std::optional<Patch> draw_patch(const ScenarioRoom& from, CounterRandom& random);
 
-/// Whether three of the prescan's views have it, from 0.6 to 3.5 m, not grazing and with nothing between.
+/// Returns true if three prescan views saw the patch, from 0.6 to 3.5 m, not grazing and unoccluded.
 bool was_seen(const ScenarioRoom& from, const Patch& patch);
 
-/// Whether three of the prescan's views saw through each of some hundred points of the space that the object
-/// takes from its start to the true contact: there is nothing that nobody has seen in its way.
+/// Returns true if the prescan observed the space that the object sweeps from its start to the true contact:
+/// each of some hundred sample points was seen by three views. The object then never enters unknown space.
 bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario);
 
-/// Room points that the object's front runs into within the limit, one for each of some hundred points of it.
+/// Returns the room points that the object's front hits within the limit, by casting some hundred rays from
+/// it.
 std::vector<Patch> stopping_patches(const Room& room, const Scenario& scenario, double limit_m);
 
-/// Draws cameras, occluders and how the occluder moves for a placed object, until its stopping surface is
-/// hidden. False if that does not come about within a dozen draws.
+/// Draws a camera, an occluder and its motion for a placed object until the surface that stops it is hidden.
+/// Returns false if a dozen draws fail.
 bool hide(const ScenarioRoom& from, const std::vector<Patch>& patches, CounterRandom& random,
           Scenario& scenario);
 

@@ -1,4 +1,4 @@
-// scenario_object.cpp: balls, needles, cups, chairs and the like, of boxes, cylinders and capsules.
+// scenario_object.cpp: builds balls, needles, cups, chairs etc. from boxes, cylinders and capsules.
 #include "app/sim/scenarios/scenario_object.hpp"
 
 #include <algorithm>
@@ -16,12 +16,12 @@ using Eigen::Vector3d;
 
 constexpr double kThin_m = 0.002;
 
-/// As many small ones as large ones.
+/// Draws a log-uniform size, so small and large objects are equally frequent.
 double draw_size_m(CounterRandom& random, double least_m, double most_m) {
   return least_m * std::pow(most_m / least_m, random.uniform());
 }
 
-/// A cup's wall as a ring of upright boards that overlap at their edges, and its floor.
+/// Builds a cup: its wall as a ring of upright boards that overlap at their edges, and its floor.
 std::vector<Solid> cup(double radius_m, double height_m, double wall_m) {
   constexpr int kBoards = 20;
   const double middle_m = radius_m - 0.5 * wall_m;

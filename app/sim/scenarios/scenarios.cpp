@@ -1,4 +1,4 @@
-// scenarios.cpp: draws until a surface is hidden now, was seen before, and stops the object.
+// scenarios.cpp: draws placements until the surface that stops the object is hidden now but was seen before.
 #include "app/sim/scenarios/scenarios.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ constexpr std::array kShapes{ObjectShape::kBall,  ObjectShape::kNeedle, ObjectSh
                              ObjectShape::kCup,   ObjectShape::kChair,  ObjectShape::kCylinder,
                              ObjectShape::kTorus, ObjectShape::kSheet,  ObjectShape::kTable};
 
-/// Whether the object would be stopped nearly as soon 5 mm to each side.
+/// Returns true if the object would travel nearly as far when shifted 5 mm to each side.
 bool is_well_posed(const Room& room, const Scenario& scenario) {
   constexpr double kAside_m = 0.005, kSooner_m = 0.015;
   const Vector3d across = scenario.direction_world.unitOrthogonal();
@@ -40,8 +40,8 @@ bool is_well_posed(const Room& room, const Scenario& scenario) {
   return true;
 }
 
-/// Puts an object before a patch so that it will run into it, and works out the truth. False if it does not
-/// fit.
+/// Places an object in front of a patch, on course to hit it, and computes the true contact. Returns false if
+/// it does not fit.
 bool place_object(const ScenarioRoom& from, const Patch& patch, bool drop, ObjectShape shape,
                   CounterRandom& random, Scenario& scenario, Patch& contact) {
   constexpr double kStartClear_m = 0.02, kLeastTravel_m = 0.05;
@@ -73,7 +73,7 @@ bool place_object(const ScenarioRoom& from, const Patch& patch, bool drop, Objec
   return is_well_posed(from.room, scenario);
 }
 
-/// What tracking is off by: 1.5 mm along and 0.1 degrees about each axis (one sigma).
+/// Draws a tracking error: 1.5 mm along and 0.1 degrees about each axis (one sigma).
 Isometry3d draw_pose_error(std::uint64_t key) {
   constexpr double kSigma_m = 0.0015, kSigma_rad = 0.1 * std::numbers::pi / 180.0;
   const auto bell = [&](std::uint64_t i) { return static_cast<double>(gaussian(hash_of(key, i))); };
@@ -151,7 +151,7 @@ ScenarioRoom make_scenario_room(std::string_view name, std::uint64_t seed) {
 
 Scenario make_scenario(const ScenarioRoom& room, std::uint64_t seed, std::int64_t number) {
   constexpr std::uint64_t kDraws = 3000;
-  std::uint64_t room_key = room.prescan.seed;  // so that rooms differ in more than their furniture
+  std::uint64_t room_key = room.prescan.seed;  // so rooms differ in more than their furniture
   for (const char letter : room.room.name) room_key = mixed(room_key + static_cast<unsigned char>(letter));
   const auto at = static_cast<std::size_t>(number);
   const bool drop = at / kOccluders.size() % 2 == 0;
@@ -181,7 +181,7 @@ Verdict judge(const Scenario& scenario, double travelled_m) {
   constexpr double kTooShort_m = 0.03;
   Verdict verdict;
   verdict.error_m = travelled_m - scenario.true_travel_m;
-  if (!(verdict.error_m <= kTooFar_m)) verdict.outcome = Outcome::kPassedThrough;  // nowhere, too
+  if (!(verdict.error_m <= kTooFar_m)) verdict.outcome = Outcome::kPassedThrough;  // includes NaN
   if (verdict.error_m < -kTooShort_m) verdict.outcome = Outcome::kStoppedFalse;
   return verdict;
 }

@@ -1,4 +1,4 @@
-// surface_score.cpp: points spread over the mesh, and exact distances to the room's solids.
+// surface_score.cpp: samples points on the mesh, and computes exact distances to the room's solids.
 #include "app/sim/scenarios/surface_score.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ Eigen::Vector3i cell_of(const Eigen::Vector3d& p) {
   return (p / kSurfaceFound_m).array().floor().cast<int>();
 }
 
-/// Points on a lattice of each triangle, each with the area it stands for.
+/// Points on a lattice of each triangle, each with the area it represents.
 struct SpreadPoints {
   std::vector<Eigen::Vector3d> points;
   std::vector<double> areas_m2;
@@ -45,7 +45,7 @@ SpreadPoints spread_points(const Mesh& mesh, const Eigen::Isometry3d& T_room_map
   return spread;
 }
 
-/// The size that `part` of the total weight lies under; ascending sizes.
+/// Returns the size below which a fraction `part` of the total weight is; sizes are ascending.
 double weighted_quantile(const std::vector<std::pair<double, double>>& size_and_weight, double part) {
   double total = 0.0;
   for (const auto& [size, weight] : size_and_weight) total += weight;
@@ -57,7 +57,7 @@ double weighted_quantile(const std::vector<std::pair<double, double>>& size_and_
   return 0.0;
 }
 
-/// Part of `points` that have one of `spread` within kSurfaceFound_m.
+/// Returns the fraction of `points` with a point of `spread` within kSurfaceFound_m.
 double covered_part(const std::vector<Eigen::Vector3d>& points, const SpreadPoints& spread) {
   std::unordered_multimap<std::uint64_t, std::size_t> near;
   for (std::size_t i = 0; i < spread.points.size(); ++i)

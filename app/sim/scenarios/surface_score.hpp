@@ -1,4 +1,5 @@
-// surface_score.hpp: how true a mesh is to the simulated room that it was made of.
+// surface_score.hpp: accuracy and completeness of a mesh against the simulated room it was reconstructed
+// from.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -12,17 +13,17 @@
 
 namespace roomradar {
 
-/// Within this a surface counts as found.
+/// Max distance at which a surface counts as found.
 inline constexpr double kSurfaceFound_m = 0.02;
 
-/// The part of a room's true surface that the frames measured within 5 m: one point a cube of
+/// The part of a room's true surface that the frames measured within 5 m: one point per cube of
 /// kSurfaceFound_m.
 class SeenSurface {
  public:
-  /// A frame of a simulated source and its truth. What moves is not of the room.
+  /// Adds a frame of a simulated source with its truth. Pixels of moving objects are ignored.
   void add(const Frame& frame, const SimTruth& truth);
 
-  /// Those that at least three frames measured; in the room.
+  /// Returns the points measured by at least three frames, in the room's frame.
   [[nodiscard]] std::vector<Eigen::Vector3d> points() const;
 
  private:
@@ -35,16 +36,16 @@ class SeenSurface {
 };
 
 struct SurfaceScore {
-  double error_median_m = 0.0;  ///< of points spread evenly over the mesh to the room's surface
+  double error_median_m = 0.0;  ///< distance to the room's surface, of points spread evenly over the mesh
   double error_p95_m = 0.0;
-  double precision = 0.0;  ///< part of the mesh within kSurfaceFound_m of the surface
-  double cover = 0.0;      ///< part of the seen surface that has mesh within kSurfaceFound_m
+  double precision = 0.0;  ///< fraction of the mesh within kSurfaceFound_m of the room's surface
+  double cover = 0.0;      ///< fraction of the seen surface with mesh within kSurfaceFound_m
 };
 
-/// All figures are 0 for a mesh without triangles.
-/// @param T_room_map  from the mesh's world to the room's
+/// Scores a mesh; all results are 0 for a mesh without triangles.
+/// @param T_room_map  pose of the mesh's world in the room's frame
 /// @param seen        SeenSurface::points()
-/// @param spacing_m   of the points on the mesh, > 0 and well below kSurfaceFound_m
+/// @param spacing_m   between sample points on the mesh, > 0 and well below kSurfaceFound_m
 SurfaceScore score_surface(const Mesh& mesh, const Eigen::Isometry3d& T_room_map, const Room& room,
                            const std::vector<Eigen::Vector3d>& seen, double spacing_m);
 

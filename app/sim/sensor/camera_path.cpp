@@ -1,4 +1,4 @@
-// camera_path.cpp: an ellipse or a stand, with the sway of a walking or standing person on it.
+// camera_path.cpp: an ellipse or a standpoint, plus the sway of a walking or standing person.
 #include "app/sim/sensor/camera_path.hpp"
 
 #include <algorithm>
@@ -25,17 +25,18 @@ double at(const std::array<Sway, N>& sways, double t_s) {
   return sum;
 }
 
-/// Ramanujan's second approximation, wrong by less than 1e-5 of the length for our ellipses.
+/// Ramanujan's second approximation; its error is below 1e-5 of the length for our ellipses.
 double ellipse_length_m(const Eigen::Vector2d& half_m) {
   const double a = half_m.x(), b = half_m.y();
   const double h = (a - b) * (a - b) / ((a + b) * (a + b));
   return std::numbers::pi * (a + b) * (1.0 + 3.0 * h / (10.0 + std::sqrt(4.0 - 3.0 * h)));
 }
 
-/// Time for once round such that a whole number of rounds fills the duration at a walking speed, if one does.
+/// Returns the time per round such that, if possible at walking speed, a whole number of rounds fills the
+/// duration.
 double loop_time_s(double length_m, double duration_s) {
   constexpr double kSpeed_m_s = 0.42;
-  constexpr double kFastest_m_s = 0.5;  // leaves room for the sway below 0.6
+  constexpr double kFastest_m_s = 0.5;  // leaves room for sway, up to 0.6
   const double rounds = std::max(1.0, std::round(kSpeed_m_s * duration_s / length_m));
   const double speed_m_s = rounds * length_m / duration_s;
   return speed_m_s <= kFastest_m_s ? duration_s / rounds : length_m / kSpeed_m_s;
@@ -100,7 +101,7 @@ CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, 
 
 double clearance_m(const Room& room, const CameraPath& path, double duration_s) {
   double least_m = std::numeric_limits<double>::infinity();
-  constexpr double kLongest_s = 1800.0;  // of a longer walk the rest goes the same ways
+  constexpr double kLongest_s = 1800.0;  // the rest of a longer walk repeats the same paths
   const double last_s = std::min(duration_s, kLongest_s);
   const int samples = std::max(static_cast<int>(last_s * 5.0), 20);
   for (int i = 0; i <= samples; ++i) {
@@ -113,7 +114,7 @@ double clearance_m(const Room& room, const CameraPath& path, double duration_s) 
 }  // namespace
 
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s) {
-  constexpr double kClearance_m = 0.52;  // the samples are dense enough to miss less than 2 cm
+  constexpr double kClearance_m = 0.52;  // 0.5 m plus 2 cm, more than samples can miss
   CameraPath best;
   double best_clearance_m = -std::numeric_limits<double>::infinity();
   for (std::uint64_t draw = 0; draw < 64 && best_clearance_m < kClearance_m; ++draw) {
@@ -128,7 +129,7 @@ CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t
 
 Eigen::Isometry3d looking_at(const Vector3d& eye_world, const Vector3d& target_world) {
   const Vector3d z = (target_world - eye_world).normalized();
-  const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();  // level; y = z cross x looks down
+  const Vector3d x = z.cross(Vector3d::UnitZ()).normalized();  // horizontal; y = z cross x points down
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   T_world_camera.linear() << x, z.cross(x), z;
   T_world_camera.translation() = eye_world;
@@ -136,7 +137,7 @@ Eigen::Isometry3d looking_at(const Vector3d& eye_world, const Vector3d& target_w
 }
 
 Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s) {
-  // The second sine evens out the speed: more angle where the ellipse is narrow.
+  // The second sine evens out the speed: the angle advances faster where the ellipse is narrow.
   const double a = path.half_m.x(), b = path.half_m.y();
   const double phase_rad = path.start_rad + kTurn_rad * t_s / path.loop_s;
   const double evenness = a + b > 0.0 ? (a - b) / (2.0 * (a + b)) : 0.0;

@@ -1,4 +1,4 @@
-// camera_path.hpp: a hand-held camera's way through a room, by seed.
+// camera_path.hpp: trajectory of a hand-held camera in a room, by seed.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace roomradar {
 
-/// One sine of time.
+/// A sine over time.
 struct Sway {
   double amplitude = 0.0;
   double rate_hz = 0.0;
@@ -19,25 +19,25 @@ struct Sway {
 /// Position and target are sums of sines of time, so all derivatives are continuous.
 struct CameraPath {
   CameraPathKind kind = CameraPathKind::kScan;
-  Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();  ///< of the ellipse; where a viewer stands
+  Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();  ///< centre of the ellipse; position of a viewer
   Eigen::Vector2d half_m = Eigen::Vector2d::Zero();        ///< half axes of the ellipse; 0 for a viewer
   double start_rad = 0.0;
-  double loop_s = 1.0;  ///< time of once round; negative: clockwise
+  double loop_s = 1.0;  ///< time per round; negative: clockwise
   Eigen::Vector3d target_world = Eigen::Vector3d::Zero();
   std::array<std::array<Sway, 3>, 3> position_sway{};  ///< m, along x, y, z of the world
   std::array<Sway, 3> target_sway{};                   ///< m, along x, y, z of the world
   std::array<std::array<Sway, 2>, 3> turn_sway{};      ///< rad, about the camera's own axes
 };
 
-/// A path that keeps 0.5 m from all solids where one of 64 draws does, else the draw that keeps farthest.
-/// A scan walks at 0.3 to 0.6 m/s and turns by less than 40 degrees a second; if duration_s is long enough
-/// for once round at that speed it ends where it began.
+/// Draws up to 64 paths and returns the first that keeps 0.5 m from all solids, else the one with the most
+/// clearance. A scan moves at 0.3 to 0.6 m/s and rotates by less than 40 degrees per second; if duration_s is
+/// long enough for a full round at that speed, it ends where it began.
 CameraPath plan_camera_path(const Room& room, CameraPathKind kind, std::uint64_t seed, double duration_s);
 
-/// Pose of a camera held level at one point that looks at another, not straight up or down.
+/// Returns the pose of a level camera at `eye_world` that looks at `target_world`, not straight up or down.
 Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world);
 
-/// The depth camera's pose t_s after the start.
+/// Returns the depth camera's pose t_s after the start.
 Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s);
 
 }  // namespace roomradar

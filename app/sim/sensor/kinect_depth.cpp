@@ -14,14 +14,14 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kKinectWidth_px = 640.0;
-constexpr double kSubpixels = 8.0;  // disparity steps in a pixel
+constexpr double kSubpixels = 8.0;  // disparity steps per pixel
 
-/// Baseline times focal length of the full-size image, in px m: disparity = this / depth.
+/// Returns baseline times focal length of the full-size image, in px m: disparity = this / depth.
 double disparity_scale(const Intrinsics& camera) {
   return camera.fx_px * kKinectWidth_px / camera.width_px * kKinectBaseline_m;
 }
 
-/// Noise that is alike over about one lattice cell, as the Kinect's correlation window makes it: independent
+/// Noise correlated over about one lattice cell, as the Kinect's correlation window produces: independent
 /// Gaussians on a lattice, interpolated, and scaled back to variance 1.
 struct PatchNoise {
   static constexpr int kCell_px = 3;
@@ -29,7 +29,7 @@ struct PatchNoise {
   const std::vector<float>* lattice = nullptr;
 
   [[nodiscard]] float at(int x, int y) const {
-    // Half a cell off the pixels, so that no pixel lies on a lattice point and all weights are of similar
+    // Offset by half a pixel, so that no pixel coincides with a lattice point and all weights are of similar
     // size.
     const float gx = (static_cast<float>(x) + 0.5F) / kCell_px;
     const float gy = (static_cast<float>(y) + 0.5F) / kCell_px;
@@ -102,12 +102,11 @@ void measure_depth(std::span<const Solid> solids, std::span<const float> infrare
                    const ExactView& exact, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                    const DepthFaults& faults, double noise_scale, std::uint64_t seed,
                    std::int64_t frame_index, KinectScratch& scratch, DepthImage& depth_m) {
-  // Light that returns, relative to a white surface at 1 m: below this nothing is recognised. White paper is
-  // seen to beyond the range, black plastic (0.05) to some 3 m, and a wall at 4 m up to 82 degrees from its
-  // normal.
+  // Min returned light, relative to a white surface at 1 m. White paper is measured beyond the range, black
+  // plastic (0.05) to some 3 m, and a wall at 4 m up to 82 degrees from its normal.
   constexpr double kFaintest = 0.005;
   constexpr double kRaggedness = 0.25;
-  // The surface itself must not count as standing before itself.
+  // Keeps a surface from shadowing itself.
   constexpr double kShadowMargin_m = 0.003;
 
   const std::uint64_t key = hash_of(seed, static_cast<std::uint64_t>(frame_index), 0x6b696e65);

@@ -1,4 +1,4 @@
-// mover_shadow.cpp: rays to a few points of the lamp.
+// mover_shadow.cpp: casts rays to a few points of the lamp.
 #include "app/sim/sensor/mover_shadow.hpp"
 
 #include <iterator>

@@ -1,4 +1,4 @@
-// movers.cpp: a hand with its arm, a rolling ball and a walking person over time, of grown solids.
+// movers.cpp: animates a hand with its arm, a rolling ball and a walking person, built from inflated solids.
 #include "app/sim/sensor/movers.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr Material kShoes{Pattern::kPlain, {50, 42, 38}, {34, 28, 26}, 305, 0.2F
 constexpr Material kHair{Pattern::kFabric, {62, 42, 30}, {44, 30, 22}, 306, 0.12F};
 constexpr Material kBall{Pattern::kCarpet, {216, 60, 44}, {248, 240, 226}, 307, 0.6F};
 
-/// The time of a steady walk that has come as far.
+/// Returns the time at which a mover of steady pace has the same position.
 double steady_time_s(const Mover& mover, double t_s) {
   constexpr double kStand_s = 2.0, kGo_s = 2.0;
   switch (mover.pace) {
@@ -41,7 +41,7 @@ double steady_time_s(const Mover& mover, double t_s) {
   return t_s;
 }
 
-/// How far out of the room it has gone: faster and faster, up to a quick walk.
+/// Returns the distance moved out of the room: accelerates up to a quick walk.
 double way_out_m(const Mover& mover, double t_s) {
   constexpr double kSpeedUp_s = 0.5, kSpeed_m_per_s = 1.5;
   if (mover.pace != Pace::kLeaves || t_s <= mover.leaves_at_s) return 0.0;
@@ -50,7 +50,7 @@ double way_out_m(const Mover& mover, double t_s) {
   return kSpeed_m_per_s * (0.5 * speeding_s * speeding_s / kSpeedUp_s + (since_s - speeding_s));
 }
 
-/// 0 at the start of a period, 1 in its middle, smooth.
+/// Returns 0 at the start of a period and 1 in its middle, smoothly.
 double there_and_back(const Mover& mover, double t_s) {
   return 0.5 - 0.5 * std::cos(kTurn_rad * t_s / mover.period_s + mover.phase_rad);
 }
@@ -60,7 +60,7 @@ void append(std::vector<Solid>& solids, const Isometry3d& T_world_piece, Solid s
   solids.push_back(solid_piece);
 }
 
-/// Hand frame: x from the fingers to the elbow, z up from the back of the hand, origin in the palm's middle.
+/// Hand frame: x from the fingers to the elbow, z up from the back of the hand, origin at the palm's centre.
 void append_hand(const Mover& mover, double t_s, std::vector<Solid>& solids) {
   const double reach = there_and_back(mover, t_s);
   Isometry3d T_world_hand = Isometry3d::Identity();
@@ -115,7 +115,7 @@ void append_person(const Mover& mover, double t_s, std::vector<Solid>& solids) {
   const double gait_rad = kTurn_rad * t_s * 0.9 + mover.phase_rad;
   for (const double side : {-1.0, 1.0}) {
     const double swing = 0.35 * side * std::sin(gait_rad);
-    const double bend = 0.22 * (1.0 + side * std::cos(gait_rad));  // the leg that comes forward is bent
+    const double bend = 0.22 * (1.0 + side * std::cos(gait_rad));  // the forward leg bends
     const Vector3d hip(side * 0.095, 0, kHip_m);
     const Vector3d knee =
         hip + kThigh_m * Vector3d(0, std::sin(swing + 0.5 * bend), -std::cos(swing + 0.5 * bend));
@@ -150,7 +150,7 @@ Mover plan_mover(MoverKind kind, const Room& room, const Vector3d& viewer_world,
   switch (kind) {
     case MoverKind::kHand: {
       const Vector3d to_viewer = (viewer_world - room.focus_world).normalized();
-      const Vector3d right = Vector3d::UnitZ().cross(to_viewer).normalized();  // as the viewer sees it
+      const Vector3d right = Vector3d::UnitZ().cross(to_viewer).normalized();  // in the viewer's image
       mover.to_world = room.focus_world + random.uniform(0.27, 0.33) * to_viewer;
       mover.from_world = mover.to_world + 1.15 * right + Vector3d(0, 0, 0.12);
       mover.arm_world =
@@ -164,7 +164,7 @@ Mover plan_mover(MoverKind kind, const Room& room, const Vector3d& viewer_world,
     case MoverKind::kBall:
       mover.from_world = room.ball_from_world;
       mover.to_world = room.ball_to_world;
-      mover.radius_m = room.ball_from_world.z() > 0.1 ? 0.055 : 0.11;  // a small one on a table
+      mover.radius_m = room.ball_from_world.z() > 0.1 ? 0.055 : 0.11;  // a small ball on a table
       mover.period_s = std::max(3.0, kTurn_rad * (mover.to_world - mover.from_world).norm() / (2.0 * 0.6));
       mover.phase_rad = random.uniform(0.0, kTurn_rad);
       mover.materials.assign(1, kBall);

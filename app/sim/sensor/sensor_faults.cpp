@@ -1,4 +1,4 @@
-// sensor_faults.cpp: the figures of one Kinect that left the factory like this.
+// sensor_faults.cpp: the true parameters of one simulated Kinect.
 #include "app/sim/sensor/sensor_faults.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// sim_options.cpp: reads and checks what to simulate.
+// sim_options.cpp: parses and checks simulation options.
 #include "app/sim/sensor/sim_options.hpp"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ void set_option(SimOptions& options, std::string_view key, std::string_view valu
   } else if (key == "frames") {
     options.frames = number<std::int64_t>(key, value, "a whole number, 1 or more");
   } else if (key == "rate") {
-    options.rate_hz = number<double>(key, value, "frames a second, such as 30");
+    options.rate_hz = number<double>(key, value, "frames per second, such as 30");
   } else if (key == "noise") {
     options.noise_scale = number<double>(key, value, "0 (off), 1 (a Kinect's) or another factor up to 10");
   } else if (key == "path") {
@@ -209,7 +209,7 @@ void require_valid(const SimOptions& options) {
   if (options.frames < 1 || options.frames > 100'000'000)
     refuse("frames", std::to_string(options.frames), "a whole number, 1 to 100000000");
   if (!(options.rate_hz >= 0.1 && options.rate_hz <= 1000.0))
-    refuse("rate", number_text(options.rate_hz), "frames a second, 0.1 to 1000");
+    refuse("rate", number_text(options.rate_hz), "frames per second, 0.1 to 1000");
   if (!(options.noise_scale >= 0.0 && options.noise_scale <= 10.0))
     refuse("noise", number_text(options.noise_scale), "0 (off), 1 (a Kinect's) or another factor up to 10");
   if (options.faults && options.registered_colour && options.with_colour)

@@ -1,4 +1,4 @@
-// simulated_source.cpp: one frame of the simulated Kinect, from time to pixels.
+// simulated_source.cpp: renders a frame of the simulated Kinect.
 #include "app/sim/sensor/simulated_source.hpp"
 
 #include <algorithm>
@@ -18,10 +18,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The Kinect's colour camera stands 2.5 cm along the depth camera's +x and sees a little wider.
+/// The Kinect's colour camera is 2.5 cm along the depth camera's +x and has a slightly wider field of view.
 constexpr double kColourOffset_m = 0.025;
 constexpr double kColourFocal = 525.0 / 585.0;
-/// A crate that is not there stands so far below the floor, where nothing sees it.
+/// An absent crate is moved this far below the floor, where it is invisible.
 constexpr double kAway_m = 100.0;
 
 Rgb dimmed(Rgb colour, float factor) {
@@ -84,7 +84,7 @@ struct SimulatedSource::State {
             static_cast<float>(inverse_depth_offset_per_m(depth_camera, x, y));
   }
 
-  /// Two pixels' width at 1 m is as fine as anything is looked at from.
+  /// Returns 1.6 pixels' width at 1 m: cameras are hardly ever nearer.
   static double finest_texel_m(const SimOptions& options) { return 1.6 / options.depth_camera.fx_px; }
 
   void place_solids(std::int64_t index) {
@@ -112,18 +112,18 @@ struct SimulatedSource::State {
   std::optional<SurfaceLook> mover_look;
   CameraPath path;
   std::vector<Mover> movers;
-  std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover of the solids behind the room's
+  std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover index, for the solids after the room's
   std::vector<float> infrared;
-  Solid crate;  ///< one that comes or goes, where it stands while it is there
+  Solid crate;  ///< one that appears or disappears, at its place
   bool crate_is_there = false;
   Intrinsics colour_camera;
-  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();       ///< as frames say
-  Eigen::Isometry3d T_colour_depth_true = Eigen::Isometry3d::Identity();  ///< as it is
+  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();       ///< as frames declare
+  Eigen::Isometry3d T_colour_depth_true = Eigen::Isometry3d::Identity();  ///< true value
   DepthFaults depth_faults;
   PixelRays colour_rays;
   std::int64_t next_index = 0;
 
-  std::vector<Solid> solids;  ///< the room's, then the movers', at the time of the current frame
+  std::vector<Solid> solids;  ///< the room's, then the movers', at the current frame's time
   MoverShadow shadow;
   ViewCaster depth_view, colour_view, crate_view;
   ExactView depth_exact, colour_exact;
@@ -151,7 +151,7 @@ void SimulatedSource::State::fill_truth() {
     }
     const auto moving = depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room.solids.size());
     if (moving < 0) continue;
-    // A crate that goes is the room's until then.
+    // A crate that disappears counts as part of the room until then.
     if (options.crate == CrateKind::kGoes && mover_of_solid[static_cast<std::size_t>(moving)] > movers.size())
       continue;
     truth.moved.pixels[i] = 255;

@@ -1,11 +1,11 @@
-// counter_random.hpp: random numbers that depend on a seed and a position alone.
+// counter_random.hpp: counter-based random numbers, determined by a seed and a position.
 #pragma once
 #include <cstdint>
 
 namespace roomradar {
 
-/// splitmix64's finaliser: every bit of the input changes half of the output's.
-/// Source: Steele, Lea, Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014.
+/// splitmix64's finaliser: flipping any input bit flips about half of the output bits. Source: Steele, Lea,
+/// Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014.
 inline std::uint64_t mixed(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -17,10 +17,11 @@ inline std::uint64_t hash_of(std::uint64_t a, std::uint64_t b, std::uint64_t c) 
   return mixed(hash_of(a, b) ^ c);
 }
 
-/// 0 <= value < 1 from a hash.
+/// Maps a hash to 0 <= value < 1.
 inline double unit_interval(std::uint64_t hash) { return static_cast<double>(hash >> 11) * 0x1.0p-53; }
 
-/// Mean 0, variance 1, bell-shaped, never beyond 3.47: the sum of the hash's four 16-bit parts.
+/// Approximates a normal distribution by the sum of the hash's four 16-bit parts: mean 0, variance 1,
+/// magnitude at most 3.47.
 inline float gaussian(std::uint64_t hash) {
   const auto part = [hash](int i) { return static_cast<float>((hash >> (16 * i)) & 0xffffU); };
   constexpr float kMean = 4.0F * 32767.5F;

@@ -1,4 +1,4 @@
-// solid.cpp: exact signed distances and ray entries of grown boxes and cylinders.
+// solid.cpp: exact signed distances and ray entries of inflated boxes and cylinders.
 #include "app/sim/solids/solid.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ Eigen::Isometry3d placed(const Vector3d& centre_world, double yaw_rad) {
   return T_world_solid;
 }
 
-/// Entry into an origin-centred box; negative if missed or started inside.
+/// Returns the ray's entry into an origin-centred box; negative if it misses or starts inside.
 double box_entry(const Vector3d& half_m, const Vector3d& o, const Vector3d& d) {
   double t_in = -std::numeric_limits<double>::infinity();
   double t_out = std::numeric_limits<double>::infinity();
@@ -37,7 +37,7 @@ double box_entry(const Vector3d& half_m, const Vector3d& o, const Vector3d& d) {
   return t_in <= t_out ? t_in : -1.0;
 }
 
-/// Entry into an origin-centred cylinder about z.
+/// Returns the ray's entry into an origin-centred cylinder about z; negative if it misses or starts inside.
 double cylinder_entry(double radius_m, double half_height_m, const Vector3d& o, const Vector3d& d) {
   double t_in = -std::numeric_limits<double>::infinity();
   double t_out = std::numeric_limits<double>::infinity();
@@ -72,14 +72,14 @@ double sphere_entry(double radius_m, const Vector3d& o, const Vector3d& d) {
   return discriminant < 0.0 ? -1.0 : (-b - std::sqrt(discriminant)) / a;
 }
 
-/// Newton's method on the signed distance along the ray, which is a convex function for a convex solid:
-/// started outside it goes monotonically to the first root, or finds the distance growing and knows that the
-/// ray misses.
+/// Newton's method on the signed distance along the ray, a convex function for a convex solid. Started
+/// outside, it converges monotonically to the first root, or finds that the distance grows, so the ray
+/// misses.
 double convex_entry(const Solid& solid, const Vector3d& o, const Vector3d& d) {
   const Vector3d bounds_m = bounds_half_m(solid);
   double t = box_entry(bounds_m, o, d);
   if (t < 0.0) {
-    // Between the bounds and the rounded solid there is room to start in.
+    // The ray may start between the bounding box and the rounded solid.
     if ((o.cwiseAbs() - bounds_m).maxCoeff() > 0.0 || signed_distance_local_m(solid, o) <= 0.0) return -1.0;
     t = 0.0;
   }
@@ -92,7 +92,7 @@ double convex_entry(const Solid& solid, const Vector3d& o, const Vector3d& d) {
     if (slope >= 0.0) return -1.0;
     t -= distance_m / slope;
   }
-  return -1.0;  // grazing: touches in one point at most
+  return -1.0;  // grazing: touches in at most one point
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// solid.hpp: the convex solids that rooms and moving things are made of, with exact distances and exact rays.
+// solid.hpp: convex solids of rooms and moving objects, with exact distances and ray casts.
 #pragma once
 #include <Eigen/Geometry>
 
@@ -9,12 +9,12 @@ enum class SolidShape {
   kCylinder,  ///< about z: radius half_m.x() (= half_m.y()), half height half_m.z()
 };
 
-/// A box or cylinder, grown by a ball of round_m: a box of no size grown is a sphere, a line grown is a
+/// A box or cylinder inflated by a ball of radius round_m: an inflated point is a sphere, an inflated line a
 /// capsule.
 struct Solid {
   SolidShape shape = SolidShape::kBox;
   Eigen::Isometry3d T_world_solid = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d half_m = Eigen::Vector3d::Zero();  ///< of the core, before it is grown
+  Eigen::Vector3d half_m = Eigen::Vector3d::Zero();  ///< half extents before inflation
   double round_m = 0.0;
 };
 
@@ -25,20 +25,20 @@ Solid cylinder(const Eigen::Vector3d& foot_world, double radius_m, double height
 Solid sphere(const Eigen::Vector3d& centre_world, double radius_m);
 Solid capsule(const Eigen::Vector3d& a_world, const Eigen::Vector3d& b_world, double radius_m);
 
-/// Exact distance (m) from a point in the solid's frame to its surface, negative inside.
+/// Returns the exact distance (m) from a point in the solid's frame to its surface, negative inside.
 double signed_distance_local_m(const Solid& solid, const Eigen::Vector3d& p_solid);
 double signed_distance_m(const Solid& solid, const Eigen::Vector3d& p_world);
 
-/// Unit outward normal, in the solid's frame, of the surface point nearest to p_solid.
+/// Returns the unit outward normal, in the solid's frame, of the surface point nearest to p_solid.
 Eigen::Vector3d normal_local(const Solid& solid, const Eigen::Vector3d& p_solid);
 
-/// Where a ray enters the solid: the smallest t > 0 with origin + t * direction on the surface, coming from
-/// outside; negative if it misses, or starts inside. Both in the solid's frame; the direction need not be a
-/// unit vector.
+/// Returns the smallest t > 0 at which the ray origin + t * direction enters the solid from outside; negative
+/// if it misses or starts inside. Both arguments are in the solid's frame; the direction need not be a unit
+/// vector.
 double ray_entry_local(const Solid& solid, const Eigen::Vector3d& origin_solid,
                        const Eigen::Vector3d& direction_solid);
 
-/// Half sizes of the box round the solid in its own frame.
+/// Returns the half extents of the solid's bounding box in its own frame.
 inline Eigen::Vector3d bounds_half_m(const Solid& solid) {
   return solid.half_m + Eigen::Vector3d::Constant(solid.round_m);
 }

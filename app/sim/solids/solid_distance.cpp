@@ -1,5 +1,4 @@
-// solid_distance.cpp: the point of a Minkowski difference that is nearest to the origin, by growing
-// simplices.
+// solid_distance.cpp: GJK: the point of the Minkowski difference nearest to the origin, by simplices.
 #include "app/sim/solids/solid_distance.hpp"
 
 #include <algorithm>
@@ -11,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The point of the solid's core that lies farthest along a direction.
+/// Returns the farthest point of the solid's core along a direction.
 Vector3d core_support_world(const Solid& solid, const Vector3d& direction_world) {
   const Vector3d d = solid.T_world_solid.linear().transpose() * direction_world;
   Vector3d p_solid;
@@ -26,12 +25,12 @@ Vector3d core_support_world(const Solid& solid, const Vector3d& direction_world)
   return solid.T_world_solid * p_solid;
 }
 
-/// A point of the difference a - b, and the point of b that it came from.
+/// A point of the Minkowski difference a - b, and the point of b it came from.
 struct Corner {
   Vector3d w, b;
 };
 
-/// Up to four corners, and the weights with which they make the point nearest to the origin.
+/// Up to four vertices, and the weights of the point nearest to the origin.
 struct Simplex {
   std::array<Corner, 4> corners;
   std::array<double, 4> weights{};
@@ -57,8 +56,8 @@ struct Simplex {
   }
 };
 
-/// The part of a triangle's three corners that is nearest to the origin, by the regions of its plane.
-/// Source: Ericson, Real-Time Collision Detection, 2005, section 5.1.5.
+/// Reduces a triangle to the feature nearest to the origin, by Voronoi regions. Source: Ericson, Real-Time
+/// Collision Detection, 2005, section 5.1.5.
 void reduce_triangle(Simplex& s, int ia, int ib, int ic) {
   const Vector3d a = s.w(ia), b = s.w(ib), c = s.w(ic), ab = b - a, ac = c - a;
   const double d1 = -ab.dot(a), d2 = -ac.dot(a);
@@ -86,7 +85,8 @@ void reduce_triangle(Simplex& s, int ia, int ib, int ic) {
   s.keep({ia, ib, ic}, {va / sum, vb / sum, vc / sum});
 }
 
-/// Keeps what of the simplex is nearest to the origin. False if the origin is inside of a tetrahedron.
+/// Reduces the simplex to the feature nearest to the origin. Returns false if the origin is inside a
+/// tetrahedron.
 bool reduce(Simplex& s) {
   switch (s.size) {
     case 1:
@@ -110,13 +110,13 @@ bool reduce(Simplex& s) {
       return true;
     default: {
       constexpr std::array<std::array<int, 4>, 4> kFaces{
-          {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}}};  // three corners, and the fourth
+          {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}}};  // a face, and the fourth vertex
       Simplex best;
       double best2 = -1.0;
       for (const auto& [ia, ib, ic, other] : kFaces) {
         const Vector3d normal = (s.w(ib) - s.w(ia)).cross(s.w(ic) - s.w(ia));
         const double origin_side = -s.w(ia).dot(normal), other_side = (s.w(other) - s.w(ia)).dot(normal);
-        if (origin_side * other_side > 0.0) continue;  // the origin is on the tetrahedron's side of this face
+        if (origin_side * other_side > 0.0) continue;  // the origin is on the inner side of this face
         Simplex face = s;
         reduce_triangle(face, ia, ib, ic);
         const double distance2 = face.nearest().squaredNorm();
@@ -136,12 +136,12 @@ bool reduce(Simplex& s) {
 
 Separation separation(const Solid& a, const Solid& b) {
   constexpr double kTight_m = 1e-10, kTouching_m = 1e-11;
-  constexpr int kRounds = 100;  // polytopes take a handful, round ends some twenty
+  constexpr int kRounds = 100;  // polytopes take a handful, rounded ends about twenty
   const double round_m = a.round_m + b.round_m;
   Simplex simplex;
   Vector3d v = a.T_world_solid.translation() - b.T_world_solid.translation();
   if (v.squaredNorm() == 0.0) v = Vector3d::UnitX();
-  double bound_m = 0.0;  // the cores are no nearer
+  double bound_m = 0.0;  // lower bound of the cores' distance
   for (int round = 0; round < kRounds; ++round) {
     const Vector3d b_world = core_support_world(b, v);
     const Vector3d w = core_support_world(a, -v) - b_world;
@@ -154,7 +154,7 @@ Separation separation(const Solid& a, const Solid& b) {
     if (!reduce(simplex)) return {};
     const Vector3d nearer = simplex.nearest();
     if (nearer.norm() <= kTouching_m) return {};
-    if (round > 0 && nearer.squaredNorm() >= v.squaredNorm()) break;  // rounding: no nearer than before
+    if (round > 0 && nearer.squaredNorm() >= v.squaredNorm()) break;  // no progress, due to rounding
     v = nearer;
   }
   Separation result;

@@ -1,4 +1,4 @@
-// solid_tree.cpp: median splits, and walks that leave out what is too far.
+// solid_tree.cpp: builds by median splits, and traverses with pruning.
 #include "app/sim/solids/solid_tree.hpp"
 
 #include <algorithm>
@@ -92,9 +92,9 @@ template <typename Visit>
 bool SolidTree::walk_ray(const Vector3d& origin_world, const Vector3d& direction_world, double& farthest,
                          const Visit& visit) const {
   if (nodes_.empty()) return false;
-  const Vector3d inverse = (direction_world.array() + 0.0).inverse();  // -0 is 0
-  // The point of the box's slabs that the ray reaches first and leaves last; zeros in the direction give
-  // infinities that order rightly, and a ray within a face's plane counts as touching.
+  const Vector3d inverse = (direction_world.array() + 0.0).inverse();  // turns -0 into 0
+  // Slab test. Zeros in the direction give infinities of the correct order; a ray within a face's plane
+  // counts as a hit.
   const auto meets = [&](const Eigen::AlignedBox3d& bounds) {
     double t_in = 0.0, t_out = farthest;
     for (int axis = 0; axis < 3; ++axis) {

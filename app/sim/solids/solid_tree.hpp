@@ -1,4 +1,4 @@
-// solid_tree.hpp: a tree of boxes round solids, so that a distance or a ray looks at few of them.
+// solid_tree.hpp: bounding volume hierarchy over solids, for distances and ray casts.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -14,28 +14,28 @@ struct RayHit {
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
 };
 
-/// Refers to solids by index: a copy of the tree serves a copy of the solids. They must stay as they were
-/// given.
+/// Stores indices only, so a copy of the tree works with a copy of the solids. All calls must pass the solids
+/// the tree was built from, unchanged.
 class SolidTree {
  public:
   SolidTree() = default;
   explicit SolidTree(const std::vector<Solid>& solids);
 
-  /// Least of the solids' signed distances; infinite for none.
+  /// Returns the least signed distance over the solids; infinite if there are none.
   [[nodiscard]] double signed_distance_m(const std::vector<Solid>& solids,
                                          const Eigen::Vector3d& p_world) const;
-  /// First surface that the ray enters, within `farthest` lengths of the direction.
+  /// Returns the first surface that the ray enters, within `farthest` lengths of the direction.
   [[nodiscard]] std::optional<RayHit> cast(const std::vector<Solid>& solids,
                                            const Eigen::Vector3d& origin_world,
                                            const Eigen::Vector3d& direction_world, double farthest) const;
-  /// Whether the way from a to b enters any solid.
+  /// Returns true if the segment from a to b enters any solid.
   [[nodiscard]] bool is_blocked(const std::vector<Solid>& solids, const Eigen::Vector3d& a_world,
                                 const Eigen::Vector3d& b_world) const;
 
  private:
   struct Node {
     Eigen::AlignedBox3d bounds_world;
-    int solid = -1;  ///< a leaf's; -1: inner, its children are the next node and `second`
+    int solid = -1;  ///< index of a leaf's solid; -1: inner node, its children are the next node and `second`
     int second = -1;
   };
   int build(const std::vector<Solid>& solids, std::vector<int>& order, int begin, int end);

@@ -10,11 +10,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Lets one part go on until it touches one obstacle; false if it does not before `limit_m`.
+/// Advances one part until it touches one obstacle; returns false if it does not within `limit_m`.
 bool advance(Solid part, const Solid& obstacle, const Vector3d& direction_world, double limit_m,
              SweptTravel& result) {
   constexpr double kTouching_m = 1e-8;
-  constexpr int kSteps = 200;  // flat against flat takes two; grazing a round end some dozens
+  constexpr int kSteps = 200;  // flat against flat takes two; grazing a rounded end takes some dozens
   const Vector3d start_world = part.T_world_solid.translation();
   double travel_m = 0.0;
   for (int step = 0; step < kSteps; ++step) {
@@ -22,7 +22,7 @@ bool advance(Solid part, const Solid& obstacle, const Vector3d& direction_world,
     const Separation apart = separation(part, obstacle);
     const double approach = -apart.normal_world.dot(direction_world);
     if (apart.distance_m <= kTouching_m) {
-      if (apart.normal_world.isZero(0.0)) {  // inside from the start
+      if (apart.normal_world.isZero(0.0)) {  // overlapping at the start
         result = {travel_m, true, part.T_world_solid.translation(), -direction_world};
       } else {
         result = {travel_m, true, apart.point_b_world, apart.normal_world};
@@ -30,11 +30,11 @@ bool advance(Solid part, const Solid& obstacle, const Vector3d& direction_world,
       return true;
     }
     if (approach <= 0.0) return false;
-    // Not quite up to the plane, for a distance of 0 has no direction.
+    // Stops just short of the plane, since a distance of 0 has no direction.
     travel_m += (apart.distance_m - 0.5 * kTouching_m) / approach;
     if (travel_m >= limit_m) return false;
   }
-  return false;  // it grazes in less than kTouching_m a step
+  return false;  // grazes with less than kTouching_m per step
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// view_caster.cpp: solids sorted into tiles by separating planes through the camera's centre.
+// view_caster.cpp: bins solids into tiles by separating planes through the camera's centre.
 #include "app/sim/solids/view_caster.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 constexpr int kTile_px = 16;
 
-/// Least and greatest value of n . p over the box round a solid, in camera coordinates.
+/// Min and max of n . p over a solid's bounding box, in camera coordinates.
 struct Extent {
   double least, greatest;
 };
@@ -45,8 +45,8 @@ void ViewCaster::prepare(std::span<const Solid> solids, const Intrinsics& camera
         Prepared{solid, R_solid_camera, camera_solid, std::max(depth.least, 0.0), 0, 0, 0, 0});
     if (depth.greatest <= 0.0) continue;
     nearest_first_.push_back(static_cast<int>(i));
-    // A tile's column is the wedge between two planes through the camera's centre; half a pixel beyond the
-    // outermost pixel centres belongs to it, so that rays between two pixels find their solids too.
+    // A tile's column is the wedge between two planes through the camera's centre. It extends half a pixel
+    // beyond the outermost pixel centres, so rays between two pixels find their solids too.
     const auto range = [&](int tiles, double focal_px, double centre_px, int axis, int& begin, int& end) {
       const auto plane_at = [&](double edge_px) {  // positive on the side of greater image coordinates
         Vector3d n = Vector3d::Zero();

@@ -1,4 +1,4 @@
-// camera_rig.cpp: camera.json and camera-intrinsics.txt.
+// camera_rig.cpp: reads and writes camera.json, and reads camera-intrinsics.txt.
 #include "app/sources/formats/camera_rig.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// frame_range.cpp: counts a source's frames and lets only a range of them through.
+// frame_range.cpp: counts a source's frames and delivers only a range of them.
 #include "app/sources/formats/frame_range.hpp"
 
 #include <string>
@@ -29,14 +29,15 @@ class FrameRangeSource final : public FrameSource {
   }
 
   ReadResult next(Frame& frame) override {
-    constexpr int kMostPassedOver = 15;  // of a device half a second: whoever reads may want to stop
+    // Half a second of a device's frames; returning then lets the caller stop.
+    constexpr int kMostPassedOver = 15;
     for (int passed_over = 0; position_ <= last_; ++passed_over) {
       if (passed_over == kMostPassedOver) return {ReadStatus::kSkipped, {}, true};
       ReadResult result = source_->next(frame);
       if (result.status == ReadStatus::kEnd) fail_outside(*source_, first_, last_, position_);
       if (result.waiting) return result;
-      // A live device counts frames that it dropped, which are not delivered; what was recorded of it keeps
-      // their numbers, and is asked for by position.
+      // Frames of a live device count by index, which includes dropped frames. Frames of its recording keep
+      // these indices but count by position.
       const std::int64_t at = is_live_ && result.status == ReadStatus::kFrame ? frame.index : position_;
       position_ = at + 1;
       if (at >= first_ && at <= last_) return result;

@@ -1,4 +1,4 @@
-// frame_range.hpp: the part of a recording that the user asked for.
+// frame_range.hpp: selection of a range of frames of a recording.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -8,20 +8,20 @@
 
 namespace roomradar {
 
-/// Frames first..last of a recording, both of them included, counted from 0.
+/// Frames first to last of a recording, both included, counted from 0.
 struct FrameRange {
   std::int64_t first = 0;
   std::int64_t last = 0;
 };
 
-/// Reads "A:B", two whole numbers with 0 <= A <= B. Throws Error that quotes `text` and gives an example
-/// otherwise.
+/// Parses "A:B", two whole numbers with 0 <= A <= B. Otherwise throws Error that quotes `text` and gives an
+/// example.
 FrameRange parse_frame_range(std::string_view text);
 
-/// Delivers only frames first..last of `source`, which keep their index and stamp; frames that cannot be read
-/// are part of the count. Works on sources of unknown length too: nothing is read ahead.
-/// @throws Error that says how many frames there are if the range leaves the recording: here where the length
-/// is known, from next() once the end comes too early where it is not. Also if not 0 <= first <= last.
+/// Delivers only frames first to last of `source`, with their original index and stamp; unreadable frames
+/// count too. Also works for sources of unknown length, since nothing is read ahead.
+/// @throws Error with the number of frames if the range exceeds the recording: immediately if the length is
+/// known, otherwise from next() at the premature end. Also throws unless 0 <= first <= last.
 std::unique_ptr<FrameSource> limit_frames(std::unique_ptr<FrameSource> source, std::int64_t first,
                                           std::int64_t last);
 

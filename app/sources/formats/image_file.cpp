@@ -1,4 +1,4 @@
-// image_file.cpp: image files by OpenCV's decoders, checked before and after.
+// image_file.cpp: image files through OpenCV's codecs, with checks before and after.
 #include "app/sources/formats/image_file.hpp"
 
 #include <bit>
@@ -30,13 +30,13 @@ std::span<const std::uint8_t> span_of(const std::string& bytes) {
 
 void write_png(const cv::Mat& image, const std::filesystem::path& path) {
   std::vector<std::uint8_t> bytes;
-  // OpenCV's own choice of compression is its fastest: naming any level turns on slower filters (14, not 7
+  // OpenCV's default compression is its fastest: any explicit level enables slower filters (14 instead of 7
   // ms).
   if (!cv::imencode(".png", image, bytes)) throw Error(path.string() + ": cannot be encoded as PNG");
   write_bytes(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-/// Decodes to `type` (an OpenCV type), the size that the header says.
+/// Decodes to `type` (an OpenCV type) and checks the size against the header.
 cv::Mat decode(const std::string& bytes, int flags, int type, const ImageHeader& header,
                const std::string& name) {
   cv::Mat image;
@@ -75,7 +75,7 @@ void read_kinect_raw(const std::filesystem::path& path, DepthImage& depth_m) {
   }
 }
 
-/// A view of the image's pixels, red first.
+/// Wraps the image's pixels as RGB, without copying.
 cv::Mat view_of(ColourImage& image) {
   static_assert(sizeof(Rgb) == 3);
   return {image.height, image.width, CV_8UC3, image.pixels.data()};
@@ -117,7 +117,7 @@ void write_depth_file(const DepthImage& depth_m, DepthEncoding encoding, const s
   cv::Mat image(depth_m.height, depth_m.width, CV_16UC1);
   const bool is_raw = encoding == DepthEncoding::kKinectRaw;
   const float units_per_m = encoding == DepthEncoding::kTum ? 5000.0F : 1000.0F;
-  const float largest = encoding == DepthEncoding::kTum ? 65535.0F : 65534.0F;  // 65535 mm stands for none
+  const float largest = encoding == DepthEncoding::kTum ? 65535.0F : 65534.0F;  // 65535 mm means invalid
   for (int y = 0; y < depth_m.height; ++y) {
     const float* from = depth_m.row(y);
     std::uint16_t* to = image.ptr<std::uint16_t>(y);

@@ -1,4 +1,4 @@
-// image_header.cpp: the first bytes of PNG, JPEG, PGM and PPM, and their ends.
+// image_header.cpp: parses the headers and end marks of PNG, JPEG, PGM and PPM.
 #include "app/sources/formats/image_header.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ int checked_size(std::int64_t size, const std::string& name) {
 [[noreturn]] void fail_cut_short(const std::string& name, std::size_t bytes) {
   throw Error(name + ": is cut short (" + std::to_string(bytes) + " bytes are there)");
 }
-/// The header, or Error if no file of so many bytes can hold its pixels. Deflate packs 1,032 bytes into one
-/// at the most; JPEG, whose blocks take two bits each, gets no further.
+/// Returns the header, or throws Error if a file of this many bytes cannot contain its pixels. Deflate
+/// compresses by at most 1,032; JPEG, whose blocks take at least two bits each, by no more.
 ImageHeader require_room(const ImageHeader& header, int bits_per_pixel, std::size_t file_bytes,
                          const std::string& name) {
   constexpr std::int64_t kMostPacked = 1032;
@@ -67,7 +67,7 @@ ImageHeader read_png(Bytes bytes, const std::string& name) {
 
 ImageHeader read_jpeg(Bytes bytes, const std::string& name) {
   if (!ends_near_end(bytes, kJpegEnd)) fail_cut_short(name, bytes.size());
-  // Segments: ff, kind, 16 bit length that counts itself. Frame headers are c0..cf but for c4, c8 and cc.
+  // Segments: ff, kind, 16 bit length that includes itself. Frame headers are c0..cf except c4, c8 and cc.
   for (std::size_t at = 2; at + 9 < bytes.size();) {
     if (bytes[at] != 0xff) break;
     const int kind = bytes[at + 1];
@@ -90,7 +90,7 @@ ImageHeader read_jpeg(Bytes bytes, const std::string& name) {
 
 ImageHeader read_pnm(Bytes bytes, const std::string& name) {
   const bool grey = bytes[1] == '5';
-  std::array<std::int64_t, 3> numbers{};  // width, height, greatest value
+  std::array<std::int64_t, 3> numbers{};  // width, height, maximum value
   std::size_t at = 2;
   for (std::int64_t& number : numbers) {
     while (at < bytes.size() && (std::isspace(bytes[at]) || bytes[at] == '#')) {

@@ -1,4 +1,4 @@
-// kinect_units.cpp: raw disparity to metres and back, accelerometer to gravity.
+// kinect_units.cpp: converts raw disparity to metres and back, and accelerometer readings to gravity.
 #include "app/sources/formats/kinect_units.hpp"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ std::uint16_t raw_from_depth_m(float depth_m) {
 }
 
 float raw_depth_m(std::uint16_t raw, const KinectZeroPlane& zero_plane) {
-  constexpr double kSubPixels = 4.0;  // of a raw step in a column
+  constexpr double kSubPixels = 4.0;  // raw steps per column
   constexpr double kOffset_px = 0.375;
   constexpr double kNearest_m = 0.2, kFarthest_m = 10.0;
   if (raw >= kRawNoDepth) return 0.0F;

@@ -1,4 +1,4 @@
-// nominal_rig.cpp: published and measured figures of Kinects, and which source of intrinsics goes first.
+// nominal_rig.cpp: published and measured intrinsics of Kinects, and the precedence of their sources.
 #include "app/sources/formats/nominal_rig.hpp"
 
 #include <string>
@@ -8,8 +8,8 @@
 namespace roomradar {
 namespace {
 
-/// A rotation by a vector (rad), then a shift. A Kinect's colour camera stands 2.5 cm along +x of its depth
-/// camera, towards the projector: in T_colour_depth the shift is negative.
+/// Returns a transform that rotates by a vector (rad), then translates. A Kinect's colour camera is 2.5 cm
+/// along +x of its depth camera, towards the projector, so the translation of T_colour_depth is negative.
 Eigen::Isometry3d rigid(double rx_rad, double ry_rad, double rz_rad, const Eigen::Vector3d& t_m) {
   const Eigen::Vector3d r(rx_rad, ry_rad, rz_rad);
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -21,37 +21,39 @@ Eigen::Isometry3d rigid(double rx_rad, double ry_rad, double rz_rad, const Eigen
 CameraRig figures(NominalRig kind) {
   switch (kind) {
     case NominalRig::kSevenScenes:
-      // Depth: published with the dataset, which says nothing of colour. Colour: fitted on the recording
-      // redkitchen. 154,000 points on the near side of depth jumps in 71 of its frames were projected into
-      // the colour images, and focal length, shift across, and rotation chosen so that they meet the
-      // strongest colour edges (gradients relative to their surroundings, blurred by 4, 2, then 1 px; pattern
-      // search). Every 12th and every 7th frame gave the same within 0.2 px and 0.3 mm; the edges meet within
-      // about 2 px by eye. The principal point and the shift along the axis were held: freed, they moved by 1
-      // px and 11 mm, and the focal length by 4 px, for a gain of 0.1 % in the score.
+      // Depth: published with the dataset, which gives nothing for colour. Colour: fitted on the recording
+      // redkitchen. 154,000 points on the near side of depth discontinuities in 71 of its frames were
+      // projected into the colour images. Focal length, translation across the axis and rotation were
+      // optimised by pattern search to align the points with the strongest colour edges (gradients relative
+      // to their surroundings, blurred by 4, 2, then 1 px). Every 12th and every 7th frame gave the same
+      // within 0.2 px and 0.3 mm; by eye the edges agree within about 2 px. The principal point and the
+      // translation along the axis were constrained. Freed, they moved by 1 px and 11 mm, and the focal
+      // length by 4 px, for a gain of 0.1 % in the score.
       return {{640, 480, 585.0, 585.0, 320.0, 240.0},
               Intrinsics{640, 480, 526.7, 526.7, 320.0, 240.0},
               rigid(0.0041, 0.0004, 0.0089, {-0.0248, 0.0003, 0.0})};
     case NominalRig::kTum:
-      // "ROS default" of the benchmark's page, which it recommends where colour and depth are registered by
-      // the driver.
+      // "ROS default" of the benchmark's page, recommended there for colour and depth registered by the
+      // driver.
       return {{640, 480, 525.0, 525.0, 319.5, 239.5},
               Intrinsics{640, 480, 525.0, 525.0, 319.5, 239.5},
               Eigen::Isometry3d::Identity()};
     case NominalRig::kNumbered:
-      // Fitted to the recording that this was tried on. Its colour is not aligned with its depth: depth edges
-      // miss colour's by up to 20 px if they are laid over each other, and meet them within about 3 px with
-      // 0.951 of depth's focal length, a centre 7 px left and 6 px below, and a shift of 8.5 px at 1 m. The
-      // focal length is that at which four right angles on the table's plane (a QR code's, a sheet of
-      // paper's, the table's two corners) come out right: 330, 360, 337 and 363 px. It is good to some 5 %.
+      // Fitted to the numbered test recording, whose colour is not aligned with its depth. Overlaid, depth
+      // edges deviate from colour edges by up to 20 px. They agree within about 3 px with a colour focal
+      // length of 0.951 times depth's, a principal point 7 px left and 6 px below, and a shift of 8.5 px at 1
+      // m. The focal length is the one that renders four right angles on the table's plane correctly (a QR
+      // code's, a sheet of paper's, the table's two corners): 330, 360, 337 and 363 px. It is accurate to
+      // some 5 %.
       return {{640, 480, 347.0, 347.0, 319.5, 239.5},
               Intrinsics{640, 480, 330.0, 330.0, 312.25, 245.5},
               rigid(0, 0, 0, {-0.0258, 0.0, 0.0})};
     case NominalRig::kKinect:
       // Depth, and the colour camera's principal point: Nicolas Burrus, "Kinect Calibration", 2011, of one
-      // Kinect. Colour's focal length and the rotation: fitted as for 7-Scenes, to six frames of two raw
-      // recordings of a room with whiteboards, the shift held at the device's 2.5 cm. There depth edges meet
-      // colour edges within about 3 px, where Burrus' 529.2, 525.6 without a rotation miss them by 10.
-      // Another Kinect will differ by some pixels.
+      // Kinect. Colour's focal length and rotation: fitted as for 7-Scenes, to six frames of two raw
+      // recordings of a room with whiteboards, with the translation constrained to the device's 2.5 cm. Depth
+      // edges then agree with colour edges within about 3 px, whereas Burrus' 529.2, 525.6 without a rotation
+      // is off by 10. Another Kinect will differ by some pixels.
       return {{640, 480, 594.21, 591.04, 339.5, 242.7},
               Intrinsics{640, 480, 544.8, 544.8, 328.9, 267.5},
               rigid(-0.0019, 0.0100, -0.0062, {-0.025, 0.0, 0.0})};
@@ -115,7 +117,7 @@ CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
     rig.colour_camera.reset();
     return rig;
   }
-  // Whoever knows the depth camera of a numbered folder, but nothing of colour's, has them aligned.
+  // A user who gives depth intrinsics for a numbered folder, but none for colour, has aligned images.
   const bool is_registered =
       has_camera_file ? !rig.colour_camera
                       : kind == NominalRig::kTum || (kind == NominalRig::kNumbered && depth_is_given);

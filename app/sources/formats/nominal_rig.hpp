@@ -1,4 +1,4 @@
-// nominal_rig.hpp: the cameras of a kind of recording that does not say which cameras it was made with.
+// nominal_rig.hpp: default cameras for recordings that do not contain their intrinsics.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -8,10 +8,10 @@
 namespace roomradar {
 
 enum class NominalRig {
-  kSevenScenes,  ///< a Kinect v1 as 7-Scenes publishes it: depth and colour each from their own camera
-  kTum,          ///< a Kinect v1 whose depth was registered to colour
-  kNumbered,     ///< another sensor, of which nothing is known
-  kKinect,       ///< a Kinect v1 through libfreenect, not registered
+  kSevenScenes,  ///< a Kinect v1 as published by 7-Scenes; depth is not registered to colour
+  kTum,          ///< a Kinect v1 with depth registered to colour
+  kNumbered,     ///< another, unknown sensor
+  kKinect,       ///< a Kinect v1 through libfreenect, depth not registered
 };
 
 struct ImageSize {
@@ -20,13 +20,13 @@ struct ImageSize {
   friend bool operator==(const ImageSize&, const ImageSize&) = default;
 };
 
-/// The kind's published or measured figures, scaled to the width of the images; where their height is another
-/// one than this gives, rows are taken to be cut off above and below alike.
+/// Returns the kind's published or measured intrinsics, scaled to the images' width. If their aspect ratio
+/// differs from the published images', rows are assumed cropped equally at top and bottom.
 CameraRig nominal_rig(NominalRig kind, ImageSize depth, std::optional<ImageSize> colour);
 
-/// The cameras of the recording in `folder`: `chosen_depth` if given, before the folder's camera.json, before
-/// its camera-intrinsics.txt (depth camera only), before nominal_rig. Throws Error with both sizes and what
-/// to do if the cameras are not of the images' sizes, or a file is broken.
+/// Returns the cameras of the recording in `folder`. Precedence of the depth camera: `chosen_depth`, the
+/// folder's camera.json, its camera-intrinsics.txt (depth camera only), nominal_rig(). Throws Error with both
+/// sizes and a remedy if the cameras do not match the images' sizes, or if a file is invalid.
 CameraRig rig_of_recording(const std::filesystem::path& folder, NominalRig kind,
                            const std::optional<Intrinsics>& chosen_depth, ImageSize depth,
                            std::optional<ImageSize> colour);

@@ -1,4 +1,4 @@
-// parse_numbers.cpp: words and numbers by std::from_chars, which knows no locale.
+// parse_numbers.cpp: parses with std::from_chars, which is locale-independent.
 #include "app/sources/formats/parse_numbers.hpp"
 
 #include <charconv>

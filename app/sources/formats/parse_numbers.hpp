@@ -1,4 +1,4 @@
-// parse_numbers.hpp: words and numbers out of text files, the same in every locale.
+// parse_numbers.hpp: locale-independent parsing of words and numbers in text files.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -7,14 +7,14 @@
 
 namespace roomradar {
 
-/// The words of `line` between blanks, tabs and carriage returns.
+/// Splits `line` at blanks, tabs and carriage returns.
 std::vector<std::string_view> split_words(std::string_view line);
 
-/// The number that all of `word` is, or nothing. NaN and infinities are numbers here, in C's and in
+/// Parses all of `word` as a number, or returns nothing. NaN and infinities are accepted, in C's and in
 /// Microsoft's spelling (nan, inf, `-1.#IND`, `1.#QNAN`, `1.#INF`).
 std::optional<double> parse_number(std::string_view word);
 
-/// The whole number that all of `word` is, or nothing.
+/// Parses all of `word` as a whole number, or returns nothing.
 std::optional<std::int64_t> parse_whole_number(std::string_view word);
 
 }  // namespace roomradar

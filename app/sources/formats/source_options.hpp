@@ -1,4 +1,4 @@
-// source_options.hpp: what a caller may say about a source that the source itself does not say.
+// source_options.hpp: options for opening a frame source.
 #pragma once
 #include <cstdio>
 #include <functional>
@@ -9,32 +9,32 @@
 
 namespace roomradar {
 
-/// What a Kinect is asked to make of the disparity that it measures.
+/// Depth mode of a Kinect.
 enum class KinectDepth {
-  kRaw,          ///< the disparity itself, 11 bit; made metres here
-  kMillimetres,  ///< made millimetres by libfreenect
-  kRegistered,   ///< millimetres, as the colour camera would see them
+  kRaw,          ///< 11 bit disparity, converted to metres by roomradar
+  kMillimetres,  ///< converted to millimetres by libfreenect
+  kRegistered,   ///< millimetres, registered to the colour camera
 };
 
-/// A line on stderr, below the line of a progress bar that may be there.
+/// Prints a line on stderr; the leading newline keeps it below a progress bar.
 inline void say_on_stderr(const std::string& sentence) {
   std::fprintf(stderr, "\nroomradar: %s\n", sentence.c_str());
 }
 
 struct SourceOptions {
-  /// Taken instead of what the recording's files or the format's published figures say. Must be of the depth
-  /// image's size. Where colour is registered to depth (TUM, numbered folders without camera.json) the colour
-  /// camera follows.
+  /// Overrides the recording's files and the format's published intrinsics. Must match the depth image's
+  /// size. If colour is registered to depth (TUM, numbered folders without camera.json), the colour camera is
+  /// derived from this.
   std::optional<Intrinsics> depth_camera;
   KinectDepth kinect_depth = KinectDepth::kRaw;
-  /// What a live device sends is kept until it is fetched, as far as memory allows: for a scan, to which
-  /// every frame is worth something. Else there is only ever the newest, for a picture of what is now.
+  /// true: frames of a live device are queued until fetched, as far as memory allows; for a scan, which needs
+  /// every frame. false: only the newest frame is kept, for live display.
   bool keep_all = false;
-  /// A calibration.json beside a recording is passed over: frames are as the device gave them.
+  /// Ignores a calibration.json beside a recording: frames stay as the device delivered them.
   bool as_recorded = false;
-  /// A live device that sends no depth for as long, though it is started anew again and again, is given up.
+  /// A live device that has sent no depth for this long, despite repeated restarts, is given up.
   double device_timeout_s = 60.0;
-  /// Is told what becomes of a live device while it is read, by a thread of its own.
+  /// Receives status messages about a live device while it is read; called from another thread.
   std::function<void(const std::string&)> say = say_on_stderr;
 };
 

@@ -1,4 +1,4 @@
-// stamp_pairing.cpp: nearest in time, each image once, decided as early as it is certain.
+// stamp_pairing.cpp: pairs each depth image with the nearest colour image, as early as the pair is certain.
 #include "app/sources/formats/stamp_pairing.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ std::optional<DepthColourPair> StampPairing::take() {
   if (waiting_.empty()) return std::nullopt;
   const Stamped depth = waiting_.front();
   DepthColourPair pair{.depth = depth.number};
-  // Also true of a stamp that is not a number.
+  // Also true for NaN.
   pair.stamp_goes_back = last_depth_s_ ? !(depth.stamp_s > *last_depth_s_) : !std::isfinite(depth.stamp_s);
   if (pair.stamp_goes_back) {
     waiting_.pop_front();

@@ -1,4 +1,4 @@
-// temporary_folder.cpp: mkdtemp with a message.
+// temporary_folder.cpp: mkdtemp with error messages.
 #include "app/sources/formats/temporary_folder.hpp"
 
 #include <cerrno>

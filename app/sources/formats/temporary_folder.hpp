@@ -1,10 +1,11 @@
-// temporary_folder.hpp: a fresh folder for files that go with the process.
+// temporary_folder.hpp: creates a new temporary folder.
 #pragma once
 #include <filesystem>
 
 namespace roomradar {
 
-/// Made in `parent`, or where the system keeps such if that is empty. Throws Error if none can be made.
+/// Creates an empty folder in `parent`, or in the system's temporary folder if `parent` is empty. Throws
+/// Error on failure. The caller removes the folder.
 std::filesystem::path make_temporary_folder(std::filesystem::path parent = {});
 
 }  // namespace roomradar

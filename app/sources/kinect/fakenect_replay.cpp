@@ -1,4 +1,4 @@
-// fakenect_replay.cpp: sizes of files, and a folder of links.
+// fakenect_replay.cpp: checks file sizes, and makes a folder of links to the intact files.
 #include "app/sources/kinect/fakenect_replay.hpp"
 
 #include <cstdlib>
@@ -20,7 +20,7 @@ constexpr std::uintmax_t kDepthBytes = std::uintmax_t{640} * 480 * 2,
                          kColourBytes = std::uintmax_t{640} * 480 * 3;
 constexpr std::streamsize kLongestHeader = 256;
 
-/// Empty if fakenect can copy an image out of the file: a first line, and the pixels behind it.
+/// Returns an empty string if fakenect can read an image from the file: a first line, then the pixels.
 std::string fault_of(const fs::path& file, std::uintmax_t pixel_bytes) {
   std::error_code missing;
   const std::uintmax_t bytes = fs::file_size(file, missing);
@@ -36,7 +36,7 @@ std::string fault_of(const fs::path& file, std::uintmax_t pixel_bytes) {
   return {};
 }
 
-/// A new folder with links to these files of `folder`, and the list of them.
+/// Creates a folder with links to these files of `folder`, and their INDEX.txt.
 fs::path folder_of_links(const fs::path& folder, const std::vector<std::string>& files) {
   const fs::path links = make_temporary_folder();
   try {
@@ -48,7 +48,7 @@ fs::path folder_of_links(const fs::path& folder, const std::vector<std::string>&
         throw Error((links / file).string() + ": cannot be made; is the disk full?");
       index += file + '\n';
     }
-    if (fs::exists(folder / "camera.json"))  // says, too, whether its frames were calibrated already
+    if (fs::exists(folder / "camera.json"))  // also tells if the frames were calibrated already
       fs::create_symlink(fs::absolute(folder / "camera.json"), links / "camera.json");
     write_bytes(links / "INDEX.txt", index);
     return links;
@@ -62,7 +62,7 @@ fs::path folder_of_links(const fs::path& folder, const std::vector<std::string>&
 }  // namespace
 
 FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
-  index_fakenect(folder);  // refuses a list that is broken
+  index_fakenect(folder);  // throws if the list is unusable
   std::ifstream list(folder / "INDEX.txt");
   std::vector<std::string> sound;
   bool all_sound = true;
@@ -70,7 +70,7 @@ FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
   for (std::string line; std::getline(list, line);) {
     if (line.ends_with('\r')) line.pop_back(), all_sound = false;
     if (line.empty()) {
-      all_sound = false;  // fakenect takes it for the end
+      all_sound = false;  // fakenect takes an empty line as the end
       continue;
     }
     const bool is_depth = line[0] == 'd';
@@ -94,7 +94,7 @@ FakenectReplay::FakenectReplay(const fs::path& folder) : folder_(folder) {
 FakenectReplay::~FakenectReplay() {
   if (links_.empty()) return;
   setenv(kFakenectPath, folder_.c_str(), 1);
-  std::error_code ignored;  // nobody is left to be told
+  std::error_code ignored;  // destructors must not throw
   fs::remove_all(links_, ignored);
 }
 

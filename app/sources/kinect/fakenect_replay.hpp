@@ -1,4 +1,4 @@
-// fakenect_replay.hpp: a recording made fit to be replayed by fakenect, which trusts its files.
+// fakenect_replay.hpp: prepares a recording for replay by fakenect, which does not check its files.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -9,26 +9,26 @@
 namespace roomradar {
 
 inline constexpr const char* kFakenectPath = "FAKENECT_PATH";
-/// What is in FAKENECT_PATH, where fakenect's library is loaded in libfreenect's place: it replays a
-/// recording instead of a device. The variable alone does nothing.
+/// Returns the folder named by FAKENECT_PATH if fakenect's library is loaded instead of libfreenect: fakenect
+/// replays that recording in place of a device. Returns nothing otherwise, even if the variable is set.
 std::optional<std::filesystem::path> replayed_folder();
 
-/// fakenect reads beyond the end of an image that is cut short, and ends the process where a file is missing.
-/// While one lives, a recording with such images is replayed from a folder of links to the sound ones.
+/// fakenect reads past the end of a truncated image and ends the process if a file is missing. During this
+/// object's life a recording with such images is replayed from a folder of links to the intact ones.
 class FakenectReplay {
  public:
-  /// Throws Error if INDEX.txt cannot be read or names no sound depth image.
+  /// Throws Error if INDEX.txt cannot be read or lists no intact depth image.
   explicit FakenectReplay(const std::filesystem::path& folder);
   ~FakenectReplay();
   FakenectReplay(const FakenectReplay&) = delete;
   FakenectReplay& operator=(const FakenectReplay&) = delete;
 
-  /// What is wrong with depth images that are left out, by their place among all depth images, from 0.
+  /// Faults of the depth images left out, by index among all depth images, from 0.
   [[nodiscard]] const std::map<std::int64_t, std::string>& broken() const { return broken_; }
 
  private:
   std::filesystem::path folder_;
-  std::filesystem::path links_;  ///< empty: all is sound
+  std::filesystem::path links_;  ///< empty if all files are intact
   std::map<std::int64_t, std::string> broken_;
 };
 

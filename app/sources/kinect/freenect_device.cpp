@@ -1,4 +1,4 @@
-// freenect_device.cpp: libfreenect's context, device and callbacks; nothing else calls it.
+// freenect_device.cpp: libfreenect's context, device and callbacks; the only user of libfreenect.
 #include "app/sources/kinect/freenect_device.hpp"
 
 #include <libfreenect.h>
@@ -15,7 +15,7 @@
 #include "app/sources/kinect/kinect_source.hpp"
 #include "mapping/types/system/error.hpp"
 
-// fakenect's library does not have these: there they are null.
+// Null if fakenect's library is loaded, which lacks these functions.
 #pragma weak freenect_list_device_attributes
 #pragma weak freenect_free_device_attributes
 #pragma weak freenect_copy_registration
@@ -24,10 +24,10 @@
 namespace roomradar {
 namespace {
 
-constexpr int kInterrupted = -10;  // LIBUSB_ERROR_INTERRUPTED: a signal came in between; no fault
+constexpr int kInterrupted = -10;  // LIBUSB_ERROR_INTERRUPTED: interrupted by a signal; not a failure
 constexpr int kWidth = 640, kHeight = 480;
 
-/// libfreenect's latest complaint, by thread, since its callback is not told whose it is.
+/// libfreenect's latest error message; per thread, since its callback gets no user pointer.
 thread_local std::string complaint;
 
 void keep_complaint(freenect_context* /*context*/, freenect_loglevel /*level*/, const char* text) {
@@ -55,8 +55,8 @@ class FreenectContext {
   freenect_context* context_ = nullptr;
 };
 
-/// Of the camera with that number; empty where it cannot be told: libfreenect lists only cameras that it can
-/// open, so their numbers are those of all cameras only if none is missing.
+/// Returns the serial of the camera with that number; empty if ambiguous. libfreenect lists only cameras that
+/// it can open, so indices in the list match the numbers only if no camera is missing.
 std::string serial_of(freenect_context* context, int number) {
   if (!freenect_list_device_attributes) return {};
   freenect_device_attributes* list = nullptr;
@@ -96,10 +96,10 @@ freenect_depth_format format_of(KinectDepth depth) {
   return FREENECT_DEPTH_11BIT;
 }
 
-/// Where libfreenect itself sees points of the depth image in the colour image. Source: registration.c,
+/// Samples libfreenect's own mapping of depth pixels to colour pixels. Source: registration.c,
 /// freenect_map_rgb_to_depth.
 std::vector<SeenByBoth> sampled(const freenect_registration& registration) {
-  constexpr double kScale = 256.0;  // of the table's x
+  constexpr double kScale = 256.0;  // fixed-point scale of the table's x
   constexpr int kStep_px = 40;
   std::vector<SeenByBoth> seen_by_both;
   for (const int depth_mm : {600, 800, 1200, 2000, 3500, 6000})
@@ -207,7 +207,7 @@ class FreenectDevice final : public KinectDevice {
   std::string serial_;
   std::size_t depth_pixels_ = 0;
   std::size_t colour_bytes_ = 0;
-  bool has_acceleration_ = true;  // of a replay, at once; a device's is zero until it was asked: no gravity
+  bool has_acceleration_ = true;  // false until a device's first reading (zero before); true for a replay
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// freenect_device.hpp: libfreenect, as the one thing behind KinectDevice that is not a test's.
+// freenect_device.hpp: KinectDevice implemented with libfreenect.
 #pragma once
 #include <memory>
 
@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// A KinectOpener. Throws Error saying what is in the way: no such device, no rights, another program, a
-/// program that was built without Kinect.
+/// A KinectOpener. Throws Error naming the cause: no such device, no permission, device used by another
+/// program, or a build without Kinect support.
 std::unique_ptr<KinectDevice> open_freenect(const KinectWish& wish);
 
 }  // namespace roomradar

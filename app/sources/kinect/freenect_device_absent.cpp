@@ -1,5 +1,4 @@
-// freenect_device_absent.cpp: stands in for freenect_device.cpp where the program is built without
-// libfreenect.
+// freenect_device_absent.cpp: replaces freenect_device.cpp in builds without libfreenect.
 #include "app/sources/kinect/fakenect_replay.hpp"
 #include "app/sources/kinect/freenect_device.hpp"
 #include "app/sources/kinect/kinect_source.hpp"

@@ -1,4 +1,4 @@
-// kinect_device.hpp: the boundary behind which a Kinect stands: libfreenect's, or one that a test scripts.
+// kinect_device.hpp: interface to a Kinect, implemented by libfreenect and by scripted devices in tests.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,17 +13,17 @@
 
 namespace roomradar {
 
-/// What a device calls from within KinectDevice::serve(), with the images as they lie in its own memory and
-/// the 32 bit stamps of its clock.
+/// Callbacks invoked within KinectDevice::serve(), with images in the device's own memory and the 32 bit
+/// stamps of its clock.
 struct KinectListener {
-  /// 640 x 480 numbers as KinectDepth says; another size is a broken image.
+  /// 640 x 480 values in the chosen KinectDepth mode; any other size is a broken image.
   std::function<void(std::span<const std::uint16_t> pixels, std::uint32_t ticks)> on_depth;
   /// 640 x 480 pixels of red, green, blue.
   std::function<void(std::span<const std::uint8_t> bytes, std::uint32_t ticks)> on_colour;
 };
 
-/// A device that was opened and sends images; the destructor stops and closes it. All calls come from one
-/// thread.
+/// An open device that sends images; the destructor stops and closes it. Not thread safe: all calls come from
+/// one thread.
 class KinectDevice {
  public:
   KinectDevice() = default;
@@ -31,26 +31,27 @@ class KinectDevice {
   KinectDevice& operator=(const KinectDevice&) = delete;
   virtual ~KinectDevice() = default;
 
-  /// Hands what has arrived to the listener, waiting for it for as long as `patience_s` if there is nothing.
-  /// False: the device has gone, or its replay has come to the end.
+  /// Passes arrived images to the listener; waits up to `patience_s` if there are none. Returns false if the
+  /// device has gone or its replay has ended.
   virtual bool serve(double patience_s) = 0;
-  /// Asks the device for its accelerometer's state. Not to be called by the listener.
+  /// Reads the device's accelerometer. Must not be called by the listener.
   virtual void ask_acceleration() = 0;
-  /// What it answered last, in g; nothing if it did not.
+  /// Returns the last accelerometer reading, g; nothing if there is none.
   [[nodiscard]] virtual std::optional<Eigen::Vector3d> acceleration_g() const = 0;
-  /// Of the camera, where it can be told: the same device has it again after it was plugged in anew.
+  /// Returns the camera's serial, or an empty string if unknown. The serial stays the same after the device
+  /// was unplugged and plugged in again.
   [[nodiscard]] virtual std::string serial() const = 0;
   [[nodiscard]] virtual std::optional<KinectConstants> constants() const = 0;
 };
 
 struct KinectWish {
-  int number = 0;      ///< among those plugged in, from 0
-  std::string serial;  ///< if not empty: this one, whatever its number is by now
+  int number = 0;      ///< index among the connected devices, from 0
+  std::string serial;  ///< if not empty: selects the device with this serial, whatever its index
   KinectDepth depth = KinectDepth::kRaw;
   KinectListener listener;
 };
 
-/// Opens and starts a device. Throws Error with what is in the way and what to do.
+/// Opens and starts a device. Throws Error with the cause and a remedy.
 using KinectOpener = std::function<std::unique_ptr<KinectDevice>(const KinectWish&)>;
 
 }  // namespace roomradar

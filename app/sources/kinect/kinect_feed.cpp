@@ -1,4 +1,4 @@
-// kinect_feed.cpp: the device's thread: open, serve, watch, open again; and the place where frames wait.
+// kinect_feed.cpp: the device's thread (open, serve, watch, reopen) and the queue of frames.
 #include "app/sources/kinect/kinect_feed.hpp"
 
 #include <algorithm>
@@ -16,12 +16,12 @@
 namespace roomradar {
 namespace {
 
-using Clock = std::chrono::steady_clock;  // that of the day may be set back while a device is read
+using Clock = std::chrono::steady_clock;  // the system clock may be set back while a device is read
 
 constexpr std::size_t kPixels = std::size_t{640} * 480;
-constexpr std::size_t kReplayWaiting = 2;  // one being waited for, one in hand
+constexpr std::size_t kReplayWaiting = 2;  // one queued, one with the reader
 constexpr double kFrame_s = 1.0 / 30.0;
-constexpr double kPatience_s = 0.1;  // how soon a stop is noticed
+constexpr double kPatience_s = 0.1;  // max delay until a stop is noticed
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -42,7 +42,7 @@ class KinectFeed::Work {
   Work(KinectOpener opener, KinectFeedConfig config)
       : opener_(std::move(opener)), config_(std::move(config)) {}
 
-  // ---- the device's thread ----
+  // ---- called by the device's thread ----
 
   void run() {
     serve_until_stopped();
@@ -51,7 +51,7 @@ class KinectFeed::Work {
     changed_.notify_all();
   }
 
-  // ---- the reader's ----
+  // ---- called by the reader's thread ----
 
   /// Waits for the first opening. Throws Error if it failed.
   std::optional<KinectConstants> wait_for_opening() {
@@ -75,7 +75,7 @@ class KinectFeed::Work {
     return Take::kFrame;
   }
 
-  /// Whether the thread has come to its end within stop_s.
+  /// Returns true if the thread ended within stop_s.
   bool stop() {
     std::unique_lock lock(mutex_);
     stop_ = true;
@@ -94,7 +94,7 @@ class KinectFeed::Work {
     std::string serial;
     for (bool first = true;; first = false) {
       std::unique_ptr<KinectDevice> device;
-      // Before it is opened: the first images may come while it is.
+      // Done before opening, since the first images may arrive during it.
       if (!first) clock_.restart(last_stamp_s_ + std::max(kFrame_s, seconds_since(last_stamp_at_)));
       try {
         device = opener_({config_.number, serial, config_.depth, listener()});
@@ -130,14 +130,14 @@ class KinectFeed::Work {
   }
 
   Outcome serve(KinectDevice& device) {
-    // A device that was just opened takes some time to send its first images.
+    // A device needs some time after opening before it sends its first images.
     last_depth_at_ = last_colour_at_ = Clock::now() + started_within();
     for (;;) {
       if (must_stop()) return Outcome::kStopped;
       const Clock::time_point began = Clock::now();
       if (!device.serve(kPatience_s)) return Outcome::kGone;
       if (std::exchange(depth_arrived_, false)) {
-        // A USB transfer, which libusb forbids within the callback. The answer goes with the next depth
+        // This USB transfer is not allowed within libusb's callback. Its result is used for the next depth
         // image.
         device.ask_acceleration();
         if (away_since_)
@@ -146,8 +146,8 @@ class KinectFeed::Work {
       }
       hand_over();
       if (config_.is_replay) continue;
-      // Time in which this process did not run, or the driver did not return, is none in which the device was
-      // silent: what it sent meanwhile is still to come.
+      // Time in which this process was suspended or the driver blocked does not count as the device's
+      // silence, since its images may still arrive.
       if (seconds_since(began) > 0.5 * config_.silence_s) {
         const Clock::duration lost = Clock::now() - began;
         last_depth_at_ += lost;
@@ -159,7 +159,7 @@ class KinectFeed::Work {
     }
   }
 
-  /// A replay waits here while nobody fetches its frames.
+  /// Blocks a replay while its frames are not fetched.
   bool must_stop() {
     std::unique_lock lock(mutex_);
     if (config_.is_replay) changed_.wait(lock, [&] { return ready_.size() < kReplayWaiting || stop_; });
@@ -175,15 +175,15 @@ class KinectFeed::Work {
     if (outcome == Outcome::kColourless) {
       tried_for_colour_ = true;
       config_.say(config_.name + ": sends depth, but no colour for " + with_tenths(config_.silence_s) +
-                  "; it is started anew, once");
+                  "; it is restarted once");
       return;
     }
-    if (away_since_) return;  // said already
+    if (away_since_) return;  // already reported
     away_since_ = std::min(last_depth_at_, Clock::now());
     config_.say(config_.name +
                 (outcome == Outcome::kGone
-                     ? ": the device has gone; is waited for. Was it unplugged?"
-                     : ": no depth image for " + with_tenths(config_.silence_s) + "; it is started anew"));
+                     ? ": the device has gone; waiting for it. Was it unplugged?"
+                     : ": no depth image for " + with_tenths(config_.silence_s) + "; it is restarted"));
   }
 
   [[nodiscard]] Clock::duration started_within() const {
@@ -227,7 +227,7 @@ class KinectFeed::Work {
   void on_colour(std::span<const std::uint8_t> bytes, std::uint32_t ticks) {
     const double stamp_s = stamp_of(ticks);
     const std::int64_t number = colour_count_++;
-    if (bytes.size() != 3 * kPixels) return;  // the depth image goes without
+    if (bytes.size() != 3 * kPixels) return;  // the depth image then has no colour
     Colour colour = colours_.size() < kColoursKept ? Colour{} : std::move(colours_.front());
     if (colours_.size() == kColoursKept) colours_.pop_front();
     colour.number = number;
@@ -238,7 +238,7 @@ class KinectFeed::Work {
     tried_for_colour_ = false;
   }
 
-  /// Moves what the pairing has decided on to where take() finds it.
+  /// Moves decided pairs to the queue that take() reads.
   void hand_over() {
     while (true) {
       put_broken();
@@ -248,7 +248,7 @@ class KinectFeed::Work {
       depths_.pop_front();
       if (pair->stamp_goes_back) {
         put(broken_frame(frame.number, "has a stamp that is not later than that of the one before it"));
-        // A device's clock may be set back, but not every image's stamp be wrong.
+        // If several stamps in a row go back, the device's clock was reset, so its stamps are valid again.
         if (++backwards_ < kBackwardsMost || config_.is_replay) continue;
         clock_.restart(last_stamp_s_ + kFrame_s);
         finish_pairing();
@@ -281,7 +281,7 @@ class KinectFeed::Work {
       fail(depth_count_++, known->second);
   }
 
-  /// It waits for its turn with those that wait for their colour.
+  /// Queues the fault among the depth images that wait for colour, to keep their order.
   void fail(std::int64_t number, const std::string& what) { depths_.push_back(broken_frame(number, what)); }
 
   [[nodiscard]] KinectFrame broken_frame(std::int64_t number, const std::string& what) const {
@@ -312,12 +312,12 @@ class KinectFeed::Work {
       config_.say(config_.name + ": sends frames faster than they are used; some are dropped from now on");
   }
 
-  /// A fault has none worth keeping.
+  /// Frames with a fault have no memory to reuse.
   void keep_memory(KinectFrame frame) {
     if (frame.depth.capacity() > 0) spare_.push_back(std::move(frame));
   }
 
-  /// With the memory of one that is not needed any more.
+  /// Returns a frame, with reused memory if available.
   KinectFrame empty_frame() {
     KinectFrame frame;
     const std::lock_guard lock(mutex_);
@@ -334,7 +334,7 @@ class KinectFeed::Work {
   const KinectOpener opener_;
   const KinectFeedConfig config_;
 
-  // Of the device's thread alone.
+  // Used only by the device's thread.
   KinectDevice* device_ = nullptr;
   KinectClock clock_;
   StampPairing pairing_{kDevicePairing};
@@ -353,7 +353,7 @@ class KinectFeed::Work {
   Clock::time_point last_colour_at_ = Clock::now();
   std::optional<Clock::time_point> away_since_;
 
-  // Shared, under mutex_.
+  // Shared, guarded by mutex_.
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<KinectFrame> ready_;
@@ -380,7 +380,7 @@ KinectFeed::KinectFeed(KinectOpener opener, KinectFeedConfig config)
 }
 
 KinectFeed::~KinectFeed() {
-  // What a hanging device holds is let go: the thread owns all that it touches.
+  // A hanging device's thread is detached; it owns everything it uses.
   if (work_->stop())
     thread_.join();
   else

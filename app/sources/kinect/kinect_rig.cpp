@@ -1,4 +1,4 @@
-// kinect_rig.cpp: Gauss-Newton on the pixels that a Kinect's registration maps to each other.
+// kinect_rig.cpp: Gauss-Newton fit to the pixel correspondences of a Kinect's registration.
 #include "app/sources/kinect/kinect_rig.hpp"
 
 #include <Eigen/Cholesky>
@@ -34,9 +34,9 @@ Eigen::Vector2d colour_px_of(const SeenByBoth& seen, const CameraRig& rig) {
 std::optional<CameraRig> fit_kinect_rig(const std::vector<SeenByBoth>& seen_by_both,
                                         const CameraRig& nominal) {
   constexpr std::size_t kLeastPoints = 50;
-  constexpr int kSteps = 10;  // it is nearly linear: three or four reach the end
+  constexpr int kSteps = 10;  // nearly linear: converges in three or four steps
   constexpr double kWorst_px = 3.0;
-  // How far from nominal a device may well be: px, rad, m.
+  // Sigmas of the prior, the likely deviation of a device from nominal: px, rad, m.
   const Parameters likely = (Parameters() << 20.0, 10.0, 10.0, 0.02, 0.02, 0.02, 0.003).finished();
   const Parameters step = likely * 1e-4;
   if (!nominal.colour_camera || seen_by_both.size() < kLeastPoints) return std::nullopt;
@@ -64,7 +64,7 @@ std::optional<CameraRig> fit_kinect_rig(const std::vector<SeenByBoth>& seen_by_b
   for (const SeenByBoth& seen : seen_by_both)
     sum_px2 += (colour_px_of(seen, rig) - seen.colour_px).squaredNorm();
   const double rms_px = std::sqrt(sum_px2 / static_cast<double>(seen_by_both.size()));
-  if (!(rms_px <= kWorst_px)) return std::nullopt;  // also if it is not a number
+  if (!(rms_px <= kWorst_px)) return std::nullopt;  // also rejects NaN
   return rig;
 }
 

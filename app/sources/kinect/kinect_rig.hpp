@@ -1,4 +1,4 @@
-// kinect_rig.hpp: what the factory measured of one Kinect and stored in it, as cameras and metres.
+// kinect_rig.hpp: cameras and depth conversion from the factory calibration stored in a Kinect.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace roomradar {
 
-/// A point that the depth camera sees at `depth_px`, `depth_m` away along its axis, and the colour camera at
-/// `colour_px`.
+/// A correspondence: the depth camera sees a point at `depth_px`, `depth_m` along its axis; the colour camera
+/// sees the same point at `colour_px`.
 struct SeenByBoth {
   Eigen::Vector2d depth_px;
   double depth_m = 0.0;
@@ -20,14 +20,13 @@ struct SeenByBoth {
 
 struct KinectConstants {
   KinectZeroPlane zero_plane;
-  std::vector<SeenByBoth> seen_by_both;  ///< all over the image and the range of depths
+  std::vector<SeenByBoth> seen_by_both;  ///< spread over the image and the depth range
 };
 
-/// The rig in which the colour camera sees what the device's own registration says it sees: `nominal`'s depth
-/// camera is kept, and its colour camera's focal length (one for both axes), principal point, rotation and
-/// shift along x fitted by least squares; each is drawn weakly to its nominal value, since they can stand in
-/// for each other in part. Nothing if the fit is off by more than 3 px (root of the mean square): then the
-/// constants are not what they are taken for.
+/// Fits the colour camera to the device's own registration by least squares; `nominal`'s depth camera is
+/// kept. Fitted are the focal length (one for both axes), principal point, rotation, and shift along x. A
+/// weak prior pulls each to its nominal value, since they partly compensate for one another. Returns nothing
+/// if the RMS error is above 3 px: the constants then do not mean what is assumed.
 std::optional<CameraRig> fit_kinect_rig(const std::vector<SeenByBoth>& seen_by_both,
                                         const CameraRig& nominal);
 

@@ -1,4 +1,4 @@
-// kinect_source.cpp: a feed's numbers made frames: metres, cameras, gravity.
+// kinect_source.cpp: converts a feed's raw images to frames with metres, cameras and gravity.
 #include "app/sources/kinect/kinect_source.hpp"
 
 #include <algorithm>
@@ -19,10 +19,10 @@ namespace roomradar {
 namespace {
 
 constexpr ImageSize kSize{640, 480};
-// 200 MB: four seconds, in which a tracker that looked for its way catches up.
+// 200 MB: four seconds, enough for a tracker to catch up after relocalisation.
 constexpr std::size_t kAllWaiting = 120;
 
-/// Metres of each number that a depth image can hold.
+/// Tabulates metres for each value of a depth pixel.
 std::vector<float> metres_of(KinectDepth depth, const std::optional<KinectConstants>& constants) {
   constexpr int kMost_mm = 10'000;
   const bool is_raw = depth == KinectDepth::kRaw;
@@ -95,11 +95,11 @@ class KinectSource final : public FrameSource {
     if (waited_s_ > timeout_s_)
       throw Error(name_ + text +
                   "; check its cable and power supply, then begin again (a scan goes on by --resume)");
-    return {ReadStatus::kSkipped, name_ + text + "; it is waited for", true};
+    return {ReadStatus::kSkipped, name_ + text + "; waiting for it", true};
   }
 
   ReadResult passed_over() {
-    // A device's are watched by time: it is opened anew if no good one comes.
+    // For a device, faults are limited by time instead: it is reopened if no good image arrives.
     if (is_replay_ && ++bad_in_a_row_ >= kBadFramesInARow)
       throw Error(
           raw_.fault + ", the " + std::to_string(bad_in_a_row_) +
@@ -134,7 +134,7 @@ class KinectSource final : public FrameSource {
   const CameraRig rig_;
   KinectFrame raw_;
   int bad_in_a_row_ = 0;
-  double waited_s_ = 0.0;  // in next(), for the frame to come: a reader that pauses waits for none
+  double waited_s_ = 0.0;  // spent waiting in next() since the last frame; a reader's pauses do not count
 };
 
 }  // namespace
@@ -152,7 +152,7 @@ std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& option
   KinectFeedConfig config{.name = "kinect:" + std::to_string(device), .number = device};
   const auto folder = replayed_folder();
   if (!folder) return open_kinect(open_freenect, std::move(config), options);
-  // The opener, and the thread that has it, keep it for as long as the replay may read from it.
+  // Owned by the opener, and thus by its thread, for as long as the replay may read from it.
   const auto replay = std::make_shared<FakenectReplay>(*folder);
   config.is_replay = true;
   config.broken = replay->broken();

@@ -1,4 +1,4 @@
-// kinect_usb.cpp: reads what Linux writes about each USB device into files of one line.
+// kinect_usb.cpp: reads the one-line sysfs files that Linux provides for each USB device.
 #include "app/sources/kinect/kinect_usb.hpp"
 
 #include <unistd.h>
@@ -28,13 +28,13 @@ std::string model_of(const std::string& product) {
   return {};
 }
 
-/// Motor or microphones of a Kinect.
+/// Returns true for a Kinect's motor or microphones.
 bool is_companion(const std::string& product) {
   return product == "02b0" || product == "02ad" || product == "02bb" || product == "02be" ||
          product == "02c2" || product == "02c3";
 }
 
-/// "007" of "7"; empty where that is no number.
+/// Pads with zeros, "7" to "007"; returns an empty string if `text` is not a number.
 std::string three_digits(const std::string& text) {
   int number = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -44,14 +44,14 @@ std::string three_digits(const std::string& text) {
   return digits;
 }
 
-/// 0 where it is none.
+/// Returns 0 if `text` is not a positive number.
 double positive_number(const std::string& text) {
   double number = 0.0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
   return fault == std::errc{} && end == text.data() + text.size() && number > 0.0 ? number : 0.0;
 }
 
-/// The driver of the first interface that has one.
+/// Returns the driver of the first interface that has one.
 std::string kernel_driver_of(const fs::path& device) {
   std::error_code fault;
   for (fs::directory_iterator entry(device, fault), end; !fault && entry != end; entry.increment(fault)) {
@@ -90,7 +90,7 @@ std::vector<KinectOnUsb> kinects_on_usb(const fs::path& sys_devices, const fs::p
     kinects.push_back(kinect);
   }
   for (KinectOnUsb& kinect : kinects)
-    if (kinects.size() == 1) kinect.has_power = companions;  // of several it is not known whose they are
+    if (kinects.size() == 1) kinect.has_power = companions;  // else their owner is unknown
   if (kinects.empty() && companions) kinects.emplace_back().has_camera = false;
   std::sort(kinects.begin(), kinects.end(),
             [](const KinectOnUsb& a, const KinectOnUsb& b) { return a.node < b.node; });

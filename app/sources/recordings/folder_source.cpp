@@ -1,4 +1,4 @@
-// folder_source.cpp: reads the frames of an indexed recording one after the other.
+// folder_source.cpp: reads the frames of an indexed recording one by one.
 #include "app/sources/recordings/folder_source.hpp"
 
 #include <optional>
@@ -22,8 +22,8 @@ void require_size(const Image<Pixel>& image, const Intrinsics& camera, const std
               std::to_string(camera.height_px));
 }
 
-/// The size of the first image that can be read; nothing if no frame names one.
-/// Throws Error if there are some, but none of the first ten can be read.
+/// Returns the size of the first image that can be read; nothing if no frame has one. Throws Error if there
+/// are images, but none of the first ten can be read.
 template <typename ReadSize>
 std::optional<ImageSize> first_size(const std::filesystem::path& folder,
                                     const std::vector<RecordedFrame>& frames,
@@ -71,7 +71,7 @@ class FolderSource final : public FrameSource {
     const std::size_t position = position_++;
     try {
       read(position, whole_);
-      std::swap(frame, whole_);  // one that cannot be read leaves it as it was
+      std::swap(frame, whole_);  // `frame` stays unchanged if reading fails
     } catch (const Error& fault) {
       if (++bad_in_a_row_ >= kBadFramesInARow)
         throw Error(name() + ": " + std::to_string(bad_in_a_row_) +
@@ -122,7 +122,7 @@ class FolderSource final : public FrameSource {
 
   std::filesystem::path folder_;
   RecordingIndex index_;
-  std::string name_;  // the folder in full: however it is spelled, it is the same recording
+  std::string name_;  // absolute path, so different spellings name the same recording
   CameraRig rig_;
   std::size_t position_ = 0;
   int bad_in_a_row_ = 0;

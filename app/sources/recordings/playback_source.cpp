@@ -1,4 +1,4 @@
-// playback_source.cpp: hold, rewind and repeat.
+// playback_source.cpp: computes the stamps of held, repeated and rewound frames.
 #include "app/sources/recordings/playback_source.hpp"
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 namespace roomradar {
 namespace {
 
-constexpr double kFrame_s = 1.0 / 30.0;  // the Kinect's
-constexpr double kJump_s = 0.25;         // no recording's frames are so far apart
+constexpr double kFrame_s = 1.0 / 30.0;  // frame period of a Kinect
+constexpr double kJump_s = 0.25;         // larger than between any frames of a recording
 
 }  // namespace
 
@@ -39,9 +39,10 @@ void PlaybackSource::follow(double stamp_s, bool is_new_after_rewind) {
   if (was_repeated_ || is_new_after_rewind) old_ = kOld;
   if (anew_ > 0) {
     stamp_offset_s_ = following_s;
-  } else if (was_repeated_) {  // a device's clock went on while a frame was held
+  } else if (was_repeated_) {  // a device's clock advanced while a frame was held
     stamp_offset_s_ = std::max(stamp_offset_s_, following_s);
-  } else if (old_ > 0 && stamp_s + stamp_offset_s_ > *last_stamp_s_ + kJump_s) {  // here is where it did
+    // the jump of the device's clock is here
+  } else if (old_ > 0 && stamp_s + stamp_offset_s_ > *last_stamp_s_ + kJump_s) {
     stamp_offset_s_ = std::max(least_offset_s_, following_s);
   }
   anew_ = std::max(anew_ - 1, 0);

@@ -1,4 +1,4 @@
-// recording_index.cpp: tells the kinds of recordings apart, and lists those whose frames are numbered files.
+// recording_index.cpp: recognises recording formats, and lists the frames of those with numbered files.
 #include "app/sources/recordings/recording_index.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestPose_bytes = 1U << 16U;
-constexpr double kNominalRate_hz = 30.0;  // of recordings without stamps
+constexpr double kNominalRate_hz = 30.0;  // for recordings without stamps
 
 struct NumberedFiles {
   fs::path depth, colour, pose;
@@ -30,7 +30,8 @@ const std::regex& seven_scenes_name() {
   return pattern;
 }
 
-/// Sorted, so that of two files for one image (jpg and png) the same one is taken everywhere: the first.
+/// Lists files in sorted order, so if an image exists twice (jpg and png), the same file is chosen
+/// everywhere.
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
@@ -44,8 +45,8 @@ bool holds_seven_scenes(const fs::path& folder) {
   return false;
 }
 
-/// Frames in the order of their numbers. A frame whose colour or pose is missing while others have theirs is
-/// bad; one whose colour is a file .none came without.
+/// Lists frames in the order of their numbers. A frame without colour or pose is bad if others have them; a
+/// file .none marks a frame recorded without colour.
 std::vector<RecordedFrame> frames_of(const FilesByNumber& files, const fs::path& folder) {
   bool any_colour = false, any_pose = false;
   for (const auto& [number, file] : files) {
@@ -77,7 +78,7 @@ fs::path colour_folder(const fs::path& folder) {
   return {};
 }
 
-/// Files in `folder` named by a number and one of the extensions.
+/// Adds the files in `folder` whose name is a number with one of the extensions.
 void add_numbered(const fs::path& folder, std::initializer_list<std::string_view> extensions,
                   fs::path NumberedFiles::*which, FilesByNumber& files) {
   for (const fs::path& file : files_in(folder)) {

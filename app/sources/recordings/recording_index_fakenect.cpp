@@ -1,4 +1,4 @@
-// recording_index_fakenect.cpp: what INDEX.txt lists, paired as the live device's images are.
+// recording_index_fakenect.cpp: reads INDEX.txt and pairs its images like a live device's.
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// d-1313283822.781270-3018607296.pgm: kind, the recorder's time of day, the device's stamp.
+/// Such as d-1313283822.781270-3018607296.pgm: kind, the recorder's time of day, the device's stamp.
 struct IndexLine {
   char kind = 0;
   std::uint32_t ticks = 0;
@@ -40,9 +40,9 @@ std::optional<IndexLine> parse_index_line(std::string_view line) {
   return IndexLine{line[0], static_cast<std::uint32_t>(*ticks)};
 }
 
-/// Gravity out of a dump of freenect_raw_tilt_state: three 16 bit counts first, 12 bytes in all. A dump that
-/// is missing or of another size changes nothing, as in fakenect's own replay, so that both give the same
-/// frames.
+/// Reads gravity from a dump of freenect_raw_tilt_state, which starts with three 16 bit counts and has 12
+/// bytes. A dump that is missing or of another size changes nothing, as in fakenect's replay, so both give
+/// the same frames.
 void read_tilt_state(const fs::path& path, std::optional<Eigen::Vector3d>& down_camera) {
   std::array<char, 13> bytes{};
   std::ifstream file(path, std::ios::binary);
@@ -61,7 +61,7 @@ RecordingIndex index_fakenect(const fs::path& folder) {
 
   RecordingIndex index{DepthEncoding::kKinectRaw, NominalRig::kKinect, {}};
   std::vector<ListedImage> colours;
-  std::string tilt_file;  // the latest one; only those before a depth image are read
+  std::string tilt_file;  // latest tilt file; read only if a depth image follows
   std::optional<Eigen::Vector3d> down_camera;
   KinectClock clock;
   StampPairing pairing(kDevicePairing);

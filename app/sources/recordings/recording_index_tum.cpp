@@ -1,4 +1,4 @@
-// recording_index_tum.cpp: the lists of a TUM RGB-D recording, associated by stamp.
+// recording_index_tum.cpp: reads the lists of a TUM RGB-D recording and associates them by stamp.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -36,8 +36,8 @@ void for_each_line(const fs::path& path,
   }
 }
 
-/// The images of rgb.txt or depth.txt. A line that cannot be used takes a place one frame after the line
-/// before it.
+/// Reads the images of rgb.txt or depth.txt. An unusable line gets a stamp one frame after the line before
+/// it.
 std::vector<ListedImage> read_image_list(const fs::path& folder, const char* name) {
   std::vector<ListedImage> images;
   double last_s = -std::numeric_limits<double>::infinity();
@@ -62,8 +62,8 @@ std::vector<ListedImage> read_image_list(const fs::path& folder, const char* nam
   return images;
 }
 
-/// Rows of `count` numbers, the first a stamp, in the order of their stamps. Rows with a number that is not
-/// finite are left out: nothing was measured then.
+/// Reads rows of `count` numbers, the first a stamp, and sorts them by stamp. Skips rows with a number that
+/// is not finite, which mean that nothing was measured.
 std::vector<std::vector<double>> read_rows(const fs::path& path, std::size_t count) {
   std::vector<std::vector<double>> rows;
   for_each_line(path, [&](const std::vector<std::string_view>& words, const std::string& where) {
@@ -86,8 +86,8 @@ std::vector<std::vector<double>> read_rows(const fs::path& path, std::size_t cou
 
 Eigen::Quaterniond rotation_of(const std::vector<double>& row) { return {row[7], row[4], row[5], row[6]}; }
 
-/// The pose at a stamp: a recorded one at that very stamp, else between two that are at most
-/// kLongestPoseGap_s apart, straight and by slerp.
+/// Returns the pose at a stamp: the one recorded at exactly this stamp, else interpolated (linear and slerp)
+/// between two poses at most kLongestPoseGap_s apart.
 std::optional<Eigen::Isometry3d> pose_at(double stamp_s, const std::vector<std::vector<double>>& rows) {
   const auto at = [&](const std::vector<double>& row) { return Eigen::Vector3d(row[1], row[2], row[3]); };
   auto after = std::lower_bound(rows.begin(), rows.end(), stamp_s - kSameStamp_s,
@@ -121,7 +121,7 @@ std::optional<Eigen::Vector3d> down_at(double stamp_s, const std::vector<std::ve
   return down_from_acceleration(Eigen::Vector3d(row[1], row[2], row[3]) / kStandardGravity_m_s2);
 }
 
-/// Sends both lists through the pairing in the order of their stamps.
+/// Feeds both lists to the pairing in the order of their stamps.
 void associate(const std::vector<ListedImage>& depth, const std::vector<ListedImage>& colours,
                double tolerance_s, std::vector<RecordedFrame>& frames) {
   constexpr std::size_t kKept = 300;  // ten seconds of colour without depth
@@ -160,7 +160,7 @@ RecordingIndex index_tum(const fs::path& folder) {
     return fs::exists(folder / name) ? read_rows(folder / name, count) : std::vector<std::vector<double>>();
   };
   auto poses = rows("groundtruth.txt", 8);
-  std::erase_if(poses, [](const auto& row) {  // some trackers write zeros where they are lost
+  std::erase_if(poses, [](const auto& row) {  // some trackers write zeros when lost
     const double norm = rotation_of(row).norm();
     return !(norm > 0.9 && norm < 1.1);
   });
@@ -175,7 +175,7 @@ RecordingIndex index_tum(const fs::path& folder) {
     }
     index.frames.push_back(std::move(frame));
   }
-  // A recording of RecordingWriter's has the pairs that a device made.
+  // A recording by RecordingWriter keeps the pairs made from a device.
   const bool is_own = fs::exists(folder / "camera.json");
   associate(depth, colours, is_own ? kDevicePairing.tolerance_s : PairingConfig{}.tolerance_s, index.frames);
   return index;

@@ -1,4 +1,4 @@
-// recording_writer.cpp: frames as files, one small function a format.
+// recording_writer.cpp: writes frames as files, with one function per format.
 #include "app/sources/recordings/recording_writer.hpp"
 
 #include <algorithm>
@@ -21,11 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLongestGap_s = 30.0;  // in fakenect's form
+constexpr double kLongestGap_s = 30.0;  // in fakenect's format
 
 std::string fixed_6(double value) { return fixed_text(value, 6); }
 
-/// A space before each.
+/// Formats values with a space before each.
 std::string spaced(std::initializer_list<double> values, int digits) {
   std::string text;
   for (const double value : values) text += ' ' + general_text(value, digits);
@@ -38,13 +38,13 @@ void make_folder(const fs::path& folder) {
   if (fault) throw Error(folder.string() + ": cannot be made: " + fault.message());
 }
 
-/// Opens the list if that has not been done, and adds a line.
+/// Opens the list if needed, and adds a line.
 void add_line(std::ofstream& list, const fs::path& path, const std::string& line, const char* heading = "") {
   if (!list.is_open()) {
     list.open(path);
     list << heading;
   }
-  list << line << '\n' << std::flush;  // whole lines on disk, whatever happens to the program
+  list << line << '\n' << std::flush;  // so only whole lines are on disk if the program crashes
   require_written(list, path);
 }
 
@@ -138,7 +138,7 @@ void RecordingWriter::write_tum(const Frame& frame) {
              stamp + spaced({t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}, 12),
              "# stamp_s tx ty tz qx qy qz qw: camera to world, metres\n");
   }
-  // What is not known is written as none, else the reader takes that of a frame nearby.
+  // Unknown gravity is written as zero; otherwise the reader would take it from a nearby frame.
   if (frame.down_camera || wrote_gravity_) {
     wrote_gravity_ = true;
     const Eigen::Vector3d a =
@@ -154,7 +154,7 @@ void RecordingWriter::write_seven_scenes(const Frame& frame) {
   const fs::path stem = folder_ / ("frame-" + frame_number_text(frames_written_));
   write_depth_file(frame.depth_m, DepthEncoding::kMillimetres, stem.string() + ".depth.png");
   if (frame.colour.empty())
-    std::ofstream(stem.string() + ".color.none");  // tells it from an image that was lost
+    std::ofstream(stem.string() + ".color.none");  // marks it as absent, not lost
   else
     write_colour_file(frame.colour, stem.string() + ".color.png");
   std::string pose;
@@ -181,7 +181,8 @@ void RecordingWriter::write_fakenect(const Frame& frame) {
   };
   const std::string stamps = stamps_at(frame.stamp_s);
 
-  // Gravity first: the reader gives a depth image the latest before it. What is not known is written as none.
+  // Gravity first: the reader assigns to a depth image the latest reading before it. Unknown gravity is
+  // written as zero.
   if (frame.down_camera || wrote_gravity_) {
     wrote_gravity_ = frame.down_camera.has_value();
     const Eigen::Vector3d counts =
@@ -204,7 +205,7 @@ void RecordingWriter::write_fakenect(const Frame& frame) {
     write_colour_file(frame.colour, folder_ / file);
     add_line(depth_list_, index_file, file);
   };
-  // In the order in which they came.
+  // In order of arrival.
   if (frame.colour_after_depth_s < 0.0) add_colour();
   add_depth();
   if (!(frame.colour_after_depth_s < 0.0)) add_colour();

@@ -1,8 +1,7 @@
-// spooled_source.cpp: images in files, everything else in memory and, where it is kept, in a list beside
-// them.
+// spooled_source.cpp: keeps images in files, all else in memory and, if the spool is kept, in a list file.
 //
-// list.bin: "RRSPOOL1", the source's name, then for each frame the bytes of its entry with their number (u32)
-// before them; 0 for the end of the source.
+// list.bin: "RRSPOOL1", the source's name, then for each frame the size of its entry in bytes (u32) and the
+// entry; a size of 0 marks the end of the source.
 #include "app/sources/recordings/spooled_source.hpp"
 
 #include <algorithm>
@@ -31,14 +30,15 @@ fs::path colour_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".colour.png");
 }
 
-/// One without a whole beginning was cut off, by a full disk or a kill, before there was a frame.
+/// Returns false for a list without a complete header: a full disk or a kill cut it off before the first
+/// frame.
 bool has_list(const fs::path& folder) {
   std::error_code fault;
   const std::uintmax_t bytes = fs::file_size(folder / kList, fault);
   return !fault && bytes > kMagic.size();
 }
 
-/// All of the frame but its images.
+/// Copies all of the frame except its images.
 Frame without_images(const Frame& frame) {
   Frame rest;
   rest.index = frame.index;
@@ -71,7 +71,7 @@ void SpooledSource::transfer_entry(Archive& archive, Entry& entry) {
   transfer(archive, frame.down_camera);
 }
 
-/// One that is damaged stands for a frame that cannot be read.
+/// Parses an entry; a damaged entry becomes an unreadable frame.
 SpooledSource::Entry SpooledSource::entry_of(std::string_view bytes, const fs::path& list) {
   Entry entry;
   try {
@@ -95,13 +95,13 @@ SpooledSource::Left SpooledSource::read_list(const fs::path& folder) {
   transfer(list, left.name);
   left.sound_bytes = bytes.size() - list.left();
   while (!left.at_end) {
-    // An entry that is cut short was being written when the process was killed: its frame was never used.
+    // A truncated entry was being written when the process was killed; its frame was never used.
     std::uint32_t size = 0;
     if (list.left() < sizeof size) break;
     transfer(list, size);
     if (list.left() < size) break;
     left.at_end = size == 0;
-    if (left.at_end && list.left() > 0) {  // zeros that a power failure left where entries should be
+    if (left.at_end && list.left() > 0) {  // zeros left by a power failure instead of entries
       left.at_end = false;
       break;
     }
@@ -139,7 +139,7 @@ std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> 
     transfer(head, spooled->name_);
     spooled->list_.open(path, std::ios::binary);
     spooled->list_ << head.bytes() << std::flush;
-    if (!spooled->list_) fs::remove(path, fault);  // no frame is lost with it, and it would bar the folder
+    if (!spooled->list_) fs::remove(path, fault);  // holds no frame, and would block the folder
   }
   require_written(spooled->list_, path);
   return spooled;
@@ -169,7 +169,7 @@ void SpooledSource::take(Left left) {
   for (const Entry& entry : entries_) index_offset_ = std::max(index_offset_ + 1, entry.frame.index + 1);
 }
 
-/// Null for the end of the source.
+/// Null marks the end of the source.
 void SpooledSource::append(Entry* entry) {
   if (!kept_) return;
   ByteWriter bytes;
@@ -195,7 +195,7 @@ void SpooledSource::stop_capture() {
 SpooledSource::~SpooledSource() {
   stop_capture();
   if (kept_) return;
-  std::error_code ignored;  // nobody is left to be told
+  std::error_code ignored;  // destructors must not throw
   fs::remove_all(folder_, ignored);
 }
 
@@ -208,7 +208,7 @@ void SpooledSource::capture() {
     const std::lock_guard lock(mutex_);
     failure_ = std::current_exception();
   }
-  std::unique_ptr<FrameSource> done;  // nothing more is wanted of it; a device does not go on sending
+  std::unique_ptr<FrameSource> done;  // destroyed after unlocking; a device then stops sending
   {
     const std::lock_guard lock(mutex_);
     if (at_end_) done = std::move(source_);
@@ -216,20 +216,20 @@ void SpooledSource::capture() {
   changed_.notify_all();
 }
 
-/// False when nobody wants more.
+/// Returns false when capture must stop.
 bool SpooledSource::wait_for_reader() {
   std::unique_lock lock(mutex_);
-  // A reader that goes back in what there is needs no more for now.
+  // A reader that went back needs no new frames for now.
   changed_.wait(
       lock, [&] { return stop_ || entries_.size() - std::min(position_, entries_.size()) < most_ahead_; });
   return !stop_;
 }
 
-/// False at the end, or when nobody wants more.
+/// Returns false at the end, or when capture must stop.
 bool SpooledSource::capture_one(Frame& frame) {
-  const std::size_t position = entries_.size();  // no other thread changes it
+  const std::size_t position = entries_.size();  // only this thread changes it
   const auto most = source_->frame_count();
-  ReadResult result;  // the end, if earlier processes have read all that was asked for
+  ReadResult result;  // stays kEnd if earlier processes already spooled frame_count() frames
   if (!most || static_cast<std::int64_t>(position) < *most) result = source_->next(frame);
   std::optional<Entry> entry;
   if (result.status == ReadStatus::kFrame) {
@@ -242,7 +242,7 @@ bool SpooledSource::capture_one(Frame& frame) {
     frame.index += index_offset_;
     frame.stamp_s += *stamp_offset_s_;
     write_exact_depth_file(frame.depth_m, depth_file(folder_, position));
-    // A process that was killed may have left the colour of a frame that is not in the list.
+    // A killed process may have left the colour image of a frame that is not in the list.
     std::error_code fault;
     fs::remove(colour_file(folder_, position), fault);
     if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder_, position));
@@ -281,7 +281,7 @@ ReadResult SpooledSource::next(Frame& frame) {
   try {
     return read_again(entry, position, frame);
   } catch (const Error& fault) {
-    // A power failure may leave a list that is ahead of its images. What this process wrote is to be there.
+    // After a power failure the list may be ahead of its images. Images written by this process must exist.
     if (position >= left_) throw;
     return {ReadStatus::kSkipped, fault.what()};
   }
@@ -306,7 +306,7 @@ ReadResult SpooledSource::read_again(const Entry& entry, std::size_t position, F
 }
 
 bool SpooledSource::rewind() {
-  // Nobody wants more of a source that is gone back in, until somebody has come to the end of what there is.
+  // No frames are captured after a rewind until the reader reaches the end of the spool.
   stop_capture();
   position_ = 0;
   return true;

@@ -1,4 +1,4 @@
-// spooled_source.hpp: lets a live source be read again from its first frame, also by a later process.
+// spooled_source.hpp: records a live source to disk, so that it can be reread from its first frame.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -19,36 +19,37 @@
 
 namespace roomradar {
 
-/// Reads the source within in a thread of its own, from the first next() on, and writes each frame to a
-/// folder; next() reads it from there, the same to the bit, however far behind it is: a live source's frames
-/// are not lost to a reader that is slower. About 0.7 MB a 640 x 480 frame and 14 ms of that thread.
+/// Reads an inner source in a background thread, from the first next() on, and writes each frame to a folder.
+/// next() reads frames from the folder, bit-identical, however far behind it is: a slow reader loses no frame
+/// of a live source. Costs about 0.7 MB and 14 ms of the background thread per 640 x 480 frame.
 class SpooledSource final : public FrameSource {
  public:
-  /// Spools to a temporary folder that goes with the object.
-  /// @param parent_folder  where the temporary folder is made; the system's own place for such if empty
-  /// @throws Error if the folder cannot be made; next() throws Error if it cannot be written (disk full), and
-  /// what the source within throws, after the last frame before that
+  /// Spools to a temporary folder that the destructor removes.
+  /// @param parent_folder  where the temporary folder is created; the system's temporary folder if empty
+  /// @throws Error if the folder cannot be created. After the last good frame, next() throws Error if the
+  /// folder cannot be written (disk full), and rethrows exceptions of the inner source.
   explicit SpooledSource(std::unique_ptr<FrameSource> source,
                          const std::filesystem::path& parent_folder = {});
 
-  /// Spools to `folder`, which stays. Frames that an earlier process left there come first, and those of the
-  /// source follow as if they were one recording: with the next index, and stamps that go on.
-  /// @param source      may be null where has_end(folder)
-  /// @param most_ahead  the source is not read while so many frames wait to be: of a live one, those in
-  ///                    between are lost, as if there were no spool
-  /// @throws Error if the folder cannot be made, or holds no spool
+  /// Spools to `folder`, which is kept. Frames left there by an earlier process come first. The source's
+  /// frames continue the same recording: indices and stamps go on from the last.
+  /// @param source      may be null if has_end(folder)
+  /// @param most_ahead  the source is not read while this many frames are unread; frames of a live source
+  /// that
+  ///                    arrive meanwhile are lost, as without a spool
+  /// @throws Error if the folder cannot be created, or its list is not a spool's
   static std::unique_ptr<SpooledSource> kept(std::unique_ptr<FrameSource> source,
                                              const std::filesystem::path& folder,
                                              std::size_t most_ahead = kEveryFrame);
   static constexpr std::size_t kEveryFrame = std::numeric_limits<std::size_t>::max();
-  /// Whether a spool is in the folder whose source had come to its end.
+  /// Returns true if the folder contains a spool whose source had ended.
   static bool has_end(const std::filesystem::path& folder);
-  /// Whether there is a frame to be read again. Throws Error as has_end.
+  /// Returns true if the folder contains a frame. Throws Error as has_end() does.
   static bool has_frames(const std::filesystem::path& folder);
 
-  /// What was spooled to `folder`, to its end or to where the process that did it was cut off; the folder is
-  /// only read.
-  /// @throws Error if the folder holds no spool
+  /// Reads what was spooled to `folder`, up to the source's end or the point where the spooling process was
+  /// killed. Never writes to the folder.
+  /// @throws Error if the folder contains no spool
   static std::unique_ptr<SpooledSource> again(const std::filesystem::path& folder);
 
   ~SpooledSource() override;
@@ -60,17 +61,17 @@ class SpooledSource final : public FrameSource {
   [[nodiscard]] std::string name() const override;
 
  private:
-  /// A frame without its images, or the sentence that stood in its place.
+  /// A frame without its images, or the fault that replaced it.
   struct Entry {
     Frame frame;
     std::string fault;
   };
-  /// What an earlier process left in a folder.
+  /// List left in a folder by an earlier process.
   struct Left {
     std::string name;
     std::vector<Entry> entries;
     bool at_end = false;
-    std::uintmax_t sound_bytes = 0;  ///< of the list; a frame that was being written follows
+    std::uintmax_t sound_bytes = 0;  ///< length of the list's valid part; an incomplete entry may follow
   };
   template <typename Archive>
   static void transfer_entry(Archive& archive, Entry& entry);
@@ -83,7 +84,7 @@ class SpooledSource final : public FrameSource {
   ReadResult read_again(const Entry& entry, std::size_t position, Frame& frame) const;
   void stop_capture();
   bool wait_for_reader();
-  // Of the thread that reads the source within.
+  // Run in the background thread.
   void capture();
   bool capture_one(Frame& frame);
 
@@ -91,25 +92,25 @@ class SpooledSource final : public FrameSource {
   std::filesystem::path folder_;
   bool kept_;
   std::string name_;
-  std::ofstream list_;                          ///< only if kept
-  std::int64_t index_offset_ = 0;               ///< added to the source's own, if others came before
-  std::optional<double> stamp_offset_s_ = 0.0;  ///< none: to be found from the source's next frame
+  std::ofstream list_;             ///< only if kept
+  std::int64_t index_offset_ = 0;  ///< added to the source's own if an earlier process left frames
+  std::optional<double> stamp_offset_s_ = 0.0;  ///< nothing: set at the source's next frame
   std::size_t most_ahead_ = kEveryFrame;
 
-  mutable std::mutex mutex_;  ///< of what follows
+  mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable changed_;
   std::size_t position_ = 0;
-  std::size_t left_ = 0;       ///< so many are of an earlier process
-  std::deque<Entry> entries_;  ///< those that are there stay where they are
+  std::size_t left_ = 0;       ///< number of entries from an earlier process
+  std::deque<Entry> entries_;  ///< existing entries never move
   bool at_end_ = false;
   bool stop_ = false;
-  std::optional<ReadResult> waiting_;  ///< the source's latest word, if it was that there is nothing yet
+  std::optional<ReadResult> waiting_;  ///< latest result of the source if it had no frame yet
   std::exception_ptr failure_;
 
   std::thread thread_;
 };
 
-/// `source` itself if it rewinds on its own (asked before anything was read), else `source` spooled.
+/// Returns `source` itself if it can rewind (tested before anything is read), else a SpooledSource around it.
 std::unique_ptr<FrameSource> make_rewindable(std::unique_ptr<FrameSource> source);
 
 }  // namespace roomradar
