@@ -86,7 +86,7 @@ void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, StageTimes& t
 /// Same in the first pass, where the odometry's thread must be idle at the fork.
 void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass, StageTimes& times) {
   if (!checkpoints || !checkpoints->is_due()) return;
-  times.timed("checkpoint", [&] { pass.odometry.settle(); });
+  times.timed("checkpoint", [&] { pass.odometry.finish_jobs(); });
   keep(checkpoints, kTrackingStage, pass, times);
 }
 
@@ -116,10 +116,10 @@ Eigen::Vector3d middle_of_recorded(const Work& work, const TrackingPass& pass, c
 }
 
 /// Reads the source to its end and returns the camera pose of each frame.
-Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
+TrajectoryEstimate estimate_trajectory(Work& work, TrackingPass& pass) {
   const PrescanConfig& config = work.config;
   Frame frame;
-  SeenArea seen;
+  ObservedArea seen;
   while (read(work.source, work.times, frame, pass.counts)) {
     const Clock::time_point start = Clock::now();
     const std::optional<Eigen::Isometry3d> recorded =
@@ -145,30 +145,31 @@ Whereabouts find_whereabouts(Work& work, TrackingPass& pass) {
     pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
     if (pass.counts.stopped_for_memory) break;
   }
-  Whereabouts found;
+  TrajectoryEstimate found;
   found.frames = work.times.timed("optimise", [&] { return pass.odometry.optimise(); });
   found.up = pass.up.estimate();
   found.recorded = std::move(pass.recorded);
   pass.counts.keyframes = pass.odometry.counts().keyframes;
   pass.counts.loops_found = pass.odometry.counts().loops_found;
-  found.places = pass.odometry.take_places();
+  found.keyframe_database = pass.odometry.take_keyframe_database();
   return found;
 }
 
 /// Computes the transform from the tracker's world to the map's: to an existing map, or else a rotation to +z
 /// up.
-Eigen::Isometry3d place_in_world(const Odometry& odometry, const Whereabouts& found,
-                                 const std::optional<SavedMap>& map, const std::string& source) {
+Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEstimate& found,
+                                   const std::optional<SavedMap>& map, const std::string& source) {
   if (!map) return level_rotation(found.up.up_world);
   constexpr std::size_t kPoints = 12'000;
-  const std::vector<Eigen::Vector3d> surface = surface_of(found.places, kPoints);
+  const std::vector<Eigen::Vector3d> surface = surface_of(found.keyframe_database, kPoints);
   // A long scan may be localised in the map, then leave it for other rooms, so only a small fraction
   // overlaps.
   RegistrationConfig located;
   located.min_overlap = 0.01;
   const Registration placed =
-      odometry.is_located() ? judge_registration(map->octree, surface, Eigen::Isometry3d::Identity(), located)
-                            : register_to(map->octree, map->places, found.places, surface);
+      odometry.is_located()
+          ? verify_registration(map->octree, surface, Eigen::Isometry3d::Identity(), located)
+          : register_to(map->octree, map->keyframe_database, found.keyframe_database, surface);
   if (!placed)
     throw Error(source + ": cannot be placed in the map that it is to be added to: " + describe(placed) +
                 "; the map is unchanged. Begin where the map was scanned, or save as another map");
@@ -177,10 +178,10 @@ Eigen::Isometry3d place_in_world(const Odometry& odometry, const Whereabouts& fo
 
 /// Runs the first pass, from its start or from a checkpoint. Returns the state of the second pass if the
 /// checkpoint is of that stage.
-FusingPass track(Work& work, std::optional<SavedMap>& map) {
+FusionPass track(Work& work, std::optional<SavedMap>& map) {
   const std::optional<Checkpoint> checkpoint = work.checkpoints ? work.checkpoints->resume() : std::nullopt;
   if (checkpoint && checkpoint->stage == kFusingStage) {
-    FusingPass fusing = read_fusing_pass(*checkpoint);
+    FusionPass fusing = read_fusing_pass(*checkpoint);
     fusing.counts.frames_resumed = fusing.frames_read;
     return fusing;
   }
@@ -190,21 +191,21 @@ FusingPass track(Work& work, std::optional<SavedMap>& map) {
     pass.counts.frames_resumed = pass.counts.frames_read;
     skip_frames(work.source, pass.counts.frames_read, kTrackingStage, work.progress);
   }
-  if (map && work.config.poses == PoseOrigin::kTracked) pass.odometry.know(map->places);
-  FusingPass fusing;
-  fusing.found = find_whereabouts(work, pass);
+  if (map && work.config.poses == PoseOrigin::kTracked) pass.odometry.set_prior_map(map->keyframe_database);
+  FusionPass fusing;
+  fusing.found = estimate_trajectory(work, pass);
   fusing.counts = pass.counts;
   if (fusing.counts.frames_read == fusing.counts.frames_skipped)
     throw Error(work.source.name() + ": there is not one readable frame" +
                 (fusing.counts.last_fault.empty() ? "" : "; the last fault: " + fusing.counts.last_fault));
-  fusing.T_world_found = place_in_world(pass.odometry, fusing.found, map, work.source.name());
+  fusing.T_world_found = transform_to_map(pass.odometry, fusing.found, map, work.source.name());
   fusing.octree = map ? std::move(map->octree) : StaticMap(work.config.resolution_m);
   keep(work.checkpoints, kFusingStage, fusing, work.times, /*between_frames=*/false);
   return fusing;
 }
 
 /// Trusted poses, in the map's world.
-std::vector<TimedPose> trusted_poses(const FusingPass& pass) {
+std::vector<TimedPose> trusted_poses(const FusionPass& pass) {
   std::vector<TimedPose> poses;
   for (const TrackedFrame& tracked : pass.found.frames) {
     if (tracked.trusted)
@@ -215,7 +216,7 @@ std::vector<TimedPose> trusted_poses(const FusingPass& pass) {
 
 /// Runs the second pass, from its start or from a checkpoint. Does nothing if the checkpoint was written
 /// after fusion.
-void fuse(Work& work, const std::vector<TimedPose>& trajectory, FusingPass& pass) {
+void fuse(Work& work, const std::vector<TimedPose>& trajectory, FusionPass& pass) {
   if (pass.revision || pass.ghost_voxels) return;
   std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
   for (const TimedPose& pose : trajectory) T_world_camera[pose.frame_index] = pose.T_world_camera;
@@ -257,21 +258,21 @@ std::string why_none_trusted(const Work& work) {
 
 std::string why_none_fused(const Work& work) {
   if (!work.last_fused) return "no frame was left to be fused: fuse_every and hold_out leave out all of them";
-  if (work.last_fused == FuseStatus::kOutOfReach)
+  if (work.last_fused == FuseStatus::kOutOfBounds)
     return "no frame could be fused: the poses are out of the octree's reach of " +
            std::to_string(std::lround(work.reach_m)) + " m; take coarser cells";
   return "no frame could be fused; the depth images hold no usable measurement";
 }
 
 /// Fills in the map's description, except for the fields that save_map sets.
-MapInfo describe_map(const Work& work, const FusingPass& pass, const std::vector<TimedPose>& trajectory) {
+MapInfo describe_map(const Work& work, const FusionPass& pass, const std::vector<TimedPose>& trajectory) {
   MapInfo info;
   info.source = work.source.name();
   info.frames_read = pass.counts.frames_read;
   info.frames_fused = static_cast<std::int64_t>(pass.fused.size());
   info.up_source = to_string(pass.found.up.source);
   info.settings = {{"resolution_m", std::to_string(work.config.resolution_m)},
-                   {kDeviationSetting, number_text(work.config.surface.max_deviation_m)},
+                   {kDeviationSetting, format_number(work.config.surface.max_deviation_m)},
                    {kPosesSetting, std::string(to_string(work.config.poses))}};
   if (pass.counts.stopped_for_memory || pass.stopped_for_memory)
     info.settings[kStoppedSetting] = work.source.name();
@@ -291,7 +292,7 @@ bool is_held_out(std::int64_t frame_index, std::int64_t hold_out) {
 }
 
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
-                      const PrescanProgress& progress, PrescanStart start) {
+                      const PrescanProgress& progress, PrescanInput start) {
   const double reach_m = start.map ? start.map->octree.reach_m() : StaticMap(config.resolution_m).reach_m();
   const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
   Work work{source, config, times, progress, start.checkpoints, reach_m, maps_recorded_world};
@@ -300,7 +301,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   SavedMap& map = result.map;
 
   // First pass: camera poses.
-  FusingPass pass = track(work, start.map);
+  FusionPass pass = track(work, start.map);
   map.trajectory = trusted_poses(pass);
   if (map.trajectory.empty())
     throw Error(source.name() + ": no frame has a pose that can be trusted, so there is nothing to map; " +
@@ -313,9 +314,9 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   // Ghost removal.
   if (config.remove_ghosts && !pass.ghost_voxels) {
     if (!pass.revision)
-      pass.revision = take_out_ghosts(source, pass.fused, config.ghosts, pass.octree, times,
-                                      [&](const std::string& note) { work.show("ghosts", note); });
-    look_again(source, pass.fused, *pass.revision, pass.octree, times, [&](const std::string& note) {
+      pass.revision = remove_ghosts(source, pass.fused, config.ghosts, pass.octree, times,
+                                    [&](const std::string& note) { work.show("ghosts", note); });
+    refuse_surroundings(source, pass.fused, *pass.revision, pass.octree, times, [&](const std::string& note) {
       work.show("ghosts", note);
       keep(work.checkpoints, kFusingStage, pass, times);
     });
@@ -330,9 +331,9 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
       times.timed("surface", [&] { return extract_surface(map.octree, config.surface, &result.surface); });
   if (map.mesh.triangles.empty())
     throw Error(source.name() + ": " + std::to_string(pass.fused.size()) + " frames show no surface at " +
-                number_text(config.resolution_m) + " m; try another --resolution");
-  map.places = std::move(pass.found.places);
-  transform(map.places, pass.T_world_found);
+                format_number(config.resolution_m) + " m; try another --resolution");
+  map.keyframe_database = std::move(pass.found.keyframe_database);
+  transform(map.keyframe_database, pass.T_world_found);
 
   counts = pass.counts;
   counts.stopped_for_memory |= pass.stopped_for_memory;
@@ -342,7 +343,7 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
   counts.ghost_voxels = pass.ghost_voxels.value_or(0);
   if (config.poses == PoseOrigin::kTracked) {
     const TrajectoryError error = absolute_trajectory_error(map.trajectory, pass.found.recorded);
-    if (error.poses > 0) counts.against_recorded = error;
+    if (error.poses > 0) counts.trajectory_error = error;
   }
   map.info = describe_map(work, pass, map.trajectory);
   if (start.map) {

@@ -51,14 +51,14 @@ struct PrescanCounts {
   bool stopped_for_memory = false;  ///< memory cap reached: part of the source is not in the map
   std::string last_fault;           ///< reason why the last skipped frame was unreadable
   /// Only for tracked poses, and if at least 3 of their frames have recorded poses.
-  std::optional<TrajectoryError> against_recorded;
+  std::optional<TrajectoryError> trajectory_error;
 };
 
 struct PrescanResult {
   SavedMap map;
   std::vector<Hole> holes;  ///< regions that the scan did not observe; per kind, largest first
   PrescanCounts counts;
-  SurfaceFacts surface;
+  SurfaceStats surface;
 };
 
 /// Called after each frame of a pass with the stage ("track", "fuse" or "ghosts") and the frame's outcome.
@@ -68,7 +68,7 @@ using PrescanProgress = std::function<void(const std::string& stage, const std::
 class Checkpoints;
 
 /// Earlier work that a prescan continues, if any.
-struct PrescanStart {
+struct PrescanInput {
   /// Receives the state at intervals during both passes. If it already holds a checkpoint, the prescan
   /// resumes from it, and the source must deliver the same frames again. Null: no checkpoints.
   Checkpoints* checkpoints = nullptr;
@@ -85,6 +85,6 @@ struct PrescanStart {
 /// @throws Error if the source cannot be rewound, has no readable frame, no trusted pose or no surface; if
 /// start.map shows another room, or overlaps the source too little for a reliable registration
 PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTimes& times,
-                      const PrescanProgress& progress = {}, PrescanStart start = {});
+                      const PrescanProgress& progress = {}, PrescanInput start = {});
 
 }  // namespace roomradar

@@ -17,56 +17,56 @@ namespace roomradar {
 namespace fs = std::filesystem;
 
 template <typename Archive>
-void transfer(Archive& archive, PrescanCounts& counts) {
+void serialize(Archive& archive, PrescanCounts& counts) {
   for (std::int64_t* count :
        {&counts.frames_read, &counts.frames_skipped, &counts.frames_tracked, &counts.frames_fused,
         &counts.frames_lost, &counts.keyframes, &counts.loops_found, &counts.ghost_voxels}) {
-    transfer(archive, *count);
+    serialize(archive, *count);
     if constexpr (Archive::kReads) {
       if (*count < 0) archive.fail("is damaged: a count is negative");
     }
   }
-  transfer(archive, counts.stopped_for_memory);
-  transfer(archive, counts.last_fault);
+  serialize(archive, counts.stopped_for_memory);
+  serialize(archive, counts.last_fault);
 }
 
 template <typename Archive>
-void transfer(Archive& archive, TimedPose& pose) {
-  transfer(archive, pose.frame_index);
-  transfer(archive, pose.stamp_s);
-  transfer(archive, pose.T_world_camera);
+void serialize(Archive& archive, TimedPose& pose) {
+  serialize(archive, pose.frame_index);
+  serialize(archive, pose.stamp_s);
+  serialize(archive, pose.T_world_camera);
 }
 
 template <typename Archive>
-void transfer(Archive& archive, TrackedFrame& frame) {
-  transfer(archive, frame.frame_index);
-  transfer(archive, frame.stamp_s);
-  transfer(archive, frame.T_world_camera);
-  transfer(archive, frame.status, TrackStatus::kDiverged);
-  transfer(archive, frame.trusted);
+void serialize(Archive& archive, TrackedFrame& frame) {
+  serialize(archive, frame.frame_index);
+  serialize(archive, frame.stamp_s);
+  serialize(archive, frame.T_world_camera);
+  serialize(archive, frame.status, TrackStatus::kDiverged);
+  serialize(archive, frame.trusted);
 }
 
 template <typename Archive>
-void transfer(Archive& archive, UpDirection& up) {
-  transfer(archive, up.source, UpSource::kPlane);
-  transfer(archive, up.up_world);
-  transfer(archive, up.support);
+void serialize(Archive& archive, UpDirection& up) {
+  serialize(archive, up.source, UpSource::kPlane);
+  serialize(archive, up.up_world);
+  serialize(archive, up.support);
 }
 
 template <typename Archive>
-void transfer(Archive& archive, FusedFrame& frame) {
-  transfer(archive, frame.position);
-  transfer(archive, frame.frame_index);
-  transfer(archive, frame.depth_camera);
-  transfer(archive, frame.T_world_camera);
+void serialize(Archive& archive, FusedFrame& frame) {
+  serialize(archive, frame.position);
+  serialize(archive, frame.frame_index);
+  serialize(archive, frame.depth_camera);
+  serialize(archive, frame.T_world_camera);
 }
 
 template <typename Archive>
-void transfer(Archive& archive, GhostRevision& revision) {
+void serialize(Archive& archive, GhostRevision& revision) {
   GhostVotes::Verdicts& verdicts = revision.verdicts;
   for (std::vector<VoxelIndex>* voxels :
        {&verdicts.ghosts, &verdicts.absent, &verdicts.still, &verdicts.unseen}) {
-    transfer(archive, *voxels);
+    serialize(archive, *voxels);
     if constexpr (Archive::kReads) {
       static constexpr int kReach = 32768;  // range of the octree's 16-bit keys
       const auto is_in_reach = [](const VoxelIndex& v) {
@@ -76,7 +76,7 @@ void transfer(Archive& archive, GhostRevision& revision) {
         archive.fail("is damaged: a voxel is past the octree's reach");
     }
   }
-  transfer(archive, revision.next);
+  serialize(archive, revision.next);
 }
 
 namespace {
@@ -89,30 +89,30 @@ constexpr std::string_view kMagic = "RRPRSCAN";
 constexpr std::uint32_t kVersion = 4;
 
 template <typename Archive>
-void transfer_state(Archive& archive, TrackingPass& pass) {
-  transfer(archive, pass.counts);
-  pass.up.transfer_fields(archive);
-  transfer(archive, pass.recorded);
+void serialize_state(Archive& archive, TrackingPass& pass) {
+  serialize(archive, pass.counts);
+  pass.up.serialize_fields(archive);
+  serialize(archive, pass.recorded);
 }
 
 template <typename Archive>
-void transfer_state(Archive& archive, FusingPass& pass) {
-  transfer(archive, pass.counts);
-  transfer(archive, pass.found.frames);
-  transfer(archive, pass.found.up);
-  transfer(archive, pass.found.recorded);
-  transfer(archive, pass.T_world_found);
-  transfer(archive, pass.frames_read);
-  transfer(archive, pass.fused);
-  transfer(archive, pass.stopped_for_memory);
-  transfer(archive, pass.revision);
-  transfer(archive, pass.ghost_voxels);
+void serialize_state(Archive& archive, FusionPass& pass) {
+  serialize(archive, pass.counts);
+  serialize(archive, pass.found.frames);
+  serialize(archive, pass.found.up);
+  serialize(archive, pass.found.recorded);
+  serialize(archive, pass.T_world_found);
+  serialize(archive, pass.frames_read);
+  serialize(archive, pass.fused);
+  serialize(archive, pass.stopped_for_memory);
+  serialize(archive, pass.revision);
+  serialize(archive, pass.ghost_voxels);
 }
 
 template <typename Pass>
 void write_fields(Pass& pass, const fs::path& path) {
   ByteWriter archive;
-  transfer_state(archive, pass);
+  serialize_state(archive, pass);
   write_binary(path, kMagic, kVersion, archive.bytes());
 }
 
@@ -120,7 +120,7 @@ template <typename Pass>
 void read_fields(const fs::path& path, Pass& pass) {
   const std::string bytes = read_binary(path, kMagic, kVersion);
   ByteReader archive(bytes, path.string());
-  transfer_state(archive, pass);
+  serialize_state(archive, pass);
   archive.require_end();
 }
 
@@ -132,11 +132,11 @@ void write_state(TrackingPass& pass, const fs::path& into, const fs::path& previ
   save_odometry(pass.odometry, into / kOdometry, previous.empty() ? fs::path{} : previous / kOdometry);
 }
 
-void write_state(FusingPass& pass, const fs::path& into, const fs::path& previous) {
+void write_state(FusionPass& pass, const fs::path& into, const fs::path& previous) {
   write_fields(pass, into / kState);
   // The keyframe database does not change in this pass.
   if (previous.empty() || !fs::exists(previous / kOctree) || !carry_over(previous / kPlaces, into / kPlaces))
-    write_places(pass.found.places, into / kPlaces);
+    write_keyframe_database(pass.found.keyframe_database, into / kPlaces);
   pass.octree.write_ot(into / kOctree);
 }
 
@@ -147,10 +147,10 @@ TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConf
   return pass;
 }
 
-FusingPass read_fusing_pass(const Checkpoint& checkpoint) {
-  FusingPass pass;
+FusionPass read_fusing_pass(const Checkpoint& checkpoint) {
+  FusionPass pass;
   read_fields(checkpoint.folder / kState, pass);
-  pass.found.places = read_places(checkpoint.folder / kPlaces);
+  pass.found.keyframe_database = read_keyframe_database(checkpoint.folder / kPlaces);
   pass.octree = StaticMap::read_ot(checkpoint.folder / kOctree);
   return pass;
 }

@@ -21,17 +21,17 @@ struct TrackingPass {
 };
 
 /// Result of the first pass: camera poses, keyframe database and up direction.
-struct Whereabouts {
+struct TrajectoryEstimate {
   std::vector<TrackedFrame> frames;
-  Places places;
+  KeyframeDatabase keyframe_database;
   UpDirection up;
   std::vector<TimedPose> recorded;
 };
 
 /// Second pass: fuses the frames, then removes ghosts.
-struct FusingPass {
+struct FusionPass {
   PrescanCounts counts;  ///< from the first pass
-  Whereabouts found;
+  TrajectoryEstimate found;
   Eigen::Isometry3d T_world_found = Eigen::Isometry3d::Identity();  ///< from the tracker's world to the map's
   std::int64_t frames_read = 0;                                     ///< in this pass
   StaticMap octree{0.01};
@@ -48,12 +48,12 @@ inline constexpr const char* kFusingStage = "fuse";
 /// state.
 void write_state(TrackingPass& pass, const std::filesystem::path& into,
                  const std::filesystem::path& previous);
-void write_state(FusingPass& pass, const std::filesystem::path& into, const std::filesystem::path& previous);
+void write_state(FusionPass& pass, const std::filesystem::path& into, const std::filesystem::path& previous);
 
 /// Reads a checkpoint of the matching stage. The second pass resumes exactly; the first differs by the
 /// rounding of stored keyframe views (about 1 mm). The files are not trusted. Throws Error naming the file
 /// and the fault.
 TrackingPass read_tracking_pass(const Checkpoint& checkpoint, const OdometryConfig& config);
-FusingPass read_fusing_pass(const Checkpoint& checkpoint);
+FusionPass read_fusing_pass(const Checkpoint& checkpoint);
 
 }  // namespace roomradar

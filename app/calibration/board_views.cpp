@@ -80,7 +80,7 @@ void require_valid(const Board& board) {
           std::to_string(board.columns) + " by " + std::to_string(board.rows) + " inner corners",
           "not square, so that its sides can be told apart");
   require(board.square_m >= 0.001 && board.square_m <= 1.0,
-          "squares of " + number_text(board.square_m) + " m", "of 0.001 to 1 m");
+          "squares of " + format_number(board.square_m) + " m", "of 0.001 to 1 m");
 }
 
 std::optional<std::vector<Eigen::Vector2d>> find_corners(const ColourImage& colour, const Board& board) {

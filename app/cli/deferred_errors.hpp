@@ -9,7 +9,7 @@
 namespace roomradar {
 
 /// The first fault is thrown at the end, once; the others are said on stderr when they come.
-class Faults {
+class DeferredErrors {
  public:
   template <typename Act>
   void attempt(const Act& act) {

@@ -68,10 +68,10 @@ void require_writable(const std::filesystem::path& path) {
 
 void write_report(const Report& report, const std::filesystem::path& path) {
   if (path.empty()) return;
-  WholeFile file(path);
+  AtomicFile file(path);
   // A file's name need not be UTF-8, which JSON has to be.
   file.stream() << to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
-  file.put_in_place();
+  file.commit();
 }
 
 }  // namespace roomradar

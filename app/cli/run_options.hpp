@@ -26,9 +26,9 @@ struct RunCommand {
   FieldWords fixed;     ///< what of it was asked for by name; no preset, script or budget changes that
   std::string preset;   ///< name; empty: none
   std::string presets;  ///< file; empty: the program's own
-  std::optional<double> budget_ms;      ///< of a frame
-  std::optional<double> adopt_after_s;  ///< none: only what the script asks for, if it does
-  AtEnd at_end = AtEnd::kEnd;           ///< what follows the source's last frame
+  std::optional<double> budget_ms;       ///< of a frame
+  std::optional<double> commit_after_s;  ///< none: only what the script asks for, if it does
+  AtEnd at_end = AtEnd::kEnd;            ///< what follows the source's last frame
   bool window = false;
   std::string record_session;  ///< folder for frames, events and settings; empty: none
   std::string save_map;        ///< folder for the map as it is at the end; empty: it is not saved

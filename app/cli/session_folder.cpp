@@ -52,11 +52,11 @@ Json read_settings(const fs::path& folder) {
 }
 
 /// Seconds of --adopt; Error if they are none.
-double adopt_seconds(const Json& value, const fs::path& folder) {
+double commit_after_s(const Json& value, const fs::path& folder) {
   constexpr double kMost_s = 86400.0;
   const double seconds = value.is_number() ? value.get<double>() : -1.0;
   if (!(seconds > 0.0 && seconds <= kMost_s))
-    throw Error((folder / kSettings).string() + ": adopt_s = " + number_text(seconds) +
+    throw Error((folder / kSettings).string() + ": adopt_s = " + format_number(seconds) +
                 ": must be seconds, up to a day");
   return seconds;
 }
@@ -98,7 +98,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
                {"unknown_is_solid", command.unknown_is_solid},
                {"quality", to_json(command.quality)},
                {"at_end", to_string(command.at_end)}};
-  if (command.adopt_after_s) json["adopt_s"] = *command.adopt_after_s;
+  if (command.commit_after_s) json["adopt_s"] = *command.commit_after_s;
   write_bytes(folder_ / kSettings, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   events_.open(folder_ / kEvents);
   events_ << "# events of " << command.source << ", as they were applied\n" << std::flush;
@@ -168,7 +168,7 @@ RunCommand read_session(const fs::path& folder) {
     command.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
     command.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
     command.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
-    if (json.contains("adopt_s")) command.adopt_after_s = adopt_seconds(json["adopt_s"], folder);
+    if (json.contains("adopt_s")) command.commit_after_s = commit_after_s(json["adopt_s"], folder);
   } catch (const Json::exception& fault) {
     throw Error((folder / kSettings).string() + ": is damaged: " + fault.what());
   }

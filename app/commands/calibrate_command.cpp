@@ -123,7 +123,7 @@ int run(const CalibrateCommand& command) {
                     {"inverse_depth_scale", fit.calibration.depth_correction.inverse_scale},
                     {"before", summary_json(before)},
                     {"after", summary_json(after)}};
-  Faults faults;
+  DeferredErrors faults;
   faults.attempt([&] { write_calibration(fit.calibration, command.calibration); });
   faults.attempt([&] {
     if (!command.plot.empty()) write_png(calibration_plot(views, fit), command.plot);

@@ -208,7 +208,7 @@ void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
   if (!is_given("--surfaces")) command.surfaces = recorded.surfaces;
   if (!is_given("--unknown")) command.unknown_is_solid = recorded.unknown_is_solid;
   command.quality = recorded.quality;
-  if (!is_given("--adopt")) command.adopt_after_s = recorded.adopt_after_s;
+  if (!is_given("--adopt")) command.commit_after_s = recorded.commit_after_s;
   if (!is_given("--at-end")) command.at_end = recorded.at_end;
 }
 
@@ -235,7 +235,7 @@ void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
   add_choice(*sub, "--unknown", command.unknown_is_solid, kUnknownIsSolid,
              "space that the prescan has not seen lets objects through (free) or stops them (solid;\n"
              "with --surfaces map)");
-  sub->add_option("--adopt", command.adopt_after_s,
+  sub->add_option("--adopt", command.commit_after_s,
                   "what came and stayed, or was gone, for so many seconds while it was seen becomes part of\n"
                   "the room (of this run's own; the saved map stays as it is)")
       ->check(within(0.5, 86400.0, "seconds"))

@@ -11,17 +11,17 @@ namespace roomradar {
 
 int run(const DoctorCommand& /*command*/) {
   const auto replayed = replayed_folder();
-  std::vector<Finding> findings;
+  std::vector<Finding> hypotheses;
   if (replayed)
-    findings.push_back(judge_replay(*replayed));
+    hypotheses.push_back(judge_replay(*replayed));
   else
-    findings = judge_kinects(kinects_on_usb(), count_kinects());
-  findings.push_back(judge_renderer());
+    hypotheses = judge_kinects(kinects_on_usb(), count_kinects());
+  hypotheses.push_back(judge_renderer());
   const char* path = std::getenv("PATH");
-  findings.push_back(judge_fakenect(path ? path : ""));
+  hypotheses.push_back(judge_fakenect(path ? path : ""));
 
   bool is_well = true;
-  for (const Finding& finding : findings) {
+  for (const Finding& finding : hypotheses) {
     const char* mark = finding.health == Health::kGood  ? "good"
                        : finding.health == Health::kBad ? "BAD"
                                                         : "-";

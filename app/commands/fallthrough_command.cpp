@@ -43,7 +43,7 @@ void require_folder_of_maps(const std::filesystem::path& folder) {
 /// Scenario after scenario under all policies; `threads` of them are made ready ahead. Ends at the first
 /// fault, with the rows that were done.
 std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughCommand& command, int threads,
-                                       Faults& faults) {
+                                       DeferredErrors& faults) {
   std::deque<std::future<std::unique_ptr<PreparedScenario>>> ahead;
   int next = 0;
   const auto prepare_next = [&] {
@@ -152,7 +152,7 @@ int run(const FallthroughCommand& command) {
   report.renderer = context.renderer();
   const Rooms rooms = report.times.timed(
       "prescan", [&] { return map_rooms(context, choose_rooms(command.random_rooms), scan, threads); });
-  Faults faults;  // what was done before them is written all the same
+  DeferredErrors faults;  // what was done before them is written all the same
   const std::vector<ScenarioRow> rows =
       report.times.timed("scenarios", [&] { return run_scenarios(rooms, command, threads, faults); });
   if (rows.empty()) faults.throw_first();

@@ -32,9 +32,9 @@ Eigen::Isometry3d read_located(const FallthroughCommand& command, const SavedMap
   }
   Shape room(context);
   room.set(map.mesh, MeshUsage::kStatic);
-  LiveScene scene(context, room, {});
+  FrameScene scene(context, room, {});
   Locator locator;
-  const Tracking tracking = locate(locator, frame, map.places, {},
+  const Tracking tracking = locate(locator, frame, map.keyframe_database, {},
                                    [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
                                      scene.render_expected(frame.depth_camera, T_world_camera);
                                      return scene.expected_depth_m();
@@ -112,14 +112,14 @@ int run_grid(const FallthroughCommand& command) {
       nlohmann::json rested_on = nlohmann::json::object();
       for (std::size_t kind = 0; kind < totals.rested_on.size(); ++kind)
         if (totals.rested_on[kind] > 0)
-          rested_on[std::string(to_string(static_cast<Touched>(kind)))] = totals.rested_on[kind];
+          rested_on[std::string(to_string(static_cast<SurfaceKind>(kind)))] = totals.rested_on[kind];
       policy[hidden_only ? "hidden" : "all"] = {{"cells", totals.cells},
                                                 {"passed", totals.passed},
                                                 {"false_stops", totals.false_stops},
                                                 {"rested_on", rested_on}};
     }
   }
-  Faults faults;
+  DeferredErrors faults;
   faults.attempt([&] {
     if (!command.picture.empty()) write_png(draw_plan(grid), command.picture);
   });

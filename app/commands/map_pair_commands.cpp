@@ -23,7 +23,7 @@ int run(const MapMergeCommand& command) {
   SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);
   if (command.deviation_m) {
-    a.info.settings[kDeviationSetting] = number_text(*command.deviation_m);
+    a.info.settings[kDeviationSetting] = format_number(*command.deviation_m);
     report.settings["deviation_m"] = *command.deviation_m;
   }
   if (a.info.files.at("octree.ot").sha256 == b.info.files.at("octree.ot").sha256)
@@ -35,7 +35,7 @@ int run(const MapMergeCommand& command) {
   report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree.memory_bytes()}};
   write_report(report, command.report);
   std::printf("%s: %zu triangles, %zu places\n", command.map.c_str(), both.mesh.triangles.size(),
-              both.places.keyframes.size());
+              both.keyframe_database.keyframes.size());
   return 0;
 }
 
@@ -50,7 +50,7 @@ int run(const MapDiffCommand& command) {
   const SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);
   // A map that `run --save-map` made from another has its views, and so its world.
-  const bool one_world = !a.places.keyframes.empty() &&
+  const bool one_world = !a.keyframe_database.keyframes.empty() &&
                          a.info.files.at("places.bin").sha256 == b.info.files.at("places.bin").sha256;
   const Eigen::Isometry3d T_a_b = one_world ? Eigen::Isometry3d::Identity()
                                             : require_registered(a, b, command.a, command.b, report).T_a_b;

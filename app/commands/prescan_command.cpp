@@ -30,7 +30,7 @@ nlohmann::json hole_row(const Hole& hole) {
           {"size_m", hole.size_m},
           {"area_m2", hole.area_m2},
           {"look_direction", to_json(hole.look_direction_world)},
-          {"stand_m", hole.stand_world ? to_json(*hole.stand_world) : nlohmann::json(nullptr)}};
+          {"stand_m", hole.viewpoint_world ? to_json(*hole.viewpoint_world) : nlohmann::json(nullptr)}};
 }
 
 nlohmann::json results_of(const PrescanResult& scanned) {
@@ -58,9 +58,9 @@ nlohmann::json results_of(const PrescanResult& scanned) {
   results["holes"] = nlohmann::json::array();
   for (const Hole& hole : scanned.holes) results["holes"].push_back(hole_row(hole));
   results["ate_rmse_m"] = nullptr;  // only where the recording has poses of its own and ours were tracked
-  if (counts.against_recorded) {
-    results["ate_rmse_m"] = counts.against_recorded->rmse_m;
-    results["ate_max_m"] = counts.against_recorded->max_m;
+  if (counts.trajectory_error) {
+    results["ate_rmse_m"] = counts.trajectory_error->rmse_m;
+    results["ate_max_m"] = counts.trajectory_error->max_m;
   }
   if (!counts.last_fault.empty()) results["last_fault"] = counts.last_fault;
   return results;
@@ -89,9 +89,9 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
     std::printf(
         "which way is up is not known: no gravity was recorded and no level surface stood out; the first "
         "camera's upright is taken\n");
-  if (counts.against_recorded)
+  if (counts.trajectory_error)
     std::printf("trajectory against the recorded poses: RMSE %.1f mm, at most %.1f mm\n",
-                1e3 * counts.against_recorded->rmse_m, 1e3 * counts.against_recorded->max_m);
+                1e3 * counts.trajectory_error->rmse_m, 1e3 * counts.trajectory_error->max_m);
   if (held_out && held_out->frames == 0)
     std::printf(
         "no frame was held out that has a pose: --hold-out %lld means frame %lld and every %lldth after it\n",
@@ -203,7 +203,7 @@ void finish(Checkpoints& checkpoints, bool keep_frames) {
 }  // namespace
 
 int run(const PrescanCommand& command) {
-  keep_large_blocks_apart();
+  mmap_large_allocations();
   Report report;
   report.command = "prescan";
   report.source = command.source;
@@ -244,7 +244,7 @@ int run(const PrescanCommand& command) {
                                           [](const auto& field) { return field.first == "deviation_m"; });
     if (!is_asked_for && kept.contains(kDeviationSetting))
       config.surface.max_deviation_m = surface_config_of(start.map->info).max_deviation_m;
-    kept[kDeviationSetting] = number_text(config.surface.max_deviation_m);
+    kept[kDeviationSetting] = format_number(config.surface.max_deviation_m);
     report.settings["resolution_m"] = config.resolution_m;
     report.settings["deviation_m"] = nlohmann::json::parse(kept[kDeviationSetting]);
     if (config.resolution_m != command.quality.resolution_m ||

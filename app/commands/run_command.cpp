@@ -40,7 +40,7 @@ nlohmann::json report_replay(const ReplayCheck& check) {
 int play(OpenedRun& run) {
   const RunCommand& command = run.command;
   const RunTotals& totals = run.totals;
-  Faults faults;
+  DeferredErrors faults;
   faults.attempt([&] { play_to_end(run); });
   if (run.video) faults.attempt([&] { run.video->close(); });
   if (run.frames_csv) faults.attempt([&] { run.frames_csv->close(); });
@@ -50,8 +50,9 @@ int play(OpenedRun& run) {
                 (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
   }
   faults.attempt([&] {
-    run.session->finish_adopting();
-    if (!command.save_map.empty()) save_changed(run.map, run.session->adopted().size(), command.save_map);
+    run.session->finish_commits();
+    if (!command.save_map.empty())
+      save_changed(run.map, run.session->committed_changes().size(), command.save_map);
   });
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped.count;
@@ -74,7 +75,7 @@ int play(OpenedRun& run) {
 }
 
 /// @param link  to the window; null: there is none
-int run_frames(const RunCommand& command, PlayLink* link) { return play(*open_run(command, link)); }
+int run_frames(const RunCommand& command, UiChannel* link) { return play(*open_run(command, link)); }
 
 }  // namespace
 
@@ -83,7 +84,7 @@ int run(const RunCommand& command) {
   std::vector<std::string> meshes;
   if (command.object != "teapot") meshes.push_back(command.object);
   return run_in_window("roomradar - " + command.source, meshes, command.budget_ms,
-                       [&](PlayLink& link) { return run_frames(command, &link); });
+                       [&](UiChannel& link) { return run_frames(command, &link); });
 }
 
 }  // namespace roomradar

@@ -28,11 +28,11 @@ TradeScale scale_of(const TradeCommand& command) { return command.quick ? kQuick
 
 /// Throws Error if more is said of the room than a scan in it would heed.
 void require_scan_room(const std::string& room, SimOptions options) {
-  const SimOptions usual;
+  const SimOptions defaults;
   const std::string said = sim_spec(options);
-  options.frames = usual.frames;
-  options.rate_hz = usual.rate_hz;
-  options.depth_camera = usual.depth_camera;
+  options.frames = defaults.frames;
+  options.rate_hz = defaults.rate_hz;
+  options.depth_camera = defaults.depth_camera;
   if (sim_spec(options) != said)
     throw Error("trade: " + room +
                 ": how many frames there are, how fast and how wide, is the sweep's own; "
@@ -65,13 +65,13 @@ void require_scenes(const TradeCommand& command) {
   for (const std::string& recording : command.recordings) (void)frames_of_recording(recording, read);
 }
 
-std::vector<TradeWork> works_of(const TradeCommand& command) {
+std::vector<MeasuredWork> works_of(const TradeCommand& command) {
   const TradeScale scale = scale_of(command);
-  std::vector<TradeWork> works;
+  std::vector<MeasuredWork> works;
   if (command.only != "run") works.push_back(prescan_work(command.rooms, command.recordings, scale));
   if (command.only != "prescan")
     works.push_back(run_work(command.rooms, command.recordings, scale, command.objects));
-  for (TradeWork& work : works)
+  for (MeasuredWork& work : works)
     if (command.time == "cpu") work.time = place_of(work, "cpu_ms");
   return works;
 }
@@ -91,10 +91,10 @@ class Stop {
   bool was_asked_ = false;
 };
 
-TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& stop, TradeCsv& csv) {
+TradeResult traded(const MeasuredWork& work, const TradeCommand& command, Stop& stop, TradeCsv& csv) {
   TradeResult result{.work = work};
-  result.usual = 0;
-  const std::size_t on_ladder = command.settings / 3;
+  result.defaults = 0;
+  const std::size_t in_greedy_search = command.settings / 3;
   const auto rows = (1 + command.settings) * work.scenes.size() * static_cast<std::size_t>(command.repeats);
   Progress progress(work.name, static_cast<std::int64_t>(rows));
   const auto measure = [&](const std::vector<Setting>& settings) {
@@ -118,15 +118,17 @@ TradeResult traded(const TradeWork& work, const TradeCommand& command, Stop& sto
     result.fault = std::move(made.fault);
     result.summaries = summarise(work, result.settings, result.rows);
   };
-  std::vector<Setting> drawn = draw_settings(work.knobs, command.settings - on_ladder, command.seed);
-  drawn.insert(drawn.begin(), usual_setting(work.knobs));
+  std::vector<Setting> drawn =
+      draw_settings(work.parameters, command.settings - in_greedy_search, command.seed);
+  drawn.insert(drawn.begin(), default_setting(work.parameters));
   measure(drawn);
   if (result.rows.empty()) return result;
   if (result.fault.empty() && !stop.asked()) {
-    const std::vector<Setting> ladder = ladder_settings(work, result.summaries, result.usual, on_ladder);
-    if (!ladder.empty()) measure(ladder);
+    const std::vector<Setting> greedy_search =
+        greedy_settings(work, result.summaries, result.defaults, in_greedy_search);
+    if (!greedy_search.empty()) measure(greedy_search);
   }
-  result.choice = choose_presets(work, result.summaries, result.usual);
+  result.choice = choose_presets(work, result.summaries, result.defaults);
   result.was_cut_short = stop.asked() || !result.fault.empty();
   return result;
 }
@@ -143,26 +145,26 @@ std::string scenes_of(const TradeCommand& command) {
 void print_preset(const TradeResult& result, std::size_t setting) {
   const SettingSummary& summary = result.summaries[setting];
   std::printf("%-8s %-22s time x %5.2f (%.2f to %.2f), loss %5.2f: %s\n", result.work.name.c_str(),
-              names_of(setting, result.usual, result.choice, "=").c_str(), summary.time_ratio,
+              names_of(setting, result.defaults, result.choice, "=").c_str(), summary.time_ratio,
               summary.least_ratio, summary.most_ratio,
-              loss_of(result.work, summary, result.summaries[result.usual]),
-              describe(result.work.knobs, summary.setting).c_str());
+              loss_of(result.work, summary, result.summaries[result.defaults]),
+              describe(result.work.parameters, summary.setting).c_str());
 }
 
 void print_presets(const TradeResult& result) {
   for (std::size_t i = 0; i < result.summaries.size(); ++i)
-    if (!names_of(i, result.usual, result.choice, "").empty()) print_preset(result, i);
+    if (!names_of(i, result.defaults, result.choice, "").empty()) print_preset(result, i);
 }
 
 nlohmann::json result_json(const TradeResult& result) {
   nlohmann::json settings = nlohmann::json::array();
   for (std::size_t i = 0; i < result.summaries.size(); ++i) {
     const SettingSummary& summary = result.summaries[i];
-    nlohmann::json row = {{"setting", describe(result.work.knobs, summary.setting)},
-                          {"names", names_of(i, result.usual, result.choice, " ")},
+    nlohmann::json row = {{"setting", describe(result.work.parameters, summary.setting)},
+                          {"names", names_of(i, result.defaults, result.choice, " ")},
                           {"measurements", summary.rows},
                           {"time_ratio", summary.time_ratio},
-                          {"loss", loss_of(result.work, summary, result.summaries[result.usual])}};
+                          {"loss", loss_of(result.work, summary, result.summaries[result.defaults])}};
     for (std::size_t f = 0; f < result.work.figures.size(); ++f)
       row[result.work.figures[f].name] = summary.figures[f];
     settings.push_back(std::move(row));
@@ -200,12 +202,12 @@ int run(const TradeCommand& command) {
   if (command.table1) return print_table1(command, std::move(report));
   const Machine machine = this_machine();
   report.renderer = machine.renderer;
-  const std::vector<TradeWork> works = works_of(command);
+  const std::vector<MeasuredWork> works = works_of(command);
   TradeCsv csv(command.csv, works);
   Stop stop;
   std::vector<TradeResult> results;
-  Faults faults;  // what was measured before them is written all the same
-  for (const TradeWork& work : works) {
+  DeferredErrors faults;  // what was measured before them is written all the same
+  for (const MeasuredWork& work : works) {
     TradeResult result;
     if (!stop.asked())
       result = report.times.timed(work.name, [&] { return traded(work, command, stop, csv); });
@@ -230,7 +232,7 @@ int run(const TradeCommand& command) {
   }
   faults.attempt([&] {
     for (const TradeResult& result : results)
-      csv.write(result.work, result.summaries, result.usual, result.choice);
+      csv.write(result.work, result.summaries, result.defaults, result.choice);
   });
   faults.attempt([&] {
     write_trade_page(

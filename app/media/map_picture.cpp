@@ -11,10 +11,10 @@ namespace {
 /// World to picture: x to the right, y down, z is depth; all in pixels.
 Eigen::Affine3d looking_down(const Mesh& mesh, std::span<const Change> changes, int width_px,
                              int& height_px) {
-  constexpr double kTurn_rad = 0.6, kTilt_rad = 0.9;  // about the vertical; from the horizontal
+  constexpr double kFullTurn_rad = 0.6, kTilt_rad = 0.9;  // about the vertical; from the horizontal
   Eigen::Matrix3d R;
-  R.row(0) << std::cos(kTurn_rad), std::sin(kTurn_rad), 0.0;
-  const Eigen::Vector3d ahead(-std::sin(kTurn_rad), std::cos(kTurn_rad), 0.0);
+  R.row(0) << std::cos(kFullTurn_rad), std::sin(kFullTurn_rad), 0.0;
+  const Eigen::Vector3d ahead(-std::sin(kFullTurn_rad), std::cos(kFullTurn_rad), 0.0);
   R.row(2) = std::cos(kTilt_rad) * ahead - std::sin(kTilt_rad) * Eigen::Vector3d::UnitZ();
   R.row(1) = R.row(2).cross(R.row(0));
   Eigen::AlignedBox3d box;

@@ -15,10 +15,10 @@ void write_encoded(const cv::Mat& image, const std::filesystem::path& path) {
   std::vector<unsigned char> bytes;
   if (!cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 3}))
     throw Error(path.string() + ": the picture cannot be encoded as PNG");
-  WholeFile file(path);
+  AtomicFile file(path);
   file.stream().write(reinterpret_cast<const char*>(bytes.data()),
                       static_cast<std::streamsize>(bytes.size()));
-  file.put_in_place();
+  file.commit();
 }
 
 template <typename Pixel>

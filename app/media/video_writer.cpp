@@ -79,7 +79,7 @@ VideoWriter::VideoWriter(std::filesystem::path path, double frames_per_s)
   state_->codecs = codecs_for(path.extension().string());
   if (state_->codecs.empty()) throw Error(path.string() + ": a video's name ends in .mp4, .avi or .mkv");
   if (!(frames_per_s >= 1.0 && frames_per_s <= 240.0))
-    throw Error(path.string() + ": " + number_text(frames_per_s) + " frames per second: must be in 1..240");
+    throw Error(path.string() + ": " + format_number(frames_per_s) + " frames per second: must be in 1..240");
   std::error_code fault;
   if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path(), fault))
     throw Error(path.string() + ": its folder does not exist; make it first");

@@ -69,7 +69,7 @@ void fit_normals(const Mesh& fine, float reach_m, float spacing_m, Mesh& coarse)
     Eigen::Matrix3d normals = Eigen::Matrix3d::Zero();  // one row per corner
   };
   std::vector<Sums> sums(coarse.triangles.size());
-  const SurfaceNear coarse_surface(coarse, reach_m);
+  const MeshDistanceQuery coarse_surface(coarse, reach_m);
   double area_m2 = 0.0;
   for (const Triangle& t : fine.triangles) {
     const Corners place = corners_of(fine.vertices, t), shown = corners_of(fine.normals, t);

@@ -97,17 +97,18 @@ bool is_large(const Mesh& mesh) { return mesh.triangles.size() > kWholeTriangles
 
 /// Returns the mesh to simplify a level from: the coarsest one that leaves most of the bound; a large mesh is
 /// used only once.
-const ObjectLevel& base_of(float bound_m, const ObjectLevel& full, std::span<const ObjectLevel> levels) {
-  const ObjectLevel* base = is_large(full.mesh) && !levels.empty() ? levels.data() : &full;
-  for (const ObjectLevel& level : levels)
+const LevelOfDetail& base_of(float bound_m, const LevelOfDetail& full,
+                             std::span<const LevelOfDetail> levels) {
+  const LevelOfDetail* base = is_large(full.mesh) && !levels.empty() ? levels.data() : &full;
+  for (const LevelOfDetail& level : levels)
     if (level.deviation_m <= kBaseOfBound * bound_m) base = &level;
   return *base;
 }
 
 }  // namespace
 
-std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
-  std::vector<ObjectLevel> levels;
+std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh) {
+  std::vector<LevelOfDetail> levels;
   if (mesh.triangles.size() < kManyTriangles || !is_sound(mesh)) return levels;
   Eigen::AlignedBox3f box;
   for (const Triangle& t : mesh.triangles)
@@ -116,7 +117,7 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
   if (!(size_m > 0.0F) || !std::isfinite(size_m)) return levels;
 
   const bool has_normals = !mesh.normals.empty();
-  ObjectLevel full{mesh, 0.0F};
+  LevelOfDetail full{mesh, 0.0F};
   if (!has_normals) {
     weld(full.mesh);
     set_mean_normals(full.mesh);
@@ -125,7 +126,7 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
   for (float bound_m = kFinestOfSize * size_m;
        bound_m <= kCoarsestOfSize * size_m && triangles > kFewTriangles; bound_m *= kCoarser) {
     // The deviation allowed here, plus the base mesh's own, stays within the bound.
-    const ObjectLevel& finer = base_of(bound_m, full, levels);
+    const LevelOfDetail& finer = base_of(bound_m, full, levels);
     SimplifiedMesh simple =
         simplified(finer.mesh, bound_m - finer.deviation_m, kSpacingOfSize * size_m,
                    is_large(full.mesh) && levels.empty() ? kBlockTriangles : kWholeTriangles);
@@ -141,7 +142,7 @@ std::vector<ObjectLevel> object_levels(const Mesh& mesh) {
   if (!has_normals) sharpen(full.mesh);
   for (auto level = levels.begin(); level != levels.end(); ++level) {
     if (!has_normals) sharpen(level->mesh);
-    const ObjectLevel& finer = base_of(level->deviation_m, full, {levels.begin(), level});
+    const LevelOfDetail& finer = base_of(level->deviation_m, full, {levels.begin(), level});
     fit_normals(finer.mesh, level->deviation_m + finer.deviation_m, kSpacingOfSize * size_m, level->mesh);
   }
   return levels;

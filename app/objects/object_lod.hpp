@@ -7,7 +7,7 @@
 namespace roomradar {
 
 /// A simplified mesh. Its two-sided distance to the full mesh is at most deviation_m.
-struct ObjectLevel {
+struct LevelOfDetail {
   Mesh mesh;
   float deviation_m = 0.0F;
 };
@@ -17,7 +17,7 @@ struct ObjectLevel {
 /// level. Levels have normals that reproduce the full mesh's shading (fit_normals.hpp). A full mesh without
 /// normals is taken as shaded by vertex normals averaged over the adjacent faces. At faces that deviate from
 /// that mean by more than 25 degrees (sharp edges), the face normal is used.
-std::vector<ObjectLevel> object_levels(const Mesh& mesh);
+std::vector<LevelOfDetail> levels_of_detail(const Mesh& mesh);
 
 /// Returns true if a level's deviation is at most error_px pixels of the given size.
 inline bool is_fine_enough(float deviation_m, double pixel_m, double error_px) {

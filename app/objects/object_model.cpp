@@ -28,7 +28,7 @@ ObjectParts object_parts(const std::string& name, Mesh mesh) {
   if (parts.touched.empty()) throw Error(name + ": has no triangles; a virtual object is a surface");
   parts.mass = mass_properties(parts.mesh, parts.touched.is_closed());
   parts.surface = spread_points(parts.mesh);
-  parts.levels = object_levels(parts.mesh);
+  parts.levels = levels_of_detail(parts.mesh);
   return parts;
 }
 
@@ -37,7 +37,7 @@ ObjectModel::ObjectModel(GlContext& context, ObjectParts parts)
   shape.set(mesh, std::move(parts.touched));
   corners = corners_of(shape.drawn);
   middle = shape.drawn.bounds().center();
-  for (const ObjectLevel& level : parts.levels) {
+  for (const LevelOfDetail& level : parts.levels) {
     levels.push_back({level.deviation_m, std::make_unique<GpuMesh>(context)});
     levels.back().mesh->upload(level.mesh, MeshUsage::kStatic);
   }

@@ -20,8 +20,8 @@ struct ObjectParts {
   Mesh mesh;
   TriangleTree touched;  ///< collision shape, spatially sorted
   MassProperties mass;
-  SurfacePoints surface;            ///< source of its contact shadow
-  std::vector<ObjectLevel> levels;  ///< finest first
+  SurfacePoints surface;              ///< source of its contact shadow
+  std::vector<LevelOfDetail> levels;  ///< finest first
 };
 
 /// Makes the parts. Levels of a mesh with many triangles take some tenths of a second.

@@ -147,7 +147,7 @@ Mesh utah_teapot(int tessellation, double height_m) {
     throw Error("teapot tessellation = " + std::to_string(tessellation) + ": must be in 1..256");
   }
   if (!(height_m > 0.0) || !std::isfinite(height_m)) {
-    throw Error("teapot height_m = " + number_text(height_m) + ": must be finite and > 0");
+    throw Error("teapot height_m = " + format_number(height_m) + ": must be finite and > 0");
   }
   const double scale = height_m / kKnobTop;
   const int n = tessellation;

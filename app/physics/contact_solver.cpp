@@ -10,9 +10,9 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-constexpr int kMostRounds = 80;
+constexpr int kMaxIterations = 80;
 constexpr double kSettled_mps = 1e-9;
-constexpr std::size_t kMostContacts = 32;
+constexpr std::size_t kMaxContacts = 32;
 
 struct Effective {
   Vec3 x, y;                        // tangents
@@ -27,29 +27,29 @@ double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2) {
 }
 
 Eigen::Vector3d slip_at(const SolverContact& contact, const Velocity& velocity,
-                        std::span<const SolverOther> others) {
-  const Vec3 own = velocity_at(velocity, contact.arm_m);
+                        std::span<const SolverBody> others) {
+  const Vec3 own = velocity_at(velocity, contact.contact_offset_m);
   if (contact.other >= others.size()) return own;
-  return own - velocity_at(others[contact.other].velocity, contact.other_arm_m);
+  return own - velocity_at(others[contact.other].velocity, contact.other_offset_m);
 }
 
 void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& inertia_m2,
-                    const Rubbing& rubbing, Velocity& velocity, std::span<SolverOther> others) {
-  contacts = contacts.first(std::min(contacts.size(), kMostContacts));
+                    const FrictionConfig& rubbing, Velocity& velocity, std::span<SolverBody> others) {
+  contacts = contacts.first(std::min(contacts.size(), kMaxContacts));
   if (contacts.empty()) return;
   const Eigen::Matrix3d inverse = inertia_m2.inverse();
-  std::array<Effective, kMostContacts> effective;
+  std::array<Effective, kMaxContacts> effective;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     SolverContact& contact = contacts[i];
     contact.impulse_mps = 0.0;
-    contact.rub_mps.setZero();
+    contact.friction_impulse_mps.setZero();
     const auto mass_along = [&](const Vec3& direction) {
-      const Vec3 lever = contact.arm_m.cross(direction);
+      const Vec3 lever = contact.contact_offset_m.cross(direction);
       double yields = 1.0 + lever.dot(inverse * lever);
       if (contact.other < others.size()) {
-        const SolverOther& other = others[contact.other];
-        const Vec3 other_lever = contact.other_arm_m.cross(direction);
-        yields += other.gives * (1.0 + other_lever.dot(other.inverse_inertia_m2 * other_lever));
+        const SolverBody& other = others[contact.other];
+        const Vec3 other_lever = contact.other_offset_m.cross(direction);
+        yields += other.mass_ratio * (1.0 + other_lever.dot(other.inverse_inertia_m2 * other_lever));
       }
       return 1.0 / yields;
     };
@@ -62,19 +62,20 @@ void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& in
   }
   const auto apply = [&](const SolverContact& contact, const Vec3& impulse) {
     velocity.linear_mps += impulse;
-    velocity.angular_rad_s += inverse * contact.arm_m.cross(impulse);
+    velocity.angular_rad_s += inverse * contact.contact_offset_m.cross(impulse);
     if (contact.other >= others.size()) return;
-    SolverOther& other = others[contact.other];
-    other.velocity.linear_mps -= other.gives * impulse;
+    SolverBody& other = others[contact.other];
+    other.velocity.linear_mps -= other.mass_ratio * impulse;
     other.velocity.angular_rad_s -=
-        other.gives * other.inverse_inertia_m2 * contact.other_arm_m.cross(impulse);
+        other.mass_ratio * other.inverse_inertia_m2 * contact.other_offset_m.cross(impulse);
   };
   Vec3 held_back = Vec3::Zero();  // angular impulse of rolling resistance
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxIterations; ++round) {
     double change_mps = 0.0;
     if (rubbing.rolling > 0.0) {
       double limit = 0.0;
-      for (const SolverContact& contact : contacts) limit += contact.impulse_mps * contact.arm_m.norm();
+      for (const SolverContact& contact : contacts)
+        limit += contact.impulse_mps * contact.contact_offset_m.norm();
       limit *= rubbing.rolling;
       Vec3 wanted = held_back - inertia_m2 * velocity.angular_rad_s;
       const double size = wanted.norm();
@@ -92,14 +93,15 @@ void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& in
       apply(contact, more * contact.normal);
 
       const Vec3 slip = slip_at(contact, velocity, others);
-      Vec3 rub = contact.rub_mps - e.along_x * slip.dot(e.x) * e.x - e.along_y * slip.dot(e.y) * e.y;
+      Vec3 friction_impulse =
+          contact.friction_impulse_mps - e.along_x * slip.dot(e.x) * e.x - e.along_y * slip.dot(e.y) * e.y;
       const double most = rubbing.friction * contact.impulse_mps;
-      const double size = rub.norm();
-      if (size > most) rub *= most / size;
-      const Vec3 more_rub = rub - contact.rub_mps;
-      contact.rub_mps = rub;
-      apply(contact, more_rub);
-      change_mps = std::max({change_mps, std::abs(more), more_rub.lpNorm<Eigen::Infinity>()});
+      const double size = friction_impulse.norm();
+      if (size > most) friction_impulse *= most / size;
+      const Vec3 more_friction = friction_impulse - contact.friction_impulse_mps;
+      contact.friction_impulse_mps = friction_impulse;
+      apply(contact, more_friction);
+      change_mps = std::max({change_mps, std::abs(more), more_friction.lpNorm<Eigen::Infinity>()});
     }
     if (change_mps < kSettled_mps) return;
   }

@@ -14,39 +14,40 @@ struct Velocity {
 };
 
 /// Solver state of another body in contact.
-struct SolverOther {
+struct SolverBody {
   Velocity velocity;
   Eigen::Matrix3d inverse_inertia_m2 = Eigen::Matrix3d::Zero();  ///< per kg, 1/m^2, in world axes
   /// Mass ratio: the solved body's mass over this one's, >= 0; 0: impulses do not affect this one.
-  double gives = 0.0;
+  double mass_ratio = 0.0;
 };
 
 constexpr std::size_t kNoOther = std::numeric_limits<std::size_t>::max();
 
 struct SolverContact {
-  Eigen::Vector3d arm_m = Eigen::Vector3d::Zero();    ///< from the centre of mass to the contact
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the body
+  Eigen::Vector3d contact_offset_m = Eigen::Vector3d::Zero();  ///< from the centre of mass to the contact
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();           ///< unit, towards the body
   /// Min separating speed along the normal after the solve, relative to the other side; < 0 allows approach.
   double leaves_mps = 0.0;
-  std::size_t other = kNoOther;                           ///< index of the other body; kNoOther: static
-  Eigen::Vector3d other_arm_m = Eigen::Vector3d::Zero();  ///< from the other body's centre of mass
-  double impulse_mps = 0.0;                               ///< out: normal impulse per kg, >= 0
-  Eigen::Vector3d rub_mps = Eigen::Vector3d::Zero();      ///< out: friction impulse per kg, tangential
+  std::size_t other = kNoOther;                              ///< index of the other body; kNoOther: static
+  Eigen::Vector3d other_offset_m = Eigen::Vector3d::Zero();  ///< from the other body's centre of mass
+  double impulse_mps = 0.0;                                  ///< out: normal impulse per kg, >= 0
+  Eigen::Vector3d friction_impulse_mps =
+      Eigen::Vector3d::Zero();  ///< out: friction impulse per kg, tangential
 };
 
 /// Returns the body's velocity at a contact relative to the other side, normal and tangential.
 Eigen::Vector3d slip_at(const SolverContact& contact, const Velocity& velocity,
-                        std::span<const SolverOther> others);
+                        std::span<const SolverBody> others);
 
-struct Rubbing {
+struct FrictionConfig {
   double friction = 0.0;  ///< Coulomb's coefficient
   /// Rolling resistance: the max torque is this times the normal force times its contact offset.
   double rolling = 0.0;
 };
 
 /// Returns the velocity of the body's point at an offset from the centre of mass.
-inline Eigen::Vector3d velocity_at(const Velocity& velocity, const Eigen::Vector3d& arm_m) {
-  return velocity.linear_mps + velocity.angular_rad_s.cross(arm_m);
+inline Eigen::Vector3d velocity_at(const Velocity& velocity, const Eigen::Vector3d& contact_offset_m) {
+  return velocity.linear_mps + velocity.angular_rad_s.cross(contact_offset_m);
 }
 
 /// Returns the kinetic energy of 1 kg, m^2/s^2.
@@ -60,6 +61,6 @@ double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2);
 ///                    surfaces
 /// Source: Catto, Iterative dynamics with temporal coherence, GDC 2005.
 void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& inertia_m2,
-                    const Rubbing& rubbing, Velocity& velocity, std::span<SolverOther> others = {});
+                    const FrictionConfig& rubbing, Velocity& velocity, std::span<SolverBody> others = {});
 
 }  // namespace roomradar

@@ -24,7 +24,7 @@ constexpr double kDoubtful_m = 0.003;  // deeper overlap along gravity: sideways
 
 bool is_finite(const Body& body) {
   return body.T_world_object.matrix().allFinite() && body.velocity_world_mps.allFinite() &&
-         body.spin_world_rad_s.allFinite() && body.mass.centre_object.allFinite() &&
+         body.angular_velocity_world_rad_s.allFinite() && body.mass.centre_object.allFinite() &&
          body.mass.inertia_m2.allFinite();
 }
 
@@ -36,7 +36,7 @@ bool make_usable(Contact& contact, const Vec3& direction) {
   if (!contact) return true;
   // lower_m of an overlap may be -infinity: deeper than the radar searched.
   const bool has_lower = std::isfinite(contact.lower_m) || contact.status == ContactStatus::kOverlap;
-  if (!std::isfinite(contact.travel_m) || !has_lower) return false;
+  if (!std::isfinite(contact.contact_distance_m) || !has_lower) return false;
   const double length = contact.normal_world.norm();
   const bool faces_object =
       std::isfinite(length) && length > 0.5 && contact.normal_world.dot(direction) < -1e-3 * length;
@@ -47,7 +47,7 @@ bool make_usable(Contact& contact, const Vec3& direction) {
 /// State of one call of advance().
 class Stepper {
  public:
-  Stepper(Body& body, const BodyProbe& probe, const PhysicsConfig& config, StepReport& report)
+  Stepper(Body& body, const CollisionQueries& probe, const PhysicsConfig& config, StepReport& report)
       : body_(body), probe_(probe), config_(config), report_(report) {
     const double g = config.gravity_world_mps2.norm();
     if (g > 0.0) down_ = config.gravity_world_mps2 / g;
@@ -55,7 +55,7 @@ class Stepper {
 
   /// Queries below the body, and moves it out of surfaces that entered it, along the shortest of gravity and
   /// the given directions.
-  void leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world);
+  void leave_overlaps(double dt_s, std::span<const Vec3> depenetration_directions_world);
 
   /// Returns true if the support found by leave_overlaps() still holds the body, within noise.
   [[nodiscard]] bool is_held_up() const;
@@ -84,15 +84,15 @@ class Stepper {
   static Way overlap_in(const Contact& contact, const Vec3& direction);
   void hold();
   void collide(const Contact& contact, Vec3& remaining);
-  void linger(double dt_s, bool is_balanced);
+  void update_sleep(double dt_s, bool is_balanced);
 
   Body& body_;
-  const BodyProbe& probe_;
+  const CollisionQueries& probe_;
   const PhysicsConfig& config_;
   StepReport& report_;
   Vec3 down_ = Vec3::Zero();
-  Contact below_;                 // along gravity, before any motion
-  std::optional<Kinds> crossed_;  // kinds that cross the body before any motion, once queried
+  Contact below_;                           // along gravity, before any motion
+  std::optional<SurfaceKindMask> crossed_;  // kinds that cross the body before any motion, once queried
   std::optional<Push> push_;
   RigidScratch scratch_;
   std::array<Vec3, 2> met_normals_;
@@ -109,29 +109,29 @@ Contact Stepper::ask(const Vec3& direction, double distance_m) {
 void Stepper::hold() {
   report_.status = StepStatus::kHeld;
   body_.velocity_world_mps.setZero();
-  body_.spin_world_rad_s.setZero();
+  body_.angular_velocity_world_rad_s.setZero();
 }
 
 void Stepper::wake() {
-  if (!body_.at_rest) return;
+  if (!body_.asleep) return;
   report_.woke = true;
-  body_.at_rest = false;
+  body_.asleep = false;
 }
 
 Stepper::Way Stepper::overlap_in(const Contact& contact, const Vec3& direction) {
   if (contact.status != ContactStatus::kOverlap) return {};
-  return {std::max(-contact.travel_m, 0.0), direction, contact};
+  return {std::max(-contact.contact_distance_m, 0.0), direction, contact};
 }
 
 bool Stepper::is_in_a_hollow(const Way& way) {
   constexpr double kTouching_m = 1e-6;
-  const Touched kind = way.contact.touched;
+  const SurfaceKind kind = way.contact.touched;
   if (way.depth_m <= config_.overlap_allowed_m || is_moving_surface(kind) || is_one_sided(kind)) return false;
   if (!crossed_) crossed_ = probe_.near(body_.T_world_object, kTouching_m, 0, scratch_.near);
   return (*crossed_ & bit_of(kind)) == 0;
 }
 
-void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_world) {
+void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> depenetration_directions_world) {
   Way way;
   const auto consider = [&](const Way& other) {
     if (!(other.depth_m > 0.0) || (way.depth_m > 0.0 && other.depth_m >= way.depth_m)) return;
@@ -144,7 +144,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
     below_ = ask(down_, config_.wake_gap_m + 2.0 * config_.contact_margin_m);
     consider(overlap_in(below_, down_));
   }
-  for (const Vec3& direction : push_directions_world)
+  for (const Vec3& direction : depenetration_directions_world)
     if (direction.allFinite() && direction.norm() > 0.5) look(direction.normalized());
   // A wall that grazes the body's side overlaps deeply along gravity: test sideways before lifting the body
   // onto it.
@@ -156,12 +156,13 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   if (failed() || way.depth_m <= 0.0) return;
 
   report_.deepest_overlap_m = std::max(report_.deepest_overlap_m, way.depth_m);
-  if (way.contact.touched == Touched::kStatic)
+  if (way.contact.touched == SurfaceKind::kStatic)
     report_.deepest_static_overlap_m = std::max(report_.deepest_static_overlap_m, way.depth_m);
-  if (way.depth_m <= (body_.at_rest ? config_.wake_overlap_m : config_.overlap_allowed_m)) return;
+  if (way.depth_m <= (body_.asleep ? config_.wake_overlap_m : config_.overlap_allowed_m)) return;
 
   wake();
-  const double push_m = std::min(way.depth_m + config_.contact_margin_m, config_.push_out_mps * dt_s);
+  const double push_m =
+      std::min(way.depth_m + config_.contact_margin_m, config_.max_depenetration_mps * dt_s);
   if (is_moving_surface(way.contact.touched)) {
     const bool is_out_at_once = way.direction == down_ && way.depth_m <= push_m;
     if (!is_out_at_once)
@@ -174,7 +175,7 @@ void Stepper::leave_overlaps(double dt_s, std::span<const Vec3> push_directions_
   double free_m = push_m;
   if (behind.status == ContactStatus::kContact)
     free_m = std::max(behind.lower_m - config_.contact_margin_m, 0.0);
-  if (behind.status == ContactStatus::kOverlap && behind.touched == Touched::kStatic) free_m = 0.0;
+  if (behind.status == ContactStatus::kOverlap && behind.touched == SurfaceKind::kStatic) free_m = 0.0;
   body_.T_world_object.translation() -= std::min(push_m, free_m) * way.direction;
   const double inward_mps = body_.velocity_world_mps.dot(way.direction);
   if (inward_mps > 0.0) body_.velocity_world_mps -= inward_mps * way.direction;
@@ -186,11 +187,12 @@ bool Stepper::is_held_up() const {
 }
 
 bool Stepper::has_lost_a_neighbour() const {
-  return std::any_of(body_.leans.begin(), body_.leans.end(), [&](const Body::Leant& leant) {
-    const bool is_there = std::any_of(probe_.others.begin(), probe_.others.end(),
-                                      [&](const OtherBody& other) { return other.body == leant.on; });
-    return !is_there || strayed_m(*leant.on, leant.T_world_other) > config_.wake_moved_m;
-  });
+  return std::any_of(
+      body_.supporting_bodies.begin(), body_.supporting_bodies.end(), [&](const Body::SupportingBody& leant) {
+        const bool is_there = std::any_of(probe_.others.begin(), probe_.others.end(),
+                                          [&](const SceneBody& other) { return other.body == leant.on; });
+        return !is_there || strayed_m(*leant.on, leant.T_world_other) > config_.wake_moved_m;
+      });
 }
 
 /// Removes the velocity into the surface (with restitution and friction), and the remaining motion into it.
@@ -230,38 +232,39 @@ void Stepper::collide(const Contact& contact, Vec3& remaining) {
 
 /// Advances the sleep timer of a supported body, and puts it to sleep when it expires. An unbalanced body
 /// takes longer, since it may be about to tip.
-void Stepper::linger(double dt_s, bool is_balanced) {
+void Stepper::update_sleep(double dt_s, bool is_balanced) {
   constexpr double kLongerUnbalanced = 4.0;
-  if (body_.lingered_s <= 0.0 || !(strayed_m(body_, body_.lingers_at) <= config_.rest_drift_m)) {
-    body_.lingers_at = body_.T_world_object;
-    body_.lingered_s = 0.0;
+  if (body_.sleep_timer_s <= 0.0 ||
+      !(strayed_m(body_, body_.sleep_pose_candidate) <= config_.sleep_drift_m)) {
+    body_.sleep_pose_candidate = body_.T_world_object;
+    body_.sleep_timer_s = 0.0;
   }
-  body_.lingered_s += dt_s;
-  if (body_.lingered_s < config_.rest_after_s * (is_balanced ? 1.0 : kLongerUnbalanced)) return;
-  body_.at_rest = true;
-  body_.leans.clear();
-  for (const Body* other : scratch_.bodies) body_.leans.push_back({other, other->T_world_object});
-  body_.lingered_s = 0.0;  // the timer restarts when the body is set in motion again
+  body_.sleep_timer_s += dt_s;
+  if (body_.sleep_timer_s < config_.sleep_after_s * (is_balanced ? 1.0 : kLongerUnbalanced)) return;
+  body_.asleep = true;
+  body_.supporting_bodies.clear();
+  for (const Body* other : scratch_.bodies) body_.supporting_bodies.push_back({other, other->T_world_object});
+  body_.sleep_timer_s = 0.0;  // the timer restarts when the body is set in motion again
   body_.velocity_world_mps.setZero();
-  body_.spin_world_rad_s.setZero();
+  body_.angular_velocity_world_rad_s.setZero();
 }
 
 void Stepper::move(double dt_s) {
-  const RigidPiece piece = move_rigidly(body_, dt_s, probe_, config_, push_, scratch_, report_);
+  const SubstepResult piece = simulate_substep(body_, dt_s, probe_, config_, push_, scratch_, report_);
   if (piece.crosses) {
-    if (slide(piece.left_s)) linger(dt_s, /*is_balanced=*/true);
+    if (slide(piece.left_s)) update_sleep(dt_s, /*is_balanced=*/true);
     return;
   }
   if (piece.is_held_up) {
     body_.rests_on = piece.rests_on;
-    if (!push_) linger(dt_s, piece.is_balanced);
+    if (!push_) update_sleep(dt_s, piece.is_balanced);
   } else {
-    body_.rests_on = Touched::kNothing;
+    body_.rests_on = SurfaceKind::kNothing;
   }
 }
 
 bool Stepper::slide(double dt_s) {
-  body_.spin_world_rad_s.setZero();
+  body_.angular_velocity_world_rad_s.setZero();
   body_.velocity_world_mps += config_.gravity_world_mps2 * dt_s;
   const double speed_mps = body_.velocity_world_mps.norm();
   if (speed_mps > config_.max_speed_mps) body_.velocity_world_mps *= config_.max_speed_mps / speed_mps;
@@ -269,7 +272,7 @@ bool Stepper::slide(double dt_s) {
   auto position = body_.T_world_object.translation();
   Vec3 remaining = body_.velocity_world_mps * dt_s;
   bool is_supported = false;
-  body_.rests_on = Touched::kNothing;
+  body_.rests_on = SurfaceKind::kNothing;
   met_count_ = 0;
   for (int slide = 0; slide < config_.max_slides; ++slide) {
     const double distance_m = remaining.norm();
@@ -300,7 +303,7 @@ bool Stepper::slide(double dt_s) {
 }  // namespace
 
 void require_valid(const PhysicsConfig& config) {
-  const SettingRules require{"physics"};
+  const ConfigCheck require{"physics"};
   const auto require_positive = [&](const char* name, double value) {
     require(std::isfinite(value) && value > 0.0, name, value, "> 0");
   };
@@ -320,19 +323,19 @@ void require_valid(const PhysicsConfig& config) {
   require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,
           "at most 1000 max_step_s");
   require(config.max_slides >= 1 && config.max_slides <= 64, "max_slides", config.max_slides, "in 1..64");
-  require_positive("rest_drift_m", config.rest_drift_m);
-  require_positive("rest_after_s", config.rest_after_s);
+  require_positive("rest_drift_m", config.sleep_drift_m);
+  require_positive("rest_after_s", config.sleep_after_s);
   require_positive("wake_gap_m", config.wake_gap_m);
   require_positive("wake_moved_m", config.wake_moved_m);
   require_positive("wake_overlap_m", config.wake_overlap_m);
   require_not_negative("overlap_allowed_m", config.overlap_allowed_m);
-  require_positive("push_out_mps", config.push_out_mps);
+  require_positive("push_out_mps", config.max_depenetration_mps);
   require_positive("max_speed_mps", config.max_speed_mps);
-  require_positive("max_spin_rad_s", config.max_spin_rad_s);
+  require_positive("max_spin_rad_s", config.max_angular_rad_s);
 }
 
-BodyProbe probe_of(CyberRadar& radar, NearField& field, const TriangleTree& object, const RadarScene& scene,
-                   double* spent_ms) {
+CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
+                                        const RadarScene& scene, double* spent_ms) {
   struct Spent {
     double* spent_ms;
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
@@ -340,27 +343,27 @@ BodyProbe probe_of(CyberRadar& radar, NearField& field, const TriangleTree& obje
       if (spent_ms != nullptr) *spent_ms += ms_since(start);
     }
   };
-  BodyProbe probe;
+  CollisionQueries probe;
   probe.travel = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const Vec3& direction,
                                double distance_m) {
     const Spent spent{spent_ms};
     return radar.query({{&object, T_world_object}, direction, distance_m}, scene);
   };
-  probe.near = [&, spent_ms](const Eigen::Isometry3d& T_world_object, double reach_m, Kinds left_out,
-                             std::vector<NearPoint>& points) {
+  probe.near = [&, spent_ms](const Eigen::Isometry3d& T_world_object, double reach_m,
+                             SurfaceKindMask left_out, std::vector<ClosestPoint>& points) {
     const Spent spent{spent_ms};
     return field.near({&object, T_world_object}, scene, reach_m, left_out, points);
   };
   probe.free_time = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
-                                  double duration_s, double keep_m, Kinds left_out) {
+                                  double duration_s, double keep_m, SurfaceKindMask left_out) {
     const Spent spent{spent_ms};
     return field.free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out);
   };
   return probe;
 }
 
-StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
-                   std::span<const Eigen::Vector3d> push_directions_world) {
+StepReport advance(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,
+                   std::span<const Eigen::Vector3d> depenetration_directions_world) {
   StepReport report;
   if (!std::isfinite(dt_s) || dt_s < 0.0 || !is_finite(body)) {
     report.status = StepStatus::kInvalid;
@@ -370,38 +373,39 @@ StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const Physic
   dt_s = std::min(dt_s, config.max_advance_s);
 
   Stepper stepper(body, probe, config, report);
-  stepper.leave_overlaps(dt_s, push_directions_world);
+  stepper.leave_overlaps(dt_s, depenetration_directions_world);
   if (stepper.failed()) return report;
-  const bool is_still = body.velocity_world_mps.isZero() && body.spin_world_rad_s.isZero();
-  if (body.at_rest && is_still && stepper.is_held_up() && !stepper.has_lost_a_neighbour()) return report;
+  const bool is_still = body.velocity_world_mps.isZero() && body.angular_velocity_world_rad_s.isZero();
+  if (body.asleep && is_still && stepper.is_held_up() && !stepper.has_lost_a_neighbour()) return report;
   stepper.wake();
 
   constexpr double kOver = 0.05;  // a Kinect's 33.37 ms are two substeps of 1/60 s, not three
   const int pieces = std::max(static_cast<int>(std::ceil(dt_s / config.max_step_s - kOver)), 1);
-  for (int piece = 0; piece < pieces && !body.at_rest && !stepper.failed(); ++piece)
+  for (int piece = 0; piece < pieces && !body.asleep && !stepper.failed(); ++piece)
     stepper.move(dt_s / pieces);
   return report;
 }
 
-bool is_swallowed(const Body& body, double dt_s, const TravelQuery& back, const PhysicsConfig& config,
-                  std::span<const Eigen::Vector3d> push_directions_world) {
-  const double most_m = config.push_out_mps * dt_s + config.wake_overlap_m;
+bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
+                 std::span<const Eigen::Vector3d> depenetration_directions_world) {
+  const double most_m = config.max_depenetration_mps * dt_s + config.wake_overlap_m;
   bool is_deep = false;
   const auto is_shallow = [&](const Vec3& direction) {
     const Contact contact = back(body.T_world_object, direction, config.contact_margin_m);
     if (contact.status != ContactStatus::kOverlap) return false;
     is_deep = true;
-    return -contact.travel_m <= most_m;
+    return -contact.contact_distance_m <= most_m;
   };
   const double g = config.gravity_world_mps2.norm();
   if (g > 0.0 && is_shallow(config.gravity_world_mps2 / g)) return false;
-  if (std::any_of(push_directions_world.begin(), push_directions_world.end(), is_shallow)) return false;
+  if (std::any_of(depenetration_directions_world.begin(), depenetration_directions_world.end(), is_shallow))
+    return false;
   return is_deep;
 }
 
-PushDirections push_directions(std::initializer_list<const Mesh*> moving_world,
-                               const Eigen::Vector3d& centre_world, double reach_m,
-                               const Eigen::Vector3d& up_world) {
+PushDirections depenetration_directions(std::initializer_list<const Mesh*> moving_world,
+                                        const Eigen::Vector3d& centre_world, double reach_m,
+                                        const Eigen::Vector3d& up_world) {
   Vec3 nearest = Vec3::Zero();
   Vec3 sum = Vec3::Zero();
   double nearest_m2 = reach_m * reach_m;

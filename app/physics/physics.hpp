@@ -22,18 +22,19 @@ struct Body {
   std::string name;
   MassProperties mass;
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< of the centre of mass
-  Eigen::Vector3d spin_world_rad_s = Eigen::Vector3d::Zero();    ///< angular velocity, right-handed
-  bool at_rest = false;
-  double lingered_s = 0.0;  ///< sleep timer: time supported while within rest_drift_m of lingers_at
-  Eigen::Isometry3d lingers_at = Eigen::Isometry3d::Identity();
-  Touched rests_on = Touched::kNothing;  ///< surface kind that supported it when last moved
+  Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();            ///< of the centre of mass
+  Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< angular velocity, right-handed
+  bool asleep = false;
+  double sleep_timer_s =
+      0.0;  ///< sleep timer: time supported while within sleep_drift_m of sleep_pose_candidate
+  Eigen::Isometry3d sleep_pose_candidate = Eigen::Isometry3d::Identity();
+  SurfaceKind rests_on = SurfaceKind::kNothing;  ///< surface kind that supported it when last moved
   /// Bodies in contact when this one fell asleep, and their poses then.
-  struct Leant {
+  struct SupportingBody {
     const Body* on;
     Eigen::Isometry3d T_world_other;
   };
-  std::vector<Leant> leans;
+  std::vector<SupportingBody> supporting_bodies;
 };
 
 struct PhysicsConfig {
@@ -51,48 +52,48 @@ struct PhysicsConfig {
   double max_step_s = 1.0 / 60.0;  ///< max substep, exceeded by 5 % at most
   /// Max time simulated per call; the rest is dropped (a stalled camera must not launch objects).
   double max_advance_s = 0.5;
-  int max_slides = 16;          ///< max stops per substep; the rest of the substep is then dropped
-  double rest_drift_m = 0.012;  ///< max motion of any point over rest_after_s to fall asleep on a support
-  double rest_after_s = 0.3;
+  int max_slides = 16;           ///< max stops per substep; the rest of the substep is then dropped
+  double sleep_drift_m = 0.012;  ///< max motion of any point over sleep_after_s to fall asleep on a support
+  double sleep_after_s = 0.3;
   double wake_gap_m = 0.012;      ///< asleep: wakes if its support sinks by more; sensor noise is some mm
   double wake_moved_m = 0.001;    ///< asleep: wakes if another body it touched moves by more than this
   double wake_overlap_m = 0.008;  ///< asleep: wakes and moves out if support or hand enters by more than this
-  double overlap_allowed_m = 0.001;  ///< awake: overlap up to this is left uncorrected
-  double push_out_mps = 1.0;         ///< max depenetration speed, and max speed of a pushing hand
+  double overlap_allowed_m = 0.001;    ///< awake: overlap up to this is left uncorrected
+  double max_depenetration_mps = 1.0;  ///< max depenetration speed, and max speed of a pushing hand
   double max_speed_mps = 20.0;
-  double max_spin_rad_s = 60.0;  ///< max angular velocity, about ten turns per second
+  double max_angular_rad_s = 60.0;  ///< max angular velocity, about ten turns per second
 };
 /// Throws Error such as "physics.friction = -1: must be >= 0".
 void require_valid(const PhysicsConfig& config);
 
 /// Finds the first contact of the object at T_world_object along a unit direction, within distance_m. Calls
 /// CyberRadar::query() with the object's mesh and the frame's scene, or an analytic room in tests.
-using TravelQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
-                                          const Eigen::Vector3d& direction_world, double distance_m)>;
+using DistanceQuery = std::function<Contact(const Eigen::Isometry3d& T_world_object,
+                                            const Eigen::Vector3d& direction_world, double distance_m)>;
 
 /// The body that one of the scene's trees belongs to.
-struct OtherBody {
-  Body* body = nullptr;  ///< null: the tree is not a body
-  double gives = 0.0;    ///< mass ratio as SolverOther::gives; 0: constrained, such as in a user's hand
+struct SceneBody {
+  Body* body = nullptr;     ///< null: the tree is not a body
+  double mass_ratio = 0.0;  ///< mass ratio as SolverBody::gives; 0: constrained, such as in a user's hand
 };
 
 /// Collision queries of a moving body: its own mesh against the frame's scene.
-struct BodyProbe {
-  TravelQuery travel;
-  /// As NearField::near() and NearField::free_time().
-  std::function<Kinds(const Eigen::Isometry3d& T_world_object, double reach_m, Kinds left_out,
-                      std::vector<NearPoint>& points)>
+struct CollisionQueries {
+  DistanceQuery travel;
+  /// As ProximityQuery::near() and ProximityQuery::free_time().
+  std::function<SurfaceKindMask(const Eigen::Isometry3d& T_world_object, double reach_m,
+                                SurfaceKindMask left_out, std::vector<ClosestPoint>& points)>
       near;
   std::function<FreeTime(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
-                         double duration_s, double keep_m, Kinds left_out)>
+                         double duration_s, double keep_m, SurfaceKindMask left_out)>
       free_time;
   /// For the scene's first trees, by index; later trees are static.
-  std::span<const OtherBody> others = {};
+  std::span<const SceneBody> others = {};
 };
 /// Binds the queries to an object's tree. All references must outlive the returned probe.
 /// @param spent_ms  accumulates the time of all queries; may be null
-BodyProbe probe_of(CyberRadar& radar, NearField& field, const TriangleTree& object, const RadarScene& scene,
-                   double* spent_ms = nullptr);
+CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
+                                        const RadarScene& scene, double* spent_ms = nullptr);
 
 enum class StepStatus {
   kMoved,    ///< or free to move, whether asleep or not
@@ -103,7 +104,7 @@ enum class StepStatus {
 struct [[nodiscard]] StepReport {
   StepStatus status = StepStatus::kMoved;
   int contacts = 0;  ///< number of surface kinds touched, summed over all stops
-  std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by kind of surface
+  std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< the same, by kind of surface
   int queries = 0;                                    ///< number of radar queries along a direction
   /// Deepest overlap before it was resolved, along the shortest depenetration direction, >= 0.
   double deepest_overlap_m = 0.0;
@@ -129,20 +130,21 @@ struct [[nodiscard]] StepReport {
 /// rotation, by radar queries along its path.
 ///
 /// @param dt_s   seconds since the last call, >= 0; 0 changes nothing
-/// @param push_directions_world  unit directions from the body to moving surfaces (push_directions()),
+/// @param depenetration_directions_world  unit directions from the body to moving surfaces
+/// (depenetration_directions()),
 ///               candidates for the shortest depenetration; may be empty
-/// A sleeping body is tested only along gravity and push_directions_world, and noise does not move it. A body
-/// that fell asleep in contact with another one wakes when that one moves or disappears: it follows, or tips
-/// if its support is withdrawn. A sleeping body with a non-zero velocity wakes. Steps longer than
-/// max_advance_s are cut to it.
-StepReport advance(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
-                   std::span<const Eigen::Vector3d> push_directions_world = {});
+/// A sleeping body is tested only along gravity and depenetration_directions_world, and noise does not move
+/// it. A body that fell asleep in contact with another one wakes when that one moves or disappears: it
+/// follows, or tips if its support is withdrawn. A sleeping body with a non-zero velocity wakes. Steps longer
+/// than max_advance_s are cut to it.
+StepReport advance(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,
+                   std::span<const Eigen::Vector3d> depenetration_directions_world = {});
 
 /// Returns true if the inferred backs of dynamic surfaces, queried by `back`, engulf the body instead of
 /// pushing it: they overlap it, in every direction deeper than a pushing surface can enter in one step.
 /// Engulfing must not throw a body: leave the backs out of the scene until it ends.
-bool is_swallowed(const Body& body, double dt_s, const TravelQuery& back, const PhysicsConfig& config,
-                  std::span<const Eigen::Vector3d> push_directions_world);
+bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
+                 std::span<const Eigen::Vector3d> depenetration_directions_world);
 
 /// Horizontal unit directions from a body to nearby moving surfaces: to the nearest vertex, and to the mean
 /// of all vertices of the meshes within reach_m of centre_world. None, one or two.
@@ -153,8 +155,8 @@ struct PushDirections {
     return {direction_world.data(), static_cast<std::size_t>(count)};
   }
 };
-PushDirections push_directions(std::initializer_list<const Mesh*> moving_world,
-                               const Eigen::Vector3d& centre_world, double reach_m,
-                               const Eigen::Vector3d& up_world = Eigen::Vector3d::UnitZ());
+PushDirections depenetration_directions(std::initializer_list<const Mesh*> moving_world,
+                                        const Eigen::Vector3d& centre_world, double reach_m,
+                                        const Eigen::Vector3d& up_world = Eigen::Vector3d::UnitZ());
 
 }  // namespace roomradar

@@ -189,7 +189,7 @@ std::vector<float> distance_inside(const std::vector<char>& is_place, int size) 
                                 static_cast<std::size_t>(i)]
                      : 0.0F;
   };
-  const auto sweep = [&](int begin, int end, int step) {
+  const auto time_of_impact = [&](int begin, int end, int step) {
     for (int j = begin; j != end; j += step) {
       for (int i = begin; i != end; i += step) {
         float& here = distance[static_cast<std::size_t>(j) * static_cast<std::size_t>(size) +
@@ -200,8 +200,8 @@ std::vector<float> distance_inside(const std::vector<char>& is_place, int size) 
     }
   };
   for (std::size_t cell = 0; cell < is_place.size(); ++cell) distance[cell] = is_place[cell] ? 1e9F : 0.0F;
-  sweep(0, size, 1);
-  sweep(size - 1, -1, -1);
+  time_of_impact(0, size, 1);
+  time_of_impact(size - 1, -1, -1);
   return distance;
 }
 
@@ -218,7 +218,7 @@ double centrality(const Eigen::Vector3d& p_camera, const Intrinsics& camera) {
 }  // namespace
 
 void require_valid(const PlacementConfig& config) {
-  const SettingRules rules{"placement"};
+  const ConfigCheck rules{"placement"};
   const auto require = [&](const char* name, double value, double lowest, double highest) {
     rules(value >= lowest && value <= highest, name, value,
           ("in " + std::to_string(lowest) + ".." + std::to_string(highest)).c_str());

@@ -14,7 +14,7 @@ namespace {
 using Vec3 = Eigen::Vector3d;
 
 /// Returns t > 0 at which origin + t * direction hits the triangle; infinite if it misses.
-double meeting_of(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
+double classify_pair(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c) {
   constexpr double kMiss = std::numeric_limits<double>::infinity();
   const Vec3 ab = b - a, ac = c - a;
   const Vec3 across = direction.cross(ac);
@@ -36,7 +36,7 @@ Ray ray_through(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camer
           (T_world_camera.linear() * back_project(camera, u_px, v_px, 1.0)).normalized()};
 }
 
-std::optional<SurfaceHit> surface_hit(const TreeInstance& mesh, const Ray& ray, double reach_m) {
+std::optional<MeshHit> hit_mesh(const TreeInstance& mesh, const Ray& ray, double reach_m) {
   if (mesh.tree == nullptr || mesh.tree->empty()) return std::nullopt;
   const TriangleTree& tree = *mesh.tree;
   const Eigen::Isometry3d T_mesh_world = mesh.T_world_mesh.inverse();
@@ -78,7 +78,7 @@ std::optional<SurfaceHit> surface_hit(const TreeInstance& mesh, const Ray& ray, 
         const Vec3 a = tree.vertices()[triangle[0]].cast<double>();
         const Vec3 b = tree.vertices()[triangle[1]].cast<double>();
         const Vec3 c = tree.vertices()[triangle[2]].cast<double>();
-        const double t = meeting_of(origin, direction, a, b, c);
+        const double t = classify_pair(origin, direction, a, b, c);
         if (!(t < best_m)) continue;
         best_m = t;
         normal = (b - a).cross(c - a);
@@ -86,7 +86,7 @@ std::optional<SurfaceHit> surface_hit(const TreeInstance& mesh, const Ray& ray, 
     }
   }
   if (normal.isZero()) return std::nullopt;
-  SurfaceHit hit;
+  MeshHit hit;
   hit.distance_m = best_m;
   hit.point_world = ray.origin_world + best_m * ray.direction_world;
   hit.normal_world = (mesh.T_world_mesh.linear() * normal).normalized();

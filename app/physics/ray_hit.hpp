@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-struct SurfaceHit {
+struct MeshHit {
   double distance_m = 0.0;  ///< from the ray's origin
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, facing the ray's origin
@@ -25,6 +25,6 @@ Ray ray_through(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camer
 /// Returns the first triangle that the ray hits, on either side, within reach_m. Returns nothing for a null
 /// or empty mesh, or a ray that is not finite. Source: Möller and Trumbore, Fast, minimum storage
 /// ray-triangle intersection, 1997, in double.
-std::optional<SurfaceHit> surface_hit(const TreeInstance& mesh, const Ray& ray, double reach_m);
+std::optional<MeshHit> hit_mesh(const TreeInstance& mesh, const Ray& ray, double reach_m);
 
 }  // namespace roomradar

@@ -21,12 +21,14 @@ void limit(Vec3& v, double most) {
   if (size > most) v *= most / size;
 }
 
-Velocity velocity_of(const Body& body) { return {body.velocity_world_mps, body.spin_world_rad_s}; }
+Velocity velocity_of(const Body& body) {
+  return {body.velocity_world_mps, body.angular_velocity_world_rad_s};
+}
 
 /// State of one substep: the body, its contacts, and the time left.
 class Piece {
  public:
-  Piece(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
+  Piece(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,
         const std::optional<Push>& push, RigidScratch& scratch, StepReport& report)
       : body_(body),
         left_s_(dt_s),
@@ -39,38 +41,38 @@ class Piece {
         resting_{config.friction, config.rolling} {
     const double g = config.gravity_world_mps2.norm();
     if (g > 0.0) up_ = -config.gravity_world_mps2 / g;
-    if (push) left_out_ = bit_of(Touched::kDynamic) | bit_of(Touched::kInferredBack);
+    if (push) left_out_ = bit_of(SurfaceKind::kDynamic) | bit_of(SurfaceKind::kInferredBack);
   }
 
-  RigidPiece run();
+  SubstepResult run();
 
  private:
   bool find_contacts();
   void set_room(double dt_s);
-  std::size_t other_on(const NearPoint& p);
+  std::size_t other_on(const ClosestPoint& p);
   void bounce();
   void let_sleepers_lie();
   [[nodiscard]] double energy_of_all() const;
   [[nodiscard]] Velocity held_up_after(Velocity velocity, double dt_s);
   [[nodiscard]] Velocity mean_with(const Velocity& after);
   [[nodiscard]] Velocity lift_back(double dt_s);
-  void see_support(RigidPiece& piece);
+  void see_support(SubstepResult& piece);
   void go(const Velocity& after);
 
   Body& body_;
   double left_s_;
-  const BodyProbe& probe_;
+  const CollisionQueries& probe_;
   const PhysicsConfig& config_;
   const std::optional<Push>& push_;
   RigidScratch& scratch_;
   StepReport& report_;
   Velocity velocity_;
-  Rubbing resting_;
+  FrictionConfig resting_;
   Vec3 up_ = Vec3::Zero();
   Vec3 centre_ = Vec3::Zero();
   Eigen::Matrix3d inertia_ = Eigen::Matrix3d::Identity();
-  NearPoint limited_by_;
-  Kinds left_out_ = 0;
+  ClosestPoint limited_by_;
+  SurfaceKindMask left_out_ = 0;
 };
 
 /// Finds contacts at the present pose. Returns false if a surface other than the pushing one crosses the
@@ -81,8 +83,8 @@ bool Piece::find_contacts() {
   if (probe_.near(body_.T_world_object, std::max(reach_m, 1e-6), left_out_, scratch_.near) != 0) return false;
   centre_ = centre_world(body_);
   inertia_ = inertia_world_m2(body_);
-  if (limited_by_.kind != Touched::kNothing) {
-    const bool is_known = std::any_of(scratch_.near.begin(), scratch_.near.end(), [&](const NearPoint& p) {
+  if (limited_by_.kind != SurfaceKind::kNothing) {
+    const bool is_known = std::any_of(scratch_.near.begin(), scratch_.near.end(), [&](const ClosestPoint& p) {
       return (p.point_world - limited_by_.point_world).norm() < margin_m &&
              p.normal_world.dot(limited_by_.normal_world) > 0.99;
     });
@@ -92,18 +94,18 @@ bool Piece::find_contacts() {
   scratch_.kinds.clear();
   scratch_.others.clear();
   scratch_.bodies.clear();
-  for (const NearPoint& p : scratch_.near) {
+  for (const ClosestPoint& p : scratch_.near) {
     SolverContact& contact = scratch_.contacts.emplace_back();
-    contact.arm_m = p.point_world + p.gap_m * p.normal_world - centre_;
+    contact.contact_offset_m = p.point_world + p.gap_m * p.normal_world - centre_;
     contact.normal = p.normal_world;
     contact.other = other_on(p);
     if (contact.other != kNoOther)
-      contact.other_arm_m = p.point_world - centre_world(*scratch_.bodies[contact.other]);
+      contact.other_offset_m = p.point_world - centre_world(*scratch_.bodies[contact.other]);
     scratch_.kinds.push_back(p.kind);
   }
   if (push_) {
     SolverContact& contact = scratch_.contacts.emplace_back();
-    contact.arm_m = push_->point_world - centre_;
+    contact.contact_offset_m = push_->point_world - centre_;
     contact.normal = push_->normal_world;
     scratch_.kinds.push_back(push_->touched);
   }
@@ -111,13 +113,13 @@ bool Piece::find_contacts() {
 }
 
 /// Returns the index of the body in contact at p, adding it if new; kNoOther for a static surface.
-std::size_t Piece::other_on(const NearPoint& p) {
+std::size_t Piece::other_on(const ClosestPoint& p) {
   if (p.tree >= probe_.others.size() || probe_.others[p.tree].body == nullptr) return kNoOther;
-  const auto& [body, gives] = probe_.others[p.tree];
+  const auto& [body, mass_ratio] = probe_.others[p.tree];
   const auto known = std::find(scratch_.bodies.begin(), scratch_.bodies.end(), body);
   if (known != scratch_.bodies.end()) return static_cast<std::size_t>(known - scratch_.bodies.begin());
   scratch_.bodies.push_back(body);
-  scratch_.others.push_back({velocity_of(*body), inertia_world_m2(*body).inverse(), gives});
+  scratch_.others.push_back({velocity_of(*body), inertia_world_m2(*body).inverse(), mass_ratio});
   return scratch_.bodies.size() - 1;
 }
 
@@ -125,8 +127,9 @@ std::size_t Piece::other_on(const NearPoint& p) {
 double Piece::energy_of_all() const {
   double sum = energy(velocity_, inertia_);
   for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
-    const SolverOther& other = scratch_.others[i];
-    if (other.gives > 0.0) sum += energy(other.velocity, inertia_world_m2(*scratch_.bodies[i])) / other.gives;
+    const SolverBody& other = scratch_.others[i];
+    if (other.mass_ratio > 0.0)
+      sum += energy(other.velocity, inertia_world_m2(*scratch_.bodies[i])) / other.mass_ratio;
   }
   return sum;
 }
@@ -134,13 +137,13 @@ double Piece::energy_of_all() const {
 /// Keeps sleeping bodies static that are hit more slowly than kNudge_mps.
 void Piece::let_sleepers_lie() {
   for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
-    if (!scratch_.bodies[i]->at_rest || !scratch_.others[i].velocity.linear_mps.isZero()) continue;
+    if (!scratch_.bodies[i]->asleep || !scratch_.others[i].velocity.linear_mps.isZero()) continue;
     const bool is_woken =
         std::any_of(scratch_.contacts.begin(), scratch_.contacts.end(), [&](const SolverContact& contact) {
           return contact.other == i &&
-                 -velocity_at(velocity_, contact.arm_m).dot(contact.normal) > kNudge_mps;
+                 -velocity_at(velocity_, contact.contact_offset_m).dot(contact.normal) > kNudge_mps;
         });
-    if (!is_woken) scratch_.others[i].gives = 0.0;
+    if (!is_woken) scratch_.others[i].mass_ratio = 0.0;
   }
 }
 
@@ -164,7 +167,7 @@ void Piece::bounce() {
   constexpr double kSame = 1.0 + 1e-9;
   const double before = energy_of_all();
   const Velocity entering = velocity_;
-  const Rubbing rubbing{config_.friction, 0.0};
+  const FrictionConfig rubbing{config_.friction, 0.0};
   solve_contacts(scratch_.contacts, inertia_, rubbing, velocity_, scratch_.others);
   if (is_fast && !push_ && energy_of_all() > kSame * before) {
     // Newton's restitution with friction at several contacts may add energy: repeat without restitution.
@@ -176,13 +179,13 @@ void Piece::bounce() {
   }
   for (std::size_t i = 0; i < scratch_.others.size(); ++i) {
     scratch_.bodies[i]->velocity_world_mps = scratch_.others[i].velocity.linear_mps;
-    scratch_.bodies[i]->spin_world_rad_s = scratch_.others[i].velocity.angular_rad_s;
+    scratch_.bodies[i]->angular_velocity_world_rad_s = scratch_.others[i].velocity.angular_rad_s;
   }
-  std::array<bool, kTouchedKinds> is_met{};  // each kind counts once, whatever its number of points
+  std::array<bool, kSurfaceKinds> is_met{};  // each kind counts once, whatever its number of points
   for (std::size_t i = 0; i < scratch_.contacts.size(); ++i)
     if (scratch_.contacts[i].impulse_mps > 0.0) is_met[static_cast<std::size_t>(scratch_.kinds[i])] = true;
-  for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
-    if (is_met[kind]) note_contact(static_cast<Touched>(kind), report_);
+  for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
+    if (is_met[kind]) note_contact(static_cast<SurfaceKind>(kind), report_);
 }
 
 /// Allows each contact to close its gap, down to the margin, within dt_s.
@@ -198,7 +201,7 @@ void Piece::set_room(double dt_s) {
 Velocity Piece::held_up_after(Velocity velocity, double dt_s) {
   velocity.linear_mps += config_.gravity_world_mps2 * dt_s;
   set_room(dt_s);
-  for (SolverOther& other : scratch_.others) other.gives = 0.0;
+  for (SolverBody& other : scratch_.others) other.mass_ratio = 0.0;
   solve_contacts(scratch_.contacts, inertia_, resting_, velocity, scratch_.others);
   return velocity;
 }
@@ -220,7 +223,7 @@ Velocity Piece::lift_back(double dt_s) {
   return lift;
 }
 
-void Piece::see_support(RigidPiece& piece) {
+void Piece::see_support(SubstepResult& piece) {
   double most = 0.0;
   for (std::size_t i = 0; i < scratch_.contacts.size(); ++i) {
     const SolverContact& contact = scratch_.contacts[i];
@@ -256,7 +259,7 @@ void Piece::go(const Velocity& after) {
         T_half.linear() * body_.mass.inertia_m2 * T_half.linear().transpose();
     motion.angular_rad_s = inertia_half.inverse() * (inertia_ * motion.angular_rad_s);
   }
-  limit(motion.angular_rad_s, config_.max_spin_rad_s);
+  limit(motion.angular_rad_s, config_.max_angular_rad_s);
   const Velocity lift = lift_back(left_s_);
   motion.linear_m_s += lift.linear_mps;
   motion.angular_rad_s += lift.angular_rad_s;
@@ -275,14 +278,14 @@ void Piece::go(const Velocity& after) {
       inertia_ * (velocity_.angular_rad_s + part * (after.angular_rad_s - velocity_.angular_rad_s));
   velocity_.angular_rad_s = inertia_world_m2(body_).inverse() * momentum_after;
   limit(velocity_.linear_mps, config_.max_speed_mps);
-  limit(velocity_.angular_rad_s, config_.max_spin_rad_s);
+  limit(velocity_.angular_rad_s, config_.max_angular_rad_s);
   left_s_ -= gone_s;
 }
 
-RigidPiece Piece::run() {
-  RigidPiece piece;
+SubstepResult Piece::run() {
+  SubstepResult piece;
   limit(velocity_.linear_mps, config_.max_speed_mps);
-  limit(velocity_.angular_rad_s, config_.max_spin_rad_s);
+  limit(velocity_.angular_rad_s, config_.max_angular_rad_s);
   const double whole_s = left_s_;
   for (int stop = 0; stop < config_.max_slides && left_s_ > kNoTime_s; ++stop) {
     if (!find_contacts()) {
@@ -303,7 +306,7 @@ RigidPiece Piece::run() {
     go(after);
   }
   body_.velocity_world_mps = velocity_.linear_mps;
-  body_.spin_world_rad_s = velocity_.angular_rad_s;
+  body_.angular_velocity_world_rad_s = velocity_.angular_rad_s;
   piece.is_balanced = piece.is_balanced && piece.is_held_up;
   return piece;
 }
@@ -327,13 +330,14 @@ Eigen::Matrix3d inertia_world_m2(const Body& body) {
   return R * body.mass.inertia_m2 * R.transpose();
 }
 
-void note_contact(Touched touched, StepReport& report) {
+void note_contact(SurfaceKind touched, StepReport& report) {
   ++report.contacts;
   ++report.contacts_by_kind[static_cast<std::size_t>(touched)];
 }
 
-RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
-                        const std::optional<Push>& push, RigidScratch& scratch, StepReport& report) {
+SubstepResult simulate_substep(Body& body, double dt_s, const CollisionQueries& probe,
+                               const PhysicsConfig& config, const std::optional<Push>& push,
+                               RigidScratch& scratch, StepReport& report) {
   return Piece(body, dt_s, probe, config, push, scratch, report).run();
 }
 

@@ -13,40 +13,41 @@ struct Push {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, towards the body
   double speed_mps = 0.0;                                  ///< min speed along the normal
-  Touched touched = Touched::kDynamic;
+  SurfaceKind touched = SurfaceKind::kDynamic;
 };
 
-constexpr bool is_moving_surface(Touched kind) {
-  return kind == Touched::kDynamic || kind == Touched::kInferredBack;
+constexpr bool is_moving_surface(SurfaceKind kind) {
+  return kind == SurfaceKind::kDynamic || kind == SurfaceKind::kInferredBack;
 }
 
 inline constexpr double kSupportCosine = 0.5;  ///< surfaces within 60 degrees of horizontal support a body
 
 /// Counts a contact with a surface of this kind.
-void note_contact(Touched touched, StepReport& report);
+void note_contact(SurfaceKind touched, StepReport& report);
 
-struct [[nodiscard]] RigidPiece {
+struct [[nodiscard]] SubstepResult {
   /// A surface other than the pushing one crosses the body: the rest of the substep was not simulated.
   bool crosses = false;
   double left_s = 0.0;       ///< time not simulated, if crosses
   bool is_held_up = false;   ///< by a contact with its normal within 60 degrees of up
   bool is_balanced = false;  ///< supported, and would not start to move from rest
-  Touched rests_on = Touched::kNothing;
+  SurfaceKind rests_on = SurfaceKind::kNothing;
 };
 
 /// Contacts of a moving body; buffers reused between the substeps of a step.
 struct RigidScratch {
-  std::vector<NearPoint> near;
+  std::vector<ClosestPoint> near;
   std::vector<SolverContact> contacts;
-  std::vector<Touched> kinds;
-  std::vector<SolverOther> others;  ///< solver state of the bodies in contact
-  std::vector<Body*> bodies;        ///< these bodies, by the same index
+  std::vector<SurfaceKind> kinds;
+  std::vector<SolverBody> others;  ///< solver state of the bodies in contact
+  std::vector<Body*> bodies;       ///< these bodies, by the same index
 };
 
 /// Simulates one substep of advance().
 /// @param report  contacts and queries are added to it
-RigidPiece move_rigidly(Body& body, double dt_s, const BodyProbe& probe, const PhysicsConfig& config,
-                        const std::optional<Push>& push, RigidScratch& scratch, StepReport& report);
+SubstepResult simulate_substep(Body& body, double dt_s, const CollisionQueries& probe,
+                               const PhysicsConfig& config, const std::optional<Push>& push,
+                               RigidScratch& scratch, StepReport& report);
 
 /// Makes the rotation orthonormal again after accumulated rounding.
 void make_orthonormal(Eigen::Isometry3d& T);

@@ -22,13 +22,13 @@ double moved_share(int objects, int turns) { return std::max(1.0 / std::max(obje
 double part_ratio(const BudgetStep& step, std::size_t part, const FrameLoad& load) {
   const double measured = step.ratios[part];
   if (part != index_of(FramePart::kPhysics) || step.objects == 0) return measured;
-  return measured * moved_share(load.moving + load.resting, step.object_turns) /
-         moved_share(step.objects, step.object_turns);
+  return measured * moved_share(load.moving + load.resting, step.move_every_n_frames) /
+         moved_share(step.objects, step.move_every_n_frames);
 }
 
 double part_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
   return state.scales[part] * part_ratio(state.front[step], part, load) *
-         usual_ms(static_cast<FramePart>(part), load);
+         nominal_ms(static_cast<FramePart>(part), load);
 }
 
 /// What is left of a frame from a part on.
@@ -81,7 +81,7 @@ std::size_t half_way_back(const BudgetState& state, const BudgetConfig& config, 
 }
 
 /// The step that the frames to come begin with.
-void settle(BudgetState& state, const BudgetConfig& config, const FrameLoad& load) {
+void adapt(BudgetState& state, const BudgetConfig& config, const FrameLoad& load) {
   const std::size_t before = state.settled;
   const std::size_t with_time = most_accurate_in_time(state, config, load);
   state.calm_frames = with_time < before ? state.calm_frames + 1 : 0;
@@ -115,14 +115,14 @@ double median_of(std::array<double, 3> values) {
 
 }  // namespace
 
-double usual_ms(FramePart part, const FrameLoad& load) {
+double nominal_ms(FramePart part, const FrameLoad& load) {
   // Estimates for 640 x 480 and teapots: a fifth of the image moved costs 2 ms more than nothing; an object
   // that moves 0.2 ms, one that rests 0.05; each drawn 0.1 ms.
   switch (part) {
     case FramePart::kLocate:
       return 6.0;
     case FramePart::kMesh:
-      return 0.3 + 10.0 * load.moved_fraction;
+      return 0.3 + 10.0 * load.dynamic_fraction;
     case FramePart::kPhysics:
       return 0.1 + 0.2 * load.moving + 0.05 * load.resting;
     case FramePart::kCompose:
@@ -150,7 +150,7 @@ std::optional<std::size_t> decide(BudgetState& state, const BudgetConfig& config
                                   const FrameLoad& load, double elapsed_ms) {
   const std::size_t before = state.step, first = index_of(part);
   if (part == FramePart::kLocate) {
-    settle(state, config, load);
+    adapt(state, config, load);
     state.step = state.settled;
   } else if (elapsed_ms + rest_ms(state, state.step, first, load) > config.budget_ms) {
     state.step = step_in_time(state, config, state.step, first, load, elapsed_ms);

@@ -14,9 +14,9 @@ namespace roomradar {
 struct BudgetStep {
   /// Times of its parts over those with the default quality; 0: such a part is not made in this run.
   std::array<double, kFrameParts> ratios{1.0, 1.0, 1.0, 1.0};
-  bool alternates = false;  ///< no frame both moves the objects and makes a picture
-  int object_turns = 1;     ///< of so many frames that move objects, an object is moved in one ...
-  int objects = 0;          ///< ... and so many were there when the ratios were measured; 0: not known
+  bool alternates = false;      ///< no frame both moves the objects and makes a picture
+  int move_every_n_frames = 1;  ///< of so many frames that move objects, an object is moved in one ...
+  int objects = 0;              ///< ... and so many were there when the ratios were measured; 0: not known
 };
 
 struct BudgetConfig {
@@ -35,7 +35,7 @@ struct BudgetState {
   std::vector<BudgetStep> front;  ///< from accurate to fast
   std::size_t settled = 0;        ///< step of the front that frames begin with
   std::size_t step = 0;           ///< of the part that is being made
-  /// What each part takes at the first step, over what usual_ms() says.
+  /// What each part takes at the first step, over what nominal_ms() says.
   std::array<double, kFrameParts> scales{1.0, 1.0, 1.0, 1.0};
   std::array<std::array<double, 3>, kFrameParts> lately{};  ///< the same of the last three frames
   std::array<int, kFrameParts> not_made_frames{};           ///< on end, in which a part took next to nothing
@@ -61,7 +61,7 @@ BudgetState start_budget(std::vector<BudgetStep> front, const BudgetConfig& conf
 
 /// The shape of the cost of a part by its load, for an accurate setting, ms on the machine it was measured
 /// on: only how it grows matters, the rest is learned.
-double usual_ms(FramePart part, const FrameLoad& load);
+double nominal_ms(FramePart part, const FrameLoad& load);
 
 /// Before a part begins: the step for it and what follows; state.step is set. Within a frame it goes to
 /// faster steps only, and for that frame alone: the next begins where frames are settled, unless that happens

@@ -33,8 +33,8 @@ constexpr std::string_view to_string(FramePart part) {
 }
 
 struct FrameLoad {
-  double moved_fraction = 0.0;  ///< of the depth image's pixels; before kMesh, of the frame before
-  int moving = 0;               ///< virtual objects in the room that are not at rest
+  double dynamic_fraction = 0.0;  ///< of the depth image's pixels; before kMesh, of the frame before
+  int moving = 0;                 ///< virtual objects in the room that are not at rest
   int resting = 0;
 };
 

@@ -143,9 +143,9 @@ void write_presets(const Presets& presets, const fs::path& path) {
                              {"objects", step.objects},
                              {"figures", step.figures}});
   }
-  WholeFile file(path);
+  AtomicFile file(path);
   file.stream() << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
-  file.put_in_place();
+  file.commit();
 }
 
 fs::path presets_file(const std::string& given) {

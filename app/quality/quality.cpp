@@ -13,8 +13,8 @@
 namespace roomradar {
 namespace {
 
-std::string word_of(double value) { return number_text(value); }
-std::string word_of(int value) { return number_text(value); }
+std::string word_of(double value) { return format_number(value); }
+std::string word_of(int value) { return format_number(value); }
 std::string word_of(bool value) { return value ? "on" : "off"; }
 std::string word_of(RadarMode value) { return std::string(to_string(value)); }
 
@@ -74,16 +74,16 @@ void set_field_of(Quality& quality, std::string_view name, std::string_view word
 }
 
 template <typename Quality>
-FieldWords words_of_fields(const Quality& quality, const Quality& usual) {
-  std::vector<std::string> usual_words;
-  visit_fields(usual, [&](const QualityField& /*field*/, const auto& value) {
-    usual_words.push_back(word_of(value));
+FieldWords words_of_fields(const Quality& quality, const Quality& defaults) {
+  std::vector<std::string> default_words;
+  visit_fields(defaults, [&](const QualityField& /*field*/, const auto& value) {
+    default_words.push_back(word_of(value));
   });
   FieldWords words;
   std::size_t i = 0;
   visit_fields(quality, [&](const QualityField& field, const auto& value) {
     std::string word = word_of(value);
-    if (word != usual_words[i++]) words.emplace_back(field.name, std::move(word));
+    if (word != default_words[i++]) words.emplace_back(field.name, std::move(word));
   });
   return words;
 }
@@ -100,11 +100,11 @@ void set_field(RunQuality& quality, std::string_view name, std::string_view word
   set_field_of(quality, name, word);
 }
 
-FieldWords words_of(const ScanQuality& quality, const ScanQuality& usual) {
-  return words_of_fields(quality, usual);
+FieldWords words_of(const ScanQuality& quality, const ScanQuality& defaults) {
+  return words_of_fields(quality, defaults);
 }
-FieldWords words_of(const RunQuality& quality, const RunQuality& usual) {
-  return words_of_fields(quality, usual);
+FieldWords words_of(const RunQuality& quality, const RunQuality& defaults) {
+  return words_of_fields(quality, defaults);
 }
 
 }  // namespace roomradar

@@ -24,17 +24,17 @@ struct ScanQuality {
 struct RunQuality {
   int depth_stride = 1;
   int tracking_px = 160;
-  double mesh_sigmas = 0.8;
+  double mesh_tolerance_sigmas = 0.8;
   bool fine_mesh = false;
   RadarMode radar = RadarMode::kExact;
   int radar_px = 64;
   double physics_step_s = 1.0 / 60.0;
-  int object_turns = 1;
+  int move_every_n_frames = 1;
   double object_error_px = 0.7;
   bool soft_edges = true;
   bool shadows = true;
-  int shadow_turns = 1;
-  int picture_turns = 1;
+  int shadow_every_n_frames = 1;
+  int picture_every_n_frames = 1;
   friend bool operator==(const RunQuality&, const RunQuality&) = default;
 };
 
@@ -82,7 +82,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
           "how far the mesh of what moved may lie from what was seen, in standard deviations of the\n"
           "sensor's noise (0.8)",
           0.1, 100.0},
-      quality.mesh_sigmas);
+      quality.mesh_tolerance_sigmas);
   visit(
       QualityField{
           "fine_mesh", "--fine-mesh", "on|off",
@@ -104,7 +104,7 @@ void visit_fields(Quality& quality, Visit&& visit) {
         quality.physics_step_s);
   visit(QualityField{"object_turns", "--object-turns", "N",
                      "an object is moved every Nth frame, then by all of the time since (1)", 1, 16},
-        quality.object_turns);
+        quality.move_every_n_frames);
   visit(QualityField{"object_error_px", "--object-error", "PX",
                      "how far the mesh that is drawn of an object may lie from its file's, pixels (0.7)",
                      0.01, 100.0},
@@ -120,11 +120,11 @@ void visit_fields(Quality& quality, Visit&& visit) {
   visit(QualityField{"shadow_turns", "--shadow-turns", "N",
                      "every Nth frame the shadow of one object that has come to rest is made in full (1)", 1,
                      1000},
-        quality.shadow_turns);
+        quality.shadow_every_n_frames);
   visit(QualityField{"picture_turns", "--picture-turns", "N",
                      "a picture is made of every Nth frame, and objects move in the others (1: both in all)",
                      1, 16},
-        quality.picture_turns);
+        quality.picture_every_n_frames);
 }
 
 /// Throws Error "depth_stride = 3: must be 1, 2 or 4" and the like.
@@ -147,7 +147,7 @@ void set_fields(Quality& quality, const FieldWords& words) {
 
 /// Names and words of the fields that are not as usual, in the order of visit_fields(). From the usual
 /// quality set_field() makes the very same quality of them, to the last bit of its numbers.
-FieldWords words_of(const ScanQuality& quality, const ScanQuality& usual = {});
-FieldWords words_of(const RunQuality& quality, const RunQuality& usual = {});
+FieldWords words_of(const ScanQuality& quality, const ScanQuality& defaults = {});
+FieldWords words_of(const RunQuality& quality, const RunQuality& defaults = {});
 
 }  // namespace roomradar

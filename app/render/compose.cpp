@@ -45,7 +45,7 @@ void cast_shadow(const ShadowCaster& caster, const Intrinsics& camera,
     for (int x = rect.x; x < rect.x + rect.width; ++x) {
       if (!(depth_m[x] > 0.0F)) continue;
       const Eigen::Vector3f ray = ray_at_column_0 + static_cast<float>(x) * step_x;
-      const float taken = sky_taken(*caster.shadow, camera_from_object_m + depth_m[x] * ray);
+      const float taken = ambient_occlusion(*caster.shadow, camera_from_object_m + depth_m[x] * ray);
       if (taken <= 0.0F) continue;
       const float left = 1.0F - strength * taken;
       Rgb& pixel = pixels[x];
@@ -100,7 +100,7 @@ void require_size(const char* what, const Image<Pixel>& image, int width_px, int
 
 void require_valid(const ComposeConfig& config) {
   require_valid(config.occlusion);
-  const SettingRules require{"compose"};
+  const ConfigCheck require{"compose"};
   const auto is_length = [](float value_m) { return value_m >= 0.0F && value_m <= 1.0F; };
   require(is_length(config.shadow_strength), "shadow_strength", config.shadow_strength, "in 0..1");
 }

@@ -182,7 +182,7 @@ Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3
   return T_world_object * shadow.middle_object_m - shadow.R_world_object * shadow.middle_object_m;
 }
 
-float sky_taken(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m) {
+float ambient_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m) {
   if (shadow.covered.empty()) return 0.0F;
   const float clearance_m = shadow.bottom_m - p_object_m.z();
   const float u = (p_object_m.x() - shadow.x0_m) / shadow.cell_m;

@@ -48,6 +48,6 @@ Eigen::Vector3d origin_world(const ContactShadow& shadow, const Eigen::Isometry3
 
 /// Returns the occluded fraction of the sky at a real surface point; p_object_m = point minus the object's
 /// origin, world axes. Returns 0 for points more than some centimetres above the object's lowest point.
-float sky_taken(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m);
+float ambient_occlusion(const ContactShadow& shadow, const Eigen::Vector3f& p_object_m);
 
 }  // namespace roomradar

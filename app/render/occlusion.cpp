@@ -274,7 +274,7 @@ void soften(const Image<float>& hidden, const MaskImage& covered, Image<float>& 
 }  // namespace
 
 void require_valid(const OcclusionConfig& config) {
-  const SettingRules require{"occlusion"};
+  const ConfigCheck require{"occlusion"};
   const auto is_length = [](float value_m) { return value_m >= 0.0F && value_m <= 1.0F; };
   require(is_length(config.tolerance_m), "tolerance_m", config.tolerance_m, "in 0..1");
   require(is_length(config.tolerance_per_m2), "tolerance_per_m2", config.tolerance_per_m2, "in 0..1");

@@ -35,7 +35,7 @@ nlohmann::json settings_of(const RunCommand& command) {
   if (!command.preset.empty()) settings["preset"] = command.preset;
   if (!command.presets.empty()) settings["presets"] = command.presets;
   if (command.budget_ms) settings["budget_ms"] = *command.budget_ms;
-  if (command.adopt_after_s) settings["adopt_s"] = *command.adopt_after_s;
+  if (command.commit_after_s) settings["adopt_s"] = *command.commit_after_s;
   if (!command.calibration.empty()) settings["calibration"] = command.calibration;
   if (command.frames) settings["frames"] = {command.frames->first, command.frames->last};
   return settings;
@@ -71,7 +71,7 @@ Script script_of(const RunCommand& command) {
 
 void require_can_save_map(const RunCommand& command, const Script& script) {
   if (command.save_map.empty()) return;
-  if (!command.adopt_after_s && !has(script, Action::kAdopt))
+  if (!command.commit_after_s && !has(script, Action::kCommit))
     throw Error("--save-map " + command.save_map +
                 ": nothing would change in the map; add --adopt SECONDS, or an adopt event to the script");
   require_can_become_map(command.save_map, {command.report, command.frames_csv, command.video,
@@ -144,12 +144,12 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
     config.watch = [budget = run.budget.get()](FramePart part, const FrameLoad& load) {
       return budget->before(part, load);
     };
-  if (command.adopt_after_s || has(run.script, Action::kAdopt)) {
-    config.adopt.emplace();
-    config.adopt->after_s = command.adopt_after_s;
-    config.adopt->surface = surface_config_of(run.map.info);
+  if (command.commit_after_s || has(run.script, Action::kCommit)) {
+    config.map_updates.emplace();
+    config.map_updates->after_s = command.commit_after_s;
+    config.map_updates->surface = surface_config_of(run.map.info);
     // A device does not wait, unless it is to be repeated.
-    config.adopt->wait = !run.is_live || !command.record_session.empty();
+    config.map_updates->wait = !run.is_live || !command.record_session.empty();
   }
   return config;
 }
@@ -201,7 +201,7 @@ void play_frames(OpenedRun& run, std::unique_ptr<FrameSource> frames) {
 
 }  // namespace
 
-std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link) {
+std::unique_ptr<OpenedRun> open_run(const RunCommand& command, UiChannel* link) {
   auto opened = std::make_unique<OpenedRun>(command);
   OpenedRun& run = *opened;
   run.report.command = "run";

@@ -44,6 +44,6 @@ struct OpenedRun {
 /// Opens what the command names, reads the map, makes the session. Throws Error where one of them cannot be,
 /// before anything of it is played.
 /// @param link  to the window; null: there is none
-std::unique_ptr<OpenedRun> open_run(const RunCommand& command, PlayLink* link);
+std::unique_ptr<OpenedRun> open_run(const RunCommand& command, UiChannel* link);
 
 }  // namespace roomradar

@@ -15,8 +15,9 @@ namespace {
 std::vector<BudgetStep> steps_of(const std::vector<FrontStep>& front, bool has_picture) {
   std::vector<BudgetStep> steps;
   for (const FrontStep& step : front) {
-    const bool alternates = has_picture && step.run.picture_turns > 1;
-    const int turns = alternates ? std::max(step.run.object_turns / 2, 1) : step.run.object_turns;
+    const bool alternates = has_picture && step.run.picture_every_n_frames > 1;
+    const int turns =
+        alternates ? std::max(step.run.move_every_n_frames / 2, 1) : step.run.move_every_n_frames;
     steps.push_back({step.part_ratios, alternates, turns, step.objects});
     if (!has_picture) steps.back().ratios[index_of(FramePart::kCompose)] = 0.0;
   }
@@ -26,13 +27,14 @@ std::vector<BudgetStep> steps_of(const std::vector<FrontStep>& front, bool has_p
 /// Whether a part is made alike with both, in the frames that have it.
 bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
   const auto of_mesh = [](const RunQuality& q) {
-    return std::tie(q.depth_stride, q.mesh_sigmas, q.fine_mesh);
+    return std::tie(q.depth_stride, q.mesh_tolerance_sigmas, q.fine_mesh);
   };
   const auto of_physics = [](const RunQuality& q) {
-    return std::tuple(q.radar, q.radar_px, q.object_turns, q.physics_step_s, q.picture_turns > 1);
+    return std::tuple(q.radar, q.radar_px, q.move_every_n_frames, q.physics_step_s,
+                      q.picture_every_n_frames > 1);
   };
   const auto of_compose = [](const RunQuality& q) {
-    return std::tie(q.object_error_px, q.soft_edges, q.shadows, q.shadow_turns);
+    return std::tie(q.object_error_px, q.soft_edges, q.shadows, q.shadow_every_n_frames);
   };
   switch (part) {
     case FramePart::kLocate:
@@ -60,10 +62,10 @@ void give_alike_parts_one_ratio(std::vector<FrontStep>& front) {
 
 /// What a frame of some load takes of the default's, about.
 double part_of_usual(const FrontStep& step) {
-  constexpr FrameLoad kSome{.moved_fraction = 0.1, .moving = 2, .resting = 2};
+  constexpr FrameLoad kSome{.dynamic_fraction = 0.1, .moving = 2, .resting = 2};
   double ms = 0.0, default_ms = 0.0;
   for (std::size_t part = 0; part < kFrameParts; ++part) {
-    const double part_ms = usual_ms(static_cast<FramePart>(part), kSome);
+    const double part_ms = nominal_ms(static_cast<FramePart>(part), kSome);
     ms += step.part_ratios[part] * part_ms;
     default_ms += part_ms;
   }

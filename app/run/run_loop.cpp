@@ -38,7 +38,7 @@ void control(PlaybackSource& source, CameraPlay camera) {
 void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& name) {
   if (!session.picture().empty()) write_png(session.picture(), name.string() + ".png");
   if (result.status == FrameStatus::kDone)
-    write_png(session.scene().moved_mask(), name.string() + ".moved.png");
+    write_png(session.scene().dynamic_mask(), name.string() + ".moved.png");
 }
 
 class RunLoop {
@@ -186,7 +186,7 @@ void RunLoop::count_skipped(const std::string& fault) {
 std::string RunLoop::picture_name() {
   const bool is_again = frame_.index <= last_picture_;
   last_picture_ = std::max(last_picture_, frame_.index);
-  return frame_number_text(frame_.index) + (is_again ? "-" + frame_number_text(run_frame_) : "");
+  return format_frame_number(frame_.index) + (is_again ? "-" + format_frame_number(run_frame_) : "");
 }
 
 void RunLoop::keep(const FrameResult& result) {

@@ -28,32 +28,32 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                               (180.0 / std::numbers::pi);
     objects.push_back({{"name", object->body.name},
                        {"in_room", object->in_room},
-                       {"at_rest", object->body.at_rest},
+                       {"at_rest", object->body.asleep},
                        {"rests_on", to_string(object->body.rests_on)},
                        {"began_in_unknown", object->began_in_unknown},
                        {"position_m", to_json(object->body.T_world_object.translation())},
                        {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
                        {"turned_deg", turned_deg}});
   }
-  nlohmann::json adopted = nlohmann::json::array();
-  for (const AdoptedChange& change : session.adopted())
-    adopted.push_back({{"change", to_string(change.kind)},
-                       {"time_s", change.stamp_s - totals.first_stamp_s},
-                       {"frame", change.frame},
-                       {"position_m", to_json(change.box_world.center())},
-                       {"size_m", to_json(change.box_world.sizes())}});
+  nlohmann::json committed_changes = nlohmann::json::array();
+  for (const CommittedChange& change : session.committed_changes())
+    committed_changes.push_back({{"change", to_string(change.kind)},
+                                 {"time_s", change.stamp_s - totals.first_stamp_s},
+                                 {"frame", change.frame},
+                                 {"position_m", to_json(change.box_world.center())},
+                                 {"size_m", to_json(change.box_world.sizes())}});
   nlohmann::json lost = nlohmann::json::array();
   for (const LostSpan& span : totals.lost.spans)
     lost.push_back({{"from_frame", span.from}, {"until_frame", span.until}});
   nlohmann::json contacts_by_kind = nlohmann::json::object();
-  for (std::size_t kind = 1; kind < kTouchedKinds; ++kind)
-    contacts_by_kind[std::string(to_string(static_cast<Touched>(kind)))] = totals.contacts_by_kind[kind];
+  for (std::size_t kind = 1; kind < kSurfaceKinds; ++kind)
+    contacts_by_kind[std::string(to_string(static_cast<SurfaceKind>(kind)))] = totals.contacts_by_kind[kind];
   nlohmann::json results = {
       {"frames_located", totals.located},
       {"frames_degenerate", totals.degenerate},
       {"lost", lost},
       {"frames_dropped", totals.dropped.count},
-      {"moved_fraction_mean", totals.per_frame(totals.moved_fraction)},
+      {"moved_fraction_mean", totals.per_frame(totals.dynamic_fraction)},
       {"moved_fraction_max", totals.max_moved_fraction},
       {"dynamic_triangles_mean", totals.per_frame(totals.dynamic_triangles)},
       {"inferred_triangles_mean", totals.per_frame(totals.inferred_triangles)},
@@ -65,7 +65,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"deepest_penetration_m", totals.deepest_penetration_m},
       {"needed", to_json(totals.use)},
       {"objects", objects},
-      {"adopted", adopted},
+      {"adopted", committed_changes},
   };
   if (!totals.last_fault.empty()) results["last_fault"] = totals.last_fault;
   return results;
@@ -75,9 +75,9 @@ void print_summary(const RunTotals& totals, const Session& session) {
   std::printf(
       "located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
       static_cast<long long>(totals.located), static_cast<long long>(totals.read),
-      100.0 * totals.per_frame(totals.moved_fraction), totals.per_frame(totals.dynamic_triangles));
+      100.0 * totals.per_frame(totals.dynamic_fraction), totals.per_frame(totals.dynamic_triangles));
   print_use(totals.use);
-  for (const AdoptedChange& change : session.adopted()) {
+  for (const CommittedChange& change : session.committed_changes()) {
     const Eigen::Vector3d p = change.box_world.center(), size = change.box_world.sizes();
     std::printf("adopted at %.1f s: what %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
                 change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
@@ -96,8 +96,8 @@ void print_summary(const RunTotals& totals, const Session& session) {
     else
       std::printf(
           "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),
-          object->body.at_rest ? "at rest" : "moving", p.x(), p.y(), p.z(),
-          object->body.rests_on == Touched::kUnknownFrontier ? ", on the border of unknown space" : "",
+          object->body.asleep ? "at rest" : "moving", p.x(), p.y(), p.z(),
+          object->body.rests_on == SurfaceKind::kUnknownFrontier ? ", on the border of unknown space" : "",
           note_on(*object));
   }
 }

@@ -17,8 +17,8 @@ namespace roomradar {
 /// Sums over the frames of a run, as the report wants them.
 struct RunTotals {
   std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0;
-  std::array<std::int64_t, kTouchedKinds> contacts_by_kind{};
-  double moved_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
+  std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
+  double dynamic_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;
   double deepest_penetration_m = 0.0;
   double first_stamp_s = 0.0;
@@ -33,12 +33,12 @@ struct RunTotals {
     use.add(frame.use, session.objects());
     if (frame.tracking == TrackStatus::kDegenerate) ++degenerate;
     contacts += frame.contacts;
-    for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
+    for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
       contacts_by_kind[kind] += frame.contacts_by_kind[kind];
     const double fraction = frame.foreground.valid > 0 ? static_cast<double>(frame.foreground.moved) /
                                                              static_cast<double>(frame.foreground.valid)
                                                        : 0.0;
-    moved_fraction += fraction;
+    dynamic_fraction += fraction;
     max_moved_fraction = std::max(max_moved_fraction, fraction);
     dynamic_triangles += static_cast<double>(frame.dynamic_triangles);
     inferred_triangles += static_cast<double>(frame.inferred_triangles);

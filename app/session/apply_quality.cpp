@@ -17,16 +17,16 @@ void apply(const RunQuality& quality, SessionConfig& config) {
   const DepthMeshConfig whole_mesh;
   config.scene.mesh.stride_px = std::max(1, whole_mesh.stride_px / quality.depth_stride);
   config.scene.mesh.skirt_gap_px = whole_mesh.skirt_gap_px / quality.depth_stride;
-  config.scene.moved.deviation_sigmas = static_cast<float>(quality.mesh_sigmas);
+  config.scene.moved.deviation_sigmas = static_cast<float>(quality.mesh_tolerance_sigmas);
   config.fine_mesh = quality.fine_mesh;
   config.radar = {.mode = quality.radar, .resolution_px = quality.radar_px};
   config.physics.max_step_s = quality.physics_step_s;
-  config.object_turns = quality.object_turns;
+  config.move_every_n_frames = quality.move_every_n_frames;
   config.object_error_px = quality.object_error_px;
   config.picture.occlusion.edge_reach_px = quality.soft_edges ? OcclusionConfig{}.edge_reach_px : 0;
   config.picture.shadow_strength = quality.shadows ? ComposeConfig{}.shadow_strength : 0.0F;
-  config.shadow_turns = quality.shadow_turns;
-  config.picture_turns = quality.picture_turns;
+  config.shadow_every_n_frames = quality.shadow_every_n_frames;
+  config.picture_every_n_frames = quality.picture_every_n_frames;
 }
 
 }  // namespace roomradar

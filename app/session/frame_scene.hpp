@@ -1,4 +1,4 @@
-// live_scene.hpp: what a virtual object can touch in a frame: the saved room, and what has moved in it.
+// frame_scene.hpp: what a virtual object can touch in a frame: the saved room, and what has moved in it.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -20,27 +20,27 @@
 
 namespace roomradar {
 
-struct LiveSceneConfig {
+struct FrameSceneConfig {
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   ForegroundConfig foreground = {};
-  MovedSurfaceConfig moved = {};  ///< of kMap
-  DepthMeshConfig mesh = {};      ///< of the others
+  DynamicSurfaceConfig moved = {};  ///< of kMap
+  DepthMeshConfig mesh = {};        ///< of the others
 };
 
-/// Made anew from each frame: render_expected, find_moved, mesh_moved, in this order. Not thread safe.
-class LiveScene {
+/// Made anew from each frame: render_expected, find_dynamic, mesh_dynamic, in this order. Not thread safe.
+class FrameScene {
  public:
   /// `room` is the static mesh in the world, `unknown` the surface round space that nobody has seen, which
   /// can be touched but not seen; null: such space is free. They and the context must outlive this. Throws
   /// Error if the config is out of its rules.
-  LiveScene(GlContext& context, const Shape& room, const LiveSceneConfig& config,
-            const TriangleTree* unknown = nullptr);
+  FrameScene(GlContext& context, const Shape& room, const FrameSceneConfig& config,
+             const TriangleTree* unknown = nullptr);
 
   /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
   /// Returns the triangles drawn for it.
   std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
   /// All of it but what can be touched; from the next frame on. The rules must hold.
-  void set_fineness(const LiveSceneConfig& config) {
+  void set_fineness(const FrameSceneConfig& config) {
     config_.foreground = config.foreground;
     config_.moved = config.moved;
     config_.mesh = config.mesh;
@@ -55,11 +55,11 @@ class LiveScene {
   /// pixels.
   void expect_size(const Intrinsics& camera);
   /// Labels the frame's pixels against the expected depth, and by what the frame before showed.
-  ForegroundCounts find_moved(const Frame& frame);
+  ForegroundCounts find_dynamic(const Frame& frame);
   /// kMap: meshes the pixels that moved, as fine as they are in the given regions, and infers their back;
   /// kHoles, kSkirt: all pixels.
-  void mesh_moved(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                  std::span<const FineRegion> fine = {});
+  void mesh_dynamic(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                    std::span<const FineRegion> fine = {});
 
   /// What can be touched: kMap: the room, what moved and its back, and the border of the unknown; kHoles,
   /// kSkirt: the frame's own mesh.
@@ -75,17 +75,17 @@ class LiveScene {
   };
   [[nodiscard]] RoomDrawn room_drawn() const { return room_drawn_; }
   /// Of the last frame's mesh of what moved, by kinds and by the regions it was given; kMap only.
-  [[nodiscard]] const MovedCells& moved_cells() const { return moved_scratch_.cells; }
+  [[nodiscard]] const DynamicCells& dynamic_cells() const { return dynamic_scratch_.cells; }
 
   [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
   [[nodiscard]] const LabelImage& labels() const { return labels_; }
-  [[nodiscard]] const MaskImage& moved_mask() const { return moved_mask_; }
-  [[nodiscard]] const MovedSurface& moved_world() const { return moved_world_; }
-  [[nodiscard]] std::size_t moved_triangles() const { return moved_.touched.triangle_count(); }
+  [[nodiscard]] const MaskImage& dynamic_mask() const { return dynamic_mask_; }
+  [[nodiscard]] const DynamicSurface& dynamic_world() const { return dynamic_world_; }
+  [[nodiscard]] std::size_t dynamic_triangles() const { return moved_.touched.triangle_count(); }
   [[nodiscard]] std::size_t inferred_triangles() const { return inferred_.triangle_count(); }
 
  private:
-  LiveSceneConfig config_;
+  FrameSceneConfig config_;
   const Shape& room_;
   const TriangleTree* unknown_;
   Shape moved_;
@@ -99,10 +99,10 @@ class LiveScene {
 
   ForegroundState foreground_;
   LabelImage labels_;
-  MaskImage moved_mask_;
+  MaskImage dynamic_mask_;
   DepthMeshScratch mesh_scratch_;
-  MovedSurfaceScratch moved_scratch_;
-  MovedSurface moved_world_;
+  DynamicSurfaceScratch dynamic_scratch_;
+  DynamicSurface dynamic_world_;
   TriangleTree inferred_;  ///< of the back; touched only
 };
 

@@ -1,4 +1,4 @@
-// living_map.cpp: from what settled to a changed room: found, measured, worked in, due.
+// map_updater.cpp: from what settled to a changed room: found, measured, worked in, due.
 #include "app/session/map_updater.hpp"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ bool holds_samples(const StaticMap& octree) {
 
 }  // namespace
 
-void require_valid(const AdoptConfig& config) {
-  const SettingRules require{"adopt"};
+void require_valid(const MapUpdateConfig& config) {
+  const ConfigCheck require{"adopt"};
   if (config.after_s)
     require(*config.after_s > 0.0 && *config.after_s <= 86400.0, "after_s", *config.after_s, "in 0..86400 s");
   require(config.asked_after_s > 0.0 && config.asked_after_s <= 60.0, "asked_after_s", config.asked_after_s,
@@ -36,7 +36,7 @@ void require_valid(const AdoptConfig& config) {
   require(config.apply_after_frames >= 1, "apply_after_frames", config.apply_after_frames, ">= 1");
 }
 
-LivingMap::LivingMap(StaticMap& octree, const Mesh& mesh, const AdoptConfig& config)
+MapUpdater::MapUpdater(StaticMap& octree, const Mesh& mesh, const MapUpdateConfig& config)
     : octree_(octree), config_(config), tracker_(config.tracker), room_{mesh, {}, {}, {}} {
   require_valid(config);
   if (!holds_samples(octree))
@@ -46,11 +46,11 @@ LivingMap::LivingMap(StaticMap& octree, const Mesh& mesh, const AdoptConfig& con
   views_.resize(static_cast<std::size_t>(config.views));
 }
 
-LivingMap::~LivingMap() {
+MapUpdater::~MapUpdater() {
   if (working_.valid()) working_.wait();
 }
 
-bool LivingMap::is_due(const Frame& frame) {
+bool MapUpdater::is_due(const Frame& frame) {
   stamp_s_ = frame.stamp_s;
   frame_ = frame.index;
   // Whether or not there is something to look at: later, somebody else may stand there.
@@ -65,7 +65,7 @@ bool LivingMap::is_due(const Frame& frame) {
   return true;
 }
 
-void LivingMap::finish() {
+void MapUpdater::finish() {
   if (has_failed_) throw Error("adopt: a change could not be worked into the map, which is half changed");
   if (!working_.valid()) return;
   has_failed_ = true;  // unless get() returns
@@ -73,13 +73,13 @@ void LivingMap::finish() {
   has_failed_ = false;
   for (const LastingChange& change : pending_) {
     tracker_.forget(change);
-    adopted_.push_back({change.kind, stamp_s_, frame_, change.box_world()});
+    committed_.push_back({change.kind, stamp_s_, frame_, change.box_world()});
   }
   pending_.clear();
 }
 
-void LivingMap::watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
-                      const Eigen::Isometry3d& T_world_camera) {
+void MapUpdater::watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
+                       const Eigen::Isometry3d& T_world_camera) {
   if (watched_frame_ == frame.index) return;
   watched_frame_ = frame.index;
   tracker_.update(frame.depth_m, expected_depth_m, labels, frame.depth_camera, T_world_camera, frame.stamp_s);
@@ -90,7 +90,7 @@ void LivingMap::watch(const Frame& frame, const DepthImage& expected_depth_m, co
     measure(frame, expected_depth_m, T_world_camera);
 }
 
-void LivingMap::look_for_changes(double stamp_s) {
+void MapUpdater::look_for_changes(double stamp_s) {
   const bool too_soon = stamp_s < next_look_s_ && stamp_s > next_look_s_ - kLookEvery_s;
   if (too_soon || (!asked_until_s_ && !config_.after_s)) return;
   next_look_s_ = stamp_s + kLookEvery_s;
@@ -103,8 +103,8 @@ void LivingMap::look_for_changes(double stamp_s) {
   frames_left_ = kPatience * config_.views;
 }
 
-void LivingMap::measure(const Frame& frame, const DepthImage& expected_depth_m,
-                        const Eigen::Isometry3d& T_world_camera) {
+void MapUpdater::measure(const Frame& frame, const DepthImage& expected_depth_m,
+                         const Eigen::Isometry3d& T_world_camera) {
   std::erase_if(pending_, [&](const LastingChange& change) {
     return tracker_.still_true(change) < static_cast<double>(config_.tracker.min_steady_fraction);
   });
@@ -125,12 +125,12 @@ void LivingMap::measure(const Frame& frame, const DepthImage& expected_depth_m,
   if (--frames_left_ <= 0) pending_.clear();
 }
 
-ChangedRoom LivingMap::work_in() const {
+ChangedRoom MapUpdater::work_in() const {
   ChangedRoom room{room_.mesh, {}, {}, {}};
   for (const LastingChange& change : pending_) {
     const WorldRegion region(change.points_world, kRegionCell_m);
-    const Eigen::AlignedBox3d box_world = renew_region(octree_, region, views_);
-    renew_surface(octree_, box_world, config_.surface, room.mesh);
+    const Eigen::AlignedBox3d box_world = refuse_region(octree_, region, views_);
+    update_surface(octree_, box_world, config_.surface, room.mesh);
   }
   room.tree.build_by_place(room.mesh);
   if (keeps_up_unknown_) {

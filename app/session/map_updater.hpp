@@ -1,4 +1,5 @@
-// living_map.hpp: what came and stays, and what was taken away, worked into a session's own copy of the room.
+// map_updater.hpp: what came and stays, and what was taken away, worked into a session's own copy of the
+// room.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -19,7 +20,7 @@
 
 namespace roomradar {
 
-struct AdoptConfig {
+struct MapUpdateConfig {
   /// What has been as it is for so long while it was seen is adopted. None: only what is asked for.
   std::optional<double> after_s;
   double asked_after_s = 0.5;  ///< the same for what is asked for: at once, but for what is on its way
@@ -33,10 +34,10 @@ struct AdoptConfig {
   SurfaceConfig surface;
 };
 /// Throws Error naming the field, its value and the rule.
-void require_valid(const AdoptConfig& config);
+void require_valid(const MapUpdateConfig& config);
 
 /// A change that was worked into the room.
-struct AdoptedChange {
+struct CommittedChange {
   LastingKind kind = LastingKind::kCame;
   double stamp_s = 0.0;           ///< of the frame that saw the changed room first
   std::int64_t frame = 0;         ///< its index
@@ -55,15 +56,15 @@ struct ChangedRoom {
 /// more and worked into the octree by a second thread, with the surface near it made anew; the frames
 /// meanwhile see the room as it was. One change, or several that settled together, at a time. Not thread
 /// safe: all calls from one thread.
-class LivingMap {
+class MapUpdater {
  public:
   /// @param octree  of the room; changed in place, by the second thread while is_working()
   /// @param mesh    its surface, in the world
   /// Throws Error if the octree holds no surface, or a config is out of its rules.
-  LivingMap(StaticMap& octree, const Mesh& mesh, const AdoptConfig& config);
-  ~LivingMap();
-  LivingMap(const LivingMap&) = delete;
-  LivingMap& operator=(const LivingMap&) = delete;
+  MapUpdater(StaticMap& octree, const Mesh& mesh, const MapUpdateConfig& config);
+  ~MapUpdater();
+  MapUpdater(const MapUpdater&) = delete;
+  MapUpdater& operator=(const MapUpdater&) = delete;
 
   /// Adopts what stands still now, or has gone, in view: within a second or not at all.
   void ask() { asked_until_s_ = kNow; }
@@ -80,7 +81,7 @@ class LivingMap {
              const Eigen::Isometry3d& T_world_camera);
 
   /// What was worked in so far, in the order of time.
-  [[nodiscard]] const std::vector<AdoptedChange>& adopted() const { return adopted_; }
+  [[nodiscard]] const std::vector<CommittedChange>& committed_changes() const { return committed_; }
   /// Waits for a change that is being worked in, and takes it as if it were due: then the octree may be read.
   /// Throws what went wrong while it was worked in, and Error from then on: the octree is half changed.
   void finish();
@@ -89,9 +90,9 @@ class LivingMap {
   static constexpr double kNow = -1.0;
 
   StaticMap& octree_;
-  AdoptConfig config_;
+  MapUpdateConfig config_;
   ChangeTracker tracker_;
-  std::vector<AdoptedChange> adopted_;
+  std::vector<CommittedChange> committed_;
   std::optional<double> asked_until_s_;  ///< kNow: from the next frame on
   bool keeps_up_unknown_ = false;
   double stamp_s_ = 0.0;  ///< of the frame now

@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kMaxBytes = 1U << 26U;  // a day of dragging things about, recorded
 constexpr double kMaxCoordinate_m = 1e8;      // of an object's origin, which may lie far from its mesh
 constexpr double kMaxSpeed_mps = 100.0;
-constexpr double kMaxSpin_rad_s = 1000.0;
+constexpr double kMaxAngular_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
 
 template <typename Value>
@@ -40,7 +40,7 @@ constexpr std::array<Word<Action>, 15> kActions = {{{"add", Action::kAdd},
                                                     {"radar", Action::kRadar},
                                                     {"quality", Action::kQuality},
                                                     {"camera", Action::kCamera},
-                                                    {"adopt", Action::kAdopt},
+                                                    {"adopt", Action::kCommit},
                                                     {"quit", Action::kQuit}}};
 constexpr std::array<Word<SurfacePolicy>, 4> kSurfaces = {{{"holes", SurfacePolicy::kHoles},
                                                            {"skirt", SurfacePolicy::kSkirt},
@@ -198,7 +198,7 @@ bool has_object(Action action) {
     case Action::kRadar:
     case Action::kQuality:
     case Action::kCamera:
-    case Action::kAdopt:
+    case Action::kCommit:
     case Action::kQuit:
       return false;
     default:
@@ -233,7 +233,8 @@ void read_action(LineReader& line, ScriptEvent& event) {
       event.position_world = read_position(line);
       line.expect("velocity");
       event.velocity_world_mps = line.vector("a velocity X Y Z (m/s)", kMaxSpeed_mps);
-      if (line.take_if("spin")) event.spin_world_rad_s = line.vector("a spin X Y Z (rad/s)", kMaxSpin_rad_s);
+      if (line.take_if("spin"))
+        event.angular_velocity_world_rad_s = line.vector("a spin X Y Z (rad/s)", kMaxAngular_rad_s);
       read_turned(line, event);
       break;
     case Action::kRelease:
@@ -260,7 +261,7 @@ void read_action(LineReader& line, ScriptEvent& event) {
       event.camera = line.choice("what the camera does", kCameraPlays);
       break;
     case Action::kRemove:
-    case Action::kAdopt:
+    case Action::kCommit:
     case Action::kQuit:
       break;
   }
@@ -313,7 +314,7 @@ Script read_script(const std::filesystem::path& path, LastLine last_line) {
 }
 
 std::string to_line(const ScriptEvent& event) {
-  const auto number = [](double value) { return " " + number_text(value); };
+  const auto number = [](double value) { return " " + format_number(value); };
   const auto vector = [&](const Eigen::Vector3d& v) { return number(v.x()) + number(v.y()) + number(v.z()); };
 
   const auto turned = [&] {
@@ -340,7 +341,8 @@ std::string to_line(const ScriptEvent& event) {
       break;
     case Action::kThrow:
       line += vector(*event.position_world) + " velocity" + vector(event.velocity_world_mps);
-      if (!event.spin_world_rad_s.isZero(0.0)) line += " spin" + vector(event.spin_world_rad_s);
+      if (!event.angular_velocity_world_rad_s.isZero(0.0))
+        line += " spin" + vector(event.angular_velocity_world_rad_s);
       line += turned();
       break;
     case Action::kRelease:
@@ -367,7 +369,7 @@ std::string to_line(const ScriptEvent& event) {
       line.append(" ").append(word_of(kCameraPlays, event.camera));
       break;
     case Action::kRemove:
-    case Action::kAdopt:
+    case Action::kCommit:
     case Action::kQuit:
       break;
   }

@@ -29,7 +29,7 @@ enum class Action {
   kRadar,     ///< from now on contacts are found so
   kQuality,   ///< from now on so much is traded for time
   kCamera,    ///< how the source goes on from this frame
-  kAdopt,     ///< what stands still now in view, or has gone, becomes part of the room
+  kCommit,    ///< what stands still now in view, or has gone, becomes part of the room
   kQuit,      ///< end the run before this frame
 };
 
@@ -58,7 +58,7 @@ struct ScriptEvent {
   std::optional<Eigen::Vector3d> position_world;
   double height_m = 0.3;  ///< kDrop: its lowest point starts this far above the position or surface
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow, kRelease: of the centre of mass
-  Eigen::Vector3d spin_world_rad_s = Eigen::Vector3d::Zero();    ///< kThrow: about it, right-handed
+  Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();  ///< kThrow: about it, right-handed
   /// kPlace, kDrop, kThrow: how it stands; as it stood last if absent.
   std::optional<Eigen::Matrix3d> R_world_object;
   Eigen::Vector3d turned_deg = Eigen::Vector3d::Zero();  ///< the same as yaw, pitch, roll, as a line says it
@@ -99,7 +99,7 @@ enum class LastLine { kWhole, kMayBeCut };
 ///     frame 210  unknown solid                    or free
 ///     frame 220  radar sampled 64                 exact or sampled; pixels
 ///     frame 225  quality depth_stride 2 shadows off       what is not named is as usual; options stay
-///     frame 226  quality from physics object_turns 4      from that part on; mesh, compose
+///     frame 226  quality from physics move_every_n_frames 4      from that part on; mesh, compose
 ///     frame 230  camera hold                      this frame stays; go, rewind, loop, stay, resume
 ///     frame 300  quit
 ///

@@ -32,8 +32,8 @@ int pieces_of(double waited_s, const PhysicsConfig& config) {
 /// On its way to where it is wanted, to be there after this frame.
 void set_in_hand(VirtualObject& object, double dt_s) {
   const Eigen::Vector3d way = *object.carried_to_world - object.body.T_world_object.translation();
-  object.body.at_rest = false;
-  object.body.spin_world_rad_s.setZero();
+  object.body.asleep = false;
+  object.body.angular_velocity_world_rad_s.setZero();
   object.body.velocity_world_mps = dt_s > 0.0 ? Eigen::Vector3d(way / dt_s) : Eigen::Vector3d::Zero();
 }
 
@@ -50,12 +50,12 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   require_valid(config.picture);
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config.tracking_px;
   room_.set(map.mesh, MeshUsage::kStatic);
-  if (!config.adopt) return;
+  if (!config.map_updates) return;
   if (octree == nullptr) throw Error("adopt: the session was given no octree to change");
   if (config.scene.surfaces != SurfacePolicy::kMap)
     throw Error(std::string("adopt: with --surfaces ") + std::string(to_string(config.scene.surfaces)) +
                 " nothing is asked of the map, so there is nothing to adopt into; use --surfaces map");
-  living_map_ = std::make_unique<LivingMap>(*octree, map.mesh, *config.adopt);
+  map_updater_ = std::make_unique<MapUpdater>(*octree, map.mesh, *config.map_updates);
 }
 
 void Session::make_unknown_solid(StageTimes& times) {
@@ -63,12 +63,12 @@ void Session::make_unknown_solid(StageTimes& times) {
     throw Error("unknown space is solid only with the map's surfaces: the others do not know what was seen");
   times.timed("unknown", [&] {
     if (unknown_tree_.empty()) {
-      if (living_map_ && (has_last_stamp_ || !living_map_->adopted().empty()))
+      if (map_updater_ && (has_last_stamp_ || !map_updater_->committed_changes().empty()))
         throw Error(
             "unknown solid: changes are being adopted into the map; begin the run with --unknown solid");
       unknown_ = unknown_surface(map_.octree, map_.mesh);
       unknown_tree_.build_by_place(unknown_.mesh_world);
-      if (living_map_) living_map_->keep_up_unknown();
+      if (map_updater_) map_updater_->keep_up_unknown();
     }
     unknown_is_solid_ = true;
     scene_.set_unknown(&unknown_tree_);
@@ -84,7 +84,7 @@ void Session::make_unknown_free() {
 }
 
 void Session::set_surfaces(SurfacePolicy surfaces) {
-  if (surfaces != SurfacePolicy::kMap && living_map_)
+  if (surfaces != SurfacePolicy::kMap && map_updater_)
     throw Error("surfaces " + std::string(to_string(surfaces)) +
                 ": changes are being adopted into the map, which needs its surfaces");
   if (surfaces != SurfacePolicy::kMap && unknown_is_solid_)
@@ -95,7 +95,7 @@ void Session::set_surfaces(SurfacePolicy surfaces) {
 }
 
 void Session::set_radar(const RadarConfig& config) {
-  asked_of_former_ += radar_.static_triangles_asked();
+  asked_of_former_ += radar_.static_triangles_tested();
   radar_ = CyberRadar(config);
   config_.radar = config;
 }
@@ -128,8 +128,8 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
 FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   FrameResult result;
   const auto handed_over = std::chrono::steady_clock::now();
-  const LiveScene::RoomDrawn drawn_before = scene_.room_drawn();
-  const std::uint64_t asked_before = static_triangles_asked();
+  const FrameScene::RoomDrawn drawn_before = scene_.room_drawn();
+  const std::uint64_t asked_before = static_triangles_tested();
   const double dt_s = has_last_stamp_ ? std::max(0.0, whole.stamp_s - last_stamp_s_) : 0.0;
   last_stamp_s_ = whole.stamp_s;
   has_last_stamp_ = true;
@@ -137,7 +137,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
 
   begin(FramePart::kLocate);
   const Frame& frame = times.timed("reduce", [&]() -> const Frame& { return with_depth_reduced(whole); });
-  if (living_map_ && living_map_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
+  if (map_updater_ && map_updater_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
   result.tracking = tracking.status;
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
@@ -149,16 +149,16 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
   result.static_triangles_drawn =
       times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
-  result.foreground = times.timed("foreground", [&] { return scene_.find_moved(frame); });  // what moved?
-  if (living_map_ && tracking)  // what came to stay, what is gone? Not where the pose is partly a guess
+  result.foreground = times.timed("foreground", [&] { return scene_.find_dynamic(frame); });  // what moved?
+  if (map_updater_ && tracking)  // what came to stay, what is gone? Not where the pose is partly a guess
     times.timed("changes", [&] {
-      living_map_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
+      map_updater_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
     });
   moved_fraction_ =
       static_cast<double>(result.foreground.moved) / static_cast<double>(frame.depth_m.pixels.size());
   begin(FramePart::kMesh);
   find_fine_regions();
-  times.timed("mesh", [&] { scene_.mesh_moved(frame, T_world_camera, fine_regions_); });
+  times.timed("mesh", [&] { scene_.mesh_dynamic(frame, T_world_camera, fine_regions_); });
   count_fine_cells();
   if (!waiting_.empty()) times.timed("place", [&] { release_waiting(frame, T_world_camera); });
   begin(FramePart::kPhysics);
@@ -166,14 +166,14 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   times.add_ms("contact", ms_since(handed_over));
   begin(FramePart::kCompose);
   if (config_.make_picture) keep_colour(whole, T_world_camera, dt_s);
-  result.picture_is_new = config_.make_picture && is_turn(0, config_.picture_turns);
+  result.picture_is_new = config_.make_picture && is_turn(0, config_.picture_every_n_frames);
   if (result.picture_is_new) times.timed("compose", [&] { compose_picture(whole, T_world_camera); });
   T_world_before_ = T_world_camera;
   ++frames_;
 
   result.status = FrameStatus::kDone;
   result.T_world_camera = T_world_camera;
-  result.dynamic_triangles = scene_.moved_triangles();
+  result.dynamic_triangles = scene_.dynamic_triangles();
   result.inferred_triangles = scene_.inferred_triangles();
   result.use = use_of(result.foreground, drawn_before, asked_before);
   return result;
@@ -186,20 +186,20 @@ void Session::begin(FramePart part) {
 }
 
 FrameLoad Session::load() const {
-  FrameLoad load{.moved_fraction = moved_fraction_};
+  FrameLoad load{.dynamic_fraction = moved_fraction_};
   for (const auto& object : objects_)
-    if (object->in_room) ++(object->body.at_rest ? load.resting : load.moving);
+    if (object->in_room) ++(object->body.asleep ? load.resting : load.moving);
   return load;
 }
 
 bool Session::is_turn_to_move(std::size_t number) const {
-  const std::int64_t pictures = config_.picture_turns;
-  if (pictures == 1) return is_turn(number, config_.object_turns);
+  const std::int64_t pictures = config_.picture_every_n_frames;
+  if (pictures == 1) return is_turn(number, config_.move_every_n_frames);
   // Pictures are made in the others: no frame has both to do. Also where none are made, so that objects do
   // the same with pictures and without.
   const std::int64_t frame = frames_ % pictures;
   const std::int64_t of_these = frames_ / pictures * (pictures - 1) + frame - 1;
-  return frame > 0 && (of_these + static_cast<std::int64_t>(number)) % config_.object_turns == 0;
+  return frame > 0 && (of_these + static_cast<std::int64_t>(number)) % config_.move_every_n_frames == 0;
 }
 
 const Frame& Session::with_depth_reduced(const Frame& frame) {
@@ -230,11 +230,11 @@ Tracking Session::locate_camera(const Frame& frame) {
     return scene_.expected_depth_m();
   };
   scene_.expect_size(frame.depth_camera);
-  return locate(locator_, frame, map_.places, scene_.moved_mask(), expected_depth);
+  return locate(locator_, frame, map_.keyframe_database, scene_.dynamic_mask(), expected_depth);
 }
 
 void Session::renew_room() {
-  ChangedRoom& room = living_map_->room();
+  ChangedRoom& room = map_updater_->room();
   room_.set(room.mesh, std::move(room.tree));
   if (!unknown_tree_.empty()) {  // it was made once, and is kept up since
     unknown_ = std::move(room.unknown);
@@ -243,24 +243,24 @@ void Session::renew_room() {
   scene_.room_changed();
 }
 
-std::vector<AdoptedChange> Session::adopted() const {
-  return living_map_ ? living_map_->adopted() : std::vector<AdoptedChange>{};
+std::vector<CommittedChange> Session::committed_changes() const {
+  return map_updater_ ? map_updater_->committed_changes() : std::vector<CommittedChange>{};
 }
 
-void Session::finish_adopting() {
-  if (living_map_) living_map_->finish();
+void Session::finish_commits() {
+  if (map_updater_) map_updater_->finish();
 }
 
 std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const {
   std::vector<SceneTree> scene = scene_.surfaces();
   for (const auto& other : objects_) {
     if (other.get() != object && other->in_room)
-      scene.push_back({{&other->model->shape.touched, other->body.T_world_object}, Touched::kObject});
+      scene.push_back({{&other->model->shape.touched, other->body.T_world_object}, SurfaceKind::kObject});
   }
   return scene;
 }
 
-std::span<const OtherBody> Session::bodies_in(const std::vector<SceneTree>& scene,
+std::span<const SceneBody> Session::bodies_in(const std::vector<SceneTree>& scene,
                                               const VirtualObject& object) {
   constexpr double kOfAHand = 1e6;  // what a hand holds goes where the hand goes
   others_.clear();
@@ -270,7 +270,7 @@ std::span<const OtherBody> Session::bodies_in(const std::vector<SceneTree>& scen
         object.carried_to_world ? kOfAHand : object.body.mass.mass_kg / other->body.mass.mass_kg;
     others_.push_back({&other->body, other->carried_to_world ? 0.0 : gives});
   }
-  others_.insert(others_.begin(), scene.size() - others_.size(), OtherBody{});  // objects come last
+  others_.insert(others_.begin(), scene.size() - others_.size(), SceneBody{});  // objects come last
   return others_;
 }
 
@@ -301,7 +301,7 @@ void Session::find_fine_regions() {
 }
 
 void Session::count_fine_cells() {
-  const std::vector<std::uint32_t>& of_region = scene_.moved_cells().fine_of_region;
+  const std::vector<std::uint32_t>& of_region = scene_.dynamic_cells().fine_of_region;
   const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
   std::size_t region = 0;  // those in the room have one each, in this order
   for (const auto& object : objects_) {
@@ -310,7 +310,7 @@ void Session::count_fine_cells() {
   }
 }
 
-FrameUse Session::use_of(const ForegroundCounts& foreground, const LiveScene::RoomDrawn& drawn,
+FrameUse Session::use_of(const ForegroundCounts& foreground, const FrameScene::RoomDrawn& drawn,
                          std::uint64_t asked) {
   const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
   FrameUse use;
@@ -318,12 +318,12 @@ FrameUse Session::use_of(const ForegroundCounts& foreground, const LiveScene::Ro
   use.views_drawn = scene_.room_drawn().views - drawn.views;
   if (use.views_drawn > 0)
     use.room_drawn = (scene_.room_drawn().triangles - drawn.triangles) / use.views_drawn;
-  use.room_asked = static_cast<std::size_t>(static_triangles_asked() - asked);
+  use.room_asked = static_cast<std::size_t>(static_triangles_tested() - asked);
   use.valid_px = foreground.valid;
   use.knows_moved = has_map;
   use.meshed_px = has_map ? foreground.moved : foreground.valid;
-  use.mesh_triangles = scene_.moved_triangles();
-  if (has_map) use.cells = scene_.moved_cells().counts;
+  use.mesh_triangles = scene_.dynamic_triangles();
+  if (has_map) use.cells = scene_.dynamic_cells().counts;
   return use;
 }
 
@@ -335,22 +335,24 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
     object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // more: it stalled
     if (!object->carried_to_world && !is_turn_to_move(number)) continue;
     const double waited_s = std::exchange(object->waited_s, 0.0);
-    if (!object->body.at_rest) object->in_unknown = object->in_unknown && is_in_unknown(*object);
+    if (!object->body.asleep) object->in_unknown = object->in_unknown && is_in_unknown(*object);
     PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
     if (config_.scene.surfaces == SurfacePolicy::kMap)
-      push = push_directions({&scene_.moved_world().seen_world, &scene_.moved_world().inferred_world},
-                             object->body.T_world_object * object->model->middle,
-                             radius_m(*object) + kNearbyReach_m);
+      push = depenetration_directions(
+          {&scene_.dynamic_world().seen_world, &scene_.dynamic_world().inferred_world},
+          object->body.T_world_object * object->model->middle, radius_m(*object) + kNearbyReach_m);
     std::vector<SceneTree> scene = scene_without(object);
-    const auto is_back = [](const SceneTree& surface) { return surface.kind == Touched::kInferredBack; };
+    const auto is_back = [](const SceneTree& surface) { return surface.kind == SurfaceKind::kInferredBack; };
     const auto back = std::find_if(scene.begin(), scene.end(), is_back);
     if (back != scene.end()) {
       const RadarScene of_back{{&*back, 1}, {}};
-      const BodyProbe probe = probe_of(radar_, near_field_, object->model->shape.touched, of_back, &radar_ms);
-      if (is_swallowed(object->body, waited_s, probe.travel, config_.physics, push.span())) scene.erase(back);
+      const CollisionQueries probe =
+          make_collision_queries(radar_, proximity_, object->model->shape.touched, of_back, &radar_ms);
+      if (is_engulfed(object->body, waited_s, probe.travel, config_.physics, push.span())) scene.erase(back);
     }
     const RadarScene radar_scene{scene, {}};
-    BodyProbe probe = probe_of(radar_, near_field_, object->model->shape.touched, radar_scene, &radar_ms);
+    CollisionQueries probe =
+        make_collision_queries(radar_, proximity_, object->model->shape.touched, radar_scene, &radar_ms);
     probe.others = bodies_in(scene, *object);
     const int pieces = pieces_of(waited_s, config_.physics);
     for (int left = pieces; left > 0; --left) {
@@ -360,7 +362,7 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
           advance(object->body, piece_s, probe,
                   object->carried_to_world ? in_hand(config_.physics) : config_.physics, push.span());
       result.contacts += moved.contacts;
-      for (std::size_t kind = 0; kind < kTouchedKinds; ++kind)
+      for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
         result.contacts_by_kind[kind] += moved.contacts_by_kind[kind];
     }
   }
@@ -375,7 +377,7 @@ double Session::penetration_m() {
     // A hand that reaches into an object is the hand's doing; in the unknown there may be nothing.
     if (config_.scene.surfaces == SurfacePolicy::kMap)
       std::erase_if(still, [](const SceneTree& surface) {
-        return surface.kind != Touched::kStatic && surface.kind != Touched::kObject;
+        return surface.kind != SurfaceKind::kStatic && surface.kind != SurfaceKind::kObject;
       });
     const Contact below = exact_radar_.query({{&object->model->shape.touched, object->body.T_world_object},
                                               config_.physics.gravity_world_mps2,
@@ -383,9 +385,10 @@ double Session::penetration_m() {
                                              {still, {}});
     if (below.status != ContactStatus::kOverlap) continue;
     constexpr double kTouching_m = 1e-6;  // what crosses no part of it lies in a hollow, as in a handle
-    const Kinds crossed = near_field_.near({&object->model->shape.touched, object->body.T_world_object},
-                                           {still, {}}, kTouching_m, 0, near_points_);
-    if ((crossed & bit_of(below.touched)) != 0) deepest_m = std::max(deepest_m, -below.travel_m);
+    const SurfaceKindMask crossed =
+        proximity_.near({&object->model->shape.touched, object->body.T_world_object}, {still, {}},
+                        kTouching_m, 0, closest_points_);
+    if ((crossed & bit_of(below.touched)) != 0) deepest_m = std::max(deepest_m, -below.contact_distance_m);
   }
   return deepest_m;
 }

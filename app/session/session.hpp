@@ -32,19 +32,20 @@ namespace roomradar {
 
 struct SessionConfig {
   PoseOrigin poses = PoseOrigin::kTracked;
-  LiveSceneConfig scene;
+  FrameSceneConfig scene;
   RadarConfig radar;
   PhysicsConfig physics;
   ComposeConfig picture;
-  std::optional<AdoptConfig> adopt;  ///< none: the room stays as it was saved
+  std::optional<MapUpdateConfig> map_updates;  ///< none: the room stays as it was saved
   /// What can be traded for time; RunQuality says it for the user.
-  int depth_stride = 1;          ///< 1, 2 or 4: depth images are reduced by this (reduce_depth)
-  int tracking_px = 160;         ///< widest image that the camera is located by
-  bool fine_mesh = false;        ///< what moved is meshed as finely as it was seen about the objects
-  int object_turns = 1;          ///< objects are moved in every so many-th frame, in turns
-  double object_error_px = 0.7;  ///< how far an object's drawn mesh may lie off the file's
-  int shadow_turns = 1;          ///< frames from one shadow made anew in full to the next
-  int picture_turns = 1;     ///< frames from one picture to the next; more than 1: objects move in the others
+  int depth_stride = 1;           ///< 1, 2 or 4: depth images are reduced by this (reduce_depth)
+  int tracking_px = 160;          ///< widest image that the camera is located by
+  bool fine_mesh = false;         ///< what moved is meshed as finely as it was seen about the objects
+  int move_every_n_frames = 1;    ///< objects are moved in every so many-th frame, in turns
+  double object_error_px = 0.7;   ///< how far an object's drawn mesh may lie off the file's
+  int shadow_every_n_frames = 1;  ///< frames from one shadow made anew in full to the next
+  int picture_every_n_frames =
+      1;                     ///< frames from one picture to the next; more than 1: objects move in the others
   bool make_picture = true;  ///< false: no drawing, only what moves the objects
   /// Called before each part of a frame, and after it; what it returns is the quality from that part on.
   /// Null: nobody asks.
@@ -70,7 +71,7 @@ struct FrameResult {
   std::size_t static_triangles_drawn = 0;  ///< for the expected depth
   std::size_t inferred_triangles = 0;      ///< of the backs of what moved
   int contacts = 0;
-  std::array<int, kTouchedKinds> contacts_by_kind{};  ///< the same, by what was touched
+  std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< the same, by what was touched
   double deepest_penetration_m = 0.0;                 ///< >= 0, where it is measured
   FrameUse use;                                       ///< only if done
   bool picture_is_new = false;  ///< else picture() is what it was after an earlier frame
@@ -121,7 +122,7 @@ class Session {
   [[nodiscard]] const std::string& renderer() const { return context_.renderer(); }
   [[nodiscard]] const std::vector<std::unique_ptr<VirtualObject>>& objects() const { return objects_; }
   [[nodiscard]] const ColourImage& picture() const { return picture_; }
-  [[nodiscard]] const LiveScene& scene() const { return scene_; }
+  [[nodiscard]] const FrameScene& scene() const { return scene_; }
   /// As it is by now.
   [[nodiscard]] const Shape& room() const { return room_; }
   /// As it was given, but for the policies that were changed since.
@@ -145,9 +146,9 @@ class Session {
   /// Without triangles unless it was made solid.
   [[nodiscard]] const UnknownSurface& unknown() const { return unknown_; }
   /// What came and stayed, or was taken away, and is part of the room by now.
-  [[nodiscard]] std::vector<AdoptedChange> adopted() const;
+  [[nodiscard]] std::vector<CommittedChange> committed_changes() const;
   /// Waits for what is being worked into the octree, so that it may be read.
-  void finish_adopting();
+  void finish_commits();
 
  private:
   const SavedMap& map_;
@@ -157,14 +158,14 @@ class Session {
   UnknownSurface unknown_;
   TriangleTree unknown_tree_;
   bool unknown_is_solid_ = false;
-  LiveScene scene_;
-  std::unique_ptr<LivingMap> living_map_;  ///< null: the room stays as it is
+  FrameScene scene_;
+  std::unique_ptr<MapUpdater> map_updater_;  ///< null: the room stays as it is
   Locator locator_;
   CyberRadar radar_;
   std::uint64_t asked_of_former_ = 0;  ///< of the room's triangles, by radars before this one
-  NearField near_field_;
-  std::vector<NearPoint> near_points_;
-  std::vector<OtherBody> others_;  // of the scene of the object that is moved
+  ProximityQuery proximity_;
+  std::vector<ClosestPoint> closest_points_;
+  std::vector<SceneBody> others_;  // of the scene of the object that is moved
   CyberRadar exact_radar_;         ///< measures penetration
   ObjectDrawer drawer_;
 
@@ -204,8 +205,8 @@ class Session {
   [[nodiscard]] bool is_turn(std::size_t number, int turns) const {
     return (frames_ + static_cast<std::int64_t>(number)) % turns == 0;
   }
-  [[nodiscard]] std::uint64_t static_triangles_asked() const {
-    return asked_of_former_ + radar_.static_triangles_asked();
+  [[nodiscard]] std::uint64_t static_triangles_tested() const {
+    return asked_of_former_ + radar_.static_triangles_tested();
   }
   Tracking locate_camera(const Frame& frame);
   void turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg);
@@ -216,10 +217,11 @@ class Session {
   /// Sets fine_cells of all objects.
   void count_fine_cells();
   /// What the frame needed, where nothing was drawn and asked before `drawn` and `asked`.
-  FrameUse use_of(const ForegroundCounts& foreground, const LiveScene::RoomDrawn& drawn, std::uint64_t asked);
+  FrameUse use_of(const ForegroundCounts& foreground, const FrameScene::RoomDrawn& drawn,
+                  std::uint64_t asked);
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   /// Which of the trees of scene_without() are bodies.
-  std::span<const OtherBody> bodies_in(const std::vector<SceneTree>& scene, const VirtualObject& object);
+  std::span<const SceneBody> bodies_in(const std::vector<SceneTree>& scene, const VirtualObject& object);
   void move_objects(double dt_s, StageTimes& times, FrameResult& result);
   [[nodiscard]] bool is_in_unknown(const VirtualObject& object) const;
   double penetration_m();

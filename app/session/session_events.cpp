@@ -20,22 +20,22 @@ namespace {
 constexpr double kTouching_m = 1e-6;
 
 /// The room's depth where nothing that moved is before it, and might stand on it; else 0.
-DepthImage seen_room_depth_m(const LiveScene& scene) {
+DepthImage seen_room_depth_m(const FrameScene& scene) {
   DepthImage depth_m = scene.expected_depth_m();
-  const MaskImage& moved = scene.moved_mask();
+  const MaskImage& moved = scene.dynamic_mask();
   for (std::size_t i = 0; i < std::min(moved.pixels.size(), depth_m.pixels.size()); ++i)
     if (moved.pixels[i] != 0) depth_m.pixels[i] = 0.0F;
   return depth_m;
 }
 
-bool overlap(CyberRadar& radar, NearField& field, const TreeInstance& a, const TreeInstance& b) {
-  const SceneTree a_of_scene{a, Touched::kObject}, b_of_scene{b, Touched::kObject};
+bool overlap(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a, const TreeInstance& b) {
+  const SceneTree a_of_scene{a, SurfaceKind::kObject}, b_of_scene{b, SurfaceKind::kObject};
   const RadarScene scene_a{{&a_of_scene, 1}, {}}, scene_b{{&b_of_scene, 1}, {}};
   const auto has_inside = [&](const TreeInstance& object, const RadarScene& scene) {
     const RadarQuery query{object, -Eigen::Vector3d::UnitZ(), kTouching_m};
     return radar.query(query, scene).status == ContactStatus::kOverlap;
   };
-  std::vector<NearPoint> unused;
+  std::vector<ClosestPoint> unused;
   return field.near(a, scene_b, kTouching_m, 0, unused) != 0 || has_inside(a, scene_b) ||
          has_inside(b, scene_a);
 }
@@ -43,7 +43,7 @@ bool overlap(CyberRadar& radar, NearField& field, const TreeInstance& a, const T
 /// Whether two bodies have more space in common than a shift by shift_m takes away. What touches parts if it
 /// is shifted the one way or the other; of what stands exactly where the other does, no surface crosses
 /// another until it is.
-bool share_space(CyberRadar& radar, NearField& field, const TreeInstance& a, const TreeInstance& b,
+bool share_space(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a, const TreeInstance& b,
                  double shift_m) {
   const auto overlap_shifted = [&](double by_m) {
     TreeInstance shifted = a;
@@ -97,15 +97,16 @@ void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg)
   motion.angular_rad_s = turn_world_deg * (std::numbers::pi / 180.0);
   motion.centre_object = object.model->middle;
   const std::vector<SceneTree> scene = scene_without(&object);
-  const SweepResult free =
-      sweep(radar_, {&object.model->shape.touched, object.body.T_world_object}, motion, 1.0, {scene, {}});
-  if (free.status == SweepStatus::kInvalidInput || free.status == SweepStatus::kNoAnswer) return;
+  const TimeOfImpact free = time_of_impact(radar_, {&object.model->shape.touched, object.body.T_world_object},
+                                           motion, 1.0, {scene, {}});
+  if (free.status == TimeOfImpactStatus::kInvalidInput || free.status == TimeOfImpactStatus::kNoAnswer)
+    return;
   const Eigen::Vector3d origin_before = object.body.T_world_object.translation();
   object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
   make_orthonormal(object.body.T_world_object);
   if (object.carried_to_world)  // its middle is wanted where it was
     *object.carried_to_world += object.body.T_world_object.translation() - origin_before;
-  object.body.at_rest = false;
+  object.body.asleep = false;
 }
 
 void Session::raise_over_others(VirtualObject& object) {
@@ -120,9 +121,9 @@ void Session::raise_over_others(VirtualObject& object) {
     for (const auto& other : objects_) {
       const TreeInstance its{&other->model->shape.touched, other->body.T_world_object};
       if (other.get() == &object || !other->in_room ||
-          !share_space(radar_, near_field_, {&tree, T_world_raised}, its, margin_m))
+          !share_space(radar_, proximity_, {&tree, T_world_raised}, its, margin_m))
         continue;
-      shared.push_back({its, Touched::kObject});
+      shared.push_back({its, SurfaceKind::kObject});
       top_m = std::max(top_m, its.T_world_mesh.translation().z() + highest_m(*other));
     }
     if (shared.empty()) break;
@@ -135,10 +136,10 @@ void Session::raise_over_others(VirtualObject& object) {
   const double raised_m = T_world_raised.translation().z() - T_world_asked.translation().z();
   if (!(raised_m > 0.0)) return;
   std::vector<SceneTree> room = scene_without(&object);
-  std::erase_if(room, [](const SceneTree& surface) { return surface.kind == Touched::kObject; });
+  std::erase_if(room, [](const SceneTree& surface) { return surface.kind == SurfaceKind::kObject; });
   const bool is_in_the_way =
       radar_.query({{&tree, T_world_asked}, up, raised_m}, {room, {}}).status == ContactStatus::kContact ||
-      near_field_.near({&tree, T_world_raised}, {room, {}}, kTouching_m, 0, near_points_) != 0;
+      proximity_.near({&tree, T_world_raised}, {room, {}}, kTouching_m, 0, closest_points_) != 0;
   if (!is_in_the_way) object.body.T_world_object = T_world_raised;
 }
 
@@ -162,9 +163,9 @@ void Session::apply(const ScriptEvent& event) {
       require_valid(event.quality);
       due_quality_[index_of(event.from)] = event.quality;
       break;
-    case Action::kAdopt:
-      if (!living_map_) throw Error("script: adopt: this session does not watch for changes");
-      living_map_->ask();
+    case Action::kCommit:
+      if (!map_updater_) throw Error("script: adopt: this session does not watch for changes");
+      map_updater_->ask();
       break;
     case Action::kCamera:  // the source's affair
     case Action::kQuit:
@@ -184,8 +185,8 @@ void Session::change_objects(const ScriptEvent& event) {
     object.body.T_world_object.translation() = position_world;
     object.R_world_put = object.body.T_world_object.linear();
     object.body.velocity_world_mps = event.velocity_world_mps;
-    object.body.spin_world_rad_s = event.spin_world_rad_s;
-    object.body.at_rest = false;
+    object.body.angular_velocity_world_rad_s = event.angular_velocity_world_rad_s;
+    object.body.asleep = false;
     object.in_room = true;
     object.waited_s = 0.0;
     raise_over_others(object);

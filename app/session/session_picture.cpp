@@ -63,7 +63,7 @@ void Session::show_camera_alone(const Frame& frame) {
 void Session::renew_a_shadow() {
   constexpr double kTurned_rad = 0.05;
   constexpr int kFine = 16, kCoarse = 8;  // 3 ms and 0.2 ms
-  const bool may_be_fine = is_turn(0, config_.shadow_turns);
+  const bool may_be_fine = is_turn(0, config_.shadow_every_n_frames);
   // In turn: one that turns on and on does not keep the others from theirs.
   for (std::size_t i = 1; i <= objects_.size(); ++i) {
     const std::size_t number = (last_shadow_ + i) % objects_.size();
@@ -72,7 +72,7 @@ void Session::renew_a_shadow() {
     const Eigen::Matrix3d& R_world_object = object.body.T_world_object.linear();
     const bool has_turned =
         Eigen::AngleAxisd(object.shadow.R_world_object.transpose() * R_world_object).angle() > kTurned_rad;
-    const bool gets_fine = object.body.at_rest && object.shadow.cells_across < kFine && may_be_fine;
+    const bool gets_fine = object.body.asleep && object.shadow.cells_across < kFine && may_be_fine;
     if (!has_turned && !gets_fine) continue;
     make_contact_shadow(object.model->surface, R_world_object, object.shadow, gets_fine ? kFine : kCoarse);
     last_shadow_ = number;

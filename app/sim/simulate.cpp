@@ -61,7 +61,7 @@ void simulate(const std::filesystem::path& folder, const SimOptions& options, Re
   Frame frame;
   while (source.next(frame).status == ReadStatus::kFrame) {
     writer.write(frame);
-    const std::string name = frame_number_text(frame.index) + ".png";
+    const std::string name = format_frame_number(frame.index) + ".png";
     write_depth_file(source.truth().depth_m, DepthEncoding::kTum, truth / "depth" / name);
     if (moves) {
       write_mask_file(source.truth().moved, truth / "moved" / name);

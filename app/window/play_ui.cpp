@@ -41,7 +41,7 @@ constexpr std::array<std::array<const char*, 2>, 21> kHelp = {
 
 }  // namespace
 
-PlayUi::PlayUi(PlayLink& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
+PlayUi::PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
                std::optional<double> budget_ms)
     : link_(link), fonts_(fonts), picture_(link), timing_(budget_ms) {
   settings_.meshes = {"teapot"};
@@ -224,17 +224,17 @@ void PlayUi::draw_help(float width, float height) {
   }
 }
 
-void PlayUi::ask_at_mouse(WishKind kind) {
+void PlayUi::ask_at_mouse(UserCommandKind kind) {
   if (!picture_.pixel()) return;
-  Wish wish;
-  wish.kind = kind;
-  wish.pixel = *picture_.pixel();
-  wish.event.height_m = static_cast<double>(settings_.drop_height_m);
-  wish.speed_mps = static_cast<double>(settings_.throw_speed_mps);
-  link_.ask(wish);
+  UserCommand command;
+  command.kind = kind;
+  command.pixel = *picture_.pixel();
+  command.event.height_m = static_cast<double>(settings_.drop_height_m);
+  command.speed_mps = static_cast<double>(settings_.throw_speed_mps);
+  link_.ask(command);
 }
 
-void PlayUi::add_object() { link_.ask(new_object_wish(settings_)); }
+void PlayUi::add_object() { link_.ask(new_object_command(settings_)); }
 
 void PlayUi::take_file(const std::string& path) {
   const auto known = std::find(settings_.meshes.begin(), settings_.meshes.end(), path);
@@ -248,10 +248,10 @@ void PlayUi::choose_next() {
   const auto chosen = std::find_if(shown_.objects.begin(), shown_.objects.end(),
                                    [&](const ShownObject& object) { return object.name == shown_.chosen; });
   const std::size_t at = static_cast<std::size_t>(chosen - shown_.objects.begin());
-  Wish wish;
-  wish.kind = WishKind::kChoose;
-  wish.event.name = shown_.chosen = shown_.objects[(at + 1) % shown_.objects.size()].name;
-  link_.ask(wish);
+  UserCommand command;
+  command.kind = UserCommandKind::kChoose;
+  command.event.name = shown_.chosen = shown_.objects[(at + 1) % shown_.objects.size()].name;
+  link_.ask(command);
 }
 
 void PlayUi::set_speed(double speed) {
@@ -276,7 +276,7 @@ bool PlayUi::repeats(int key) {
 }
 
 void PlayUi::press(int key, int modifiers) {
-  Wish wish;
+  UserCommand command;
   switch (key) {
     case GLFW_KEY_SPACE:
       link_.set_paused(!link_.is_paused());
@@ -287,25 +287,25 @@ void PlayUi::press(int key, int modifiers) {
       link_.step();
       break;
     case GLFW_KEY_HOME:
-      link_.ask(camera_wish(CameraPlay::kRewind));
-      if (std::exchange(shown_.is_held, false)) link_.ask(camera_wish(CameraPlay::kGo));
+      link_.ask(camera_command(CameraPlay::kRewind));
+      if (std::exchange(shown_.is_held, false)) link_.ask(camera_command(CameraPlay::kGo));
       break;
     case GLFW_KEY_F:  // the next key may come before the next frame does
       shown_.is_held = !shown_.is_held;
-      link_.ask(camera_wish(shown_.is_held ? CameraPlay::kHold : CameraPlay::kGo));
+      link_.ask(camera_command(shown_.is_held ? CameraPlay::kHold : CameraPlay::kGo));
       break;
     case GLFW_KEY_L:
       shown_.at_end = shown_.at_end == AtEnd::kLoop ? AtEnd::kStay : AtEnd::kLoop;
-      link_.ask(camera_wish(shown_.at_end == AtEnd::kLoop ? CameraPlay::kLoop : CameraPlay::kStay));
+      link_.ask(camera_command(shown_.at_end == AtEnd::kLoop ? CameraPlay::kLoop : CameraPlay::kStay));
       break;
     case GLFW_KEY_D:
-      ask_at_mouse(WishKind::kDrop);
+      ask_at_mouse(UserCommandKind::kDrop);
       break;
     case GLFW_KEY_P:
-      ask_at_mouse(WishKind::kPlace);
+      ask_at_mouse(UserCommandKind::kPlace);
       break;
     case GLFW_KEY_T:
-      ask_at_mouse(WishKind::kThrow);
+      ask_at_mouse(UserCommandKind::kThrow);
       break;
     case GLFW_KEY_TAB:
       choose_next();
@@ -315,28 +315,28 @@ void PlayUi::press(int key, int modifiers) {
       break;
     case GLFW_KEY_DELETE:
     case GLFW_KEY_BACKSPACE:
-      wish.kind = WishKind::kRemove;
-      link_.ask(wish);
+      command.kind = UserCommandKind::kRemove;
+      link_.ask(command);
       break;
     case GLFW_KEY_R:
-      wish.kind = WishKind::kReset;
-      link_.ask(wish);
+      command.kind = UserCommandKind::kReset;
+      link_.ask(command);
       break;
     // What is asked for is shown at once: the next key may come before the next frame does.
     case GLFW_KEY_S: {
       constexpr std::array<SurfacePolicy, 4> kNext = {SurfacePolicy::kSkirt, SurfacePolicy::kBorder,
                                                       SurfacePolicy::kMap, SurfacePolicy::kHoles};
       shown_.surfaces = kNext[static_cast<std::size_t>(shown_.surfaces)];
-      link_.ask(surfaces_wish(shown_.surfaces));
+      link_.ask(surfaces_command(shown_.surfaces));
       break;
     }
     case GLFW_KEY_U:
       shown_.unknown_is_solid = !shown_.unknown_is_solid;
-      link_.ask(unknown_wish(shown_.unknown_is_solid));
+      link_.ask(unknown_command(shown_.unknown_is_solid));
       break;
     case GLFW_KEY_X:
       shown_.radar.mode = shown_.radar.mode == RadarMode::kExact ? RadarMode::kSampled : RadarMode::kExact;
-      link_.ask(radar_wish(shown_.radar));
+      link_.ask(radar_command(shown_.radar));
       break;
     case GLFW_KEY_V:
       view_ = view_ == MainView::kCamera   ? MainView::kModels

@@ -21,7 +21,7 @@ class PlayUi {
  public:
   /// @param meshes     files that can be added beside the built-in teapot
   /// @param budget_ms  of a frame, where it is held to one
-  PlayUi(PlayLink& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
+  PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
          std::optional<double> budget_ms);
 
   /// Takes what is new; whether there was anything.
@@ -37,7 +37,7 @@ class PlayUi {
   [[nodiscard]] bool wants_to_quit() const { return quits_; }
 
  private:
-  PlayLink& link_;
+  UiChannel& link_;
   const look::Fonts& fonts_;
   Snapshot shown_;
   PicturePane picture_;
@@ -55,7 +55,7 @@ class PlayUi {
   double frames_per_s_ = 0.0;
 
   void count_rate();
-  void ask_at_mouse(WishKind kind);
+  void ask_at_mouse(UserCommandKind kind);
   void add_object();
   void choose_next();
   void set_speed(double speed);

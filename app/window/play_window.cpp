@@ -51,7 +51,7 @@ struct ImGuiOfWindow {
 
 /// Draws when something has happened, and some frames more, since Dear ImGui answers a frame late; else
 /// seldom.
-void show(GlfwWindow& window, PlayLink& link, const std::vector<std::string>& meshes,
+void show(GlfwWindow& window, UiChannel& link, const std::vector<std::string>& meshes,
           std::optional<double> budget_ms) {
   const ImGuiOfWindow imgui(window.get());
   PlayUi ui(link, imgui.fonts, meshes, budget_ms);
@@ -87,9 +87,9 @@ void show(GlfwWindow& window, PlayLink& link, const std::vector<std::string>& me
 }  // namespace
 
 int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
-                  std::optional<double> budget_ms, const std::function<int(PlayLink&)>& work) {
+                  std::optional<double> budget_ms, const std::function<int(UiChannel&)>& work) {
   GlfwWindow window(title);
-  PlayLink link([] { glfwPostEmptyEvent(); });
+  UiChannel link([] { glfwPostEmptyEvent(); });
   int status = 0;
   std::exception_ptr fault;
   std::thread session([&] {

@@ -19,6 +19,6 @@ namespace roomradar {
 /// @throws Error saying what to do where this build has no window, there is no display, or the display gives
 ///         no OpenGL 3.3
 int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
-                  std::optional<double> budget_ms, const std::function<int(PlayLink&)>& work);
+                  std::optional<double> budget_ms, const std::function<int(UiChannel&)>& work);
 
 }  // namespace roomradar

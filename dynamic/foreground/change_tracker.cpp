@@ -90,7 +90,7 @@ Eigen::AlignedBox3d LastingChange::box_world() const {
 }
 
 void require_valid(const ChangeTrackerConfig& config) {
-  const SettingRules require{"change_tracker"};
+  const ConfigCheck require{"change_tracker"};
   const auto part = [](float value) { return value >= 0.0F && value <= 1.0F; };
   require(config.spacing_m >= 0.002F && config.spacing_m <= 1.0F, "spacing_m", config.spacing_m,
           "in 0.002..1");
@@ -269,7 +269,7 @@ void ChangeTracker::sort_into_cells(LastingKind kind, float seconds) {
     const Point& point = points_[i];
     if (point.kind != kind) continue;
     const std::uint64_t code =
-        cell_code(index_of(point.position.x()), index_of(point.position.y()), index_of(point.position.z()));
+        voxel_key(index_of(point.position.x()), index_of(point.position.y()), index_of(point.position.z()));
     const std::uint32_t at = find_cell(code);
     if (table_[at] == kNone) {
       table_[at] = static_cast<std::uint32_t>(cells_.size());
@@ -278,10 +278,11 @@ void ChangeTracker::sort_into_cells(LastingKind kind, float seconds) {
     cell_of_[i] = table_[at];
     cells_[table_[at]].steady |= point.steady_s >= seconds;
   }
-  const std::uint64_t zero = cell_code(0, 0, 0);
+  const std::uint64_t zero = voxel_key(0, 0, 0);
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
     for (int n = 0; n < kCellsRound / 2; ++n) {  // the neighbour's own loop covers the other half
-      const std::uint32_t beside = table_[find_cell(cells_[cell].code + cell_code(cell_round(n)) - zero)];
+      const std::uint32_t beside =
+          table_[find_cell(cells_[cell].code + voxel_key(neighbour_offset(n)) - zero)];
       if (beside == kNone) continue;
       ++cells_[cell].neighbours;
       ++cells_[beside].neighbours;

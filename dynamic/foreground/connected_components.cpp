@@ -39,8 +39,8 @@ void join(std::vector<PixelRun>& runs, std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-void find_regions(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
-                  const RegionBits& bits, const Intrinsics& camera, DepthRegions& found) {
+void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
+                     const RegionBits& bits, const Intrinsics& camera, ConnectedComponents& found) {
   found.runs.reserve(depth_m.pixels.size());
   found.regions.reserve(depth_m.pixels.size());
   found.runs.clear();
@@ -68,12 +68,12 @@ void find_regions(const DepthImage& depth_m, const std::vector<std::uint8_t>& ev
          x = next_marked(marks, x, depth_m.width, any)) {
       const auto id = static_cast<std::uint32_t>(runs.size());
       PixelRun run{row + static_cast<std::uint32_t>(x), 0, id};
-      DepthRegion sums;
+      ConnectedComponent sums;
       std::uint32_t pixel = run.first;
       do {
         ++sums.pixels;
         sums.strong += (evidence[pixel] & bits.strong) != 0;
-        sums.doubtful += (evidence[pixel] & (bits.doubtful | bits.strong)) == bits.doubtful;
+        sums.ambiguous += (evidence[pixel] & (bits.ambiguous | bits.strong)) == bits.ambiguous;
         sums.before += (evidence[pixel] & bits.before) != 0;
         sums.core += (evidence[pixel] & bits.core) != 0;
         sums.depth2_m2 += depth[pixel] * depth[pixel];
@@ -98,11 +98,11 @@ void find_regions(const DepthImage& depth_m, const std::vector<std::uint8_t>& ev
   for (std::uint32_t i = 0; i < runs.size(); ++i) {
     const std::uint32_t root = runs[i].region = root_of(runs, i);
     if (root == i) continue;
-    DepthRegion& all = found.regions[root];
-    const DepthRegion& part = found.regions[i];
+    ConnectedComponent& all = found.regions[root];
+    const ConnectedComponent& part = found.regions[i];
     all.pixels += part.pixels;
     all.strong += part.strong;
-    all.doubtful += part.doubtful;
+    all.ambiguous += part.ambiguous;
     all.before += part.before;
     all.core += part.core;
     all.depth2_m2 += part.depth2_m2;

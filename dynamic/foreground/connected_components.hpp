@@ -17,25 +17,25 @@ struct PixelRun {
 };
 
 /// Sums over all runs of a region.
-struct DepthRegion {
+struct ConnectedComponent {
   std::uint32_t pixels = 0;
-  std::uint32_t strong = 0;    ///< pixels with the strong bit
-  std::uint32_t doubtful = 0;  ///< pixels with the doubtful bit and without the strong one
-  std::uint32_t before = 0;    ///< pixels with the before bit
-  std::uint32_t core = 0;      ///< pixels with the core bit
-  float depth2_m2 = 0.0F;      ///< sum of squared depths; over fx fy: area of a region that faces the camera
+  std::uint32_t strong = 0;     ///< pixels with the strong bit
+  std::uint32_t ambiguous = 0;  ///< pixels with the doubtful bit and without the strong one
+  std::uint32_t before = 0;     ///< pixels with the before bit
+  std::uint32_t core = 0;       ///< pixels with the core bit
+  float depth2_m2 = 0.0F;       ///< sum of squared depths; over fx fy: area of a region that faces the camera
 };
 
 /// Meaning of a pixel's evidence bits to the search.
 struct RegionBits {
-  std::uint8_t weak = 0, strong = 0, doubtful = 0, before = 0, core = 0;
+  std::uint8_t weak = 0, strong = 0, ambiguous = 0, before = 0, core = 0;
 };
 
 /// runs[i].region is an index into regions. There is one region per run, but only regions that a run refers
 /// to are valid.
-struct DepthRegions {
+struct ConnectedComponents {
   std::vector<PixelRun> runs;
-  std::vector<DepthRegion> regions;
+  std::vector<ConnectedComponent> regions;
 };
 
 /// Finds the connected regions of pixels with the weak or the strong bit. Neighbours are connected if both
@@ -44,7 +44,7 @@ struct DepthRegions {
 /// @param evidence  bits per pixel, of depth_m's size
 ///
 /// Allocates only if the image is larger than those before.
-void find_regions(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
-                  const RegionBits& bits, const Intrinsics& camera, DepthRegions& found);
+void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
+                     const RegionBits& bits, const Intrinsics& camera, ConnectedComponents& found);
 
 }  // namespace roomradar

@@ -10,14 +10,15 @@ namespace roomradar {
 namespace {
 
 // Evidence bits of one pixel.
-constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kDoubtMoved = 4, kWeakRevealed = 8,
-                       kStrongRevealed = 16, kDoubtRevealed = 32, kMovedBefore = 64, kRevealedBefore = 128;
+constexpr std::uint8_t kWeakMoved = 1, kStrongMoved = 2, kAmbiguousMoved = 4, kWeakRevealed = 8,
+                       kStrongRevealed = 16, kAmbiguousRevealed = 32, kMovedBefore = 64,
+                       kRevealedBefore = 128;
 
 // In a hole of the model, together with kWeakMoved. Shares a bit, since nothing is revealed in a hole.
-constexpr std::uint8_t kInHole = kDoubtRevealed;
+constexpr std::uint8_t kInHole = kAmbiguousRevealed;
 
 // Revealed pixels that are surrounded by revealed pixels for longer than an edge error. Shares a bit.
-constexpr std::uint8_t kRevealedCore = kDoubtMoved;
+constexpr std::uint8_t kRevealedCore = kAmbiguousMoved;
 
 struct Union {
   std::uint8_t operator()(std::uint8_t a, std::uint8_t b) const { return static_cast<std::uint8_t>(a | b); }
@@ -56,10 +57,10 @@ void weigh_row(const float* live, const float* expected, int width, const Foregr
     const int strongly_nearer = nearer > strong[x];
     const int strongly_farther = -nearer > strong[x];
     const int moved = (nearer > weak[x] ? kWeakMoved : 0) |
-                      (strongly_nearer ? (z < nearest[x] - strong[x] ? kStrongMoved : kDoubtMoved) : 0);
+                      (strongly_nearer ? (z < nearest[x] - strong[x] ? kStrongMoved : kAmbiguousMoved) : 0);
     const int revealed =
         (-nearer > weak[x] ? kWeakRevealed : 0) |
-        (strongly_farther ? (z > farthest[x] + strong[x] ? kStrongRevealed : kDoubtRevealed) : 0);
+        (strongly_farther ? (z > farthest[x] + strong[x] ? kStrongRevealed : kAmbiguousRevealed) : 0);
     const bool known = (z > 0.0F) & (expected[x] > 0.0F);
     evidence[x] = static_cast<std::uint8_t>((moved | revealed) & (known ? 0xFF : 0));
     labels[x] = known ? PixelLabel::kStatic : PixelLabel::kNotKnown;
@@ -94,8 +95,8 @@ void gather_blocks(const std::uint8_t* evidence, int width, int rows_px, std::ui
 // Resolves ambiguous pixels, which are behind a near edge's reach, such as those of a ball behind a box. They
 // are dynamic if no expected surface within reach is at their depth, within tolerance. A block with an edge
 // represents its two sides, not the depths between them.
-std::uint8_t settle_doubts(const DepthImage& depth_m, int column, int row, const ForegroundConfig& config,
-                           ForegroundState& state) {
+std::uint8_t resolve_ambiguous(const DepthImage& depth_m, int column, int row, const ForegroundConfig& config,
+                               ForegroundState& state) {
   const ExpectedBounds& bounds = state.bounds;
   constexpr int kLanes = kBlock_px * kBlock_px;
   std::array<std::size_t, kLanes> pixel;
@@ -105,7 +106,7 @@ std::uint8_t settle_doubts(const DepthImage& depth_m, int column, int row, const
   for (int y = row * kBlock_px; y < std::min((row + 1) * kBlock_px, depth_m.height); ++y) {
     for (int x = column * kBlock_px; x < std::min((column + 1) * kBlock_px, depth_m.width); ++x) {
       const std::size_t i = depth_m.index(x, y);
-      if ((state.evidence[i] & kDoubtMoved) == 0) continue;
+      if ((state.evidence[i] & kAmbiguousMoved) == 0) continue;
       pixel[count] = i;
       depth[count] = depth_m.pixels[i];
       tolerance[count] =
@@ -158,8 +159,8 @@ void weigh_pixels(const DepthImage& depth_m, const DepthImage& expected_m, const
     gather_blocks(evidence, width, end - row * kBlock_px, state.row_bits.data(), blocks);
     const std::uint8_t* before = state.before.data() + grid.at(0, row);
     for (int column = 0; column < grid.columns; ++column) {
-      if ((blocks[column] & kDoubtMoved) != 0)
-        blocks[column] |= settle_doubts(depth_m, column, row, config, state);
+      if ((blocks[column] & kAmbiguousMoved) != 0)
+        blocks[column] |= resolve_ambiguous(depth_m, column, row, config, state);
       if (before[column] == 0 || blocks[column] == 0) continue;
       const int was = ((before[column] & (kBlockMoved | kBlockMaybeMoved)) != 0 ? kMovedBefore : 0) |
                       ((before[column] & (kBlockRevealed | kBlockMaybeRevealed)) != 0 ? kRevealedBefore : 0);
@@ -180,7 +181,7 @@ bool is_revealed(const DepthImage& depth_m, const DepthImage& expected_m, int co
     for (int x = column * kBlock_px; x < std::min((column + 1) * kBlock_px, depth_m.width); ++x) {
       const std::size_t i = depth_m.index(x, y);
       const bool is_known = (depth_m.pixels[i] > 0.0F) & (expected_m.pixels[i] > 0.0F);
-      const std::uint8_t bits = kWeakRevealed | kStrongRevealed | kDoubtRevealed;
+      const std::uint8_t bits = kWeakRevealed | kStrongRevealed | kAmbiguousRevealed;
       known += is_known;
       revealed += is_known & ((state.evidence[i] & bits) != 0);
     }
@@ -199,7 +200,7 @@ void mark_revealed_cores(const DepthImage& depth_m, const DepthImage& expected_m
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t i = grid.at(column, row);
-      if ((state.block_evidence[i] & (kStrongRevealed | kDoubtRevealed)) == 0) continue;
+      if ((state.block_evidence[i] & (kStrongRevealed | kAmbiguousRevealed)) == 0) continue;
       within[i] = is_revealed(depth_m, expected_m, column, row, state) ? 1 : 0;
       any = any || within[i] != 0;
     }
@@ -258,13 +259,13 @@ struct Difference {
 
 enum class Belief { kNone, kMaybe, kSure };
 
-Belief belief_in(const DepthRegion& region, const Difference& difference, const Intrinsics& camera,
+Belief belief_in(const ConnectedComponent& region, const Difference& difference, const Intrinsics& camera,
                  const ForegroundConfig& config) {
   constexpr float kAtFirstSight = 3.0F;  // times the least size
   constexpr float kSeenBefore = 0.75F;
   const auto pixels = static_cast<float>(region.pixels);
   const auto strong = static_cast<float>(region.strong);
-  const auto judged = static_cast<float>(region.pixels - region.doubtful);
+  const auto judged = static_cast<float>(region.pixels - region.ambiguous);
   const bool was = 2 * region.before >= region.pixels;
   const float part = was ? 0.5F : 1.0F;
   if (difference.bits.core != 0 && region.core == 0) return Belief::kNone;
@@ -283,7 +284,7 @@ Belief belief_in(const DepthRegion& region, const Difference& difference, const 
 // Labels the accepted regions of one kind; returns their number of pixels.
 std::size_t label_regions(const DepthImage& depth_m, const Difference& difference, const Intrinsics& camera,
                           const ForegroundConfig& config, ForegroundState& state, LabelImage& labels) {
-  find_regions(depth_m, state.evidence, difference.bits, camera, state.regions);
+  find_components(depth_m, state.evidence, difference.bits, camera, state.regions);
   const auto width = static_cast<std::uint32_t>(depth_m.width);
   std::size_t labelled = 0;
   for (const PixelRun& run : state.regions.runs) {
@@ -312,15 +313,15 @@ std::size_t label_regions(const DepthImage& depth_m, const Difference& differenc
 ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
                                  const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                                  const ForegroundConfig& config, ForegroundState& state, LabelImage& labels,
-                                 MaskImage& moved_mask) {
+                                 MaskImage& dynamic_mask) {
   assert(depth_m.width == expected_depth_m.width && depth_m.height == expected_depth_m.height);
   assert(depth_m.width == camera.width_px && depth_m.height == camera.height_px);
   const std::size_t pixels = depth_m.pixels.size();
   const auto width = static_cast<std::size_t>(depth_m.width);
   if (labels.width != depth_m.width || labels.height != depth_m.height)
     labels.resize(depth_m.width, depth_m.height);
-  if (moved_mask.width != depth_m.width || moved_mask.height != depth_m.height)
-    moved_mask.resize(depth_m.width, depth_m.height);
+  if (dynamic_mask.width != depth_m.width || dynamic_mask.height != depth_m.height)
+    dynamic_mask.resize(depth_m.width, depth_m.height);
   if (pixels == 0) return {};
   state.evidence.resize(pixels);
   for (auto* row :
@@ -331,7 +332,7 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
 
   follow_misfit(depth_m, expected_depth_m, state.fit);
   find_bounds(expected_depth_m, camera, config, state.fit.misfit_per_m, state.bounds);
-  recall(state.memory, depth_m, camera, T_world_camera, state.before);
+  warp_history(state.memory, depth_m, camera, T_world_camera, state.before);
   weigh_pixels(depth_m, expected_depth_m, config, state, labels);
   mark_revealed_cores(depth_m, expected_depth_m, state);
   drop_far_weak(depth_m, config.weak_reach_px, state);
@@ -343,20 +344,21 @@ ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& ex
                          kBlockMaybeMoved,
                          config.min_strong_of_all,
                          PixelLabel::kMoved};
-  const Difference revealed{{kWeakRevealed, kStrongRevealed, kDoubtRevealed, kRevealedBefore, kRevealedCore},
-                            kBlockRevealed,
-                            kBlockMaybeRevealed,
-                            config.min_strong_of_all_revealed,
-                            PixelLabel::kRevealed};
+  const Difference revealed{
+      {kWeakRevealed, kStrongRevealed, kAmbiguousRevealed, kRevealedBefore, kRevealedCore},
+      kBlockRevealed,
+      kBlockMaybeRevealed,
+      config.min_strong_of_all_revealed,
+      PixelLabel::kRevealed};
   ForegroundCounts counts;
   counts.moved = label_regions(depth_m, moved, camera, config, state, labels);
   counts.revealed = label_regions(depth_m, revealed, camera, config, state, labels);
-  remember(camera, T_world_camera, state.memory);
+  store_history(camera, T_world_camera, state.memory);
 
   for (int y = 0; y < depth_m.height; ++y) {
     const float* live = depth_m.row(y);
     const PixelLabel* label = labels.row(y);
-    std::uint8_t* mask = moved_mask.row(y);
+    std::uint8_t* mask = dynamic_mask.row(y);
     int valid = 0, not_known = 0;
     for (int x = 0; x < depth_m.width; ++x) {
       valid += live[x] > 0.0F;

@@ -25,8 +25,8 @@ using LabelImage = Image<PixelLabel>;
 
 /// History of the previous frame, and reused buffers. A new state has no history.
 struct ForegroundState {
-  MovedMemory memory;
-  ModelFit fit;
+  ForegroundHistory memory;
+  StaticResidual fit;
 
   ExpectedBounds bounds;
   std::vector<std::uint8_t> before;       // bits per block, see moved_memory.hpp
@@ -37,7 +37,7 @@ struct ForegroundState {
   std::vector<float> nearest_m, farthest_m, around_hole_m;
   std::vector<std::uint8_t> keep, row_bits;
   std::vector<std::uint8_t> evidence;  // bits per pixel, see foreground.cpp
-  DepthRegions regions;
+  ConnectedComponents regions;
 };
 
 struct ForegroundCounts {
@@ -55,7 +55,7 @@ struct ForegroundCounts {
 /// @param T_world_camera    camera pose; the previous frame's labels are looked up with it
 /// @param state             of this camera; nothing is allocated from the second frame of a size on
 /// @param labels            resized and set
-/// @param moved_mask        255 where the label is kMoved, else 0; resized and set
+/// @param dynamic_mask        255 where the label is kMoved, else 0; resized and set
 /// The three sizes must agree (asserted).
 ///
 /// A pixel seeds a dynamic region only if it is nearer than the model there. In addition, it must be nearer
@@ -69,6 +69,6 @@ struct ForegroundCounts {
 ForegroundCounts mark_foreground(const DepthImage& depth_m, const DepthImage& expected_depth_m,
                                  const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                                  const ForegroundConfig& config, ForegroundState& state, LabelImage& labels,
-                                 MaskImage& moved_mask);
+                                 MaskImage& dynamic_mask);
 
 }  // namespace roomradar

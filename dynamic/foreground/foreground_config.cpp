@@ -7,7 +7,7 @@
 
 namespace roomradar {
 void require_valid(const ForegroundConfig& config) {
-  const SettingRules require{"foreground"};
+  const ConfigCheck require{"foreground"};
   const auto from_0_to_1 = [](float value) { return value >= 0.0F && value <= 1.0F; };
   require(from_0_to_1(config.model_sigma_m), "model_sigma_m", config.model_sigma_m, "in 0..1");
   require(from_0_to_1(config.pose_sigma_m), "pose_sigma_m", config.pose_sigma_m, "in 0..1");

@@ -12,8 +12,8 @@ struct Either {
 
 }  // namespace
 
-void recall(const MovedMemory& memory, const DepthImage& depth_m, const Intrinsics& camera,
-            const Eigen::Isometry3d& T_world_camera, std::vector<std::uint8_t>& before) {
+void warp_history(const ForegroundHistory& memory, const DepthImage& depth_m, const Intrinsics& camera,
+                  const Eigen::Isometry3d& T_world_camera, std::vector<std::uint8_t>& before) {
   const BlockGrid grid{blocks_along(depth_m.width), blocks_along(depth_m.height)};
   before.assign(grid.size(), 0);
   if (memory.is_empty || !(memory.camera == camera)) return;
@@ -47,7 +47,8 @@ void recall(const MovedMemory& memory, const DepthImage& depth_m, const Intrinsi
   }
 }
 
-void remember(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, MovedMemory& memory) {
+void store_history(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                   ForegroundHistory& memory) {
   memory.camera = camera;
   memory.T_world_camera = T_world_camera;
   memory.is_empty =

@@ -16,7 +16,7 @@ inline constexpr std::uint8_t kBlockMoved = 1, kBlockRevealed = 2;
 inline constexpr std::uint8_t kBlockMaybeMoved = 4, kBlockMaybeRevealed = 8;
 
 /// History of one camera. It is ignored for other intrinsics.
-struct MovedMemory {
+struct ForegroundHistory {
   BlockGrid grid;
   Intrinsics camera;  ///< without size: no history
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
@@ -27,11 +27,12 @@ struct MovedMemory {
 
 /// Looks up the history of the places that this frame's blocks show, by the live depth in their middle.
 /// @param before  bits per block, resized and set
-void recall(const MovedMemory& memory, const DepthImage& depth_m, const Intrinsics& camera,
-            const Eigen::Isometry3d& T_world_camera, std::vector<std::uint8_t>& before);
+void warp_history(const ForegroundHistory& memory, const DepthImage& depth_m, const Intrinsics& camera,
+                  const Eigen::Isometry3d& T_world_camera, std::vector<std::uint8_t>& before);
 
 /// Stores `memory.blocks`, as filled by the caller, as the new history. Dilates them by one block, since
 /// things move between frames.
-void remember(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera, MovedMemory& memory);
+void store_history(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                   ForegroundHistory& memory);
 
 }  // namespace roomradar

@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, ModelFit& fit) {
+void follow_misfit(const DepthImage& depth_m, const DepthImage& expected_m, StaticResidual& fit) {
   constexpr int kStep_px = 8;
   constexpr int kLeastSamples = 100;
   constexpr float kLargest_per_m = 0.03F;

@@ -35,7 +35,7 @@ float limited(float depth_m, float thickness_m, float expected_m, const BackRule
 
 class BackMaker {
  public:
-  BackMaker(const MovedPixels& pixels, const MovedLattice& lattice, const DepthImage& depth_m,
+  BackMaker(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
             const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
             BackLattice& back)
       : pixels_(pixels),
@@ -57,7 +57,7 @@ class BackMaker {
         if (x < 0 || x >= lattice_.columns || y >= lattice_.rows) continue;
         const std::size_t other = at(i, k);
         const float there = lattice_.inverse_depth[other];
-        if (!(there > 0.0F) || !rules_.jump.joins_inverse(here, there)) continue;
+        if (!(there > 0.0F) || !rules_.jump.is_one_surface_inverse(here, there)) continue;
         back_.joined[i] |= static_cast<std::uint8_t>(1U << k);
         back_.joined[other] |= static_cast<std::uint8_t>(1U << (k + 4));
       }
@@ -197,7 +197,7 @@ class BackMaker {
       if (!depth_m_.contains(x, y)) continue;  // continues beyond the image
       const float there_m = depth_m_.at(x, y);
       const bool is_behind_it = there_m > 0.0F && there_m * here < 1.0F;  // cut off by a nearer surface
-      if (!is_behind_it || rules_.jump.joins_inverse(here, 1.0F / there_m)) return true;
+      if (!is_behind_it || rules_.jump.is_one_surface_inverse(here, 1.0F / there_m)) return true;
     }
     return false;
   }
@@ -214,8 +214,8 @@ class BackMaker {
     return least_m;
   }
 
-  const MovedPixels& pixels_;
-  const MovedLattice& lattice_;
+  const DynamicPixels& pixels_;
+  const DynamicLattice& lattice_;
   const DepthImage& depth_m_;
   const DepthImage& expected_m_;
   const BackRules& rules_;
@@ -226,7 +226,7 @@ class BackMaker {
 
 }  // namespace
 
-void make_back(const MovedPixels& pixels, const MovedLattice& lattice, const DepthImage& depth_m,
+void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
                const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
                BackLattice& back) {
   const std::size_t size = lattice.inverse_depth.size();
@@ -248,7 +248,7 @@ void make_back(const MovedPixels& pixels, const MovedLattice& lattice, const Dep
   maker.set_depths();
 }
 
-float back_at(int x, int y, float front_inverse_depth, const MovedLattice& lattice,
+float back_at(int x, int y, float front_inverse_depth, const DynamicLattice& lattice,
               const DepthImage& expected_depth_m, const BackRules& rules, const BackLattice& back) {
   const int column = x / kCell_px, row = y / kCell_px;
   const float along_x = static_cast<float>(x % kCell_px) / kCell_px;

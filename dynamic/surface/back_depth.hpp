@@ -10,7 +10,7 @@
 namespace roomradar {
 
 struct BackRules {
-  JumpRule jump;  ///< between neighbouring lattice points
+  DepthDiscontinuity jump;  ///< between neighbouring lattice points
   float least_thickness_m, most_thickness_m, least_roundness, clearance_m;
 };
 
@@ -41,12 +41,12 @@ struct BackLattice {
 ///
 /// @param depth_m           live depth of all pixels, dynamic or not
 /// @param expected_depth_m  depth of the static model; 0: unknown, no limit
-void make_back(const MovedPixels& pixels, const MovedLattice& lattice, const DepthImage& depth_m,
+void make_back(const DynamicPixels& pixels, const DynamicLattice& lattice, const DepthImage& depth_m,
                const DepthImage& expected_depth_m, const Intrinsics& camera, const BackRules& rules,
                BackLattice& back);
 
 /// Returns the inverse depth of the back at any dynamic pixel.
-float back_at(int x, int y, float front_inverse_depth, const MovedLattice& lattice,
+float back_at(int x, int y, float front_inverse_depth, const DynamicLattice& lattice,
               const DepthImage& expected_depth_m, const BackRules& rules, const BackLattice& back);
 
 }  // namespace roomradar

@@ -11,23 +11,23 @@ namespace roomradar {
 
 /// Two pixels are on one surface if their depths differ by no more than the noise of both and a plane's slope
 /// explain.
-class JumpRule {
+class DepthDiscontinuity {
  public:
   /// @param sigmas         max difference, in sigmas of its noise
   /// @param incidence_deg  between the view ray and the normal of the steepest plane that is one surface
   /// @param apart_px       distance of the two pixels along a row or a column
-  JumpRule(float sigmas, float incidence_deg, float apart_px, const Intrinsics& camera)
+  DepthDiscontinuity(float sigmas, float incidence_deg, float apart_px, const Intrinsics& camera)
       : sigmas_(sigmas * std::numbers::sqrt2_v<float>),
         slope_(std::tan(incidence_deg * std::numbers::pi_v<float> / 180.0F) * apart_px /
                static_cast<float>(std::min(camera.fx_px, camera.fy_px))) {}
 
   /// For pixels apart_px apart along a row or column, or diagonally so. Depths in metres, > 0.
-  [[nodiscard]] bool joins(float a_m, float b_m) const { return joins(a_m, b_m, slope_); }
-  [[nodiscard]] bool joins_diagonally(float a_m, float b_m) const {
-    return joins(a_m, b_m, slope_ * std::numbers::sqrt2_v<float>);
+  [[nodiscard]] bool is_one_surface(float a_m, float b_m) const { return is_one_surface(a_m, b_m, slope_); }
+  [[nodiscard]] bool is_one_surface_diagonally(float a_m, float b_m) const {
+    return is_one_surface(a_m, b_m, slope_ * std::numbers::sqrt2_v<float>);
   }
-  /// The same as joins() for inverse depths, 1/m.
-  [[nodiscard]] bool joins_inverse(float a, float b) const {
+  /// The same as is_one_surface() for inverse depths, 1/m.
+  [[nodiscard]] bool is_one_surface_inverse(float a, float b) const {
     const float nearest = std::max(a, b), farthest = std::min(a, b);
     if (nearest - farthest <= least_jump() * farthest) return true;
     return nearest - farthest <= (sigmas_ * depth_sigma_m(1.0F / nearest) * nearest + slope_) * farthest;
@@ -39,7 +39,7 @@ class JumpRule {
   }
 
  private:
-  [[nodiscard]] bool joins(float a_m, float b_m, float slope) const {
+  [[nodiscard]] bool is_one_surface(float a_m, float b_m, float slope) const {
     const float z = std::min(a_m, b_m);
     return std::abs(a_m - b_m) <= sigmas_ * depth_sigma_m(z) + slope * z;
   }

@@ -91,9 +91,9 @@ class GridMesher {
  private:
   void triangle(const Corner& corner, const Corner& second, const Corner& third) {
     if (!(corner.depth_m > 0.0F && second.depth_m > 0.0F && third.depth_m > 0.0F)) return;
-    const bool one_surface = rule_.joins(corner.depth_m, second.depth_m) &&
-                             rule_.joins(corner.depth_m, third.depth_m) &&
-                             rule_.joins_diagonally(second.depth_m, third.depth_m);
+    const bool one_surface = rule_.is_one_surface(corner.depth_m, second.depth_m) &&
+                             rule_.is_one_surface(corner.depth_m, third.depth_m) &&
+                             rule_.is_one_surface_diagonally(second.depth_m, third.depth_m);
     if (!one_surface && !skirts_) return;
     const Triangle t = {vertex(corner), vertex(second), vertex(third)};
     mesh_.triangles.push_back(t);
@@ -113,7 +113,7 @@ class GridMesher {
   }
 
   Projection project_;
-  JumpRule rule_;
+  DepthDiscontinuity rule_;
   bool skirts_;
   Mesh& mesh_;
 };
@@ -187,7 +187,7 @@ void fill_ends(int width, float* depth_m) {
 }  // namespace
 
 void require_valid(const DepthMeshConfig& config) {
-  const SettingRules require{"depth_mesh"};
+  const ConfigCheck require{"depth_mesh"};
   require(config.stride_px >= 1 && config.stride_px <= 64, "stride_px", config.stride_px, "in 1..64");
   require(config.jump_sigmas >= 0.0F && config.jump_sigmas < 1e3F, "jump_sigmas", config.jump_sigmas,
           "in 0..1000");
@@ -198,15 +198,15 @@ void require_valid(const DepthMeshConfig& config) {
           config.border_push_m, "in 0..100");
 }
 
-void mesh_masked(const DepthImage& depth_m, const MaskImage& moved_mask, const Intrinsics& camera,
+void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
                  DepthMeshScratch& scratch, Mesh& mesh) {
-  assert(depth_m.width == moved_mask.width && depth_m.height == moved_mask.height);
+  assert(depth_m.width == dynamic_mask.width && depth_m.height == dynamic_mask.height);
   start(depth_m, T_world_camera, config, scratch, mesh);
   GridMesher mesher(camera, T_world_camera, config, /*skirts=*/false, mesh);
   const auto depth_at = [&](int x, int y) {
     const std::size_t i = depth_m.index(x, y);
-    return moved_mask.pixels[i] != 0 ? depth_m.pixels[i] : 0.0F;
+    return dynamic_mask.pixels[i] != 0 ? depth_m.pixels[i] : 0.0F;
   };
   mesh_grid(depth_m.width, depth_m.height, config.stride_px, depth_at, scratch, mesher);
   mesher.finish();

@@ -32,12 +32,12 @@ struct DepthMeshScratch {
 /// between neighbours on one surface. No triangle spans a depth discontinuity or the mask's edge.
 ///
 /// @param depth_m         height x width, metres along the axis, 0 = no measurement
-/// @param moved_mask      same size; not 0: dynamic
+/// @param dynamic_mask      same size; not 0: dynamic
 /// @param T_world_camera  pose of the depth camera
 /// @param mesh            overwritten, allocations kept; origin at the camera's position, world axes,
 ///                        unit normals, counter-clockwise towards the camera, no colours; empty if no
 ///                        pixel is dynamic
-void mesh_masked(const DepthImage& depth_m, const MaskImage& moved_mask, const Intrinsics& camera,
+void mesh_masked(const DepthImage& depth_m, const MaskImage& dynamic_mask, const Intrinsics& camera,
                  const Eigen::Isometry3d& T_world_camera, const DepthMeshConfig& config,
                  DepthMeshScratch& scratch, Mesh& mesh);
 

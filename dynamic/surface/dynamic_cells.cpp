@@ -1,4 +1,4 @@
-// moved_cells.cpp: discontinuities, outlines and bends, cell by cell.
+// dynamic_cells.cpp: discontinuities, outlines and bends, cell by cell.
 #include "dynamic/surface/dynamic_cells.hpp"
 
 #include <algorithm>
@@ -29,15 +29,15 @@ struct Jumps {
   }
 };
 
-Jumps find_jumps(CellBits in, const CellValues& values, const JumpRule& rule) {
+Jumps find_jumps(CellBits in, const CellValues& values, const DepthDiscontinuity& rule) {
   Jumps jumps;
   for (CellBits left = in & in >> 1 & kNotLastColumn; left != 0; left &= left - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(left));
-    if (!rule.joins_inverse(values[k], values[k + 1])) jumps.right |= left & -left;
+    if (!rule.is_one_surface_inverse(values[k], values[k + 1])) jumps.right |= left & -left;
   }
   for (CellBits above = in & in >> 5; above != 0; above &= above - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(above));
-    if (!rule.joins_inverse(values[k], values[k + 5])) jumps.down |= above & -above;
+    if (!rule.is_one_surface_inverse(values[k], values[k + 5])) jumps.down |= above & -above;
   }
   return jumps;
 }
@@ -105,8 +105,8 @@ bool is_followed(CellBits surface, const CellValues& values, const RingArc& arc,
 
 class CellSorter {
  public:
-  CellSorter(const MovedPixels& pixels, const MovedLattice& lattice, const Intrinsics& camera,
-             std::span<const FineBall> fine, const CellRules& rules, MovedCells& cells)
+  CellSorter(const DynamicPixels& pixels, const DynamicLattice& lattice, const Intrinsics& camera,
+             std::span<const FineBall> fine, const CellRules& rules, DynamicCells& cells)
       : pixels_(pixels),
         lattice_(lattice),
         camera_(camera),
@@ -300,8 +300,9 @@ class CellSorter {
     const auto triangle = [&](CellPixel corner, CellPixel second, CellPixel third) {
       if ((in & bit(place(corner))) == 0 || (in & bit(place(second))) == 0 || (in & bit(place(third))) == 0)
         return;
-      if (rules_.jump.joins(depth(corner), depth(second)) && rules_.jump.joins(depth(corner), depth(third)) &&
-          rules_.jump.joins_diagonally(depth(second), depth(third)))
+      if (rules_.jump.is_one_surface(depth(corner), depth(second)) &&
+          rules_.jump.is_one_surface(depth(corner), depth(third)) &&
+          rules_.jump.is_one_surface_diagonally(depth(second), depth(third)))
         put(column, row, corner, second, third);
     };
     for (std::int8_t y = 0; y < kCell_px; ++y) {
@@ -322,21 +323,21 @@ class CellSorter {
     }
   }
 
-  const MovedPixels& pixels_;
-  const MovedLattice& lattice_;
+  const DynamicPixels& pixels_;
+  const DynamicLattice& lattice_;
   const Intrinsics& camera_;
   std::span<const FineBall> fine_;
   const CellRules& rules_;
-  MovedCells& cells_;
+  DynamicCells& cells_;
   int across_;  // cells per row
   std::size_t width_;
 };
 
 }  // namespace
 
-void make_cells(const MovedPixels& pixels, const MovedLattice& lattice, const Intrinsics& camera,
+void make_cells(const DynamicPixels& pixels, const DynamicLattice& lattice, const Intrinsics& camera,
                 std::span<const FineBall> fine, std::size_t regions, const CellRules& rules,
-                MovedCells& cells) {
+                DynamicCells& cells) {
   const auto count =
       static_cast<std::size_t>(lattice.columns - 1) * static_cast<std::size_t>(lattice.rows - 1);
   cells.kinds.assign(count, CellKind::kEmpty);

@@ -1,4 +1,4 @@
-// moved_cells.hpp: classifies cells between lattice points as flat, cut by an outline, or full.
+// dynamic_cells.hpp: classifies cells between lattice points as flat, cut by an outline, or full.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -35,7 +35,7 @@ struct CellCounts {
 /// Vertices are pixels, as indices into the image. Counter-clockwise as seen by the camera.
 using PixelTriangle = std::array<std::uint32_t, 3>;
 
-struct MovedCells {
+struct DynamicCells {
   std::vector<CellKind> kinds;                 ///< one per cell, between four lattice points
   std::vector<std::uint8_t> is_flat;           ///< 1 if the kind is kFlat
   std::vector<std::array<CellBits, 4>> parts;  ///< of cut cells: the pixels of each surface
@@ -49,15 +49,15 @@ struct MovedCells {
 };
 
 struct CellRules {
-  JumpRule jump;      ///< between neighbouring pixels
+  DepthDiscontinuity jump;  ///< between neighbouring pixels
   float most_sigmas;  ///< max RMS distance of a cut cell's pixels from its triangles; above it the cell is
                       ///< full
 };
 
 /// Classifies the cells and makes the triangles of cut and full cells.
 /// @param regions  number of regions, greater than the region of any ball
-void make_cells(const MovedPixels& pixels, const MovedLattice& lattice, const Intrinsics& camera,
+void make_cells(const DynamicPixels& pixels, const DynamicLattice& lattice, const Intrinsics& camera,
                 std::span<const FineBall> fine, std::size_t regions, const CellRules& rules,
-                MovedCells& cells);
+                DynamicCells& cells);
 
 }  // namespace roomradar

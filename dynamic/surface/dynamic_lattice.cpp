@@ -92,7 +92,7 @@ Plane mean_of_pairs(const float* middle, std::ptrdiff_t width, CellBits window, 
 }
 
 /// Averages flat points with pairs of opposite flat neighbours, unless that would round off a bend.
-void average_neighbours(MovedLattice& lattice) {
+void average_neighbours(DynamicLattice& lattice) {
   constexpr float kMostBend_sigmas = 1.5F;
   lattice.raw = lattice.inverse_depth;
   const auto columns = static_cast<std::ptrdiff_t>(lattice.columns);
@@ -119,7 +119,7 @@ void average_neighbours(MovedLattice& lattice) {
 
 }  // namespace
 
-float smoothed_inverse_depth(const MovedPixels& pixels, int x, int y) {
+float smoothed_inverse_depth(const DynamicPixels& pixels, int x, int y) {
   const auto width = static_cast<std::ptrdiff_t>(pixels.smooth.width);
   const float* middle = pixels.inverse_depth.data() + y * width + x;
   return mean_of_pairs(middle, width, pixels.smooth.square(x - 2, y - 2), inverse_depth_sigma(*middle, 0.0F))
@@ -134,8 +134,8 @@ float inverse_depth_sigma(float inverse_depth, float tangent2) {
   return sigma_m * inverse_depth * inverse_depth;
 }
 
-void make_lattice(const MovedPixels& pixels, const Intrinsics& camera, float flat_sigmas,
-                  MovedLattice& lattice) {
+void make_lattice(const DynamicPixels& pixels, const Intrinsics& camera, float flat_sigmas,
+                  DynamicLattice& lattice) {
   const PixelBits& bits = pixels.smooth;
   constexpr int kSquare_px = kSquareCells * kCell_px;
   lattice.columns = (bits.width + kSquare_px - 1) / kSquare_px * kSquareCells + 1;

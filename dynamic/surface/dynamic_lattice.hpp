@@ -15,7 +15,7 @@ constexpr int kSquareCells = 8;
 
 /// Points at pixels (kCell_px * column, kCell_px * row), row-major. The cells between them cover the image
 /// and form whole squares; points beyond the image are not dynamic.
-struct MovedLattice {
+struct DynamicLattice {
   int columns = 0, rows = 0;  ///< number of points: a multiple of kSquareCells plus one
   /// 1/m, 0 where the pixel is not dynamic. Averaged over pairs of opposite pixels, which leaves planes
   /// unchanged.
@@ -37,10 +37,10 @@ float inverse_depth_sigma(float inverse_depth, float tangent2);
 
 /// Returns a dynamic pixel's inverse depth (1/m), averaged over pairs of opposite pixels of the surrounding 5
 /// x 5 that deviate from a line by noise only. Outlines stay; bends are rounded by less than the noise.
-float smoothed_inverse_depth(const MovedPixels& pixels, int x, int y);
+float smoothed_inverse_depth(const DynamicPixels& pixels, int x, int y);
 
 /// @param flat_sigmas  5 x 5 pixels are flat if their RMS distance from a plane is at most this
-void make_lattice(const MovedPixels& pixels, const Intrinsics& camera, float flat_sigmas,
-                  MovedLattice& lattice);
+void make_lattice(const DynamicPixels& pixels, const Intrinsics& camera, float flat_sigmas,
+                  DynamicLattice& lattice);
 
 }  // namespace roomradar

@@ -32,7 +32,7 @@ std::uint64_t take_word(const std::uint8_t* mask, const float* depth_m, int coun
 }
 
 /// Sets a pixel of `smooth` that is not measured to the mean of its measured neighbours.
-void fill(int x, int y, MovedPixels& pixels) {
+void fill(int x, int y, DynamicPixels& pixels) {
   float sum = 0.0F;
   int count = 0;
   const auto width = static_cast<std::ptrdiff_t>(pixels.smooth.width);
@@ -49,12 +49,12 @@ void fill(int x, int y, MovedPixels& pixels) {
 
 }  // namespace
 
-void take_moved_pixels(const DepthImage& depth_m, const MaskImage& moved_mask, MovedPixels& pixels) {
+void take_dynamic_pixels(const DepthImage& depth_m, const MaskImage& dynamic_mask, DynamicPixels& pixels) {
   constexpr std::size_t kReadPast = 8;  // plane fitting reads eight pixels where it needs five
   pixels.inverse_depth.resize(depth_m.pixels.size() + kReadPast);
   pixels.measured.resize(depth_m.width, depth_m.height);
   for (int y = 0; y < depth_m.height; ++y) {
-    const std::uint8_t* mask = moved_mask.row(y);
+    const std::uint8_t* mask = dynamic_mask.row(y);
     const std::size_t first = depth_m.index(0, y);
     for (int x = 0; x < depth_m.width; x += 64) {
       const int count = std::min(64, depth_m.width - x);

@@ -8,7 +8,7 @@
 namespace roomradar {
 
 /// Stores inverse depths, since a plane's inverse depth is linear over the image.
-struct MovedPixels {
+struct DynamicPixels {
   PixelBits measured;  ///< in the mask and with depth
   /// `measured` with a smooth outline: majority of the surrounding 3 x 3 pixels. Every pixel of `measured` is
   /// in `smooth`, has a neighbour in it, or is in `thin`.
@@ -20,9 +20,9 @@ struct MovedPixels {
 };
 
 /// @param depth_m     metres; 0, not finite or beyond 10 km: not measured
-/// @param moved_mask  same size; not 0: dynamic
+/// @param dynamic_mask  same size; not 0: dynamic
 ///
 /// Allocates only when the size grows.
-void take_moved_pixels(const DepthImage& depth_m, const MaskImage& moved_mask, MovedPixels& pixels);
+void take_dynamic_pixels(const DepthImage& depth_m, const MaskImage& dynamic_mask, DynamicPixels& pixels);
 
 }  // namespace roomradar

@@ -35,7 +35,7 @@ struct Rays {
 class Assembler {
  public:
   Assembler(const DepthImage& expected_m, const Rays& rays, const BackRules& back_rules,
-            MovedSurfaceScratch& scratch, MovedSurface& surface)
+            DynamicSurfaceScratch& scratch, DynamicSurface& surface)
       : expected_m_(expected_m),
         rays_(rays),
         back_rules_(back_rules),
@@ -88,7 +88,7 @@ class Assembler {
     for (std::size_t i = 0; i < scratch_.pixel_of_vertex.size(); ++i)
       scratch_.vertex_of_pixel[scratch_.pixel_of_vertex[i]] = static_cast<std::uint32_t>(i);
     scratch_.rim_of_seen.assign(scratch_.seen_pixels.size(), kNone);
-    for (const MovedSurfaceScratch::Edge& edge : scratch_.edges) {
+    for (const DynamicSurfaceScratch::Edge& edge : scratch_.edges) {
       if (edge.from == kNone) continue;
       const std::uint32_t a = rim(edge.from), b = rim(edge.to);
       const std::uint32_t back_a = scratch_.vertex_of_pixel[scratch_.seen_pixels[edge.from]];
@@ -205,7 +205,7 @@ class Assembler {
     return scratch_.pixels.inverse_depth[static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x)];
   }
   [[nodiscard]] bool goes_on(int x, int y, int to_x, int to_y) const {
-    return back_rules_.jump.joins_inverse(inverse_depth(x, y), inverse_depth(to_x, to_y));
+    return back_rules_.jump.is_one_surface_inverse(inverse_depth(x, y), inverse_depth(to_x, to_y));
   }
 
   /// Adds a slab over the pixels from (x0, y0) to (x1, y1), enlarged by half a pixel on all sides.
@@ -241,15 +241,15 @@ class Assembler {
   const DepthImage& expected_m_;
   const Rays& rays_;
   const BackRules& back_rules_;
-  MovedSurfaceScratch& scratch_;
+  DynamicSurfaceScratch& scratch_;
   Mesh& seen_;
   Mesh& inferred_;
   std::uint32_t width_;
-  BisectedGrid grid_;
+  Rtin grid_;
 };
 
 /// Reserves upper bounds, so later frames do not allocate.
-void reserve(std::size_t pixels, bool with_back, MovedSurfaceScratch& scratch, MovedSurface& surface) {
+void reserve(std::size_t pixels, bool with_back, DynamicSurfaceScratch& scratch, DynamicSurface& surface) {
   surface.seen_world.vertices.reserve(pixels);
   surface.seen_world.normals.reserve(pixels);
   surface.seen_world.triangles.reserve(2 * pixels);
@@ -267,8 +267,8 @@ void reserve(std::size_t pixels, bool with_back, MovedSurfaceScratch& scratch, M
 
 }  // namespace
 
-void require_valid(const MovedSurfaceConfig& config) {
-  const SettingRules require{"moved_surface"};
+void require_valid(const DynamicSurfaceConfig& config) {
+  const ConfigCheck require{"moved_surface"};
   const auto require_sigmas = [&require](const char* field, float value) {
     require(value > 0.0F && value < 1e3F, field, value, "over 0 and under 1000");
   };
@@ -288,11 +288,12 @@ void require_valid(const MovedSurfaceConfig& config) {
           config.back_clearance_m, "at least 0 and under 1");
 }
 
-void mesh_moved(const DepthImage& depth_m, const MaskImage& moved_mask, const DepthImage& expected_depth_m,
-                const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                std::span<const FineRegion> regions, const MovedSurfaceConfig& config,
-                MovedSurfaceScratch& scratch, MovedSurface& surface) {
-  assert(depth_m.width == moved_mask.width && depth_m.height == moved_mask.height);
+void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
+                  const DepthImage& expected_depth_m, const Intrinsics& camera,
+                  const Eigen::Isometry3d& T_world_camera, std::span<const FineRegion> regions,
+                  const DynamicSurfaceConfig& config, DynamicSurfaceScratch& scratch,
+                  DynamicSurface& surface) {
+  assert(depth_m.width == dynamic_mask.width && depth_m.height == dynamic_mask.height);
   assert(depth_m.width == expected_depth_m.width && depth_m.height == expected_depth_m.height);
   clear(surface.seen_world, T_world_camera.translation());
   clear(surface.inferred_world, T_world_camera.translation());
@@ -307,9 +308,9 @@ void mesh_moved(const DepthImage& depth_m, const MaskImage& moved_mask, const De
       scratch.fine.push_back({centre.cast<float>(), static_cast<float>(regions[i].radius_m), i});
   }
 
-  take_moved_pixels(depth_m, moved_mask, scratch.pixels);
+  take_dynamic_pixels(depth_m, dynamic_mask, scratch.pixels);
   make_lattice(scratch.pixels, camera, config.flat_sigmas, scratch.lattice);
-  const CellRules cell_rules{JumpRule(config.jump_sigmas, config.jump_incidence_deg, 1.0F, camera),
+  const CellRules cell_rules{DepthDiscontinuity(config.jump_sigmas, config.jump_incidence_deg, 1.0F, camera),
                              config.cut_sigmas};
   make_cells(scratch.pixels, scratch.lattice, camera, scratch.fine, regions.size(), cell_rules,
              scratch.cells);
@@ -320,9 +321,9 @@ void mesh_moved(const DepthImage& depth_m, const MaskImage& moved_mask, const De
   const Rays rays{static_cast<float>(1.0 / camera.fx_px), static_cast<float>(1.0 / camera.fy_px),
                   static_cast<float>(camera.cx_px), static_cast<float>(camera.cy_px),
                   T_world_camera.linear().cast<float>()};
-  const BackRules back_rules{JumpRule(config.jump_sigmas, config.jump_incidence_deg, kCell_px, camera),
-                             config.least_thickness_m, config.most_thickness_m, config.least_roundness,
-                             config.back_clearance_m};
+  const BackRules back_rules{
+      DepthDiscontinuity(config.jump_sigmas, config.jump_incidence_deg, kCell_px, camera),
+      config.least_thickness_m, config.most_thickness_m, config.least_roundness, config.back_clearance_m};
   Assembler assembler(expected_depth_m, rays, back_rules, scratch, surface);
   assembler.make_seen();
   if (config.has_back) {

@@ -16,7 +16,7 @@
 namespace roomradar {
 
 /// "Sigmas" are of the sensor's noise at the surface's depth and angle.
-struct MovedSurfaceConfig {
+struct DynamicSurfaceConfig {
   /// Max deviation, in depth, of the mesh from the pixels' average over 5 x 5.
   float deviation_sigmas = 0.8F;
   float flat_sigmas = 2.0F;  ///< max RMS of 5 x 5 pixels from a plane; above it they are a bend, not noise
@@ -30,7 +30,7 @@ struct MovedSurfaceConfig {
   float back_clearance_m = 0.005F;   ///< min distance of the back from the static model
 };
 /// Throws Error naming the field, its value and the rule.
-void require_valid(const MovedSurfaceConfig& config);
+void require_valid(const DynamicSurfaceConfig& config);
 
 /// A region, such as around a virtual object, where the mesh has the image's resolution.
 struct FineRegion {
@@ -40,17 +40,17 @@ struct FineRegion {
 
 /// Both meshes have their origin at the camera's position, world axes and no colours; both are empty if
 /// nothing is dynamic. Together they are closed: every edge is used equally often in both directions.
-struct MovedSurface {
+struct DynamicSurface {
   Mesh seen_world;  ///< counter-clockwise towards the camera, unit normals
   /// Back and side walls, counter-clockwise from outside, no normals. Assumed, never observed.
   Mesh inferred_world;
 };
 
-/// Buffers that mesh_moved reuses from frame to frame; their content is meaningless between calls.
-struct MovedSurfaceScratch {
-  MovedPixels pixels;
-  MovedLattice lattice;
-  MovedCells cells;
+/// Buffers that mesh_dynamic reuses from frame to frame; their content is meaningless between calls.
+struct DynamicSurfaceScratch {
+  DynamicPixels pixels;
+  DynamicLattice lattice;
+  DynamicCells cells;
   BackLattice back;
   std::vector<FineBall> fine;
   std::vector<float> values, tolerances;       // one per lattice point
@@ -87,15 +87,16 @@ struct MovedSurfaceScratch {
 /// mesh, except specks whose neighbours are at other depths.
 ///
 /// @param depth_m           height x width, metres along the axis, 0 = no measurement
-/// @param moved_mask        same size; not 0: dynamic
+/// @param dynamic_mask        same size; not 0: dynamic
 /// @param expected_depth_m  same size; depth of the static model, which limits the back; 0: unknown
 /// @param T_world_camera    pose of the depth camera
 /// @param regions           may be empty; regions that are not finite are skipped
 /// @param surface           overwritten, allocations kept
 /// Sizes must agree (asserted). Throws only if memory runs out; allocates in the first frame of a size only.
-void mesh_moved(const DepthImage& depth_m, const MaskImage& moved_mask, const DepthImage& expected_depth_m,
-                const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
-                std::span<const FineRegion> regions, const MovedSurfaceConfig& config,
-                MovedSurfaceScratch& scratch, MovedSurface& surface);
+void mesh_dynamic(const DepthImage& depth_m, const MaskImage& dynamic_mask,
+                  const DepthImage& expected_depth_m, const Intrinsics& camera,
+                  const Eigen::Isometry3d& T_world_camera, std::span<const FineRegion> regions,
+                  const DynamicSurfaceConfig& config, DynamicSurfaceScratch& scratch,
+                  DynamicSurface& surface);
 
 }  // namespace roomradar

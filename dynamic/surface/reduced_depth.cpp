@@ -15,14 +15,14 @@ constexpr float kJumpSigmas = 4.0F, kJumpIncidence_deg = 80.0F;  // as where wha
 
 /// The surface that most of the inverse depths are of, some of which are 0: none.
 template <std::size_t kCount>
-float most_shown(std::array<float, kCount>& inverse, const JumpRule& jump) {
+float most_shown(std::array<float, kCount>& inverse, const DepthDiscontinuity& jump) {
   std::sort(inverse.begin(), inverse.end(), std::greater<>());
   float best_sum = 0.0F, sum = 0.0F;
   int best = 0, count = 0;
   float before = 0.0F;
   for (const float q : inverse) {
     if (!(q > 0.0F)) break;
-    if (count > 0 && !jump.joins_inverse(before, q)) {
+    if (count > 0 && !jump.is_one_surface_inverse(before, q)) {
       count = 0;
       sum = 0.0F;
     }
@@ -37,7 +37,7 @@ float most_shown(std::array<float, kCount>& inverse, const JumpRule& jump) {
 }
 
 template <int kStride>
-void reduce(const DepthImage& depth_m, const JumpRule& jump, DepthImage& reduced_m) {
+void reduce(const DepthImage& depth_m, const DepthDiscontinuity& jump, DepthImage& reduced_m) {
   constexpr std::size_t kCount = std::size_t{kStride} * kStride;
   const float least_jump = jump.least_jump();
   for (int y = 0; y < reduced_m.height; ++y) {
@@ -73,7 +73,7 @@ int usable_stride(const Intrinsics& depth_camera, int stride) {
 
 void reduce_depth(const Frame& frame, int stride, Frame& reduced) {
   reduced.depth_camera = scaled(frame.depth_camera, 1.0 / stride);
-  const JumpRule jump(kJumpSigmas, kJumpIncidence_deg, 1.0F, frame.depth_camera);
+  const DepthDiscontinuity jump(kJumpSigmas, kJumpIncidence_deg, 1.0F, frame.depth_camera);
   reduced.depth_m.resize(reduced.depth_camera.width_px, reduced.depth_camera.height_px);
   if (stride == 4)
     reduce<4>(frame.depth_m, jump, reduced.depth_m);

@@ -9,7 +9,7 @@ namespace {
 /// Tests triangles of the grid as linear functions from their right angle.
 class Judge {
  public:
-  Judge(const BisectedGrid& grid, std::span<const float> values, std::span<const float> tolerances)
+  Judge(const Rtin& grid, std::span<const float> values, std::span<const float> tolerances)
       : grid_(grid), values_(values), tolerances_(tolerances) {}
 
   /// Tests the triangle with its right angle at c and legs of `length` points along x and y, in these
@@ -53,13 +53,13 @@ class Judge {
     const std::size_t i = grid_.point(x, y);
     return std::abs(values_[i] - flat) > tolerances_[i];
   }
-  const BisectedGrid& grid_;
+  const Rtin& grid_;
   std::span<const float> values_, tolerances_;
 };
 
 }  // namespace
 
-void find_needed(const BisectedGrid& grid, std::span<const float> values, std::span<const float> tolerances,
+void find_needed(const Rtin& grid, std::span<const float> values, std::span<const float> tolerances,
                  std::span<std::uint8_t> needed) {
   const Judge judge(grid, values, tolerances);
   const int last_x = grid.columns - 1, last_y = grid.rows - 1;

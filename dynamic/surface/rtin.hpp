@@ -11,7 +11,7 @@ namespace roomradar {
 /// to half a cell. The two triangles at a hypotenuse share its bisection point, and the point requires those
 /// of the coarser bisections, so there are no T-junctions. Source: Evans, Kirkpatrick, Townsend,
 /// Right-triangulated irregular networks, Algorithmica 2001.
-struct BisectedGrid {
+struct Rtin {
   int columns = 0, rows = 0;            ///< number of points: multiples of 8, plus one
   std::span<const std::uint8_t> cells;  ///< (columns - 1) * (rows - 1) values; 1: cell to be meshed
 
@@ -31,7 +31,7 @@ struct BisectedGrid {
 /// @param tolerances  max distance of a triangle from the value at each of its points
 /// @param needed      in and out, one per point. Must be 1 at all corners of unwanted cells beside a
 ///                    wanted one, else 0; entries of 1 stay 1.
-void find_needed(const BisectedGrid& grid, std::span<const float> values, std::span<const float> tolerances,
+void find_needed(const Rtin& grid, std::span<const float> values, std::span<const float> tolerances,
                  std::span<std::uint8_t> needed);
 
 struct GridPoint {
@@ -42,8 +42,8 @@ namespace bisected_grid {
 
 /// Descends into a triangle a, b, c with the right angle at c, counter-clockwise with y down.
 template <typename Take>
-void descend(const BisectedGrid& grid, std::span<const std::uint8_t> needed, GridPoint a, GridPoint b,
-             GridPoint c, const Take& take) {
+void descend(const Rtin& grid, std::span<const std::uint8_t> needed, GridPoint a, GridPoint b, GridPoint c,
+             const Take& take) {
   const int x = a.x + b.x, y = a.y + b.y;
   if (((x | y) & 1) == 0) {
     const GridPoint middle{x / 2, y / 2};
@@ -61,7 +61,7 @@ void descend(const BisectedGrid& grid, std::span<const std::uint8_t> needed, Gri
 
 /// Calls take(a, b, c) for each triangle on wanted cells in the square with this top left point.
 template <typename Take>
-void walk_square(const BisectedGrid& grid, std::span<const std::uint8_t> needed, int column, int row,
+void walk_square(const Rtin& grid, std::span<const std::uint8_t> needed, int column, int row,
                  const Take& take) {
   using bisected_grid::descend;
   const GridPoint top_left{column, row}, bottom_left{column, row + 8};

@@ -82,7 +82,7 @@ float robust_weight(float x) {
   return w * w;
 }
 
-void pass_points(const std::vector<LivePoint>& points, const ReferenceLevel& reference,
+void pass_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                  const Eigen::Isometry3d& T_view_camera, const Limits& limits, const Exposure& exposure,
                  Pass& pass) {
   constexpr std::size_t kBlock = 512;  // float sums over this many points keep five digits
@@ -99,14 +99,14 @@ void pass_points(const std::vector<LivePoint>& points, const ReferenceLevel& ref
     float weights = 0.0F, squares = 0.0F;
     float n = 0.0F, sl = 0.0F, sr = 0.0F, sll = 0.0F, srr = 0.0F;
     for (std::size_t i = begin; i < end; ++i) {
-      const LivePoint& point = points[i];
+      const SourcePoint& point = points[i];
       const Eigen::Vector3f p = R * point.p_camera + t;
       if (p.z() < 0.1F) continue;
       const float inverse_z = 1.0F / p.z();
       const float u = fx * p.x() * inverse_z + cx, v = fy * p.y() * inverse_z + cy;
       if (!(u > -0.5F && v > -0.5F && u < end_u && v < end_v)) continue;
       const int x = static_cast<int>(u + 0.5F), y = static_cast<int>(v + 0.5F);
-      const ReferencePixel& pixel = reference.pixels.at(x, y);
+      const TargetPixel& pixel = reference.pixels.at(x, y);
       if (pixel.inverse_sigma_per_m <= 0.0F) continue;
       ++pass.met;
       const float r_m = pixel.normal.dot(p) - pixel.offset_m;
@@ -209,9 +209,9 @@ Step solve(const System& depth, const System& colour, double length_m, double in
   return step;
 }
 
-double mean_distance_m(const std::vector<LivePoint>& points) {
+double mean_distance_m(const std::vector<SourcePoint>& points) {
   double sum = 0.0;
-  for (const LivePoint& point : points) sum += static_cast<double>(point.p_camera.z());
+  for (const SourcePoint& point : points) sum += static_cast<double>(point.p_camera.z());
   return points.empty() ? 1.0 : sum / static_cast<double>(points.size());
 }
 
@@ -240,7 +240,7 @@ std::string_view to_string(TrackStatus status) {
   return "unknown";
 }
 
-Eigen::Isometry3d exp_twist(const Vector6d& twist) {
+Eigen::Isometry3d retract(const Vector6d& twist) {
   const Eigen::Vector3d omega = twist.tail<3>();
   const double angle = omega.norm();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
@@ -249,14 +249,14 @@ Eigen::Isometry3d exp_twist(const Vector6d& twist) {
   return T;
 }
 
-Vector6d log_twist(const Eigen::Isometry3d& T) {
+Vector6d local(const Eigen::Isometry3d& T) {
   const Eigen::AngleAxisd rotation(T.linear());
   Vector6d twist;
   twist << T.translation(), rotation.angle() * rotation.axis();
   return twist;
 }
 
-Tracking align(const LiveView& live, std::span<const PosedReference> references,
+Tracking align(const SourcePoints& live, std::span<const PosedReference> references,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config) {
   Tracking result;
   if (!T_world_camera_guess.matrix().allFinite()) return result;
@@ -265,7 +265,7 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
   if (references.empty() || live.levels.empty()) return result;
 
   Eigen::Isometry3d T_world_camera = T_world_camera_guess;
-  const ReferenceView& first = *references.front().view;
+  const TargetView& first = *references.front().view;
   const double independent =
       first.levels.empty() ? kIndependentPart : independent_part(first.levels.front().camera);
   std::vector<Exposure> exposures(references.size());
@@ -275,14 +275,14 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
   Matrix6d fixed = Matrix6d::Identity();  // directions constrained by depth at all coarser levels
   for (int level = std::min(config.coarsest_level, last); level >= std::min(config.finest_level, last);
        --level) {
-    const std::vector<LivePoint>& points = live.levels[static_cast<std::size_t>(level)];
+    const std::vector<SourcePoint>& points = live.levels[static_cast<std::size_t>(level)];
     const double length_m = std::max(mean_distance_m(points), 0.1);
     const Limits limits = limits_at(level, config);
     const Matrix6d fixed_coarser = fixed;
     for (int iteration = 0; iteration < config.iterations; ++iteration) {
       total = Pass{};
       for (std::size_t k = 0; k < references.size(); ++k) {
-        const ReferenceView& reference = *references[k].view;
+        const TargetView& reference = *references[k].view;
         if (static_cast<std::size_t>(level) >= reference.levels.size()) continue;
         Pass pass;
         pass_points(points, reference.levels[static_cast<std::size_t>(level)],
@@ -307,14 +307,14 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
       total.colour.mirror();
       fixed = fixed_coarser;
       step = solve(total.depth, total.colour, length_m, independent, config, fixed);
-      T_world_camera = T_world_camera * exp_twist(step.twist);
+      T_world_camera = T_world_camera * retract(step.twist);
       const double moved_m = step.twist.head<3>().norm() + length_m * step.twist.tail<3>().norm();
       if (iteration > 0 && moved_m < (level == config.finest_level ? 1e-4 : 5e-4)) break;
     }
   }
   T_world_camera.linear() = Eigen::Quaterniond(T_world_camera.linear()).normalized().toRotationMatrix();
 
-  const Vector6d correction = log_twist(T_world_camera_guess.inverse() * T_world_camera);
+  const Vector6d correction = local(T_world_camera_guess.inverse() * T_world_camera);
   result.inlier_fraction = static_cast<double>(total.inliers) / static_cast<double>(total.met);
   const bool moved_too_far = !correction.allFinite() ||
                              correction.head<3>().norm() > static_cast<double>(config.max_correction_m) ||
@@ -326,20 +326,20 @@ Tracking align(const LiveView& live, std::span<const PosedReference> references,
   }
   result.T_world_camera = T_world_camera;
   result.rms_m = std::sqrt(total.squares / static_cast<double>(std::max<std::size_t>(total.inliers, 1)));
-  result.held_directions = step.held;
+  result.unconstrained_dofs = step.held;
   result.information = step.information;
   result.status = step.held > 0 ? TrackStatus::kDegenerate : TrackStatus::kTracked;
   return result;
 }
 
-Tracking align(const LiveView& live, const ReferenceView& reference,
+Tracking align(const SourcePoints& live, const TargetView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config) {
   const PosedReference one{&reference, reference.T_world_view};
   return align(live, std::span<const PosedReference>(&one, 1), T_world_camera_guess, config);
 }
 
 Eigen::Isometry3d expected_motion(const Tracking& tracking, const Eigen::Isometry3d& T_last_now) {
-  return tracking ? T_last_now : exp_twist(0.5 * log_twist(T_last_now));
+  return tracking ? T_last_now : retract(0.5 * local(T_last_now));
 }
 
 }  // namespace roomradar

@@ -23,8 +23,8 @@ struct [[nodiscard]] Tracking {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< always finite
   double rms_m = -1.0;           ///< RMS of the inliers' point-to-plane distances; < 0: none
   double inlier_fraction = 0.0;  ///< fraction of the correspondences that are within the noise
-  double overlap = 0.0;     ///< fraction of the image's points with a correspondence in the first reference
-  int held_directions = 0;  ///< number of unconstrained degrees of freedom, 0..6; these keep the guess
+  double overlap = 0.0;  ///< fraction of the image's points with a correspondence in the first reference
+  int unconstrained_dofs = 0;  ///< number of unconstrained degrees of freedom, 0..6; these keep the guess
   /// Inverse covariance of the error of T_world_camera, as a twist (translation m, rotation rad) in the
   /// camera frame: T_true = T_world_camera * exp(twist). Reduced to account for the correlation of
   /// neighbouring pixels.
@@ -57,7 +57,7 @@ struct AlignConfig {
 
 /// A reference and its pose; the view's own T_world_view is ignored.
 struct PosedReference {
-  const ReferenceView* view = nullptr;
+  const TargetView* view = nullptr;
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
@@ -65,20 +65,20 @@ struct PosedReference {
 /// one gain and offset per reference. Gauss-Newton from coarse to fine; residuals are weighted by their
 /// standard deviations and robust to parts of the image that have moved. Each reference contributes in
 /// proportion to its overlap. Returns kDiverged at the identity if the guess is not finite. Unconstrained
-/// degrees of freedom keep the guess's value and are counted in held_directions. Source: Chen and Medioni
+/// degrees of freedom keep the guess's value and are counted in unconstrained_dofs. Source: Chen and Medioni
 /// 1992 (point to plane); Newcombe et al., KinectFusion, ISMAR 2011 (projective association); Zhang, Kaess,
 /// Singh, On Degeneracy of Optimization-based State Estimation Problems, ICRA 2016.
-Tracking align(const LiveView& live, std::span<const PosedReference> references,
+Tracking align(const SourcePoints& live, std::span<const PosedReference> references,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 
 /// Same with one reference, at its own T_world_view.
-Tracking align(const LiveView& live, const ReferenceView& reference,
+Tracking align(const SourcePoints& live, const TargetView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 
 /// Converts a twist (translation m, rotation vector rad) to a motion, and back. Translation and rotation are
 /// converted separately; to first order this equals the exponential map.
-Eigen::Isometry3d exp_twist(const Eigen::Matrix<double, 6, 1>& twist);
-Eigen::Matrix<double, 6, 1> log_twist(const Eigen::Isometry3d& T);
+Eigen::Isometry3d retract(const Eigen::Matrix<double, 6, 1>& twist);
+Eigen::Matrix<double, 6, 1> local(const Eigen::Isometry3d& T);
 
 /// Predicts the next motion: T_last_now if `tracking` is kTracked, else half of it. Halving stops unobserved
 /// degrees of freedom from keeping a past speed.

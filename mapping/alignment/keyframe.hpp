@@ -27,7 +27,7 @@ struct Keyframe {
   std::uint32_t revision = 0;              ///< number of times the view was replaced
   /// Path length of the camera up to here, m; a radian counts as a metre, and unobserved motion counts
   /// tenfold. The drift between two keyframes is assumed to be a fraction of the path between them.
-  double way_m = 0.0;
+  double path_length_m = 0.0;
 };
 
 /// Stores the finest level of a pyramid. `measured` must have the level's size.

@@ -6,17 +6,18 @@
 
 namespace roomradar {
 
-std::shared_ptr<const WarmKeyframe> warm(const StoredView& view, const ViewConfig& config, WarmParts parts) {
-  auto made = std::make_shared<WarmKeyframe>();
+std::shared_ptr<const CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
+                                                       PreparedParts parts) {
+  auto made = std::make_shared<CachedKeyframe>();
   ViewPyramid pyramid;
   restore(view, config, pyramid);
-  if (parts != WarmParts::kLive)
-    make_reference(pyramid, Eigen::Isometry3d::Identity(), config, made->reference);
-  if (parts != WarmParts::kReference) make_live(pyramid, made->live);
+  if (parts != PreparedParts::kLive)
+    make_target_view(pyramid, Eigen::Isometry3d::Identity(), config, made->reference);
+  if (parts != PreparedParts::kReference) make_source_points(pyramid, made->live);
   return made;
 }
 
-std::shared_ptr<const WarmKeyframe> WarmKeyframes::find(std::size_t keyframe) {
+std::shared_ptr<const CachedKeyframe> KeyframeCache::find(std::size_t keyframe) {
   const auto found = std::find_if(entries_.begin(), entries_.end(),
                                   [&](const Entry& entry) { return entry.keyframe == keyframe; });
   if (found == entries_.end()) return nullptr;
@@ -24,14 +25,14 @@ std::shared_ptr<const WarmKeyframe> WarmKeyframes::find(std::size_t keyframe) {
   return entries_.back().held;
 }
 
-std::shared_ptr<const WarmKeyframe> WarmKeyframes::get(std::size_t keyframe, const StoredView& view,
-                                                       const ViewConfig& config) {
+std::shared_ptr<const CachedKeyframe> KeyframeCache::get(std::size_t keyframe, const StoredView& view,
+                                                         const ViewConfig& config) {
   if (auto held = find(keyframe)) return held;
-  put(keyframe, warm(view, config, parts_));
+  put(keyframe, prepare_keyframe(view, config, parts_));
   return entries_.back().held;
 }
 
-void WarmKeyframes::put(std::size_t keyframe, std::shared_ptr<const WarmKeyframe> made) {
+void KeyframeCache::put(std::size_t keyframe, std::shared_ptr<const CachedKeyframe> made) {
   std::erase_if(entries_, [&](const Entry& entry) { return entry.keyframe == keyframe; });
   if (!entries_.empty() && entries_.size() >= capacity_) entries_.erase(entries_.begin());
   entries_.push_back({keyframe, std::move(made)});

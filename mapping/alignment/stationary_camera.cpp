@@ -5,7 +5,7 @@
 
 namespace roomradar {
 
-bool shows_the_same(const Image<float>& before, const Image<float>& now) {
+bool is_camera_stationary(const Image<float>& before, const Image<float>& now) {
   constexpr float kEdge = 10.0F;     // grey levels per pixel, well above a camera's noise
   constexpr float kShift_px = 0.2F;  // an edge that moved this far changes a pixel by a fifth of its gradient
   constexpr int kFewest = 300;

@@ -8,6 +8,6 @@ namespace roomradar {
 /// camera is then stationary, even if something moves in front of it. Returns false if the sizes differ or
 /// there are fewer than 300 edge pixels. Requiring only a majority ignores a moving person. Depth is not used
 /// because a stationary Kinect recalibrates.
-bool shows_the_same(const Image<float>& before, const Image<float>& now);
+bool is_camera_stationary(const Image<float>& before, const Image<float>& now);
 
 }  // namespace roomradar

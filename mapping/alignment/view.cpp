@@ -205,7 +205,7 @@ bool fit_plane(const Image<float>& inverse_depth, int x, int y, int step, float&
   return value > 0.0F;
 }
 
-void fill_gradient(const Image<float>& intensity, int x, int y, ReferencePixel& pixel) {
+void fill_gradient(const Image<float>& intensity, int x, int y, TargetPixel& pixel) {
   const float left = intensity.at(x - 1, y), right = intensity.at(x + 1, y);
   const float up = intensity.at(x, y - 1), down = intensity.at(x, y + 1);
   if (pixel.intensity < 0.0F || left < 0.0F || right < 0.0F || up < 0.0F || down < 0.0F) return;
@@ -215,8 +215,8 @@ void fill_gradient(const Image<float>& intensity, int x, int y, ReferencePixel& 
 }
 
 template <int kHalf>
-void make_reference_level(const ViewPyramid::Level& level, int step, ReferenceLevel& out) {
-  const ReferencePixel none{Eigen::Vector3f::Zero(), 0.0F, 0.0F, -1.0F, 0.0F, 0.0F};
+void make_reference_level(const ViewPyramid::Level& level, int step, TargetLevel& out) {
+  const TargetPixel none{Eigen::Vector3f::Zero(), 0.0F, 0.0F, -1.0F, 0.0F, 0.0F};
   const Intrinsics& camera = level.camera;
   out.camera = camera;
   out.pixels.resize(camera.width_px, camera.height_px, none);
@@ -232,7 +232,7 @@ void make_reference_level(const ViewPyramid::Level& level, int step, ReferenceLe
       const float du = static_cast<float>(x) - cx, dv = static_cast<float>(y) - cy;
       const Eigen::Vector3f n(a * fx, b * fy, q - a * du - b * dv);
       const float distance_m = 1.0F / n.norm();
-      ReferencePixel& pixel = out.pixels.at(x, y);
+      TargetPixel& pixel = out.pixels.at(x, y);
       pixel.normal = -distance_m * n;
       pixel.offset_m = -distance_m;
       const float z_m = 1.0F / q;
@@ -288,8 +288,8 @@ void make_pyramid(const Frame& frame, const ViewConfig& config, ViewPyramid& pyr
   halve_intensity(pyramid);
 }
 
-void make_reference(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world_view,
-                    const ViewConfig& config, ReferenceView& reference) {
+void make_target_view(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world_view,
+                      const ViewConfig& config, TargetView& reference) {
   reference.T_world_view = T_world_view;
   reference.levels.resize(pyramid.levels.size());
   for (std::size_t i = 0; i < pyramid.levels.size(); ++i) {
@@ -302,14 +302,15 @@ void make_reference(const ViewPyramid& pyramid, const Eigen::Isometry3d& T_world
   }
 }
 
-void make_live(const ViewPyramid& pyramid, LiveView& live, const MaskImage& ignore, int finest_step_px) {
+void make_source_points(const ViewPyramid& pyramid, SourcePoints& live, const MaskImage& ignore,
+                        int finest_step_px) {
   live.levels.resize(pyramid.levels.size());
   for (std::size_t i = 0; i < pyramid.levels.size(); ++i) {
     const ViewPyramid::Level& level = pyramid.levels[i];
     const int step = i == 0 ? std::max(finest_step_px, 1) : 1;
     const double mask_scale =
         ignore.empty() ? 0.0 : static_cast<double>(ignore.width) / level.camera.width_px;
-    std::vector<LivePoint>& points = live.levels[i];
+    std::vector<SourcePoint>& points = live.levels[i];
     points.clear();
     points.reserve(level.inverse_depth_per_m.pixels.size() / static_cast<std::size_t>(step * step));
     for (int y = step / 2; y < level.camera.height_px; y += step) {

@@ -140,7 +140,7 @@ void draw_border(const Frontier& frontier, const Projection& view, cv::Mat3b& pi
     const Hole& hole = frontier.holes[static_cast<std::size_t>(cell.hole)];
     const bool is_outer = hole.kind == HoleKind::kOuterBorder;
     if (is_outer && std::abs(hole.look_direction_world.dot(view.into)) > 0.5) continue;
-    const cv::Point2d at = view.at(cell.middle_world);
+    const cv::Point2d at = view.at(cell.centre_world);
     cv::rectangle(is_outer ? outside : inside,
                   cv::Rect(cv::Point(at - cv::Point2d(half_px, half_px)),
                            cv::Point(at + cv::Point2d(half_px, half_px))) &
@@ -252,8 +252,8 @@ int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point pane
     const Vector3d& p = hole.position_world;
     std::snprintf(text, sizeof(text), "at %.2f, %.2f, %.2f", p.x(), p.y(), p.z());
     std::string where = text;
-    if (hole.stand_world) {
-      const Vector3d& s = *hole.stand_world;
+    if (hole.viewpoint_world) {
+      const Vector3d& s = *hole.viewpoint_world;
       std::snprintf(text, sizeof(text), "; look from %.2f, %.2f, %.2f", s.x(), s.y(), s.z());
       where += text;
     }
@@ -279,7 +279,7 @@ std::array<Projection, 3> lay_out(const Mesh& mesh, const Frontier& frontier,
   for (const TimedPose& pose : trajectory) extend(pose.T_world_camera.translation());
   for (const FrontierCell& cell : frontier.cells)
     if (cell.hole >= 0 && frontier.holes[static_cast<std::size_t>(cell.hole)].kind != HoleKind::kOuterBorder)
-      extend(cell.middle_world);
+      extend(cell.centre_world);
   constexpr double kRim_m = 0.15;
   const Vector3d low = box.min().array() - kRim_m;
   const Vector3d size = box.sizes().array() + 2.0 * kRim_m;

@@ -81,7 +81,7 @@ class Grid {
   [[nodiscard]] CellState at(const Vector3i& cell) const {
     return contains(cell) ? cells_[index(cell)] : CellState::kUnknown;
   }
-  [[nodiscard]] Vector3d middle_world(const Vector3i& cell) const {
+  [[nodiscard]] Vector3d centre_world(const Vector3i& cell) const {
     return ((first_ + cell).cast<double>().array() + 0.5).matrix() * cell_m_;
   }
   [[nodiscard]] Vector3i cell_of(const Vector3d& p_world) const {
@@ -139,7 +139,7 @@ Border find_border(const Grid& grid) {
     BorderCell& own = border.cells[i];
     Vector3d sum = Vector3d::Zero();
     for (int n = 0; n < kCellsRound; ++n) {
-      const Vector3i near = own.cell + cell_round(n);
+      const Vector3i near = own.cell + neighbour_offset(n);
       if (!grid.contains(near)) continue;
       const std::int32_t at = border.position[grid.index(near)];
       if (at != kNoBorder) sum += faces[static_cast<std::size_t>(at)];
@@ -161,7 +161,7 @@ double enclosed_part(const Grid& grid, const BorderCell& from) {
   int ways = 0, ended = 0;
   for (int n = 0; n < kCellsRound; ++n) {
     if (n == kOwnCell) continue;
-    const Vector3i step = cell_round(n);
+    const Vector3i step = neighbour_offset(n);
     if (step.cast<double>().normalized().dot(from.normal) < 0.3) continue;
     ++ways;
     for (Vector3i cell = from.cell + step; grid.contains(cell); cell += step)
@@ -186,7 +186,7 @@ int number_patches(const Grid& grid, Border& border, double max_size_m) {
     for (std::size_t done = 0; done < reached.size(); ++done) {
       const Vector3i cell = border.cells[reached[done]].cell;
       for (int n = 0; n < kCellsRound; ++n) {
-        const Vector3i near = cell + cell_round(n);
+        const Vector3i near = cell + neighbour_offset(n);
         if (!grid.contains(near)) continue;
         const std::int32_t at = border.position[grid.index(near)];
         if (at == kNoBorder) continue;
@@ -205,7 +205,7 @@ int number_patches(const Grid& grid, Border& border, double max_size_m) {
 
 // Returns the best free place with a free line of sight to the hole: 0.5 to 1.8 m away, near the hole's axis,
 // and at a height where a person can hold a camera.
-std::optional<Vector3d> place_to_stand(const Grid& grid, const Vector3d& hole_world, const Vector3d& look,
+std::optional<Vector3d> find_viewpoint(const Grid& grid, const Vector3d& hole_world, const Vector3d& look,
                                        double floor_m) {
   constexpr double kNearest_m = 0.5, kFarthest_m = 1.8, kStep_m = 0.2;
   std::optional<Vector3d> best_world;
@@ -242,7 +242,7 @@ std::optional<Vector3d> place_to_stand(const Grid& grid, const Vector3d& hole_wo
 }  // namespace
 
 void require_valid(const FrontierConfig& c) {
-  const SettingRules require{"frontier"};
+  const ConfigCheck require{"frontier"};
   require(c.cell_m > 0.0 && c.cell_m <= 1.0, "cell_m", c.cell_m, "in 0..1 m");
   require(c.min_area_m2 >= 0.0 && std::isfinite(c.min_area_m2), "min_area_m2", c.min_area_m2, ">= 0");
   require(c.max_size_m > 0.0, "max_size_m", c.max_size_m, "> 0");
@@ -297,24 +297,25 @@ Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {
     Eigen::AlignedBox3d bounds;
     for (const BorderCell* cell : patch) {
       hole.area_m2 += cell->area_m2;
-      middle += cell->area_m2 * grid.middle_world(cell->cell);
+      middle += cell->area_m2 * grid.centre_world(cell->cell);
       look += cell->area_m2 * cell->normal;
-      bounds.extend(grid.middle_world(cell->cell));
+      bounds.extend(grid.centre_world(cell->cell));
     }
     if (!(hole.area_m2 >= config.min_area_m2) || !(hole.area_m2 > 0.0)) continue;
     middle /= hole.area_m2;
     // The border cell nearest to the centre: the centre of a bent border may lie in free space.
     const BorderCell& nearest =
         **std::min_element(patch.begin(), patch.end(), [&](const auto* a, const auto* b) {
-          return (grid.middle_world(a->cell) - middle).squaredNorm() <
-                 (grid.middle_world(b->cell) - middle).squaredNorm();
+          return (grid.centre_world(a->cell) - middle).squaredNorm() <
+                 (grid.centre_world(b->cell) - middle).squaredNorm();
         });
-    hole.position_world = grid.middle_world(nearest.cell);
+    hole.position_world = grid.centre_world(nearest.cell);
     hole.size_m = bounds.diagonal().norm() + grid.cell_m();
     hole.look_direction_world =
         look.norm() > 0.1 * hole.area_m2 ? Vector3d(look.normalized()) : nearest.normal;
-    hole.stand_world = place_to_stand(grid, hole.position_world, hole.look_direction_world, floor_m);
-    if (hole.stand_world) hole.look_direction_world = (hole.position_world - *hole.stand_world).normalized();
+    hole.viewpoint_world = find_viewpoint(grid, hole.position_world, hole.look_direction_world, floor_m);
+    if (hole.viewpoint_world)
+      hole.look_direction_world = (hole.position_world - *hole.viewpoint_world).normalized();
     found.push_back({std::move(hole), &patch});
   }
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
@@ -327,7 +328,7 @@ Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {
     frontier.holes.push_back(std::move(one.hole));
   }
   for (const BorderCell& cell : border.cells)
-    frontier.cells.push_back({grid.middle_world(cell.cell), hole_of[static_cast<std::size_t>(cell.patch)]});
+    frontier.cells.push_back({grid.centre_world(cell.cell), hole_of[static_cast<std::size_t>(cell.patch)]});
   return frontier;
 }
 

@@ -24,7 +24,7 @@ void require_valid(const FrontierConfig& config);
 
 /// A border cell, for drawing.
 struct FrontierCell {
-  Eigen::Vector3d middle_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d centre_world = Eigen::Vector3d::Zero();
   int hole = -1;  ///< index in Frontier::holes; -1: its component is too small
 };
 

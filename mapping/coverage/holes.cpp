@@ -31,7 +31,7 @@ std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Fr
     if (loop.encloses_surface || loop.size_m < min_border_size_m || loop.outward_world.isZero()) continue;
     const bool is_known =
         std::any_of(frontier.cells.begin(), frontier.cells.end(), [&](const FrontierCell& cell) {
-          return cell.hole >= 0 && (cell.middle_world - loop.centre_world).norm() < known_within_m;
+          return cell.hole >= 0 && (cell.centre_world - loop.centre_world).norm() < known_within_m;
         });
     if (is_known) continue;
     Hole hole{.kind = HoleKind::kSurfaceBorder,
@@ -39,9 +39,9 @@ std::vector<Hole> find_holes(const StaticMap& map, const Mesh& surface, const Fr
               .size_m = loop.size_m,
               .area_m2 = loop.area_m2,
               .look_direction_world = -loop.outward_world,
-              .stand_world = std::nullopt};
+              .viewpoint_world = std::nullopt};
     const Eigen::Vector3d stand = loop.centre_world + kLook_m * loop.outward_world;
-    if (map.occupancy_at(stand) == Occupancy::kFree) hole.stand_world = stand;
+    if (map.occupancy_at(stand) == Occupancy::kFree) hole.viewpoint_world = stand;
     holes.push_back(hole);
   }
   std::stable_sort(holes.begin(), holes.end(), [](const Hole& a, const Hole& b) {
@@ -59,8 +59,8 @@ std::string describe(const Hole& hole) {
       std::string(to_string(hole.kind)).c_str(), p.x(), p.y(), p.z(), hole.size_m, hole.area_m2, look.x(),
       look.y(), look.z());
   std::string words(text, static_cast<std::size_t>(length));
-  if (!hole.stand_world) return words;
-  const auto& from = *hole.stand_world;
+  if (!hole.viewpoint_world) return words;
+  const auto& from = *hole.viewpoint_world;
   length = std::snprintf(text, sizeof(text), " from (%.2f, %.2f, %.2f)", from.x(), from.y(), from.z());
   return words.append(text, static_cast<std::size_t>(length));
 }

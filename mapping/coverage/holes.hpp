@@ -26,7 +26,7 @@ struct Hole {
   /// Unit viewing direction, from known space into the hole.
   Eigen::Vector3d look_direction_world = Eigen::Vector3d::UnitX();
   /// Free position to look from, m; unset if none has a free line of sight.
-  std::optional<Eigen::Vector3d> stand_world;
+  std::optional<Eigen::Vector3d> viewpoint_world;
 };
 
 class StaticMap;

@@ -17,12 +17,12 @@ std::uint64_t code_of(const Eigen::Vector3d& p_world) {
   const auto cell = [](double coordinate_m) {
     return static_cast<std::int64_t>(std::floor(coordinate_m / kCell_m));
   };
-  return cell_code(cell(p_world.x()), cell(p_world.y()), cell(p_world.z()));
+  return voxel_key(cell(p_world.x()), cell(p_world.y()), cell(p_world.z()));
 }
 
 }  // namespace
 
-void SeenArea::add(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+void ObservedArea::add(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   const std::size_t before = cells_.size();
   for (int y = kStep_px / 2; y < frame.depth_m.height; y += kStep_px)
     for (int x = kStep_px / 2; x < frame.depth_m.width; x += kStep_px) {
@@ -35,16 +35,16 @@ void SeenArea::add(const Frame& frame, const Eigen::Isometry3d& T_world_camera) 
   while (frame.stamp_s - last_second_.front().stamp_s >= 1.0) last_second_.pop_front();
 }
 
-std::string describe(const SeenArea& seen) {
+std::string describe(const ObservedArea& seen) {
   char text[80];
   std::snprintf(text, sizeof(text), "%.1f m2 seen, %.2f of it in the last second", seen.total_m2(),
                 seen.last_second_m2());
   return text;
 }
 
-double SeenArea::total_m2() const { return static_cast<double>(cells_.size()) * kCell_m * kCell_m; }
+double ObservedArea::total_m2() const { return static_cast<double>(cells_.size()) * kCell_m * kCell_m; }
 
-double SeenArea::last_second_m2() const {
+double ObservedArea::last_second_m2() const {
   std::size_t cells = 0;
   for (const Gain& gain : last_second_) cells += gain.cells;
   return static_cast<double>(cells) * kCell_m * kCell_m;

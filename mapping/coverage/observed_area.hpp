@@ -15,7 +15,7 @@ namespace roomradar {
 /// cell counts as 0.01 m2: exact for surface along the world's axes, up to 1.7 times too much for diagonal
 /// surface. Takes about 50 microseconds per frame. Poses during tracking are not final; surface seen again
 /// after drift may count twice.
-class SeenArea {
+class ObservedArea {
  public:
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
@@ -33,6 +33,6 @@ class SeenArea {
 };
 
 /// Returns text such as "12.4 m2 seen, 0.30 of it in the last second".
-std::string describe(const SeenArea& seen);
+std::string describe(const ObservedArea& seen);
 
 }  // namespace roomradar

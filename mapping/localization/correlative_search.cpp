@@ -38,10 +38,10 @@ std::vector<Vector3f> points_of(const DepthImage& depth_m, const Intrinsics& cam
 }
 
 /// Returns points of all previews, in the world, except points that a damaged camera places kilometres away.
-std::vector<Vector3f> points_of(const Places& places) {
+std::vector<Vector3f> points_of(const KeyframeDatabase& keyframe_database) {
   constexpr int kStep_px = 2;
   std::vector<Vector3f> points;
-  for (const Place& place : places.keyframes) {
+  for (const MapKeyframe& place : keyframe_database.keyframes) {
     const Eigen::Isometry3f T_world_camera = place.T_world_camera.cast<float>();
     for (int y = 0; y < place.preview_depth_mm.height; y += kStep_px) {
       for (int x = 0; x < place.preview_depth_mm.width; x += kStep_px) {
@@ -176,7 +176,7 @@ Eigen::Isometry3d settled(const ShapeGrid& grid, const std::vector<Vector3f>& po
     damped.diagonal().array() += kDamping * damped.trace() / 6.0 + 1e-6;
     const Vector6d twist = solve_symmetric(damped, g.cast<double>());
     if (!twist.allFinite() || twist.norm() > 0.5) break;
-    T_world_camera = T_world_camera * exp_twist(twist);
+    T_world_camera = T_world_camera * retract(twist);
     if (twist.norm() < 2e-3) break;
   }
   return T_world_camera;
@@ -232,8 +232,8 @@ bool is_same_candidate(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 
 }  // namespace
 
-KnownShape known_shape(const Places& places) {
-  const std::vector<Vector3f> points = points_of(places);
+ShapeIndex shape_index(const KeyframeDatabase& keyframe_database) {
+  const std::vector<Vector3f> points = points_of(keyframe_database);
   if (points.empty()) return {};
   Eigen::AlignedBox3f box;
   for (const Vector3f& p : points) box.extend(p);
@@ -243,9 +243,9 @@ KnownShape known_shape(const Places& places) {
   return {grid_of(points, box, coarse_m), grid_of(points, box, 0.5 * coarse_m)};
 }
 
-std::vector<ShapeCandidate> propose_by_shape(const DepthImage& depth_m, const Intrinsics& camera,
-                                             const Vector3d& down_camera, const KnownShape& known,
-                                             std::size_t most) {
+std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Intrinsics& camera,
+                                            const Vector3d& down_camera, const ShapeIndex& known,
+                                            std::size_t most) {
   constexpr std::size_t kMinPoints = 30, kSettled = 200;
   std::vector<ShapeCandidate> candidates;
   const std::vector<Vector3f> points = points_of(depth_m, camera, 10, 8);

@@ -20,14 +20,14 @@ struct ShapeGrid {
   static constexpr int kReach_cells = 3;  ///< distance from a surface at which nearness is 0
 };
 
-/// Surfaces in the database's previews, for propose_by_shape: a coarse grid to search the whole room, and a
+/// Surfaces in the database's previews, for search_by_shape: a coarse grid to search the whole room, and a
 /// fine grid to refine poses.
-struct KnownShape {
+struct ShapeIndex {
   ShapeGrid coarse, fine;
   [[nodiscard]] bool empty() const { return coarse.nearness.empty(); }
 };
 /// The cubes' edges are 15 cm and 7.5 cm, or larger in a room that would need more than 500,000 coarse cubes.
-KnownShape known_shape(const Places& places);
+ShapeIndex shape_index(const KeyframeDatabase& keyframe_database);
 
 struct ShapeCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
@@ -40,8 +40,8 @@ struct ShapeCandidate {
 /// Real-Time Correlative Scan Matching, ICRA 2009.
 ///
 /// @param down_camera  direction of gravity in the camera's frame; in the world it is -z
-std::vector<ShapeCandidate> propose_by_shape(const DepthImage& depth_m, const Intrinsics& camera,
-                                             const Eigen::Vector3d& down_camera, const KnownShape& known,
-                                             std::size_t most);
+std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Intrinsics& camera,
+                                            const Eigen::Vector3d& down_camera, const ShapeIndex& known,
+                                            std::size_t most);
 
 }  // namespace roomradar

@@ -5,23 +5,23 @@
 
 namespace roomradar {
 
-Evidence evidence_of(const DepthImage& depth_m, const DepthImage& expected_m) {
+DepthAgreement depth_agreement_of(const DepthImage& depth_m, const DepthImage& expected_m) {
   constexpr int kStep_px = 4;
   constexpr float kAlike_per_m = 0.02F;  // in inverse depth; 5 steps of a Kinect's disparity are 0.014
-  Evidence evidence;
+  DepthAgreement agreement;
   for (int y = 0; y < depth_m.height; y += kStep_px) {
     for (int x = 0; x < depth_m.width; x += kStep_px) {
       const float live = depth_m.at(x, y), expected = expected_m.at(x, y);
       if (!(live > 0.0F)) continue;
-      ++evidence.valid;
+      ++agreement.valid;
       if (!(expected > 0.0F)) continue;
-      ++evidence.both;
+      ++agreement.both;
       const float gap_m = kAlike_per_m * live * expected;
-      evidence.alike += std::abs(live - expected) < gap_m;
-      evidence.farther += live - expected >= gap_m;
+      agreement.alike += std::abs(live - expected) < gap_m;
+      agreement.farther += live - expected >= gap_m;
     }
   }
-  return evidence;
+  return agreement;
 }
 
 }  // namespace roomradar

@@ -5,7 +5,7 @@
 namespace roomradar {
 
 /// Pixel counts over every fourth pixel of every fourth row of the depth image.
-struct Evidence {
+struct DepthAgreement {
   int valid = 0;    ///< pixels with a measurement
   int both = 0;     ///< valid pixels where the room's model has a surface
   int alike = 0;    ///< pixels of `both` on the same surface, within noise and distortion of the map
@@ -19,6 +19,6 @@ struct Evidence {
 };
 
 /// Both images must have the same size.
-Evidence evidence_of(const DepthImage& depth_m, const DepthImage& expected_m);
+DepthAgreement depth_agreement_of(const DepthImage& depth_m, const DepthImage& expected_m);
 
 }  // namespace roomradar

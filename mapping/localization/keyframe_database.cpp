@@ -14,7 +14,7 @@
 namespace roomradar {
 namespace {
 
-void describe_features(const Frame& frame, int most, Place& place) {
+void describe_features(const Frame& frame, int most, MapKeyframe& place) {
   cv::Mat3b colour(frame.colour.height, frame.colour.width);
   std::memcpy(colour.data, frame.colour.pixels.data(), frame.colour.pixels.size() * sizeof(Rgb));
   cv::Mat1b grey;
@@ -44,8 +44,9 @@ void describe_features(const Frame& frame, int most, Place& place) {
 
 }  // namespace
 
-Place describe_place(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const PlaceConfig& config) {
-  Place place;
+MapKeyframe make_map_keyframe(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                              const KeyframeDatabaseConfig& config) {
+  MapKeyframe place;
   place.frame_index = frame.index;
   place.T_world_camera = T_world_camera;
   ViewPyramid small;
@@ -68,8 +69,9 @@ Place describe_place(const Frame& frame, const Eigen::Isometry3d& T_world_camera
   return place;
 }
 
-void transform(Places& places, const Eigen::Isometry3d& T_new_old) {
-  for (Place& place : places.keyframes) place.T_world_camera = T_new_old * place.T_world_camera;
+void transform(KeyframeDatabase& keyframe_database, const Eigen::Isometry3d& T_new_old) {
+  for (MapKeyframe& place : keyframe_database.keyframes)
+    place.T_world_camera = T_new_old * place.T_world_camera;
 }
 
 }  // namespace roomradar

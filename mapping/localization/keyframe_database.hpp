@@ -14,7 +14,7 @@
 namespace roomradar {
 
 /// One keyframe of the database.
-struct Place {
+struct MapKeyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the depth camera
   std::vector<Eigen::Vector3f> points_camera;  ///< m, in this view's depth camera; one per descriptor
@@ -26,39 +26,39 @@ struct Place {
   Image<std::uint16_t> preview_depth_mm;  ///< size of preview_camera; 0: none
 };
 
-struct Places {
-  std::vector<Place> keyframes;
+struct KeyframeDatabase {
+  std::vector<MapKeyframe> keyframes;
 };
 
 /// Max features, and max patches, per view; bounds the cost of matching each with each.
 inline constexpr int kMostDescribed = 10'000;
 
-struct PlaceConfig {
+struct KeyframeDatabaseConfig {
   int features = 800;  ///< max per view, at most kMostDescribed
   int patches = 800;   ///< max per view, at most kMostDescribed
   int preview_width_px = 160;
 };
 
 /// Computes the features with their points, the patches and the preview of one frame.
-Place describe_place(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                     const PlaceConfig& config = {});
+MapKeyframe make_map_keyframe(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                              const KeyframeDatabaseConfig& config = {});
 
 /// Moves the database into another world frame: each pose becomes T_new_old * pose.
-void transform(Places& places, const Eigen::Isometry3d& T_new_old);
+void transform(KeyframeDatabase& keyframe_database, const Eigen::Isometry3d& T_new_old);
 
 /// Writes the database as one binary file with a checksum. Throws Error if the file cannot be written.
-void write_places(const Places& places, const std::filesystem::path& path);
+void write_keyframe_database(const KeyframeDatabase& keyframe_database, const std::filesystem::path& path);
 
-/// Reads a file from write_places(). Throws Error naming the file and the fault if it is missing, truncated,
-/// altered, or of another version. Sizes are checked before memory is allocated.
-Places read_places(const std::filesystem::path& path);
+/// Reads a file from write_keyframe_database(). Throws Error naming the file and the fault if it is missing,
+/// truncated, altered, or of another version. Sizes are checked before memory is allocated.
+KeyframeDatabase read_keyframe_database(const std::filesystem::path& path);
 
 enum class RelocalisationStatus {
-  kFound,     ///< the pose agrees with the database in appearance and depth
-  kNoPlaces,  ///< the database is empty
-  kNoDepth,   ///< the frame has almost no valid depth
-  kNoMatch,   ///< no keyframe looks like this frame
-  kUnproven,  ///< a keyframe looks alike, but its depth disagrees with the frame's
+  kFound,        ///< the pose agrees with the database in appearance and depth
+  kNoKeyframes,  ///< the database is empty
+  kNoDepth,      ///< the frame has almost no valid depth
+  kNoMatch,      ///< no keyframe looks like this frame
+  kNotVerified,  ///< a keyframe looks alike, but its depth disagrees with the frame's
 };
 std::string_view to_string(RelocalisationStatus status);
 
@@ -73,7 +73,7 @@ struct [[nodiscard]] Relocalisation {
 };
 
 struct RelocaliseConfig {
-  PlaceConfig place;
+  KeyframeDatabaseConfig place;
   int candidates = 6;  ///< max keyframes tried, most similar first
   int min_feature_inliers = 20;
   double min_depth_agreement = 0.7;
@@ -83,6 +83,7 @@ struct RelocaliseConfig {
 /// gives a pose, and alignment with the keyframe's depth refines and verifies the pose. If the frame or the
 /// database has no colour, tries depth alone against the 40 most similar previews, with a stricter test.
 /// Deterministic. Never throws for any frame.
-Relocalisation relocalise(const Frame& frame, const Places& places, const RelocaliseConfig& config = {});
+Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_database,
+                          const RelocaliseConfig& config = {});
 
 }  // namespace roomradar

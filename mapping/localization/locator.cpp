@@ -22,8 +22,9 @@ bool is_bend_not_motion(const Tracking& tracking, const Eigen::Isometry3d& T_wor
   constexpr double kSudden_m = 0.03, kSudden_rad = 0.01;
   constexpr double kMoreExplained = 0.005;
   if (is_near(T_world_predicted, tracking.T_world_camera, kSudden_m, kSudden_rad)) return false;
-  const double by_motion = evidence_of(depth_m, expected_depth(tracking.T_world_camera)).alike_part();
-  return evidence_of(depth_m, expected_depth(T_world_before)).alike_part() > by_motion + kMoreExplained;
+  const double by_motion = depth_agreement_of(depth_m, expected_depth(tracking.T_world_camera)).alike_part();
+  return depth_agreement_of(depth_m, expected_depth(T_world_before)).alike_part() >
+         by_motion + kMoreExplained;
 }
 
 /// Aligns the live view with the model rendered at T_world_view, starting from the guess. If the result is
@@ -37,7 +38,7 @@ Tracking align_with_model(Locator& locator, const AlignConfig& config, const Int
   tracking.T_world_camera = T_world_camera_guess;
   for (int round = 0; round < 2; ++round) {
     make_pyramid(expected_depth(T_world_view), camera, locator.expected_view, locator.expected_pyramid);
-    make_reference(locator.expected_pyramid, T_world_view, locator.expected_view, locator.expected);
+    make_target_view(locator.expected_pyramid, T_world_view, locator.expected_view, locator.expected);
     tracking = align(locator.live, locator.expected, tracking.T_world_camera, config);
     if (!has_pose(tracking) || is_near(T_world_view, tracking.T_world_camera, kFarOff_m, kFarOff_rad)) break;
     T_world_view = tracking.T_world_camera;
@@ -65,7 +66,7 @@ void pull(const Eigen::Matrix<double, 6, 6>& by_depth, const std::vector<PointPa
   }
   const Eigen::Matrix<double, 6, 1> twist = solve_symmetric(H, g);
   if (!(twist.norm() < kFarthest)) return;
-  tracking.T_world_camera = tracking.T_world_camera * exp_twist(twist);
+  tracking.T_world_camera = tracking.T_world_camera * retract(twist);
   tracking.information = H;
 }
 
@@ -81,8 +82,8 @@ bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double 
     const Eigen::Matrix<double, 6, 1> direction = solved.vectors.col(i);
     const double reach = direction.head<3>().norm() + kDistance_m * direction.tail<3>().norm();
     for (const double way : {-kSlide_m / reach, kSlide_m / reach}) {
-      const Eigen::Isometry3d T_aside = T_world_camera * exp_twist(way * direction);
-      if (fit_of(evidence_of(frame.depth_m, expected_depth(T_aside))) > fit - kMinLoss) return true;
+      const Eigen::Isometry3d T_aside = T_world_camera * retract(way * direction);
+      if (fit_of(depth_agreement_of(frame.depth_m, expected_depth(T_aside))) > fit - kMinLoss) return true;
     }
   }
   return false;
@@ -90,90 +91,93 @@ bool slides(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double 
 
 /// Tests a hypothesis. Aligns it with the model, then moves unconstrained directions by patches: first by the
 /// pairs that proposed the pose, then by the pairs that coincide at the aligned pose.
-TriedPose tried(Locator& locator, const Frame& frame, const std::vector<SurfacePatch>& seen,
-                const PoseCandidate& guess, const ExpectedDepth& expected_depth) {
+PoseHypothesis tried(Locator& locator, const Frame& frame, const std::vector<SurfacePatch>& seen,
+                     const PoseCandidate& guess, const ExpectedDepth& expected_depth) {
   constexpr std::size_t kEnough = 10;
   constexpr int kPulls = 3;
   constexpr double kGoodFit = 0.6;
-  TriedPose finding;
+  PoseHypothesis hypothesis;
   const auto align_from = [&](const Eigen::Isometry3d& T_world_camera, const AlignConfig& config) {
-    finding.tracking =
+    hypothesis.tracking =
         align_with_model(locator, config, frame.depth_camera, T_world_camera, T_world_camera, expected_depth);
-    const Eigen::Isometry3d& T_found = finding.tracking.T_world_camera;
-    const Eigen::Matrix<double, 6, 6> by_depth = finding.tracking.information;
-    finding.look = prove_with_patches(seen, locator.known, T_found);
-    if (finding.tracking.status == TrackStatus::kDegenerate &&
-        finding.look.alike.size() < guess.pairs.size()) {
-      pull(by_depth, guess.pairs, finding.tracking);
-      finding.look = prove_with_patches(seen, locator.known, T_found);
+    const Eigen::Isometry3d& T_found = hypothesis.tracking.T_world_camera;
+    const Eigen::Matrix<double, 6, 6> by_depth = hypothesis.tracking.information;
+    hypothesis.appearance = match_patches_at(seen, locator.known, T_found);
+    if (hypothesis.tracking.status == TrackStatus::kDegenerate &&
+        hypothesis.appearance.alike.size() < guess.pairs.size()) {
+      pull(by_depth, guess.pairs, hypothesis.tracking);
+      hypothesis.appearance = match_patches_at(seen, locator.known, T_found);
     }
-    for (int round = 0; round < kPulls && finding.tracking.status == TrackStatus::kDegenerate &&
-                        finding.look.alike.size() >= kEnough;
+    for (int round = 0; round < kPulls && hypothesis.tracking.status == TrackStatus::kDegenerate &&
+                        hypothesis.appearance.alike.size() >= kEnough;
          ++round) {
-      pull(by_depth, finding.look.alike, finding.tracking);
-      finding.look = prove_with_patches(seen, locator.known, T_found);
+      pull(by_depth, hypothesis.appearance.alike, hypothesis.tracking);
+      hypothesis.appearance = match_patches_at(seen, locator.known, T_found);
     }
   };
-  const std::size_t alike_before = prove_with_patches(seen, locator.known, guess.T_world_camera).alike.size();
+  const std::size_t alike_before = match_patches_at(seen, locator.known, guess.T_world_camera).alike.size();
   align_from(guess.T_world_camera, locator.align);
-  if (alike_before >= kEnough && 3 * finding.look.alike.size() < 2 * alike_before)
+  if (alike_before >= kEnough && 3 * hypothesis.appearance.alike.size() < 2 * alike_before)
     align_from(guess.T_world_camera, locator.strict_align);
-  finding.evidence = evidence_of(frame.depth_m, expected_depth(finding.tracking.T_world_camera));
-  if (!is_proven_by_look(finding) && finding.tracking && fit_of(finding.evidence) > kGoodFit) {
+  hypothesis.agreement =
+      depth_agreement_of(frame.depth_m, expected_depth(hypothesis.tracking.T_world_camera));
+  if (!is_verified_by_patches(hypothesis) && hypothesis.tracking && fit_of(hypothesis.agreement) > kGoodFit) {
     // Depth alone must constrain the pose.
-    const Eigen::Isometry3d& T_found = finding.tracking.T_world_camera;
+    const Eigen::Isometry3d& T_found = hypothesis.tracking.T_world_camera;
     const Tracking strict =
         align_with_model(locator, locator.strict_align, frame.depth_camera, T_found, T_found, expected_depth);
-    if (!strict && slides(frame, T_found, fit_of(finding.evidence), strict.information, expected_depth)) {
-      finding.tracking.status = TrackStatus::kDegenerate;
-      finding.tracking.information = strict.information;
+    if (!strict && slides(frame, T_found, fit_of(hypothesis.agreement), strict.information, expected_depth)) {
+      hypothesis.tracking.status = TrackStatus::kDegenerate;
+      hypothesis.tracking.information = strict.information;
     }
   }
-  finding.uncertainty_m = uncertainty_m(finding.tracking);
-  return finding;
+  hypothesis.uncertainty_m = uncertainty_m(hypothesis.tracking);
+  return hypothesis;
 }
 
 /// Uses all pixels: the mask of moved pixels belongs to a pose that is no longer valid.
-void look_at_all(Locator& locator) { make_live(locator.live_pyramid, locator.live, {}, kLiveStep_px); }
+void look_at_all(Locator& locator) {
+  make_source_points(locator.live_pyramid, locator.live, {}, kLiveStep_px);
+}
 
 /// Searches the whole map: by patches and, if these give no certain pose, by the depth's shape. Without
 /// gravity and colour, finds only poses near keyframes with a similar view.
-Tracking search(Locator& locator, const Frame& frame, const Places& places,
+Tracking search(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                 const ExpectedDepth& expected_depth) {
   constexpr std::size_t kByLook = 4, kByShape = 8;
   constexpr int kMinAgreeing = 8;
-  std::vector<TriedPose>& findings = locator.findings;
-  findings.clear();
+  std::vector<PoseHypothesis>& hypotheses = locator.hypotheses;
+  hypotheses.clear();
   locator.search_end = SearchEnd::kNoCandidate;
   const auto judge = [&] {
-    const auto best =
-        std::max_element(findings.begin(), findings.end(), [](const TriedPose& a, const TriedPose& b) {
+    const auto best = std::max_element(
+        hypotheses.begin(), hypotheses.end(), [](const PoseHypothesis& a, const PoseHypothesis& b) {
           return has_pose(a.tracking) != has_pose(b.tracking) ? has_pose(b.tracking)
                                                               : support_of(a) < support_of(b);
         });
-    if (best == findings.end()) return Tracking{};
-    locator.search_end = !is_certain(*best)             ? SearchEnd::kNotCertain
-                         : is_rivalled(*best, findings) ? SearchEnd::kRivalled
-                                                        : SearchEnd::kFound;
+    if (best == hypotheses.end()) return Tracking{};
+    locator.search_end = !is_certain(*best)                ? SearchEnd::kNotCertain
+                         : is_ambiguous(*best, hypotheses) ? SearchEnd::kAmbiguous
+                                                           : SearchEnd::kFound;
     return locator.search_end == SearchEnd::kFound ? best->tracking : Tracking{};
   };
-  if (locator.known.empty()) locator.known = known_patches(places);
+  if (locator.known.empty()) locator.known = build_patch_index(keyframe_database);
   const std::vector<SurfacePatch> seen = describe_patches(frame, locator.relocalise.place.patches);
   const std::vector<PoseCandidate> by_look = propose_poses(seen, locator.known, kByLook, kMinAgreeing);
   for (const PoseCandidate& candidate : by_look)
     if (4 * candidate.agreeing >= by_look.front().agreeing)
-      findings.push_back(tried(locator, frame, seen, candidate, expected_depth));
+      hypotheses.push_back(tried(locator, frame, seen, candidate, expected_depth));
   if (!frame.down_camera && (frame.colour.empty() || locator.known.empty())) {
-    const Relocalisation by_preview = relocalise(frame, places, locator.relocalise);
+    const Relocalisation by_preview = relocalise(frame, keyframe_database, locator.relocalise);
     if (by_preview)
-      findings.push_back(tried(locator, frame, seen, {by_preview.T_world_camera, 0, {}}, expected_depth));
+      hypotheses.push_back(tried(locator, frame, seen, {by_preview.T_world_camera, 0, {}}, expected_depth));
   }
   Tracking found = judge();
   if (!has_pose(found) && frame.down_camera) {
-    if (locator.known_shape.empty()) locator.known_shape = known_shape(places);
-    for (const ShapeCandidate& candidate : propose_by_shape(
-             frame.depth_m, frame.depth_camera, *frame.down_camera, locator.known_shape, kByShape))
-      findings.push_back(tried(locator, frame, seen, {candidate.T_world_camera, 0, {}}, expected_depth));
+    if (locator.shape_index.empty()) locator.shape_index = shape_index(keyframe_database);
+    for (const ShapeCandidate& candidate : search_by_shape(frame.depth_m, frame.depth_camera,
+                                                           *frame.down_camera, locator.shape_index, kByShape))
+      hypotheses.push_back(tried(locator, frame, seen, {candidate.T_world_camera, 0, {}}, expected_depth));
     found = judge();
   }
   if (has_pose(found)) expected_depth(found.T_world_camera);
@@ -199,28 +203,29 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
 }
 
 /// Returns whether enough patches of the frame coincide with known ones and look like them.
-bool is_borne_out_by_look(Locator& locator, const Frame& frame, const Places& places,
+bool is_borne_out_by_look(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                           const Eigen::Isometry3d& T_world_camera) {
-  if (locator.known.empty()) locator.known = known_patches(places);
-  const PatchProof look = prove_with_patches(describe_patches(frame, locator.relocalise.place.patches),
-                                             locator.known, T_world_camera);
-  return is_borne_out(look);
+  if (locator.known.empty()) locator.known = build_patch_index(keyframe_database);
+  const PatchAgreement appearance = match_patches_at(
+      describe_patches(frame, locator.relocalise.place.patches), locator.known, T_world_camera);
+  return is_supported_by_patches(appearance);
 }
 
 /// Resumes at the pose at which tracking was lost some frames ago, such as when a hand covered the lens. In
 /// front of a wall, depth would agree even after a motion along the wall, so patches must agree, too.
-Tracking resume(Locator& locator, const Frame& frame, const Places& places,
+Tracking resume(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                 const ExpectedDepth& expected_depth) {
   constexpr int kLongest_frames = 30;
   constexpr double kMinAlike = 0.7, kMaxFarther = 0.08;
   if (!locator.T_world_lost || ++locator.lost_frames > kLongest_frames) return {};
   const Tracking tracking = align_with_model(locator, locator.align, frame.depth_camera,
                                              *locator.T_world_lost, *locator.T_world_lost, expected_depth);
-  const Evidence evidence = evidence_of(frame.depth_m, expected_depth(tracking.T_world_camera));
-  const bool holds = has_pose(tracking) && 2 * evidence.both > evidence.valid &&
-                     evidence.alike_part() > kMinAlike && evidence.farther_part() < kMaxFarther;
+  const DepthAgreement agreement = depth_agreement_of(frame.depth_m, expected_depth(tracking.T_world_camera));
+  const bool holds = has_pose(tracking) && 2 * agreement.both > agreement.valid &&
+                     agreement.alike_part() > kMinAlike && agreement.farther_part() < kMaxFarther;
   const bool is_open = tracking.status == TrackStatus::kDegenerate;
-  if (!holds || (is_open && !is_borne_out_by_look(locator, frame, places, tracking.T_world_camera)))
+  if (!holds ||
+      (is_open && !is_borne_out_by_look(locator, frame, keyframe_database, tracking.T_world_camera)))
     return {};
   return tracking;
 }
@@ -229,29 +234,29 @@ Tracking resume(Locator& locator, const Frame& frame, const Places& places,
 /// search fails, the camera is lost, unless a good part of the view still fits, because objects may have been
 /// taken away. If the search finds another place, the predicted motion is reset. Returns false if the map was
 /// searched and the camera is lost.
-bool doubt(Locator& locator, const Frame& frame, const Places& places, const ExpectedDepth& expected_depth,
-           Tracking& tracking) {
+bool doubt(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+           const ExpectedDepth& expected_depth, Tracking& tracking) {
   constexpr double kMinAlike = 0.3, kMaxFarther = 0.25, kHopeless = 0.3;
   constexpr int kPatience_frames = 3, kSure_frames = 30;
-  const Evidence evidence = evidence_of(frame.depth_m, expected_depth(tracking.T_world_camera));
-  const bool is_doubtful = evidence.alike_part() < kMinAlike || evidence.farther_part() > kMaxFarther;
-  locator.doubtful_frames = is_doubtful ? locator.doubtful_frames + 1 : 0;
-  if (locator.doubtful_frames < kPatience_frames || --locator.sure_until > 0) return true;
+  const DepthAgreement agreement = depth_agreement_of(frame.depth_m, expected_depth(tracking.T_world_camera));
+  const bool is_doubtful = agreement.alike_part() < kMinAlike || agreement.farther_part() > kMaxFarther;
+  locator.unverified_frames = is_doubtful ? locator.unverified_frames + 1 : 0;
+  if (locator.unverified_frames < kPatience_frames || --locator.recheck_cooldown_frames > 0) return true;
   look_at_all(locator);
-  const Tracking found = search(locator, frame, places, expected_depth);
+  const Tracking found = search(locator, frame, keyframe_database, expected_depth);
   if (has_pose(found)) {
-    const bool is_elsewhere = !is_same_place(found.T_world_camera, tracking.T_world_camera);
+    const bool is_elsewhere = !is_same_pose(found.T_world_camera, tracking.T_world_camera);
     tracking = found;
     if (is_elsewhere) {
       locator.T_world_camera.reset();
-      locator.doubtful_frames = locator.sure_until = 0;
+      locator.unverified_frames = locator.recheck_cooldown_frames = 0;
       return true;
     }
-  } else if (evidence.alike_part() < kHopeless) {
+  } else if (agreement.alike_part() < kHopeless) {
     tracking = {};
     return false;
   }
-  locator.sure_until = kSure_frames;
+  locator.recheck_cooldown_frames = kSure_frames;
   expected_depth(tracking.T_world_camera);
   return true;
 }
@@ -266,32 +271,33 @@ std::string_view to_string(SearchEnd end) {
       return "no candidate";
     case SearchEnd::kNotCertain:
       return "not certain";
-    case SearchEnd::kRivalled:
+    case SearchEnd::kAmbiguous:
       return "ambiguous";
   }
   return "unknown";
 }
 
-Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
-                const ExpectedDepth& expected_depth) {
+Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+                const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth) {
   make_pyramid(frame.depth_m, frame.depth_camera, locator.live_view, locator.live_pyramid);
-  make_live(locator.live_pyramid, locator.live, moved_mask, kLiveStep_px);
+  make_source_points(locator.live_pyramid, locator.live, dynamic_mask, kLiveStep_px);
 
   Tracking tracking;
   bool may_be_found = true;  // by a search; one per frame is enough
   if (locator.T_world_camera) {
     tracking = follow(locator, frame, expected_depth);
-    if (has_pose(tracking)) may_be_found = doubt(locator, frame, places, expected_depth, tracking);
+    if (has_pose(tracking)) may_be_found = doubt(locator, frame, keyframe_database, expected_depth, tracking);
     if (!has_pose(tracking)) {
       locator.T_world_lost = locator.T_world_camera;
       locator.T_world_camera.reset();
-      locator.lost_frames = locator.doubtful_frames = locator.sure_until = 0;
+      locator.lost_frames = locator.unverified_frames = locator.recheck_cooldown_frames = 0;
     }
   }
   if (!has_pose(tracking)) {
     look_at_all(locator);
-    tracking = resume(locator, frame, places, expected_depth);
-    if (!has_pose(tracking) && may_be_found) tracking = search(locator, frame, places, expected_depth);
+    tracking = resume(locator, frame, keyframe_database, expected_depth);
+    if (!has_pose(tracking) && may_be_found)
+      tracking = search(locator, frame, keyframe_database, expected_depth);
   }
 
   if (!has_pose(tracking)) {

@@ -23,7 +23,7 @@ enum class SearchEnd {
   kFound,
   kNoCandidate,  ///< neither appearance nor shape yields a pose
   kNotCertain,   ///< the best pose explains the frame too poorly, or has an unconstrained direction
-  kRivalled,     ///< ambiguous: another pose explains the frame about as well
+  kAmbiguous,    ///< ambiguous: another pose explains the frame about as well
 };
 std::string_view to_string(SearchEnd end);
 
@@ -39,20 +39,20 @@ struct Locator {
   std::optional<Eigen::Isometry3d> T_world_camera;  ///< pose of the last frame; unset while lost
   /// Predicted motion from the last frame to the next.
   Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
-  int doubtful_frames = 0;  ///< number of consecutive frames whose depth contradicts the tracked pose
-  int sure_until = 0;       ///< doubtful frames left before the map is searched again
+  int unverified_frames = 0;        ///< number of consecutive frames whose depth contradicts the tracked pose
+  int recheck_cooldown_frames = 0;  ///< doubtful frames left before the map is searched again
   /// Last pose before tracking was lost; tried for the first 30 of lost_frames.
   std::optional<Eigen::Isometry3d> T_world_lost;
   int lost_frames = 0;
 
-  std::vector<TriedPose> findings;  ///< pose hypotheses of the last search
+  std::vector<PoseHypothesis> hypotheses;  ///< pose hypotheses of the last search
   SearchEnd search_end = SearchEnd::kNoCandidate;
 
-  KnownPatches known;      ///< patches of the keyframe database; built on first use
-  KnownShape known_shape;  ///< surfaces of the keyframe database; built on first use
+  PatchIndex known;        ///< patches of the keyframe database; built on first use
+  ShapeIndex shape_index;  ///< surfaces of the keyframe database; built on first use
   ViewPyramid live_pyramid, expected_pyramid;
-  LiveView live;
-  ReferenceView expected;
+  SourcePoints live;
+  TargetView expected;
 };
 
 /// Localises the frame by alignment with the expected depth at the pose predicted from the last motion.
@@ -65,9 +65,9 @@ struct Locator {
 /// because alignment took a bend of the sensor's depth for a motion. The last call of expected_depth is for
 /// the pose returned.
 ///
-/// @param moved_mask  not 0: pixel moved in the previous frame, is ignored; empty, or of the depth's size
+/// @param dynamic_mask  not 0: pixel moved in the previous frame, is ignored; empty, or of the depth's size
 /// @return status kTracked or kDegenerate: a usable pose; other status: not localised, searched for next time
-Tracking locate(Locator& locator, const Frame& frame, const Places& places, const MaskImage& moved_mask,
-                const ExpectedDepth& expected_depth);
+Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
+                const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth);
 
 }  // namespace roomradar

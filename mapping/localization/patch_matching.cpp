@@ -48,7 +48,7 @@ void count_differing(std::uint64_t seen, const std::uint64_t* known, std::size_t
 }
 
 /// Appends the known patches, at distinct places, that look most like this one.
-void add_alike(const SurfacePatch& seen, int seen_index, const KnownPatches::OfSize& known,
+void add_alike(const SurfacePatch& seen, int seen_index, const PatchIndex::OfSize& known,
                std::vector<Alike>& alike) {
   std::array<Alike, kAlike> best;
   std::size_t count = 0;
@@ -136,11 +136,11 @@ Eigen::Vector3i cell_of(const Eigen::Vector3f& point_world) {
 
 /// Calls visit(patch) for known patches in the cells within half a cell of a point.
 template <typename Visit>
-void visit_near(const KnownPatches::OfSize& known, const Eigen::Vector3f& point_world, const Visit& visit) {
+void visit_near(const PatchIndex::OfSize& known, const Eigen::Vector3f& point_world, const Visit& visit) {
   const Eigen::Vector3i low = cell_of(point_world - Eigen::Vector3f::Constant(0.5F * kCell_m));
   for (int k = 0; k < 8; ++k) {
     const auto [first, last] =
-        known.by_cell.equal_range(cell_code(low + Eigen::Vector3i(k & 1, k >> 1 & 1, k >> 2)));
+        known.by_cell.equal_range(voxel_key(low + Eigen::Vector3i(k & 1, k >> 1 & 1, k >> 2)));
     for (auto entry = first; entry != last; ++entry) visit(known.patches[entry->second]);
   }
 }
@@ -159,27 +159,27 @@ bool is_same_proposal(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
 
 }  // namespace
 
-bool KnownPatches::empty() const {
+bool PatchIndex::empty() const {
   return std::all_of(by_size.begin(), by_size.end(), [](const auto& known) { return known.patches.empty(); });
 }
 
-KnownPatches known_patches(const Places& places) {
+PatchIndex build_patch_index(const KeyframeDatabase& keyframe_database) {
   constexpr int kSameLook_bits = 40;
   constexpr float kSame_m = 0.02F;
-  KnownPatches known;
-  for (const Place& place : places.keyframes) {
+  PatchIndex known;
+  for (const MapKeyframe& place : keyframe_database.keyframes) {
     const Eigen::Isometry3f T_world_camera = place.T_world_camera.cast<float>();
     for (const SurfacePatch& in_camera : place.patches) {
       const SurfacePatch patch = moved_by(T_world_camera, in_camera);
       // Keyframes overlap; a patch that several saw alike is stored once.
-      KnownPatches::OfSize& of_size = known.by_size[patch.size];
+      PatchIndex::OfSize& of_size = known.by_size[patch.size];
       bool is_known = false;
       visit_near(of_size, patch.point, [&](const SurfacePatch& other) {
         is_known = is_known || ((other.point - patch.point).squaredNorm() < kSame_m * kSame_m &&
                                 distance_bits(other.bits, patch.bits) <= kSameLook_bits);
       });
       if (is_known) continue;
-      of_size.by_cell.emplace(cell_code(cell_of(patch.point)),
+      of_size.by_cell.emplace(voxel_key(cell_of(patch.point)),
                               static_cast<std::uint32_t>(of_size.patches.size()));
       of_size.patches.push_back(patch);
       of_size.first_bits.push_back(first_bits(patch.bits));
@@ -188,12 +188,12 @@ KnownPatches known_patches(const Places& places) {
   return known;
 }
 
-PatchProof prove_with_patches(std::span<const SurfacePatch> seen, const KnownPatches& known,
-                              const Eigen::Isometry3d& T_world_camera) {
+PatchAgreement match_patches_at(std::span<const SurfacePatch> seen, const PatchIndex& known,
+                                const Eigen::Isometry3d& T_world_camera) {
   constexpr float kReach_m = 0.03F;
   constexpr float kMinCosine = 0.8F;  // between normals, and between directions to the brighter side
   constexpr int kAlike_bits = 80;     // of 256; max for two matching patches at one place
-  PatchProof proof;
+  PatchAgreement proof;
   for (const SurfacePatch& in_camera : seen) {
     const SurfacePatch patch = moved_by(T_world_camera.cast<float>(), in_camera);
     const SurfacePatch* most_alike = nullptr;
@@ -217,7 +217,7 @@ PatchProof prove_with_patches(std::span<const SurfacePatch> seen, const KnownPat
   return proof;
 }
 
-std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const KnownPatches& known,
+std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing) {
   constexpr std::size_t kVotes = 400, kTried = 24;
   std::vector<Alike> alike;
@@ -265,7 +265,7 @@ std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, con
     for (const std::size_t i : group.pairs)
       pairs.push_back({alike[i].known->point.cast<double>(), alike[i].seen->point.cast<double>(),
                        gate_m(*alike[i].seen)});
-    const PlaceMatch match = motion_of(pairs, 200);
+    const KeyframeMatch match = motion_of(pairs, 200);
     if (match.inliers < min_agreeing) continue;
     std::erase_if(
         pairs, [&](const PointPair& pair) { return (match.T_a_b * pair.b - pair.a).norm() > pair.gate_m; });

@@ -15,7 +15,7 @@
 namespace roomradar {
 
 /// All patches of the keyframe database, in the world, grouped by size.
-struct KnownPatches {
+struct PatchIndex {
   struct OfSize {
     std::vector<std::uint64_t> first_bits;  ///< first 64 bits of each descriptor, contiguous in memory
     std::vector<SurfacePatch> patches;
@@ -24,30 +24,30 @@ struct KnownPatches {
   std::array<OfSize, kPatchSizes> by_size;
   [[nodiscard]] bool empty() const;
 };
-KnownPatches known_patches(const Places& places);
+PatchIndex build_patch_index(const KeyframeDatabase& keyframe_database);
 
 struct PoseCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int agreeing = 0;              ///< patches of the frame that coincide with known ones of similar appearance
-  std::vector<PointPair> pairs;  ///< their points, as in PatchProof::alike
+  std::vector<PointPair> pairs;  ///< their points, as in PatchAgreement::alike
 };
 
 /// Returns distinct poses that at least `min_agreeing` patches agree on, best first. Each pair of similar
 /// patches votes for the approximate pose that it implies. RANSAC over point triples of the agreeing pairs
 /// then gives the exact pose. Deterministic.
-std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const KnownPatches& known,
+std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing);
 
 /// Agreement of a frame's patches with the known patches at a pose. `compared` counts patches that coincide
 /// with known ones; `alike` lists those that also look similar.
-struct PatchProof {
+struct PatchAgreement {
   int compared = 0;
   std::vector<PointPair> alike;  ///< a: known point in the world; b: frame's point in the camera
   [[nodiscard]] double alike_part() const {
     return compared > 0 ? static_cast<double>(alike.size()) / compared : 0.0;
   }
 };
-PatchProof prove_with_patches(std::span<const SurfacePatch> seen, const KnownPatches& known,
-                              const Eigen::Isometry3d& T_world_camera);
+PatchAgreement match_patches_at(std::span<const SurfacePatch> seen, const PatchIndex& known,
+                                const Eigen::Isometry3d& T_world_camera);
 
 }  // namespace roomradar

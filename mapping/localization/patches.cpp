@@ -183,11 +183,11 @@ std::vector<SurfacePatch> describe_patches(const Frame& frame, int most) {
     view.mips.push_back(half);
   }
   ViewPyramid pyramid;
-  ReferenceView surface;
+  TargetView surface;
   const ViewConfig config{.levels = 1, .max_depth_m = 8.0F};
   make_pyramid(frame.depth_m, frame.depth_camera, config, pyramid);
-  make_reference(pyramid, Eigen::Isometry3d::Identity(), config, surface);
-  const ReferenceLevel& level = surface.levels.front();
+  make_target_view(pyramid, Eigen::Isometry3d::Identity(), config, surface);
+  const TargetLevel& level = surface.levels.front();
   const Eigen::Isometry3d T_depth_colour = frame.T_colour_depth.inverse();
 
   Samples samples;
@@ -199,7 +199,7 @@ std::vector<SurfacePatch> describe_patches(const Frame& frame, int most) {
     const Eigen::Vector2d at_px = project(level.camera, p->cast<double>());
     const int x = static_cast<int>(std::lround(at_px.x())), y = static_cast<int>(std::lround(at_px.y()));
     if (!level.pixels.contains(x, y)) continue;
-    const ReferencePixel& plane = level.pixels.at(x, y);
+    const TargetPixel& plane = level.pixels.at(x, y);
     // A patch seen at more than 75 degrees is only a few pixels high.
     if (plane.inverse_sigma_per_m <= 0.0F || -plane.normal.dot(p->normalized()) < 0.26F) continue;
     const float seen_m = corner.size * p->z() / static_cast<float>(frame.colour_camera.fx_px);

@@ -78,14 +78,15 @@ bool is_usable_triple(const std::vector<PointPair>& pairs, const std::vector<std
 
 }  // namespace
 
-std::vector<std::size_t> most_alike(const Place& place, std::span<const Place> places, std::size_t count,
-                                    int min_matches, std::size_t strongest) {
-  const auto strongest_of = [&](const Place& of) {
+std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const MapKeyframe> keyframe_database,
+                                    std::size_t count, int min_matches, std::size_t strongest) {
+  const auto strongest_of = [&](const MapKeyframe& of) {
     return Descriptors(of.descriptors).first(std::min(strongest, of.descriptors.size()));
   };
   std::vector<std::pair<int, std::size_t>> votes;
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const int found = static_cast<int>(matches(strongest_of(place), strongest_of(places[i])).size());
+  for (std::size_t i = 0; i < keyframe_database.size(); ++i) {
+    const int found =
+        static_cast<int>(matches(strongest_of(place), strongest_of(keyframe_database[i])).size());
     if (found >= min_matches) votes.emplace_back(-found, i);
   }
   std::sort(votes.begin(), votes.end());
@@ -96,7 +97,7 @@ std::vector<std::size_t> most_alike(const Place& place, std::span<const Place> p
   return alike;
 }
 
-PlaceMatch match_places(const Place& a, const Place& b) {
+KeyframeMatch match_keyframes(const MapKeyframe& a, const MapKeyframe& b) {
   std::vector<PointPair> pairs;
   for (const auto& [i, j] : matches(b.descriptors, a.descriptors)) {
     const Eigen::Vector3f& pa = a.points_camera[j];
@@ -104,12 +105,12 @@ PlaceMatch match_places(const Place& a, const Place& b) {
     const float sigma_m = depth_sigma_m(std::max(pa.z(), pb.z()));
     pairs.push_back({pa.cast<double>(), pb.cast<double>(), 0.015 + 3.0 * static_cast<double>(sigma_m)});
   }
-  return pairs.size() < kMinMatches ? PlaceMatch{} : motion_of(pairs, kSamples);
+  return pairs.size() < kMinMatches ? KeyframeMatch{} : motion_of(pairs, kSamples);
 }
 
-PlaceMatch motion_of(const std::vector<PointPair>& pairs, int samples) {
+KeyframeMatch motion_of(const std::vector<PointPair>& pairs, int samples) {
   constexpr std::size_t kMinPairs = 4;
-  PlaceMatch match;
+  KeyframeMatch match;
   if (pairs.size() < kMinPairs) return match;
 
   std::mt19937 random(1);

@@ -11,11 +11,11 @@ namespace roomradar {
 
 /// Returns the indices in `places` of at most `count` keyframes with the most features in common with
 /// `place`, best first, each with at least `min_matches`. Compares only each view's `strongest` features.
-std::vector<std::size_t> most_alike(const Place& place, std::span<const Place> places, std::size_t count,
-                                    int min_matches, std::size_t strongest = 300);
+std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const MapKeyframe> keyframe_database,
+                                    std::size_t count, int min_matches, std::size_t strongest = 300);
 
 /// Rigid motion that maps `inliers` of b's matched feature points onto a's.
-struct PlaceMatch {
+struct KeyframeMatch {
   int inliers = 0;
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< valid only if inliers > 0
 };
@@ -28,11 +28,11 @@ struct PointPair {
 
 /// Computes the motion with the most inliers, by RANSAC over `samples` triples with a fixed seed, refined
 /// over all inliers.
-PlaceMatch motion_of(const std::vector<PointPair>& pairs, int samples);
+KeyframeMatch motion_of(const std::vector<PointPair>& pairs, int samples);
 
 /// Matches all features (nearest descriptor, ratio test) and computes the motion that most of their points
 /// agree on within the depth noise. RANSAC over triples with a fixed seed, refined over all inliers. Source:
 /// Fischler and Bolles 1981; Umeyama 1991; Lowe 2004 (ratio test).
-PlaceMatch match_places(const Place& a, const Place& b);
+KeyframeMatch match_keyframes(const MapKeyframe& a, const MapKeyframe& b);
 
 }  // namespace roomradar

@@ -22,7 +22,7 @@ constexpr std::uint32_t kVersion = 2;           // version 1 had no patches
 constexpr std::uint32_t kMaxPreview_px = 4096;  // per side
 constexpr double kMaxPlace_m = 1e5;             // a map reaches at most 32,768 voxels of 1 m
 
-void put_place(std::string& out, const Place& place) {
+void put_place(std::string& out, const MapKeyframe& place) {
   put(out, place.frame_index);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) put(out, place.T_world_camera.linear()(row, column));
@@ -71,8 +71,8 @@ std::uint32_t take_count(BinaryReader& in, const char* what, std::size_t item_by
   return count;
 }
 
-Place take_place(BinaryReader& in) {
-  Place place;
+MapKeyframe take_place(BinaryReader& in) {
+  MapKeyframe place;
   place.frame_index = in.take<std::int64_t>("frame index");
   std::array<double, 12> pose{};
   in.take(pose.data(), pose.size(), "pose");
@@ -115,21 +115,21 @@ Place take_place(BinaryReader& in) {
 
 }  // namespace
 
-void write_places(const Places& places, const std::filesystem::path& path) {
+void write_keyframe_database(const KeyframeDatabase& keyframe_database, const std::filesystem::path& path) {
   std::string out;
-  put(out, static_cast<std::uint32_t>(places.keyframes.size()));
-  for (const Place& place : places.keyframes) put_place(out, place);
+  put(out, static_cast<std::uint32_t>(keyframe_database.keyframes.size()));
+  for (const MapKeyframe& place : keyframe_database.keyframes) put_place(out, place);
   write_binary(path, kMagic, kVersion, out);
 }
 
-Places read_places(const std::filesystem::path& path) {
+KeyframeDatabase read_keyframe_database(const std::filesystem::path& path) {
   const std::string bytes = read_binary(path, kMagic, kVersion);
   BinaryReader in(bytes, path);
-  Places places;
+  KeyframeDatabase keyframe_database;
   const auto count = in.take<std::uint32_t>("number of views");
-  for (std::uint32_t i = 0; i < count; ++i) places.keyframes.push_back(take_place(in));
+  for (std::uint32_t i = 0; i < count; ++i) keyframe_database.keyframes.push_back(take_place(in));
   if (in.left() != 0) in.fail(std::to_string(in.left()) + " bytes more than the views take");
-  return places;
+  return keyframe_database;
 }
 
 }  // namespace roomradar

@@ -21,12 +21,12 @@ bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_worl
   return T_a_b.translation().norm() < reach_m && Eigen::AngleAxisd(T_a_b.linear()).angle() < reach_rad;
 }
 
-double support_of(const TriedPose& finding) {
+double support_of(const PoseHypothesis& hypothesis) {
   constexpr double kEnough = 0.4;  // fraction of the depth that the model must cover
-  const Evidence& evidence = finding.evidence;
-  const double covered = std::min(1.0, evidence.both / (kEnough * std::max(evidence.valid, 1)));
-  return covered * fit_of(evidence) +
-         static_cast<double>(finding.look.alike.size()) / std::max(finding.look.compared, kFewPatches);
+  const DepthAgreement& agreement = hypothesis.agreement;
+  const double covered = std::min(1.0, agreement.both / (kEnough * std::max(agreement.valid, 1)));
+  return covered * fit_of(agreement) + static_cast<double>(hypothesis.appearance.alike.size()) /
+                                           std::max(hypothesis.appearance.compared, kFewPatches);
 }
 
 double uncertainty_m(const Tracking& tracking) {
@@ -36,21 +36,22 @@ double uncertainty_m(const Tracking& tracking) {
   return std::sqrt(symmetric_eigen(covariance_m2).values(2));
 }
 
-bool is_proven_by_look(const TriedPose& finding) {
+bool is_verified_by_patches(const PoseHypothesis& hypothesis) {
   constexpr std::size_t kMany = 15, kManyAlone = 40, kManyUndisputed = 25;
   constexpr double kMinAlike = 0.35;
   constexpr double kUndisputed = 0.75, kUndisputedFit = 0.9;  // no wrong pose exceeds both
-  const PatchProof& look = finding.look;
-  const bool is_undisputed = look.alike_part() > kUndisputed && fit_of(finding.evidence) > kUndisputedFit;
-  const std::size_t enough = finding.tracking ? kMany : is_undisputed ? kManyUndisputed : kManyAlone;
-  return look.alike.size() >= enough && look.alike_part() > kMinAlike;
+  const PatchAgreement& appearance = hypothesis.appearance;
+  const bool is_undisputed =
+      appearance.alike_part() > kUndisputed && fit_of(hypothesis.agreement) > kUndisputedFit;
+  const std::size_t enough = hypothesis.tracking ? kMany : is_undisputed ? kManyUndisputed : kManyAlone;
+  return appearance.alike.size() >= enough && appearance.alike_part() > kMinAlike;
 }
 
-bool is_borne_out(const PatchProof& look) {
-  return look.compared >= kFewPatches && look.alike_part() > kContradicted;
+bool is_supported_by_patches(const PatchAgreement& appearance) {
+  return appearance.compared >= kFewPatches && appearance.alike_part() > kContradicted;
 }
 
-bool is_certain(const TriedPose& finding) {
+bool is_certain(const PoseHypothesis& hypothesis) {
   constexpr double kMostUncertain_m = 0.015;  // 5 cm are more than three standard deviations
   // People stand in front of known surfaces, never behind them. If depth leaves a direction unconstrained,
   // floorboards repeat along it, and only a few edges can show that the pose is wrong.
@@ -58,31 +59,31 @@ bool is_certain(const TriedPose& finding) {
   // In this case two thirds of some hundred patches may be alike at a wrong pose, but the depth then agrees
   // less. So the depth must agree clearly, or depth and patches together.
   constexpr double kClearTogether = 1.53, kClearDepth = 0.95;
-  const Evidence& evidence = finding.evidence;
-  const PatchProof& look = finding.look;
-  if (!has_pose(finding.tracking) || finding.uncertainty_m > kMostUncertain_m ||
-      evidence.both < 0.2 * evidence.valid)
+  const DepthAgreement& agreement = hypothesis.agreement;
+  const PatchAgreement& appearance = hypothesis.appearance;
+  if (!has_pose(hypothesis.tracking) || hypothesis.uncertainty_m > kMostUncertain_m ||
+      agreement.both < 0.2 * agreement.valid)
     return false;
-  if (is_proven_by_look(finding)) {
-    const bool is_clear = finding.tracking || evidence.alike_part() > kClearDepth ||
-                          look.alike_part() + evidence.alike_part() > kClearTogether;
-    return is_clear && fit_of(evidence) > 0.4 &&
-           evidence.farther_part() < (finding.tracking ? kMostFarther : kMostFartherOpen);
+  if (is_verified_by_patches(hypothesis)) {
+    const bool is_clear = hypothesis.tracking || agreement.alike_part() > kClearDepth ||
+                          appearance.alike_part() + agreement.alike_part() > kClearTogether;
+    return is_clear && fit_of(agreement) > 0.4 &&
+           agreement.farther_part() < (hypothesis.tracking ? kMostFarther : kMostFartherOpen);
   }
-  if (!finding.tracking || evidence.both < 0.5 * evidence.valid || evidence.farther_part() > 0.03)
+  if (!hypothesis.tracking || agreement.both < 0.5 * agreement.valid || agreement.farther_part() > 0.03)
     return false;
-  if (look.compared < kFewPatches) return evidence.alike_part() > 0.9;
-  return look.alike_part() > kContradicted &&
-         evidence.alike_part() > (look.alike.size() > kFewPatches ? 0.7 : 0.9);
+  if (appearance.compared < kFewPatches) return agreement.alike_part() > 0.9;
+  return appearance.alike_part() > kContradicted &&
+         agreement.alike_part() > (appearance.alike.size() > kFewPatches ? 0.7 : 0.9);
 }
 
-bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings) {
+bool is_ambiguous(const PoseHypothesis& best, const std::vector<PoseHypothesis>& hypotheses) {
   constexpr double kClear = 0.08, kChance = 0.8;  // two standard deviations of the fraction alike for one
                                                   // patch
-  return std::any_of(findings.begin(), findings.end(), [&](const TriedPose& other) {
-    const int compared = std::min(best.look.compared, other.look.compared);
+  return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const PoseHypothesis& other) {
+    const int compared = std::min(best.appearance.compared, other.appearance.compared);
     const double chance = compared >= kFewPatches ? kChance / std::sqrt(compared) : 0.0;
-    return !is_same_place(best.tracking.T_world_camera, other.tracking.T_world_camera) &&
+    return !is_same_pose(best.tracking.T_world_camera, other.tracking.T_world_camera) &&
            has_pose(other.tracking) && support_of(other) > support_of(best) - kClear - chance;
   });
 }

@@ -10,11 +10,11 @@
 namespace roomradar {
 
 /// Pose that a search of the map tried, with its agreement in appearance and depth.
-struct TriedPose {
+struct PoseHypothesis {
   Tracking tracking;
   double uncertainty_m = 0.0;  ///< result of uncertainty_m() after alignment and patches
-  PatchProof look;
-  Evidence evidence;
+  PatchAgreement appearance;
+  DepthAgreement agreement;
 };
 
 bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b, double reach_m,
@@ -22,11 +22,11 @@ bool is_near(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_worl
 
 /// Returns the depth agreement, at most 1, over pixels where the model has a surface. Pixels that see through
 /// the model count against the pose twice.
-inline double fit_of(const Evidence& evidence) {
-  return evidence.alike_part() - 2.0 * evidence.farther_part();
+inline double fit_of(const DepthAgreement& agreement) {
+  return agreement.alike_part() - 2.0 * agreement.farther_part();
 }
 /// Returns the sum of the agreement in depth and in appearance, at most 2.
-double support_of(const TriedPose& finding);
+double support_of(const PoseHypothesis& hypothesis);
 
 /// Returns the standard deviation of the camera's position in its most uncertain direction, from depth and
 /// patches. Infinite if a direction is unconstrained.
@@ -35,22 +35,22 @@ double uncertainty_m(const Tracking& tracking);
 /// Returns whether enough patches match known ones at this pose. Where boards or tiles repeat, about twenty
 /// match at a wrong pose. So if depth leaves a direction unconstrained, more must match, or almost nothing
 /// may contradict the pose.
-bool is_proven_by_look(const TriedPose& finding);
+bool is_verified_by_patches(const PoseHypothesis& hypothesis);
 
 /// Returns whether enough patches were compared, and a larger fraction of them is alike than at wrong poses.
-bool is_borne_out(const PatchProof& look);
+bool is_supported_by_patches(const PatchAgreement& appearance);
 
 /// Returns whether the pose is certain by itself. Either many patches match known ones and the depth does not
 /// contradict the pose; or depth alone constrains the pose, almost no pixel sees through the model, and the
 /// patches do not contradict it.
-bool is_certain(const TriedPose& finding);
+bool is_certain(const PoseHypothesis& hypothesis);
 
 /// Returns whether the best pose is ambiguous: another pose explains the frame about as well. The margin is
 /// larger for few patches, because their agreement differs between identical places by chance.
-bool is_rivalled(const TriedPose& best, const std::vector<TriedPose>& findings);
+bool is_ambiguous(const PoseHypothesis& best, const std::vector<PoseHypothesis>& hypotheses);
 
 /// Returns whether two poses are close enough to be the same place.
-inline bool is_same_place(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+inline bool is_same_pose(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   constexpr double kSame_m = 0.1, kSame_rad = 0.1;
   return is_near(a, b, kSame_m, kSame_rad);
 }

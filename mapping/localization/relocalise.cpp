@@ -13,7 +13,7 @@
 namespace roomradar {
 namespace {
 
-void make_preview_pyramid(const Place& place, const ViewConfig& view, ViewPyramid& pyramid) {
+void make_preview_pyramid(const MapKeyframe& place, const ViewConfig& view, ViewPyramid& pyramid) {
   DepthImage depth_m(place.preview_camera.width_px, place.preview_camera.height_px);
   std::transform(place.preview_depth_mm.pixels.begin(), place.preview_depth_mm.pixels.end(),
                  depth_m.pixels.begin(), [](std::uint16_t mm) { return 0.001F * static_cast<float>(mm); });
@@ -21,9 +21,9 @@ void make_preview_pyramid(const Place& place, const ViewConfig& view, ViewPyrami
 }
 
 /// Makes the preview a reference, posed at the identity.
-ReferenceView reference_of(const ViewPyramid& preview, const ViewConfig& view) {
-  ReferenceView reference;
-  make_reference(preview, Eigen::Isometry3d::Identity(), view, reference);
+TargetView reference_of(const ViewPyramid& preview, const ViewConfig& view) {
+  TargetView reference;
+  make_target_view(preview, Eigen::Isometry3d::Identity(), view, reference);
   return reference;
 }
 
@@ -37,12 +37,12 @@ double angle_rad(const Eigen::Isometry3d& T) { return Eigen::AngleAxisd(T.linear
 
 /// Refines a feature-based pose with the keyframe's depth. The refined pose must agree with the depth and
 /// with the features.
-Proof prove_with_features(const LiveView& live, const Place& place, const PlaceMatch& match,
+Proof prove_with_features(const SourcePoints& live, const MapKeyframe& place, const KeyframeMatch& match,
                           const RelocaliseConfig& config, const ViewConfig& view) {
   constexpr double kMaxCorrection_m = 0.12, kMaxCorrection_rad = 0.12;
   ViewPyramid preview;
   make_preview_pyramid(place, view, preview);
-  const ReferenceView reference = reference_of(preview, view);
+  const TargetView reference = reference_of(preview, view);
   const Tracking t = align(live, reference, match.T_a_b, {.coarsest_level = 1, .gate_m = 0.15F});
   Proof proof{.T_place_camera = t.T_world_camera, .agreement = t.inlier_fraction};
   const Eigen::Isometry3d correction = match.T_a_b.inverse() * t.T_world_camera;
@@ -54,20 +54,20 @@ Proof prove_with_features(const LiveView& live, const Place& place, const PlaceM
 
 /// Verifies a keyframe without features. Alignment starts at the keyframe's pose, must constrain all
 /// directions, overlap well, and agree with the reverse alignment.
-Proof prove_with_depth(const LiveView& live, const ReferenceView& live_reference, const Place& place,
+Proof prove_with_depth(const SourcePoints& live, const TargetView& live_reference, const MapKeyframe& place,
                        const ViewConfig& view) {
   constexpr double kMinAgreement = 0.85, kMinOverlap = 0.6, kMaxGap_m = 0.03, kMaxGap_rad = 0.03;
   const AlignConfig wide{.coarsest_level = 2, .iterations = 12, .gate_m = 0.3F, .intensity_sigma = 0.0F};
   Proof proof;
   ViewPyramid preview;
   make_preview_pyramid(place, view, preview);
-  const ReferenceView reference = reference_of(preview, view);
+  const TargetView reference = reference_of(preview, view);
   const Tracking there = align(live, reference, Eigen::Isometry3d::Identity(), wide);
   proof.T_place_camera = there.T_world_camera;
   proof.agreement = there.inlier_fraction;
   if (!there || there.overlap < kMinOverlap || there.inlier_fraction < kMinAgreement) return proof;
-  LiveView place_live;
-  make_live(preview, place_live);
+  SourcePoints place_live;
+  make_source_points(preview, place_live);
   const Tracking back = align(place_live, live_reference, there.T_world_camera.inverse(), wide);
   const Eigen::Isometry3d gap = there.T_world_camera * back.T_world_camera;
   proof.holds = back && back.inlier_fraction >= kMinAgreement && gap.translation().norm() < kMaxGap_m &&
@@ -77,12 +77,13 @@ Proof prove_with_depth(const LiveView& live, const ReferenceView& live_reference
 
 /// Returns the indices of at most `count` keyframes whose depth is most similar to the frame's, ray by ray.
 /// For other keyframes, alignment starting at their pose would have almost no points within its gate.
-std::vector<std::size_t> nearest_in_depth(const Frame& frame, const Places& places, std::size_t count) {
+std::vector<std::size_t> nearest_in_depth(const Frame& frame, const KeyframeDatabase& keyframe_database,
+                                          std::size_t count) {
   constexpr int kEvery_px = 8;  // pixels of a preview
   constexpr float kGate_m = 0.3F;
   std::vector<std::pair<int, std::size_t>> unlike;
-  for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
-    const Place& place = places.keyframes[i];
+  for (std::size_t i = 0; i < keyframe_database.keyframes.size(); ++i) {
+    const MapKeyframe& place = keyframe_database.keyframes[i];
     int alike = 0;
     for (int v = kEvery_px / 2; v < place.preview_camera.height_px; v += kEvery_px) {
       for (int u = kEvery_px / 2; u < place.preview_camera.width_px; u += kEvery_px) {
@@ -114,8 +115,8 @@ struct Witness {
 
 /// Returns the best witness's pose, refined over the depth of all witnesses that agree with it, because each
 /// keyframe's pose has an error.
-Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& live, const Places& places,
-                      const ViewConfig& view) {
+Relocalisation answer(const std::vector<Witness>& witnesses, const SourcePoints& live,
+                      const KeyframeDatabase& keyframe_database, const ViewConfig& view) {
   constexpr double kAgree_m = 0.15, kAgree_rad = 0.1;
   const Witness& best =
       *std::max_element(witnesses.begin(), witnesses.end(), [](const Witness& a, const Witness& b) {
@@ -124,13 +125,13 @@ Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& liv
       });
   Relocalisation found{
       .status = RelocalisationStatus::kFound,
-      .T_world_camera = places.keyframes[best.position].T_world_camera * best.proof.T_place_camera,
+      .T_world_camera = keyframe_database.keyframes[best.position].T_world_camera * best.proof.T_place_camera,
       .keyframe = static_cast<std::int64_t>(best.position),
       .feature_inliers = best.feature_inliers,
       .depth_agreement = best.proof.agreement};
-  std::vector<ReferenceView> references;
+  std::vector<TargetView> references;
   for (const Witness& witness : witnesses) {
-    const Place& place = places.keyframes[witness.position];
+    const MapKeyframe& place = keyframe_database.keyframes[witness.position];
     const Eigen::Isometry3d gap =
         found.T_world_camera.inverse() * place.T_world_camera * witness.proof.T_place_camera;
     if (gap.translation().norm() > kAgree_m || angle_rad(gap) > kAgree_rad) continue;
@@ -142,7 +143,7 @@ Relocalisation answer(const std::vector<Witness>& witnesses, const LiveView& liv
   if (references.size() < 2) return found;
   std::vector<PosedReference> posed;
   posed.reserve(references.size());
-  for (const ReferenceView& reference : references) posed.push_back({&reference, reference.T_world_view});
+  for (const TargetView& reference : references) posed.push_back({&reference, reference.T_world_view});
   const Tracking refined = align(live, posed, found.T_world_camera, {.coarsest_level = 1});
   if (has_pose(refined)) found.T_world_camera = refined.T_world_camera;
   return found;
@@ -154,29 +155,30 @@ std::string_view to_string(RelocalisationStatus status) {
   switch (status) {
     case RelocalisationStatus::kFound:
       return "found";
-    case RelocalisationStatus::kNoPlaces:
+    case RelocalisationStatus::kNoKeyframes:
       return "no keyframes";
     case RelocalisationStatus::kNoDepth:
       return "no depth";
     case RelocalisationStatus::kNoMatch:
       return "no match";
-    case RelocalisationStatus::kUnproven:
+    case RelocalisationStatus::kNotVerified:
       return "not verified";
   }
   return "unknown";
 }
 
-Relocalisation relocalise(const Frame& frame, const Places& places, const RelocaliseConfig& config) {
+Relocalisation relocalise(const Frame& frame, const KeyframeDatabase& keyframe_database,
+                          const RelocaliseConfig& config) {
   Relocalisation none;
-  if (places.keyframes.empty()) {
-    none.status = RelocalisationStatus::kNoPlaces;
+  if (keyframe_database.keyframes.empty()) {
+    none.status = RelocalisationStatus::kNoKeyframes;
     return none;
   }
   const ViewConfig view{.finest_width_px = config.place.preview_width_px, .normal_reach_px = 2};
   ViewPyramid pyramid;
-  LiveView live;
+  SourcePoints live;
   make_pyramid(frame.depth_m, frame.depth_camera, view, pyramid);
-  make_live(pyramid, live);
+  make_source_points(pyramid, live);
   constexpr std::size_t kMinPoints = 200;
   if (live.levels.front().size() < kMinPoints) {
     none.status = RelocalisationStatus::kNoDepth;
@@ -185,28 +187,28 @@ Relocalisation relocalise(const Frame& frame, const Places& places, const Reloca
 
   std::vector<Witness> witnesses;
   const bool remembered_by_features =
-      std::any_of(places.keyframes.begin(), places.keyframes.end(),
-                  [](const Place& place) { return !place.descriptors.empty(); });
+      std::any_of(keyframe_database.keyframes.begin(), keyframe_database.keyframes.end(),
+                  [](const MapKeyframe& place) { return !place.descriptors.empty(); });
   if (!frame.colour.empty() && remembered_by_features) {
     constexpr int kMinMatches = 8;
-    const Place here = describe_place(frame, Eigen::Isometry3d::Identity(), config.place);
+    const MapKeyframe here = make_map_keyframe(frame, Eigen::Isometry3d::Identity(), config.place);
     const auto most = static_cast<std::size_t>(std::max(config.candidates, 0));
-    for (const std::size_t i : most_alike(here, places.keyframes, most, kMinMatches)) {
-      const PlaceMatch match = match_places(places.keyframes[i], here);
+    for (const std::size_t i : most_alike(here, keyframe_database.keyframes, most, kMinMatches)) {
+      const KeyframeMatch match = match_keyframes(keyframe_database.keyframes[i], here);
       if (match.inliers < config.min_feature_inliers) continue;
-      none.status = RelocalisationStatus::kUnproven;
-      const Proof proof = prove_with_features(live, places.keyframes[i], match, config, view);
+      none.status = RelocalisationStatus::kNotVerified;
+      const Proof proof = prove_with_features(live, keyframe_database.keyframes[i], match, config, view);
       if (proof.holds) witnesses.push_back({i, match.inliers, proof});
     }
   } else {
     constexpr std::size_t kMostByDepth = 40;  // each takes some milliseconds
-    const ReferenceView live_reference = reference_of(pyramid, view);
-    for (const std::size_t i : nearest_in_depth(frame, places, kMostByDepth)) {
-      const Proof proof = prove_with_depth(live, live_reference, places.keyframes[i], view);
+    const TargetView live_reference = reference_of(pyramid, view);
+    for (const std::size_t i : nearest_in_depth(frame, keyframe_database, kMostByDepth)) {
+      const Proof proof = prove_with_depth(live, live_reference, keyframe_database.keyframes[i], view);
       if (proof.holds) witnesses.push_back({i, 0, proof});
     }
   }
-  return witnesses.empty() ? none : answer(witnesses, live, places, view);
+  return witnesses.empty() ? none : answer(witnesses, live, keyframe_database, view);
 }
 
 }  // namespace roomradar

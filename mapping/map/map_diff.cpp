@@ -32,10 +32,10 @@ std::array<Eigen::Vector3d, 14> directions() {
   return all;
 }
 
-class ThingFinder {
+class ObjectFinder {
  public:
-  ThingFinder(const StaticMap& has, const StaticMap& lacks, const Eigen::Isometry3d& T_lacks_has,
-              const DiffConfig& config)
+  ObjectFinder(const StaticMap& has, const StaticMap& lacks, const Eigen::Isometry3d& T_lacks_has,
+               const DiffConfig& config)
       : has_(has),
         lacks_(lacks),
         T_lacks_has_(T_lacks_has),
@@ -74,7 +74,7 @@ class ThingFinder {
                   return lacks_.occupancy_at(p + clearance_m_ * direction) == Occupancy::kFree &&
                          lacks_.occupancy_at(p + 0.5 * clearance_m_ * direction) == Occupancy::kFree;
                 });
-            suspects_.emplace(cell_code(voxel), suspect);
+            suspects_.emplace(voxel_key(voxel), suspect);
             order_.push_back(voxel);
           }
     });
@@ -87,7 +87,7 @@ class ThingFinder {
       for (int y = -radius; y <= radius; ++y)
         for (int x = -radius; x <= radius; ++x) {
           const VoxelIndex other = voxel + VoxelIndex(x, y, z);
-          if (const auto found = suspects_.find(cell_code(other)); found != suspects_.end())
+          if (const auto found = suspects_.find(voxel_key(other)); found != suspects_.end())
             visit(other, found->second);
         }
   }
@@ -97,7 +97,7 @@ class ThingFinder {
     const int most = static_cast<int>(std::ceil(clearance_m_ / has_.resolution_m())) + 1;
     std::vector<VoxelIndex> rim;
     for (const VoxelIndex& voxel : order_) {
-      Suspect& suspect = suspects_.at(cell_code(voxel));
+      Suspect& suspect = suspects_.at(voxel_key(voxel));
       if (!suspect.clear) continue;
       suspect.steps = 0;
       rim.push_back(voxel);
@@ -120,7 +120,7 @@ class ThingFinder {
     std::vector<std::vector<VoxelIndex>> things;
     int number = 0;
     for (const VoxelIndex& first : order_) {
-      Suspect& start = suspects_.at(cell_code(first));
+      Suspect& start = suspects_.at(voxel_key(first));
       if (start.steps < 0 || start.thing >= 0) continue;
       start.thing = number;
       std::vector<VoxelIndex> thing{first};
@@ -142,7 +142,7 @@ class ThingFinder {
     std::size_t clear = 0;
     Eigen::AlignedBox3d box;
     for (const VoxelIndex& voxel : thing) {
-      if (!suspects_.at(cell_code(voxel)).clear) continue;
+      if (!suspects_.at(voxel_key(voxel)).clear) continue;
       ++clear;
       box.extend(centre(voxel));
     }
@@ -229,7 +229,7 @@ std::string_view to_string(ChangeKind kind) {
 }
 
 void require_valid(const DiffConfig& config) {
-  const SettingRules require{"diff"};
+  const ConfigCheck require{"diff"};
   for (const auto& [name, value] :
        {std::pair("clearance_m", config.clearance_m), std::pair("clearance_voxels", config.clearance_voxels),
         std::pair("min_area_m2", config.min_area_m2), std::pair("min_size_m", config.min_size_m),
@@ -243,9 +243,9 @@ std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eige
   require_valid(config);
   const Eigen::Isometry3d T_a_a = Eigen::Isometry3d::Identity();
   std::vector<Change> changes;
-  for (const auto& thing : ThingFinder(b, a, T_a_b, config).find())
+  for (const auto& thing : ObjectFinder(b, a, T_a_b, config).find())
     changes.push_back(describe_thing(ChangeKind::kAppeared, thing, b, a, T_a_b, T_a_a));
-  for (const auto& thing : ThingFinder(a, b, T_a_b.inverse(), config).find())
+  for (const auto& thing : ObjectFinder(a, b, T_a_b.inverse(), config).find())
     changes.push_back(describe_thing(ChangeKind::kVanished, thing, a, b, T_a_a, T_a_b));
   std::stable_sort(changes.begin(), changes.end(),
                    [](const Change& left, const Change& right) { return left.area_m2 > right.area_m2; });

@@ -39,9 +39,9 @@ struct DiffConfig {
 /// Throws Error naming field, value and rule.
 void require_valid(const DiffConfig& config);
 
-/// Returns the changes, largest first. Places that one of the maps does not know are unchanged. Not detected
-/// are objects smaller than the clearance, and objects that moved, or stand out from a plane, by less than
-/// max_pose_error_m.
+/// Returns the changes, largest first. Regions that one of the maps does not know are unchanged. Not
+/// detected are objects smaller than the clearance, and objects that moved, or stand out from a plane, by
+/// less than max_pose_error_m.
 /// @param T_a_b  from b's world to a's
 std::vector<Change> diff_maps(const StaticMap& a, const StaticMap& b, const Eigen::Isometry3d& T_a_b,
                               const DiffConfig& config = {});

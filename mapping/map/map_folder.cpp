@@ -197,12 +197,12 @@ void save_map(const fs::path& folder, const SavedMap& map) {
     fail(target, "not saved: its surface has " + std::to_string(map.mesh.triangles.size()) +
                      " triangles, and " + std::to_string(kMaxMeshTriangles) +
                      " is the most; take a larger --deviation, or a coarser --resolution.");
-  PartialFolder partial(target);
+  AtomicFolder partial(target);
 
   map.octree.write_ot(partial.path() / kOctree);
   map.octree.write_bt(partial.path() / kPlainOctree);
   write_mesh(map.mesh, partial.path() / kMesh);
-  write_places(map.places, partial.path() / kPlaces);
+  write_keyframe_database(map.keyframe_database, partial.path() / kPlaces);
   write_trajectory(partial.path() / kTrajectory, map.trajectory);
   if (!map.coverage_png.empty())
     write_bytes(partial.path() / kCoverage, std::string(map.coverage_png.begin(), map.coverage_png.end()));
@@ -214,7 +214,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   info.counts = map.octree.counts();
   info.vertices = map.mesh.vertices.size();
   info.triangles = map.mesh.triangles.size();
-  info.keyframes = map.places.keyframes.size();
+  info.keyframes = map.keyframe_database.keyframes.size();
   info.poses = map.trajectory.size();
   info.files.clear();
   std::vector<std::string> parts(kParts.begin(), kParts.end());
@@ -223,14 +223,14 @@ void save_map(const fs::path& folder, const SavedMap& map) {
     info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
   write_bytes(partial.path() / kInfo, to_json(info));
 
-  partial.put_in_place();
+  partial.commit();
 }
 
 namespace {
 
 MapInfo read_info(const fs::path& folder) {
   std::error_code fault;
-  if (const fs::path aside = set_aside_of(folder); !aside.empty())
+  if (const fs::path aside = interrupted_replacement_of(folder); !aside.empty())
     fail(folder, "a save was killed while it took this map's place, and left it as " +
                      aside.filename().string() + "; rename that to " + folder.filename().string());
   if (!fs::is_directory(folder, fault))
@@ -253,7 +253,7 @@ SavedMap read_map(const fs::path& folder) {
   return {.info = info,
           .octree = read_octree(folder, info),
           .mesh = read_mesh(folder / kMesh),
-          .places = read_places(folder / kPlaces),
+          .keyframe_database = read_keyframe_database(folder / kPlaces),
           .trajectory = read_trajectory(folder / kTrajectory),
           .coverage_png = info.files.contains(kCoverage) ? read_picture(folder / kCoverage)
                                                          : std::vector<std::uint8_t>{}};
@@ -280,7 +280,7 @@ std::vector<std::string> faults_of(const fs::path& folder) {
     attempt([&, &name = name] {
       if (name == kOctree) static_cast<void>(read_octree(folder, *info));
       if (name == kMesh) static_cast<void>(read_mesh(folder / part));
-      if (name == kPlaces) static_cast<void>(read_places(folder / part));
+      if (name == kPlaces) static_cast<void>(read_keyframe_database(folder / part));
       if (name == kTrajectory) static_cast<void>(read_trajectory(folder / part));
       if (name == kCoverage) static_cast<void>(read_picture(folder / part));
     });
@@ -291,15 +291,15 @@ std::vector<std::string> faults_of(const fs::path& folder) {
 }  // namespace
 
 MapInfo load_map_info(const fs::path& folder) {
-  return read_of_one(folder, [&] { return read_info(folder); });
+  return read_consistent(folder, [&] { return read_info(folder); });
 }
 
 SavedMap load_map(const fs::path& folder) {
-  return read_of_one(folder, [&] { return read_map(folder); });
+  return read_consistent(folder, [&] { return read_map(folder); });
 }
 
 std::vector<std::string> verify_map(const fs::path& folder) {
-  return read_of_one(folder, [&] { return faults_of(folder); });
+  return read_consistent(folder, [&] { return faults_of(folder); });
 }
 
 void export_map(const fs::path& folder, const fs::path& path) {
@@ -313,7 +313,7 @@ void export_map(const fs::path& folder, const fs::path& path) {
                    "the mesh");
   require_outside_maps(path);
   const char* part = extension == ".ot" ? kOctree : extension == ".bt" ? kPlainOctree : kMesh;
-  read_of_one(folder, [&] {
+  read_consistent(folder, [&] {
     const MapInfo info = read_info(folder);
     if (const auto fault = fault_of(folder / part, info.files.at(part))) throw Error(*fault);
     if (!octree) {
@@ -321,9 +321,9 @@ void export_map(const fs::path& folder, const fs::path& path) {
       return 0;
     }
     std::ifstream in(folder / part, std::ios::binary);
-    WholeFile out(path);
+    AtomicFile out(path);
     require_written(out.stream() << in.rdbuf(), path);
-    out.put_in_place();
+    out.commit();
     return 0;
   });
 }

@@ -57,7 +57,7 @@ struct SavedMap {
   MapInfo info;
   StaticMap octree{0.01};
   Mesh mesh;
-  Places places;
+  KeyframeDatabase keyframe_database;
   std::vector<TimedPose> trajectory;
   std::vector<std::uint8_t> coverage_png;  ///< coverage picture; empty: none
 };
@@ -70,8 +70,8 @@ bool knows_recorded_world(const MapInfo& info);
 /// has it. Throws Error if this setting is invalid.
 SurfaceConfig surface_config_of(const MapInfo& info);
 
-/// Returns the folder's path without `.`, `..` and a trailing slash. Throws Error if no usable name for a map
-/// remains.
+/// Returns the path without dot components and without a trailing slash. Throws Error if no usable name for a
+/// map remains.
 std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
 
 /// Throws Error if the file or folder would be directly in a map's folder, which may contain only the map's

@@ -143,8 +143,9 @@ void append_session(SavedMap& map, const SavedMap& session) {
     pose.stamp_s += shift_s;
     map.trajectory.push_back(pose);
   }
-  map.places.keyframes.insert(map.places.keyframes.end(), session.places.keyframes.begin(),
-                              session.places.keyframes.end());
+  map.keyframe_database.keyframes.insert(map.keyframe_database.keyframes.end(),
+                                         session.keyframe_database.keyframes.begin(),
+                                         session.keyframe_database.keyframes.end());
   map.info.source += "; " + session.info.source;
   if (const auto stopped = session.info.settings.find(kStoppedSetting);
       stopped != session.info.settings.end())
@@ -156,11 +157,11 @@ void append_session(SavedMap& map, const SavedMap& session) {
 namespace {
 
 Registration register_into(const SavedMap& a, const SavedMap& b, const RegistrationConfig& config) {
-  Registration there =
-      register_to(a.octree, a.places, b.places, sample_surface(b.mesh, config.points), config);
+  Registration there = register_to(a.octree, a.keyframe_database, b.keyframe_database,
+                                   sample_surface(b.mesh, config.points), config);
   if (!there) return there;
   const Registration back =
-      judge_registration(b.octree, sample_surface(a.mesh, config.points), there.T_a_b.inverse(), config);
+      verify_registration(b.octree, sample_surface(a.mesh, config.points), there.T_a_b.inverse(), config);
   // A small part of a in b proves nothing: b may be one corner of a.
   if (back.status == RegistrationStatus::kNoOverlap) return there;
   there.agreement = std::min(there.agreement, back.agreement);
@@ -187,8 +188,8 @@ void require_alike(const SavedMap& a, const SavedMap& b) {
   const double finer_m = std::min(a.octree.resolution_m(), b.octree.resolution_m());
   const double coarser_m = std::max(a.octree.resolution_m(), b.octree.resolution_m());
   if (coarser_m <= kMostTimes * finer_m * (1.0 + 1e-9)) return;
-  throw Error("the cells of one map are " + number_text(finer_m) + " m and of the other " +
-              number_text(coarser_m) + " m; to be joined they may differ by " + number_text(kMostTimes) +
+  throw Error("the cells of one map are " + format_number(finer_m) + " m and of the other " +
+              format_number(coarser_m) + " m; to be joined they may differ by " + format_number(kMostTimes) +
               " times: scan one of them again");
 }
 
@@ -230,8 +231,8 @@ SavedMap merge_maps(SavedMap a, const SavedMap& b, const Eigen::Isometry3d& T_a_
   a.mesh = extract_surface(a.octree, surface_config_of(a.info));
   SavedMap session;
   session.info = b.info;
-  session.places = b.places;
-  transform(session.places, T_a_b);
+  session.keyframe_database = b.keyframe_database;
+  transform(session.keyframe_database, T_a_b);
   session.trajectory = b.trajectory;
   for (TimedPose& pose : session.trajectory) pose.T_world_camera = T_a_b * pose.T_world_camera;
   append_session(a, session);

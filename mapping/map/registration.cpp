@@ -20,21 +20,22 @@ struct Vote {
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
 };
 
-bool has_features(const Places& places) {
-  return std::any_of(places.keyframes.begin(), places.keyframes.end(),
-                     [](const Place& place) { return !place.descriptors.empty(); });
+bool has_features(const KeyframeDatabase& keyframe_database) {
+  return std::any_of(keyframe_database.keyframes.begin(), keyframe_database.keyframes.end(),
+                     [](const MapKeyframe& place) { return !place.descriptors.empty(); });
 }
 
-std::vector<Vote> collect_votes(const Places& a, const Places& b, const RegistrationConfig& config) {
+std::vector<Vote> collect_votes(const KeyframeDatabase& a, const KeyframeDatabase& b,
+                                const RegistrationConfig& config) {
   constexpr int kMinMatches = 15;
   const auto most = static_cast<std::size_t>(std::max(config.views, 1));
   const std::size_t stride = 1 + (b.keyframes.size() - 1) / most;
   std::vector<Vote> votes;
   for (std::size_t j = 0; j < b.keyframes.size(); j += stride) {
-    const Place& view = b.keyframes[j];
+    const MapKeyframe& view = b.keyframes[j];
     const auto candidates = static_cast<std::size_t>(std::max(config.candidates, 1));
     for (const std::size_t i : most_alike(view, a.keyframes, candidates, kMinMatches)) {
-      const PlaceMatch match = match_places(a.keyframes[i], view);
+      const KeyframeMatch match = match_keyframes(a.keyframes[i], view);
       if (match.inliers < config.min_inliers) continue;
       votes.push_back(
           {j, match.inliers, a.keyframes[i].T_world_camera * match.T_a_b * view.T_world_camera.inverse()});
@@ -44,14 +45,15 @@ std::vector<Vote> collect_votes(const Places& a, const Places& b, const Registra
 }
 
 /// Returns whether two transforms give a view of b nearly the same pose in a.
-bool agree(const Vote& vote, const Eigen::Isometry3d& T_a_b, const Place& view) {
+bool agree(const Vote& vote, const Eigen::Isometry3d& T_a_b, const MapKeyframe& view) {
   constexpr double kNear_m = 0.15, kNear_rad = 0.1;
   const Eigen::Isometry3d gap = (vote.T_a_b * view.T_world_camera).inverse() * T_a_b * view.T_world_camera;
   return gap.translation().norm() < kNear_m && Eigen::AngleAxisd(gap.linear()).angle() < kNear_rad;
 }
 
 /// Counts the views of b that agree with a transform, each view once.
-int count_agreeing(const std::vector<Vote>& votes, const Eigen::Isometry3d& T_a_b, const Places& b) {
+int count_agreeing(const std::vector<Vote>& votes, const Eigen::Isometry3d& T_a_b,
+                   const KeyframeDatabase& b) {
   int agreeing = 0;
   std::size_t last = b.keyframes.size();
   for (const Vote& vote : votes) {
@@ -99,8 +101,8 @@ Judgement judge(const StaticMap& a, std::span<const Eigen::Vector3d> surface_b,
 
 /// Minimises the distances of b's points to a's surface by Gauss-Newton, robust to moved objects. Directions
 /// in which the surface is uniform stay unchanged.
-Eigen::Isometry3d lay_on(const StaticMap& a, std::span<const Eigen::Vector3d> surface_b,
-                         const Eigen::Isometry3d& T_a_b_start) {
+Eigen::Isometry3d align_surface(const StaticMap& a, std::span<const Eigen::Vector3d> surface_b,
+                                const Eigen::Isometry3d& T_a_b_start) {
   constexpr int kIterations = 15;
   constexpr double kSoft_m = 0.015;         // distance at which a point's weight is 1/4
   constexpr double kMinConstraint = 0.005;  // mean squared cosine, lever arms in units of their spread
@@ -183,21 +185,22 @@ std::optional<DistanceAt> distance_at(const StaticMap& map, const Eigen::Vector3
   return at;
 }
 
-Registration register_to(const StaticMap& octree_a, const Places& places_a, const Places& places_b,
-                         std::span<const Eigen::Vector3d> surface_b, const RegistrationConfig& config) {
+Registration register_to(const StaticMap& octree_a, const KeyframeDatabase& database_a,
+                         const KeyframeDatabase& database_b, std::span<const Eigen::Vector3d> surface_b,
+                         const RegistrationConfig& config) {
   Registration best;
   if (surface_b.empty()) {
     best.status = RegistrationStatus::kNoOverlap;
     return best;
   }
-  const bool comparable = has_features(places_a) && has_features(places_b);
+  const bool comparable = has_features(database_a) && has_features(database_b);
   const std::vector<Vote> votes =
-      comparable ? collect_votes(places_a, places_b, config) : std::vector<Vote>{};
+      comparable ? collect_votes(database_a, database_b, config) : std::vector<Vote>{};
 
   // The transform that most views agree on; features break ties.
   const Vote* favourite = nullptr;
   for (const Vote& vote : votes) {
-    const int agreeing = count_agreeing(votes, vote.T_a_b, places_b);
+    const int agreeing = count_agreeing(votes, vote.T_a_b, database_b);
     if (favourite && std::pair(agreeing, vote.inliers) <= std::pair(best.agreeing_views, favourite->inliers))
       continue;
     favourite = &vote;
@@ -208,15 +211,15 @@ Registration register_to(const StaticMap& octree_a, const Places& places_a, cons
     return best;
   }
 
-  const Eigen::Isometry3d T_a_b = lay_on(octree_a, surface_b, favourite->T_a_b);
-  best = judge_registration(octree_a, surface_b, T_a_b, config);
-  best.agreeing_views = count_agreeing(votes, T_a_b, places_b);
+  const Eigen::Isometry3d T_a_b = align_surface(octree_a, surface_b, favourite->T_a_b);
+  best = verify_registration(octree_a, surface_b, T_a_b, config);
+  best.agreeing_views = count_agreeing(votes, T_a_b, database_b);
   if (best.agreeing_views < config.min_agreeing) best.status = RegistrationStatus::kNotRecognised;
   return best;
 }
 
-Registration judge_registration(const StaticMap& octree_a, std::span<const Eigen::Vector3d> surface_b,
-                                const Eigen::Isometry3d& T_a_b, const RegistrationConfig& config) {
+Registration verify_registration(const StaticMap& octree_a, std::span<const Eigen::Vector3d> surface_b,
+                                 const Eigen::Isometry3d& T_a_b, const RegistrationConfig& config) {
   Registration judged;
   judged.status = RegistrationStatus::kNoOverlap;
   judged.T_a_b = T_a_b;
@@ -297,14 +300,14 @@ std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count)
   return points;
 }
 
-std::vector<Eigen::Vector3d> surface_of(const Places& places, std::size_t count) {
+std::vector<Eigen::Vector3d> surface_of(const KeyframeDatabase& keyframe_database, std::size_t count) {
   constexpr std::uint16_t kFarthest_mm = 3000;  // farther measurements are off by 1.5 cm and more
   std::size_t pixels = 0;
-  for (const Place& place : places.keyframes) pixels += place.preview_depth_mm.pixels.size();
+  for (const MapKeyframe& place : keyframe_database.keyframes) pixels += place.preview_depth_mm.pixels.size();
   const std::size_t stride = 1 + pixels / std::max<std::size_t>(count, 1);
   std::vector<Eigen::Vector3d> points;
   std::size_t at = 0;
-  for (const Place& place : places.keyframes) {
+  for (const MapKeyframe& place : keyframe_database.keyframes) {
     const auto width = static_cast<std::size_t>(std::max(place.preview_depth_mm.width, 1));
     for (; at < place.preview_depth_mm.pixels.size(); at += stride) {
       const std::uint16_t depth_mm = place.preview_depth_mm.pixels[at];

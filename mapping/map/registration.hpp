@@ -50,19 +50,20 @@ std::string describe(const Registration& registration);
 /// the views' value. The result must then agree with a's surface and free space. Deterministic.
 ///
 /// @param surface_b  points on b's surface, in b's world, evenly spread (sample_surface, surface_of)
-Registration register_to(const StaticMap& octree_a, const Places& places_a, const Places& places_b,
-                         std::span<const Eigen::Vector3d> surface_b, const RegistrationConfig& config = {});
+Registration register_to(const StaticMap& octree_a, const KeyframeDatabase& database_a,
+                         const KeyframeDatabase& database_b, std::span<const Eigen::Vector3d> surface_b,
+                         const RegistrationConfig& config = {});
 
 /// Verifies T_a_b by testing b's surface against a's surface and free space. Returns kRegistered, kNoOverlap
 /// or kContradicted, with the numbers.
-Registration judge_registration(const StaticMap& octree_a, std::span<const Eigen::Vector3d> surface_b,
-                                const Eigen::Isometry3d& T_a_b, const RegistrationConfig& config = {});
+Registration verify_registration(const StaticMap& octree_a, std::span<const Eigen::Vector3d> surface_b,
+                                 const Eigen::Isometry3d& T_a_b, const RegistrationConfig& config = {});
 
 /// Returns `count` points evenly spread over a mesh's area. Deterministic. Empty for a mesh without area.
 std::vector<Eigen::Vector3d> sample_surface(const Mesh& mesh, std::size_t count);
 
 /// Returns about `count` points from the keyframes' depth, at most 3 m away, in the keyframes' world.
-std::vector<Eigen::Vector3d> surface_of(const Places& places, std::size_t count);
+std::vector<Eigen::Vector3d> surface_of(const KeyframeDatabase& keyframe_database, std::size_t count);
 
 /// Signed distance and its gradient at a point, interpolated trilinearly from the eight samples around it.
 /// distance_at() returns nullopt if one of them is unknown.

@@ -38,7 +38,7 @@ Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles) {
   return out;
 }
 
-Mesh without_specks(const Mesh& mesh, float min_component_area_m2) {
+Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0U);
   const auto piece = [&](std::uint32_t v) {

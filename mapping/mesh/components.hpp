@@ -9,6 +9,6 @@ namespace roomradar {
 Mesh compacted(const Mesh& mesh, const std::vector<Triangle>& triangles);
 
 /// Drops connected components (by shared vertices) with less than min_component_area_m2, and unused vertices.
-Mesh without_specks(const Mesh& mesh, float min_component_area_m2);
+Mesh drop_small_components(const Mesh& mesh, float min_component_area_m2);
 
 }  // namespace roomradar

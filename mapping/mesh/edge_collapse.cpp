@@ -24,7 +24,8 @@ constexpr double kBorderWeight = 2.0;
 
 class EdgeCollapser {
  public:
-  EdgeCollapser(const Mesh& full, const SurfaceNear& full_surface, const std::vector<float>& tolerance_m)
+  EdgeCollapser(const Mesh& full, const MeshDistanceQuery& full_surface,
+                const std::vector<float>& tolerance_m)
       : full_(full),
         full_surface_(full_surface),
         tolerance_m_(tolerance_m),
@@ -363,7 +364,7 @@ class EdgeCollapser {
   };
 
   const Mesh& full_;
-  const SurfaceNear& full_surface_;
+  const MeshDistanceQuery& full_surface_;
   const std::vector<float>& tolerance_m_;
   Mesh mesh_;  // removed triangles have corners kNone
   std::vector<Merged> merged_;
@@ -379,7 +380,8 @@ class EdgeCollapser {
 
 }  // namespace
 
-Mesh collapsed(const Mesh& full, const SurfaceNear& full_surface, const std::vector<float>& tolerance_m) {
+Mesh collapsed(const Mesh& full, const MeshDistanceQuery& full_surface,
+               const std::vector<float>& tolerance_m) {
   EdgeCollapser collapser(full, full_surface, tolerance_m);
   collapser.run();
   return collapser.take();

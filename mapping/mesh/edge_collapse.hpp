@@ -11,6 +11,7 @@ namespace roomradar {
 /// triangles that replace its own. Vertices with tolerance 0 are constrained: they do not move, and no new
 /// edge connects two of them. New vertices stay within the same tolerances of `full_surface`, the surface of
 /// `full`. The result has all vertices of `full`, moved, and fewer triangles. Used by mesh_simplify.cpp only.
-Mesh collapsed(const Mesh& full, const SurfaceNear& full_surface, const std::vector<float>& tolerance_m);
+Mesh collapsed(const Mesh& full, const MeshDistanceQuery& full_surface,
+               const std::vector<float>& tolerance_m);
 
 }  // namespace roomradar

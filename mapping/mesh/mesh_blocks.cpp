@@ -11,9 +11,9 @@ Eigen::Vector3f corner_sum(const Mesh& mesh, const Triangle& t) {
   return mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]];
 }
 
-void halve(const Mesh& mesh, std::span<Triangle> triangles, std::size_t most_triangles,
+void halve(const Mesh& mesh, std::span<Triangle> triangles, std::size_t max_triangles,
            std::vector<std::span<Triangle>>& blocks) {
-  if (triangles.size() <= most_triangles) {
+  if (triangles.size() <= max_triangles) {
     blocks.push_back(triangles);
     return;
   }
@@ -26,15 +26,15 @@ void halve(const Mesh& mesh, std::span<Triangle> triangles, std::size_t most_tri
                    [&](const Triangle& a, const Triangle& b) {
                      return corner_sum(mesh, a)[axis] < corner_sum(mesh, b)[axis];
                    });
-  halve(mesh, triangles.first(half), most_triangles, blocks);
-  halve(mesh, triangles.subspan(half), most_triangles, blocks);
+  halve(mesh, triangles.first(half), max_triangles, blocks);
+  halve(mesh, triangles.subspan(half), max_triangles, blocks);
 }
 
 }  // namespace
 
-std::vector<std::span<Triangle>> sort_into_blocks(Mesh& mesh, std::size_t most_triangles) {
+std::vector<std::span<Triangle>> sort_into_blocks(Mesh& mesh, std::size_t max_triangles) {
   std::vector<std::span<Triangle>> blocks;
-  if (!mesh.triangles.empty()) halve(mesh, mesh.triangles, most_triangles, blocks);
+  if (!mesh.triangles.empty()) halve(mesh, mesh.triangles, max_triangles, blocks);
   return blocks;
 }
 

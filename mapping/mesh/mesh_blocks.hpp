@@ -9,10 +9,10 @@
 
 namespace roomradar {
 
-/// Reorders mesh.triangles into spatially compact blocks of at most most_triangles (>= 1) triangles each.
+/// Reorders mesh.triangles into spatially compact blocks of at most max_triangles (>= 1) triangles each.
 /// Recursively splits at the median of the longest side of the bounding box. The blocks are spans of
 /// mesh.triangles.
-std::vector<std::span<Triangle>> sort_into_blocks(Mesh& mesh, std::size_t most_triangles);
+std::vector<std::span<Triangle>> sort_into_blocks(Mesh& mesh, std::size_t max_triangles);
 
 /// For each vertex: true if it is a corner of triangles in more than one block.
 std::vector<bool> seam_vertices(const Mesh& mesh, const std::vector<std::span<Triangle>>& blocks);

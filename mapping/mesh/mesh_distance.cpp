@@ -38,7 +38,7 @@ std::uint32_t tag_of(std::uint64_t mixed_code) { return static_cast<std::uint32_
 
 }  // namespace
 
-SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
+MeshDistanceQuery::MeshDistanceQuery(const Mesh& mesh, float reach_m)
     : mesh_(mesh), reach_m_(reach_m), edge_m_(kReachesACube * reach_m) {
   if (!mesh.vertices.empty()) {
     Eigen::Vector3f high = low_ = mesh.vertices.front();
@@ -73,8 +73,8 @@ SurfaceNear::SurfaceNear(const Mesh& mesh, float reach_m)
 
 // Splits a large triangle along its longest side until its parts' boxes overlap few cubes.
 template <typename Visit>
-void SurfaceNear::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c,
-                                const Visit& visit) const {
+void MeshDistanceQuery::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+                                      const Eigen::Vector3f& c, const Visit& visit) const {
   const auto cube_of = [&](const Eigen::Vector3f& p) -> Eigen::Array3i {
     return ((p - low_) / edge_m_).array().floor().cast<int>();
   };
@@ -83,7 +83,7 @@ void SurfaceNear::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f&
   if ((high - low).maxCoeff() <= 1) {
     for (int z = low.z(); z <= high.z(); ++z)
       for (int y = low.y(); y <= high.y(); ++y)
-        for (int x = low.x(); x <= high.x(); ++x) visit(cell_code(x, y, z));
+        for (int x = low.x(); x <= high.x(); ++x) visit(voxel_key(x, y, z));
     return;
   }
   const float ab = (b - a).squaredNorm();
@@ -102,14 +102,14 @@ void SurfaceNear::for_each_cube(const Eigen::Vector3f& a, const Eigen::Vector3f&
 }
 
 template <typename Visit>
-void SurfaceNear::visit_near(const Eigen::Vector3f& p, const Visit& visit) const {
+void MeshDistanceQuery::visit_near(const Eigen::Vector3f& p, const Visit& visit) const {
   const Eigen::Array3f place = (p - low_).array();
   const Eigen::Array3i low = ((place - reach_m_) / edge_m_).floor().cast<int>();
   const Eigen::Array3i high = ((place + reach_m_) / edge_m_).floor().cast<int>();
   for (int z = low.z(); z <= high.z(); ++z)
     for (int y = low.y(); y <= high.y(); ++y)
       for (int x = low.x(); x <= high.x(); ++x) {
-        const std::uint64_t wanted = mixed(cell_code(x, y, z));
+        const std::uint64_t wanted = mixed(voxel_key(x, y, z));
         const std::size_t hash = hash_of(wanted);
         const std::uint32_t tag = tag_of(wanted);
         for (std::uint32_t i = first_of_hash_[hash]; i < first_of_hash_[hash + 1]; ++i)
@@ -117,7 +117,7 @@ void SurfaceNear::visit_near(const Eigen::Vector3f& p, const Visit& visit) const
       }
 }
 
-float SurfaceNear::distance_m(const Eigen::Vector3f& p, float enough_m) const {
+float MeshDistanceQuery::distance_m(const Eigen::Vector3f& p, float enough_m) const {
   float nearest = reach_m_ * reach_m_;
   bool found = false;
   visit_near(p, [&](std::uint32_t triangle) {
@@ -132,8 +132,8 @@ float SurfaceNear::distance_m(const Eigen::Vector3f& p, float enough_m) const {
   return found ? std::sqrt(nearest) : kInfinity;
 }
 
-std::optional<std::uint32_t> SurfaceNear::nearest_facing(const Eigen::Vector3f& p,
-                                                         const Eigen::Vector3f& facing) const {
+std::optional<std::uint32_t> MeshDistanceQuery::nearest_facing(const Eigen::Vector3f& p,
+                                                               const Eigen::Vector3f& facing) const {
   float nearest = reach_m_ * reach_m_;
   std::optional<std::uint32_t> found;
   visit_near(p, [&](std::uint32_t triangle) {
@@ -149,7 +149,7 @@ std::optional<std::uint32_t> SurfaceNear::nearest_facing(const Eigen::Vector3f& 
   return found;
 }
 
-float greatest_distance_m(const Mesh& mesh, const SurfaceNear& other, float spacing_m, float limit_m,
+float greatest_distance_m(const Mesh& mesh, const MeshDistanceQuery& other, float spacing_m, float limit_m,
                           std::vector<FarPoint>& beyond_limit) {
   float greatest = 0.0F;  // smaller distances cannot raise it, so their search stops early
   const auto ask = [&](const Eigen::Vector3f& p) {

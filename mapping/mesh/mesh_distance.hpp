@@ -10,10 +10,10 @@
 namespace roomradar {
 
 /// Hashed grid of a mesh's triangles, for nearest-surface queries. Keeps a reference to the mesh.
-class SurfaceNear {
+class MeshDistanceQuery {
  public:
   /// @param reach_m  max distance (> 0) that queries can find
-  SurfaceNear(const Mesh& mesh, float reach_m);
+  MeshDistanceQuery(const Mesh& mesh, float reach_m);
 
   /// Distance (m) from a point, relative to the mesh's origin, to the nearest surface; infinity if above
   /// reach_m. The search stops at the first distance not above enough_m, which need not be the smallest.
@@ -58,7 +58,7 @@ struct FarPoint {
 /// Measures the distance to `other` (same origin) at all corners of `mesh` and on a lattice over its
 /// triangles with at most spacing_m between points. Returns the greatest distance not above limit_m; points
 /// farther away are appended to beyond_limit.
-float greatest_distance_m(const Mesh& mesh, const SurfaceNear& other, float spacing_m, float limit_m,
+float greatest_distance_m(const Mesh& mesh, const MeshDistanceQuery& other, float spacing_m, float limit_m,
                           std::vector<FarPoint>& beyond_limit);
 
 }  // namespace roomradar

@@ -316,9 +316,9 @@ Mesh read_by_assimp(const std::filesystem::path& path, const Format& format) {
 
 // Copies all items as one block; item by item, a large mesh would take seconds.
 template <typename Archive, typename Item>
-void transfer_items(Archive& archive, std::vector<Item>& items) {
+void serialize_items(Archive& archive, std::vector<Item>& items) {
   std::uint64_t count = items.size();
-  transfer(archive, count);
+  serialize(archive, count);
   if constexpr (Archive::kReads) {
     archive.require(count, sizeof(Item));
     items.resize(count);
@@ -327,12 +327,12 @@ void transfer_items(Archive& archive, std::vector<Item>& items) {
 }
 
 template <typename Archive>
-void transfer(Archive& archive, Mesh& mesh) {
+void serialize(Archive& archive, Mesh& mesh) {
   archive.raw(mesh.origin.data(), 3 * sizeof(double));
-  transfer_items(archive, mesh.normals);
-  transfer_items(archive, mesh.vertices);
-  transfer_items(archive, mesh.colours);
-  transfer_items(archive, mesh.triangles);
+  serialize_items(archive, mesh.normals);
+  serialize_items(archive, mesh.vertices);
+  serialize_items(archive, mesh.colours);
+  serialize_items(archive, mesh.triangles);
 }
 
 }  // namespace
@@ -343,18 +343,18 @@ Mesh read_mesh(const std::filesystem::path& path) {
   // assimp crashes or hangs on damaged files, so it runs sandboxed.
   const std::uintmax_t bytes = std::filesystem::file_size(path);
   const auto most_s = static_cast<unsigned>(3 + (bytes >> 20U));
-  const std::size_t most_bytes = (std::size_t{1} << 30U) + 64 * bytes;
-  const std::string answer = run_apart(
+  const std::size_t max_bytes = (std::size_t{1} << 30U) + 64 * bytes;
+  const std::string answer = run_sandboxed(
       [&] {
         Mesh mesh = read_by_assimp(path, format);
         ByteWriter writer;
-        transfer(writer, mesh);
+        serialize(writer, mesh);
         return writer.bytes();
       },
-      path.string() + ": cannot be read; is it damaged?", most_s, most_bytes);
+      path.string() + ": cannot be read; is it damaged?", most_s, max_bytes);
   ByteReader reader(answer, path.string());
   Mesh mesh;
-  transfer(reader, mesh);
+  serialize(reader, mesh);
   reader.require_end();
   return mesh;
 }
@@ -363,9 +363,9 @@ void write_mesh(const Mesh& mesh, const std::filesystem::path& path) {
   const Format& format = format_of(path);
   require_writable(mesh, path);
   const std::string bytes = format.assimp_id ? assimp_bytes(mesh, format, path) : ply_bytes(mesh);
-  WholeFile file(path);
+  AtomicFile file(path);
   file.stream().write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.put_in_place();
+  file.commit();
 }
 
 }  // namespace roomradar

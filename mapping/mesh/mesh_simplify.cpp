@@ -23,7 +23,7 @@ namespace {
 // places. With a larger fraction, repairs cost more triangles than the collapses save.
 constexpr float kOfBound = 0.6F;
 constexpr std::uint32_t kNoCorner = ~std::uint32_t{0};  // marks removed triangles
-constexpr int kMostRounds = 10;
+constexpr int kMaxIterations = 10;
 constexpr float kTightening = 0.4F;
 constexpr float kLeastOfBound = 0.2F;  // below this fraction of the bound a vertex is constrained
 
@@ -34,10 +34,10 @@ void tighten_around(const Mesh& mesh, const std::vector<FarPoint>& far, float ra
     return (p / radius_m).array().floor().cast<int>();
   };
   std::unordered_multimap<std::uint64_t, std::size_t> in_cube;
-  for (std::size_t i = 0; i < far.size(); ++i) in_cube.emplace(cell_code(cube_of(far[i].position)), i);
+  for (std::size_t i = 0; i < far.size(); ++i) in_cube.emplace(voxel_key(cube_of(far[i].position)), i);
   const auto is_near = [&](const Eigen::Vector3f& p) {
     for (int n = 0; n < kCellsRound; ++n) {
-      const auto [begin, end] = in_cube.equal_range(cell_code(cube_of(p) + cell_round(n)));
+      const auto [begin, end] = in_cube.equal_range(voxel_key(cube_of(p) + neighbour_offset(n)));
       if (std::any_of(begin, end, [&](const auto& entry) {
             return (far[entry.second].position - p).squaredNorm() <= radius_m * radius_m;
           }))
@@ -56,14 +56,14 @@ void tighten_around(const Mesh& mesh, const std::vector<FarPoint>& far, float ra
 // in all rounds is returned unchanged.
 SimplifiedMesh simplified_block(const Mesh& mesh, std::vector<float> tolerance_m, float max_deviation_m,
                                 float spacing_m) {
-  const SurfaceNear full_surface(mesh, max_deviation_m);
+  const MeshDistanceQuery full_surface(mesh, max_deviation_m);
   float radius_m = spacing_m;
-  for (int round = 0; round < kMostRounds; ++round, radius_m *= 1.5F) {
+  for (int round = 0; round < kMaxIterations; ++round, radius_m *= 1.5F) {
     SimplifiedMesh result{collapsed(mesh, full_surface, tolerance_m), 0.0F};
     std::vector<FarPoint> far;
     result.deviation_m = greatest_distance_m(result.mesh, full_surface, spacing_m, max_deviation_m, far);
     if (far.empty()) {
-      const SurfaceNear simple_surface(result.mesh, max_deviation_m);
+      const MeshDistanceQuery simple_surface(result.mesh, max_deviation_m);
       result.deviation_m = std::max(
           result.deviation_m, greatest_distance_m(mesh, simple_surface, spacing_m, max_deviation_m, far));
       if (far.empty()) return result;

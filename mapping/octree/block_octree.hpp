@@ -126,7 +126,7 @@ class BlockOctree {
   /// Prunes: returns the new state of `node`, given its children `block`. If all eight are equal, the node
   /// becomes a cube or unknown and its block is freed. Otherwise the node stays a block (then `block` must be
   /// that block) or gets a new block, a copy of `block`.
-  Slot settle(Slot node, const InnerBlock& block) {
+  Slot prune(Slot node, const InnerBlock& block) {
     if (alike(block)) {
       if (node.is_block()) inner_.give_back(node.number());
       return block.slots[0];
@@ -136,7 +136,7 @@ class BlockOctree {
     inner(kept) = block;
     return kept;
   }
-  Slot settle(Slot node, const LeafBlock& block) {
+  Slot prune(Slot node, const LeafBlock& block) {
     if (alike(block)) {
       const Slot merged = Slot::cube(block.log_odds[0]);
       if (block.colours != 0) colours_.give_back(block.colours);
@@ -177,7 +177,7 @@ struct SubtreeSize {
 /// Size of a node and all its descendants.
 SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth);
 
-inline void forget_sample(LeafBlock& block, unsigned i) {
+inline void erase_sample(LeafBlock& block, unsigned i) {
   block.weight[i] = 0;
   block.distance[i] = 0;
   block.coloured &= static_cast<std::uint8_t>(~(1U << i));
@@ -224,7 +224,7 @@ Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
   if (!node.is_block()) made = opened_leaves(node);
   LeafBlock& block = node.is_block() ? tree.leaves(node) : made;
   change(block);
-  return tree.settle(node, block);
+  return tree.prune(node, block);
 }
 
 /// Replaces the node at `target`, which is at or below `place`, by change(slot); creates the nodes in
@@ -238,7 +238,7 @@ Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const Nod
   InnerBlock& block = node.is_block() ? tree.inner(node) : made;
   const unsigned i = place.towards(target.key);
   block.slots[i] = change_node(tree, block.slots[i], place.child(i), target, change);
-  return tree.settle(node, block);
+  return tree.prune(node, block);
 }
 
 }  // namespace roomradar

@@ -59,12 +59,12 @@ class Descent {
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // in the camera frame, m
     std::uint64_t code = 0;                            // Morton code
     HitRange hits;
-    Verdicts children;
+    NodeVisibility children;
   };
   Cell cell_at(unsigned depth, const Eigen::Vector3d& centre, std::uint64_t code, HitRange hits) const {
     return {centre, code, hits, judge_children(depth, centre, 1.0F)};
   }
-  Verdicts judge_children(unsigned depth, const Eigen::Vector3d& centre, float enlarged) const {
+  NodeVisibility judge_children(unsigned depth, const Eigen::Vector3d& centre, float enlarged) const {
     return judge(offsets_.centres<Float8>(depth, centre), offsets_.half_extent(depth) * enlarged, camera_,
                  config_.max_range_m, pyramid_);
   }
@@ -75,7 +75,7 @@ class Descent {
     InnerBlock made;
     if (!node.is_block()) made = opened(node);
     InnerBlock& block = node.is_block() ? tree_.inner(node) : made;
-    const unsigned settled = settled_free(block);
+    const unsigned settled = saturated_free(block);
     unsigned free = cell.children.free & ~hits.mask & ~settled;
     unsigned split =
         hits.mask |
@@ -102,7 +102,7 @@ class Descent {
       update_leaves(block, split, cell, hits);
     else
       update_children(block, split, depth, cell, hits);
-    return tree_.settle(node, block);
+    return tree_.prune(node, block);
   }
 
   // All children are classified before the first is changed, so the CPU overlaps their memory accesses.
@@ -140,7 +140,7 @@ class Descent {
     InnerBlock& block = tree_.inner(node);
     prefetch_children(block, 0xFFU, depth + 1 == kLeafDepth - 1);
     for (Slot& slot : block.slots) slot = mark_free(slot, depth + 1, weight, clear);
-    return tree_.settle(node, block);
+    return tree_.prune(node, block);
   }
 
   static unsigned blocks_in(const InnerBlock& block) {
@@ -148,8 +148,8 @@ class Descent {
     for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i].is_block()) << i;
     return bits;
   }
-  [[nodiscard]] unsigned settled_free(const InnerBlock& block) const {
-    const Slot settled = leaves_.settled_free();
+  [[nodiscard]] unsigned saturated_free(const InnerBlock& block) const {
+    const Slot settled = leaves_.saturated_free();
     unsigned bits = 0;
     for (unsigned i = 0; i < 8; ++i) bits |= static_cast<unsigned>(block.slots[i] == settled) << i;
     return bits;
@@ -197,7 +197,7 @@ void fuse_depth(BlockOctree& tree, const Frame& frame, const Eigen::Isometry3d& 
   if (arithmetic == Arithmetic::kFastest)
     descend<Float8>(tree, frame, T_world_camera, config, scratch);
   else
-    descend<PlainFloat8>(tree, frame, T_world_camera, config, scratch);
+    descend<PortableFloat8>(tree, frame, T_world_camera, config, scratch);
 }
 
 }  // namespace roomradar

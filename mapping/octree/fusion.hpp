@@ -39,16 +39,16 @@ struct FusionScratch {
   std::vector<std::uint32_t> columns;
 };
 
-enum class HitStatus { kCollected, kNone, kOutOfReach };
+enum class HitStatus { kCollected, kNone, kOutOfBounds };
 
 /// Fills scratch.hits with the ray endpoints of all pixels that have depth within max_range_m. Returns kNone
-/// if no pixel has depth at any range, kOutOfReach if an endpoint is outside the octree.
+/// if no pixel has depth at any range, kOutOfBounds if an endpoint is outside the octree.
 HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double resolution_m,
                        const FusionConfig& config, FusionScratch& scratch);
 
 /// SIMD version for eight siblings: the fastest that the processor has, or the portable one. Results are
 /// equal.
-enum class Arithmetic { kFastest, kPlain };
+enum class Arithmetic { kFastest, kPortable };
 
 /// Fuses the frame in one descent from the root; needs this frame's scratch.hits. A node wholly in front of
 /// the measured depth becomes free as a whole. A node wholly occluded or outside the image is unchanged.

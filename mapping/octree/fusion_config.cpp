@@ -7,7 +7,7 @@
 
 namespace roomradar {
 void require_valid(const FusionConfig& c) {
-  const SettingRules require{"fusion"};
+  const ConfigCheck require{"fusion"};
   require(c.max_range_m > 0.0F && c.max_range_m <= 100.0F, "max_range_m", c.max_range_m, "in 0..100 m");
   require(c.truncation_voxels >= 1.5F && c.truncation_voxels <= 100.0F, "truncation_voxels",
           c.truncation_voxels, "in 1.5..100, or the surface falls between samples");

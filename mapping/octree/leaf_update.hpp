@@ -52,7 +52,7 @@ class LeafUpdate {
   }
 
   /// Free cube at the minimum log-odds, which further misses do not change.
-  [[nodiscard]] Slot settled_free() const { return Slot::cube(static_cast<LogOdds>(min_)); }
+  [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(min_)); }
   [[nodiscard]] Slot missed(Slot cube) const {
     const float after = std::max(static_cast<float>(cube.log_odds()) + miss_, min_);
     return Slot::cube(static_cast<LogOdds>(after == 0.0F ? 1.0F : after));
@@ -81,7 +81,7 @@ class LeafUpdate {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
     if ((hit | missed | sampled) == 0) return node;
-    if ((hit | sampled) == 0 && node == settled_free()) return node;
+    if ((hit | sampled) == 0 && node == saturated_free()) return node;
     LeafBlock made;
     if (!node.is_block()) made = opened_leaves(node);
     LeafBlock& block = node.is_block() ? tree_.leaves(node) : made;
@@ -89,7 +89,7 @@ class LeafUpdate {
     if (const unsigned gone = missed & seen_through(block, observed); gone != 0)
       sampled &= ~cancel_samples(block, weight_of(observed.sigma_m), gone);
     if (sampled != 0) add_samples(block, observed, sampled, refresh_colour);
-    return tree_.settle(node, block);
+    return tree_.prune(node, block);
   }
 
   /// Marks eight voxels that are all seen through, by a frame of this weight. `clear`: the space around them
@@ -107,7 +107,7 @@ class LeafUpdate {
       fade_samples(block, weight);
     else if (const unsigned gone = behind_surface(block); gone != 0)
       cancel_samples(block, weight, gone);
-    return tree_.settle(node, block);
+    return tree_.prune(node, block);
   }
 
  private:

@@ -30,7 +30,7 @@ void release_unused_memory() {
 #endif
 }
 
-void keep_large_blocks_apart() {
+void mmap_large_allocations() {
 #ifdef __GLIBC__
   // Larger than what decoding one 640 x 480 image allocates, smaller than a keyframe's target view. By
   // default glibc raises the threshold to the size of the last freed block.

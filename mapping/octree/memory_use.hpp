@@ -20,7 +20,7 @@ void release_unused_memory();
 /// Makes allocations of 1 MB and more return to the system as soon as they are freed (glibc only), for the
 /// whole process. Otherwise images and keyframes of many sizes fragment the heap: 83 MB of holes beside 55 MB
 /// in use, measured after 500 frames. Costs 0.5 ms per frame of a prescan.
-void keep_large_blocks_apart();
+void mmap_large_allocations();
 
 /// Temporary memory of surface extraction, as a multiple of the octree's own memory. Measured: 1.6 to 2.1 for
 /// octrees of 9 to 98 MB.

@@ -74,7 +74,7 @@ class ChildOffsets {
 
 /// Visibility of eight siblings that no ray ends in, one bit each. A sibling in none of the masks may contain
 /// surface.
-struct Verdicts {
+struct NodeVisibility {
   unsigned nothing = 0;    ///< occluded or out of view
   unsigned free = 0;       ///< wholly seen through
   unsigned part_free = 0;  ///< its measured part is seen through; the rest is out of view or has no depth
@@ -83,8 +83,8 @@ struct Verdicts {
 /// Classifies siblings from their boxes in the camera frame and the image rectangles these project to.
 /// @param half  half extents of a box, m
 template <typename Float8>
-Verdicts judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,
-               float max_range_m, const DepthPyramid& pyramid) {
+NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,
+                     float max_range_m, const DepthPyramid& pyramid) {
   const Float8 near_z = centres.z - half.z(), far_z = centres.z + half.z();
   const Float8 low_x = centres.x - half.x(), high_x = centres.x + half.x();
   const Float8 low_y = centres.y - half.y(), high_y = centres.y + half.y();

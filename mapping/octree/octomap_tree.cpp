@@ -19,10 +19,10 @@ void get(std::istream& stream, Value& value) {
 
 // Registers the tree type with OctoMap's factory, so octomap::AbstractOcTree::read() opens roomradar's .ot
 // files.
-class TreeType : public RoomOcTree {
+class TreeType : public OctoMapTree {
  public:
   static bool register_it() {
-    auto* tree = new RoomOcTree(0.1);  // owned by the factory until the process ends
+    auto* tree = new OctoMapTree(0.1);  // owned by the factory until the process ends
     registerTreeType(tree);
     return true;
   }
@@ -31,7 +31,7 @@ const bool kRegistered = TreeType::register_it();
 
 }  // namespace
 
-void RoomNode::copyData(const RoomNode& from) {
+void OctoMapNode::copyData(const OctoMapNode& from) {
   OcTreeNode::copyData(from);
   distance_m = from.distance_m;
   weight = from.weight;
@@ -39,12 +39,12 @@ void RoomNode::copyData(const RoomNode& from) {
   colour_count = from.colour_count;
 }
 
-bool RoomNode::operator==(const RoomNode& other) const {
+bool OctoMapNode::operator==(const OctoMapNode& other) const {
   return value == other.value && distance_m == other.distance_m && weight == other.weight &&
          colour == other.colour && colour_count == other.colour_count;
 }
 
-std::ostream& RoomNode::writeData(std::ostream& stream) const {
+std::ostream& OctoMapNode::writeData(std::ostream& stream) const {
   put(stream, value);
   put(stream, static_cast<std::uint8_t>(has_sample() ? 1 : 0));
   if (has_sample()) {
@@ -56,7 +56,7 @@ std::ostream& RoomNode::writeData(std::ostream& stream) const {
   return stream;
 }
 
-std::istream& RoomNode::readData(std::istream& stream) {
+std::istream& OctoMapNode::readData(std::istream& stream) {
   distance_m = weight = 0.0F;
   colour = Rgb{};
   colour_count = 0;
@@ -73,15 +73,15 @@ std::istream& RoomNode::readData(std::istream& stream) {
   return stream;
 }
 
-RoomOcTree::RoomOcTree(double resolution_m) : OccupancyOcTreeBase<RoomNode>(resolution_m) {
+OctoMapTree::OctoMapTree(double resolution_m) : OccupancyOcTreeBase<OctoMapNode>(resolution_m) {
   static_cast<void>(kRegistered);
   clearKeyRays();  // frees OctoMap's ray casting buffers, 0.6 MB per thread, unused here
 }
 
-bool RoomOcTree::isNodeCollapsible(const RoomNode* node) const {
+bool OctoMapTree::isNodeCollapsible(const OctoMapNode* node) const {
   for (unsigned i = 0; i < 8; ++i) {
     if (!nodeChildExists(node, i)) return false;
-    const RoomNode* child = getNodeChild(node, i);
+    const OctoMapNode* child = getNodeChild(node, i);
     if (child->has_sample() || nodeHasChildren(child) ||
         child->getLogOdds() != getNodeChild(node, 0)->getLogOdds())
       return false;

@@ -16,7 +16,7 @@ namespace roomradar {
 /// Log-odds of exactly 0 (probability one half) mean unknown. Leaves hidden behind a surface may be unknown
 /// and have a signed distance; leaves with neither are not stored. Only finest leaves have a signed distance
 /// (weight > 0).
-class RoomNode : public octomap::OcTreeNode {
+class OctoMapNode : public octomap::OcTreeNode {
  public:
   float distance_m = 0.0F;
   float weight = 0.0F;
@@ -24,23 +24,23 @@ class RoomNode : public octomap::OcTreeNode {
   std::uint8_t colour_count = 0;  ///< > 0: the node has a colour
 
   [[nodiscard]] bool has_sample() const { return weight > 0.0F; }
-  void copyData(const RoomNode& from);
-  bool operator==(const RoomNode& other) const;
+  void copyData(const OctoMapNode& from);
+  bool operator==(const OctoMapNode& other) const;
 
   /// .ot format: log-odds, then a byte that is 1 if a sample follows, else 0.
   std::ostream& writeData(std::ostream& stream) const;
   std::istream& readData(std::istream& stream);
 };
 
-class RoomOcTree : public octomap::OccupancyOcTreeBase<RoomNode> {
+class OctoMapTree : public octomap::OccupancyOcTreeBase<OctoMapNode> {
  public:
   static constexpr const char* kTreeType = "RoomRadarOcTree";
 
-  explicit RoomOcTree(double resolution_m);
-  [[nodiscard]] RoomOcTree* create() const override { return new RoomOcTree(resolution); }
+  explicit OctoMapTree(double resolution_m);
+  [[nodiscard]] OctoMapTree* create() const override { return new OctoMapTree(resolution); }
   [[nodiscard]] std::string getTreeType() const override { return kTreeType; }
   /// True for eight leaves with equal log-odds and no signed distance.
-  bool isNodeCollapsible(const RoomNode* node) const override;
+  bool isNodeCollapsible(const OctoMapNode* node) const override;
 };
 
 }  // namespace roomradar

@@ -120,7 +120,7 @@ HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_came
   if (std::none_of(depth_m.pixels.begin(), depth_m.pixels.end(), is_measured)) return HitStatus::kNone;
   const Eigen::Matrix3f R_voxels = (T_world_camera.linear() / resolution_m).cast<float>();
   const Eigen::Vector3d camera_voxels = T_world_camera.translation() / resolution_m;
-  if (!(camera_voxels.cwiseAbs().maxCoeff() < 1e6)) return HitStatus::kOutOfReach;
+  if (!(camera_voxels.cwiseAbs().maxCoeff() < 1e6)) return HitStatus::kOutOfBounds;
   const Eigen::Vector3i camera_voxel = camera_voxels.array().floor().cast<int>();
   RowOfRays rays;
   rays.per_x = R_voxels.col(0);
@@ -146,7 +146,7 @@ HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_came
     for (int axis = 0; axis < 3; ++axis)
       out_of_reach |=
           end_voxels(rays, axis, depth_m.row(y), scratch.ray_x.data(), width, row[axis].data() + 1);
-    if (out_of_reach != 0) return HitStatus::kOutOfReach;
+    if (out_of_reach != 0) return HitStatus::kOutOfBounds;
     mark_new(above, row, width, scratch.is_new.data());
     add_hits(row, scratch.columns, marked(scratch.is_new, scratch.columns), scratch.hits);
   }

@@ -15,10 +15,10 @@
 namespace roomradar {
 
 /// Portable mask and vector of eight; compilers vectorise the loops. Comparisons with NaN are false.
-struct PlainMask8 {
+struct PortableMask8 {
   std::array<bool, 8> v;
-  static PlainMask8 of_bits(unsigned bits) {
-    PlainMask8 m;
+  static PortableMask8 of_bits(unsigned bits) {
+    PortableMask8 m;
     for (unsigned i = 0; i < 8; ++i) m.v[i] = (bits >> i & 1U) != 0;
     return m;
   }
@@ -29,15 +29,15 @@ struct PlainMask8 {
   }
 };
 
-struct PlainFloat8 {
-  using Mask = PlainMask8;
+struct PortableFloat8 {
+  using Mask = PortableMask8;
   alignas(32) std::array<float, 8> v;
 
-  PlainFloat8() = default;
-  PlainFloat8(float all) { v.fill(all); }
+  PortableFloat8() = default;
+  PortableFloat8(float all) { v.fill(all); }
   template <typename Number>
-  static PlainFloat8 load(const std::array<Number, 8>& from) {
-    PlainFloat8 out;
+  static PortableFloat8 load(const std::array<Number, 8>& from) {
+    PortableFloat8 out;
     for (unsigned i = 0; i < 8; ++i) out.v[i] = static_cast<float>(from[i]);
     return out;
   }
@@ -57,8 +57,8 @@ struct PlainFloat8 {
     }
   }
   /// base[index], or 0 if masked out; indices are integers below 2^24.
-  static PlainFloat8 gather(const float* base, const PlainFloat8& index, const Mask& mask) {
-    PlainFloat8 out;
+  static PortableFloat8 gather(const float* base, const PortableFloat8& index, const Mask& mask) {
+    PortableFloat8 out;
     for (unsigned i = 0; i < 8; ++i) out.v[i] = mask.v[i] ? base[static_cast<int>(index.v[i])] : 0.0F;
     return out;
   }
@@ -66,68 +66,68 @@ struct PlainFloat8 {
 
 namespace plain {
 template <typename Op>
-PlainFloat8 each(const PlainFloat8& a, const PlainFloat8& b, const Op& op) {
-  PlainFloat8 out;
+PortableFloat8 each(const PortableFloat8& a, const PortableFloat8& b, const Op& op) {
+  PortableFloat8 out;
   for (unsigned i = 0; i < 8; ++i) out.v[i] = op(a.v[i], b.v[i]);
   return out;
 }
 template <typename Op>
-PlainMask8 test(const PlainFloat8& a, const PlainFloat8& b, const Op& op) {
-  PlainMask8 out;
+PortableMask8 test(const PortableFloat8& a, const PortableFloat8& b, const Op& op) {
+  PortableMask8 out;
   for (unsigned i = 0; i < 8; ++i) out.v[i] = op(a.v[i], b.v[i]);
   return out;
 }
 }  // namespace plain
 
-inline PlainFloat8 operator+(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableFloat8 operator+(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x + y; });
 }
-inline PlainFloat8 operator-(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableFloat8 operator-(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x - y; });
 }
-inline PlainFloat8 operator*(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableFloat8 operator*(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x * y; });
 }
-inline PlainFloat8 operator/(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableFloat8 operator/(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x / y; });
 }
 /// min() and max() return b if either is NaN.
-inline PlainFloat8 min(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableFloat8 min(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x < y ? x : y; });
 }
-inline PlainFloat8 max(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableFloat8 max(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x > y ? x : y; });
 }
-inline PlainFloat8 floor(const PlainFloat8& a) {
+inline PortableFloat8 floor(const PortableFloat8& a) {
   return plain::each(a, a, [](float x, float) { return std::floor(x); });
 }
 /// Largest power of two not above |a|, for each element; for normal numbers.
-inline PlainFloat8 power_of_two_within(const PlainFloat8& a) {
+inline PortableFloat8 power_of_two_within(const PortableFloat8& a) {
   return plain::each(a, a, [](float x, float) {
     return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0x7F80'0000U);
   });
 }
-inline PlainMask8 operator<(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableMask8 operator<(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::test(a, b, [](float x, float y) { return x < y; });
 }
-inline PlainMask8 operator<=(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableMask8 operator<=(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::test(a, b, [](float x, float y) { return x <= y; });
 }
-inline PlainMask8 operator==(const PlainFloat8& a, const PlainFloat8& b) {
+inline PortableMask8 operator==(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::test(a, b, [](float x, float y) { return x == y; });
 }
-inline PlainMask8 operator&(const PlainMask8& a, const PlainMask8& b) {
-  PlainMask8 out;
+inline PortableMask8 operator&(const PortableMask8& a, const PortableMask8& b) {
+  PortableMask8 out;
   for (unsigned i = 0; i < 8; ++i) out.v[i] = a.v[i] && b.v[i];
   return out;
 }
-inline PlainMask8 operator|(const PlainMask8& a, const PlainMask8& b) {
-  PlainMask8 out;
+inline PortableMask8 operator|(const PortableMask8& a, const PortableMask8& b) {
+  PortableMask8 out;
   for (unsigned i = 0; i < 8; ++i) out.v[i] = a.v[i] || b.v[i];
   return out;
 }
-inline PlainFloat8 select(const PlainMask8& mask, const PlainFloat8& yes, const PlainFloat8& no) {
-  PlainFloat8 out;
+inline PortableFloat8 select(const PortableMask8& mask, const PortableFloat8& yes, const PortableFloat8& no) {
+  PortableFloat8 out;
   for (unsigned i = 0; i < 8; ++i) out.v[i] = mask.v[i] ? yes.v[i] : no.v[i];
   return out;
 }
@@ -219,7 +219,7 @@ inline Avx2Float8 select(const Avx2Mask8& mask, const Avx2Float8& yes, const Avx
 #if defined(__AVX2__)
 using Float8 = Avx2Float8;
 #else
-using Float8 = PlainFloat8;
+using Float8 = PortableFloat8;
 #endif
 
 }  // namespace roomradar

@@ -65,7 +65,7 @@ class AddLogOdds {
     if (depth == kLeafDepth - 1) return to_voxels(node, 0xFFU);
     InnerBlock& block = tree_.inner(node);
     for (Slot& slot : block.slots) slot = to_node(slot, depth + 1);
-    return tree_.settle(node, block);
+    return tree_.prune(node, block);
   }
   [[nodiscard]] Slot to_voxels(Slot node, unsigned which) const {
     return change_leaves(tree_, node, [&](LeafBlock& block) {
@@ -130,24 +130,24 @@ KeyRange keys_in(const Eigen::AlignedBox3d& box_world, double resolution_m) {
 
 // Calls `decide` on every sample of the subtree that is in the range. Returns the node's new state.
 Slot revise(BlockOctree& tree, Slot node, const NodePlace& place, LogOdds free, const KeyRange& range,
-            const std::function<SampleFate(const SurfaceSample&)>& decide) {
+            const std::function<SampleAction(const SurfaceSample&)>& decide) {
   if (!node.is_block() || !range.meets(place)) return node;
   if (place.depth == kLeafDepth - 1)
     return change_leaves(tree, node, [&](LeafBlock& block) {
       for (unsigned i = 0; i < 8; ++i) {
         const bool is_surface = block.weight[i] != 0 || block.log_odds[i] > 0;
         if (!is_surface || !range.holds(place.child(i).key)) continue;
-        const SampleFate fate = decide(sample_of(tree, block, i, place.child(i).key));
-        if (fate == SampleFate::kKeep) continue;
-        forget_sample(block, i);
-        if (fate == SampleFate::kFree) block.log_odds[i] = free;
-        if (fate == SampleFate::kUnknown) block.log_odds[i] = 0;
+        const SampleAction fate = decide(sample_of(tree, block, i, place.child(i).key));
+        if (fate == SampleAction::kKeep) continue;
+        erase_sample(block, i);
+        if (fate == SampleAction::kFree) block.log_odds[i] = free;
+        if (fate == SampleAction::kUnknown) block.log_odds[i] = 0;
       }
     });
   InnerBlock& block = tree.inner(node);
   for (unsigned i = 0; i < 8; ++i)
     block.slots[i] = revise(tree, block.slots[i], place.child(i), free, range, decide);
-  return tree.settle(node, block);
+  return tree.prune(node, block);
 }
 
 // Visits the samples of the subtree that are in the range.
@@ -185,7 +185,7 @@ const FusionConfig& checked(const FusionConfig& config) {
 
 double checked_resolution(double resolution_m) {
   if (!(resolution_m >= 0.001 && resolution_m <= 1.0))
-    throw Error("resolution = " + number_text(resolution_m) + " m: must be within 0.001 and 1 m");
+    throw Error("resolution = " + format_number(resolution_m) + " m: must be within 0.001 and 1 m");
   return resolution_m;
 }
 
@@ -210,8 +210,8 @@ FuseStatus StaticMap::fuse(const Frame& frame, const Eigen::Isometry3d& T_world_
   switch (collect_hits(frame, T_world_camera, resolution_m(), o.config, o.scratch)) {
     case HitStatus::kNone:
       return FuseStatus::kNothingMeasured;
-    case HitStatus::kOutOfReach:
-      return FuseStatus::kOutOfReach;
+    case HitStatus::kOutOfBounds:
+      return FuseStatus::kOutOfBounds;
     case HitStatus::kCollected:
       break;
   }
@@ -279,14 +279,14 @@ void StaticMap::add_evidence(const SurfaceSample& sample) {
   });
 }
 
-void StaticMap::revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide) {
+void StaticMap::revise_samples(const std::function<SampleAction(const SurfaceSample&)>& decide) {
   const double reach = reach_m();
   const Eigen::AlignedBox3d all(Eigen::Vector3d::Constant(-reach), Eigen::Vector3d::Constant(reach));
   revise_samples(all, decide);
 }
 
 void StaticMap::revise_samples(const Eigen::AlignedBox3d& box_world,
-                               const std::function<SampleFate(const SurfaceSample&)>& decide) {
+                               const std::function<SampleAction(const SurfaceSample&)>& decide) {
   BlockOctree& tree = octree_->tree;
   const long free = std::lround(octree_->config.min_log_odds / tree.units().log_odds);
   tree.root =
@@ -330,7 +330,7 @@ std::string_view to_string(FuseStatus status) {
       return "invalid frame";
     case FuseStatus::kInvalidPose:
       return "invalid pose";
-    case FuseStatus::kOutOfReach:
+    case FuseStatus::kOutOfBounds:
       return "out of the octree's reach";
   }
   return "unknown status";

@@ -23,7 +23,7 @@ enum class FuseStatus {
   /// map unchanged
   kInvalidFrame,
   kInvalidPose,  ///< not finite or not rigid; map unchanged
-  kOutOfReach,   ///< a ray ends outside the octree's 16-bit keys (reach_m()); map unchanged
+  kOutOfBounds,  ///< a ray ends outside the octree's 16-bit keys (reach_m()); map unchanged
 };
 std::string_view to_string(FuseStatus status);
 
@@ -48,11 +48,11 @@ struct MapLeaf {
 };
 
 /// Action on a sample when the map is revised.
-enum class SampleFate {
+enum class SampleAction {
   kKeep,
-  kForget,   ///< signed distance and colour erased, occupancy kept
-  kFree,     ///< sample erased, voxel set to the minimum log-odds
-  kUnknown,  ///< sample erased, voxel reset to unknown
+  kEraseSample,  ///< signed distance and colour erased, occupancy kept
+  kFree,         ///< sample erased, voxel set to the minimum log-odds
+  kUnknown,      ///< sample erased, voxel reset to unknown
 };
 
 struct MapCounts {
@@ -102,10 +102,10 @@ class StaticMap {
 
   /// Calls `decide` for each voxel that has a signed distance or is occupied without one (weight 0), in
   /// Morton order, and applies the result. Skips pruned nodes, which have no samples.
-  void revise_samples(const std::function<SampleFate(const SurfaceSample&)>& decide);
+  void revise_samples(const std::function<SampleAction(const SurfaceSample&)>& decide);
   /// As above, only for voxels whose centre is in the box.
   void revise_samples(const Eigen::AlignedBox3d& box_world,
-                      const std::function<SampleFate(const SurfaceSample&)>& decide);
+                      const std::function<SampleAction(const SurfaceSample&)>& decide);
 
   [[nodiscard]] double resolution_m() const;
   /// Half the edge of the cube around the world's origin that the octree covers, m.

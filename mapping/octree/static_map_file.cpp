@@ -29,10 +29,10 @@ constexpr std::size_t kMaxHeaderLines = 100;
 // Writes a file through a stream with 17 digits, which keep the resolution exact.
 template <typename Write>
 void write_stream(const std::filesystem::path& path, const Write& write) {
-  WholeFile file(path);
+  AtomicFile file(path);
   file.stream().precision(17);
   write(file.stream());
-  file.put_in_place();
+  file.commit();
 }
 
 // Writes the format of OctoMap's writeNodesRecurs: each node, the mask of its children, then its children.
@@ -42,7 +42,7 @@ class NodeWriter {
 
   void write(Slot node, unsigned depth) {
     if (!node.is_block()) return put(leaf(node.log_odds()), 0);
-    RoomNode inner;  // OctoMap convention: log-odds of an inner node are the maximum of its leaves
+    OctoMapNode inner;  // OctoMap convention: log-odds of an inner node are the maximum of its leaves
     inner.setLogOdds(greatest(node, depth));
     if (depth == kLeafDepth - 1) return write_voxels(inner, tree_.leaves(node));
     const InnerBlock& block = tree_.inner(node);
@@ -54,22 +54,22 @@ class NodeWriter {
   }
 
  private:
-  void put(const RoomNode& node, unsigned children) {
+  void put(const OctoMapNode& node, unsigned children) {
     node.writeData(stream_);
     stream_.put(static_cast<char>(children));
   }
-  [[nodiscard]] RoomNode leaf(LogOdds log_odds) const {
-    RoomNode node;
+  [[nodiscard]] OctoMapNode leaf(LogOdds log_odds) const {
+    OctoMapNode node;
     node.setLogOdds(static_cast<float>(log_odds) * tree_.units().log_odds);
     return node;
   }
-  void write_voxels(const RoomNode& parent, const LeafBlock& block) {
+  void write_voxels(const OctoMapNode& parent, const LeafBlock& block) {
     unsigned children = 0;
     for (unsigned i = 0; i < 8; ++i) children |= block.holds(i) ? 1U << i : 0;
     put(parent, children);
     for (unsigned i = 0; i < 8; ++i) {
       if (!block.holds(i)) continue;
-      RoomNode node = leaf(block.log_odds[i]);
+      OctoMapNode node = leaf(block.log_odds[i]);
       node.distance_m = static_cast<float>(block.distance[i]) * tree_.units().distance_m;
       node.weight = static_cast<float>(block.weight[i]) * tree_.units().weight;
       node.colour = tree_.colour(block, i);
@@ -191,8 +191,8 @@ Header read_header(const std::filesystem::path& path, ByteReader& bytes) {
     std::string name;
     words >> name;
     if (name == "data") {
-      if (type != RoomOcTree::kTreeType)
-        fail(path, "holds a tree of type \"" + type.substr(0, 40) + "\"; wanted " + RoomOcTree::kTreeType);
+      if (type != OctoMapTree::kTreeType)
+        fail(path, "holds a tree of type \"" + type.substr(0, 40) + "\"; wanted " + OctoMapTree::kTreeType);
       if (!(header.resolution_m >= 0.001 && header.resolution_m <= 1.0))
         fail(path, "its resolution is not within 0.001..1 m");
       return header;
@@ -227,7 +227,7 @@ class NodeReader {
     InnerBlock block;
     for (unsigned i = 0; i < 8; ++i)
       if ((children >> i & 1U) != 0) block.slots[i] = read(depth + 1);
-    return tree_.settle(Slot(), block);
+    return tree_.prune(Slot(), block);
   }
   [[nodiscard]] std::uint64_t nodes() const { return nodes_; }
 
@@ -308,7 +308,7 @@ class NodeReader {
 void StaticMap::write_ot(const std::filesystem::path& path) const {
   const BlockOctree& tree = octree_->tree;
   write_stream(path, [&](std::ostream& stream) {
-    stream << kFirstLine << "\n#\nid " << RoomOcTree::kTreeType << "\nsize "
+    stream << kFirstLine << "\n#\nid " << OctoMapTree::kTreeType << "\nsize "
            << size_of(tree, tree.root, 0).nodes << "\nres " << tree.resolution_m() << "\ndata\n";
     if (!tree.root.is_unknown()) NodeWriter(tree, stream).write(tree.root, 0);
   });

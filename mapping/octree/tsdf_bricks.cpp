@@ -8,19 +8,19 @@
 namespace roomradar {
 namespace {
 
-static_assert(sizeof(BrickSample) == 12);
+static_assert(sizeof(TsdfSample) == 12);
 constexpr int kBrickShift = 3;
 static_assert(1 << kBrickShift == kBrickEdge);
 
 }  // namespace
 
-SampleBricks::SampleBricks(const StaticMap& map, float min_weight)
-    : SampleBricks([&map](const auto& visit) { map.visit_samples(visit); }, min_weight) {}
+TsdfBricks::TsdfBricks(const StaticMap& map, float min_weight)
+    : TsdfBricks([&map](const auto& visit) { map.visit_samples(visit); }, min_weight) {}
 
-SampleBricks::SampleBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world)
-    : SampleBricks([&](const auto& visit) { map.visit_samples(box_world, visit); }, min_weight) {}
+TsdfBricks::TsdfBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world)
+    : TsdfBricks([&](const auto& visit) { map.visit_samples(box_world, visit); }, min_weight) {}
 
-SampleBricks::SampleBricks(const VisitSamples& visit_samples, float min_weight) {
+TsdfBricks::TsdfBricks(const VisitSamples& visit_samples, float min_weight) {
   // In the octree's order each brick is visited once. A first pass counts the bricks: a growing vector would
   // temporarily hold them twice.
   std::optional<VoxelIndex> last;
@@ -32,12 +32,12 @@ SampleBricks::SampleBricks(const VisitSamples& visit_samples, float min_weight) 
     last = first;
   });
   bricks_.reserve(count);
-  by_place_.reserve(count);
+  by_code_.reserve(count);
   visit_samples([&](const SurfaceSample& sample) {
     if (sample.weight < min_weight) return;
     const VoxelIndex first = brick_of(sample.voxel);
     if (bricks_.empty() || bricks_.back().first != first) {
-      by_place_.emplace(cell_code(first), bricks_.size());
+      by_code_.emplace(voxel_key(first), bricks_.size());
       bricks_.emplace_back().first = first;
     }
     bricks_.back().samples[brick_offset(sample.voxel - first)] = {.distance_m = sample.distance_m,
@@ -47,12 +47,12 @@ SampleBricks::SampleBricks(const VisitSamples& visit_samples, float min_weight) 
   });
 }
 
-std::size_t SampleBricks::find(const VoxelIndex& first) const {
-  const auto found = by_place_.find(cell_code(first));
-  return found == by_place_.end() ? kNone : found->second;
+std::size_t TsdfBricks::find(const VoxelIndex& first) const {
+  const auto found = by_code_.find(voxel_key(first));
+  return found == by_code_.end() ? kNone : found->second;
 }
 
-BrickNeighbourhood::BrickNeighbourhood(const SampleBricks& bricks, std::size_t centre) {
+BrickNeighbourhood::BrickNeighbourhood(const TsdfBricks& bricks, std::size_t centre) {
   const VoxelIndex first = bricks.bricks()[centre].first;
   for (int z = 0; z < 3; ++z)
     for (int y = 0; y < 3; ++y)

@@ -12,12 +12,12 @@
 
 namespace roomradar {
 
-struct BrickSample {
+struct TsdfSample {
   float distance_m = 0.0F;
   float weight = 0.0F;  ///< as SurfaceSample::weight; 0: unknown
   Rgb colour;
   bool has_colour : 1 = false;
-  bool guessed : 1 = false;  ///< extrapolated from its neighbours, not measured
+  bool extrapolated : 1 = false;  ///< extrapolated from its neighbours, not measured
 
   [[nodiscard]] bool known() const { return weight > 0.0F; }
 };
@@ -27,15 +27,15 @@ inline constexpr int kBrickSize = kBrickEdge * kBrickEdge * kBrickEdge;  // voxe
 
 struct Brick {
   VoxelIndex first = VoxelIndex::Zero();  ///< lowest voxel of the brick, a multiple of kBrickEdge
-  std::array<BrickSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
+  std::array<TsdfSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
 };
 
 /// All bricks with at least one sample of min_weight or more, in the octree's order.
-class SampleBricks {
+class TsdfBricks {
  public:
-  SampleBricks(const StaticMap& map, float min_weight);
+  TsdfBricks(const StaticMap& map, float min_weight);
   /// As above, only from samples whose voxel centre is in the box.
-  SampleBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world);
+  TsdfBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world);
 
   [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
   /// Callers may change samples but must not add, remove or move bricks.
@@ -46,10 +46,10 @@ class SampleBricks {
 
  private:
   using VisitSamples = std::function<void(const std::function<void(const SurfaceSample&)>&)>;
-  SampleBricks(const VisitSamples& visit_samples, float min_weight);
+  TsdfBricks(const VisitSamples& visit_samples, float min_weight);
 
   std::vector<Brick> bricks_;
-  std::unordered_map<std::uint64_t, std::size_t> by_place_;
+  std::unordered_map<std::uint64_t, std::size_t> by_code_;
 };
 
 /// Lowest voxel of the brick that contains a voxel.
@@ -65,10 +65,10 @@ inline std::size_t brick_offset(const Eigen::Vector3i& offset) {
 /// A brick and its 26 neighbours, for access across brick borders.
 class BrickNeighbourhood {
  public:
-  BrickNeighbourhood(const SampleBricks& bricks, std::size_t centre);
+  BrickNeighbourhood(const TsdfBricks& bricks, std::size_t centre);
 
   struct Place {
-    std::size_t brick = SampleBricks::kNone;
+    std::size_t brick = TsdfBricks::kNone;
     std::size_t offset = 0;
   };
   /// Brick and index of a voxel given relative to the centre brick's lowest voxel, each coordinate in

@@ -133,28 +133,28 @@ bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t 
   const Keyframe& a = graph.keyframes[older];
   const Keyframe& b = graph.keyframes[newer];
   const Eigen::Isometry3d change = (a.T_world_camera.inverse() * b.T_world_camera).inverse() * T_older_newer;
-  const double most = config.drift_m + config.drift_part * std::abs(b.way_m - a.way_m);
+  const double most = config.drift_m + config.drift_part * std::abs(b.path_length_m - a.path_length_m);
   return change.translation().norm() < most && Eigen::AngleAxisd(change.linear()).angle() < most;
 }
 
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
-          const JoinConfig& config, WarmKeyframes& warm) {
-  const auto a = warm.get(older, *graph.keyframes[older].view, config.view);
-  const auto b = warm.get(newer, *graph.keyframes[newer].view, config.view);
+          const ConnectConfig& config, KeyframeCache& prepare_keyframe) {
+  const auto a = prepare_keyframe.get(older, *graph.keyframes[older].view, config.view);
+  const auto b = prepare_keyframe.get(newer, *graph.keyframes[newer].view, config.view);
   const Tracking b_in_a = align(b->live, a->reference, T_older_newer, config.align);
   const Tracking a_in_b = align(a->live, b->reference, T_older_newer.inverse(), config.align);
   return add(graph, older, newer, agreement(graph, older, newer, b_in_a, a_in_b, config.graph));
 }
 
-void join_newest(KeyframeGraph& graph, const JoinConfig& config, WarmKeyframes& warm) {
+void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& prepare_keyframe) {
   if (graph.keyframes.size() < 2) return;
   const std::size_t newest = graph.keyframes.size() - 1;
-  for (const std::size_t i : older_near(graph, newest, config.graph.joins_at_once, config.graph.furthest)) {
-    join(graph, i, newest, relative(graph, i, newest), config, warm);
+  for (const std::size_t i : older_near(graph, newest, config.graph.max_edges_new, config.graph.furthest)) {
+    join(graph, i, newest, relative(graph, i, newest), config, prepare_keyframe);
   }
 }
 
-void join_all(KeyframeGraph& graph, const JoinConfig& config) {
+void close_loops(KeyframeGraph& graph, const ConnectConfig& config) {
   // Sorted by reference, so each thread prepares a reference once and keeps only one in memory.
   struct Half {
     std::size_t reference, live;
@@ -162,7 +162,8 @@ void join_all(KeyframeGraph& graph, const JoinConfig& config) {
   };
   std::vector<Half> halves;
   for (std::size_t newer = 1; newer < graph.keyframes.size(); ++newer) {
-    for (const std::size_t older : older_near(graph, newer, config.graph.joins, config.graph.furthest)) {
+    for (const std::size_t older :
+         older_near(graph, newer, config.graph.max_edges_rebuild, config.graph.furthest)) {
       halves.push_back({older, newer, {}});
       halves.push_back({newer, older, {}});
     }
@@ -172,7 +173,8 @@ void join_all(KeyframeGraph& graph, const JoinConfig& config) {
   };
   std::sort(halves.begin(), halves.end(), by_reference);
   const auto align_all = [&](std::span<Half> part) {
-    WarmKeyframes references(1, WarmParts::kReference), lives(config.graph.warm, WarmParts::kLive);
+    KeyframeCache references(1, PreparedParts::kReference),
+        lives(config.graph.prepare_keyframe, PreparedParts::kLive);
     for (Half& half : part) {
       const auto a = references.get(half.reference, *graph.keyframes[half.reference].view, config.view);
       const auto b = lives.get(half.live, *graph.keyframes[half.live].view, config.view);

@@ -13,18 +13,18 @@
 namespace roomradar {
 
 struct KeyframeGraphConfig {
-  int joins = 12;             ///< max edges from a keyframe to older ones on a full rebuild
-  int joins_at_once = 6;      ///< max edges from a new keyframe to older ones during tracking
-  double furthest = 1.5;      ///< max view_distance() of two connected keyframes
-  double min_overlap = 0.25;  ///< min fraction of a keyframe's points with a correspondence in the other
-  double min_inliers = 0.5;   ///< min fraction of these correspondences that agree
-  double max_gap_m = 0.05;    ///< max difference between the alignments in both directions
+  int max_edges_rebuild = 12;  ///< max edges from a keyframe to older ones on a full rebuild
+  int max_edges_new = 6;       ///< max edges from a new keyframe to older ones during tracking
+  double furthest = 1.5;       ///< max view_distance() of two connected keyframes
+  double min_overlap = 0.25;   ///< min fraction of a keyframe's points with a correspondence in the other
+  double min_inliers = 0.5;    ///< min fraction of these correspondences that agree
+  double max_gap_m = 0.05;     ///< max difference between the alignments in both directions
   double max_gap_rad = 0.05;
   /// Max pose correction (m and rad) by a loop closure: drift_m plus drift_part of the path between the two
   /// keyframes. Places that only look alike are farther apart.
   double drift_m = 0.15;
   double drift_part = 0.05;
-  std::size_t warm = 8;  ///< keyframes in the cache, 4 MB each
+  std::size_t prepare_keyframe = 8;  ///< keyframes in the cache, 4 MB each
 };
 
 struct KeyframeGraph {
@@ -36,7 +36,7 @@ struct KeyframeGraph {
 };
 
 /// Settings for preparing and aligning keyframes.
-struct JoinConfig {
+struct ConnectConfig {
   ViewConfig view;
   AlignConfig align;
   KeyframeGraphConfig graph;
@@ -57,14 +57,14 @@ bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t 
 /// with the current poses within drift, adds both as constraints and returns true. Pairs that are not
 /// neighbours in sequence count as loops, found or rejected.
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
-          const JoinConfig& config, WarmKeyframes& warm);
+          const ConnectConfig& config, KeyframeCache& prepare_keyframe);
 
 /// Connects the newest keyframe to older ones near it; if there are too many, to a selection over all
 /// distances.
-void join_newest(KeyframeGraph& graph, const JoinConfig& config, WarmKeyframes& warm);
+void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& prepare_keyframe);
 
 /// Rebuilds all constraints from the keyframes' current depth, on two threads; deterministic.
-void join_all(KeyframeGraph& graph, const JoinConfig& config);
+void close_loops(KeyframeGraph& graph, const ConnectConfig& config);
 
 /// Optimises all keyframe poses to fit the constraints and anchors.
 void solve(KeyframeGraph& graph);

@@ -10,19 +10,19 @@ namespace roomradar {
 namespace {
 
 /// Connects the newest keyframe to distant ones that look alike; returns whether any was connected.
-bool join_alike(KeyframeGraph& graph, const Place& newest, const Places& places, const JoinConfig& config,
-                WarmKeyframes& warm) {
+bool join_alike(KeyframeGraph& graph, const MapKeyframe& newest, const KeyframeDatabase& keyframe_database,
+                const ConnectConfig& config, KeyframeCache& prepare_keyframe) {
   constexpr int kMinMatches = 25, kMinInliers = 30;
   constexpr std::size_t kCandidates = 2;
   const std::size_t number = graph.keyframes.size() - 1;
   bool joined = false;
-  for (const std::size_t i : most_alike(newest, places.keyframes, kCandidates, kMinMatches)) {
+  for (const std::size_t i : most_alike(newest, keyframe_database.keyframes, kCandidates, kMinMatches)) {
     const Eigen::Isometry3d T_older_newest =
         graph.keyframes[i].T_world_camera.inverse() * graph.keyframes[number].T_world_camera;
     if (view_distance(T_older_newest) < config.graph.furthest) continue;
-    const PlaceMatch match = match_places(places.keyframes[i], newest);
+    const KeyframeMatch match = match_keyframes(keyframe_database.keyframes[i], newest);
     if (match.inliers < kMinInliers) continue;
-    joined = join(graph, i, number, match.T_a_b, config, warm) || joined;
+    joined = join(graph, i, number, match.T_a_b, config, prepare_keyframe) || joined;
   }
   return joined;
 }
@@ -32,9 +32,10 @@ bool join_alike(KeyframeGraph& graph, const Place& newest, const Places& places,
 KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config) {
   KeyframeJobResult result;
   KeyframeGraph& graph = job.graph;
-  result.place = describe_place(job.frame, graph.keyframes.back().T_world_camera, config.place);
-  const bool came_back = join_alike(graph, result.place, *job.places, config.join, job.warm);
-  join_newest(graph, config.join, job.warm);
+  result.place = make_map_keyframe(job.frame, graph.keyframes.back().T_world_camera, config.place);
+  const bool came_back =
+      join_alike(graph, result.place, *job.keyframe_database, config.join, job.prepare_keyframe);
+  connect_newest(graph, config.join, job.prepare_keyframe);
   if (came_back) {
     solve(graph);
   } else {

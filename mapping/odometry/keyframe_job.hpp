@@ -9,23 +9,23 @@
 namespace roomradar {
 
 struct KeyframeJobConfig {
-  JoinConfig join;
-  PlaceConfig place;
+  ConnectConfig join;
+  KeyframeDatabaseConfig place;
   RelocaliseConfig relocalise;
 };
 
 /// Input of run(). Owns its data except for the two keyframe databases, which must not change while it runs.
 struct KeyframeJob {
-  Frame frame;                     ///< frame of the newest keyframe
-  KeyframeGraph graph;             ///< includes the newest keyframe, not connected yet
-  WarmKeyframes warm;              ///< includes the newest keyframe
-  const Places* places = nullptr;  ///< one per keyframe except the newest
-  const Places* known = nullptr;   ///< database of an earlier map; null: none
+  Frame frame;                                          ///< frame of the newest keyframe
+  KeyframeGraph graph;                                  ///< includes the newest keyframe, not connected yet
+  KeyframeCache prepare_keyframe;                       ///< includes the newest keyframe
+  const KeyframeDatabase* keyframe_database = nullptr;  ///< one per keyframe except the newest
+  const KeyframeDatabase* known = nullptr;              ///< database of an earlier map; null: none
 };
 
 struct KeyframeJobResult {
   KeyframeGraph graph;  ///< connected and optimised
-  Place place;          ///< database entry of the newest keyframe
+  MapKeyframe place;    ///< database entry of the newest keyframe
   /// Pose of the newest keyframe in the earlier map's world, if it was localised there.
   std::optional<Eigen::Isometry3d> T_known_camera;
 };

@@ -28,7 +28,8 @@ Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySna
   const Eigen::Isometry3d before = kept.graph.keyframes[kept.current].T_world_camera;
   for (std::size_t i = 0; i < moved.size(); ++i) {
     kept.graph.keyframes[i].T_world_camera = moved[i].T_world_camera;
-    if (i < kept.places.keyframes.size()) kept.places.keyframes[i].T_world_camera = moved[i].T_world_camera;
+    if (i < kept.keyframe_database.keyframes.size())
+      kept.keyframe_database.keyframes[i].T_world_camera = moved[i].T_world_camera;
   }
   const Eigen::Isometry3d T_new_old = kept.graph.keyframes[kept.current].T_world_camera * before.inverse();
   kept.T_world_last = T_new_old * kept.T_world_last;
@@ -51,7 +52,7 @@ Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
   kept.graph.constraints = std::move(result.graph.constraints);
   kept.graph.loops_found = result.graph.loops_found;
   kept.graph.loops_rejected = result.graph.loops_rejected;
-  kept.places.keyframes.push_back(std::move(result.place));
+  kept.keyframe_database.keyframes.push_back(std::move(result.place));
   Eigen::Isometry3d T_new_old = move_keyframes(result.graph.keyframes, kept);
   if (result.T_known_camera) {
     if (!kept.located) {
@@ -71,11 +72,11 @@ Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
 
 struct Odometry::State {
   OdometryConfig config;
-  Places known;
+  KeyframeDatabase known;
   OdometrySnapshot kept;
   ViewPyramid pyramid;  ///< of the current frame, like `live`
-  LiveView live;
-  WarmKeyframes warm;
+  SourcePoints live;
+  KeyframeCache prepare_keyframe;
   ViewPyramid open;  ///< the current keyframe's, refined by the views since it became current
   Image<std::uint8_t> open_measured;
   bool open_is_newer = false;  ///< newer than the stored view
@@ -83,7 +84,8 @@ struct Odometry::State {
   std::optional<KeyframeJobResult> joined;  ///< the job's result, once it has been waited for
   int job_frames = 0;                       ///< frames since the job began
 
-  explicit State(const OdometryConfig& chosen) : config(chosen), warm(chosen.graph.warm) {}
+  explicit State(const OdometryConfig& chosen)
+      : config(chosen), prepare_keyframe(chosen.graph.prepare_keyframe) {}
 
   Tracking start(const Frame& frame);
   Tracking align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess);
@@ -119,14 +121,15 @@ Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d&
   constexpr double kUsefulReference = 0.7;
   const auto most = static_cast<std::size_t>(std::max(config.references, 1));
   const std::vector<Keyframe>& keyframes = kept.graph.keyframes;
-  std::vector<std::shared_ptr<const WarmKeyframe>> used{warm.get(first, *keyframes[first].view, config.view)};
+  std::vector<std::shared_ptr<const CachedKeyframe>> used{
+      prepare_keyframe.get(first, *keyframes[first].view, config.view)};
   std::vector<PosedReference> references{{&used[0]->reference, keyframes[first].T_world_camera}};
   bool made_one = false;
   for (const std::size_t i : keyframes_near(kept.graph, T_world_guess, kUsefulReference)) {
     if (i == first || references.size() >= most) continue;
-    auto other = warm.find(i);
+    auto other = prepare_keyframe.find(i);
     if (!other && std::exchange(made_one, true)) continue;
-    if (!other) other = warm.get(i, *keyframes[i].view, config.view);
+    if (!other) other = prepare_keyframe.get(i, *keyframes[i].view, config.view);
     references.push_back({&other->reference, keyframes[i].T_world_camera});
     used.push_back(std::move(other));
   }
@@ -139,7 +142,7 @@ Tracking Odometry::State::recover(const Frame& frame) {
   standing.status = TrackStatus::kDiverged;
   if (frame.colour.empty() && !kept.last_moved_grey.empty())
     return standing;  // this frame alone has lost its colour
-  const Relocalisation found = relocalise(frame, kept.places, config.relocalise);
+  const Relocalisation found = relocalise(frame, kept.keyframe_database, config.relocalise);
   if (!found) return standing;
   const auto keyframe = static_cast<std::size_t>(found.keyframe);
   const Tracking tracking = align_near(keyframe, found.T_world_camera);
@@ -167,10 +170,10 @@ void Odometry::State::improve_current(const Tracking& tracking) {
   if (++kept.improved < config.improve_every) return;
   kept.improved = 0;
   halve_depth(open);
-  auto made = std::make_shared<WarmKeyframe>();
-  make_reference(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
-  make_live(open, made->live);
-  warm.put(kept.current, std::move(made));
+  auto made = std::make_shared<CachedKeyframe>();
+  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
+  make_source_points(open, made->live);
+  prepare_keyframe.put(kept.current, std::move(made));
 }
 
 bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking) const {
@@ -199,18 +202,18 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking)
   open_measured.resize(open.levels.front().camera.width_px, open.levels.front().camera.height_px, 1);
   kept.graph.keyframes.push_back({frame.index, tracking.T_world_camera,
                                   std::make_shared<const StoredView>(store(open, open_measured)), 0,
-                                  kept.way_m});
+                                  kept.path_length_m});
   ++kept.counts.keyframes;
   kept.current = kept.graph.keyframes.size() - 1;
   kept.improved = 0;
-  auto made = std::make_shared<WarmKeyframe>();
-  make_reference(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
+  auto made = std::make_shared<CachedKeyframe>();
+  make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
   made->live = live;
-  warm.put(kept.current, std::move(made));
-  job = std::async(
-      std::launch::async, run,
-      KeyframeJob{frame, kept.graph, warm, &kept.places, known.keyframes.empty() ? nullptr : &known},
-      job_config(config));
+  prepare_keyframe.put(kept.current, std::move(made));
+  job = std::async(std::launch::async, run,
+                   KeyframeJob{frame, kept.graph, prepare_keyframe, &kept.keyframe_database,
+                               known.keyframes.empty() ? nullptr : &known},
+                   job_config(config));
   job_frames = 0;
 }
 
@@ -268,7 +271,7 @@ Odometry::Odometry(const OdometryConfig& config, OdometrySnapshot snapshot)
   state_->open_measured = view.measured;
 }
 
-void Odometry::know(Places known) { state_->known = std::move(known); }
+void Odometry::set_prior_map(KeyframeDatabase known) { state_->known = std::move(known); }
 
 bool Odometry::is_located() const { return state_->kept.located; }
 
@@ -277,11 +280,11 @@ Tracking Odometry::track(const Frame& frame) {
   OdometrySnapshot& kept = s.kept;
   ++kept.counts.frames;
   make_pyramid(frame, s.config.view, s.pyramid);
-  make_live(s.pyramid, s.live);
+  make_source_points(s.pyramid, s.live);
   const bool is_joining = s.job.valid() || s.joined;
-  if (is_joining && ++s.job_frames >= s.config.join_frames) s.take_over_job();
+  if (is_joining && ++s.job_frames >= s.config.apply_result_after_frames) s.take_over_job();
   const bool first = kept.graph.keyframes.empty();
-  if (!first && shows_the_same(kept.last_moved_grey, s.pyramid.grey)) {
+  if (!first && is_camera_stationary(kept.last_moved_grey, s.pyramid.grey)) {
     ++kept.counts.tracked;
     kept.T_world_last = kept.last_moved.T_world_camera;
     kept.T_last_next.setIdentity();
@@ -300,7 +303,7 @@ Tracking Odometry::track(const Frame& frame) {
     return tracking;
   }
   const Eigen::Isometry3d T_last_next = kept.T_world_last.inverse() * tracking.T_world_camera;
-  kept.way_m += length(T_last_next) * (tracking ? 1.0 : 10.0);
+  kept.path_length_m += length(T_last_next) * (tracking ? 1.0 : 10.0);
   if (tracking && !first) {
     s.improve_current(tracking);
     s.choose_keyframe(frame, tracking);
@@ -319,7 +322,7 @@ Tracking Odometry::track(const Frame& frame) {
 
 void Odometry::add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   State& s = *state_;
-  std::vector<Place>& places = s.kept.places.keyframes;
+  std::vector<MapKeyframe>& keyframe_database = s.kept.keyframe_database.keyframes;
   ++s.kept.counts.frames;
   ++s.kept.counts.tracked;
   s.kept.frames.push_back(
@@ -327,15 +330,16 @@ void Odometry::add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_ca
   const double limit = view_distance(
       Eigen::Translation3d(s.config.keyframe_distance_m, 0, 0) *
       Eigen::AngleAxisd(s.config.keyframe_angle_deg * std::numbers::pi / 180.0, Eigen::Vector3d::UnitX()));
-  const bool known = std::any_of(places.begin(), places.end(), [&](const Place& place) {
-    return view_distance(place.T_world_camera.inverse() * T_world_camera) < limit;
-  });
+  const bool known =
+      std::any_of(keyframe_database.begin(), keyframe_database.end(), [&](const MapKeyframe& place) {
+        return view_distance(place.T_world_camera.inverse() * T_world_camera) < limit;
+      });
   if (known) return;
-  places.push_back(describe_place(frame, T_world_camera, s.config.place));
+  keyframe_database.push_back(make_map_keyframe(frame, T_world_camera, s.config.place));
   ++s.kept.counts.keyframes;
 }
 
-void Odometry::settle() {
+void Odometry::finish_jobs() {
   state_->wait_for_job();
   state_->store_open();
 }
@@ -352,8 +356,8 @@ std::vector<TrackedFrame> Odometry::optimise() {
   s.store_open();
   if (!s.kept.graph.keyframes.empty()) {
     KeyframeGraph graph = s.kept.graph;
-    s.warm = WarmKeyframes(s.config.graph.warm);  // no longer needed, and large
-    join_all(graph, job_config(s.config).join);
+    s.prepare_keyframe = KeyframeCache(s.config.graph.prepare_keyframe);  // no longer needed, and large
+    close_loops(graph, job_config(s.config).join);
     solve_positions_then_turns(graph);
     move_keyframes(graph.keyframes, s.kept);
     graph.keyframes = s.kept.graph.keyframes;
@@ -369,9 +373,9 @@ std::vector<TrackedFrame> Odometry::optimise() {
   return trajectory;
 }
 
-Places Odometry::take_places() {
+KeyframeDatabase Odometry::take_keyframe_database() {
   state_->take_over_job();
-  return std::exchange(state_->kept.places, {});
+  return std::exchange(state_->kept.keyframe_database, {});
 }
 
 OdometryCounts Odometry::counts() const {

@@ -23,16 +23,16 @@ struct OdometryConfig {
   /// each changes ATE and RPE over 30 frames by 0.3 mm or less.
   AlignConfig align_keyframes = {.robust_sigma = 4.0F, .intensity_sigma = 8.0F, .max_correction_m = 0.25F};
   KeyframeGraphConfig graph;
-  PlaceConfig place;
+  KeyframeDatabaseConfig place;
   RelocaliseConfig relocalise;
   /// A view becomes a keyframe if every keyframe is farther away than this or turned by more than
   /// keyframe_angle_deg.
   double keyframe_distance_m = 0.10;
   double keyframe_angle_deg = 8.0;
-  double keyframe_overlap = 0.7;  ///< below this overlap with the current keyframe, another one is used
-  int references = 2;             ///< max keyframes that a frame is aligned with
-  int improve_every = 5;          ///< views averaged into a keyframe before its reference is rebuilt
-  int join_frames = 4;            ///< frames after which a new keyframe's background result is applied
+  double keyframe_overlap = 0.7;      ///< below this overlap with the current keyframe, another one is used
+  int references = 2;                 ///< max keyframes that a frame is aligned with
+  int improve_every = 5;              ///< views averaged into a keyframe before its reference is rebuilt
+  int apply_result_after_frames = 4;  ///< frames after which a new keyframe's background result is applied
 };
 
 /// Trajectory entry of one frame.
@@ -72,7 +72,7 @@ class Odometry {
   /// Sets the keyframe database of an earlier map, whose poses stay constant; call before the first frame.
   /// New keyframes are searched for in it. Once one is found, the odometry's world is the map's, for earlier
   /// frames too.
-  void know(Places known);
+  void set_prior_map(KeyframeDatabase known);
   /// Returns whether the world is that of the known map.
   [[nodiscard]] bool is_located() const;
 
@@ -89,15 +89,15 @@ class Odometry {
   std::vector<TrackedFrame> optimise();
 
   /// Moves the keyframe database out, with current poses; call optimise() first.
-  Places take_places();
+  KeyframeDatabase take_keyframe_database();
 
   [[nodiscard]] OdometryCounts counts() const;
 
   /// Waits until the second thread is idle; call before a snapshot or a fork. Changes no pose: the thread's
   /// result is applied at its usual frame.
-  void settle();
+  void finish_jobs();
   /// Returns the complete state, with the second thread's result applied. Views are shared, not copied. Call
-  /// only after settle().
+  /// only after finish_jobs().
   [[nodiscard]] OdometrySnapshot snapshot() const;
   /// Resumes from a snapshot; the known map must be set again. The snapshot must be consistent
   /// (load_odometry() checks this).

@@ -137,7 +137,7 @@ void put_graph(std::string& out, const KeyframeGraph& graph) {
     put(out, keyframe.frame_index);
     put_pose(out, keyframe.T_world_camera);
     put(out, keyframe.revision);
-    put(out, keyframe.way_m);
+    put(out, keyframe.path_length_m);
   }
   put(out, std::uint64_t{graph.constraints.size()});
   for (const PoseConstraint& c : graph.constraints) {
@@ -165,7 +165,7 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
     keyframe.frame_index = in.take<std::int64_t>("frame index");
     keyframe.T_world_camera = take_pose(in, "a keyframe's pose");
     keyframe.revision = in.take<std::uint32_t>("revision");
-    keyframe.way_m = in.take_finite("path length");
+    keyframe.path_length_m = in.take_finite("path length");
     keyframe.view = std::make_shared<const StoredView>(read_view(folder / view_name(i, keyframe.revision)));
   }
   graph.constraints.resize(take_count(in, kPose_bytes + kInformation_bytes, "constraints"));
@@ -187,16 +187,16 @@ KeyframeGraph take_graph(BinaryReader& in, const fs::path& folder) {
   return graph;
 }
 
-Places take_places(BinaryReader& in, const fs::path& folder) {
-  Places places;
-  places.keyframes.resize(take_count(in, kPose_bytes, "database entries"));
-  for (std::size_t i = 0; i < places.keyframes.size(); ++i) {
-    Places one = read_places(folder / place_name(i));
+KeyframeDatabase take_keyframe_database(BinaryReader& in, const fs::path& folder) {
+  KeyframeDatabase keyframe_database;
+  keyframe_database.keyframes.resize(take_count(in, kPose_bytes, "database entries"));
+  for (std::size_t i = 0; i < keyframe_database.keyframes.size(); ++i) {
+    KeyframeDatabase one = read_keyframe_database(folder / place_name(i));
     if (one.keyframes.size() != 1) in.fail(place_name(i).string() + " does not contain one database entry");
-    places.keyframes[i] = std::move(one.keyframes.front());
-    places.keyframes[i].T_world_camera = take_pose(in, "a database entry's pose");
+    keyframe_database.keyframes[i] = std::move(one.keyframes.front());
+    keyframe_database.keyframes[i].T_world_camera = take_pose(in, "a database entry's pose");
   }
-  return places;
+  return keyframe_database;
 }
 
 void put_frames(std::string& out, const std::vector<KeptFrame>& frames) {
@@ -237,21 +237,21 @@ void save_odometry(const Odometry& odometry, const fs::path& into, const fs::pat
     const fs::path name = view_name(i, kept.graph.keyframes[i].revision);
     if (!is_carried_over(name)) write_view(*kept.graph.keyframes[i].view, into / name);
   }
-  for (std::size_t i = 0; i < kept.places.keyframes.size(); ++i) {
+  for (std::size_t i = 0; i < kept.keyframe_database.keyframes.size(); ++i) {
     const fs::path name = place_name(i);
-    if (!is_carried_over(name)) write_places({{kept.places.keyframes[i]}}, into / name);
+    if (!is_carried_over(name)) write_keyframe_database({{kept.keyframe_database.keyframes[i]}}, into / name);
   }
   std::string out;
   put_counts(out, kept.counts);
   put_graph(out, kept.graph);
-  put(out, std::uint64_t{kept.places.keyframes.size()});
-  for (const Place& place : kept.places.keyframes) put_pose(out, place.T_world_camera);
+  put(out, std::uint64_t{kept.keyframe_database.keyframes.size()});
+  for (const MapKeyframe& place : kept.keyframe_database.keyframes) put_pose(out, place.T_world_camera);
   put_frames(out, kept.frames);
   put(out, std::uint64_t{kept.current});
   put(out, kept.improved);
   put_pose(out, kept.T_world_last);
   put_pose(out, kept.T_last_next);
-  put(out, kept.way_m);
+  put(out, kept.path_length_m);
   put_image(out, kept.last_moved_grey);
   put(out, static_cast<std::uint32_t>(kept.last_moved.status));
   put_pose(out, kept.last_moved.T_world_camera);
@@ -267,8 +267,8 @@ Odometry load_odometry(const fs::path& folder, const OdometryConfig& config) {
   take_counts(in, kept.counts);
   kept.graph = take_graph(in, folder);
   const std::size_t keyframes = kept.graph.keyframes.size();
-  kept.places = take_places(in, folder);
-  if (keyframes > 0 && kept.places.keyframes.size() != keyframes)
+  kept.keyframe_database = take_keyframe_database(in, folder);
+  if (keyframes > 0 && kept.keyframe_database.keyframes.size() != keyframes)
     in.fail("keyframes and database entries differ in number");
   kept.frames = take_frames(in, keyframes);
   const auto current = in.take<std::uint64_t>("keyframe");
@@ -277,7 +277,7 @@ Odometry load_odometry(const fs::path& folder, const OdometryConfig& config) {
   kept.improved = in.take<int>("views");
   kept.T_world_last = take_pose(in, "the last pose");
   kept.T_last_next = take_pose(in, "the last motion");
-  kept.way_m = in.take_finite("path length");
+  kept.path_length_m = in.take_finite("path length");
   kept.last_moved_grey = take_image<float>(in, "picture");
   kept.last_moved.status = take_status(in);
   kept.last_moved.T_world_camera = take_pose(in, "the pose when the camera last moved");

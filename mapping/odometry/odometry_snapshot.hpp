@@ -25,13 +25,13 @@ struct KeptFrame {
 struct OdometrySnapshot {
   OdometryCounts counts;
   KeyframeGraph graph;
-  Places places;  ///< one per keyframe; add_posed() adds entries without keyframes
+  KeyframeDatabase keyframe_database;  ///< one per keyframe; add_posed() adds entries without keyframes
   std::vector<KeptFrame> frames;
   std::size_t current = 0;  ///< keyframe that the last frame was aligned with first
   int improved = 0;         ///< views averaged into it since its reference was built
   Eigen::Isometry3d T_world_last = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< predicted motion to the next frame
-  double way_m = 0.0;                                             ///< see Keyframe
+  double path_length_m = 0.0;                                     ///< see Keyframe
   Image<float> last_moved_grey;  ///< intensity image when the camera last moved
   Tracking last_moved;           ///< result for that frame; its pose is trusted
   bool located = false;          ///< the world is that of the known map

@@ -35,14 +35,14 @@ class UpEstimator {
 
   /// Serialises the complete state to a ByteWriter, or from a ByteReader.
   template <typename Archive>
-  void transfer_fields(Archive& archive) {
-    transfer(archive, normals_world_);
-    transfer(archive, normals_seen_);
-    transfer(archive, keep_every_);
-    transfer(archive, down_sum_world_);
-    transfer(archive, camera_up_sum_world_);
-    transfer(archive, frames_);
-    transfer(archive, frames_with_gravity_);
+  void serialize_fields(Archive& archive) {
+    serialize(archive, normals_world_);
+    serialize(archive, normals_seen_);
+    serialize(archive, keep_every_);
+    serialize(archive, down_sum_world_);
+    serialize(archive, camera_up_sum_world_);
+    serialize(archive, frames_);
+    serialize(archive, frames_with_gravity_);
     if constexpr (Archive::kReads) {
       if (keep_every_ == 0) archive.fail("is damaged: no normal is kept");
     }

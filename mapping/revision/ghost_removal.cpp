@@ -36,9 +36,8 @@ class ChosenFrames {
 
 }  // namespace
 
-GhostRevision take_out_ghosts(FrameSource& source, std::span<const FusedFrame> fused,
-                              const GhostConfig& config, StaticMap& map, StageTimes& times,
-                              const GhostProgress& progress) {
+GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fused, const GhostConfig& config,
+                            StaticMap& map, StageTimes& times, const GhostProgress& progress) {
   // Find the voxels that frames see through.
   GhostVotes votes(map, config);
   Frame frame;
@@ -63,8 +62,8 @@ GhostRevision take_out_ghosts(FrameSource& source, std::span<const FusedFrame> f
   return revision;
 }
 
-void look_again(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,
-                StaticMap& map, StageTimes& times, const GhostProgress& progress) {
+void refuse_surroundings(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,
+                         StaticMap& map, StageTimes& times, const GhostProgress& progress) {
   if (revision.voxels() == 0) return;
   const GhostZone zone =
       times.timed("ghosts", [&] { return GhostZone(revision.verdicts, map.resolution_m()); });

@@ -19,10 +19,10 @@ struct FusedFrame {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Voxels removed from the map, and the progress of look_again() there.
+/// Voxels removed from the map, and the progress of refuse_surroundings() there.
 struct GhostRevision {
   GhostVotes::Verdicts verdicts;  ///< still and unseen: only those near the others
-  std::uint64_t next = 0;         ///< index of the first fused frame that look_again() has not processed
+  std::uint64_t next = 0;  ///< index of the first fused frame that refuse_surroundings() has not processed
 
   [[nodiscard]] std::int64_t voxels() const {
     return static_cast<std::int64_t>(verdicts.ghosts.size() + verdicts.absent.size());
@@ -37,16 +37,15 @@ using GhostProgress = std::function<void(const std::string& note)>;
 /// both. Stages timed: read, ghosts (per frame).
 ///
 /// @throws Error if the source cannot be rewound or the config is invalid
-GhostRevision take_out_ghosts(FrameSource& source, std::span<const FusedFrame> fused,
-                              const GhostConfig& config, StaticMap& map, StageTimes& times,
-                              const GhostProgress& progress = {});
+GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fused, const GhostConfig& config,
+                            StaticMap& map, StageTimes& times, const GhostProgress& progress = {});
 
 /// Fuses the surroundings of the removed voxels again, from revision.next on, without the pixels that saw the
 /// departed objects, whose depth had shifted the real surface behind them. Between frames, as when `progress`
 /// is called, map and revision are all state needed to resume. Reads nothing if nothing was removed.
 ///
 /// @throws Error if the source cannot be rewound
-void look_again(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,
-                StaticMap& map, StageTimes& times, const GhostProgress& progress = {});
+void refuse_surroundings(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,
+                         StaticMap& map, StageTimes& times, const GhostProgress& progress = {});
 
 }  // namespace roomradar

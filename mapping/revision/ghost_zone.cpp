@@ -67,19 +67,19 @@ std::optional<Rectangle> covered_by(const VoxelIndex& first, double resolution_m
 GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
     : resolution_m_(resolution_m) {
   const auto mark = [this](const VoxelIndex& ghost, std::bitset<512> Marks::*bits) {
-    const auto found = marks_.find(cell_code(brick_of(ghost)));
+    const auto found = marks_.find(voxel_key(brick_of(ghost)));
     if (found != marks_.end() && found->second.ghost_cells.test(cell_of(ghost))) {
       (found->second.*bits).set(offset_of(ghost));
       return;
     }
     for (int i = 0; i < kCellsRound; ++i) {
-      const VoxelIndex step = cell_round(i);
+      const VoxelIndex step = neighbour_offset(i);
       const VoxelIndex first = brick_of(ghost) + kBrickEdge * step;
-      if (marks_.try_emplace(cell_code(first)).second) bricks_.push_back(first);
+      if (marks_.try_emplace(voxel_key(first)).second) bricks_.push_back(first);
       const VoxelIndex neighbour = ghost + kCellEdge * step;
-      marks_[cell_code(brick_of(neighbour))].cells.set(cell_of(neighbour));
+      marks_[voxel_key(brick_of(neighbour))].cells.set(cell_of(neighbour));
     }
-    Marks& own = marks_.at(cell_code(brick_of(ghost)));
+    Marks& own = marks_.at(voxel_key(brick_of(ghost)));
     own.ghost_cells.set(cell_of(ghost));
     (own.*bits).set(offset_of(ghost));
   };
@@ -91,7 +91,7 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
       for (int y = -kNear; y <= kNear; ++y)
         for (int x = -kNear; x <= kNear; ++x) {
           const VoxelIndex near = voxel + VoxelIndex(x, y, z);
-          const auto found = marks_.find(cell_code(brick_of(near)));
+          const auto found = marks_.find(voxel_key(brick_of(near)));
           if (found != marks_.end()) (found->second.*bits).set(offset_of(near));
         }
   };
@@ -99,7 +99,7 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
   for (const VoxelIndex& absent : verdicts.absent) mark_near(absent, &Marks::near_ghost);
   for (const VoxelIndex& still : verdicts.still) mark_near(still, &Marks::near_still);
   for (const VoxelIndex& unseen : verdicts.unseen) {
-    const auto found = marks_.find(cell_code(brick_of(unseen)));
+    const auto found = marks_.find(voxel_key(brick_of(unseen)));
     if (found != marks_.end()) found->second.unseen.set(offset_of(unseen));
     mark_near(unseen, &Marks::near_unseen);
   }
@@ -108,28 +108,28 @@ GhostZone::GhostZone(const GhostVotes::Verdicts& verdicts, double resolution_m)
 bool GhostZone::reaches(const VoxelIndex& voxel) const {
   for (int i = 0; i < 8; ++i) {
     const VoxelIndex corner(i & 1 ? kNear : -kNear, i & 2 ? kNear : -kNear, i & 4 ? kNear : -kNear);
-    if (marks_.contains(cell_code(brick_of(voxel + corner)))) return true;
+    if (marks_.contains(voxel_key(brick_of(voxel + corner)))) return true;
   }
   return false;
 }
 
 const GhostZone::Marks* GhostZone::marks_of(const VoxelIndex& voxel) const {
-  const auto found = marks_.find(cell_code(brick_of(voxel)));
+  const auto found = marks_.find(voxel_key(brick_of(voxel)));
   return found == marks_.end() ? nullptr : &found->second;
 }
 
-SampleFate GhostZone::fate_of(const SurfaceSample& sample) const {
+SampleAction GhostZone::fate_of(const SurfaceSample& sample) const {
   const Marks* marks = marks_of(sample.voxel);
-  if (!marks) return SampleFate::kKeep;
+  if (!marks) return SampleAction::kKeep;
   const std::size_t offset = offset_of(sample.voxel);
-  if (marks->ghost.test(offset)) return SampleFate::kFree;
-  if (marks->absent.test(offset)) return SampleFate::kUnknown;
+  if (marks->ghost.test(offset)) return SampleAction::kFree;
+  if (marks->absent.test(offset)) return SampleAction::kUnknown;
   const bool near_ghost = marks->near_ghost.test(offset);
   const bool near_still = marks->near_still.test(offset);
   const bool near_unseen = marks->near_unseen.test(offset);
-  if (!(sample.weight > 0.0F) && near_ghost && !near_still && !near_unseen) return SampleFate::kUnknown;
-  if (!near_ghost && (marks->unseen.test(offset) || (near_unseen && !near_still))) return SampleFate::kKeep;
-  return marks->cells.test(cell_of(sample.voxel)) ? SampleFate::kForget : SampleFate::kKeep;
+  if (!(sample.weight > 0.0F) && near_ghost && !near_still && !near_unseen) return SampleAction::kUnknown;
+  if (!near_ghost && (marks->unseen.test(offset) || (near_unseen && !near_still))) return SampleAction::kKeep;
+  return marks->cells.test(cell_of(sample.voxel)) ? SampleAction::kEraseSample : SampleAction::kKeep;
 }
 
 bool GhostZone::in_view(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) const {

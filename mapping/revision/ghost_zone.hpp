@@ -19,7 +19,7 @@ class GhostZone {
   /// Ghosts become free, absent voxels unknown. Other samples of the zone are erased to be measured again,
   /// except on surface that no frame would measure. An occupied voxel without a sample has no votes: within
   /// two voxels of a ghost it becomes unknown, unless surface that remains is also within two voxels.
-  [[nodiscard]] SampleFate fate_of(const SurfaceSample& sample) const;
+  [[nodiscard]] SampleAction fate_of(const SurfaceSample& sample) const;
   /// True if a voxel is near enough to affect the zone.
   [[nodiscard]] bool reaches(const VoxelIndex& voxel) const;
   /// True if any part of the zone may be in the camera's image.

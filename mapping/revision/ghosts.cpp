@@ -62,7 +62,7 @@ std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) 
   std::unordered_map<std::uint64_t, std::size_t> position;
   for (const VotedVoxel& one : voxels) {
     const VoxelIndex& voxel = one.voxel;
-    const auto [found, is_new] = position.try_emplace(cell_code(cell_of(voxel)), cells.size());
+    const auto [found, is_new] = position.try_emplace(voxel_key(cell_of(voxel)), cells.size());
     if (is_new) cells.push_back({cell_of(voxel)});
     ++cells[found->second].voxels;
   }
@@ -77,7 +77,7 @@ std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) 
       const Cell& cell = cells[group[done]];
       count += cell.voxels;
       for (int i = 0; i < kCellsRound; ++i) {
-        const auto found = position.find(cell_code(cell.index + cell_round(i)));
+        const auto found = position.find(voxel_key(cell.index + neighbour_offset(i)));
         if (found == position.end() || reached[found->second] != 0) continue;
         reached[found->second] = 1;
         group.push_back(found->second);
@@ -88,14 +88,14 @@ std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) 
   std::vector<std::size_t> together;
   together.reserve(voxels.size());
   for (const VotedVoxel& one : voxels)
-    together.push_back(cells[position.at(cell_code(cell_of(one.voxel)))].together);
+    together.push_back(cells[position.at(voxel_key(cell_of(one.voxel)))].together);
   return together;
 }
 
 }  // namespace
 
 void require_valid(const GhostConfig& c) {
-  const SettingRules require{"ghosts"};
+  const ConfigCheck require{"ghosts"};
   require(c.margin_m > 0.0F && std::isfinite(c.margin_m), "margin_m", c.margin_m, "> 0");
   require(c.margin_per_m >= 0.0F && std::isfinite(c.margin_per_m), "margin_per_m", c.margin_per_m, ">= 0");
   require(c.margin_voxels >= 0.0F && std::isfinite(c.margin_voxels), "margin_voxels", c.margin_voxels,

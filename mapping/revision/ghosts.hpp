@@ -83,7 +83,7 @@ class GhostVotes {
   std::vector<Brick> bricks_;
   std::vector<Votes> votes_;
   std::vector<AbsenceVotes> absence_;  // in the order of votes_
-  AbsenceLooks absence_looks_;
+  AbsenceVoter absence_looks_;
   DepthWindows windows_;
 };
 

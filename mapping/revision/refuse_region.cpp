@@ -111,19 +111,19 @@ Eigen::AlignedBox3d seen_box(const std::vector<Frame>& frames, std::span<const R
 WorldRegion::WorldRegion(std::span<const Eigen::Vector3d> points_world, double cell_m) : cell_m_(cell_m) {
   for (const Eigen::Vector3d& p_world : points_world)
     for (int n = 0; n < kCellsRound; ++n) {
-      const Eigen::Vector3i cell = cell_of(p_world, cell_m) + cell_round(n);
-      if (!cells_.insert(cell_code(cell)).second) continue;
+      const Eigen::Vector3i cell = cell_of(p_world, cell_m) + neighbour_offset(n);
+      if (!cells_.insert(voxel_key(cell)).second) continue;
       box_world_.extend(cell.cast<double>() * cell_m);
       box_world_.extend((cell + Eigen::Vector3i::Ones()).cast<double>() * cell_m);
     }
 }
 
 bool WorldRegion::contains(const Eigen::Vector3d& p_world) const {
-  return box_world_.contains(p_world) && cells_.contains(cell_code(cell_of(p_world, cell_m_)));
+  return box_world_.contains(p_world) && cells_.contains(voxel_key(cell_of(p_world, cell_m_)));
 }
 
-Eigen::AlignedBox3d renew_region(StaticMap& map, const WorldRegion& region,
-                                 std::span<const RegionView> views) {
+Eigen::AlignedBox3d refuse_region(StaticMap& map, const WorldRegion& region,
+                                  std::span<const RegionView> views) {
   if (views.empty() || region.box_world().isEmpty()) return {};
   const std::vector<Frame> frames = masked(region, views);
   const double voxel_m = map.resolution_m();
@@ -134,12 +134,12 @@ Eigen::AlignedBox3d renew_region(StaticMap& map, const WorldRegion& region,
   map.revise_samples(box_world, [&](const SurfaceSample& sample) {
     const Eigen::Vector3d centre_world = (sample.voxel.cast<double>().array() + 0.5).matrix() * voxel_m;
     const Votes votes = voters.about(centre_world);
-    SampleFate fate = SampleFate::kKeep;
+    SampleAction fate = SampleAction::kKeep;
     if (votes.through > votes.at)
-      fate = SampleFate::kFree;
+      fate = SampleAction::kFree;
     else if (votes.at > 0 && region.contains(centre_world))
-      fate = SampleFate::kForget;
-    changed |= fate != SampleFate::kKeep;
+      fate = SampleAction::kEraseSample;
+    changed |= fate != SampleAction::kKeep;
     return fate;
   });
   for (std::size_t i = 0; i < frames.size(); ++i)

@@ -43,7 +43,7 @@ struct RegionView {
 ///
 /// @param views  frames of one static scene; several, because a single frame turns its noise into surface
 /// @return the box (world) in which surface may have appeared or disappeared; empty if nothing changed
-Eigen::AlignedBox3d renew_region(StaticMap& map, const WorldRegion& region,
-                                 std::span<const RegionView> views);
+Eigen::AlignedBox3d refuse_region(StaticMap& map, const WorldRegion& region,
+                                  std::span<const RegionView> views);
 
 }  // namespace roomradar

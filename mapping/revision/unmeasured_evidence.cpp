@@ -34,15 +34,15 @@ class Unreached {
  public:
   explicit Unreached(std::span<const VotedVoxel> voxels) : voxels_(voxels) {
     index_of_.reserve(voxels.size());
-    for (std::size_t i = 0; i < voxels.size(); ++i) index_of_.emplace(cell_code(voxels[i].voxel), i);
+    for (std::size_t i = 0; i < voxels.size(); ++i) index_of_.emplace(voxel_key(voxels[i].voxel), i);
   }
 
-  void take(const VoxelIndex& voxel) { index_of_.erase(cell_code(voxel)); }
+  void take(const VoxelIndex& voxel) { index_of_.erase(voxel_key(voxel)); }
   // Takes a voxel and its 26 neighbours, as far as they are in the set.
   template <typename Take>
   void take_round(const VoxelIndex& voxel, const Take& take) {
     for (int i = 0; i < kCellsRound; ++i) {
-      const auto found = index_of_.find(cell_code(voxel + cell_round(i)));
+      const auto found = index_of_.find(voxel_key(voxel + neighbour_offset(i)));
       if (found == index_of_.end()) continue;
       const VotedVoxel& taken = voxels_[found->second];
       index_of_.erase(found);
@@ -75,7 +75,7 @@ double turn_change(std::span<const VotedVoxel> group, std::span<const AbsenceVot
 
 }  // namespace
 
-void AbsenceLooks::begin(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+void AbsenceVoter::begin(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   centres_world_.emplace_back(T_world_camera.translation());
   Eigen::Matrix3d K = Eigen::Matrix3d::Identity();
   K(0, 0) = frame.colour_camera.fx_px;
@@ -86,7 +86,7 @@ void AbsenceLooks::begin(const Frame& frame, const Eigen::Isometry3d& T_world_ca
   K_t_colour_depth_ = (K * frame.T_colour_depth.translation()).cast<float>();
 }
 
-void AbsenceLooks::turn(const Frame& frame, const Eigen::Vector3f& p_camera, State state,
+void AbsenceVoter::turn(const Frame& frame, const Eigen::Vector3f& p_camera, State state,
                         AbsenceVotes& votes) const {
   const Eigen::Vector3f p = K_R_colour_depth_ * p_camera + K_t_colour_depth_;
   if (!(p.z() > 0.0F)) return;
@@ -114,11 +114,11 @@ void AbsenceLooks::turn(const Frame& frame, const Eigen::Vector3f& p_camera, Sta
   votes.last_look = static_cast<std::uint16_t>(centres_world_.size() - 1);
 }
 
-void AbsenceLooks::measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const {
+void AbsenceVoter::measured(const Frame& frame, const Eigen::Vector3f& p_camera, AbsenceVotes& votes) const {
   turn(frame, p_camera, State::kMeasured, votes);
 }
 
-void AbsenceLooks::unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera,
+void AbsenceVoter::unmeasured(const Frame& frame, int x, int y, const Eigen::Vector3f& p_camera,
                               float measured_share, bool beside_nearer, bool has_colour,
                               AbsenceVotes& votes) const {
   const float z = p_camera.z();

@@ -31,7 +31,7 @@ struct AbsenceVotes {
 };
 
 /// Converts frames into votes; one instance per map, frames in the order of the recording.
-class AbsenceLooks {
+class AbsenceVoter {
  public:
   void begin(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
   /// Call if the frame measures the voxel's own distance in the pixel that sees it.

@@ -56,7 +56,7 @@ std::vector<fs::path> abandoned(const fs::path& target, const std::string& word)
 
 /// Restores a folder that was moved aside if nothing replaced it; removes all other abandoned folders.
 void clear_abandoned(const fs::path& target) {
-  if (const fs::path aside = set_aside_of(target); !aside.empty()) {
+  if (const fs::path aside = interrupted_replacement_of(target); !aside.empty()) {
     if (::rename(aside.c_str(), target.c_str()) != 0) fail(target, "cannot be brought back", errno);
   }
   std::error_code ignored;
@@ -75,7 +75,7 @@ void sync_to_disk(const fs::path& path) {
   if (result != 0) fail(path, "does not reach the disk", reason);
 }
 
-PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_(beside(target, kPartial)) {
+AtomicFolder::AtomicFolder(const fs::path& target) : target_(target), partial_(beside(target, kPartial)) {
   std::error_code fault;
   fs::create_directories(parent_of(target), fault);
   if (fault) fail(parent_of(target), "the folder cannot be made", fault.value());
@@ -85,12 +85,12 @@ PartialFolder::PartialFolder(const fs::path& target) : target_(target), partial_
   if (fault) fail(partial_, "the folder cannot be made", fault.value());
 }
 
-PartialFolder::~PartialFolder() {
+AtomicFolder::~AtomicFolder() {
   std::error_code ignored;  // no remedy here; the folder's name marks it as partial
   fs::remove_all(partial_, ignored);
 }
 
-void PartialFolder::put_in_place() {
+void AtomicFolder::commit() {
   for (const fs::directory_entry& entry : fs::directory_iterator(partial_)) sync_to_disk(entry.path());
   sync_to_disk(partial_);
   if (!fs::exists(fs::symlink_status(target_))) {
@@ -117,20 +117,20 @@ void PartialFolder::put_in_place() {
   }
 }
 
-fs::path set_aside_of(const fs::path& target) {
+fs::path interrupted_replacement_of(const fs::path& target) {
   if (fs::exists(fs::symlink_status(target))) return {};
   const std::vector<fs::path> aside = abandoned(target, kBefore);
   return aside.empty() ? fs::path() : aside.front();
 }
 
-std::string swap_mark_of(const fs::path& folder) {
+std::string folder_version(const fs::path& folder) {
   struct stat facts {};
   if (::stat(folder.c_str(), &facts) != 0) return {};
   return std::to_string(facts.st_dev) + " " + std::to_string(facts.st_ino) + " " +
          std::to_string(facts.st_ctim.tv_sec) + " " + std::to_string(facts.st_ctim.tv_nsec);
 }
 
-void fail_as_never_still(const fs::path& folder) {
+void fail_replaced_too_often(const fs::path& folder) {
   throw Error(folder.string() +
               ": is replaced by another process again and again; read it when that is done");
 }

@@ -10,8 +10,8 @@ namespace {
 constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
 // The voxels whose coordinates are all multiples of `spacing`.
-VoxelBits lattice_points(const Eigen::Vector3i& size, int spacing) {
-  VoxelBits points(size, false);
+BitGrid lattice_points(const Eigen::Vector3i& size, int spacing) {
+  BitGrid points(size, false);
   for (int z = 0; z < size.z(); z += spacing)
     for (int y = 0; y < size.y(); y += spacing)
       for (int x = 0; x < size.x(); x += spacing) points.set({x, y, z}, true);
@@ -20,7 +20,7 @@ VoxelBits lattice_points(const Eigen::Vector3i& size, int spacing) {
 
 }  // namespace
 
-VoxelBits::VoxelBits(const Eigen::Vector3i& size, bool value)
+BitGrid::BitGrid(const Eigen::Vector3i& size, bool value)
     : size_(size),
       words_a_row_(static_cast<std::size_t>(size.x() + 63) / 64),
       words_(words_a_row_ * static_cast<std::size_t>(size.y()) * static_cast<std::size_t>(size.z()),
@@ -28,18 +28,18 @@ VoxelBits::VoxelBits(const Eigen::Vector3i& size, bool value)
   clear_row_ends();
 }
 
-void VoxelBits::clear_row_ends() {
+void BitGrid::clear_row_ends() {
   const int used = size_.x() % 64;
   if (used == 0) return;
   for (std::size_t i = words_a_row_; i <= words_.size(); i += words_a_row_) words_[i - 1] &= ~(kAll << used);
 }
 
-bool VoxelBits::at(const Eigen::Vector3i& p) const {
+bool BitGrid::at(const Eigen::Vector3i& p) const {
   if ((p.array() < 0).any() || (p.array() >= size_.array()).any()) return false;
   return (row(p.y(), p.z())[p.x() / 64] >> (p.x() % 64) & 1U) != 0;
 }
 
-void VoxelBits::set_box(const Eigen::Vector3i& low, const Eigen::Vector3i& high, bool value) {
+void BitGrid::set_box(const Eigen::Vector3i& low, const Eigen::Vector3i& high, bool value) {
   const Eigen::Vector3i from = low.cwiseMax(0), to = high.cwiseMin(size_);
   if ((from.array() >= to.array()).any()) return;
   const int first = from.x() / 64, last = (to.x() - 1) / 64;
@@ -54,26 +54,26 @@ void VoxelBits::set_box(const Eigen::Vector3i& low, const Eigen::Vector3i& high,
     }
 }
 
-VoxelBits& VoxelBits::operator&=(const VoxelBits& other) {
+BitGrid& BitGrid::operator&=(const BitGrid& other) {
   assert(size_ == other.size_);
   for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= other.words_[i];
   return *this;
 }
 
-VoxelBits& VoxelBits::operator|=(const VoxelBits& other) {
+BitGrid& BitGrid::operator|=(const BitGrid& other) {
   assert(size_ == other.size_);
   for (std::size_t i = 0; i < words_.size(); ++i) words_[i] |= other.words_[i];
   return *this;
 }
 
-VoxelBits& VoxelBits::subtract(const VoxelBits& other) {
+BitGrid& BitGrid::subtract(const BitGrid& other) {
   assert(size_ == other.size_);
   for (std::size_t i = 0; i < words_.size(); ++i) words_[i] &= ~other.words_[i];
   return *this;
 }
 
-VoxelBits VoxelBits::shifted(int axis, int step) const {
-  VoxelBits out(size_, false);
+BitGrid BitGrid::shifted(int axis, int step) const {
+  BitGrid out(size_, false);
   if (axis == 0) {
     for (std::size_t start = 0; start < words_.size(); start += words_a_row_)
       for (std::size_t i = 0; i < words_a_row_; ++i) {
@@ -93,10 +93,10 @@ VoxelBits VoxelBits::shifted(int axis, int step) const {
   return out;
 }
 
-bool VoxelBits::spread_to_row(const VoxelBits& source, const VoxelBits& where,
-                              const std::array<VoxelBits, 3>& barred, int y, int z) {
+bool BitGrid::spread_to_row(const BitGrid& source, const BitGrid& where,
+                            const std::array<BitGrid, 3>& blocked, int y, int z) {
   std::uint64_t* own = row(y, z);
-  const std::uint64_t *allowed = where.row(y, z), *beside = source.row(y, z), *bars_x = barred[0].row(y, z);
+  const std::uint64_t *allowed = where.row(y, z), *beside = source.row(y, z), *bars_x = blocked[0].row(y, z);
   bool any = false;
   const auto add = [&](std::size_t i, std::uint64_t word) {
     word &= allowed[i] & ~own[i];
@@ -107,10 +107,10 @@ bool VoxelBits::spread_to_row(const VoxelBits& source, const VoxelBits& where,
     const std::uint64_t* from = source.row(from_y, from_z);
     for (std::size_t i = 0; i < words_a_row_; ++i) add(i, from[i] & ~bars[i]);
   };
-  if (y > 0) add_row(y - 1, z, barred[1].row(y - 1, z));
-  if (y + 1 < size_.y()) add_row(y + 1, z, barred[1].row(y, z));
-  if (z > 0) add_row(y, z - 1, barred[2].row(y, z - 1));
-  if (z + 1 < size_.z()) add_row(y, z + 1, barred[2].row(y, z));
+  if (y > 0) add_row(y - 1, z, blocked[1].row(y - 1, z));
+  if (y + 1 < size_.y()) add_row(y + 1, z, blocked[1].row(y, z));
+  if (z > 0) add_row(y, z - 1, blocked[2].row(y, z - 1));
+  if (z + 1 < size_.z()) add_row(y, z + 1, blocked[2].row(y, z));
   for (std::size_t i = 0; i < words_a_row_; ++i) {
     const std::uint64_t up = beside[i] & ~bars_x[i];
     const std::uint64_t carried = i > 0 ? (beside[i - 1] & ~bars_x[i - 1]) >> 63U : 0;
@@ -120,18 +120,18 @@ bool VoxelBits::spread_to_row(const VoxelBits& source, const VoxelBits& where,
   return any;
 }
 
-void VoxelBits::spread(const VoxelBits& where, const std::array<VoxelBits, 3>& barred) {
-  const VoxelBits before = *this;
+void BitGrid::spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
+  const BitGrid before = *this;
   for (int z = 0; z < size_.z(); ++z)
-    for (int y = 0; y < size_.y(); ++y) spread_to_row(before, where, barred, y, z);
+    for (int y = 0; y < size_.y(); ++y) spread_to_row(before, where, blocked, y, z);
 }
 
 // In place, alternately upwards and downwards, so a straight path of any length takes one pass.
-void VoxelBits::flood(const VoxelBits& where, const std::array<VoxelBits, 3>& barred) {
+void BitGrid::flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
   for (bool any = true; any;) {
     any = false;
     const auto flood_row = [&](int y, int z) {
-      while (spread_to_row(*this, where, barred, y, z)) any = true;
+      while (spread_to_row(*this, where, blocked, y, z)) any = true;
     };
     for (int z = 0; z < size_.z(); ++z)
       for (int y = 0; y < size_.y(); ++y) flood_row(y, z);
@@ -140,10 +140,10 @@ void VoxelBits::flood(const VoxelBits& where, const std::array<VoxelBits, 3>& ba
   }
 }
 
-VoxelBits opened(const VoxelBits& bits, int edge, int lattice) {
-  VoxelBits cubes = bits;  // after the loop: the lowest voxels of whole cubes
+BitGrid opened(const BitGrid& bits, int edge, int lattice) {
+  BitGrid cubes = bits;  // after the loop: the lowest voxels of whole cubes
   for (int axis = 0; axis < 3; ++axis) {
-    VoxelBits ahead = cubes;
+    BitGrid ahead = cubes;
     for (int i = 1; i < edge; ++i) {
       ahead = ahead.shifted(axis, 1);
       cubes &= ahead;
@@ -151,7 +151,7 @@ VoxelBits opened(const VoxelBits& bits, int edge, int lattice) {
   }
   if (lattice > 1) cubes &= lattice_points(bits.size(), lattice);
   for (int axis = 0; axis < 3; ++axis) {
-    VoxelBits behind = cubes;
+    BitGrid behind = cubes;
     for (int i = 1; i < edge; ++i) {
       behind = behind.shifted(axis, -1);
       cubes |= behind;

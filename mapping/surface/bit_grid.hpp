@@ -11,11 +11,11 @@ namespace roomradar {
 
 /// Rows run along x. All functions treat voxels outside the grid as clear. Unused bits in the last word of a
 /// row are always clear.
-class VoxelBits {
+class BitGrid {
  public:
-  VoxelBits() = default;
+  BitGrid() = default;
   /// Sets all voxels to `value`. Sizes must be >= 0.
-  VoxelBits(const Eigen::Vector3i& size, bool value);
+  BitGrid(const Eigen::Vector3i& size, bool value);
 
   [[nodiscard]] const Eigen::Vector3i& size() const { return size_; }
   [[nodiscard]] std::size_t memory_bytes() const { return words_.size() * sizeof(std::uint64_t); }
@@ -26,19 +26,19 @@ class VoxelBits {
   void set_box(const Eigen::Vector3i& low, const Eigen::Vector3i& high, bool value);
 
   /// Both grids must have the same size.
-  VoxelBits& operator&=(const VoxelBits& other);
-  VoxelBits& operator|=(const VoxelBits& other);
-  VoxelBits& subtract(const VoxelBits& other);
-  friend bool operator==(const VoxelBits&, const VoxelBits&) = default;
+  BitGrid& operator&=(const BitGrid& other);
+  BitGrid& operator|=(const BitGrid& other);
+  BitGrid& subtract(const BitGrid& other);
+  friend bool operator==(const BitGrid&, const BitGrid&) = default;
 
   /// Returns a grid in which each voxel has the value of its neighbour `step` (-1 or 1) along the axis.
-  [[nodiscard]] VoxelBits shifted(int axis, int step) const;
+  [[nodiscard]] BitGrid shifted(int axis, int step) const;
 
   /// Dilates by one step along the axes, restricted to `where`. A voxel set in barred[axis] blocks the step
   /// between it and the next voxel along that axis, in both directions. All grids have the same size.
-  void spread(const VoxelBits& where, const std::array<VoxelBits, 3>& barred);
+  void spread(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
   /// Repeats spread() until nothing changes.
-  void flood(const VoxelBits& where, const std::array<VoxelBits, 3>& barred);
+  void flood(const BitGrid& where, const std::array<BitGrid, 3>& blocked);
 
   /// Calls visit(p) for each set voxel, z slowest, x fastest.
   template <typename Visit>
@@ -62,7 +62,7 @@ class VoxelBits {
   }
   void clear_row_ends();
   /// Spreads from voxels of `source`, which may be this grid, into one row. Returns true if that added any.
-  bool spread_to_row(const VoxelBits& source, const VoxelBits& where, const std::array<VoxelBits, 3>& barred,
+  bool spread_to_row(const BitGrid& source, const BitGrid& where, const std::array<BitGrid, 3>& blocked,
                      int y, int z);
 
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
@@ -73,6 +73,6 @@ class VoxelBits {
 /// Morphological opening by a cube: keeps the voxels that are in a cube of edge x edge x edge set voxels and
 /// removes thinner parts. With lattice > 1 only cubes whose lowest voxel's coordinates are multiples of it
 /// count. edge and lattice must be >= 1.
-VoxelBits opened(const VoxelBits& bits, int edge, int lattice = 1);
+BitGrid opened(const BitGrid& bits, int edge, int lattice = 1);
 
 }  // namespace roomradar

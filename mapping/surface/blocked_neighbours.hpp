@@ -1,4 +1,4 @@
-// barred_steps.hpp: finds the steps between neighbouring grid cells that a surface blocks.
+// blocked_neighbours.hpp: finds the steps between neighbouring grid cells that a surface blocks.
 #pragma once
 #include <array>
 
@@ -11,6 +11,6 @@ namespace roomradar {
 /// Returns one bit grid per axis: a cell is set if the segment from its centre to the centre of the next cell
 /// along that axis intersects the surface. Triangles include their edges; triangles with a non-finite corner
 /// are ignored.
-std::array<VoxelBits, 3> barred_steps(const Mesh& surface_world, const CellGrid& grid);
+std::array<BitGrid, 3> blocked_neighbours(const Mesh& surface_world, const CellGrid& grid);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// surface_net.cpp: dual marching cubes over bricks of samples.
+// dual_marching_cubes.cpp: dual marching cubes over bricks of samples.
 #include "mapping/surface/dual_marching_cubes.hpp"
 
 #include <algorithm>
@@ -104,7 +104,7 @@ const std::array<Sheets, 256>& sheet_table() {
   return table;
 }
 
-using CellCorners = std::array<const BrickSample*, 8>;
+using CellCorners = std::array<const TsdfSample*, 8>;
 
 Eigen::Vector3f corner_position(unsigned corner) {
   return {static_cast<float>(corner & 1U), static_cast<float>(corner >> 1U & 1U),
@@ -131,8 +131,8 @@ struct SheetVertex {
   Rgb colour{128, 128, 128};
 };
 
-bool is_measured_crossing(const BrickSample& from, const BrickSample& to) {
-  return !from.guessed && !to.guessed && (from.distance_m < 0.0F) != (to.distance_m < 0.0F);
+bool is_measured_crossing(const TsdfSample& from, const TsdfSample& to) {
+  return !from.extrapolated && !to.extrapolated && (from.distance_m < 0.0F) != (to.distance_m < 0.0F);
 }
 
 SheetVertex place_vertex(const CellCorners& corners, const Sheets& sheets, int sheet) {
@@ -142,8 +142,8 @@ SheetVertex place_vertex(const CellCorners& corners, const Sheets& sheets, int s
   float crossings = 0.0F;
   for (unsigned e = 0; e < 12; ++e) {
     const auto [a, b] = kCellEdges[e];
-    const BrickSample& from = *corners[a];
-    const BrickSample& to = *corners[b];
+    const TsdfSample& from = *corners[a];
+    const TsdfSample& to = *corners[b];
     if ((from.distance_m < 0.0F) == (to.distance_m < 0.0F) || sheets.of_edge[e] != sheet) continue;
     const float weight = is_measured_crossing(from, to) ? 1.0F : kOfGuess;
     const float t = from.distance_m / (from.distance_m - to.distance_m);
@@ -166,7 +166,7 @@ SheetVertex place_vertex(const CellCorners& corners, const Sheets& sheets, int s
 
 class Net {
  public:
-  Net(const SampleBricks& bricks, double resolution_m)
+  Net(const TsdfBricks& bricks, double resolution_m)
       : bricks_(bricks), resolution_m_(resolution_m), cells_(bricks.bricks().size()) {
     if (bricks.bricks().empty()) return;
     mesh_.origin = bricks.bricks().front().first.cast<double>() * resolution_m;
@@ -187,7 +187,7 @@ class Net {
   };
   // Samples (or cells) of a brick plus one voxel on one side of each axis.
   static constexpr int kWindow = kBrickEdge + 1;
-  using SampleWindow = std::array<const BrickSample*, kWindow * kWindow * kWindow>;
+  using SampleWindow = std::array<const TsdfSample*, kWindow * kWindow * kWindow>;
 
   static std::size_t in_window(int x, int y, int z) {
     return static_cast<std::size_t>((z * kWindow + y) * kWindow + x);
@@ -206,8 +206,8 @@ class Net {
       for (int y = 0; y < kWindow; ++y)
         for (int x = 0; x < kWindow; ++x) {
           const auto [brick, offset] = around.place({x, y, z});
-          const BrickSample* sample =
-              brick == SampleBricks::kNone ? nullptr : &bricks_.bricks()[brick].samples[offset];
+          const TsdfSample* sample =
+              brick == TsdfBricks::kNone ? nullptr : &bricks_.bricks()[brick].samples[offset];
           window[in_window(x, y, z)] = sample && sample->known() ? sample : nullptr;
         }
   }
@@ -245,22 +245,22 @@ class Net {
 
   [[nodiscard]] unsigned signs_at(const BrickNeighbourhood& around, const Eigen::Vector3i& cell) const {
     const auto [brick, offset] = around.place(cell);
-    return brick == SampleBricks::kNone ? 0U : cells_[brick].signs[offset];
+    return brick == TsdfBricks::kNone ? 0U : cells_[brick].signs[offset];
   }
 
   // Sheets of a cell, with those faces switched that would otherwise give an edge four quads. `cell` is
   // relative to the brick's lowest voxel.
   [[nodiscard]] Sheets sheets_at(const BrickNeighbourhood& around, const Eigen::Vector3i& cell,
                                  unsigned signs) const {
-    const Sheets& usual = sheet_table()[signs];
+    const Sheets& defaults = sheet_table()[signs];
     unsigned turned = 0;
-    for (unsigned face = 0; face < 6 && usual.joined_faces != 0; ++face) {
-      if ((usual.joined_faces >> face & 1U) == 0) continue;
+    for (unsigned face = 0; face < 6 && defaults.joined_faces != 0; ++face) {
+      if ((defaults.joined_faces >> face & 1U) == 0) continue;
       const Eigen::Vector3i step = Eigen::Vector3i::Unit(face / 2) * ((face & 1U) != 0 ? 1 : -1);
       const unsigned beyond = signs_at(around, cell + step);
       if ((sheet_table()[beyond].joined_faces >> (face ^ 1U) & 1U) != 0) turned |= 1U << face;
     }
-    return turned == 0 ? usual : sheets_of(signs, turned);
+    return turned == 0 ? defaults : sheets_of(signs, turned);
   }
 
   void place_vertices(std::size_t b) {
@@ -291,12 +291,12 @@ class Net {
     fill_window(b, window_);
     const BrickNeighbourhood around(bricks_, b);
     for_each_voxel([&](int x, int y, int z) {
-      const BrickSample* from = window_[in_window(x, y, z)];
+      const TsdfSample* from = window_[in_window(x, y, z)];
       if (!from) return;
       const Eigen::Vector3i voxel(x, y, z);
       for (int axis = 0; axis < 3; ++axis) {
         const Eigen::Vector3i end = voxel + Eigen::Vector3i::Unit(axis);
-        const BrickSample* to = window_[in_window(end.x(), end.y(), end.z())];
+        const TsdfSample* to = window_[in_window(end.x(), end.y(), end.z())];
         if (!to || !is_measured_crossing(*from, *to)) continue;
         // The four cells around the edge, counter-clockwise seen from its far end.
         const int second = (axis + 1) % 3;
@@ -318,11 +318,11 @@ class Net {
   [[nodiscard]] std::uint32_t vertex_across(const BrickNeighbourhood& around, const Eigen::Vector3i& cell,
                                             const Eigen::Vector3i& from, int axis) const {
     const auto [brick, offset] = around.place(cell);
-    if (brick == SampleBricks::kNone) return kNoVertex;
+    if (brick == TsdfBricks::kNone) return kNoVertex;
     const unsigned signs = cells_[brick].signs[offset];
     if (signs == 0) return kNoVertex;
-    const Sheets& usual = sheet_table()[signs];
-    if (usual.count == 1 && usual.joined_faces == 0) return cells_[brick].first_of(offset);
+    const Sheets& defaults = sheet_table()[signs];
+    if (defaults.count == 1 && defaults.joined_faces == 0) return cells_[brick].first_of(offset);
     const auto corner = static_cast<unsigned>(from.x() | from.y() << 1 | from.z() << 2);
     const unsigned edge = edge_between(corner, corner | 1U << axis);
     return cells_[brick].first_of(offset) + sheets_at(around, cell, signs).of_edge[edge];
@@ -342,7 +342,7 @@ class Net {
     }
   }
 
-  const SampleBricks& bricks_;
+  const TsdfBricks& bricks_;
   double resolution_m_;
   std::vector<BrickCells> cells_;  // one per brick
   SampleWindow window_{};
@@ -351,6 +351,8 @@ class Net {
 
 }  // namespace
 
-Mesh surface_net(const SampleBricks& bricks, double resolution_m) { return Net(bricks, resolution_m).take(); }
+Mesh dual_marching_cubes(const TsdfBricks& bricks, double resolution_m) {
+  return Net(bricks, resolution_m).take();
+}
 
 }  // namespace roomradar

@@ -1,4 +1,5 @@
-// surface_net.hpp: dual marching cubes: extracts the zero surface of signed distances at voxel resolution.
+// dual_marching_cubes.hpp: dual marching cubes: extracts the zero surface of signed distances at voxel
+// resolution.
 #pragma once
 #include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/types/mesh.hpp"
@@ -18,6 +19,6 @@ namespace roomradar {
 /// outside corners instead. Source: Gibson, Constrained Elastic Surface Nets, MICCAI 1998 (placement);
 /// Nielson, Dual Marching Cubes, IEEE Visualization 2004 (sheets); Wenger, Isosurfaces, CRC Press 2013,
 /// chapter 3 (manifold faces).
-Mesh surface_net(const SampleBricks& bricks, double resolution_m);
+Mesh dual_marching_cubes(const TsdfBricks& bricks, double resolution_m);
 
 }  // namespace roomradar

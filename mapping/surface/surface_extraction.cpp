@@ -25,7 +25,7 @@ constexpr double kOverlap_voxels = 1.0;
 constexpr float kSpacing_voxels = 1.5F;  // spacing of the points at which the deviation is measured
 
 void require_valid(const SurfaceConfig& config) {
-  const SettingRules rules{"surface"};
+  const ConfigCheck rules{"surface"};
   const auto require = [&rules](const char* field, float value) {
     rules(std::isfinite(value) && value >= 0.0F, field, value, "finite and >= 0");
   };
@@ -35,10 +35,10 @@ void require_valid(const SurfaceConfig& config) {
   require("max_deviation_m", config.max_deviation_m);
 }
 
-Mesh full_surface(const StaticMap& map, const SurfaceConfig& config, SampleBricks bricks) {
+Mesh full_surface(const StaticMap& map, const SurfaceConfig& config, TsdfBricks bricks) {
   if (config.smoothing > 0.0F) smooth(bricks, config.smoothing, kSweeps);
-  guess_neighbours(bricks);
-  return surface_net(bricks, map.resolution_m());
+  extrapolate_neighbours(bricks);
+  return dual_marching_cubes(bricks, map.resolution_m());
 }
 
 // Returns the triangles that have a corner in the box.
@@ -54,10 +54,10 @@ std::vector<Triangle> triangles_in(const Mesh& mesh, const Eigen::AlignedBox3d& 
 
 }  // namespace
 
-Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceFacts* facts) {
+Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config, SurfaceStats* facts) {
   require_valid(config);
-  Mesh full = full_surface(map, config, SampleBricks(map, config.min_weight));
-  SimplifiedMesh result{without_specks(full, config.min_component_area_m2), 0.0F};
+  Mesh full = full_surface(map, config, TsdfBricks(map, config.min_weight));
+  SimplifiedMesh result{drop_small_components(full, config.min_component_area_m2), 0.0F};
   full = {};
   const std::size_t full_triangles = result.mesh.triangles.size();
   if (config.max_deviation_m > 0.0F) {
@@ -77,8 +77,8 @@ Mesh extract_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world,
     const Eigen::Vector3d by = Eigen::Vector3d::Constant(voxels * voxel_m);
     return Eigen::AlignedBox3d(box_world.min() - by, box_world.max() + by);
   };
-  const Mesh full = full_surface(map, config, SampleBricks(map, config.min_weight, grown(kMargin_voxels)));
-  Mesh mesh = without_specks(full, config.min_component_area_m2);
+  const Mesh full = full_surface(map, config, TsdfBricks(map, config.min_weight, grown(kMargin_voxels)));
+  Mesh mesh = drop_small_components(full, config.min_component_area_m2);
   mesh = compacted(mesh, triangles_in(mesh, grown(kOverlap_voxels)));
   if (config.max_deviation_m <= 0.0F) return mesh;
   const auto spacing_m = kSpacing_voxels * static_cast<float>(voxel_m);

@@ -22,7 +22,7 @@ struct SurfaceConfig {
 };
 
 /// Triangle counts and error of the simplification.
-struct SurfaceFacts {
+struct SurfaceStats {
   std::size_t full_triangles = 0;  ///< at voxel resolution, small components dropped
   std::size_t triangles = 0;
   float deviation_m = 0.0F;  ///< measured in both directions; not above max_deviation_m
@@ -33,8 +33,8 @@ struct SurfaceFacts {
 /// curved ones. Crack-free: every edge has two triangles, or one along a border of the observed surface, so
 /// holes stay open. Vertices are in the world (mesh.origin + vertex), normals point to the free side, colours
 /// come from the samples. An empty map gives an empty mesh. Throws Error if a setting is not finite and >= 0.
-/// Sources: surface_net.hpp, sample_smoothing.hpp and mesh_simplify.hpp.
-Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceFacts* facts = nullptr);
+/// Sources: dual_marching_cubes.hpp, sample_smoothing.hpp and mesh_simplify.hpp.
+Mesh extract_surface(const StaticMap& map, const SurfaceConfig& config = {}, SurfaceStats* facts = nullptr);
 
 /// Extracts the part of the surface in a box: all triangles with a corner in the box grown by one voxel, so
 /// up to two voxels beyond the box. Samples farther than 12 voxels from the box are ignored; they would move

@@ -159,16 +159,16 @@ void append(const Mesh& patch, Mesh& mesh) {
 
 }  // namespace
 
-Mesh outside_of(const Mesh& mesh, const Eigen::AlignedBox3d& box_world) {
+Mesh clip_outside(const Mesh& mesh, const Eigen::AlignedBox3d& box_world) {
   if (box_world.isEmpty()) return mesh;
   return Cutter(mesh, box_world).cut();
 }
 
-void renew_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world, const SurfaceConfig& config,
-                   Mesh& mesh) {
+void update_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world, const SurfaceConfig& config,
+                    Mesh& mesh) {
   if (box_world.isEmpty()) return;
   const Mesh patch = extract_surface(map, box_world, config);
-  mesh = outside_of(mesh, box_world);
+  mesh = clip_outside(mesh, box_world);
   if (patch.triangles.empty()) return;
   if (mesh.vertices.empty()) {
     mesh = patch;

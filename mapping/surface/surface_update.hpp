@@ -15,11 +15,11 @@ namespace roomradar {
 ///
 /// @param mesh  as from extract_surface(), in the world; normals and colours are kept only if present per
 /// vertex
-void renew_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world, const SurfaceConfig& config,
-                   Mesh& mesh);
+void update_surface(const StaticMap& map, const Eigen::AlignedBox3d& box_world, const SurfaceConfig& config,
+                    Mesh& mesh);
 
 /// Returns the part of a mesh outside a box: triangles across the box's sides are cut there, with
 /// interpolated vertices. Unused vertices are dropped.
-Mesh outside_of(const Mesh& mesh, const Eigen::AlignedBox3d& box_world);
+Mesh clip_outside(const Mesh& mesh, const Eigen::AlignedBox3d& box_world);
 
 }  // namespace roomradar

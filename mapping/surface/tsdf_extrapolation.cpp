@@ -14,15 +14,15 @@ struct Guess {
   float distance_m;
 };
 
-const BrickSample* known_at(const std::vector<Brick>& bricks, const BrickNeighbourhood::Place& place) {
-  if (place.brick == SampleBricks::kNone) return nullptr;
-  const BrickSample& sample = bricks[place.brick].samples[place.offset];
+const TsdfSample* known_at(const std::vector<Brick>& bricks, const BrickNeighbourhood::Place& place) {
+  if (place.brick == TsdfBricks::kNone) return nullptr;
+  const TsdfSample& sample = bricks[place.brick].samples[place.offset];
   return sample.known() ? &sample : nullptr;
 }
 
 }  // namespace
 
-void guess_neighbours(SampleBricks& bricks) {
+void extrapolate_neighbours(TsdfBricks& bricks) {
   std::vector<Brick>& all = bricks.bricks();
   std::vector<Guess> guesses;
   for (int ring = 0; ring < 2; ++ring) {
@@ -38,9 +38,9 @@ void guess_neighbours(SampleBricks& bricks) {
             int lines = 0, count = 0;
             for (int side = 0; side < 6; ++side) {
               const Eigen::Vector3i step = (side % 2 == 0 ? 1 : -1) * Eigen::Vector3i::Unit(side / 2);
-              const BrickSample* next = known_at(all, around.place(voxel + step));
+              const TsdfSample* next = known_at(all, around.place(voxel + step));
               if (!next) continue;
-              const BrickSample* beyond = known_at(all, around.place(voxel + 2 * step));
+              const TsdfSample* beyond = known_at(all, around.place(voxel + 2 * step));
               beside += next->distance_m;
               ++count;
               if (!beyond) continue;
@@ -54,10 +54,10 @@ void guess_neighbours(SampleBricks& bricks) {
           }
     }
     for (const Guess& guess : guesses) {
-      BrickSample& sample = all[guess.brick].samples[guess.offset];
+      TsdfSample& sample = all[guess.brick].samples[guess.offset];
       sample.distance_m = guess.distance_m;
       sample.weight = std::numeric_limits<float>::min();
-      sample.guessed = true;
+      sample.extrapolated = true;
     }
   }
 }

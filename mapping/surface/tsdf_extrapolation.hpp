@@ -9,6 +9,6 @@ namespace roomradar {
 /// voxels in line, or, without such a side, the mean of the known face neighbours. Adds no bricks. All cells
 /// around a measured zero crossing then have complete corners, so the surface extends as far as the
 /// measurements.
-void guess_neighbours(SampleBricks& bricks);
+void extrapolate_neighbours(TsdfBricks& bricks);
 
 }  // namespace roomradar

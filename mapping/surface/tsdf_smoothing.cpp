@@ -25,7 +25,7 @@ struct NeighbourBricks {
 
 }  // namespace
 
-void smooth(SampleBricks& bricks, float strength, int sweeps) {
+void smooth(TsdfBricks& bricks, float strength, int sweeps) {
   std::vector<Brick>& all = bricks.bricks();
   std::vector<NeighbourBricks> neighbours(all.size());
   std::vector<std::array<float, kBrickSize>> measured_m(all.size());
@@ -39,25 +39,25 @@ void smooth(SampleBricks& bricks, float strength, int sweeps) {
   }
   // The sample one step from i along an axis, in brick b or the next; null if unknown.
   const auto neighbour = [&](std::size_t beyond, std::size_t b, std::size_t i, int step,
-                             bool leaves_brick) -> const BrickSample* {
+                             bool leaves_brick) -> const TsdfSample* {
     const std::size_t brick = leaves_brick ? beyond : b;
-    if (brick == SampleBricks::kNone) return nullptr;
+    if (brick == TsdfBricks::kNone) return nullptr;
     const auto at = static_cast<int>(i) + (leaves_brick ? -(kBrickEdge - 1) * step : step);
-    const BrickSample& found = all[brick].samples[static_cast<std::size_t>(at)];
+    const TsdfSample& found = all[brick].samples[static_cast<std::size_t>(at)];
     return found.known() ? &found : nullptr;
   };
   for (int sweep = 0; sweep < sweeps; ++sweep)
     for (std::size_t b = 0; b < all.size(); ++b)
       for (std::size_t i = 0; i < kBrickSize; ++i) {
-        BrickSample& sample = all[b].samples[i];
+        TsdfSample& sample = all[b].samples[i];
         if (!sample.known() || sample.weight > kFirm * strength) continue;
         float sum = sample.weight * measured_m[b][i];
         float weight = sample.weight;
         for (const auto& [axis, step] : kAxes) {
           const int coordinate = static_cast<int>(i) / step % kBrickEdge;
-          const BrickSample* before = neighbour(neighbours[b].before[axis], b, i, -step, coordinate == 0);
+          const TsdfSample* before = neighbour(neighbours[b].before[axis], b, i, -step, coordinate == 0);
           if (!before) continue;
-          const BrickSample* after =
+          const TsdfSample* after =
               neighbour(neighbours[b].after[axis], b, i, step, coordinate == kBrickEdge - 1);
           if (!after) continue;
           sum += strength * 0.5F * (before->distance_m + after->distance_m);

@@ -11,6 +11,6 @@ namespace roomradar {
 /// unknown neighbour are left out, so flat surfaces stay in place at any strength. The smoothing radius is
 /// sqrt(s / w) voxels: a wall scanned from 1 m keeps its detail, a wall glimpsed from 4 m is averaged over
 /// several voxels. Source: weighted diffusion, the Gauss-Seidel steps of a screened Poisson equation.
-void smooth(SampleBricks& bricks, float strength, int sweeps);
+void smooth(TsdfBricks& bricks, float strength, int sweeps);
 
 }  // namespace roomradar

@@ -23,8 +23,8 @@ constexpr int kGridsAtOnce = 15;    // bit grids alive at the same time; most wh
 // State of the map in cells of one voxel, or of several if the map is very large.
 struct Known {
   CellGrid grid;
-  VoxelBits free;     // any voxel of the cell is free
-  VoxelBits unknown;  // all voxels of the cell are unknown
+  BitGrid free;     // any voxel of the cell is free
+  BitGrid unknown;  // all voxels of the cell are unknown
 };
 
 // Bounds of the known space plus a margin, aligned to multiples of `lattice` cells.
@@ -54,8 +54,8 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
   Known known;
   int edge = 1;
   known.grid = grid_round(map, known_world, margin, config.cube_voxels, edge);
-  known.free = VoxelBits(known.grid.size, false);
-  known.unknown = VoxelBits(known.grid.size, true);
+  known.free = BitGrid(known.grid.size, false);
+  known.unknown = BitGrid(known.grid.size, true);
   map.visit_leaves([&](const MapLeaf& leaf) {
     const Vector3i from = leaf.lowest_voxel.unaryExpr([&](int v) { return floor_div(v, edge); });
     const Vector3i to =
@@ -68,20 +68,20 @@ Known known_cells(const StaticMap& map, const Eigen::AlignedBox3d& known_world,
 }
 
 // Removes from `unknown` the components of less than pocket_voxels that are surrounded by free space.
-void leave_out_pockets(const Known& known, const std::array<VoxelBits, 3>& barred,
-                       const UnknownSurfaceConfig& config, VoxelBits& unknown) {
-  const VoxelBits everywhere(known.grid.size, true);
-  VoxelBits held = everywhere;  // connected to something occupied or to the margin
+void leave_out_pockets(const Known& known, const std::array<BitGrid, 3>& blocked,
+                       const UnknownSurfaceConfig& config, BitGrid& unknown) {
+  const BitGrid everywhere(known.grid.size, true);
+  BitGrid held = everywhere;  // connected to something occupied or to the margin
   held.subtract(known.unknown).subtract(known.free);
-  for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, barred);
+  for (int step = 0; step < config.cube_voxels; ++step) held.spread(everywhere, blocked);
   held.set_box(Vector3i::Zero(), Vector3i::Ones(), true);
   held &= unknown;
-  held.flood(unknown, barred);
-  VoxelBits hanging = unknown;
+  held.flood(unknown, blocked);
+  BitGrid hanging = unknown;
   hanging.subtract(held);
 
   std::vector<Vector3i> piece;
-  VoxelBits seen(known.grid.size, false);
+  BitGrid seen(known.grid.size, false);
   hanging.for_each_set([&](const Vector3i& first) {
     if (seen.at(first)) return;
     piece.assign(1, first);
@@ -101,22 +101,22 @@ void leave_out_pockets(const Known& known, const std::array<VoxelBits, 3>& barre
 
 // Cells that an object coming from free space can reach: any distance through free voxels, then rim_voxels
 // further through anything that does not count as unknown.
-VoxelBits reachable(const VoxelBits& free, const VoxelBits& unknown, const std::array<VoxelBits, 3>& barred,
-                    const UnknownSurfaceConfig& config) {
-  VoxelBits reached = opened(free, config.least_voxels);
-  reached.flood(free, barred);
-  VoxelBits passable(free.size(), true);
+BitGrid reachable(const BitGrid& free, const BitGrid& unknown, const std::array<BitGrid, 3>& blocked,
+                  const UnknownSurfaceConfig& config) {
+  BitGrid reached = opened(free, config.least_voxels);
+  reached.flood(free, blocked);
+  BitGrid passable(free.size(), true);
   passable.subtract(unknown);
-  for (int step = 0; step < config.rim_voxels; ++step) reached.spread(passable, barred);
+  for (int step = 0; step < config.rim_voxels; ++step) reached.spread(passable, blocked);
   return reached;
 }
 
 // Faces of unknown cells towards reached ones, unless a surface separates the two.
-std::vector<CellFaces> faces_between(const VoxelBits& unknown, const VoxelBits& reached,
-                                     const std::array<VoxelBits, 3>& barred) {
-  std::vector<CellFaces> faces;
+std::vector<VoxelFaces> faces_between(const BitGrid& unknown, const BitGrid& reached,
+                                      const std::array<BitGrid, 3>& blocked) {
+  std::vector<VoxelFaces> faces;
   for (int axis = 0; axis < 3; ++axis) {
-    const VoxelBits& bars = barred[static_cast<std::size_t>(axis)];
+    const BitGrid& bars = blocked[static_cast<std::size_t>(axis)];
     faces.push_back({reached.shifted(axis, 1).subtract(bars) &= unknown, axis, 1});
     faces.push_back({reached.shifted(axis, -1).subtract(bars.shifted(axis, -1)) &= unknown, axis, -1});
   }
@@ -126,7 +126,7 @@ std::vector<CellFaces> faces_between(const VoxelBits& unknown, const VoxelBits& 
 }  // namespace
 
 void require_valid(const UnknownSurfaceConfig& config) {
-  const SettingRules require{"unknown_surface"};
+  const ConfigCheck require{"unknown_surface"};
   const auto is_in_1_to_16 = [](int value) { return value >= 1 && value <= 16; };
   require(is_in_1_to_16(config.least_voxels), "least_voxels", config.least_voxels, "in 1..16");
   require(is_in_1_to_16(config.cube_voxels), "cube_voxels", config.cube_voxels, "in 1..16");
@@ -146,10 +146,10 @@ UnknownSurface unknown_surface(const StaticMap& map, const Mesh& surface_world,
   Known known = known_cells(map, counts.known_world, config);
   result.grid = known.grid;
   result.unknown = opened(opened(known.unknown, config.least_voxels), config.cube_voxels, config.cube_voxels);
-  const std::array<VoxelBits, 3> barred = barred_steps(surface_world, known.grid);
-  leave_out_pockets(known, barred, config, result.unknown);
-  const VoxelBits reached = reachable(known.free, result.unknown, barred, config);
-  result.mesh_world = mesh_of(faces_between(result.unknown, reached, barred), known.grid);
+  const std::array<BitGrid, 3> blocked = blocked_neighbours(surface_world, known.grid);
+  leave_out_pockets(known, blocked, config, result.unknown);
+  const BitGrid reached = reachable(known.free, result.unknown, blocked, config);
+  result.mesh_world = mesh_of(faces_between(result.unknown, reached, blocked), known.grid);
   result.memory_bytes = kGridsAtOnce * known.free.memory_bytes();
   return result;
 }

@@ -33,7 +33,7 @@ void require_valid(const UnknownSurfaceConfig& config);
 struct UnknownSurface {
   Mesh mesh_world;  ///< no colours, no normals; triangles face away from unknown space
   CellGrid grid;  ///< the map's voxels; cubes of several voxels if the map is too large for one bit per voxel
-  VoxelBits unknown;  ///< cells of unknown space that counts; everything outside the grid is unknown, too
+  BitGrid unknown;  ///< cells of unknown space that counts; everything outside the grid is unknown, too
   std::size_t memory_bytes = 0;  ///< approximate temporary memory of the extraction, without the mesh
 };
 

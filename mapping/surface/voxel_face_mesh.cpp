@@ -16,7 +16,7 @@ struct Face {
 };
 
 // Sorted by plane, then by row.
-std::vector<Face> sorted_faces(const CellFaces& faces) {
+std::vector<Face> sorted_faces(const VoxelFaces& faces) {
   const int u = (faces.axis + 1) % 3, v = (faces.axis + 2) % 3;
   std::vector<Face> sorted;
   faces.cells.for_each_set([&](const Vector3i& p) { sorted.push_back({p[faces.axis], p[v], p[u]}); });
@@ -67,7 +67,7 @@ class MeshMaker {
     mesh_.origin = (grid.first_cell + middle_).cast<double>() * grid.cell_m;
   }
 
-  void add_rectangle(const CellFaces& faces, int plane, int from_u, int to_u, int from_v, int to_v) {
+  void add_rectangle(const VoxelFaces& faces, int plane, int from_u, int to_u, int from_v, int to_v) {
     const auto corner = [&](int u, int v) {
       Vector3i p;
       p[faces.axis] = faces.step > 0 ? plane + 1 : plane;
@@ -102,9 +102,9 @@ class MeshMaker {
 
 }  // namespace
 
-Mesh mesh_of(const std::vector<CellFaces>& faces, const CellGrid& grid) {
+Mesh mesh_of(const std::vector<VoxelFaces>& faces, const CellGrid& grid) {
   MeshMaker maker(grid);
-  for (const CellFaces& way : faces) {
+  for (const VoxelFaces& way : faces) {
     const std::vector<Face> sorted = sorted_faces(way);
     OpenFaces plane(grid.size[(way.axis + 1) % 3], grid.size[(way.axis + 2) % 3]);
     for (auto begin = sorted.begin(); begin != sorted.end();) {

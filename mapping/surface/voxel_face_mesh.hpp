@@ -14,8 +14,8 @@ struct CellGrid {
 };
 
 /// The cells that have a face towards their neighbour `step` (-1 or 1) along the axis.
-struct CellFaces {
-  VoxelBits cells;
+struct VoxelFaces {
+  BitGrid cells;
   int axis = 0;
   int step = 1;
 };
@@ -23,6 +23,6 @@ struct CellFaces {
 /// Greedy meshing: merges the faces of a plane into rectangles, each first extended in length, then in width.
 /// Triangles face in the direction of `step`; no normals, no colours. T-junctions between rectangles leave no
 /// gaps: the corner is exactly on the other rectangle's side, since both share two coordinates.
-Mesh mesh_of(const std::vector<CellFaces>& faces, const CellGrid& grid);
+Mesh mesh_of(const std::vector<VoxelFaces>& faces, const CellGrid& grid);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// byte_archive.hpp: binary serialization; transfer() lists each type's fields once, for writing and reading.
+// byte_archive.hpp: binary serialization; serialize() lists each type's fields once, for writing and reading.
 #pragma once
 #include <Eigen/Geometry>
 #include <bit>
@@ -66,10 +66,10 @@ class ByteReader {
 
 template <typename Archive, typename Number>
 requires std::is_arithmetic_v<Number>
-void transfer(Archive& archive, Number& number) {
+void serialize(Archive& archive, Number& number) {
   if constexpr (std::is_same_v<Number, bool>) {
     auto byte = static_cast<std::uint8_t>(number);
-    transfer(archive, byte);
+    serialize(archive, byte);
     if constexpr (Archive::kReads) {
       if (byte > 1) archive.fail("is damaged: a truth value is neither 0 nor 1");
       number = byte == 1;
@@ -82,9 +82,9 @@ void transfer(Archive& archive, Number& number) {
 /// Enumeration whose values run from 0 to `last`.
 template <typename Archive, typename Enum>
 requires std::is_enum_v<Enum>
-void transfer(Archive& archive, Enum& value, Enum last) {
+void serialize(Archive& archive, Enum& value, Enum last) {
   auto number = static_cast<std::int32_t>(value);
-  transfer(archive, number);
+  serialize(archive, number);
   if constexpr (Archive::kReads) {
     if (number < 0 || number > static_cast<std::int32_t>(last)) archive.fail("is damaged: no such case");
     value = static_cast<Enum>(number);
@@ -92,9 +92,9 @@ void transfer(Archive& archive, Enum& value, Enum last) {
 }
 
 template <typename Archive>
-void transfer(Archive& archive, std::string& text) {
+void serialize(Archive& archive, std::string& text) {
   std::uint64_t size = text.size();
-  transfer(archive, size);
+  serialize(archive, size);
   if constexpr (Archive::kReads) {
     archive.require(size, 1);
     text.resize(size);
@@ -104,46 +104,46 @@ void transfer(Archive& archive, std::string& text) {
 
 /// Fixed-size matrices, as raw scalars in Eigen's storage order.
 template <typename Archive, typename Scalar, int kRows, int kColumns>
-void transfer(Archive& archive, Eigen::Matrix<Scalar, kRows, kColumns>& matrix) {
+void serialize(Archive& archive, Eigen::Matrix<Scalar, kRows, kColumns>& matrix) {
   static_assert(kRows > 0 && kColumns > 0);
   archive.raw(matrix.data(), sizeof(Scalar) * kRows * kColumns);
 }
 
 template <typename Archive>
-void transfer(Archive& archive, Eigen::Isometry3d& T) {
-  transfer(archive, T.matrix());
+void serialize(Archive& archive, Eigen::Isometry3d& T) {
+  serialize(archive, T.matrix());
   if constexpr (Archive::kReads) {
     if (!is_rigid(T, 1e-3)) archive.fail("is damaged: a pose is no rotation and translation");
   }
 }
 
 template <typename Archive>
-void transfer(Archive& archive, Intrinsics& camera) {
-  transfer(archive, camera.width_px);
-  transfer(archive, camera.height_px);
+void serialize(Archive& archive, Intrinsics& camera) {
+  serialize(archive, camera.width_px);
+  serialize(archive, camera.height_px);
   for (double* number : {&camera.fx_px, &camera.fy_px, &camera.cx_px, &camera.cy_px})
-    transfer(archive, *number);
+    serialize(archive, *number);
   if constexpr (Archive::kReads) require_valid(camera, archive.where().c_str());
 }
 
 template <typename Archive, typename Value>
-void transfer(Archive& archive, std::optional<Value>& value) {
+void serialize(Archive& archive, std::optional<Value>& value) {
   bool there = value.has_value();
-  transfer(archive, there);
+  serialize(archive, there);
   if constexpr (Archive::kReads) value = there ? std::optional<Value>(Value{}) : std::nullopt;
-  if (there) transfer(archive, *value);
+  if (there) serialize(archive, *value);
 }
 
 template <typename Archive, typename Item>
-void transfer(Archive& archive, std::vector<Item>& items) {
+void serialize(Archive& archive, std::vector<Item>& items) {
   std::uint64_t size = items.size();
-  transfer(archive, size);
+  serialize(archive, size);
   if constexpr (Archive::kReads) {
     archive.require(size, 1);  // every item has at least one byte
     items.clear();
-    for (std::uint64_t i = 0; i < size; ++i) transfer(archive, items.emplace_back());
+    for (std::uint64_t i = 0; i < size; ++i) serialize(archive, items.emplace_back());
   } else {
-    for (Item& item : items) transfer(archive, item);
+    for (Item& item : items) serialize(archive, item);
   }
 }
 

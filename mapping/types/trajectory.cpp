@@ -45,9 +45,9 @@ void write_trajectory(const std::filesystem::path& path, const std::vector<Timed
   for (const TimedPose& pose : trajectory) {
     const Eigen::Vector3d t = pose.T_world_camera.translation();
     const Eigen::Quaterniond q(pose.T_world_camera.linear());
-    text += fixed_text(pose.stamp_s, 9);
+    text += format_fixed(pose.stamp_s, 9);
     for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
-      text += ' ' + general_text(value, 12);
+      text += ' ' + format_general(value, 12);
     text += '\n';
   }
   write_bytes(path, text);

@@ -54,8 +54,8 @@ bool is_valid(const Intrinsics& camera) { return !fault_of(camera); }
 
 void require_valid(const Intrinsics& camera, const char* where) {
   if (const auto fault = fault_of(camera))
-    throw Error(std::string(where) + ": " + fault->field + " = " + number_text(fault->value) + ": must be " +
-                fault->rule);
+    throw Error(std::string(where) + ": " + fault->field + " = " + format_number(fault->value) +
+                ": must be " + fault->rule);
 }
 
 bool is_rigid(const Eigen::Isometry3d& T, double tolerance) {

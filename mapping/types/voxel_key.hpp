@@ -1,4 +1,4 @@
-// cell_code.hpp: integer grid cells: floor division, hash keys, and the 27-cell neighbourhood.
+// voxel_key.hpp: integer grid cells: floor division, hash keys, and the 27-cell neighbourhood.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -9,17 +9,17 @@ namespace roomradar {
 inline int floor_div(int a, int b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
 
 /// Hash key of a cell; distinct for cells less than 2^21 apart along each axis.
-inline std::uint64_t cell_code(std::int64_t x, std::int64_t y, std::int64_t z) {
+inline std::uint64_t voxel_key(std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto field = [](std::int64_t i) { return static_cast<std::uint64_t>(i + (1 << 20)) & 0x1F'FFFFU; };
   return field(x) | field(y) << 21U | field(z) << 42U;
 }
-inline std::uint64_t cell_code(const Eigen::Vector3i& cell) {
-  return cell_code(cell.x(), cell.y(), cell.z());
+inline std::uint64_t voxel_key(const Eigen::Vector3i& cell) {
+  return voxel_key(cell.x(), cell.y(), cell.z());
 }
 
 inline constexpr int kCellsRound = 27;
 inline constexpr int kOwnCell = 13;
 /// Offset from a cell to its i-th neighbour, 0 <= i < 27; kOwnCell is the offset zero.
-inline Eigen::Vector3i cell_round(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
+inline Eigen::Vector3i neighbour_offset(int i) { return {i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1}; }
 
 }  // namespace roomradar

@@ -61,7 +61,7 @@ TileQuery tile_query(const RadarOutline& outline, double distance_m, double tole
 }  // namespace
 
 void require_valid(const GlRadarConfig& config) {
-  const SettingRules require{"radar"};
+  const ConfigCheck require{"radar"};
   require(config.resolution_px >= 1 && config.resolution_px <= 4096, "resolution_px", config.resolution_px,
           "in 1..4096");
   require(config.overlap_tolerance_m >= 0.0 && std::isfinite(config.overlap_tolerance_m),
@@ -160,7 +160,7 @@ void GlRadar::query_all(std::span<const GlQuery> queries, std::span<const SceneM
       contacts[q].status = ContactStatus::kNoAnswer;
     } else {
       contacts[q] = contact_of(queries[q], drawn_[i], results[i], scene);
-      if (config_.settle) settle(queries[q], drawn_[i], scene, contacts[q]);
+      if (config_.exact_fallback) exact_fallback(queries[q], drawn_[i], scene, contacts[q]);
     }
   }
   TileAtlas::unbind();
@@ -300,24 +300,25 @@ Contact GlRadar::contact_of(const GlQuery& query, const Drawn& drawn, const Tile
   contact.pixel_m = outline.pixel_m;
   constexpr double kSubtraction = 1.0 - 2e-7;  // rounding of the z of scene and object to float
   contact.lower_m = std::min(kSubtraction * result.lower_m, query.distance_m);
-  if (!(result.travel_m <= query.distance_m + touching)) {
+  if (!(result.contact_distance_m <= query.distance_m + touching)) {
     contact.status = ContactStatus::kNoTarget;
     return contact;
   }
-  if (result.travel_m < -touching) {
+  if (result.contact_distance_m < -touching) {
     contact.status = ContactStatus::kOverlap;
-    contact.travel_m = contact.lower_m = contact.upper_m = result.travel_m;
+    contact.contact_distance_m = contact.lower_m = contact.upper_m = result.contact_distance_m;
   } else {
     contact.status = ContactStatus::kContact;
-    contact.travel_m = std::max(static_cast<double>(result.travel_m), 0.0);
-    contact.lower_m = std::min(contact.lower_m, contact.travel_m);
-    contact.upper_m = std::max(static_cast<double>(result.upper_m) / kSubtraction, contact.travel_m);
+    contact.contact_distance_m = std::max(static_cast<double>(result.contact_distance_m), 0.0);
+    contact.lower_m = std::min(contact.lower_m, contact.contact_distance_m);
+    contact.upper_m =
+        std::max(static_cast<double>(result.upper_m) / kSubtraction, contact.contact_distance_m);
   }
 
   // The touched triangle at the pixel's centre line, in double.
   const RadarVolume volume = volume_of(outline, query.object, query.distance_m);
   contact.normal_world = -volume.u_world;
-  Eigen::Vector3d at(result.x_px + kSample_px.x(), result.y_px + kSample_px.y(), result.travel_m);
+  Eigen::Vector3d at(result.x_px + kSample_px.x(), result.y_px + kSample_px.y(), result.contact_distance_m);
   const auto reaches = std::span(reaches_).subspan(drawn.first_reach, drawn.reach_count);
   const auto past =
       std::upper_bound(reaches.begin(), reaches.end(), result.key,
@@ -345,24 +346,24 @@ Contact GlRadar::contact_of(const GlQuery& query, const Drawn& drawn, const Tile
 }
 
 /// Runs the exact test if scene is in the same pixel as the object, neither ahead nor behind.
-void GlRadar::settle(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
-                     Contact& contact) {
+void GlRadar::exact_fallback(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
+                             Contact& contact) {
   const bool is_doubtful = contact.status == ContactStatus::kNoTarget ||
-                           (contact.status == ContactStatus::kContact && contact.travel_m > 0.0);
+                           (contact.status == ContactStatus::kContact && contact.contact_distance_m > 0.0);
   if (!is_doubtful || contact.lower_m > 0.0 || query.object.mesh->tree() == nullptr) return;
-  settle_trees_.clear();
+  exact_trees_.clear();
   std::size_t last_index = GlQuery::kNotInScene;
   for (const Reach& reach : std::span(reaches_).subspan(drawn.first_reach, drawn.reach_count)) {
     if (reach.scene_index == last_index) continue;  // another run of the same mesh
     last_index = reach.scene_index;
     const SceneMesh& s = scene[last_index];
     if (s.instance.mesh->tree() == nullptr) return;
-    settle_trees_.push_back({{s.instance.mesh->tree(), s.instance.T_world_mesh}, s.kind});
+    exact_trees_.push_back({{s.instance.mesh->tree(), s.instance.T_world_mesh}, s.kind});
   }
-  const Contact exact = settler_.query({.object = {query.object.mesh->tree(), query.object.T_world_mesh},
-                                        .direction_world = query.direction_world,
-                                        .distance_m = query.distance_m},
-                                       {settle_trees_, {}});
+  const Contact exact = exact_radar_.query({.object = {query.object.mesh->tree(), query.object.T_world_mesh},
+                                            .direction_world = query.direction_world,
+                                            .distance_m = query.distance_m},
+                                           {exact_trees_, {}});
   if (exact.status == ContactStatus::kInvalidInput || exact.status == ContactStatus::kNoAnswer) return;
   const double pixel_m = contact.pixel_m;
   contact = exact;

@@ -35,7 +35,7 @@ struct GlRadarConfig {
   GlMinimum minimum = GlMinimum::kAuto;
   /// Runs CyberRadar for an exact result where the two passes cannot decide (see GlRadar), if all meshes that
   /// reach the query's volume share a tree (GpuMesh::tree()).
-  bool settle = true;
+  bool exact_fallback = true;
 };
 /// @throws Error naming the field, its value and the rule
 void require_valid(const GlRadarConfig& config);
@@ -68,13 +68,13 @@ struct GlQuery {
 ///   - is not certainly inside the front slab of the object's solid (it may be in a hollow, such as the
 ///     hole of a handle).
 ///
-/// travel_m is sampled. A spike or sheet thinner than a pixel may be missed, a surface in a hollow is
-/// compared with the object's front layer only, and travel_m is too large by about half a pixel's diagonal
-/// times the sum of both slopes. lower_m and upper_m hold nevertheless. They come from the same two passes:
-/// each pixel also stores what may be anywhere in its square, and what is certainly on its centre line.
-/// lower_m is 0 if some scene is in the same pixel as the object and neither wholly ahead nor wholly behind:
-/// a wall passed closer than a pixel, a peg in a hollow. Such a query gets the exact test on the CPU if
-/// possible (GlRadarConfig::settle); then lower_m = upper_m.
+/// contact_distance_m is sampled. A spike or sheet thinner than a pixel may be missed, a surface in a hollow
+/// is compared with the object's front layer only, and contact_distance_m is too large by about half a
+/// pixel's diagonal times the sum of both slopes. lower_m and upper_m hold nevertheless. They come from the
+/// same two passes: each pixel also stores what may be anywhere in its square, and what is certainly on its
+/// centre line. lower_m is 0 if some scene is in the same pixel as the object and neither wholly ahead nor
+/// wholly behind: a wall passed closer than a pixel, a peg in a hollow. Such a query gets the exact test on
+/// the CPU if possible (GlRadarConfig::settle); then lower_m = upper_m.
 ///
 /// One-sided surfaces (is_one_sided(), such as the frontier of observed space) block from both sides here;
 /// use CyberRadar where that matters.
@@ -147,15 +147,16 @@ class GlRadar {
   std::vector<TileDraw> batch_object_draws_, batch_scene_draws_;
   std::vector<TileQuery> batch_;
   Shown shown_;
-  CyberRadar settler_;
-  std::vector<SceneTree> settle_trees_;
+  CyberRadar exact_radar_;
+  std::vector<SceneTree> exact_trees_;
 
   bool fit_atlases(std::size_t queries);
   bool add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene, Contact& contact);
   void draw_batch();
   [[nodiscard]] Contact contact_of(const GlQuery& query, const Drawn& drawn, const TileResult& result,
                                    std::span<const SceneMesh> scene) const;
-  void settle(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene, Contact& contact);
+  void exact_fallback(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
+                      Contact& contact);
 };
 
 }  // namespace roomradar

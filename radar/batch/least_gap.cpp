@@ -127,11 +127,11 @@ TileResult LeastGap::least_of(const TileQuery& query, const float* pixels, std::
       const float* pixel = at(x, y);
       result.lower_m = std::min(result.lower_m, pixel[0]);
       result.upper_m = std::min(result.upper_m, pixel[1]);
-      result.travel_m = std::min(result.travel_m, pixel[2]);
+      result.contact_distance_m = std::min(result.contact_distance_m, pixel[2]);
     }
   }
-  if (!(result.travel_m < kNothingMet)) return result;
-  const float equal_m = result.travel_m + query.touching_m;
+  if (!(result.contact_distance_m < kNothingMet)) return result;
+  const float equal_m = result.contact_distance_m + query.touching_m;
   int x_min = query.width_px, x_max = -1, y_min = query.height_px, y_max = -1;
   for (int y = 0; y < query.height_px; ++y) {
     for (int x = 0; x < query.width_px; ++x) {

@@ -14,7 +14,7 @@ namespace roomradar {
 /// Result of one query. Distances of at least kNothingMet mean that nothing was found.
 struct TileResult {
   std::uint32_t stamp = 0;  ///< number of the call that wrote it
-  float lower_m = 0.0F, upper_m = 0.0F, travel_m = 0.0F;
+  float lower_m = 0.0F, upper_m = 0.0F, contact_distance_m = 0.0F;
   std::int32_t x_px = -1, y_px = -1;  ///< nearest pixel in its tile; -1 if nothing was found
   std::uint32_t key = 0;              ///< key of the triangle touched there
   std::uint32_t unused = 0;

@@ -11,7 +11,7 @@ namespace roomradar {
 /// A mesh that can be touched.
 struct SceneMesh {
   MeshInstance instance;
-  Touched kind = Touched::kStatic;
+  SurfaceKind kind = SurfaceKind::kStatic;
 };
 inline bool has_surface(const SceneMesh& s) {
   return s.instance.mesh != nullptr && s.instance.mesh->triangle_count() > 0;

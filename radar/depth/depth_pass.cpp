@@ -23,7 +23,7 @@ void main() {}
 }  // namespace
 
 void require_valid(const DepthPassConfig& config) {
-  const SettingRules require{"depth_pass"};
+  const ConfigCheck require{"depth_pass"};
   require(config.near_m > 0.0 && std::isfinite(config.near_m), "near_m", config.near_m, "> 0");
 }
 

@@ -56,7 +56,7 @@ class DepthRaster {
     std::vector<PieceTriangle> clipped;
   };
 
-  SecondThread second_;
+  WorkerThread second_;
   std::array<Painter, 2> painters_;
   std::vector<std::unique_ptr<KnownMesh>> known_;
   std::vector<VisibleMesh> visible_meshes_;

@@ -79,7 +79,7 @@ void ContactPatch::forget_sums() {
 }
 
 void ContactPatch::leave_out_what_is_farther(double limit_m) {
-  std::erase_if(pieces_, [&](const PatchPiece& p) { return p.travel_m > limit_m; });
+  std::erase_if(pieces_, [&](const PatchPiece& p) { return p.contact_distance_m > limit_m; });
   if (summed_m_ > limit_m) forget_sums();
 }
 
@@ -90,8 +90,8 @@ void ContactPatch::sum_up(double best_m) {
   pieces_.clear();
 }
 
-void ContactPatch::add(const TriangleGap& gap, double travel_m, double equally_m, const FrameTriangle& scene,
-                       Touched kind, double best_m) {
+void ContactPatch::add(const TriangleGap& gap, double contact_distance_m, double equally_m,
+                       const FrameTriangle& scene, SurfaceKind kind, double best_m) {
   if (is_full()) leave_out_what_is_farther(best_m + equally_m);
   if (is_full() && !pieces_.empty()) return;
   if (pieces_.size() == kCapacity) {
@@ -99,13 +99,13 @@ void ContactPatch::add(const TriangleGap& gap, double travel_m, double equally_m
     if (pieces_.size() == kCapacity) sum_up(best_m);
   }
   PatchPiece& piece = pieces_.emplace_back();
-  piece.travel_m = travel_m;
+  piece.contact_distance_m = contact_distance_m;
   piece.normal = scene.normal;
   piece.kind = kind;
   piece.count = 0;
   for (std::size_t i = 0; i < gap.count; ++i) {
     const TriangleGap::Place& p = gap.places[i];
-    if (i != gap.lowest && p.gap > travel_m + equally_m) continue;
+    if (i != gap.lowest && p.gap > contact_distance_m + equally_m) continue;
     piece.corners[piece.count++] = {p.x, p.y, p.scene_z};
   }
 }

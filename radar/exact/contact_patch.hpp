@@ -12,17 +12,17 @@ namespace roomradar {
 /// Equally near part of the intersection of two projected triangles, as points of the scene's triangle before
 /// the motion.
 struct PatchPiece {
-  double travel_m = 0.0;
+  double contact_distance_m = 0.0;
   std::array<Eigen::Vector3d, 18> corners;  // frame of the motion, m
   std::size_t count = 0;
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  Touched kind = Touched::kNothing;
+  SurfaceKind kind = SurfaceKind::kNothing;
 };
 
 struct PatchPoint {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
-  Touched kind;
+  SurfaceKind kind;
 };
 
 /// Sums of weights and first moments of points, across the motion.
@@ -41,13 +41,13 @@ class ContactPatch {
  public:
   static constexpr std::size_t kCapacity = 512;
   /// Max number of equally near pieces; later ones are dropped. Limits the exact tests to some milliseconds.
-  static constexpr std::size_t kMostPieces = 4096;
+  static constexpr std::size_t kMaxPieces = 4096;
   void clear();
-  /// Returns true if no further piece is accepted: kMostPieces pieces are equally near.
-  [[nodiscard]] bool is_full() const { return summed_count_ + pieces_.size() >= kMostPieces; }
+  /// Returns true if no further piece is accepted: kMaxPieces pieces are equally near.
+  [[nodiscard]] bool is_full() const { return summed_count_ + pieces_.size() >= kMaxPieces; }
   /// @param equally_m  points at most this much farther than the nearest count as equally near
-  void add(const TriangleGap& gap, double travel_m, double equally_m, const FrameTriangle& scene,
-           Touched kind, double best_m);
+  void add(const TriangleGap& gap, double contact_distance_m, double equally_m, const FrameTriangle& scene,
+           SurfaceKind kind, double best_m);
   /// Returns the centroid of the pieces within equally_m of best_m: of their areas if any, else of their
   /// lengths, else of their points. Requires at least one piece.
   [[nodiscard]] Eigen::Vector2d middle(double best_m, double equally_m);

@@ -66,7 +66,7 @@ double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, 
 }  // namespace
 
 void require_valid(const RadarConfig& config) {
-  const SettingRules require{"radar"};
+  const ConfigCheck require{"radar"};
   require(config.resolution_px >= 1 && config.resolution_px <= 4096, "resolution_px", config.resolution_px,
           "in 1..4096");
 }
@@ -129,7 +129,7 @@ Contact CyberRadar::query(const RadarQuery& query, const RadarScene& scene) {
   look(search);                         // R, L
   front_work_ += columns_.work;
   if (search.leaves_something && search.met_a_back && !search.overlaps && !search.is_cut_short) leave(search);
-  if (search.is_thick) return thick_contact_of(search);
+  if (search.is_thick) return inflated_contact_of(search);
   return search.overlaps ? overlap_of(search) : contact_of(search);
 }
 
@@ -207,7 +207,7 @@ void CyberRadar::look(Search& search) {
   scene_.begin(bound, static_cast<float>(limit_m(search)), heap_);
   std::make_heap(heap_.begin(), heap_.end(), is_farther);
   while (!heap_.empty() && !search.overlaps && heap_.front().low_m < limit_m(search)) {
-    const bool is_enough = may_stop_early && settled_count >= kSampledSettles &&
+    const bool is_enough = may_stop_early && settled_count >= kSampledExactTests &&
                            search.best_m <= distance_m && heap_.front().low_m >= 0.0F;
     if (is_enough || (search.is_thick && search.best_m <= 0.0)) return;
     SceneItem item = pop(heap_);
@@ -224,7 +224,7 @@ void CyberRadar::look(Search& search) {
     }
     const FrameTriangle triangle = scene_.triangle(item);
     if (item.kind == SceneItem::Kind::kTriangle) {
-      static_triangles_asked_ += scene_.kind(item) == Touched::kStatic ? 1 : 0;
+      static_triangles_asked_ += scene_.kind(item) == SurfaceKind::kStatic ? 1 : 0;
       item.kind = SceneItem::Kind::kBounded;
       item.low_m = std::max(item.low_m, bound.low_m(triangle));
       if (!(item.low_m < limit_m(search))) continue;
@@ -234,7 +234,7 @@ void CyberRadar::look(Search& search) {
       }
     }
     ++settled_count;
-    settle(search, item, triangle);
+    test_exactly(search, item, triangle);
   }
 }
 
@@ -250,7 +250,7 @@ void CyberRadar::cut_short(Search& search) {
 }
 
 /// Tests a scene triangle exactly against all object triangles in its column.
-void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriangle& s) {
+void CyberRadar::test_exactly(Search& search, const SceneItem& item, const FrameTriangle& s) {
   if (s.normal.z() > kEdgeOn && is_one_sided(scene_.kind(item))) return;
   const TurnedTree& object = search.object;
   // For an inflated object, layers are not distinguished.
@@ -258,9 +258,9 @@ void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriang
   const auto limit = [&] { return search.overlaps ? -kInfinity<double> : limit_m(search); };
   has_ahead |= search_column(object, s, limit, -object.touching_m, columns_, [&](std::uint32_t i) {
     if (search.is_thick) {
-      const double travel_m =
-          thick_travel(turned_triangle(object, i), s, search.query.margin_m, limit_m(search));
-      search.best_m = std::min(search.best_m, travel_m);
+      const double contact_distance_m =
+          inflated_distance(turned_triangle(object, i), s, search.query.margin_m, limit_m(search));
+      search.best_m = std::min(search.best_m, contact_distance_m);
       return;
     }
     FrameTriangle o = turned_corners(object, i);
@@ -280,24 +280,24 @@ void CyberRadar::settle(Search& search, const SceneItem& item, const FrameTriang
       return;
     }
     set_normal(o);
-    switch (meeting_of(o, s, gap, object.touching_m)) {
-      case Meeting::kNone:
+    switch (classify_pair(o, s, gap, object.touching_m)) {
+      case PairContact::kNone:
         return;
-      case Meeting::kCrossing:
+      case PairContact::kCrossing:
         search.overlaps = true;
         search.overlapped = {s, scene_.kind(item)};
         return;
-      case Meeting::kLeaving:
+      case PairContact::kLeaving:
         search.leaves_something = true;
         return;
-      case Meeting::kContact:
+      case PairContact::kContact:
         break;
     }
     if (search.is_rear(o)) return;
     search.met_a_back = search.met_a_back || s.normal.z() > kEdgeOn;
-    const double travel_m = std::max(gap.low_m, 0.0);
-    search.best_m = std::min(search.best_m, travel_m);
-    patch_.add(gap, travel_m, search.equally_m(), s, scene_.kind(item), search.best_m);
+    const double contact_distance_m = std::max(gap.low_m, 0.0);
+    search.best_m = std::min(search.best_m, contact_distance_m);
+    patch_.add(gap, contact_distance_m, search.equally_m(), s, scene_.kind(item), search.best_m);
   });
   if (has_ahead && !search.overlaps && s.normal.z() <= kEdgeOn) {
     search.overlaps = is_inside(object, s, columns_, layers_);
@@ -355,12 +355,12 @@ void CyberRadar::touch(const Search& search, const PatchPoint& at, Contact& cont
   contact.touched = at.kind;
 }
 
-Contact CyberRadar::thick_contact_of(const Search& search) const {
+Contact CyberRadar::inflated_contact_of(const Search& search) const {
   Contact contact = nothing_found(search);
   const double free_m = search.overlaps ? 0.0 : std::min(search.best_m, least_unsettled_m(search));
   if (free_m > search.query.distance_m) return contact;
   contact.status = ContactStatus::kContact;
-  contact.travel_m = contact.lower_m = free_m;
+  contact.contact_distance_m = contact.lower_m = free_m;
   return contact;
 }
 
@@ -368,7 +368,7 @@ Contact CyberRadar::overlap_of(const Search& search) {
   Contact contact = nothing_found(search);
   const Overlap overlap = overlap_depth(search.object, front_, scene_, search.overlapped, overlap_);
   contact.status = ContactStatus::kOverlap;
-  contact.travel_m = contact.upper_m = -overlap.depth_m;
+  contact.contact_distance_m = contact.upper_m = -overlap.depth_m;
   contact.lower_m = overlap.is_all ? -overlap.depth_m : -kInfinity<double>;
   touch(search, {overlap.point, overlap.normal, overlap.kind}, contact);
   return contact;
@@ -379,7 +379,7 @@ Contact CyberRadar::contact_of(Search& search) {
   contact.lower_m = std::min({search.best_m, least_unsettled_m(search), search.query.distance_m});
   if (!(search.best_m <= search.query.distance_m)) return contact;
   contact.status = ContactStatus::kContact;
-  contact.travel_m = contact.upper_m = search.best_m;
+  contact.contact_distance_m = contact.upper_m = search.best_m;
   const Eigen::Vector2d middle = patch_.middle(search.best_m, search.equally_m());
   if (!patch_.has_all()) look_over(search, middle);
   touch(search, patch_.nearest(middle, search.best_m, search.equally_m()), contact);
@@ -403,7 +403,7 @@ void CyberRadar::look_over(Search& search, const Eigen::Vector2d& place) {
     const FrameTriangle triangle = scene_.triangle(item);
     Eigen::AlignedBox2d outline;
     for (const Eigen::Vector3d& corner : triangle.corners) outline.extend(corner.head<2>());
-    if (outline.contains(place)) settle(search, item, triangle);
+    if (outline.contains(place)) test_exactly(search, item, triangle);
   }
 }
 

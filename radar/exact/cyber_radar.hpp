@@ -16,7 +16,7 @@ namespace roomradar {
 
 enum class RadarMode {
   kSampled,  ///< few exact tests: fast; bounds as wide as the depth range within a pixel
-  kExact     ///< exact tests until lower_m = upper_m = travel_m
+  kExact     ///< exact tests until lower_m = upper_m = contact_distance_m
 };
 constexpr std::string_view to_string(RadarMode mode) {
   return mode == RadarMode::kExact ? "exact" : "sampled";
@@ -53,14 +53,15 @@ bool is_valid(const RadarQuery& query);
 /// Cyber Radar on the CPU. M is the object's leading surface, R the scene ahead; the least gap L between them
 /// is the distance to contact. Below, u is the direction of motion and n a scene triangle's normal.
 ///
-///   1. M: per pixel, an upper bound of the object's height (FrontMap). Kept while the object's tree and the
+///   1. M: per pixel, an upper bound of the object's height (ObjectHeightMap). Kept while the object's tree
+///   and the
 ///      direction in its frame are unchanged.
 ///   2. R: the scene's boxes, large to small, nearest first (SceneInFrame). A box's least height minus the
 ///      greatest M under it is a lower bound for every contact in it. For a triangle, the bound comes from
 ///      its plane over each pixel of M.
 ///   3. L: the triangle with the least bound gets the exact test: in double, against all layers of object
-///      triangles in its column (search_column, find_gap, meeting_of). The least distance found is an upper
-///      bound and the least untested bound a lower one. Once they agree, both are exact.
+///      triangles in its column (search_column, find_gap, classify_pair). The least distance found is an
+///      upper bound and the least untested bound a lower one. Once they agree, both are exact.
 ///
 /// Needles and sheets thinner than a pixel enter M and R with their whole boxes, so neither bound misses
 /// them. Scene in a hollow of a concave object is behind the front layer; its negative gap to that layer is
@@ -75,11 +76,11 @@ bool is_valid(const RadarQuery& query);
 ///
 /// Overlap: surfaces that cross by more than touching_m(), or scene inside a closed object
 /// (TriangleTree::is_closed()), unless the scene's triangle is back-facing. Each pair of triangles crosses
-/// over an interval of travel; so does scene inside a closed object. travel_m = lower_m = upper_m is the
-/// lower end of the union of intervals that contains 0: the object is clear after moving back this far. An
-/// object that is sunk in the ground and moves along it is clear only where the ground ends, so a long search
-/// is cut short (kMostOverlapWork). Then travel_m = upper_m is the part of the union found so far, and
-/// lower_m is -infinity.
+/// over an interval of travel; so does scene inside a closed object. contact_distance_m = lower_m = upper_m
+/// is the lower end of the union of intervals that contains 0: the object is clear after moving back this
+/// far. An object that is sunk in the ground and moves along it is clear only where the ground ends, so a
+/// long search is cut short (kMostOverlapWork). Then contact_distance_m = upper_m is the part of the union
+/// found so far, and lower_m is -infinity.
 ///
 /// Sliding: an object triangle wholly on one side of a scene triangle that is exactly edge-on (|n . u| <=
 /// 1e-9) slides along it. An open sheet that runs exactly along edges of the object's mesh is therefore not
@@ -93,7 +94,7 @@ bool is_valid(const RadarQuery& query);
 /// always ignored.
 ///
 /// Contact point: the one nearest to the centroid of all equally near points, such as those of a face that
-/// lands flat. At most ContactPatch::kMostPieces pairs of triangles are counted.
+/// lands flat. At most ContactPatch::kMaxPieces pairs of triangles are counted.
 ///
 /// No GL. Not thread safe: use one radar per thread; trees and images may be shared.
 class CyberRadar {
@@ -105,16 +106,16 @@ class CyberRadar {
   /// Returns kInvalidInput if the direction is zero or not finite, the distance not finite or <= 0, the
   /// margin negative or not finite, the object without triangles, a pose of object or scene not finite, a
   /// camera unusable, a mask not of its depth image's size, a stride below 1, or a jump limit negative or
-  /// NaN. Sampled mode stops once it has a contact, has run kSampledSettles exact tests, and nothing untested
-  /// may overlap. Exact mode stops once nothing untested can be nearer.
+  /// NaN. Sampled mode stops once it has a contact, has run kSampledExactTests exact tests, and nothing
+  /// untested may overlap. Exact mode stops once nothing untested can be nearer.
   Contact query(const RadarQuery& query, const RadarScene& scene);
 
   [[nodiscard]] const RadarConfig& config() const { return config_; }
-  /// Number of Touched::kStatic triangles examined one by one so far, over all queries; triangles smaller
+  /// Number of SurfaceKind::kStatic triangles examined one by one so far, over all queries; triangles smaller
   /// than a pixel of M are not counted.
-  [[nodiscard]] std::uint64_t static_triangles_asked() const { return static_triangles_asked_; }
+  [[nodiscard]] std::uint64_t static_triangles_tested() const { return static_triangles_asked_; }
 
-  static constexpr int kSampledSettles = 48;
+  static constexpr int kSampledExactTests = 48;
   /// Limit of work (see ColumnScratch) on scene behind the object's front, some milliseconds. Reached by an
   /// object that is sunk in a very fine mesh or has one in its hollow. Beyond it lower_m is 0 in exact mode
   /// too, and back-facing surfaces cause no contact.
@@ -128,7 +129,7 @@ class CyberRadar {
     SceneItem item;
   };
   RadarConfig config_;
-  FrontMap front_;
+  ObjectHeightMap front_;
   std::uint64_t static_triangles_asked_ = 0;
   std::uint64_t front_work_ = 0;  // ColumnScratch::work of all queries since front_ was last turned
   SceneInFrame scene_;
@@ -148,14 +149,14 @@ class CyberRadar {
   [[nodiscard]] Eigen::AlignedBox3d volume_ahead(const Search& search) const;
   [[nodiscard]] SceneBound bound_of(const Search& search) const;
   void look(Search& search);
-  void settle(Search& search, const SceneItem& item, const FrameTriangle& s);
+  void test_exactly(Search& search, const SceneItem& item, const FrameTriangle& s);
   void look_over(Search& search, const Eigen::Vector2d& place);
   void cut_short(Search& search);
   void leave(Search& search);
   [[nodiscard]] double limit_m(const Search& search) const;
   [[nodiscard]] double least_unsettled_m(const Search& search) const;
   [[nodiscard]] Contact nothing_found(const Search& search) const;
-  [[nodiscard]] Contact thick_contact_of(const Search& search) const;
+  [[nodiscard]] Contact inflated_contact_of(const Search& search) const;
   [[nodiscard]] Contact overlap_of(const Search& search);
   [[nodiscard]] Contact contact_of(Search& search);
   static void touch(const Search& search, const PatchPoint& at, Contact& contact);

@@ -121,12 +121,12 @@ Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, double tolerance_m,
   return {low, high};
 }
 
-bool FrontMap::holds(const TurnedTree& object) const {
+bool ObjectHeightMap::holds(const TurnedTree& object) const {
   return revision_ == object.tree->revision() && R_frame_mesh_ == object.R_frame_mesh &&
          margin_m_ == object.margin_m;
 }
 
-void FrontMap::turn(const TurnedTree& object) {
+void ObjectHeightMap::turn(const TurnedTree& object) {
   if (holds(object)) return;
   revision_ = object.tree->revision();
   R_frame_mesh_ = object.R_frame_mesh;
@@ -136,7 +136,7 @@ void FrontMap::turn(const TurnedTree& object) {
   bounds_ = turned_bounds(object, kTolerance * object.tree->half_size().cast<double>().sum(), pending_);
 }
 
-void FrontMap::build(const TurnedTree& object, int resolution_px) {
+void ObjectHeightMap::build(const TurnedTree& object, int resolution_px) {
   turn(object);
   if (resolution_px_ == resolution_px) return;
   resolution_px_ = resolution_px;
@@ -161,7 +161,7 @@ void FrontMap::build(const TurnedTree& object, int resolution_px) {
 }
 
 /// Enters the tree from front to back, as higher boxes hide the rest.
-void FrontMap::enter_tree(const TurnedTree& object) {
+void ObjectHeightMap::enter_tree(const TurnedTree& object) {
   const TriangleTree& tree = *object.tree;
   const PixelPlaces places{object.R_frame_mesh.cast<float>(),
                            x0_,
@@ -197,7 +197,7 @@ void FrontMap::enter_tree(const TurnedTree& object) {
 }
 
 /// Each level is the maximum over two by two pixels of the level below.
-void FrontMap::build_levels() {
+void ObjectHeightMap::build_levels() {
   for (std::size_t level = 1; level < levels_.size(); ++level) {
     const Level& fine = levels_[level - 1];
     const Level& coarse = levels_[level];
@@ -215,7 +215,7 @@ void FrontMap::build_levels() {
 
 /// Returns true if all pixels of the rectangle are at least this high. Large rectangles are not examined
 /// (false).
-bool FrontMap::is_under(int x0, int x1, int y0, int y1, float height) const {
+bool ObjectHeightMap::is_under(int x0, int x1, int y0, int y1, float height) const {
   if (x1 - x0 > 8 || y1 - y0 > 8) return false;
   for (int y = y0; y <= y1; ++y) {
     const float* row = &heights_[static_cast<std::size_t>(y) * levels_[0].width];
@@ -226,14 +226,14 @@ bool FrontMap::is_under(int x0, int x1, int y0, int y1, float height) const {
   return true;
 }
 
-void FrontMap::enter_box(int x0, int x1, int y0, int y1, float height) {
+void ObjectHeightMap::enter_box(int x0, int x1, int y0, int y1, float height) {
   for (int y = y0; y <= y1; ++y) {
     float* row = &heights_[static_cast<std::size_t>(y) * levels_[0].width];
     for (int x = x0; x <= x1; ++x) row[x] = std::max(row[x], height);
   }
 }
 
-void FrontMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) {
+void ObjectHeightMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) {
   const TriangleTree& tree = *object.tree;
   const Eigen::Matrix3f R = object.R_frame_mesh.cast<float>();
   const Eigen::Vector3f centre = tree.centre().cast<float>();
@@ -284,7 +284,7 @@ void FrontMap::enter_triangle(const TurnedTree& object, std::uint32_t triangle) 
   }
 }
 
-float FrontMap::max_under(float x0_m, float x1_m, float y0_m, float y1_m) const {
+float ObjectHeightMap::max_under(float x0_m, float x1_m, float y0_m, float y1_m) const {
   const int width = levels_[0].width, height = levels_[0].height;
   // Slightly wider, so both sides of a pixel's border are included despite rounding.
   const float fx0 = (x0_m - x0_) * per_m_ - 1e-3F, fx1 = (x1_m - x0_) * per_m_ + 1e-3F;
@@ -310,7 +310,7 @@ float FrontMap::max_under(float x0_m, float x1_m, float y0_m, float y1_m) const 
   return most;
 }
 
-float FrontMap::least_gap_under(const FrameTriangle& scene) const {
+float ObjectHeightMap::least_gap_under(const FrameTriangle& scene) const {
   std::array<Eigen::Vector3f, 3> c;
   for (std::size_t i = 0; i < 3; ++i) c[i] = scene.corners[i].cast<float>();
   const Eigen::Vector3f low = c[0].cwiseMin(c[1]).cwiseMin(c[2]);

@@ -14,7 +14,7 @@ namespace roomradar {
 /// included. A node no larger than a pixel is entered as its box, so the work grows with the pixels and not
 /// with the triangles. Detail smaller than a pixel thus counts with its greatest height. A node is skipped
 /// only if all its pixels already have at least its height.
-class FrontMap {
+class ObjectHeightMap {
  public:
   /// Computes bounds(), from which callers can choose a resolution; build() must follow. No effect if tree,
   /// rotation and margin are unchanged.

@@ -24,7 +24,7 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
         const TriangleGap::Place& p = gap.places[gap.lowest];
         scratch.spans.push_back({gap.low_m, gap.high_m, {p.x, p.y, p.scene_z}});
         if (at_m == 0.0) {
-          crosses_now = crosses_now || meeting_of(o, scene, gap, touching_m) == Meeting::kCrossing;
+          crosses_now = crosses_now || classify_pair(o, scene, gap, touching_m) == PairContact::kCrossing;
         } else {
           crosses_now = crosses_now || (gap.low_m < at_m - touching_m && gap.high_m >= at_m - 1e-9);
         }
@@ -37,8 +37,8 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
           layers_at(object, inner_point(scene, which), at_m + touching_m, scratch.columns, scratch.layers);
     }
   }
-  const auto is_inside_at = [&](double travel_m) {
-    return knows_inside && is_within(scratch.layers, travel_m);
+  const auto is_inside_at = [&](double contact_distance_m) {
+    return knows_inside && is_within(scratch.layers, contact_distance_m);
   };
   if (!crosses_now) {
     if (at_m == 0.0) {
@@ -69,14 +69,14 @@ double free_below(const TurnedTree& object, const FrameTriangle& scene, double a
 
 }  // namespace
 
-Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFrame& scene,
+Overlap overlap_depth(const TurnedTree& object, const ObjectHeightMap& front, SceneInFrame& scene,
                       const OverlappedTriangle& known, OverlapScratch& scratch) {
   Overlap result;
   result.point = inner_point(known.triangle, 0);
   result.normal = known.triangle.normal;
   result.kind = known.kind;
   double free_m = 0.0;
-  const auto step_back = [&](const FrameTriangle& triangle, Touched kind, double from_m) {
+  const auto step_back = [&](const FrameTriangle& triangle, SurfaceKind kind, double from_m) {
     Eigen::Vector3d point = inner_point(triangle, 0);
     const double end_m = free_below(object, triangle, from_m, scratch, point);
     if (!(end_m < free_m)) return;

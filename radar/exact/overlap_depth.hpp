@@ -23,7 +23,7 @@ struct OverlapScratch {
 /// A scene triangle in the frame, and its kind.
 struct OverlappedTriangle {
   FrameTriangle triangle;
-  Touched kind = Touched::kNothing;
+  SurfaceKind kind = SurfaceKind::kNothing;
 };
 
 struct Overlap {
@@ -31,7 +31,7 @@ struct Overlap {
   bool is_all = true;    ///< false: depth_m is a lower bound, as the search was cut short
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< in the frame, where they separate last
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< of the scene's triangle, by its winding
-  Touched kind = Touched::kNothing;
+  SurfaceKind kind = SurfaceKind::kNothing;
 };
 
 /// Work after which the search is cut short: a few milliseconds. An object that is sunk in the ground and
@@ -43,7 +43,7 @@ inline constexpr std::uint64_t kMostOverlapWork = 40'000;
 /// more exits from the solid than entries are ahead of it. The depth is how far back the union of the
 /// intervals that contains 0 reaches. Back-facing scene triangles are ignored.
 /// @param known  an overlapped triangle, reported if the search is cut short before it finds one
-Overlap overlap_depth(const TurnedTree& object, const FrontMap& front, SceneInFrame& scene,
+Overlap overlap_depth(const TurnedTree& object, const ObjectHeightMap& front, SceneInFrame& scene,
                       const OverlappedTriangle& known, OverlapScratch& scratch);
 
 }  // namespace roomradar

@@ -73,7 +73,7 @@ RadarVolume volume_of(const RadarQuery& query, const Eigen::Matrix3d& R_frame_wo
 
 /// Calls draw(triangle) for all scene in the volume that is below or ahead of the object.
 template <typename Draw>
-void visit_scene(SceneInFrame& scene, const FrontMap& front, const Eigen::AlignedBox3d& volume,
+void visit_scene(SceneInFrame& scene, const ObjectHeightMap& front, const Eigen::AlignedBox3d& volume,
                  const Draw& draw) {
   const SceneBound bound{&front, static_cast<float>(volume.min().z())};
   constexpr float kNoLimit = std::numeric_limits<float>::infinity();
@@ -137,7 +137,7 @@ RadarPictures radar_pictures(const RadarQuery& query, const RadarScene& scene, i
                 [&](std::size_t pixel, double z) { front_m[pixel] = std::max(front_m[pixel], z); });
   }
   constexpr int kCulling_px = 24;
-  FrontMap front;
+  ObjectHeightMap front;
   front.build(object, kCulling_px);
   Eigen::AlignedBox3d volume = front.bounds();
   volume.min().z() -= object.touching_m;

@@ -31,7 +31,7 @@ void SceneBoxes::add(std::size_t index, const Eigen::AlignedBox3d& bounds_mesh,
 }
 
 void SceneBoxes::finish() {
-  by_place_.clear();
+  by_code_.clear();
   boxes_.clear();
   Eigen::AlignedBox3d middles;
   for (const auto& [index, box] : added_) middles.extend(box.center());
@@ -39,13 +39,13 @@ void SceneBoxes::finish() {
   const double scale = longest_m > 0.0 ? 1023.0 / longest_m : 0.0;
   for (std::size_t i = 0; i < added_.size(); ++i) {
     const Eigen::Vector3d cell = (added_[i].second.center() - middles.min()) * scale;
-    by_place_.emplace_back(
+    by_code_.emplace_back(
         morton_code(static_cast<std::uint32_t>(cell.x()), static_cast<std::uint32_t>(cell.y()),
                     static_cast<std::uint32_t>(cell.z())),
         i);
   }
-  std::sort(by_place_.begin(), by_place_.end());
-  for (const auto& [code, i] : by_place_) boxes_.push_back(added_[i].second);
+  std::sort(by_code_.begin(), by_code_.end());
+  for (const auto& [code, i] : by_code_) boxes_.push_back(added_[i].second);
   tree_.build(boxes_);
 }
 

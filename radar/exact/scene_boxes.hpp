@@ -34,12 +34,12 @@ class SceneBoxes {
   template <typename Work>
   void visit(const Eigen::AlignedBox3d& around_world, const Work& work) const {
     tree_.visit([&](const Eigen::AlignedBox3d& box) { return box.intersects(around_world); },
-                [&](std::size_t place) { work(added_[by_place_[place].second].first); });
+                [&](std::size_t place) { work(added_[by_code_[place].second].first); });
   }
 
  private:
   std::vector<std::pair<std::size_t, Eigen::AlignedBox3d>> added_;  // index in scene, box in the world
-  std::vector<std::pair<std::uint64_t, std::size_t>> by_place_;     // Morton code, index in added_
+  std::vector<std::pair<std::uint64_t, std::size_t>> by_code_;      // Morton code, index in added_
   std::vector<Eigen::AlignedBox3d> boxes_;
   BoxTree tree_;
   bool are_finite_ = true;

@@ -165,7 +165,7 @@ FrameTriangle SceneInFrame::triangle(const SceneItem& item) const {
   return depth_triangle(views_[item.source - trees_.size()], item.first);
 }
 
-Touched SceneInFrame::kind(const SceneItem& item) const {
+SurfaceKind SceneInFrame::kind(const SceneItem& item) const {
   if (item.source < trees_.size()) return trees_[item.source].scene->kind;
   return views_[item.source - trees_.size()].scene->kind;
 }

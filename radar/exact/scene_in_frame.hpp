@@ -28,9 +28,9 @@ struct SceneItem {
 };
 
 /// Lower bound of the distance to a box of the scene: its least height minus the object's greatest height
-/// under it. It holds for everything in the box, since FrontMap covers the whole area of each pixel.
+/// under it. It holds for everything in the box, since ObjectHeightMap covers the whole area of each pixel.
 struct SceneBound {
-  const FrontMap* front = nullptr;
+  const ObjectHeightMap* front = nullptr;
   float behind_m = 0.0F;  ///< scene wholly below this height is ignored
   [[nodiscard]] float low_m(const FrameBox& box) const {
     if (box.z1 < behind_m) return std::numeric_limits<float>::infinity();
@@ -63,7 +63,7 @@ class SceneInFrame {
   void expand(const SceneItem& item, const SceneBound& bound, float limit_m, std::vector<SceneItem>& items);
 
   [[nodiscard]] FrameTriangle triangle(const SceneItem& item) const;
-  [[nodiscard]] Touched kind(const SceneItem& item) const;
+  [[nodiscard]] SurfaceKind kind(const SceneItem& item) const;
 
  private:
   struct TreeView {

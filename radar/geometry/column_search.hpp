@@ -16,7 +16,7 @@ struct TurnedTree {
   const TriangleTree* tree = nullptr;
   Eigen::Matrix3d R_frame_mesh = Eigen::Matrix3d::Identity();
   double margin_m = 0.0;    ///< boxes are inflated by this
-  double touching_m = 0.0;  ///< closer surfaces touch; see meeting_of()
+  double touching_m = 0.0;  ///< closer surfaces touch; see classify_pair()
 };
 
 /// Returns a triangle in the frame of the motion, with a zero normal.
@@ -110,7 +110,7 @@ struct SceneColumn {
 /// The gap between the scene triangle's plane and a point is linear in the point, so its minimum and maximum
 /// over a box are exact. If the plane is steep, the heights of box and triangle bound the gap as well. All
 /// bounds include float rounding. If the scene triangle is edge-on, boxes that do not reach through its plane
-/// by touching_m are skipped: their triangles at most slide along the plane (see meeting_of()).
+/// by touching_m are skipped: their triangles at most slide along the plane (see classify_pair()).
 ///
 /// @param limit_m   callable without arguments; boxes and triangles without a gap below it are skipped
 /// @param floor_m   boxes without a gap of at least this are skipped

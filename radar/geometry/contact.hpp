@@ -12,12 +12,12 @@ enum class ContactStatus {
                   ///< finite
   kNoAnswer,      ///< the renderer failed (out of memory, context lost); nothing is known
   kNoTarget,      ///< no contact found within the distance
-  kContact,       ///< contact after travel_m >= 0
-  kOverlap,       ///< a surface facing against the motion is already inside the object; travel_m < 0
+  kContact,       ///< contact after contact_distance_m >= 0
+  kOverlap,  ///< a surface facing against the motion is already inside the object; contact_distance_m < 0
 };
 
 /// Kind of a surface that can be touched.
-enum class Touched {
+enum class SurfaceKind {
   kNothing,
   kStatic,           ///< the prescanned room
   kDynamic,          ///< dynamic foreground: things that moved since the prescan
@@ -25,28 +25,28 @@ enum class Touched {
   kUnknownFrontier,  ///< boundary between observed free space and unobserved space
   kInferredBack,     ///< assumed back and sides of a dynamic object
 };
-constexpr std::size_t kTouchedKinds = 6;
+constexpr std::size_t kSurfaceKinds = 6;
 
 /// Returns true for surfaces that were never observed. They block from their outside only, so an object that
 /// is inside when they appear, or is placed behind them, can leave.
-constexpr bool is_one_sided(Touched touched) {
-  return touched == Touched::kUnknownFrontier || touched == Touched::kInferredBack;
+constexpr bool is_one_sided(SurfaceKind touched) {
+  return touched == SurfaceKind::kUnknownFrontier || touched == SurfaceKind::kInferredBack;
 }
 
 /// Returns the name used in reports.
-constexpr std::string_view to_string(Touched touched) {
+constexpr std::string_view to_string(SurfaceKind touched) {
   switch (touched) {
-    case Touched::kNothing:
+    case SurfaceKind::kNothing:
       break;
-    case Touched::kStatic:
+    case SurfaceKind::kStatic:
       return "seen static";
-    case Touched::kDynamic:
+    case SurfaceKind::kDynamic:
       return "seen dynamic";
-    case Touched::kObject:
+    case SurfaceKind::kObject:
       return "virtual object";
-    case Touched::kUnknownFrontier:
+    case SurfaceKind::kUnknownFrontier:
       return "unknown frontier";
-    case Touched::kInferredBack:
+    case SurfaceKind::kInferredBack:
       return "inferred back";
   }
   return "nothing";
@@ -57,16 +57,16 @@ struct [[nodiscard]] Contact {
   /// Distance along the direction to contact, m; set for kContact and kOverlap only. Negative for an overlap:
   /// minus the distance back along the direction until the object is clear of surfaces that face against the
   /// motion.
-  double travel_m = 0.0;
+  double contact_distance_m = 0.0;
   /// Bounds of the true distance to contact, m. kNoTarget: lower_m is certainly free, at most the queried
-  /// distance, and upper_m is infinite. kOverlap: both are travel_m; if the overlap is too deep to be
-  /// measured (see CyberRadar), lower_m is -infinity.
+  /// distance, and upper_m is infinite. kOverlap: both are contact_distance_m; if the overlap is too deep to
+  /// be measured (see CyberRadar), lower_m is -infinity.
   double lower_m = 0.0;
   double upper_m = std::numeric_limits<double>::infinity();
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< contact point on the scene's surface
   /// Unit normal of the scene's triangle, turned to face the object.
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
-  Touched touched = Touched::kNothing;
+  SurfaceKind touched = SurfaceKind::kNothing;
   double pixel_m = 0.0;  ///< side of a radar pixel: sample spacing across the direction
 
   /// Returns true for kContact and kOverlap.

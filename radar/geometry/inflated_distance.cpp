@@ -1,4 +1,4 @@
-// thick_travel.cpp: closest points of two triangles, and steps along the plane between them.
+// inflated_distance.cpp: closest points of two triangles, and steps along the plane between them.
 #include "radar/geometry/inflated_distance.hpp"
 
 #include <algorithm>
@@ -57,9 +57,9 @@ void see_face(const Corners& from, const FrameTriangle& t, double sign, Shortest
 
 }  // namespace
 
-ShortestWay shortest_way(const FrameTriangle& object, const FrameTriangle& scene, double travel_m) {
+ShortestWay shortest_way(const FrameTriangle& object, const FrameTriangle& scene, double contact_distance_m) {
   FrameTriangle moved = object;
-  for (Eigen::Vector3d& corner : moved.corners) corner.z() += travel_m;
+  for (Eigen::Vector3d& corner : moved.corners) corner.z() += contact_distance_m;
   Shortest shortest;
   see_face(moved.corners, scene, 1.0, shortest);
   see_face(scene.corners, moved, -1.0, shortest);
@@ -74,8 +74,8 @@ ShortestWay shortest_way(const FrameTriangle& object, const FrameTriangle& scene
   return shortest.best;
 }
 
-double thick_travel(const FrameTriangle& object, const FrameTriangle& scene, double margin_m,
-                    double limit_m) {
+double inflated_distance(const FrameTriangle& object, const FrameTriangle& scene, double margin_m,
+                         double limit_m) {
   Eigen::Array3d object_low = object.corners[0], object_high = object.corners[0];
   Eigen::Array3d scene_low = scene.corners[0], scene_high = scene.corners[0];
   for (std::size_t i = 1; i < 3; ++i) {
@@ -95,17 +95,17 @@ double thick_travel(const FrameTriangle& object, const FrameTriangle& scene, dou
   if (find_gap(object, scene, gap)) {
     if (gap.low_m <= 0.0 && gap.high_m >= 0.0) return 0.0;
   }
-  double travel_m = std::max(scene_low.z() - object_high.z() - margin_m, 0.0);
+  double contact_distance_m = std::max(scene_low.z() - object_high.z() - margin_m, 0.0);
   constexpr int kSteps = 20;
   constexpr double kClose_m = 1e-10;
-  for (int step = 0; step < kSteps && travel_m < limit_m; ++step) {
-    const Eigen::Vector3d way = shortest_way(object, scene, travel_m).way;
+  for (int step = 0; step < kSteps && contact_distance_m < limit_m; ++step) {
+    const Eigen::Vector3d way = shortest_way(object, scene, contact_distance_m).way;
     const double distance_m = way.norm();
-    if (!(distance_m > margin_m + kClose_m)) return travel_m;
+    if (!(distance_m > margin_m + kClose_m)) return contact_distance_m;
     if (!(way.z() > 0.0)) return kInfinity<double>;  // the distance only grows from here
-    travel_m += (distance_m - margin_m) / (way.z() / distance_m) * (1.0 - 1e-9);
+    contact_distance_m += (distance_m - margin_m) / (way.z() / distance_m) * (1.0 - 1e-9);
   }
-  return travel_m;
+  return contact_distance_m;
 }
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// thick_travel.hpp: distance a triangle can move along z before it is within a margin of another.
+// inflated_distance.hpp: distance a triangle can move along z before it is within a margin of another.
 #pragma once
 #include "radar/geometry/triangle_gap.hpp"
 
@@ -11,14 +11,15 @@ namespace roomradar {
 /// The distance between two convex sets is a convex function of the travel, and the plane across their
 /// nearest points stays between them. Each Newton step goes to where the distance from that plane is the
 /// margin, which is never past the true solution.
-double thick_travel(const FrameTriangle& object, const FrameTriangle& scene, double margin_m, double limit_m);
+double inflated_distance(const FrameTriangle& object, const FrameTriangle& scene, double margin_m,
+                         double limit_m);
 
 struct ShortestWay {
   Eigen::Vector3d from = Eigen::Vector3d::Zero();  ///< on the object's triangle
   Eigen::Vector3d way = Eigen::Vector3d::Zero();   ///< from there to the scene's triangle
 };
-/// Returns the shortest segment from the object's triangle, moved by travel_m along z, to the scene's.
-/// Invalid if they cross.
-ShortestWay shortest_way(const FrameTriangle& object, const FrameTriangle& scene, double travel_m);
+/// Returns the shortest segment from the object's triangle, moved by contact_distance_m along z, to the
+/// scene's. Invalid if they cross.
+ShortestWay shortest_way(const FrameTriangle& object, const FrameTriangle& scene, double contact_distance_m);
 
 }  // namespace roomradar

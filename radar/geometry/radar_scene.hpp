@@ -18,7 +18,7 @@ struct TreeInstance {
 
 struct SceneTree {
   TreeInstance instance;
-  Touched kind = Touched::kStatic;
+  SurfaceKind kind = SurfaceKind::kStatic;
 };
 inline bool has_surface(const SceneTree& s) {
   return s.instance.tree != nullptr && !s.instance.tree->empty();
@@ -40,7 +40,7 @@ struct SceneDepth {
   int stride_px = 1;
   float max_jump_m = 0.05F;
   float max_jump_slope = 0.0F;
-  Touched kind = Touched::kDynamic;
+  SurfaceKind kind = SurfaceKind::kDynamic;
 };
 
 class SceneBoxes;

@@ -76,9 +76,9 @@ bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double li
   return is_sure;
 }
 
-bool is_within(const std::vector<Layer>& layers, double travel_m) {
+bool is_within(const std::vector<Layer>& layers, double contact_distance_m) {
   int ways_out = 0;
-  for (const Layer& layer : layers) ways_out += layer.gap_m < travel_m ? layer.way_out : 0;
+  for (const Layer& layer : layers) ways_out += layer.gap_m < contact_distance_m ? layer.way_out : 0;
   return ways_out > 0;
 }
 

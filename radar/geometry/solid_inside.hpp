@@ -18,9 +18,9 @@ struct Layer {
 bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 
-/// Returns true if the point of `layers` is in the solid after the object has moved by travel_m. More exits
-/// than entries ahead of the point mean inside, so solids may overlap.
-bool is_within(const std::vector<Layer>& layers, double travel_m);
+/// Returns true if the point of `layers` is in the solid after the object has moved by contact_distance_m.
+/// More exits than entries ahead of the point mean inside, so solids may overlap.
+bool is_within(const std::vector<Layer>& layers, double contact_distance_m);
 
 /// Returns true if a triangle that does not cross the object's surface is inside its solid, deeper than
 /// touching_m. Counts the crossings ahead of it. False for an object that is not closed.

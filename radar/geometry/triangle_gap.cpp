@@ -112,8 +112,8 @@ bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleG
   return true;
 }
 
-Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, const TriangleGap& gap,
-                   double touching_m) {
+PairContact classify_pair(const FrameTriangle& object, const FrameTriangle& scene, const TriangleGap& gap,
+                          double touching_m) {
   const double facing = scene.normal.z();
   const bool is_edge_on = std::abs(facing) <= kEdgeOn;
   // Distances of the object's corners in front of the scene's plane (against the motion; for a plane seen
@@ -127,7 +127,7 @@ Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, cons
     }
     return low_high;
   };
-  if (gap.high_m < -touching_m) return Meeting::kNone;
+  if (gap.high_m < -touching_m) return PairContact::kNone;
   const bool meets_now = gap.low_m <= touching_m;
   const bool has_scene_plane = !scene.normal.isZero(0.0);
   std::array<double, 2> before{-1e300, 1e300};
@@ -135,28 +135,28 @@ Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, cons
     before = heights(scene, facing > 0.0 ? -1.0 : 1.0, object);
   if (is_edge_on && has_scene_plane) {
     // Slides along a plane parallel to the motion, now or later.
-    if (before[0] >= -touching_m || before[1] <= touching_m) return Meeting::kNone;
+    if (before[0] >= -touching_m || before[1] <= touching_m) return PairContact::kNone;
   }
-  if (!meets_now) return Meeting::kContact;
+  if (!meets_now) return PairContact::kContact;
   const bool is_left = facing > kEdgeOn;
   if (is_left) {
-    return gap.low_m < -touching_m && gap.high_m > touching_m ? Meeting::kLeaving : Meeting::kNone;
+    return gap.low_m < -touching_m && gap.high_m > touching_m ? PairContact::kLeaving : PairContact::kNone;
   }
   if (has_scene_plane && !is_edge_on) {
-    if (before[0] >= -touching_m) return Meeting::kContact;
-    if (before[1] <= touching_m) return Meeting::kNone;
+    if (before[0] >= -touching_m) return PairContact::kContact;
+    if (before[1] <= touching_m) return PairContact::kNone;
   }
   const double object_facing = object.normal.z();
   if (std::abs(object_facing) > kEdgeOn) {
     const auto ahead = heights(object, object_facing > 0.0 ? 1.0 : -1.0, scene);
-    if (ahead[0] >= -touching_m) return Meeting::kContact;
-    if (ahead[1] <= touching_m) return Meeting::kNone;
+    if (ahead[0] >= -touching_m) return PairContact::kContact;
+    if (ahead[1] <= touching_m) return PairContact::kNone;
   } else if (!object.normal.isZero(0.0)) {
     const auto beside = heights(object, 1.0, scene);
-    if (beside[0] >= -touching_m || beside[1] <= touching_m) return Meeting::kNone;
+    if (beside[0] >= -touching_m || beside[1] <= touching_m) return PairContact::kNone;
   }
-  if (gap.low_m >= -touching_m) return Meeting::kContact;
-  return gap.high_m > touching_m ? Meeting::kCrossing : Meeting::kNone;
+  if (gap.low_m >= -touching_m) return PairContact::kContact;
+  return gap.high_m > touching_m ? PairContact::kCrossing : PairContact::kNone;
 }
 
 }  // namespace roomradar

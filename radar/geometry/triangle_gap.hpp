@@ -36,7 +36,7 @@ struct TriangleGap {
 ///         as on it, so nothing slips between triangles that share an edge.
 bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleGap& gap);
 
-enum class Meeting {
+enum class PairContact {
   kNone,      ///< no contact ahead
   kContact,   ///< contact after max(low_m, 0)
   kCrossing,  ///< each is already on both sides of the other
@@ -52,7 +52,7 @@ enum class Meeting {
 /// A scene triangle seen edge-on slides along an object that overlaps it sideways by less than touching_m, at
 /// any distance ahead. A back-facing scene triangle (normal.z() > 0) is what the object leaves: touching it
 /// now is kNone, crossing it is kLeaving, and ahead it is a contact like any other.
-Meeting meeting_of(const FrameTriangle& object, const FrameTriangle& scene, const TriangleGap& gap,
-                   double touching_m);
+PairContact classify_pair(const FrameTriangle& object, const FrameTriangle& scene, const TriangleGap& gap,
+                          double touching_m);
 
 }  // namespace roomradar

@@ -73,10 +73,10 @@ struct NodeWriter {
 /// Splits by the surface area heuristic over bins of centroids, eight ways per node. Source: Wald, On fast
 /// Construction of SAH-based Bounding Volume Hierarchies, RT 2007; Wald, Benthin, Boulos, Getting Rid of
 /// Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs, RT 2008.
-class PlaceBuilder {
+class KeyframeBuilder {
  public:
-  PlaceBuilder(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
-               const NodeWriter& writer, std::vector<TreeNode>& nodes)
+  KeyframeBuilder(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
+                  const NodeWriter& writer, std::vector<TreeNode>& nodes)
       : writer_(writer), nodes_(nodes), order_(triangles.size()), bounds_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
     for (std::size_t i = 0; i < triangles.size(); ++i) bounds_[i] = bounds_of(triangles[i], vertices);
@@ -239,17 +239,17 @@ struct Side {
 
 /// Returns a number per vertex, equal for vertices at the same position.
 std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& vertices) {
-  std::vector<std::uint32_t> by_place(vertices.size());
-  std::iota(by_place.begin(), by_place.end(), 0U);
+  std::vector<std::uint32_t> by_key(vertices.size());
+  std::iota(by_key.begin(), by_key.end(), 0U);
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     return std::lexicographical_compare(vertices[a].data(), vertices[a].data() + 3, vertices[b].data(),
                                         vertices[b].data() + 3);
   };
-  std::erase_if(by_place, [&](std::uint32_t v) { return !vertices[v].allFinite(); });
-  std::sort(by_place.begin(), by_place.end(), before);
+  std::erase_if(by_key, [&](std::uint32_t v) { return !vertices[v].allFinite(); });
+  std::sort(by_key.begin(), by_key.end(), before);
   std::vector<std::uint32_t> number(vertices.size(), 0);
-  for (std::size_t i = 1; i < by_place.size(); ++i) {
-    number[by_place[i]] = number[by_place[i - 1]] + (before(by_place[i - 1], by_place[i]) ? 1U : 0U);
+  for (std::size_t i = 1; i < by_key.size(); ++i) {
+    number[by_key[i]] = number[by_key[i - 1]] + (before(by_key[i - 1], by_key[i]) ? 1U : 0U);
   }
   return number;
 }
@@ -470,7 +470,7 @@ void TriangleTree::build_by_place(const Mesh& mesh) {
   take(mesh);
   if (triangles_.empty()) return;
   const NodeWriter writer{centre_.cast<float>().array(), rounding_m_};
-  const std::vector<std::uint32_t> order = PlaceBuilder(triangles_, vertices_, writer, nodes_).build();
+  const std::vector<std::uint32_t> order = KeyframeBuilder(triangles_, vertices_, writer, nodes_).build();
   std::vector<Triangle> sorted(triangles_.size());
   for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = triangles_[order[i]];
   triangles_ = std::move(sorted);

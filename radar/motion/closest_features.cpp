@@ -58,13 +58,13 @@ bool cross(const Face& a, const Face& b) {
   return false;
 }
 
-void PairPlaces::add(const Vec3& on_scene, const Vec3& normal, double gap_m, const Face& s) const {
+void FeatureCollector::add(const Vec3& on_scene, const Vec3& normal, double gap_m, const Face& s) const {
   if (normal.isZero() || !(gap_m <= reach_m)) return;
   if (scene_is_one_sided && !is_outside(normal, s)) return;
   found.push_back({T_world_frame * on_scene, T_world_frame.linear() * normal, gap_m, kind});
 }
 
-Vec3 PairPlaces::off_scene(double height_m, const Face& o, const Face& s, const Range& heights) const {
+Vec3 FeatureCollector::off_scene(double height_m, const Face& o, const Face& s, const Range& heights) const {
   double side = side_of(height_m);
   // Touching: the object is on the side of the rest of its triangle. A triangle in the plane faces the scene.
   if (side == 0.0) side = side_of(heights.low + heights.high);
@@ -73,7 +73,8 @@ Vec3 PairPlaces::off_scene(double height_m, const Face& o, const Face& s, const 
   return side * s.normal;
 }
 
-Vec3 PairPlaces::off_object(double height_m, const Vec3& corner, const Face& o, const Range& heights) const {
+Vec3 FeatureCollector::off_object(double height_m, const Vec3& corner, const Face& o,
+                                  const Range& heights) const {
   double side = side_of(height_m);
   if (side == 0.0) {
     if (!is_inside(corner, o)) return Vec3::Zero();  // a corner along an edge is not supported by the face
@@ -82,7 +83,7 @@ Vec3 PairPlaces::off_object(double height_m, const Vec3& corner, const Face& o, 
   return -side * o.normal;
 }
 
-bool PairPlaces::look(const FrameTriangle& object, const FrameTriangle& scene) const {
+bool FeatureCollector::look(const FrameTriangle& object, const FrameTriangle& scene) const {
   // Heights of each triangle's corners above the other's plane.
   std::array<double, 3> over_scene, over_object;
   Range of_object, of_scene;
@@ -126,7 +127,7 @@ bool PairPlaces::look(const FrameTriangle& object, const FrameTriangle& scene) c
 }
 
 /// Adds the shortest segment between two edges that pass each other; it is perpendicular to both.
-void PairPlaces::look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const {
+void FeatureCollector::look_at_edges(const Face& o, std::size_t i, const Face& s, std::size_t j) const {
   const Vec3& a = o.corners[i];
   const Vec3& b = s.corners[j];
   const Vec3 &u = o.edge[i], &v = s.edge[j], w = a - b;
@@ -148,23 +149,24 @@ void PairPlaces::look_at_edges(const Face& o, std::size_t i, const Face& s, std:
   add(on_scene, way / gap_m, gap_m, s);
 }
 
-void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kept) {
+void keep_the_outermost(std::vector<ClosestPoint>& all, std::vector<ClosestPoint>& kept) {
   constexpr double kOutPerGap = 20.0;  // 1 mm farther away must be 2 cm farther out
   constexpr double kSameNormal = 0.9;
   constexpr std::size_t kMostNormals = 4, kDirections = 8;
   kept.clear();
   for (std::size_t cluster = 0; cluster < kMostNormals && !all.empty(); ++cluster) {
-    const auto nearest = std::min_element(
-        all.begin(), all.end(), [](const NearPoint& a, const NearPoint& b) { return a.gap_m < b.gap_m; });
-    const NearPoint seed = *nearest;
+    const auto nearest =
+        std::min_element(all.begin(), all.end(),
+                         [](const ClosestPoint& a, const ClosestPoint& b) { return a.gap_m < b.gap_m; });
+    const ClosestPoint seed = *nearest;
     const Vec3 x = seed.normal_world.unitOrthogonal(), y = seed.normal_world.cross(x);
     std::array<double, kDirections> most;
-    std::array<const NearPoint*, kDirections> outermost{};
+    std::array<const ClosestPoint*, kDirections> outermost{};
     most.fill(-kInfinity<double>);
-    const auto is_of_cluster = [&](const NearPoint& p) {
+    const auto is_of_cluster = [&](const ClosestPoint& p) {
       return p.normal_world.dot(seed.normal_world) > kSameNormal;
     };
-    for (const NearPoint& p : all) {
+    for (const ClosestPoint& p : all) {
       if (!is_of_cluster(p)) continue;
       const Vec3 offset = p.point_world - seed.point_world;
       const double u = x.dot(offset), v = y.dot(offset), behind = kOutPerGap * (p.gap_m - seed.gap_m);
@@ -180,15 +182,15 @@ void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kep
     }
     const std::size_t first = kept.size();
     kept.push_back(seed);
-    for (const NearPoint* p : outermost) {
+    for (const ClosestPoint* p : outermost) {
       const bool is_new =
           p != nullptr && std::none_of(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.end(),
-                                       [&](const NearPoint& other) {
+                                       [&](const ClosestPoint& other) {
                                          return (other.point_world - p->point_world).squaredNorm() < 1e-10;
                                        });
-      if (is_new && kept.size() < NearField::kMostPoints) kept.push_back(*p);
+      if (is_new && kept.size() < ProximityQuery::kMaxPoints) kept.push_back(*p);
     }
-    if (kept.size() >= NearField::kMostPoints) return;
+    if (kept.size() >= ProximityQuery::kMaxPoints) return;
     std::erase_if(all, is_of_cluster);
   }
 }

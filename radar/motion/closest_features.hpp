@@ -43,13 +43,13 @@ inline Range range_along(const Eigen::Vector3d& direction, const std::array<Eige
 }
 
 /// Collects the closest features of one pair of triangles.
-struct PairPlaces {
+struct FeatureCollector {
   double reach_m;
   bool object_is_closed;
   bool scene_is_one_sided;
-  Touched kind;
+  SurfaceKind kind;
   const Eigen::Isometry3d& T_world_frame;
-  std::vector<NearPoint>& found;
+  std::vector<ClosestPoint>& found;
 
   /// Adds the pair's closest features. Returns true if the triangles cross and the scene's is not one-sided.
   bool look(const FrameTriangle& object, const FrameTriangle& scene) const;
@@ -73,6 +73,6 @@ struct PairPlaces {
 /// Selects the points that support an object most. For each of up to four normals: the nearest point, and the
 /// outermost point in each of eight directions across the normal. A more distant point has to be farther out.
 /// Consumes `all`.
-void keep_the_outermost(std::vector<NearPoint>& all, std::vector<NearPoint>& kept);
+void keep_the_outermost(std::vector<ClosestPoint>& all, std::vector<ClosestPoint>& kept);
 
 }  // namespace roomradar

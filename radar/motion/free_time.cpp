@@ -122,7 +122,7 @@ RelativeMotion course_of(const TreeInstance& object, const RigidMotion& motion, 
 /// Free time against one tree of the scene, from its pairs of triangles.
 struct TreeFreedom {
   TreePair& trees;
-  const Touched kind;
+  const SurfaceKind kind;
   const std::uint32_t number;  // index among the scene's trees
   const RelativeMotion course;
   FreeTime result;
@@ -183,19 +183,19 @@ struct TreeFreedom {
 
 }  // namespace
 
-FreeTime NearField::free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s,
-                              double keep_m, const RadarScene& scene, Kinds left_out) {
+FreeTime ProximityQuery::free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s,
+                                   double keep_m, const RadarScene& scene, SurfaceKindMask left_out) {
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
   result.free_s = duration_s;
-  // No point of the object travels farther than way_m. Pairs farther apart than twice keep_m may approach to
-  // keep_m.
-  const double way_m =
+  // No point of the object travels farther than path_length_m. Pairs farther apart than twice keep_m may
+  // approach to keep_m.
+  const double path_length_m =
       duration_s * (motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_of(object, motion));
   for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
     const SceneTree& tree = scene.trees[number];
     if (!is_usable(tree.instance) || (left_out & bit_of(tree.kind)) != 0) continue;
-    if (are_farther_apart(object, tree.instance, way_m + 2.0 * keep_m)) continue;
+    if (are_farther_apart(object, tree.instance, path_length_m + 2.0 * keep_m)) continue;
     TreePair trees(object, tree.instance);
     TreeFreedom freedom{trees, tree.kind, number, course_of(object, motion, keep_m, trees), result};
     visit_pairs<PairOrder::kLeastFirst>(

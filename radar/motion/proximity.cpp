@@ -1,4 +1,4 @@
-// near_field.cpp: traverses the object's tree with each of the scene's and tests pairs of triangles.
+// proximity.cpp: traverses the object's tree with each of the scene's and tests pairs of triangles.
 #include "radar/motion/proximity.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ bool is_far_from(const FrameTriangle& t, const PairBox& box, double reach_m) {
 }
 
 /// Returns true if the contents of two boxes may be within reach.
-bool may_be_near(TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
+bool may_be_near(TreePair& trees, const PairBox& o, const PairBox& s, const FeatureCollector& places) {
   const double reach_m = places.reach_m;
   const Eigen::Array3f apart = (o.centre - s.centre).array().abs() - o.half.array() - s.half.array();
   if (apart.maxCoeff() > static_cast<float>(reach_m)) return false;
@@ -37,7 +37,7 @@ bool may_be_near(TreePair& trees, const PairBox& o, const PairBox& s, const Pair
 }
 
 /// Examines all pairs of two leaves' triangles. Returns true if any cross.
-bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const PairPlaces& places) {
+bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const FeatureCollector& places) {
   bool crosses = false;
   for (const FrameTriangle& scene : trees.of_scene(s))
     for (const FrameTriangle& object : trees.of_object(o)) crosses = places.look(object, scene) || crosses;
@@ -46,11 +46,11 @@ bool look_at_leaves(TreePair& trees, const PairBox& o, const PairBox& s, const P
 
 }  // namespace
 
-Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, double reach_m, Kinds left_out,
-                      std::vector<NearPoint>& points) {
+SurfaceKindMask ProximityQuery::near(const TreeInstance& object, const RadarScene& scene, double reach_m,
+                                     SurfaceKindMask left_out, std::vector<ClosestPoint>& points) {
   points.clear();
   found_.clear();
-  Kinds crossed = 0;
+  SurfaceKindMask crossed = 0;
   if (!is_usable(object) || !(reach_m > 0.0)) return crossed;
   for (std::uint32_t number = 0; number < scene.trees.size(); ++number) {
     const SceneTree& tree = scene.trees[number];
@@ -58,8 +58,8 @@ Kinds NearField::near(const TreeInstance& object, const RadarScene& scene, doubl
     if (are_farther_apart(object, tree.instance, reach_m)) continue;
     const std::size_t found_before = found_.size();
     TreePair trees(object, tree.instance);
-    const PairPlaces places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),
-                            tree.kind, trees.T_world_frame,      found_};
+    const FeatureCollector places{reach_m,   object.tree->is_closed(), is_one_sided(tree.kind),
+                                  tree.kind, trees.T_world_frame,      found_};
     bool crosses = false;
     visit_pairs<PairOrder::kAny>(
         trees, pending_,

@@ -1,4 +1,4 @@
-// near_field.hpp: closest features of an object and the scene, and contact-free time of a rigid motion.
+// proximity.hpp: closest features of an object and the scene, and contact-free time of a rigid motion.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -13,21 +13,23 @@
 namespace roomradar {
 
 /// Closest features of scene and object: a corner and its foot on a face, or two edges that pass each other.
-struct NearPoint {
+struct ClosestPoint {
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();   ///< on the scene
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from point_world to the object
   double gap_m = 0.0;                                      ///< >= 0; 0: touching
-  Touched kind = Touched::kNothing;
+  SurfaceKind kind = SurfaceKind::kNothing;
   std::uint32_t tree = 0;  ///< index of the scene's tree
 };
 
 /// Bit mask of surface kinds.
-using Kinds = std::uint32_t;
-constexpr Kinds bit_of(Touched kind) { return Kinds{1} << static_cast<unsigned>(kind); }
+using SurfaceKindMask = std::uint32_t;
+constexpr SurfaceKindMask bit_of(SurfaceKind kind) {
+  return SurfaceKindMask{1} << static_cast<unsigned>(kind);
+}
 
 struct FreeTime {
   double free_s = 0.0;  ///< until then every pair of triangles keeps its minimum distance
-  NearPoint limit;      ///< present closest features of the pair that limits free_s; kNothing if the whole
+  ClosestPoint limit;   ///< present closest features of the pair that limits free_s; kNothing if the whole
                         ///< duration is free
 };
 
@@ -38,16 +40,16 @@ struct FreeTime {
 ///
 /// A surface that crosses the object has no near side; use CyberRadar's overlaps for it. A one-sided surface
 /// (is_one_sided()) counts only on its outside and is never reported as crossing.
-class NearField {
+class ProximityQuery {
  public:
-  /// Finds corners over faces and edges across edges within reach_m, at most kMostPoints. For up to four
+  /// Finds corners over faces and edges across edges within reach_m, at most kMaxPoints. For up to four
   /// normal directions, returns the points that support the object most, nearest first. For a closed object
   /// only features outside it count.
   /// @param left_out  kinds to ignore
   /// @param points    out
   /// @return kinds of surfaces that cross the object; a tree that crosses it gives no points
-  Kinds near(const TreeInstance& object, const RadarScene& scene, double reach_m, Kinds left_out,
-             std::vector<NearPoint>& points);
+  SurfaceKindMask near(const TreeInstance& object, const RadarScene& scene, double reach_m,
+                       SurfaceKindMask left_out, std::vector<ClosestPoint>& points);
 
   /// Computes how long a rigid motion is free of contact with surfaces that do not cross the object now. A
   /// plane separates each pair of triangles: the plane of one of them, or the one across their nearest
@@ -56,13 +58,13 @@ class NearField {
   /// Source: Mirtich, PhD thesis, Berkeley 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled
   /// conservative advancement, ICRA 2009.
   FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
-                     const RadarScene& scene, Kinds left_out = 0);
+                     const RadarScene& scene, SurfaceKindMask left_out = 0);
 
-  static constexpr std::size_t kMostPoints = 24;
+  static constexpr std::size_t kMaxPoints = 24;
 
  private:
   std::vector<PendingPair> pending_;
-  std::vector<NearPoint> found_;
+  std::vector<ClosestPoint> found_;
 };
 
 }  // namespace roomradar

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNoTurn_m = 1e-9;  // below the precision of double poses far from the origin
 
-bool is_valid(const RigidMotion& motion, double duration_s, const SweepConfig& config) {
+bool is_valid(const RigidMotion& motion, double duration_s, const TimeOfImpactConfig& config) {
   return motion.linear_m_s.allFinite() && motion.angular_rad_s.allFinite() &&
          motion.centre_object.allFinite() && std::isfinite(duration_s) && duration_s >= 0.0 &&
          std::isfinite(config.tolerance_m) && config.tolerance_m > 0.0 && config.max_queries > 0 &&
@@ -60,8 +60,9 @@ bool is_answer(const Contact& contact) {
   return contact.status != ContactStatus::kInvalidInput && contact.status != ContactStatus::kNoAnswer;
 }
 
-SweepStatus failure(const Contact& contact) {
-  return contact.status == ContactStatus::kNoAnswer ? SweepStatus::kNoAnswer : SweepStatus::kInvalidInput;
+TimeOfImpactStatus failure(const Contact& contact) {
+  return contact.status == ContactStatus::kNoAnswer ? TimeOfImpactStatus::kNoAnswer
+                                                    : TimeOfImpactStatus::kInvalidInput;
 }
 
 /// A sweep in progress.
@@ -70,7 +71,7 @@ struct Course {
   const TreeInstance& object;
   const RigidMotion& motion;
   const RadarScene& scene;
-  const SweepConfig& config;
+  const TimeOfImpactConfig& config;
   Capsule capsule;
   TriangleTree axis;       // axis segment of the capsule
   double speed_m_s = 0.0;  // speed of the centre
@@ -87,7 +88,7 @@ struct Course {
            kRounding;
   }
   /// Returns an upper bound of every point's path length in the step.
-  [[nodiscard]] double way_m(double step_s) const {
+  [[nodiscard]] double path_length_m(double step_s) const {
     return (speed_m_s + turn_rad_s * capsule.radius_m) * step_s;
   }
 
@@ -139,7 +140,7 @@ struct Course {
   /// Returns kOverlap if the object's pose at time_s overlaps the scene, kFree if not, or why that is
   /// unknown. Queries along the motion first, then along all axes, since scene that an object leaves is no
   /// overlap in that direction.
-  SweepStatus state_at(double time_s, Contact& contact) {
+  TimeOfImpactStatus state_at(double time_s, Contact& contact) {
     const Eigen::Isometry3d T_world_mesh = pose_after(object.T_world_mesh, motion, time_s);
     const std::array<Eigen::Vector3d, 7> directions = {motion.linear_m_s,         Eigen::Vector3d::UnitX(),
                                                        -Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
@@ -147,20 +148,22 @@ struct Course {
                                                        -Eigen::Vector3d::UnitZ()};
     for (const Eigen::Vector3d& direction : directions) {
       if (!(direction.stableNorm() > 0.0)) continue;
-      if (!has_queries()) return SweepStatus::kOutOfQueries;
+      if (!has_queries()) return TimeOfImpactStatus::kOutOfQueries;
       const Contact got = ask({object.tree, T_world_mesh}, direction, config.tolerance_m, 0.0);
       if (!is_answer(got)) return failure(got);
       if (got.status != ContactStatus::kOverlap) continue;
       contact = got;
-      return SweepStatus::kOverlap;
+      return TimeOfImpactStatus::kOverlap;
     }
-    return SweepStatus::kFree;
+    return TimeOfImpactStatus::kFree;
   }
-  bool meets(double time_s, Contact& contact) { return state_at(time_s, contact) == SweepStatus::kOverlap; }
+  bool meets(double time_s, Contact& contact) {
+    return state_at(time_s, contact) == TimeOfImpactStatus::kOverlap;
+  }
 };
 
 /// Without rotation: uses the radar's own bounds.
-void sweep_straight(Course& course, double duration_s, SweepResult& result) {
+void time_of_impact_straight(Course& course, double duration_s, TimeOfImpact& result) {
   const Contact contact =
       course.ask(course.object, course.motion.linear_m_s, course.speed_m_s * duration_s, 0.0);
   result.contact = contact;
@@ -169,29 +172,29 @@ void sweep_straight(Course& course, double duration_s, SweepResult& result) {
     return;
   }
   if (contact.status == ContactStatus::kOverlap) {
-    result.status = SweepStatus::kOverlap;
+    result.status = TimeOfImpactStatus::kOverlap;
     result.contact_s = 0.0;
     return;
   }
   const ContactTime time = contact_time(contact, course.speed_m_s);
   result.safe_s = std::min(time.lower_s, duration_s);
   if (contact.status == ContactStatus::kNoTarget && result.safe_s >= duration_s * (1.0 - 1e-12)) {
-    result.status = SweepStatus::kFree;
+    result.status = TimeOfImpactStatus::kFree;
     result.safe_s = duration_s;
     return;
   }
-  result.status = SweepStatus::kContact;
+  result.status = TimeOfImpactStatus::kContact;
   result.contact_s = time.upper_s;
 }
 
 /// Finds the contact and its time, after a step of least length stopped the sweep.
 void find_contact(Course& course, double step_s, double duration_s, const Contact& stopped_by,
-                  SweepResult& result) {
-  result.status = SweepStatus::kContact;
+                  TimeOfImpact& result) {
+  result.status = TimeOfImpactStatus::kContact;
   result.contact = stopped_by;
   if (course.meets(result.safe_s, result.contact)) {
     result.contact_s = result.safe_s;
-    if (result.safe_s == 0.0) result.status = SweepStatus::kOverlap;
+    if (result.safe_s == 0.0) result.status = TimeOfImpactStatus::kOverlap;
     return;
   }
   constexpr int kProbes = 10;  // the last one is 38 shortest steps ahead; later contacts count as a graze
@@ -210,14 +213,14 @@ void find_contact(Course& course, double step_s, double duration_s, const Contac
   if (ahead) result.contact = ahead;
 }
 
-void sweep_turning(Course& course, double duration_s, SweepResult& result) {
+void time_of_impact_turning(Course& course, double duration_s, TimeOfImpact& result) {
   // A rotation in place returns to its start after a full turn.
   const double turn_s = 2.0 * std::numbers::pi / course.turn_rad_s;
   const double end_s = course.speed_m_s > 0.0 ? duration_s : std::min(duration_s, turn_s * (1.0 + 1e-9));
   double step_s = duration_s;
   while (result.safe_s < end_s) {
     if (!course.has_queries()) {
-      result.status = SweepStatus::kOutOfQueries;
+      result.status = TimeOfImpactStatus::kOutOfQueries;
       return;
     }
     const bool is_last = step_s >= duration_s - result.safe_s;  // one query may show all the rest free
@@ -234,14 +237,14 @@ void sweep_turning(Course& course, double duration_s, SweepResult& result) {
       continue;
     }
     result.safe_s += step.free_s;
-    if (course.way_m(step_s) <= course.config.tolerance_m) {
+    if (course.path_length_m(step_s) <= course.config.tolerance_m) {
       find_contact(course, step_s, duration_s, step.contact, result);
       return;
     }
     step_s *= 0.5;
   }
   result.safe_s = duration_s;
-  result.status = SweepStatus::kFree;
+  result.status = TimeOfImpactStatus::kFree;
 }
 
 }  // namespace
@@ -268,9 +271,9 @@ Eigen::Isometry3d pose_after(const Eigen::Isometry3d& T_world_object, const Rigi
   return T_world_moved;
 }
 
-SweepResult sweep(CyberRadar& radar, const TreeInstance& object, const RigidMotion& motion, double duration_s,
-                  const RadarScene& scene, const SweepConfig& config) {
-  SweepResult result;
+TimeOfImpact time_of_impact(CyberRadar& radar, const TreeInstance& object, const RigidMotion& motion,
+                            double duration_s, const RadarScene& scene, const TimeOfImpactConfig& config) {
+  TimeOfImpact result;
   if (object.tree == nullptr || object.tree->empty() || !object.T_world_mesh.matrix().allFinite() ||
       !is_valid(motion, duration_s, config)) {
     return result;
@@ -289,12 +292,12 @@ SweepResult sweep(CyberRadar& radar, const TreeInstance& object, const RigidMoti
   if (turns) course.axis = axis_tree(course.capsule, motion);
   if (course.speed_m_s * duration_s == 0.0 && !turns) {
     result.status = course.state_at(0.0, result.contact);
-    if (result.status == SweepStatus::kOverlap) result.contact_s = 0.0;
-    if (result.status == SweepStatus::kFree) result.safe_s = duration_s;
+    if (result.status == TimeOfImpactStatus::kOverlap) result.contact_s = 0.0;
+    if (result.status == TimeOfImpactStatus::kFree) result.safe_s = duration_s;
   } else if (!turns) {
-    sweep_straight(course, duration_s, result);
+    time_of_impact_straight(course, duration_s, result);
   } else {
-    sweep_turning(course, duration_s, result);
+    time_of_impact_turning(course, duration_s, result);
   }
   result.queries = course.queries;
   result.T_world_object = pose_after(object.T_world_mesh, motion, result.safe_s);

@@ -27,7 +27,7 @@ struct RigidMotion {
 Eigen::Isometry3d pose_after(const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
                              double time_s);
 
-enum class SweepStatus {
+enum class TimeOfImpactStatus {
   kInvalidInput,  ///< as CyberRadar's; or motion, duration or config not finite or out of range
   kNoAnswer,      ///< a radar query failed; safe_s is valid
   kFree,          ///< free for the whole duration
@@ -36,14 +36,14 @@ enum class SweepStatus {
   kOutOfQueries,  ///< max_queries reached; safe_s is valid, later times are unknown
 };
 
-struct SweepConfig {
+struct TimeOfImpactConfig {
   /// Contact tolerance, m, > 0: contact before any point travels this far counts as touching.
   double tolerance_m = 1e-4;
   int max_queries = 256;
 };
 
-struct [[nodiscard]] SweepResult {
-  SweepStatus status = SweepStatus::kInvalidInput;
+struct [[nodiscard]] TimeOfImpact {
+  TimeOfImpactStatus status = TimeOfImpactStatus::kInvalidInput;
   double safe_s = 0.0;  ///< certainly free up to this time
   /// Certainly in contact by this time; infinite if that could not be shown (free, or a graze that may miss).
   double contact_s = std::numeric_limits<double>::infinity();
@@ -68,7 +68,8 @@ struct [[nodiscard]] SweepResult {
 /// separate, so callers should keep a gap. A stopped object has a gap of up to tolerance_m.
 ///
 /// Allocates a few hundred bytes in addition to the radar's memory.
-SweepResult sweep(CyberRadar& radar, const TreeInstance& object, const RigidMotion& motion, double duration_s,
-                  const RadarScene& scene, const SweepConfig& config = {});
+TimeOfImpact time_of_impact(CyberRadar& radar, const TreeInstance& object, const RigidMotion& motion,
+                            double duration_s, const RadarScene& scene,
+                            const TimeOfImpactConfig& config = {});
 
 }  // namespace roomradar

@@ -138,7 +138,7 @@ struct Outcome {
   std::array<test::Times, kFrameParts> part_ms;  ///< during the load
   test::Times pose_error_m;
   std::vector<Eigen::Vector3d> at_m;  ///< objects at the end of the load
-  double deepest_m = 0.0, moved_fraction = 0.0;
+  double deepest_m = 0.0, dynamic_fraction = 0.0;
   int through_floor = 0, through_holes = 0;  ///< objects that are under the floor at the end of the load
   int located = 0;
   nlohmann::json budget;
@@ -170,8 +170,8 @@ void remove_objects(Session& session) {
 bool is_by_mapped_floor(const Session& session, const Eigen::Vector3d& middle_world, double floor_world_m) {
   constexpr double kAbout_m = 0.05;
   const Eigen::Vector3d above(middle_world.x(), middle_world.y(), floor_world_m + kAbout_m);
-  return surface_hit({&session.room().touched, Eigen::Isometry3d::Identity()},
-                     {above, -Eigen::Vector3d::UnitZ()}, 2.0 * kAbout_m)
+  return hit_mesh({&session.room().touched, Eigen::Isometry3d::Identity()},
+                  {above, -Eigen::Vector3d::UnitZ()}, 2.0 * kAbout_m)
       .has_value();
 }
 
@@ -210,7 +210,7 @@ class FloorJudge {
 /// Where pictures are made in turns, objects are moved in the other frames.
 bool is_made(FramePart part, const RunQuality& quality, const FrameResult& result) {
   if (part == FramePart::kCompose) return result.picture_is_new;
-  return part != FramePart::kPhysics || quality.picture_turns == 1 || !result.picture_is_new;
+  return part != FramePart::kPhysics || quality.picture_every_n_frames == 1 || !result.picture_is_new;
 }
 
 /// @param budget  null: none
@@ -262,8 +262,8 @@ Outcome play(const Settings& settings, const SavedMap& map, const Views& views, 
     for (std::size_t part = 0; part < kFrameParts; ++part)
       if (is_made(static_cast<FramePart>(part), quality, result))
         outcome.part_ms[part].samples_ms.push_back(begun_ms[part + 1] - begun_ms[part]);
-    outcome.moved_fraction =
-        std::max(outcome.moved_fraction,
+    outcome.dynamic_fraction =
+        std::max(outcome.dynamic_fraction,
                  static_cast<double>(result.foreground.moved) / static_cast<double>(result.foreground.valid));
   }
   if (budget != nullptr) outcome.budget = budget->report();
@@ -273,7 +273,7 @@ Outcome play(const Settings& settings, const SavedMap& map, const Views& views, 
 nlohmann::json row_of(const std::string& name, Outcome& outcome, const Outcome* reference) {
   nlohmann::json row = {{"name", name},
                         {"located", outcome.located},
-                        {"moved_fraction", outcome.moved_fraction},
+                        {"moved_fraction", outcome.dynamic_fraction},
                         {"through_floor", outcome.through_floor},
                         {"through_holes", outcome.through_holes},
                         {"deepest_penetration_m", outcome.deepest_m},
@@ -368,12 +368,12 @@ int run(int argc, char** argv) {
       "             |         before       |        during        |         after        |      all      | "
       "locat  mesh  phys  comp |  pose  deep apart floor holes  loc moved\n");
   nlohmann::json rows = nlohmann::json::array();
-  Outcome usual = play(settings, map, views, {}, nullptr, now_ms);
+  Outcome defaults = play(settings, map, views, {}, nullptr, now_ms);
   const auto add = [&](const std::string& name, Outcome& outcome) {
-    rows.push_back(row_of(name, outcome, &usual));
+    rows.push_back(row_of(name, outcome, &defaults));
     print_row(rows.back());
   };
-  add("no budget", usual);
+  add("no budget", defaults);
   if (settings.each_step) {
     for (std::size_t step = 0; step < presets.front.size(); ++step) {
       Outcome beside = play(settings, map, views, {}, nullptr, now_ms);

@@ -67,7 +67,7 @@ void judge_mover(const std::string& room, MoverKind mover, GlContext& context, c
   Frame frame;
   DepthImage expected_m;
   LabelImage labels;
-  MaskImage moved_mask;
+  MaskImage dynamic_mask;
   for (int burst = 0; burst < kBursts; ++burst) {
     for (Opponent& opponent : opponents) opponent.state = {};
     for (int i = 0; i < kInARow; ++i) {
@@ -81,8 +81,8 @@ void judge_mover(const std::string& room, MoverKind mover, GlContext& context, c
         else
           depth_pass.render({&instance, 1}, frame.depth_camera, T_world_camera, expected_m);
         mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, {}, opponent.state,
-                        labels, moved_mask);
-        add_frame(frame.depth_m, moved_mask, source.truth().moved, opponent.score);
+                        labels, dynamic_mask);
+        add_frame(frame.depth_m, dynamic_mask, source.truth().moved, opponent.score);
       }
     }
   }
@@ -131,7 +131,7 @@ void measure_hand_over_table(Rows& rows) {
       add_noise(live_m, 1);
       const Marked marked = mark(live_m, expected_m, {}, kKinect, 2);
       MaskScore score;
-      add_frame(live_m, marked.moved_mask, truth, score);
+      add_frame(live_m, marked.dynamic_mask, truth, score);
       rows.push_back({{"work", "hand over a table"},
                       {"camera_below_horizon_deg", below_deg},
                       {"above_m", above_m},

@@ -131,16 +131,16 @@ void measure_mesh_times(nlohmann::json& rows) {
 
   ForegroundState foreground;
   LabelImage labels;
-  MaskImage moved_mask;
-  MovedSurfaceScratch scratch;
-  MovedSurface surface;
+  MaskImage dynamic_mask;
+  DynamicSurfaceScratch scratch;
+  DynamicSurface surface;
   const auto find = [&] {
     (void)mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, {}, foreground,
-                          labels, moved_mask);
+                          labels, dynamic_mask);
   };
-  const auto mesh = [&](const MovedSurfaceConfig& config) {
-    mesh_moved(frame.depth_m, moved_mask, expected_m, frame.depth_camera, T_world_camera, {}, config, scratch,
-               surface);
+  const auto mesh = [&](const DynamicSurfaceConfig& config) {
+    mesh_dynamic(frame.depth_m, dynamic_mask, expected_m, frame.depth_camera, T_world_camera, {}, config,
+                 scratch, surface);
   };
   TriangleTree seen_tree, back_tree;
   const Times both = timed(kRepeats, [&] {
@@ -157,14 +157,14 @@ void measure_mesh_times(nlohmann::json& rows) {
     back_tree.build_in_order(surface.inferred_world);
   });
   rows.push_back(time_row("their trees", seen_tree.triangle_count() + back_tree.triangle_count(), trees));
-  const MovedSurfaceConfig without_back{.has_back = false};
+  const DynamicSurfaceConfig without_back{.has_back = false};
   const Times seen_only = timed(kRepeats, [&] { mesh(without_back); });
   rows.push_back(time_row("mesh of what moved, no back", surface.seen_world.triangles.size(), seen_only));
 
   DepthMeshScratch full_scratch;
   Mesh full;
   const Times full_times = timed(kRepeats / 4, [&] {
-    mesh_masked(frame.depth_m, moved_mask, frame.depth_camera, T_world_camera, kEveryPixel, full_scratch,
+    mesh_masked(frame.depth_m, dynamic_mask, frame.depth_camera, T_world_camera, kEveryPixel, full_scratch,
                 full);
   });
   rows.push_back(time_row("mesh of every moved pixel", full.triangles.size(), full_times));
@@ -199,8 +199,8 @@ void measure_mesh_quality(nlohmann::json& rows) {
         DepthImage expected_m;
         ForegroundState foreground;
         LabelImage labels;
-        MovedSurfaceScratch scratch;
-        MovedSurface surface;
+        DynamicSurfaceScratch scratch;
+        DynamicSurface surface;
         DepthMeshScratch full_scratch;
         Mesh full;
         for (std::int64_t i = 0; i < options.frames; i += step) {
@@ -214,8 +214,8 @@ void measure_mesh_quality(nlohmann::json& rows) {
             (void)mark_foreground(frame.depth_m, expected_m, frame.depth_camera, truth.T_world_camera, {},
                                   foreground, labels, mask);
           }
-          mesh_moved(frame.depth_m, mask, expected_m, frame.depth_camera, truth.T_world_camera, {}, {},
-                     scratch, surface);
+          mesh_dynamic(frame.depth_m, mask, expected_m, frame.depth_camera, truth.T_world_camera, {}, {},
+                       scratch, surface);
           mesh_masked(frame.depth_m, mask, frame.depth_camera, truth.T_world_camera, kEveryPixel,
                       full_scratch, full);
           if (full.triangles.empty()) continue;

@@ -117,7 +117,7 @@ struct Scan {
     for (int z = -reach; z <= reach; ++z)
       for (int y = -reach; y <= reach; ++y)
         for (int x = -reach; x <= reach; ++x)
-          if (codes.contains(cell_code(voxel + VoxelIndex(x, y, z)))) return true;
+          if (codes.contains(voxel_key(voxel + VoxelIndex(x, y, z)))) return true;
     return false;
   }
 };
@@ -145,7 +145,7 @@ Scan scan(const SimOptions& options, bool glass, const Settings& settings) {
           T_room_map * ((own.cast<double>().array() + 0.5) * settings.resolution_m).matrix();
       const VoxelIndex voxel = (centre_room / settings.resolution_m).array().floor().cast<int>();
       scan.occupied.push_back({voxel, centre_room});
-      scan.codes.insert(cell_code(voxel));
+      scan.codes.insert(voxel_key(voxel));
     }
   });
   return scan;

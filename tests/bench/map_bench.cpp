@@ -85,7 +85,7 @@ nlohmann::json judge(const Cell& cell, double resolution_m) {
       {"median_ms", stages.at("frame").median_ms},
       {"fuse_median_ms", stages.at("fuse").median_ms}};
   row["ate_rmse_m"] = nullptr;
-  if (scanned.counts.against_recorded) row["ate_rmse_m"] = scanned.counts.against_recorded->rmse_m;
+  if (scanned.counts.trajectory_error) row["ate_rmse_m"] = scanned.counts.trajectory_error->rmse_m;
   return row;
 }
 

@@ -171,17 +171,17 @@ void measure_radar(Rows& rows) {
     of.plate.build_by_place(plate(1, static_cast<float>(of.edge_m)));
     parts.push_back(of.edge_m * of.edge_m);
   }
-  const auto travel_m = [](Case& of, const TriangleTree& tree, int turn) {
-    const SceneTree scene{{&tree, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  const auto contact_distance_m = [](Case& of, const TriangleTree& tree, int turn) {
+    const SceneTree scene{{&tree, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     const Eigen::Isometry3d T_world_object(Eigen::AngleAxisd(0.1 * turn, Eigen::Vector3d::UnitZ()));
     const RadarQuery query{{&of.plate, T_world_object}, Eigen::Vector3d::UnitZ(), 3.0};
-    return of.radar.query(query, {{&scene, 1}, {}}).travel_m;
+    return of.radar.query(query, {{&scene, 1}, {}}).contact_distance_m;
   };
   std::vector<int> turns(cases.size(), 0);
   const auto medians = medians_ms(cases.size(), 400, [&](std::size_t i) {
-    const std::uint64_t before = cases[i].radar.static_triangles_asked();
-    static_cast<void>(travel_m(cases[i], *cases[i].room, ++turns[i]));
-    cases[i].asked = cases[i].radar.static_triangles_asked() - before;
+    const std::uint64_t before = cases[i].radar.static_triangles_tested();
+    static_cast<void>(contact_distance_m(cases[i], *cases[i].room, ++turns[i]));
+    cases[i].asked = cases[i].radar.static_triangles_tested() - before;
   });
   add_rows(
       "radar", medians, parts,
@@ -193,7 +193,8 @@ void measure_radar(Rows& rows) {
         const TriangleTree part_tree = tree_of(part);
         double most_m = 0.0;
         for (int turn = 0; turn < 20; ++turn)
-          most_m = std::max(most_m, std::abs(travel_m(of, *of.room, turn) - travel_m(of, part_tree, turn)));
+          most_m = std::max(most_m, std::abs(contact_distance_m(of, *of.room, turn) -
+                                             contact_distance_m(of, part_tree, turn)));
         return nlohmann::json{
             {"room_triangles", of.room->triangle_count()}, {"asked", of.asked}, {"error_max_m", most_m}};
       },
@@ -225,12 +226,12 @@ void measure_mesh(Rows& rows) {
     depths.push_back(depth_m);
     masks.push_back(mask);
   }
-  MovedSurfaceScratch scratch;
-  MovedSurface surface;
+  DynamicSurfaceScratch scratch;
+  DynamicSurface surface;
   std::vector<std::size_t> triangles(parts.size());
   const auto medians = medians_ms(parts.size(), 100, [&](std::size_t i) {
-    mesh_moved(depths[i], masks[i], expected_m, kCamera, Eigen::Isometry3d::Identity(), {}, {}, scratch,
-               surface);
+    mesh_dynamic(depths[i], masks[i], expected_m, kCamera, Eigen::Isometry3d::Identity(), {}, {}, scratch,
+                 surface);
     triangles[i] = surface.seen_world.triangles.size();
   });
   add_rows(

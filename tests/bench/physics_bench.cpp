@@ -88,7 +88,7 @@ void measure_rest(nlohmann::json& rows) {
       ball("ball", ball_mesh(0.04, 23)), plate("plate", box_mesh({0.2, 0.2, 0.01}));
   GlContext context;
   CyberRadar radar;
-  NearField field;
+  ProximityQuery field;
   std::printf("at rest on noisy depth, %d frames\n%-6s %-6s %-7s %9s %9s %6s %6s\n", kFrames, "room",
               "policy", "thing", "moves mm", "turns deg", "rests", "wakes");
   for (const char* name : {"table", "shelf", "wall"}) {
@@ -100,8 +100,8 @@ void measure_rest(nlohmann::json& rows) {
     SimulatedSource source(sim);
     Shape room(context);
     room.set(room_mesh(source.room()), MeshUsage::kStatic);
-    LiveScene of_depth(context, room, {.surfaces = SurfacePolicy::kHoles});
-    LiveScene of_map(context, room, {.surfaces = SurfacePolicy::kMap});
+    FrameScene of_depth(context, room, {.surfaces = SurfacePolicy::kHoles});
+    FrameScene of_map(context, room, {.surfaces = SurfacePolicy::kMap});
     std::array<std::vector<Lying>, 2> lying;
     Frame frame;
     for (int i = 0; source.next(frame).status == ReadStatus::kFrame; ++i) {
@@ -118,17 +118,17 @@ void measure_rest(nlohmann::json& rows) {
           }
         }
       }
-      of_depth.mesh_moved(frame, T_world_camera);
+      of_depth.mesh_dynamic(frame, T_world_camera);
       of_map.render_expected(frame.depth_camera, T_world_camera);
-      of_map.find_moved(frame);
-      of_map.mesh_moved(frame, T_world_camera);
+      of_map.find_dynamic(frame);
+      of_map.mesh_dynamic(frame, T_world_camera);
       for (std::size_t policy = 0; policy < 2; ++policy) {
         const std::vector<SceneTree> surfaces = policy == 0 ? of_depth.surfaces() : of_map.surfaces();
         const RadarScene scene{surfaces, {}};
         for (Lying& one : lying[policy]) {
           const StepReport report =
-              advance(one.body, kFrame_s, probe_of(radar, field, one.thing->tree, scene), {});
-          if (one.body.at_rest && one.at_rest_from < 0) one.at_rest_from = i;
+              advance(one.body, kFrame_s, make_collision_queries(radar, field, one.thing->tree, scene), {});
+          if (one.body.asleep && one.at_rest_from < 0) one.at_rest_from = i;
           if (i < kSettle) continue;
           if (i == kSettle) one.lay = one.body.T_world_object;
           one.wakes += report.woke;
@@ -223,13 +223,13 @@ void measure_throws(int throws, nlohmann::json& rows) {
     places.push_back({make_room(kRandomRoom, false, seed), {}});
   for (Place& place : places) place.tree.build_by_place(room_mesh(place.room));
   CyberRadar radar;
-  NearField field;
+  ProximityQuery field;
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::normal_distribution<double> normal;
   const auto direction = [&] { return Vec3(normal(random), normal(random), normal(random)).normalized(); };
   struct Total {
-    int throws = 0, tunnelled = 0, outside = 0, at_rest = 0, not_finite = 0;
+    int throws = 0, tunnelled = 0, outside = 0, asleep = 0, not_finite = 0;
     double most_gain_j_kg = -1e300;
   };
   std::vector<Total> totals(things.size());
@@ -250,11 +250,11 @@ void measure_throws(int throws, nlohmann::json& rows) {
                                        Vec3(unit(random), unit(random), unit(random)).cwiseProduct(size));
     } while (clearance_m(place.room.solids, {&solid, 1}, body.T_world_object, 0.05) < 0.05);
     body.velocity_world_mps = 10.0 * unit(random) * direction();
-    body.spin_world_rad_s = 20.0 * unit(random) * direction();
+    body.angular_velocity_world_rad_s = 20.0 * unit(random) * direction();
     const double energy_before = energy_of(body, config);
-    const SceneTree tree{{&place.tree, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+    const SceneTree tree{{&place.tree, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     const RadarScene scene{{&tree, 1}, {}};
-    BodyProbe probe = probe_of(radar, field, thing.tree, scene);
+    CollisionQueries probe = make_collision_queries(radar, field, thing.tree, scene);
     bool tunnelled = false;
     Vec3 met_world = Vec3::Zero();
     Eigen::Isometry3d T_followed = body.T_world_object;
@@ -274,13 +274,13 @@ void measure_throws(int throws, nlohmann::json& rows) {
     };
     probe.free_time = [&, ask = probe.free_time](const Eigen::Isometry3d& T_world_object,
                                                  const RigidMotion& motion, double duration_s, double keep_m,
-                                                 Kinds left_out) {
+                                                 SurfaceKindMask left_out) {
       const FreeTime free = ask(T_world_object, motion, duration_s, keep_m, left_out);
       follow_to(T_world_object);
       follow(T_world_object, motion, free.free_s);
       return free;
     };
-    for (int frame = 0; frame < 120 && !body.at_rest; ++frame) {
+    for (int frame = 0; frame < 120 && !body.asleep; ++frame) {
       (void)advance(body, kFrame_s, probe, config);
       total.most_gain_j_kg = std::max(total.most_gain_j_kg, energy_of(body, config) - energy_before);
     }
@@ -293,7 +293,7 @@ void measure_throws(int throws, nlohmann::json& rows) {
     ++total.throws;
     total.tunnelled += tunnelled || is_in_any(place.room.solids, solid, body.T_world_object);
     total.outside += !((centre - low).minCoeff() > 0.0 && (low + size - centre).minCoeff() > 0.0);
-    total.at_rest += body.at_rest;
+    total.asleep += body.asleep;
     total.not_finite += !body.T_world_object.matrix().allFinite();
   }
   std::printf("throws at up to 10 m/s in %zu rooms\n%-7s %7s %9s %8s %12s %14s\n", places.size(), "thing",
@@ -301,14 +301,14 @@ void measure_throws(int throws, nlohmann::json& rows) {
   for (std::size_t i = 0; i < things.size(); ++i) {
     const Total& total = totals[i];
     std::printf("%-7s %7d %9d %8d %12d %14.2g\n", things[i].thing.name.c_str(), total.throws, total.tunnelled,
-                total.outside, total.at_rest, total.most_gain_j_kg);
+                total.outside, total.asleep, total.most_gain_j_kg);
     rows.push_back({{"table", "throws"},
                     {"thing", things[i].thing.name},
                     {"throws", total.throws},
                     {"tunnelled", total.tunnelled},
                     {"outside", total.outside},
                     {"not_finite", total.not_finite},
-                    {"at_rest", total.at_rest},
+                    {"at_rest", total.asleep},
                     {"energy_gained_j_kg", total.most_gain_j_kg}});
   }
 }
@@ -337,9 +337,9 @@ void measure_time(nlohmann::json& rows) {
         body.T_world_object.rotate(
             Eigen::AngleAxisd(3.0 * unit(random), Vec3(unit(random), unit(random), 1).normalized()));
         body.velocity_world_mps = 1.5 * Vec3(unit(random), unit(random), unit(random));
-        body.spin_world_rad_s = 5.0 * Vec3(unit(random), unit(random), unit(random));
+        body.angular_velocity_world_rad_s = 5.0 * Vec3(unit(random), unit(random), unit(random));
         for (int frame = 0; frame < kFrames; ++frame) {
-          const bool was_awake = !body.at_rest;
+          const bool was_awake = !body.asleep;
           const double start = test::thread_ms();
           (void)world.step(body, *thing, kFrame_s, {});
           const double ms = test::thread_ms() - start;
@@ -378,18 +378,18 @@ void measure_boards(nlohmann::json& rows) {
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     for (int fall = 0; fall < kFalls; ++fall) {
       World world;
-      world.add(board, Touched::kObject);
+      world.add(board, SurfaceKind::kObject);
       Body body;
       body.mass = thing.mass;
       body.T_world_object.translation() = Vec3(0.03 * unit(random), 0.03 * unit(random), 0.06);
       body.T_world_object.rotate(
           Eigen::AngleAxisd(0.1 * unit(random), Vec3(unit(random), unit(random), 1.0).normalized()));
-      for (int frame = 0; frame < kFrames && !body.at_rest; ++frame) {
+      for (int frame = 0; frame < kFrames && !body.asleep; ++frame) {
         const double start = test::thread_ms();
         (void)world.step(body, thing, kFrame_s, {});
         awake.samples_ms.push_back(test::thread_ms() - start);
       }
-      if (!body.at_rest || std::abs(body.T_world_object.translation().z() - 0.02) > 2e-3)
+      if (!body.asleep || std::abs(body.T_world_object.translation().z() - 0.02) > 2e-3)
         throw Error("board " + std::to_string(fall) + ": does not lie on the other after 4 s");
     }
     const double median = awake.percentile(0.5), p95 = awake.percentile(0.95), most = awake.percentile(1.0);

@@ -50,7 +50,7 @@ Thing::Thing(std::string thing_name, Mesh thing_mesh)
   mass = mass_properties(mesh, tree.is_closed());
 }
 
-void World::add(const Mesh& mesh, Touched kind) {
+void World::add(const Mesh& mesh, SurfaceKind kind) {
   trees_.emplace_back().build_by_place(mesh);
   kinds_.push_back(kind);
 }
@@ -61,11 +61,11 @@ StepReport World::step(Body& body, const Thing& thing, double dt_s, const Physic
   for (std::size_t i = 0; i < trees_.size(); ++i)
     scene_.push_back({{&trees_[i], Eigen::Isometry3d::Identity()}, kinds_[i]});
   const RadarScene scene{scene_, {}};
-  return advance(body, dt_s, probe_of(radar_, field_, thing.tree, scene), config);
+  return advance(body, dt_s, make_collision_queries(radar_, field_, thing.tree, scene), config);
 }
 
 double energy_of(const Body& body, const PhysicsConfig& config) {
-  return energy({body.velocity_world_mps, body.spin_world_rad_s}, inertia_world_m2(body)) -
+  return energy({body.velocity_world_mps, body.angular_velocity_world_rad_s}, inertia_world_m2(body)) -
          config.gravity_world_mps2.dot(centre_world(body));
 }
 

@@ -30,7 +30,7 @@ struct Thing {
 /// Meshes that stand still, and the radar that looks at them.
 class World {
  public:
-  void add(const Mesh& mesh, Touched kind = Touched::kStatic);
+  void add(const Mesh& mesh, SurfaceKind kind = SurfaceKind::kStatic);
   void replace(std::size_t which, const Mesh& mesh) { trees_[which].build_in_order(mesh); }
   /// Also these bodies, as objects.
   StepReport step(Body& body, const Thing& thing, double dt_s, const PhysicsConfig& config,
@@ -38,10 +38,10 @@ class World {
 
  private:
   std::vector<TriangleTree> trees_;
-  std::vector<Touched> kinds_;
+  std::vector<SurfaceKind> kinds_;
   std::vector<SceneTree> scene_;
   CyberRadar radar_;
-  NearField field_;
+  ProximityQuery field_;
 };
 
 /// J/kg against the world's zero height: of motion and of place.

@@ -80,7 +80,8 @@ class EmbreePeer final : public Peer {
     sensor_->build(padded_, sensor_triangles_);
   }
 
-  std::optional<double> travel_m(const FrameScene& frame, const Pose& pose, double distance_m) override {
+  std::optional<double> contact_distance_m(const FrameScene& frame, const Pose& pose,
+                                           double distance_m) override {
     const SweptVolume volume = swept_volume(sensor_vertices_, pose, distance_m);
     cull(frame, volume, culled_);
     if (culled_.triangles.empty()) return std::nullopt;

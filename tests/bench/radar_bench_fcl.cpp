@@ -29,7 +29,8 @@ class FclPeer final : public Peer {
     build(sensor_);
   }
 
-  std::optional<double> travel_m(const FrameScene& frame, const Pose& pose, double distance_m) override {
+  std::optional<double> contact_distance_m(const FrameScene& frame, const Pose& pose,
+                                           double distance_m) override {
     const SweptVolume volume = swept_volume(sensor_vertices_, pose, distance_m);
     cull(frame, volume, culled_);
     if (culled_.triangles.empty()) return std::nullopt;
@@ -40,14 +41,14 @@ class FclPeer final : public Peer {
     const fcl::DistanceRequest<float> request;
     constexpr float kTouching_m = 1e-4F;
     constexpr int kMaxSteps = 1000;
-    double travel_m = 0.0;
-    for (int step = 0; step < kMaxSteps && travel_m <= distance_m; ++step) {
-      T_volume_sensor.translation().z() = static_cast<float>(travel_m);
+    double contact_distance_m = 0.0;
+    for (int step = 0; step < kMaxSteps && contact_distance_m <= distance_m; ++step) {
+      T_volume_sensor.translation().z() = static_cast<float>(contact_distance_m);
       fcl::DistanceResult<float> result;
       const float gap_m =
           fcl::distance(&*sensor_, T_volume_sensor, &*scene_, T_volume_scene, request, result);
-      if (gap_m < kTouching_m) return travel_m;
-      travel_m += gap_m;
+      if (gap_m < kTouching_m) return contact_distance_m;
+      contact_distance_m += gap_m;
     }
     return std::nullopt;
   }

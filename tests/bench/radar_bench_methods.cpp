@@ -48,7 +48,7 @@ Method radar_on_mesh(const FrameScene& frame, const Mesh& sensor, RadarMode mode
   const Mesh* const mesh = &frame.mesh;
   return {std::string(name_of(mode)) + ", mesh", radar_px, true, [=](const Pose& pose) {
             radar->scene.build_in_order(*mesh);
-            const SceneTree tree{{&radar->scene, Eigen::Isometry3d::Identity()}, Touched::kDynamic};
+            const SceneTree tree{{&radar->scene, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic};
             return radar->query(pose, distance_m, {.trees = {&tree, 1}, .depths = {}});
           }};
 }
@@ -65,7 +65,7 @@ Method gl_radar_on_mesh(GlContext& context, const FrameScene& frame, const Mesh&
   const Mesh* const mesh = &frame.mesh;
   return {"GL", radar_px, true, [=](const Pose& pose) {
             state->scene.upload(*mesh, MeshUsage::kStreamed);
-            const SceneMesh scene{{&state->scene, Eigen::Isometry3d::Identity()}, Touched::kDynamic};
+            const SceneMesh scene{{&state->scene, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic};
             return state->radar.query({&state->sensor, pose.T_world_sensor}, pose.direction_world, distance_m,
                                       {&scene, 1});
           }};
@@ -76,9 +76,10 @@ Method peer_on_depth(Peer& peer, const FrameScene& frame, const Mesh& sensor, do
   return {peer.name(), 0, false, [&peer, &frame, distance_m](const Pose& pose) {
             Contact contact;
             contact.status = ContactStatus::kNoTarget;
-            if (const std::optional<double> travel_m = peer.travel_m(frame, pose, distance_m)) {
+            if (const std::optional<double> contact_distance_m =
+                    peer.contact_distance_m(frame, pose, distance_m)) {
               contact.status = ContactStatus::kContact;
-              contact.travel_m = contact.lower_m = contact.upper_m = *travel_m;
+              contact.contact_distance_m = contact.lower_m = contact.upper_m = *contact_distance_m;
             }
             return contact;
           }};

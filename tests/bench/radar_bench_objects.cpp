@@ -116,7 +116,7 @@ Row measure_objects(const FrameScene& frame, int count, int radar_px, RadarMode 
   Row row = measure_frames(frame, meshes, count, [&](const Crowd& objects, std::vector<Contact>& contacts) {
     scene.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      scene.push_back({{&trees[objects.shape[i]], objects.T_world_object[i]}, Touched::kObject});
+      scene.push_back({{&trees[objects.shape[i]], objects.T_world_object[i]}, SurfaceKind::kObject});
     }
     boxes.build(std::span<const SceneTree>(scene));
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -149,10 +149,10 @@ Row measure_objects_gl(GlContext& context, const FrameScene& frame, int count, i
     queries.clear();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const MeshInstance object{gpu_meshes[objects.shape[i]].get(), objects.T_world_object[i]};
-      scene.push_back({object, Touched::kObject});
+      scene.push_back({object, SurfaceKind::kObject});
       queries.push_back({object, objects.velocity_m_s[i], kAhead_m, i});
     }
-    scene.push_back({{&depth, Eigen::Isometry3d::Identity()}, Touched::kDynamic});
+    scene.push_back({{&depth, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic});
     radar.query_all(queries, scene, contacts);
   });
   row.method = "GL, one call";

@@ -23,7 +23,8 @@ class Peer {
   virtual void set_sensor(const Mesh& sensor) = 0;
   /// From the depth image to the answer: the triangles in the way, their tree, the question.
   /// @return nothing if there is no contact within distance_m
-  virtual std::optional<double> travel_m(const FrameScene& frame, const Pose& pose, double distance_m) = 0;
+  virtual std::optional<double> contact_distance_m(const FrameScene& frame, const Pose& pose,
+                                                   double distance_m) = 0;
 };
 
 /// The libraries whose modules lie beside the program and load. Of each other one a line of `missing` says

@@ -112,9 +112,9 @@ std::vector<Pose> hollow_poses(const Mesh& object, const Mesh& sticks,
     pose.T_world_sensor.translation() = tip - pose.T_world_sensor.linear() * tip_object;
     pose.direction_world = random_rotation(random) * Eigen::Vector3d::UnitZ();
     // Surfaces that cross meet at once whichever way they go.
-    const std::optional<double> travel_m = exact_travel(object, pose.T_world_sensor, pose.direction_world,
-                                                        0.01, sticks, Eigen::Isometry3d::Identity());
-    if (!travel_m || *travel_m > 1e-5) poses.push_back(pose);
+    const std::optional<double> contact_distance_m = exact_travel(
+        object, pose.T_world_sensor, pose.direction_world, 0.01, sticks, Eigen::Isometry3d::Identity());
+    if (!contact_distance_m || *contact_distance_m > 1e-5) poses.push_back(pose);
   }
   return poses;
 }

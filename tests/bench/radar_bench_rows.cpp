@@ -23,11 +23,12 @@ std::optional<double> judge(const Contact& contact, const std::optional<double>&
     row.wrong_bounds += hold ? 0 : 1;
   }
   const bool is_overlap = contact.status == ContactStatus::kOverlap;
-  if (is_overlap || (contact && (!exact_m || contact.travel_m < *exact_m - kPhantom_m))) ++row.false_contacts;
+  if (is_overlap || (contact && (!exact_m || contact.contact_distance_m < *exact_m - kPhantom_m)))
+    ++row.false_contacts;
   if (!contact && exact_m) ++row.missed;
   if (!contact || !exact_m) return std::nullopt;
   ++row.contacts;
-  return std::abs(contact.travel_m - *exact_m);
+  return std::abs(contact.contact_distance_m - *exact_m);
 }
 
 void add_errors(std::vector<double> error_m, Row& row) {

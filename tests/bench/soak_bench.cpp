@@ -75,7 +75,7 @@ void play(Session& session, std::int64_t number) {
     event.name = "thrown";
     event.position_world = Eigen::Vector3d(0.2, 0.1, 1.4);
     event.velocity_world_mps = {-1.0, 0.5, 1.0};
-    event.spin_world_rad_s = {3.0, -2.0, 1.0};
+    event.angular_velocity_world_rad_s = {3.0, -2.0, 1.0};
     session.apply(event);
   }
 }

@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Settings {
   std::int64_t frames = 600;
-  std::int64_t places = 0;
+  std::int64_t keyframe_database = 0;
   std::string json;
   std::vector<std::string> sources;
 };
@@ -60,7 +60,7 @@ double kept_mb(const OdometrySnapshot& kept) {
     bytes += 2 * keyframe.view->inverse_depth.pixels.size() + keyframe.view->intensity.pixels.size() +
              keyframe.view->measured.pixels.size();
   }
-  for (const Place& place : kept.places.keyframes) {
+  for (const MapKeyframe& place : kept.keyframe_database.keyframes) {
     bytes += 2 * place.preview_depth_mm.pixels.size() +
              (sizeof(Descriptor) + sizeof(Eigen::Vector3f)) * place.descriptors.size();
   }
@@ -139,7 +139,7 @@ nlohmann::json bench_tracking(const std::string& name, const Settings& settings)
 nlohmann::json bench_places(const std::string& name, const Settings& settings) {
   const std::unique_ptr<FrameSource> source = open(name);
   Odometry odometry;
-  Places places;
+  KeyframeDatabase keyframe_database;
   Frame frame;
   std::vector<double> times_ms, errors_mm;
   int asked = 0, found = 0, right = 0;
@@ -147,14 +147,14 @@ nlohmann::json bench_places(const std::string& name, const Settings& settings) {
     const ReadResult read = source->next(frame);
     if (read.status == ReadStatus::kEnd) break;
     if (read.status == ReadStatus::kSkipped || !frame.T_world_camera) continue;
-    if (count++ < settings.places) {
+    if (count++ < settings.keyframe_database) {
       odometry.add_posed(frame, *frame.T_world_camera);
       continue;
     }
-    if (places.keyframes.empty()) places = odometry.take_places();
+    if (keyframe_database.keyframes.empty()) keyframe_database = odometry.take_keyframe_database();
     ++asked;
     const auto start = Clock::now();
-    const Relocalisation answer = relocalise(frame, places);
+    const Relocalisation answer = relocalise(frame, keyframe_database);
     times_ms.push_back(since_ms(start));
     if (!answer) continue;
     ++found;
@@ -164,7 +164,7 @@ nlohmann::json bench_places(const std::string& name, const Settings& settings) {
     right += error.translation().norm() < 0.05 && angle_deg < 5.0 ? 1 : 0;
   }
   return {{"source", name},
-          {"keyframes", places.keyframes.size()},
+          {"keyframes", keyframe_database.keyframes.size()},
           {"asked", asked},
           {"found", found},
           {"within_5cm_5deg", right},
@@ -182,7 +182,7 @@ Settings parse(int argc, char** argv) {
     if (word == "--frames") {
       settings.frames = std::atoll(value().c_str());
     } else if (word == "--places") {
-      settings.places = std::atoll(value().c_str());
+      settings.keyframe_database = std::atoll(value().c_str());
     } else if (word == "--json") {
       settings.json = value();
     } else {
@@ -204,8 +204,8 @@ int main(int argc, char** argv) {
     }
     nlohmann::json rows = nlohmann::json::array();
     for (const std::string& source : settings.sources) {
-      rows.push_back(settings.places > 0 ? roomradar::bench_places(source, settings)
-                                         : roomradar::bench_tracking(source, settings));
+      rows.push_back(settings.keyframe_database > 0 ? roomradar::bench_places(source, settings)
+                                                    : roomradar::bench_tracking(source, settings));
       std::printf("%s\n", rows.back().dump().c_str());
       std::fflush(stdout);
     }

@@ -56,18 +56,18 @@ struct Settings {
 /// The poses that a search went through, how far off they are, and what spoke for each.
 nlohmann::json tried(const Locator& locator, const Eigen::Isometry3d& truth) {
   nlohmann::json poses = nlohmann::json::array();
-  for (const TriedPose& finding : locator.findings) {
-    const Eigen::Isometry3d gap = truth.inverse() * finding.tracking.T_world_camera;
-    poses.push_back(
-        {{"status", to_string(finding.tracking.status)},
-         {"m", gap.translation().norm()},
-         {"deg", Eigen::AngleAxisd(gap.linear()).angle() * 180.0 / std::numbers::pi},
-         {"patches_compared", finding.look.compared},
-         {"patches_alike", finding.look.alike.size()},
-         {"depth_both", static_cast<double>(finding.evidence.both) / std::max(finding.evidence.valid, 1)},
-         {"depth_alike", finding.evidence.alike_part()},
-         {"depth_farther", finding.evidence.farther_part()},
-         {"uncertainty_m", std::min(finding.uncertainty_m, 1e3)}});
+  for (const PoseHypothesis& hypothesis : locator.hypotheses) {
+    const Eigen::Isometry3d gap = truth.inverse() * hypothesis.tracking.T_world_camera;
+    poses.push_back({{"status", to_string(hypothesis.tracking.status)},
+                     {"m", gap.translation().norm()},
+                     {"deg", Eigen::AngleAxisd(gap.linear()).angle() * 180.0 / std::numbers::pi},
+                     {"patches_compared", hypothesis.appearance.compared},
+                     {"patches_alike", hypothesis.appearance.alike.size()},
+                     {"depth_both", static_cast<double>(hypothesis.agreement.both) /
+                                        std::max(hypothesis.agreement.valid, 1)},
+                     {"depth_alike", hypothesis.agreement.alike_part()},
+                     {"depth_farther", hypothesis.agreement.farther_part()},
+                     {"uncertainty_m", std::min(hypothesis.uncertainty_m, 1e3)}});
   }
   return poses;
 }
@@ -80,7 +80,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
   std::vector<double> errors_mm;
   int asked = 0, found = 0, right = 0;
   Locator fresh;
-  fresh.known = known_patches(mapped.map.places);
+  fresh.known = build_patch_index(mapped.map.keyframe_database);
   nlohmann::json failed = nlohmann::json::array();
   for (ReadResult read; (read = source.next(frame)).status != ReadStatus::kEnd;) {
     ++asked;
@@ -115,7 +115,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
   }
   std::sort(errors_mm.begin(), errors_mm.end());
   return {{"row", name},
-          {"keyframes", mapped.map.places.keyframes.size()},
+          {"keyframes", mapped.map.keyframe_database.keyframes.size()},
           {"asked", asked},
           {"found", found},
           {"right", right},

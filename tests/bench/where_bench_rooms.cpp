@@ -28,7 +28,7 @@ bool is_shell(const Room& room, const Vector3d& p_room) {
 struct Parts {
   double mapped = 0.0, things = 0.0;
 };
-Parts parts_of(const Room& room, const SavedMap& map, const SurfaceNear& mesh,
+Parts parts_of(const Room& room, const SavedMap& map, const MeshDistanceQuery& mesh,
                const Eigen::Isometry3d& T_room_camera, const FreeViews& which) {
   constexpr int kStep_px = 40;
   constexpr float kSame_m = 0.04F;
@@ -52,14 +52,14 @@ Parts parts_of(const Room& room, const SavedMap& map, const SurfaceNear& mesh,
 
 }  // namespace
 
-Tracking SearchedRoom::find(Locator& locator, const Frame& frame, const MaskImage& moved_mask) {
+Tracking SearchedRoom::find(Locator& locator, const Frame& frame, const MaskImage& dynamic_mask) {
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
     const double start_ms = test::thread_ms();
     scene.render_expected(frame.depth_camera, T_world_camera);
     drawing_ms += test::thread_ms() - start_ms;
     return scene.expected_depth_m();
   };
-  return locate(locator, frame, map.places, moved_mask, expected_depth);
+  return locate(locator, frame, map.keyframe_database, dynamic_mask, expected_depth);
 }
 
 SimOptions scan_of(const std::string& room, std::uint64_t seed) {
@@ -100,7 +100,7 @@ std::vector<Eigen::Isometry3d> draw_free_views(const Room& room, const SavedMap&
   constexpr std::size_t kTargets = 5000;
   const std::vector<Vector3d> targets = sample_surface(map.mesh, kTargets);
   const Eigen::Isometry3d T_room_world = map.info.T_world_recorded.inverse();
-  const SurfaceNear mesh(map.mesh, 0.05F);
+  const MeshDistanceQuery mesh(map.mesh, 0.05F);
   std::vector<Eigen::Isometry3d> views;
   for (std::uint64_t draw = 0; views.size() < count && draw < 2000 * count; ++draw) {
     CounterRandom random(hash_of(seed, 0x66726565), draw);
@@ -111,9 +111,10 @@ std::vector<Eigen::Isometry3d> draw_free_views(const Room& room, const SavedMap&
         T_room_world *
         targets[static_cast<std::size_t>(random.uniform() * static_cast<double>(targets.size()))];
     const double roll_rad = random.uniform(-kMaxRoll_rad, kMaxRoll_rad);
-    const double way_m = (target - eye).norm();
-    const bool steep = std::abs(target.z() - eye.z()) > 0.9 * way_m;
-    if (way_m < 0.8 || way_m > which.max_depth_m || steep || signed_distance_m(room, eye) < which.clear_m)
+    const double path_length_m = (target - eye).norm();
+    const bool steep = std::abs(target.z() - eye.z()) > 0.9 * path_length_m;
+    if (path_length_m < 0.8 || path_length_m > which.max_depth_m || steep ||
+        signed_distance_m(room, eye) < which.clear_m)
       continue;
     const bool off_path = std::all_of(T_room_scan.begin(), T_room_scan.end(), [&](const auto& T) {
       return (T.translation() - eye).norm() >= which.off_path_m;

@@ -20,12 +20,12 @@ struct SearchedRoom {
     room.set(map.mesh, MeshUsage::kStatic);
   }
   /// Looks for the frame with what the locator remembers, what moved in the frame before left out.
-  Tracking find(Locator& locator, const Frame& frame, const MaskImage& moved_mask = {});
+  Tracking find(Locator& locator, const Frame& frame, const MaskImage& dynamic_mask = {});
 
   SavedMap map;
   GlContext context;
   Shape room;
-  LiveScene scene;
+  FrameScene scene;
   double drawing_ms = 0.0;  ///< of the thread's time, what drawing the expected depth took so far
 };
 

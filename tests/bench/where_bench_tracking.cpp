@@ -43,11 +43,11 @@ int put_ball(const Vector3d& centre_camera, double radius_m, Frame& frame) {
 /// One frame as `run` takes it: located, then what moved is marked for the next.
 Tracking step(SearchedRoom& mapped, Locator& locator, const Frame& frame, test::Times& locate_ms) {
   const double start_ms = test::thread_ms(), drawn_ms = mapped.drawing_ms;
-  const Tracking tracking = mapped.find(locator, frame, mapped.scene.moved_mask());
+  const Tracking tracking = mapped.find(locator, frame, mapped.scene.dynamic_mask());
   locate_ms.samples_ms.push_back(test::thread_ms() - start_ms - (mapped.drawing_ms - drawn_ms));
   if (has_pose(tracking)) {
     mapped.scene.render_expected(frame.depth_camera, tracking.T_world_camera);
-    mapped.scene.find_moved(frame);
+    mapped.scene.find_dynamic(frame);
   }
   return tracking;
 }
@@ -115,7 +115,7 @@ nlohmann::json stand_still(const std::string& name, const SimOptions& scan, Sear
     const Tracking tracking = step(mapped, locator, frame, locate_ms);
     if (!has_pose(tracking)) continue;
     ++located;
-    if (i > 3) errors.push_back(log_twist(T_world_true.inverse() * tracking.T_world_camera));
+    if (i > 3) errors.push_back(local(T_world_true.inverse() * tracking.T_world_camera));
   }
   Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
   for (const auto& error : errors) mean += error / static_cast<double>(errors.size());

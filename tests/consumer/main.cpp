@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     roomradar::TriangleTree plate, floor;
     plate.build_by_place(square(0.1F, 0.0F));
     floor.build_by_place(square(2.0F, -0.75F));
-    std::printf("falls %.6f m\n", fall(plate, floor, {0.3, 0.2, 0.0}).travel_m);
+    std::printf("falls %.6f m\n", fall(plate, floor, {0.3, 0.2, 0.0}).contact_distance_m);
     if (argc < 2) return 0;
     const roomradar::SavedMap map = roomradar::load_map(argv[1]);
     floor.build_by_place(map.mesh);
@@ -43,7 +43,7 @@ int main(int argc, char** argv) {
     const roomradar::Contact contact = fall(plate, floor, above_a_vertex);
     std::printf("map of %zu triangles: ", map.mesh.triangles.size());
     if (contact.status == roomradar::ContactStatus::kContact)
-      std::printf("falls %.3f m\n", contact.travel_m);
+      std::printf("falls %.3f m\n", contact.contact_distance_m);
     else
       std::printf("nothing is in the way, or the plate stands in it\n");
     return 0;

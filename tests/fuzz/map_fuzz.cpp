@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         (void)StaticMap::read_ot(test::file_with(bytes, "octree.ot"));
         break;
       case 'p':
-        (void)read_places(test::file_with(sealed(bytes), "places.bin"));
+        (void)read_keyframe_database(test::file_with(sealed(bytes), "places.bin"));
         break;
       case 't':
         (void)read_trajectory(test::file_with(bytes, "trajectory.txt"));

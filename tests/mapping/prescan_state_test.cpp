@@ -35,8 +35,8 @@ Frame seen_from(const Eigen::Isometry3d& T_world_camera) {
 Eigen::Isometry3d pose(int i) { return test::looking_at({0.05 * i, -0.3, 1.2}, {0.05 * i + 0.2, 1.8, 0.3}); }
 
 /// Half of a second pass.
-FusingPass fusing_pass(int frames) {
-  FusingPass pass;
+FusionPass fusing_pass(int frames) {
+  FusionPass pass;
   pass.octree = StaticMap(0.05);
   pass.counts.frames_read = 12;
   pass.counts.last_fault = "frame 3 is broken";
@@ -52,16 +52,16 @@ FusingPass fusing_pass(int frames) {
     pass.found.frames.push_back({i, i / 30.0, pose(i), TrackStatus::kDegenerate, true});
     pass.found.recorded.push_back({i, i / 30.0, pose(i)});
     pass.frames_read = i + 1;
-    if (i % 4 == 0) pass.found.places.keyframes.push_back(describe_place(frame, pose(i)));
+    if (i % 4 == 0) pass.found.keyframe_database.keyframes.push_back(make_map_keyframe(frame, pose(i)));
   }
   return pass;
 }
 
 TEST(PrescanState, TheSecondPassGoesOnAsIfItHadNeverEnded) {
   const test::TemporaryFolder folder;
-  FusingPass whole = fusing_pass(6);
+  FusionPass whole = fusing_pass(6);
   write_state(whole, folder.path(), {});
-  FusingPass resumed = read_fusing_pass({kFusingStage, folder.path()});
+  FusionPass resumed = read_fusing_pass({kFusingStage, folder.path()});
   EXPECT_EQ(resumed.counts.frames_read, 12);
   EXPECT_EQ(resumed.counts.last_fault, "frame 3 is broken");
   EXPECT_EQ(resumed.frames_read, 6);
@@ -96,7 +96,7 @@ TEST(PrescanState, TheFirstPassKeepsWhatItKnowsOfUp) {
     pass.recorded.push_back({i, i / 30.0, tracking.T_world_camera});
     ++pass.counts.frames_read;
   }
-  pass.odometry.settle();
+  pass.odometry.finish_jobs();
   write_state(pass, folder.path(), {});
   const TrackingPass resumed = read_tracking_pass({kTrackingStage, folder.path()}, {});
   EXPECT_EQ(resumed.counts.frames_read, 3);
@@ -107,7 +107,7 @@ TEST(PrescanState, TheFirstPassKeepsWhatItKnowsOfUp) {
 
 TEST(PrescanState, BrokenBytesAreRefusedOrHarmless) {
   const test::TemporaryFolder folder;
-  FusingPass pass = fusing_pass(4);
+  FusionPass pass = fusing_pass(4);
   write_state(pass, folder.path(), {});
   const fs::path path = folder.path() / "state.bin";
   const std::string good = text_of(path);

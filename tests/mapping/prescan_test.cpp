@@ -45,8 +45,8 @@ TEST(Prescan, ARecordedPoseThatNoMapReachesIsNone) {
     EXPECT_EQ(result.counts.frames_lost, 1) << away_m;
     EXPECT_EQ(result.counts.frames_fused, kFrames - 1) << away_m;
     EXPECT_TRUE(knows_recorded_world(result.map.info));
-    ASSERT_FALSE(result.map.places.keyframes.empty());
-    for (const Place& place : result.map.places.keyframes)
+    ASSERT_FALSE(result.map.keyframe_database.keyframes.empty());
+    for (const MapKeyframe& place : result.map.keyframe_database.keyframes)
       EXPECT_LT(place.T_world_camera.translation().norm(), 3.0) << away_m;
     for (const TimedPose& pose : result.map.trajectory)
       EXPECT_LT(pose.T_world_camera.translation().norm(), 3.0) << away_m;
@@ -68,10 +68,10 @@ TEST(Prescan, TrackedFramesAreComparedWithPosesOfAnyOrigin) {
   const Eigen::Vector3d survey_m(5e5, 4e6, 100.0);
   for (Frame& frame : frames) frame.T_world_camera->pretranslate(survey_m);
   const PrescanResult far = prescan_of(frames, PoseOrigin::kTracked);
-  ASSERT_TRUE(near.counts.against_recorded && far.counts.against_recorded);
+  ASSERT_TRUE(near.counts.trajectory_error && far.counts.trajectory_error);
   EXPECT_TRUE(knows_recorded_world(near.map.info));
-  EXPECT_EQ(far.counts.against_recorded->poses, static_cast<std::size_t>(kFrames));
-  EXPECT_NEAR(far.counts.against_recorded->max_m, near.counts.against_recorded->max_m, 1e-6);
+  EXPECT_EQ(far.counts.trajectory_error->poses, static_cast<std::size_t>(kFrames));
+  EXPECT_NEAR(far.counts.trajectory_error->max_m, near.counts.trajectory_error->max_m, 1e-6);
   EXPECT_TRUE((far.map.info.T_world_recorded * Eigen::Translation3d(survey_m))
                   .isApprox(near.map.info.T_world_recorded, 1e-6));
 }
@@ -82,9 +82,9 @@ TEST(Prescan, OneBadPoseIsNotWhatTrackingIsComparedWith) {
   const PrescanResult with_it = prescan_of(frames, PoseOrigin::kTracked);
   frames[3].T_world_camera.reset();
   const PrescanResult without_it = prescan_of(frames, PoseOrigin::kTracked);
-  ASSERT_TRUE(with_it.counts.against_recorded && without_it.counts.against_recorded);
-  EXPECT_EQ(with_it.counts.against_recorded->poses, static_cast<std::size_t>(kFrames - 1));
-  EXPECT_EQ(with_it.counts.against_recorded->max_m, without_it.counts.against_recorded->max_m);
+  ASSERT_TRUE(with_it.counts.trajectory_error && without_it.counts.trajectory_error);
+  EXPECT_EQ(with_it.counts.trajectory_error->poses, static_cast<std::size_t>(kFrames - 1));
+  EXPECT_EQ(with_it.counts.trajectory_error->max_m, without_it.counts.trajectory_error->max_m);
 }
 
 TEST(Prescan, AMapOfImagesOfAFewRowsIsReadAgain) {
@@ -100,12 +100,13 @@ TEST(Prescan, AMapOfImagesOfAFewRowsIsReadAgain) {
       frame.colour.resize(0, 0);
     }
     const SavedMap map = prescan_of(std::move(frames)).map;
-    ASSERT_FALSE(map.places.keyframes.empty());
-    EXPECT_GT(map.places.keyframes.front().preview_depth_mm.height, 0);
+    ASSERT_FALSE(map.keyframe_database.keyframes.empty());
+    EXPECT_GT(map.keyframe_database.keyframes.front().preview_depth_mm.height, 0);
     const test::TemporaryFolder folder;
     save_map(folder.path() / "slit", map);
     EXPECT_TRUE(verify_map(folder.path() / "slit").empty());
-    EXPECT_EQ(load_map(folder.path() / "slit").places.keyframes.size(), map.places.keyframes.size());
+    EXPECT_EQ(load_map(folder.path() / "slit").keyframe_database.keyframes.size(),
+              map.keyframe_database.keyframes.size());
   }
 }
 
@@ -128,7 +129,7 @@ TEST(Prescan, ALongScanThatOnlyBeginsInTheMapIsAddedToIt) {
   config.resolution_m = 0.02;
   StageTimes times;
   test::KeptSource at_the_door(along_a_wall(4)), into_the_next_rooms(along_a_wall(150));
-  PrescanStart start{.map = prescan(at_the_door, config, times).map};
+  PrescanInput start{.map = prescan(at_the_door, config, times).map};
   const PrescanResult longer = prescan(into_the_next_rooms, config, times, {}, std::move(start));
   EXPECT_EQ(longer.counts.frames_fused, 150);
   EXPECT_FALSE(knows_recorded_world(longer.map.info));

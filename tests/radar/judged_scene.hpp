@@ -70,7 +70,7 @@ struct JudgedMesh {
 class JudgedScene {
  public:
   void add(Mesh mesh, const Eigen::Isometry3d& T_world_mesh = Eigen::Isometry3d::Identity(),
-           Touched kind = Touched::kStatic) {
+           SurfaceKind kind = SurfaceKind::kStatic) {
     meshes_.emplace_back(std::move(mesh), T_world_mesh);
     kinds_.push_back(kind);
     has_tree_.push_back(true);
@@ -99,8 +99,9 @@ class JudgedScene {
                         .margin_m = margin_m},
                        {trees, depths_});
   }
-  [[nodiscard]] std::optional<double> travel_m(const JudgedMesh& object, const Eigen::Vector3d& direction,
-                                               double distance_m) const {
+  [[nodiscard]] std::optional<double> contact_distance_m(const JudgedMesh& object,
+                                                         const Eigen::Vector3d& direction,
+                                                         double distance_m) const {
     std::optional<double> least_m;
     for (const JudgedMesh& mesh : meshes_) {
       const auto travel =
@@ -114,7 +115,7 @@ class JudgedScene {
  private:
   std::deque<JudgedMesh> meshes_;
   std::vector<SceneDepth> depths_;
-  std::vector<Touched> kinds_;
+  std::vector<SurfaceKind> kinds_;
   std::vector<bool> has_tree_;
 };
 
@@ -123,8 +124,8 @@ inline std::string describe(const JudgedMesh& object, const Eigen::Vector3d& dir
                             const Contact& got, const std::optional<double>& truth_m) {
   std::ostringstream text;
   text.precision(17);
-  text << "status " << static_cast<int>(got.status) << " travel " << got.travel_m << " lower " << got.lower_m
-       << " upper " << got.upper_m << " pixel " << got.pixel_m << ", truth ";
+  text << "status " << static_cast<int>(got.status) << " travel " << got.contact_distance_m << " lower "
+       << got.lower_m << " upper " << got.upper_m << " pixel " << got.pixel_m << ", truth ";
   if (truth_m) {
     text << *truth_m;
   } else {
@@ -145,8 +146,8 @@ inline testing::AssertionResult is_exact(const Contact& got, const std::optional
     // Whether it is reached at all is open where it lies at the very end of the distance.
     if (distance_m - *truth_m < kExactError_m) return testing::AssertionSuccess();
     if (got.status != ContactStatus::kContact) return testing::AssertionFailure() << "no contact";
-    if (!(std::abs(got.travel_m - *truth_m) <= kExactError_m)) {
-      return testing::AssertionFailure() << "off by " << got.travel_m - *truth_m;
+    if (!(std::abs(got.contact_distance_m - *truth_m) <= kExactError_m)) {
+      return testing::AssertionFailure() << "off by " << got.contact_distance_m - *truth_m;
     }
     if (!(got.upper_m - got.lower_m <= 2.0 * kExactError_m)) return testing::AssertionFailure() << "wide";
   } else {
@@ -169,10 +170,10 @@ inline testing::AssertionResult holds(const Contact& got, const std::optional<do
   if (!(got.upper_m >= (truth_m ? *truth_m : distance_m) - rounding_m)) {
     return testing::AssertionFailure() << "upper bound under the truth";
   }
-  if (got.status == ContactStatus::kContact && !(got.travel_m >= got.lower_m - rounding_m)) {
+  if (got.status == ContactStatus::kContact && !(got.contact_distance_m >= got.lower_m - rounding_m)) {
     return testing::AssertionFailure() << "travel under its lower bound";
   }
-  if (got.status == ContactStatus::kContact && !(got.travel_m <= got.upper_m + rounding_m)) {
+  if (got.status == ContactStatus::kContact && !(got.contact_distance_m <= got.upper_m + rounding_m)) {
     return testing::AssertionFailure() << "travel over its upper bound";
   }
   return testing::AssertionSuccess();

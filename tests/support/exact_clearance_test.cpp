@@ -76,19 +76,19 @@ TEST(ExactClearance, IsZeroExactlyWhereTheTravelJudgeSeesACrossing) {
     T.pretranslate(0.6 * shapes::random_point(random));
     const Eigen::Vector3d u = shapes::random_point(random).normalized();
     const auto crossings = exact_crossings(object, T, u, scene, at(0, 0, 0));
-    for (double travel_m = -0.9; travel_m < 1.0; travel_m += 0.15) {
+    for (double contact_distance_m = -0.9; contact_distance_m < 1.0; contact_distance_m += 0.15) {
       bool is_crossing = false;
       bool is_close = false;
       for (const TravelSpan& span : crossings) {
-        is_crossing = is_crossing || (span.from_m <= travel_m && travel_m <= span.to_m);
-        is_close =
-            is_close || std::abs(span.from_m - travel_m) < 1e-9 || std::abs(span.to_m - travel_m) < 1e-9;
+        is_crossing = is_crossing || (span.from_m <= contact_distance_m && contact_distance_m <= span.to_m);
+        is_close = is_close || std::abs(span.from_m - contact_distance_m) < 1e-9 ||
+                   std::abs(span.to_m - contact_distance_m) < 1e-9;
       }
       if (is_close) continue;
       Eigen::Isometry3d T_moved = T;
-      T_moved.pretranslate(travel_m * u);
+      T_moved.pretranslate(contact_distance_m * u);
       EXPECT_EQ(exact_clearance(object, T_moved, scene, at(0, 0, 0)) == 0.0, is_crossing)
-          << i << " " << travel_m;
+          << i << " " << contact_distance_m;
       ++(is_crossing ? inside : outside);
     }
   }

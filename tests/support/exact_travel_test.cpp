@@ -20,10 +20,10 @@ Eigen::Isometry3d at(double x, double y, double z) {
 }
 
 TEST(ExactTravel, BoxAboveFloorTravelsItsClearance) {
-  const auto travel_m = exact_travel(shapes::box({0.2F, 0.2F, 0.2F}), at(0.3, 0.1, 1.0), kDown, 2.0,
-                                     shapes::floor(2.0F, 0.0F), at(0, 0, 0));
-  ASSERT_TRUE(travel_m);
-  EXPECT_NEAR(*travel_m, 0.9, 1e-8);  // float vertices of 0.1 are off by 1.5e-9
+  const auto contact_distance_m = exact_travel(shapes::box({0.2F, 0.2F, 0.2F}), at(0.3, 0.1, 1.0), kDown, 2.0,
+                                               shapes::floor(2.0F, 0.0F), at(0, 0, 0));
+  ASSERT_TRUE(contact_distance_m);
+  EXPECT_NEAR(*contact_distance_m, 0.9, 1e-8);  // float vertices of 0.1 are off by 1.5e-9
 }
 
 TEST(ExactTravel, EdgeMeetsEdge) {
@@ -33,9 +33,9 @@ TEST(ExactTravel, EdgeMeetsEdge) {
   upper.pretranslate(Eigen::Vector3d(0, 0, 1));
   Eigen::Isometry3d lower(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ()) *
                           Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitX()));
-  const auto travel_m = exact_travel(box, upper, kDown, 2.0, box, lower);
-  ASSERT_TRUE(travel_m);
-  EXPECT_NEAR(*travel_m, 1.0 - 0.2 * std::sqrt(2.0), 1e-7);
+  const auto contact_distance_m = exact_travel(box, upper, kDown, 2.0, box, lower);
+  ASSERT_TRUE(contact_distance_m);
+  EXPECT_NEAR(*contact_distance_m, 1.0 - 0.2 * std::sqrt(2.0), 1e-7);
 }
 
 TEST(ExactTravel, CornerMeetsFaceAndFaceMeetsCorner) {
@@ -76,9 +76,9 @@ TEST(ExactTravel, EdgesMeetAtAnyAngleAndFarFromTheOrigin) {
       lower.pretranslate(place);
       Eigen::Isometry3d upper(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * on_edge);
       upper.pretranslate(place + Eigen::Vector3d(0, 0, 1));
-      const auto travel_m = exact_travel(box, upper, kDown, 2.0, box, lower);
-      ASSERT_TRUE(travel_m);
-      EXPECT_NEAR(*travel_m, 1.0 - 0.2 * std::sqrt(2.0), 1e-7) << angle << " " << far_m;
+      const auto contact_distance_m = exact_travel(box, upper, kDown, 2.0, box, lower);
+      ASSERT_TRUE(contact_distance_m);
+      EXPECT_NEAR(*contact_distance_m, 1.0 - 0.2 * std::sqrt(2.0), 1e-7) << angle << " " << far_m;
     }
   }
 }
@@ -87,9 +87,11 @@ TEST(ExactTravel, BallOnASlopeTravelsByItsSlant) {
   // 1 m over a plane that leans by 30 degrees; straight down: (distance to the plane - radius) / cos 30.
   const Mesh ball = shapes::ball(0.25F, 200, 300);
   Eigen::Isometry3d slope(Eigen::AngleAxisd(M_PI / 6, Eigen::Vector3d::UnitY()));
-  const auto travel_m = exact_travel(ball, at(0, 0, 1), kDown, 2.0, shapes::floor(4.0F, 0.0F), slope);
-  ASSERT_TRUE(travel_m);
-  EXPECT_NEAR(*travel_m, 1.0 - 0.25 / std::cos(M_PI / 6), 4e-5);  // the ball is flat between its corners
+  const auto contact_distance_m =
+      exact_travel(ball, at(0, 0, 1), kDown, 2.0, shapes::floor(4.0F, 0.0F), slope);
+  ASSERT_TRUE(contact_distance_m);
+  EXPECT_NEAR(*contact_distance_m, 1.0 - 0.25 / std::cos(M_PI / 6),
+              4e-5);  // the ball is flat between its corners
 }
 
 TEST(ExactTravel, BoxesWithTheSameOutlineMeetFaceToFace) {
@@ -98,9 +100,9 @@ TEST(ExactTravel, BoxesWithTheSameOutlineMeetFaceToFace) {
     Eigen::Isometry3d lower(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
     Eigen::Isometry3d upper = lower;
     upper.pretranslate(Eigen::Vector3d(0, 0, 1));
-    const auto travel_m = exact_travel(box, upper, kDown, 2.0, box, lower);
-    ASSERT_TRUE(travel_m) << turn;
-    EXPECT_NEAR(*travel_m, 0.875, 1e-12);
+    const auto contact_distance_m = exact_travel(box, upper, kDown, 2.0, box, lower);
+    ASSERT_TRUE(contact_distance_m) << turn;
+    EXPECT_NEAR(*contact_distance_m, 0.875, 1e-12);
   }
 }
 
@@ -138,13 +140,13 @@ TEST(ExactCrossings, FirstOneAheadIsTheTravel) {
     T_world_object.pretranslate(shapes::random_point(random));
     const Eigen::Vector3d direction = shapes::random_point(random);
     const auto crossings = exact_crossings(object, T_world_object, direction, scene, at(0, 0, 0));
-    const auto travel_m = exact_travel(object, T_world_object, direction, 9.0, scene, at(0, 0, 0));
+    const auto contact_distance_m = exact_travel(object, T_world_object, direction, 9.0, scene, at(0, 0, 0));
     std::optional<double> expected_m;
     for (const TravelSpan& span : crossings) {
       if (span.to_m >= 0.0 && !expected_m) expected_m = std::max(span.from_m, 0.0);
     }
-    EXPECT_EQ(travel_m, expected_m) << i;
-    ahead += travel_m ? 1 : 0;
+    EXPECT_EQ(contact_distance_m, expected_m) << i;
+    ahead += contact_distance_m ? 1 : 0;
   }
   EXPECT_GT(ahead, 10);
 }

@@ -93,8 +93,9 @@ MappedRoom::MappedRoom(GlContext& context, ScannedRoom room) : scanned(std::move
   shape.set(scanned.mesh_world, MeshUsage::kStatic);
   unknown.build_by_place(scanned.unknown_world);
   for (const FallthroughPolicy& policy : kFallthroughPolicies)
-    scenes.push_back(std::make_unique<LiveScene>(context, shape, LiveSceneConfig{.surfaces = policy.surfaces},
-                                                 policy.unknown_solid ? &unknown : nullptr));
+    scenes.push_back(std::make_unique<FrameScene>(context, shape,
+                                                  FrameSceneConfig{.surfaces = policy.surfaces},
+                                                  policy.unknown_solid ? &unknown : nullptr));
 }
 
 std::vector<std::unique_ptr<MappedRoom>> map_rooms(GlContext& context, const std::vector<RoomChoice>& rooms,

@@ -46,7 +46,7 @@ struct MappedRoom {
   ScannedRoom scanned;
   Shape shape;
   TriangleTree unknown;
-  std::vector<std::unique_ptr<LiveScene>> scenes;  ///< one a policy
+  std::vector<std::unique_ptr<FrameScene>> scenes;  ///< one a policy
 
   MappedRoom(GlContext& context, ScannedRoom room);
 };

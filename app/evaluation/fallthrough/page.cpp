@@ -119,7 +119,7 @@ std::size_t failure_count(const std::vector<ScenarioRow>& rows) {
 void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
                 const std::vector<FailurePicture>& pictures, const std::filesystem::path& path) {
   if (path.empty()) return;
-  WholeFile whole(path);
+  AtomicFile whole(path);
   std::ostream& file = whole.stream();
   file << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Fall-through</title><style>"
        << kStyle << "</style><h1>Do virtual objects fall through hidden surfaces?</h1><p>" << escaped(about)
@@ -151,7 +151,7 @@ void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
     file << "<figure><img alt=\"\" src=\"data:image/png;base64," << base64(encode_png(picture.picture))
          << "\"><figcaption>" << escaped(picture.caption) << "</figcaption></figure>\n";
   file << "</html>\n";
-  whole.put_in_place();
+  whole.commit();
 }
 
 }  // namespace roomradar

@@ -60,15 +60,15 @@ bool is_seen(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const 
   return depth_m > 0.0F && depth_m > p_camera.z() - kSame_m;
 }
 
-Rgb plan_colour_of(Touched touched) {
+Rgb plan_colour_of(SurfaceKind touched) {
   switch (touched) {
-    case Touched::kStatic:
+    case SurfaceKind::kStatic:
       return {120, 190, 130};
-    case Touched::kDynamic:
+    case SurfaceKind::kDynamic:
       return {110, 150, 235};
-    case Touched::kUnknownFrontier:
+    case SurfaceKind::kUnknownFrontier:
       return {240, 190, 90};
-    case Touched::kNothing:
+    case SurfaceKind::kNothing:
       return {214, 40, 40};
     default:
       return {180, 110, 210};
@@ -95,18 +95,19 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
   append_mesh(sphere(Vector3d::Zero(), config.radius_m), {}, kMeshDeviation_m, ball_mesh);
   ball.build_by_place(ball_mesh);
 
-  std::vector<std::unique_ptr<LiveScene>> scenes;
+  std::vector<std::unique_ptr<FrameScene>> scenes;
   std::array<std::vector<SceneTree>, kPolicyCount> surfaces;
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const FallthroughPolicy& policy = kFallthroughPolicies[i];
-    scenes.push_back(std::make_unique<LiveScene>(context, room, LiveSceneConfig{.surfaces = policy.surfaces},
-                                                 policy.unknown_solid ? &unknown : nullptr));
+    scenes.push_back(std::make_unique<FrameScene>(context, room,
+                                                  FrameSceneConfig{.surfaces = policy.surfaces},
+                                                  policy.unknown_solid ? &unknown : nullptr));
     if (policy.surfaces == SurfacePolicy::kMap)
       for (int twice = 0; twice < 2; ++twice) {  // the foreground remembers one frame
         scenes[i]->render_expected(frame.depth_camera, T_world_camera);
-        scenes[i]->find_moved(frame);
+        scenes[i]->find_dynamic(frame);
       }
-    scenes[i]->mesh_moved(frame, T_world_camera);
+    scenes[i]->mesh_dynamic(frame, T_world_camera);
     surfaces[i] = scenes[i]->surfaces();
   }
 
@@ -117,7 +118,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
   grid.rows = static_cast<int>(std::ceil(bounds.sizes().y() / config.cell_m));
   const double lowest_m = bounds.min().z() - config.below_m;
   CyberRadar radar;
-  const SceneTree truth{{&reference, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  const SceneTree truth{{&reference, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   Progress progress("drops", static_cast<std::int64_t>(grid.columns) * grid.rows);
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
@@ -133,14 +134,15 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
       const double limit_m = start_world->z() - lowest_m;
       const RadarQuery query{{&ball, T_world_ball}, -Vector3d::UnitZ(), limit_m};
       if (const Contact contact = radar.query(query, {{&truth, 1}, {}})) {
-        cell.has_truth = contact.travel_m >= 0.0;  // else the reference stands where the ball starts
-        cell.true_travel_m = contact.travel_m;
+        cell.has_truth =
+            contact.contact_distance_m >= 0.0;  // else the reference stands where the ball starts
+        cell.true_travel_m = contact.contact_distance_m;
         cell.is_hidden = !is_seen(frame, T_world_camera, contact.point_world);
       }
       for (std::size_t i = 0; i < kPolicyCount; ++i) {
         const Contact contact = radar.query(query, {surfaces[i], {}});
-        cell.drops[i] = contact ? GridDrop{std::max(0.0, contact.travel_m), contact.touched}
-                                : GridDrop{limit_m, Touched::kNothing};
+        cell.drops[i] = contact ? GridDrop{std::max(0.0, contact.contact_distance_m), contact.touched}
+                                : GridDrop{limit_m, SurfaceKind::kNothing};
       }
       grid.cells.push_back(cell);
     }
@@ -173,7 +175,7 @@ std::string table_of(const Grid& grid) {
     table += line;
     for (std::size_t kind = 0; kind < all.rested_on.size(); ++kind) {
       if (all.rested_on[kind] == 0) continue;
-      table += " " + std::string(to_string(static_cast<Touched>(kind))) + " " +
+      table += " " + std::string(to_string(static_cast<SurfaceKind>(kind))) + " " +
                std::to_string(all.rested_on[kind]);
     }
     table += '\n';
@@ -204,11 +206,11 @@ ColourImage draw_plan(const Grid& grid) {
   }
   int x = kMargin_px;
   const int y = picture.height - 14;
-  for (const Touched kind : {Touched::kStatic, Touched::kDynamic, Touched::kInferredBack,
-                             Touched::kUnknownFrontier, Touched::kNothing}) {
+  for (const SurfaceKind kind : {SurfaceKind::kStatic, SurfaceKind::kDynamic, SurfaceKind::kInferredBack,
+                                 SurfaceKind::kUnknownFrontier, SurfaceKind::kNothing}) {
     for (int dy = 0; dy < 12; ++dy)
       for (int dx = 0; dx < 12; ++dx) blend(picture, x + dx, y - 10 + dy, plan_colour_of(kind));
-    const std::string name = kind == Touched::kNothing ? "fell" : std::string(to_string(kind));
+    const std::string name = kind == SurfaceKind::kNothing ? "fell" : std::string(to_string(kind));
     draw_text(picture, name, x + 18, y, 0.45, {30, 30, 30});
     x += 30 + 9 * static_cast<int>(name.size());
   }

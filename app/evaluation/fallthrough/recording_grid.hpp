@@ -21,7 +21,7 @@ struct GridConfig {
 /// What became of one cell's ball under one policy.
 struct GridDrop {
   double travelled_m = 0.0;
-  Touched rested_on = Touched::kNothing;
+  SurfaceKind rested_on = SurfaceKind::kNothing;
 };
 struct GridCell {
   int column = 0, row = 0;
@@ -47,7 +47,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
 /// Passed, false and right as for scenarios; only cells with a truth, hidden ones or all.
 struct GridTotals {
   int cells = 0, passed = 0, false_stops = 0;
-  std::array<int, 6> rested_on{};  ///< by Touched
+  std::array<int, 6> rested_on{};  ///< by SurfaceKind
 };
 GridTotals totals_of(const Grid& grid, std::size_t policy, bool hidden_only);
 std::string table_of(const Grid& grid);

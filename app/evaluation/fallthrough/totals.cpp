@@ -49,7 +49,7 @@ std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>&
       const Trial& trial = row.trials[i];
       totals[i].passed += trial.verdict.outcome == Outcome::kPassedThrough;
       totals[i].false_stops += trial.verdict.outcome == Outcome::kStoppedFalse;
-      if (trial.rested_on != Touched::kNothing) errors_m.push_back(std::abs(trial.verdict.error_m));
+      if (trial.rested_on != SurfaceKind::kNothing) errors_m.push_back(std::abs(trial.verdict.error_m));
       frames_ms.push_back(trial.frame_ms);
       ratios.push_back(trial.frame_ms / row.trials[0].frame_ms);
     }
@@ -110,7 +110,7 @@ nlohmann::json failures_of(const std::vector<ScenarioRow>& rows) {
 
 void write_csv(const std::vector<ScenarioRow>& rows, const std::filesystem::path& path) {
   if (path.empty()) return;
-  WholeFile whole(path);
+  AtomicFile whole(path);
   std::ostream& file = whole.stream();
   file << "scenario,room,occluder,occluder_moves,shape,motion,speed_m_s,true_travel_m,surfaces,outcome,"
           "travelled_m,error_m,rested_on,frame_ms\n";
@@ -129,7 +129,7 @@ void write_csv(const std::vector<ScenarioRow>& rows, const std::filesystem::path
       std::snprintf(numbers, sizeof numbers, "%.2f", trial.frame_ms);
       file << numbers << '\n';
     }
-  whole.put_in_place();
+  whole.commit();
 }
 
 }  // namespace roomradar

@@ -40,26 +40,26 @@ Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy
 }
 
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
-                  std::span<const FineRegion> about_objects, LiveScene& scene) {
+                  std::span<const FineRegion> about_objects, FrameScene& scene) {
   const Scenario& scenario = prepared.scenario;
   Frame reduced;
   const Frame& frame = reduced_by(how.depth_stride, prepared.frames.at(number), reduced);
   const bool has_map = how.policy == SurfacePolicy::kMap;
   if (has_map && number == 0) {  // the foreground remembers one frame; not that of another scenario
     scene.render_expected(frame.depth_camera, scenario.T_world_camera);
-    scene.find_moved(frame);
+    scene.find_dynamic(frame);
   }
   const auto start = std::chrono::steady_clock::now();
   if (has_map) {
     scene.render_expected(frame.depth_camera, scenario.T_world_believed);
-    scene.find_moved(frame);
+    scene.find_dynamic(frame);
   }
   if (!how.fine_mesh) about_objects = {};
-  scene.mesh_moved(frame, scenario.T_world_believed, about_objects);
+  scene.mesh_dynamic(frame, scenario.T_world_believed, about_objects);
   return ms_since(start);
 }
 
-Trial run_trial(PreparedScenario& prepared, LiveScene& scene, const TrialSurfaces& how, CyberRadar& radar,
+Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar,
                 const WatchTrial& watch) {
   using Clock = std::chrono::steady_clock;
   constexpr double kAbout_m = 0.02;  // as a session has it
@@ -87,7 +87,7 @@ Trial run_trial(PreparedScenario& prepared, LiveScene& scene, const TrialSurface
         radar.query({{&prepared.object, T_world_object}, scenario.direction_world, next_m}, {surfaces, {}});
     query_ms += ms_since(start);
     stopped = static_cast<bool>(contact);
-    trial.travelled_m += stopped ? std::max(0.0, contact.travel_m) : next_m;
+    trial.travelled_m += stopped ? std::max(0.0, contact.contact_distance_m) : next_m;
     if (stopped) trial.rested_on = contact.touched;
     const bool is_last = stopped || trial.travelled_m >= scenario.limit_m;
     if (watch) watch({frame_number, surfaces, from_m, trial.travelled_m, is_last});

@@ -39,7 +39,7 @@ struct PreparedScenario {
 struct Trial {
   double travelled_m = 0.0;
   Verdict verdict;
-  Touched rested_on = Touched::kNothing;
+  SurfaceKind rested_on = SurfaceKind::kNothing;
   double frame_ms = 0.0;  ///< surfaces of the first frame, and one question to the radar (mean of all)
 };
 
@@ -62,12 +62,12 @@ struct TrialSurfaces {
 /// Makes the scene's surfaces those of one frame of the scenario, as tracking believes that it was taken
 /// from; frame 0 as if the camera had stood so before. Gives what that took, ms.
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
-                  std::span<const FineRegion> about_objects, LiveScene& scene);
+                  std::span<const FineRegion> about_objects, FrameScene& scene);
 
 /// Frame by frame: the policy's surfaces from what the camera shows, and the object as far as the radar lets
 /// it, until something stops it or it has passed the scenario's limit. The camera's pose is what tracking
 /// believes.
-Trial run_trial(PreparedScenario& prepared, LiveScene& scene, const TrialSurfaces& surfaces,
+Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& surfaces,
                 CyberRadar& radar, const WatchTrial& watch = {});
 /// The same with the room's scene of one of kFallthroughPolicies.
 Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,

@@ -14,13 +14,13 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Rgb view_colour_of(Touched kind) {
+Rgb view_colour_of(SurfaceKind kind) {
   switch (kind) {
-    case Touched::kStatic:
+    case SurfaceKind::kStatic:
       return {20, 20, 24};
-    case Touched::kDynamic:
+    case SurfaceKind::kDynamic:
       return {30, 90, 230};
-    case Touched::kUnknownFrontier:
+    case SurfaceKind::kUnknownFrontier:
       return {230, 60, 60};
     default:
       return {150, 60, 200};

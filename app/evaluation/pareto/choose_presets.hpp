@@ -11,10 +11,10 @@ namespace roomradar {
 
 /// How much larger a setting's errors are than the default's: the geometric mean over the work's errors of
 /// (error + negligible) / (the default's + negligible). 1 for the default, NaN where nothing is known.
-double loss_of(const TradeWork& work, const SettingSummary& setting, const SettingSummary& usual);
+double loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
 /// The largest of the same ratios.
-double worst_loss_of(const TradeWork& work, const SettingSummary& setting, const SettingSummary& usual);
+double worst_loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
 /// Places among the summaries.
 struct PresetChoice {
@@ -35,12 +35,12 @@ inline constexpr double kMostLossOfAccurate = 0.99;  ///< what is no better than
 ///  balanced  the same with at most kMostLossOfBalanced: what is gained nearly for nothing,
 ///  accurate  the least loss that takes at most kMostTimeOfAccurate times the default; the default itself
 ///            where that is more than kMostLossOfAccurate.
-/// @param usual  the default's place among the summaries
-PresetChoice choose_presets(const TradeWork& work, const std::vector<SettingSummary>& summaries,
-                            std::size_t usual);
+/// @param defaults  the default's place among the summaries
+PresetChoice choose_presets(const MeasuredWork& work, const std::vector<SettingSummary>& summaries,
+                            std::size_t defaults);
 
 /// "default", "fast", "balanced", "accurate": those that a setting is, `between` them; empty if it is none.
-std::string names_of(std::size_t setting, std::size_t usual, const PresetChoice& choice,
+std::string names_of(std::size_t setting, std::size_t defaults, const PresetChoice& choice,
                      const std::string& between);
 
 }  // namespace roomradar

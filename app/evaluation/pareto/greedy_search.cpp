@@ -11,34 +11,35 @@ namespace roomradar {
 namespace {
 
 struct Turn {
-  std::size_t knob, word;
+  std::size_t parameter, word;
   double price;
 };
 
 /// The knob by which a setting differs from the usual one, if it is one of quality and the only one.
-std::optional<std::size_t> turned_knob(const std::vector<Knob>& knobs, const Setting& setting) {
+std::optional<std::size_t> changed_parameter(const std::vector<Parameter>& parameters,
+                                             const Setting& setting) {
   std::optional<std::size_t> turned;
-  for (std::size_t k = 0; k < knobs.size(); ++k) {
-    if (setting[k] == knobs[k].usual) continue;
-    if (turned || knobs[k].is_load) return std::nullopt;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    if (setting[k] == parameters[k].defaults) continue;
+    if (turned || parameters[k].is_load) return std::nullopt;
     turned = k;
   }
   return turned;
 }
 
 /// From the usual setting on, turn after turn; what leads back is passed over.
-std::vector<Setting> steps_of(std::vector<Turn> turns, const Setting& usual) {
+std::vector<Setting> steps_of(std::vector<Turn> turns, const Setting& defaults) {
   std::stable_sort(turns.begin(), turns.end(),
                    [](const Turn& a, const Turn& b) { return a.price < b.price; });
   std::vector<Setting> steps;
-  Setting setting = usual;
+  Setting setting = defaults;
   for (const Turn& turn : turns) {
     const auto turned =
-        static_cast<std::ptrdiff_t>(turn.word) - static_cast<std::ptrdiff_t>(usual[turn.knob]);
-    const auto already =
-        static_cast<std::ptrdiff_t>(setting[turn.knob]) - static_cast<std::ptrdiff_t>(usual[turn.knob]);
+        static_cast<std::ptrdiff_t>(turn.word) - static_cast<std::ptrdiff_t>(defaults[turn.parameter]);
+    const auto already = static_cast<std::ptrdiff_t>(setting[turn.parameter]) -
+                         static_cast<std::ptrdiff_t>(defaults[turn.parameter]);
     if (std::abs(turned) <= std::abs(already)) continue;
-    setting[turn.knob] = turn.word;
+    setting[turn.parameter] = turn.word;
     steps.push_back(setting);
   }
   return steps;
@@ -46,24 +47,24 @@ std::vector<Setting> steps_of(std::vector<Turn> turns, const Setting& usual) {
 
 }  // namespace
 
-std::vector<Setting> ladder_settings(const TradeWork& work, const std::vector<SettingSummary>& summaries,
-                                     std::size_t usual, std::size_t count) {
+std::vector<Setting> greedy_settings(const MeasuredWork& work, const std::vector<SettingSummary>& summaries,
+                                     std::size_t defaults, std::size_t count) {
   constexpr double kLeastSaved = 0.005, kLeastGained = 0.002;  // parts; less is noise
   std::vector<Turn> faster, better;
   for (const SettingSummary& summary : summaries) {
-    const std::optional<std::size_t> knob = turned_knob(work.knobs, summary.setting);
+    const std::optional<std::size_t> parameter = changed_parameter(work.parameters, summary.setting);
     const double saved = -std::log(summary.time_ratio);
-    const double lost = std::log(loss_of(work, summary, summaries[usual]));
-    if (!knob || !summary.is_complete || !std::isfinite(saved) || !std::isfinite(lost)) continue;
-    const std::size_t word = summary.setting[*knob];
-    if (saved > kLeastSaved && word < work.knobs[*knob].usual)
-      faster.push_back({*knob, word, std::max(lost, 0.0) / saved});
-    if (lost < -kLeastGained && word > work.knobs[*knob].usual)
-      better.push_back({*knob, word, std::max(-saved, 0.0) / -lost});
+    const double lost = std::log(loss_of(work, summary, summaries[defaults]));
+    if (!parameter || !summary.is_complete || !std::isfinite(saved) || !std::isfinite(lost)) continue;
+    const std::size_t word = summary.setting[*parameter];
+    if (saved > kLeastSaved && word < work.parameters[*parameter].defaults)
+      faster.push_back({*parameter, word, std::max(lost, 0.0) / saved});
+    if (lost < -kLeastGained && word > work.parameters[*parameter].defaults)
+      better.push_back({*parameter, word, std::max(-saved, 0.0) / -lost});
   }
-  std::vector<Setting> steps = steps_of(std::move(better), summaries[usual].setting);
+  std::vector<Setting> steps = steps_of(std::move(better), summaries[defaults].setting);
   std::reverse(steps.begin(), steps.end());
-  for (Setting& step : steps_of(std::move(faster), summaries[usual].setting))
+  for (Setting& step : steps_of(std::move(faster), summaries[defaults].setting))
     steps.push_back(std::move(step));
   std::erase_if(steps, [&](const Setting& step) {
     return std::any_of(summaries.begin(), summaries.end(),

@@ -12,9 +12,9 @@ namespace roomradar {
 /// likewise to what is better, in the order of the time that it took. Each step keeps the turns before it;
 /// a knob that was turned farther stays so. From what was measured once it cannot be told how turns go
 /// together: the steps are to be measured, too.
-/// @param usual  the default's place among the summaries
+/// @param defaults  the default's place among the summaries
 /// @return up to `count` settings, evenly chosen along both ways, without those among the summaries
-std::vector<Setting> ladder_settings(const TradeWork& work, const std::vector<SettingSummary>& summaries,
-                                     std::size_t usual, std::size_t count);
+std::vector<Setting> greedy_settings(const MeasuredWork& work, const std::vector<SettingSummary>& summaries,
+                                     std::size_t defaults, std::size_t count);
 
 }  // namespace roomradar

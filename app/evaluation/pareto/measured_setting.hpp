@@ -34,9 +34,9 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 /// Does the work once as the setting says. Throws Error where that cannot be.
 using Measure = std::function<Readings(const Setting& setting)>;
 
-struct TradeWork {
+struct MeasuredWork {
   std::string name;  ///< "prescan", "run"
-  std::vector<Knob> knobs = {};
+  std::vector<Parameter> parameters = {};
   std::vector<FigureName> figures = {};
   std::size_t time = 0;                  ///< which of them is the time that settings are compared by
   std::vector<std::string> scenes = {};  ///< where it is done
@@ -45,6 +45,6 @@ struct TradeWork {
 };
 
 /// Where a figure of that name is among the work's; throws Error if it is none.
-std::size_t place_of(const TradeWork& work, const std::string& figure);
+std::size_t place_of(const MeasuredWork& work, const std::string& figure);
 
 }  // namespace roomradar

@@ -3,23 +3,23 @@
 
 namespace roomradar {
 
-Setting usual_setting(const std::vector<Knob>& knobs) {
+Setting default_setting(const std::vector<Parameter>& parameters) {
   Setting setting;
-  for (const Knob& knob : knobs) setting.push_back(knob.usual);
+  for (const Parameter& parameter : parameters) setting.push_back(parameter.defaults);
   return setting;
 }
 
-bool has_usual_load(const std::vector<Knob>& knobs, const Setting& setting) {
-  for (std::size_t i = 0; i < knobs.size(); ++i)
-    if (knobs[i].is_load && setting[i] != knobs[i].usual) return false;
+bool has_default_load(const std::vector<Parameter>& parameters, const Setting& setting) {
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (parameters[i].is_load && setting[i] != parameters[i].defaults) return false;
   return true;
 }
 
-std::string describe(const std::vector<Knob>& knobs, const Setting& setting) {
+std::string describe(const std::vector<Parameter>& parameters, const Setting& setting) {
   std::string text;
-  for (std::size_t i = 0; i < knobs.size(); ++i)
-    if (setting[i] != knobs[i].usual)
-      text += (text.empty() ? "" : ", ") + knobs[i].name + " " + knobs[i].words[setting[i]];
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    if (setting[i] != parameters[i].defaults)
+      text += (text.empty() ? "" : ", ") + parameters[i].name + " " + parameters[i].words[setting[i]];
   return text.empty() ? "default" : text;
 }
 

@@ -8,10 +8,10 @@
 namespace roomradar {
 
 /// One field of a quality, and the words that it is tried with.
-struct Knob {
+struct Parameter {
   std::string name;                ///< as in the quality, and the column's head
   std::vector<std::string> words;  ///< fastest first
-  std::size_t usual = 0;           ///< the default's place among them
+  std::size_t defaults = 0;        ///< the default's place among them
   /// How much work there is, not how well it is done: turned alone, never mixed, and never on a front.
   bool is_load = false;
 };
@@ -19,12 +19,12 @@ struct Knob {
 /// One word of each knob, by its place.
 using Setting = std::vector<std::size_t>;
 
-Setting usual_setting(const std::vector<Knob>& knobs);
+Setting default_setting(const std::vector<Parameter>& parameters);
 
 /// Whether only knobs of quality are turned.
-bool has_usual_load(const std::vector<Knob>& knobs, const Setting& setting);
+bool has_default_load(const std::vector<Parameter>& parameters, const Setting& setting);
 
 /// What differs from the usual, "radar sampled, radar_px 32"; "default" if nothing does.
-std::string describe(const std::vector<Knob>& knobs, const Setting& setting);
+std::string describe(const std::vector<Parameter>& parameters, const Setting& setting);
 
 }  // namespace roomradar

@@ -15,6 +15,6 @@ bool dominates(const CostAndError& a, const CostAndError& b);
 
 /// Places of the points that no other one dominates, cheapest first; of points alike, the first. Points with
 /// a number that is not finite are never on a front.
-std::vector<std::size_t> front_of(const std::vector<CostAndError>& points);
+std::vector<std::size_t> pareto_front_of(const std::vector<CostAndError>& points);
 
 }  // namespace roomradar

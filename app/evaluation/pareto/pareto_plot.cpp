@@ -1,4 +1,4 @@
-// front_plot.cpp: axes with round numbers, dots, steps.
+// pareto_plot.cpp: axes with round numbers, dots, steps.
 #include "app/evaluation/pareto/pareto_plot.hpp"
 
 #include <algorithm>
@@ -66,7 +66,7 @@ Axis axis_over(std::vector<double> values, double from_px, double to_px) {
   return axis;
 }
 
-std::string grid(const FrontPlot& plot, const Axis& x, const Axis& y) {
+std::string grid(const ParetoPlot& plot, const Axis& x, const Axis& y) {
   std::string svg;
   for (const double tick : y.ticks())
     svg += format("<line x1=\"%.1f\" x2=\"%.1f\" y1=\"%.1f\" y2=\"%.1f\" class=\"grid\"/>", x.from_px,
@@ -128,7 +128,7 @@ std::string drawn(const PlotDot& dot, const Axis& x, const Axis& y) {
 
 }  // namespace
 
-std::string front_plot(const FrontPlot& plot) {
+std::string pareto_plot(const ParetoPlot& plot) {
   std::vector<PlotDot> dots;
   std::vector<double> xs{1.0}, ys;
   for (const PlotDot& dot : plot.dots) {

@@ -1,4 +1,4 @@
-// front_plot.hpp: settings as dots over time and error, with the front drawn, as SVG text.
+// pareto_plot.hpp: settings as dots over time and error, with the front drawn, as SVG text.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ struct PlotDot {
   bool is_on_front = false;  ///< of this plot
 };
 
-struct FrontPlot {
+struct ParetoPlot {
   std::string title = {}, x_name = {}, y_name = {};
   std::vector<PlotDot> dots = {};
 };
@@ -23,6 +23,6 @@ struct FrontPlot {
 /// Both axes are logarithmic; y is linear where a dot's is 0. Dots that are not finite are left out. The
 /// front goes from dot to dot by steps: what lies above and to the right of it is beaten by something on it.
 /// Colours are the page's: CSS variables --ink --grid --dot --front --mark --paper.
-std::string front_plot(const FrontPlot& plot);
+std::string pareto_plot(const ParetoPlot& plot);
 
 }  // namespace roomradar

@@ -18,13 +18,13 @@ std::vector<std::size_t> shuffled(std::size_t count, CounterRandom& random) {
   return order;
 }
 
-std::vector<Setting> single_turns(const std::vector<Knob>& knobs, CounterRandom& random) {
+std::vector<Setting> single_turns(const std::vector<Parameter>& parameters, CounterRandom& random) {
   std::vector<Setting> turns;
-  const Setting usual = usual_setting(knobs);
-  for (std::size_t k = 0; k < knobs.size(); ++k) {
-    for (std::size_t word = 0; word < knobs[k].words.size(); ++word) {
-      if (word == knobs[k].usual) continue;
-      turns.push_back(usual);
+  const Setting defaults = default_setting(parameters);
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    for (std::size_t word = 0; word < parameters[k].words.size(); ++word) {
+      if (word == parameters[k].defaults) continue;
+      turns.push_back(defaults);
       turns.back()[k] = word;
     }
   }
@@ -35,11 +35,12 @@ std::vector<Setting> single_turns(const std::vector<Knob>& knobs, CounterRandom&
 
 /// Mixture i of n is about as slow as i / n says: a knob's words are given out in the order of that,
 /// disturbed.
-std::vector<Setting> mixtures(const std::vector<Knob>& knobs, std::size_t count, CounterRandom& random) {
+std::vector<Setting> mixtures(const std::vector<Parameter>& parameters, std::size_t count,
+                              CounterRandom& random) {
   constexpr double kDisturbance = 0.35;  // of the whole scale, to each side
-  std::vector<Setting> settings(count, usual_setting(knobs));
-  for (std::size_t k = 0; k < knobs.size(); ++k) {
-    if (knobs[k].is_load) continue;
+  std::vector<Setting> settings(count, default_setting(parameters));
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    if (parameters[k].is_load) continue;
     std::vector<std::pair<double, std::size_t>> slowness;
     for (std::size_t i = 0; i < count; ++i)
       slowness.emplace_back(
@@ -47,23 +48,26 @@ std::vector<Setting> mixtures(const std::vector<Knob>& knobs, std::size_t count,
           i);
     std::sort(slowness.begin(), slowness.end());
     for (std::size_t rank = 0; rank < count; ++rank)
-      settings[slowness[rank].second][k] = rank * knobs[k].words.size() / count;
+      settings[slowness[rank].second][k] = rank * parameters[k].words.size() / count;
   }
   return settings;
 }
 
 }  // namespace
 
-std::vector<Setting> draw_settings(const std::vector<Knob>& knobs, std::size_t count, std::uint64_t seed) {
+std::vector<Setting> draw_settings(const std::vector<Parameter>& parameters, std::size_t count,
+                                   std::uint64_t seed) {
   constexpr int kRounds = 20;  // of mixtures, until enough of them are new
   CounterRandom random(seed, 0);
-  std::vector<Setting> settings = single_turns(knobs, random);
-  const Setting usual = usual_setting(knobs);
-  const auto is_later = [&](const Setting& turn) { return !has_usual_load(knobs, turn) || usual < turn; };
+  std::vector<Setting> settings = single_turns(parameters, random);
+  const Setting defaults = default_setting(parameters);
+  const auto is_later = [&](const Setting& turn) {
+    return !has_default_load(parameters, turn) || defaults < turn;
+  };
   const auto words_away = [&](const Setting& turn) {
     std::size_t away = 0;
     for (std::size_t k = 0; k < turn.size(); ++k)
-      away += turn[k] < usual[k] ? usual[k] - turn[k] : turn[k] - usual[k];
+      away += turn[k] < defaults[k] ? defaults[k] - turn[k] : turn[k] - defaults[k];
     return away;
   };
   std::stable_sort(settings.begin(), settings.end(), [&](const Setting& a, const Setting& b) {
@@ -72,9 +76,9 @@ std::vector<Setting> draw_settings(const std::vector<Knob>& knobs, std::size_t c
   settings.resize(std::min(settings.size(), 2 * count / 3));
   const std::size_t wanted = count - settings.size();
   for (int round = 0; round < kRounds && settings.size() < count; ++round) {
-    for (Setting& mixture : mixtures(knobs, wanted, random)) {
+    for (Setting& mixture : mixtures(parameters, wanted, random)) {
       const bool is_new =
-          mixture != usual && std::find(settings.begin(), settings.end(), mixture) == settings.end();
+          mixture != defaults && std::find(settings.begin(), settings.end(), mixture) == settings.end();
       if (is_new && settings.size() < count) settings.push_back(std::move(mixture));
     }
   }

@@ -15,6 +15,7 @@ namespace roomradar {
 /// such mixtures can be on a front. Every word of every knob of quality occurs among the mixtures where these
 /// are as many as it has words; fewer come where there are not so many to be found. The same for the same
 /// seed.
-std::vector<Setting> draw_settings(const std::vector<Knob>& knobs, std::size_t count, std::uint64_t seed);
+std::vector<Setting> draw_settings(const std::vector<Parameter>& parameters, std::size_t count,
+                                   std::uint64_t seed);
 
 }  // namespace roomradar

@@ -44,7 +44,7 @@ double figure_of(const std::vector<const SweepRow*>& rows, std::size_t figure, F
 
 }  // namespace
 
-std::vector<SettingSummary> summarise(const TradeWork& work, const std::vector<Setting>& settings,
+std::vector<SettingSummary> summarise(const MeasuredWork& work, const std::vector<Setting>& settings,
                                       const std::vector<SweepRow>& rows) {
   std::vector<std::vector<const SweepRow*>> rows_of(settings.size());
   std::vector<std::set<std::size_t>> scenes_of(settings.size());

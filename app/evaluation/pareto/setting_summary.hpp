@@ -20,7 +20,7 @@ struct SettingSummary {
 };
 
 /// One for each setting, in their order.
-std::vector<SettingSummary> summarise(const TradeWork& work, const std::vector<Setting>& settings,
+std::vector<SettingSummary> summarise(const MeasuredWork& work, const std::vector<Setting>& settings,
                                       const std::vector<SweepRow>& rows);
 
 }  // namespace roomradar

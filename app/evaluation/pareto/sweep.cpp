@@ -12,7 +12,7 @@ namespace roomradar {
 namespace {
 
 /// At random, but the default before all others: what is stopped early can still be compared with it.
-std::vector<std::size_t> order_of(const std::vector<Setting>& settings, const Setting& usual,
+std::vector<std::size_t> order_of(const std::vector<Setting>& settings, const Setting& defaults,
                                   CounterRandom& random) {
   std::vector<std::size_t> order(settings.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
@@ -20,7 +20,7 @@ std::vector<std::size_t> order_of(const std::vector<Setting>& settings, const Se
     order[i] = order[j];
     order[j] = i;
   }
-  std::partition(order.begin(), order.end(), [&](std::size_t i) { return settings[i] == usual; });
+  std::partition(order.begin(), order.end(), [&](std::size_t i) { return settings[i] == defaults; });
   return order;
 }
 
@@ -35,26 +35,26 @@ std::vector<SweepRow> stopped_in(std::size_t scene, std::vector<SweepRow> rows) 
 bool is_stopped(const SweepWatch& watch) { return watch.is_stopped && watch.is_stopped(); }
 
 /// False where the sweep was stopped meanwhile. Throws Error if the default cannot be measured.
-bool measure_scene(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch, std::size_t scene,
-                   std::vector<SweepRow>& rows) {
-  const Setting usual = usual_setting(work.knobs);
+bool measure_scene(const MeasuredWork& work, const SweepPlan& plan, const SweepWatch& watch,
+                   std::size_t scene, std::vector<SweepRow>& rows) {
+  const Setting defaults = default_setting(work.parameters);
   const Measure measure = work.open(scene);
   for (int repeat = 0; repeat < plan.repeats; ++repeat) {
     CounterRandom random(plan.seed, static_cast<std::uint64_t>(repeat) + 1000 * scene);
     if (is_stopped(watch)) return false;
-    Readings before = measure(usual);
-    for (const std::size_t setting : order_of(plan.settings, usual, random)) {
+    Readings before = measure(defaults);
+    for (const std::size_t setting : order_of(plan.settings, defaults, random)) {
       if (is_stopped(watch)) return false;
       SweepRow row{.setting = setting, .scene = scene, .repeat = repeat};
       try {
         row.figures = measure(plan.settings[setting]);
       } catch (const Error& error) {
-        if (plan.settings[setting] == usual) throw;
+        if (plan.settings[setting] == defaults) throw;
         row.fault = error.what();
         row.figures.assign(work.figures.size(), std::numeric_limits<double>::quiet_NaN());
       }
       if (is_stopped(watch)) return false;
-      const Readings after = measure(usual);
+      const Readings after = measure(defaults);
       for (std::size_t i = 0; i < row.figures.size(); ++i)
         row.ratios.push_back(row.figures[i] / (0.5 * (before[i] + after[i])));
       row.default_before = std::exchange(before, after);
@@ -68,7 +68,7 @@ bool measure_scene(const TradeWork& work, const SweepPlan& plan, const SweepWatc
 
 }  // namespace
 
-SweptRows sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch) {
+SweptRows sweep(const MeasuredWork& work, const SweepPlan& plan, const SweepWatch& watch) {
   std::vector<SweepRow> rows;
   for (std::size_t scene = 0; scene < work.scenes.size(); ++scene) {
     try {

@@ -44,6 +44,6 @@ struct SweepWatch {
 /// setting cannot be done its row says why and the sweep goes on. Where it is stopped, or the default cannot
 /// be done, or a scene not opened, or on_row throws, the scenes that were done are given, or what is done of
 /// the first.
-SweptRows sweep(const TradeWork& work, const SweepPlan& plan, const SweepWatch& watch = {});
+SweptRows sweep(const MeasuredWork& work, const SweepPlan& plan, const SweepWatch& watch = {});
 
 }  // namespace roomradar

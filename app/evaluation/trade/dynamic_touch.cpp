@@ -20,15 +20,15 @@ constexpr double kAlone_m = 0.05;   // the room is farther than what moved by th
 Solid ball() { return sphere(Eigen::Vector3d::Zero(), kTouchRadius_m); }
 
 /// How far the ball may fly until it meets one of the solids; infinite if it meets none.
-double travel_to(std::span<const Solid> solids, const MovedTouch& touch) {
+double travel_to(std::span<const Solid> solids, const DynamicTouch& touch) {
   const std::vector<Solid> parts{ball()};
   const Eigen::Isometry3d T_world_ball(Eigen::Translation3d(touch.start_world));
   const SweptTravel swept = swept_travel(solids, parts, T_world_ball, touch.direction_world, kTouchLimit_m);
-  return swept.touches ? swept.travel_m : std::numeric_limits<double>::infinity();
+  return swept.touches ? swept.contact_distance_m : std::numeric_limits<double>::infinity();
 }
 
 void draw_touches_of(const Scenario& scenario, std::size_t number, const Room& room,
-                     std::vector<MovedTouch>& touches) {
+                     std::vector<DynamicTouch>& touches) {
   const std::vector<Solid> moved = occluder_at(scenario, 0);
   std::vector<Solid> solids = room.solids;
   solids.insert(solids.end(), moved.begin(), moved.end());
@@ -43,7 +43,7 @@ void draw_touches_of(const Scenario& scenario, std::size_t number, const Room& r
     if (hit.solid < static_cast<int>(room.solids.size())) continue;
     if (hit.depth_m < kNearest_m || hit.depth_m > kFarthest_m) continue;
     const Eigen::Vector3d p_camera = back_project(camera, u, v, hit.depth_m);
-    MovedTouch touch{.scenario = number};
+    DynamicTouch touch{.scenario = number};
     touch.direction_world = (scenario.T_world_camera.linear() * p_camera).normalized();
     touch.start_world = scenario.T_world_camera * p_camera - kBefore_m * touch.direction_world;
     touch.true_travel_m = travel_to(moved, touch);
@@ -56,18 +56,18 @@ void draw_touches_of(const Scenario& scenario, std::size_t number, const Room& r
 
 }  // namespace
 
-std::vector<MovedTouch> draw_moved_touches(const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
-                                           const Room& room) {
-  std::vector<MovedTouch> touches;
+std::vector<DynamicTouch> draw_dynamic_touches(
+    const std::vector<std::unique_ptr<PreparedScenario>>& scenarios, const Room& room) {
+  std::vector<DynamicTouch> touches;
   for (std::size_t i = 0; i < scenarios.size(); ++i)
     if (!scenarios[i]->scenario.occluder_solids.empty())
       draw_touches_of(scenarios[i]->scenario, i, room, touches);
   return touches;
 }
 
-MovedTouchFacts judge_moved_touches(const std::vector<MovedTouch>& touches,
-                                    const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
-                                    LiveScene& scene, const TrialSurfaces& how, CyberRadar& radar) {
+DynamicTouchFacts judge_dynamic_touches(const std::vector<DynamicTouch>& touches,
+                                        const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
+                                        FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar) {
   if (touches.empty()) return {};
   constexpr double kAbout_m = 0.02;  // as a session has it
   Mesh ball_mesh;
@@ -85,11 +85,11 @@ MovedTouchFacts judge_moved_touches(const std::vector<MovedTouch>& touches,
     (void)show_frame(*scenarios[touches[first].scenario], 0, how, fine, scene);
     const std::vector<SceneTree> surfaces = scene.surfaces();
     for (; first < end; ++first) {
-      const MovedTouch& touch = touches[first];
+      const DynamicTouch& touch = touches[first];
       const Eigen::Isometry3d T_world_ball(Eigen::Translation3d(touch.start_world));
       const Contact contact =
           radar.query({{&tree, T_world_ball}, touch.direction_world, kTouchLimit_m}, {surfaces, {}});
-      const double past_m = contact.travel_m - touch.true_travel_m;
+      const double past_m = contact.contact_distance_m - touch.true_travel_m;
       if (contact && past_m <= kTooFar_m)  // else it went through, to what is behind
         errors_m.push_back(std::abs(past_m));
       else

@@ -28,8 +28,8 @@ Machine this_machine() {
       .processor = processor(), .threads = std::thread::hardware_concurrency(), .system = {}, .renderer = {}};
   utsname system{};
   if (uname(&system) == 0) machine.system = std::string(system.sysname) + " " + system.release;
-  machine.renderer = run_apart([] { return GlContext().renderer(); }, "OpenGL does not say its renderer",
-                               kMost_s, kMost_bytes);
+  machine.renderer = run_sandboxed([] { return GlContext().renderer(); }, "OpenGL does not say its renderer",
+                                   kMost_s, kMost_bytes);
   return machine;
 }
 

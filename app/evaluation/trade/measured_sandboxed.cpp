@@ -1,4 +1,4 @@
-// measured_apart.cpp: figures through the pipe as they lie in memory.
+// measured_sandboxed.cpp: figures through the pipe as they lie in memory.
 #include "app/evaluation/trade/measured_sandboxed.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-Readings measured_apart(const std::string& what, const std::function<Readings()>& work) {
+Readings measured_sandboxed(const std::string& what, const std::function<Readings()>& work) {
   constexpr unsigned kMost_s = 3600;  // of processor time: hours are not a measurement
   constexpr std::size_t kMost_bytes = std::size_t{1} << 38U;  // addresses, of which GL drivers take many
   const auto bytes_of_figures = [&] {
@@ -22,7 +22,7 @@ Readings measured_apart(const std::string& what, const std::function<Readings()>
   };
   release_unused_memory();  // what this process holds is where the other's peak begins
   const std::string bytes =
-      run_apart(bytes_of_figures, what + ": could not be measured", kMost_s, kMost_bytes);
+      run_sandboxed(bytes_of_figures, what + ": could not be measured", kMost_s, kMost_bytes);
   Readings figures(bytes.size() / sizeof(double));
   std::memcpy(figures.data(), bytes.data(), figures.size() * sizeof(double));
   return figures;

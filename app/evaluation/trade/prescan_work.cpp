@@ -87,7 +87,7 @@ std::array<double, 3> surface_errors(const ScanScene& scene, const PrescanResult
 }
 
 Readings measure(const ScanScene& scene, const Setting& setting) {
-  keep_large_blocks_apart();
+  mmap_large_allocations();
   const std::size_t start_bytes = resident_bytes();
   PrescanConfig config;
   apply(scan_quality_of(setting), config);
@@ -116,7 +116,7 @@ Readings measure(const ScanScene& scene, const Setting& setting) {
           median_m,
           p95_m,
           missing,
-          counts.against_recorded ? counts.against_recorded->rmse_m : kNotMeasured,
+          counts.trajectory_error ? counts.trajectory_error->rmse_m : kNotMeasured,
           static_cast<double>(counts.frames_lost) / frames};
 }
 
@@ -147,7 +147,7 @@ std::shared_ptr<const ScanScene> open_recording(const std::string& folder, const
 
 }  // namespace
 
-std::vector<Knob> scan_knobs() {
+std::vector<Parameter> scan_parameters() {
   return {{"resolution_m", {"0.04", "0.028", "0.02", "0.014", "0.01", "0.007"}, 4},
           {"deviation_m", {"0.008", "0.004", "0.002", "0.001", "0.0005"}, 2},
           {"tracking_px", {"160", "320", "640"}, 1},
@@ -156,21 +156,22 @@ std::vector<Knob> scan_knobs() {
 
 ScanQuality scan_quality_of(const Setting& setting) {
   ScanQuality quality;
-  const std::vector<Knob> knobs = scan_knobs();
-  for (std::size_t i = 0; i < knobs.size(); ++i)
-    set_field(quality, knobs[i].name, knobs[i].words[setting[i]]);
+  const std::vector<Parameter> parameters = scan_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    set_field(quality, parameters[i].name, parameters[i].words[setting[i]]);
   return quality;
 }
 
-TradeWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
-                       const TradeScale& scale) {
-  TradeWork work{.name = "prescan", .knobs = scan_knobs(), .figures = scan_figures(), .scenes = rooms};
+MeasuredWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
+                          const TradeScale& scale) {
+  MeasuredWork work{
+      .name = "prescan", .parameters = scan_parameters(), .figures = scan_figures(), .scenes = rooms};
   work.scenes.insert(work.scenes.end(), recordings.begin(), recordings.end());
   work.open = [rooms, recordings, scale](std::size_t number) -> Measure {
     const auto scene = number < rooms.size() ? open_room(rooms[number], scale)
                                              : open_recording(recordings[number - rooms.size()], scale);
     return [scene](const Setting& setting) {
-      return measured_apart("prescan of " + scene->name, [&] { return measure(*scene, setting); });
+      return measured_sandboxed("prescan of " + scene->name, [&] { return measure(*scene, setting); });
     };
   };
   return work;

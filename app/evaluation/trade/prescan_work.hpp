@@ -10,14 +10,14 @@
 namespace roomradar {
 
 /// The knobs of ScanQuality, and the quality that a setting of them stands for.
-std::vector<Knob> scan_knobs();
+std::vector<Parameter> scan_parameters();
 ScanQuality scan_quality_of(const Setting& setting);
 
 /// Scenes: the rooms (as `sim:` has them: "table", "random?seed=3"), then the recordings (folders with
 /// poses). In a room the mesh is measured against the exact solids; of a recording every seventh frame is
 /// held out and measured against the mesh. The trajectory, tracked, is measured against the room's or the
 /// recording's.
-TradeWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
-                       const TradeScale& scale);
+MeasuredWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
+                          const TradeScale& scale);
 
 }  // namespace roomradar

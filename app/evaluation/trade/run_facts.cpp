@@ -136,7 +136,7 @@ ContactFacts touch_true_surfaces(const RunScene& scene, const RunQuality& qualit
   GlContext context;
   Shape shape(context);
   shape.set(scene.mesh_room, MeshUsage::kStatic);
-  LiveScene live(context, shape, config.scene);
+  FrameScene live(context, shape, config.scene);
   CyberRadar radar(config.radar);
   const TrialSurfaces how{
       .policy = SurfacePolicy::kMap, .depth_stride = config.depth_stride, .fine_mesh = config.fine_mesh};
@@ -146,14 +146,14 @@ ContactFacts touch_true_surfaces(const RunScene& scene, const RunQuality& qualit
     const Trial trial = run_trial(*prepared, live, how, radar);
     passed += trial.verdict.outcome == Outcome::kPassedThrough ? 1 : 0;
     false_stops += trial.verdict.outcome == Outcome::kStoppedFalse ? 1 : 0;
-    if (trial.rested_on != Touched::kNothing) errors_m.push_back(std::abs(trial.verdict.error_m));
+    if (trial.rested_on != SurfaceKind::kNothing) errors_m.push_back(std::abs(trial.verdict.error_m));
   }
   const auto count = static_cast<double>(scene.scenarios.size());
   return {.error_median_m = percentile(errors_m, 0.5),
           .error_p95_m = percentile(errors_m, 0.95),
           .passed = passed / count,
           .false_stops = false_stops / count,
-          .moved = judge_moved_touches(scene.touches, scene.scenarios, live, how, radar)};
+          .moved = judge_dynamic_touches(scene.touches, scene.scenarios, live, how, radar)};
 }
 
 }  // namespace roomradar

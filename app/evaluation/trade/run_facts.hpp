@@ -43,7 +43,7 @@ struct ContactFacts {
   double error_p95_m = error_median_m;
   double passed = error_median_m;       ///< part that fell through
   double false_stops = error_median_m;  ///< part that stopped where nothing is
-  MovedTouchFacts moved;
+  DynamicTouchFacts moved;
 };
 ContactFacts touch_true_surfaces(const RunScene& scene, const RunQuality& quality);
 

@@ -12,7 +12,8 @@
 namespace roomradar {
 namespace {
 
-constexpr std::int64_t kJudgeEvery = 7;  // of the run's frames, its picture; no multiple of picture_turns
+constexpr std::int64_t kJudgeEvery =
+    7;  // of the run's frames, its picture; no multiple of picture_every_n_frames
 constexpr std::int64_t kFirstJudged = 15;
 
 SavedMap mapped(FrameSource& source) {
@@ -87,7 +88,7 @@ std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const Trade
     scene->scenarios.push_back(std::make_unique<PreparedScenario>(*scene->room, run.seed, number));
     render_ahead(*scene->scenarios.back());
   }
-  scene->touches = draw_moved_touches(scene->scenarios, scene->room->room);
+  scene->touches = draw_dynamic_touches(scene->scenarios, scene->room->room);
   scene->drop_at_world = drop_places(scene->room->room, scene->map.info.T_world_recorded);
   return scene;
 }

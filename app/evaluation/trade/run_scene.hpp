@@ -27,7 +27,7 @@ struct RunScene {
   std::unique_ptr<ScenarioRoom> room;  ///< null: a recording
   Mesh mesh_room;                      ///< the map's, in the room's own frame
   std::vector<std::unique_ptr<PreparedScenario>> scenarios;  ///< with all their frames; they refer to `room`
-  std::vector<MovedTouch> touches;
+  std::vector<DynamicTouch> touches;
   std::vector<Eigen::Vector3d> drop_at_world;  ///< above what is looked at; empty: over what is in view
 };
 

@@ -89,8 +89,8 @@ Readings measure(const RunScene& scene, const Setting& words) {
 
 }  // namespace
 
-std::vector<Knob> run_knobs(int objects) {
-  std::vector<Knob> knobs = {
+std::vector<Parameter> run_parameters(int objects) {
+  std::vector<Parameter> parameters = {
       {"depth_stride", {"4", "2", "1"}, 2},
       {"tracking_px", {"80", "160", "320"}, 1},
       {"mesh_sigmas", {"3.2", "1.6", "0.8", "0.4"}, 2},
@@ -107,37 +107,38 @@ std::vector<Knob> run_knobs(int objects) {
        {"0.15", "0.06666666666666667", "0.03333333333333333", "0.016666666666666666", "0.008333333333333333"},
        3},
       {"objects", {"1", "5", "20"}, 0, /*is_load=*/true}};
-  Knob& load = knobs.back();
-  const auto usual = std::find(load.words.begin(), load.words.end(), std::to_string(objects));
-  if (usual == load.words.end())
+  Parameter& load = parameters.back();
+  const auto defaults = std::find(load.words.begin(), load.words.end(), std::to_string(objects));
+  if (defaults == load.words.end())
     throw Error("trade: objects = " + std::to_string(objects) + ": must be 1, 5 or 20");
-  load.usual = static_cast<std::size_t>(usual - load.words.begin());
-  return knobs;
+  load.defaults = static_cast<std::size_t>(defaults - load.words.begin());
+  return parameters;
 }
 
 RunSetting run_setting_of(const Setting& levels) {
   RunSetting setting;
-  const std::vector<Knob> knobs = run_knobs();
-  for (std::size_t i = 0; i < knobs.size(); ++i) {
-    const std::string& word = knobs[i].words[levels[i]];
-    if (knobs[i].is_load)
+  const std::vector<Parameter> parameters = run_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::string& word = parameters[i].words[levels[i]];
+    if (parameters[i].is_load)
       setting.objects = std::atoi(word.c_str());
     else
-      set_field(setting.quality, knobs[i].name, word);
+      set_field(setting.quality, parameters[i].name, word);
   }
   return setting;
 }
 
-TradeWork run_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
-                   const TradeScale& scale, int objects) {
-  TradeWork work{.name = "run", .knobs = run_knobs(objects), .figures = run_figures(), .scenes = rooms};
+MeasuredWork run_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
+                      const TradeScale& scale, int objects) {
+  MeasuredWork work{
+      .name = "run", .parameters = run_parameters(objects), .figures = run_figures(), .scenes = rooms};
   work.scenes.insert(work.scenes.end(), recordings.begin(), recordings.end());
   work.open = [rooms, recordings, scale](std::size_t number) -> Measure {
     const std::shared_ptr<const RunScene> scene =
         number < rooms.size() ? run_scene_of_room(rooms[number], scale)
                               : run_scene_of_recording(recordings[number - rooms.size()], scale);
     return [scene](const Setting& setting) {
-      return measured_apart("run in " + scene->name, [&] { return measure(*scene, setting); });
+      return measured_sandboxed("run in " + scene->name, [&] { return measure(*scene, setting); });
     };
   };
   return work;

@@ -30,10 +30,10 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-TradeCsv::TradeCsv(const std::filesystem::path& path, const std::vector<TradeWork>& works) : path_(path) {
+TradeCsv::TradeCsv(const std::filesystem::path& path, const std::vector<MeasuredWork>& works) : path_(path) {
   if (path.empty()) return;
-  for (const TradeWork& work : works) {
-    for (const Knob& knob : work.knobs) add_once(knobs_, knob.name);
+  for (const MeasuredWork& work : works) {
+    for (const Parameter& parameter : work.parameters) add_once(parameters_, parameter.name);
     for (const FigureName& figure : work.figures) add_once(figures_, figure.name);
   }
 }
@@ -43,20 +43,20 @@ void TradeCsv::open() {
   file_ << "row,work,setting,scene,repeat,rank,loss,time_ratio,least_ratio,most_ratio,default_before,default_"
            "after,"
            "fault";
-  for (const std::string& name : knobs_) file_ << ',' << csv_field(name);
+  for (const std::string& name : parameters_) file_ << ',' << csv_field(name);
   for (const std::string& name : figures_) file_ << ',' << csv_field(name);
   file_ << std::endl;
   require_written(file_, path_);
 }
 
-void TradeCsv::write_line(const std::vector<std::string>& start, const TradeWork& work,
+void TradeCsv::write_line(const std::vector<std::string>& start, const MeasuredWork& work,
                           const Setting& setting, const Readings& figures) {
   if (!file_.is_open()) open();
   std::string line;
   for (const std::string& field : start) line += csv_field(field) + ",";
-  for (const std::string& name : knobs_) {
-    for (std::size_t i = 0; i < work.knobs.size(); ++i)
-      if (work.knobs[i].name == name) line += csv_field(work.knobs[i].words[setting[i]]);
+  for (const std::string& name : parameters_) {
+    for (std::size_t i = 0; i < work.parameters.size(); ++i)
+      if (work.parameters[i].name == name) line += csv_field(work.parameters[i].words[setting[i]]);
     line += ',';
   }
   for (const std::string& name : figures_) {
@@ -69,7 +69,7 @@ void TradeCsv::write_line(const std::vector<std::string>& start, const TradeWork
   require_written(file_, path_);
 }
 
-void TradeCsv::write(const TradeWork& work, const std::vector<Setting>& settings, const SweepRow& row) {
+void TradeCsv::write(const MeasuredWork& work, const std::vector<Setting>& settings, const SweepRow& row) {
   if (path_.empty()) return;
   write_line({"measurement", work.name, std::to_string(row.setting), work.scenes[row.scene],
               std::to_string(row.repeat), "", "", csv_number(row.ratios[work.time]), "", "",
@@ -77,16 +77,16 @@ void TradeCsv::write(const TradeWork& work, const std::vector<Setting>& settings
              work, settings[row.setting], row.figures);
 }
 
-void TradeCsv::write(const TradeWork& work, const std::vector<SettingSummary>& summaries, std::size_t usual,
-                     const PresetChoice& choice) {
+void TradeCsv::write(const MeasuredWork& work, const std::vector<SettingSummary>& summaries,
+                     std::size_t defaults, const PresetChoice& choice) {
   if (path_.empty()) return;
   for (std::size_t i = 0; i < summaries.size(); ++i) {
     const SettingSummary& summary = summaries[i];
-    std::string rank = names_of(i, usual, choice, " ");
+    std::string rank = names_of(i, defaults, choice, " ");
     if (std::find(choice.front.begin(), choice.front.end(), i) != choice.front.end())
       rank += rank.empty() ? "front" : " front";
     write_line({"setting", work.name, std::to_string(i), summary.is_complete ? "all" : "some",
-                std::to_string(summary.rows), rank, csv_number(loss_of(work, summary, summaries[usual])),
+                std::to_string(summary.rows), rank, csv_number(loss_of(work, summary, summaries[defaults])),
                 csv_number(summary.time_ratio), csv_number(summary.least_ratio),
                 csv_number(summary.most_ratio), "", "", ""},
                work, summary.setting, summary.figures);

@@ -16,23 +16,23 @@ std::string csv_field(const std::string& text);
 class TradeCsv {
  public:
   /// Nothing is written for an empty path, nor before the first line: what was there may be hours of work.
-  TradeCsv(const std::filesystem::path& path, const std::vector<TradeWork>& works);
+  TradeCsv(const std::filesystem::path& path, const std::vector<MeasuredWork>& works);
 
   /// A measurement; it is on the disk afterwards. Throws Error if the file cannot be written.
-  void write(const TradeWork& work, const std::vector<Setting>& settings, const SweepRow& row);
+  void write(const MeasuredWork& work, const std::vector<Setting>& settings, const SweepRow& row);
   /// All measurements of each setting together, their loss, and what the setting is: front, default, a
   /// preset.
-  void write(const TradeWork& work, const std::vector<SettingSummary>& summaries, std::size_t usual,
+  void write(const MeasuredWork& work, const std::vector<SettingSummary>& summaries, std::size_t defaults,
              const PresetChoice& choice);
 
  private:
   void open();
-  void write_line(const std::vector<std::string>& start, const TradeWork& work, const Setting& setting,
+  void write_line(const std::vector<std::string>& start, const MeasuredWork& work, const Setting& setting,
                   const Readings& figures);
 
   std::filesystem::path path_;
   std::ofstream file_;
-  std::vector<std::string> knobs_, figures_;  ///< of all works, each once
+  std::vector<std::string> parameters_, figures_;  ///< of all works, each once
 };
 
 }  // namespace roomradar

@@ -51,14 +51,14 @@ std::string ratio(const SettingSummary& summary) {
 
 /// What a dot or a table's row is called: presets and the default by name.
 std::string name_of(const TradeResult& result, std::size_t setting) {
-  return names_of(setting, result.usual, result.choice, " = ");
+  return names_of(setting, result.defaults, result.choice, " = ");
 }
 
 /// All figures of one setting, for the mouse.
 std::string details(const TradeResult& result, std::size_t setting) {
   const SettingSummary& summary = result.summaries[setting];
   std::string text = "setting " + std::to_string(setting) + ": " +
-                     describe(result.work.knobs, summary.setting) + "\ntime × " + ratio(summary) + ", " +
+                     describe(result.work.parameters, summary.setting) + "\ntime × " + ratio(summary) + ", " +
                      std::to_string(summary.rows) + " measurements";
   for (std::size_t i = 0; i < result.work.figures.size(); ++i) {
     const FigureName& figure = result.work.figures[i];
@@ -71,7 +71,7 @@ std::string details(const TradeResult& result, std::size_t setting) {
 /// Settings of the usual load that were measured everywhere.
 bool is_shown(const TradeResult& result, std::size_t setting) {
   const SettingSummary& summary = result.summaries[setting];
-  return summary.is_complete && has_usual_load(result.work.knobs, summary.setting);
+  return summary.is_complete && has_default_load(result.work.parameters, summary.setting);
 }
 
 /// @param negligible  of the error
@@ -89,7 +89,7 @@ std::string plot_of(const TradeResult& result, const std::string& title, const s
   for (std::size_t i = 0; i < result.summaries.size(); ++i) {
     if (!is_shown(result, i)) continue;
     const CostAndError point{result.summaries[i].time_ratio, error_of(i)};
-    if (point.error > kOffThePlot * (error_of(result.usual) + negligible)) {
+    if (point.error > kOffThePlot * (error_of(result.defaults) + negligible)) {
       ++beyond;
       continue;
     }
@@ -98,13 +98,13 @@ std::string plot_of(const TradeResult& result, const std::string& title, const s
   }
   std::vector<std::size_t> front;
   if (!given_front)
-    for (const std::size_t k : front_of(points)) front.push_back(shown[k]);
+    for (const std::size_t k : pareto_front_of(points)) front.push_back(shown[k]);
   const std::vector<std::size_t>& settings_on_front = given_front ? *given_front : front;
-  FrontPlot plot{.title = title, .x_name = "time of the default beside it, times", .y_name = y_name};
+  ParetoPlot plot{.title = title, .x_name = "time of the default beside it, times", .y_name = y_name};
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const std::size_t i = shown[k];
     const SettingSummary& summary = result.summaries[i];
-    const bool is_default = i == result.usual;
+    const bool is_default = i == result.defaults;
     const std::string name = name_of(result, i);
     const bool is_on_front =
         std::find(settings_on_front.begin(), settings_on_front.end(), i) != settings_on_front.end();
@@ -121,7 +121,7 @@ std::string plot_of(const TradeResult& result, const std::string& title, const s
                          .is_on_front = is_on_front});
   }
   if (beyond > 0) plot.title += " (" + std::to_string(beyond) + " beyond 10 times the default's left out)";
-  return front_plot(plot);
+  return pareto_plot(plot);
 }
 
 std::string plots_of(const TradeResult& result) {
@@ -129,7 +129,7 @@ std::string plots_of(const TradeResult& result) {
   html += plot_of(
       result, result.work.name + ": all errors together", "loss: mean of errors, times the default's", 0.0,
       [&](std::size_t i) {
-        return loss_of(result.work, result.summaries[i], result.summaries[result.usual]);
+        return loss_of(result.work, result.summaries[i], result.summaries[result.defaults]);
       },
       result.choice.front);
   for (std::size_t f = 0; f < result.work.figures.size(); ++f) {
@@ -153,9 +153,9 @@ std::string table_of(const TradeResult& result, const std::vector<std::size_t>& 
     const std::string name = name_of(result, i);
     html += std::string(name.empty() ? "<tr>" : "<tr class=\"chosen\">") + "<td>" + std::to_string(i) + " " +
             escaped(name) + "</td><td class=\"words\">" +
-            escaped(describe(result.work.knobs, summary.setting)) + "</td><td>" + ratio(summary) +
-            "</td><td>" + page_number(loss_of(result.work, summary, result.summaries[result.usual]), "%.2f") +
-            "</td>";
+            escaped(describe(result.work.parameters, summary.setting)) + "</td><td>" + ratio(summary) +
+            "</td><td>" +
+            page_number(loss_of(result.work, summary, result.summaries[result.defaults]), "%.2f") + "</td>";
     for (std::size_t f = 0; f < result.work.figures.size(); ++f)
       html += "<td>" + page_number(result.work.figures[f].shown * summary.figures[f]) + "</td>";
     html += "</tr>\n";
@@ -166,19 +166,19 @@ std::string table_of(const TradeResult& result, const std::vector<std::size_t>& 
 /// Settings that turn one knob alone, knob by knob, the default in its place.
 std::vector<std::size_t> single_turns_of(const TradeResult& result) {
   std::vector<std::pair<std::pair<std::size_t, std::size_t>, std::size_t>> turns;
-  const Setting usual = usual_setting(result.work.knobs);
+  const Setting defaults = default_setting(result.work.parameters);
   for (std::size_t i = 0; i < result.summaries.size(); ++i) {
-    std::size_t turned = 0, knob = 0;
-    for (std::size_t k = 0; k < usual.size(); ++k) {
-      if (result.summaries[i].setting[k] == usual[k]) continue;
+    std::size_t turned = 0, parameter = 0;
+    for (std::size_t k = 0; k < defaults.size(); ++k) {
+      if (result.summaries[i].setting[k] == defaults[k]) continue;
       ++turned;
-      knob = k;
+      parameter = k;
     }
     if (turned == 1 && result.summaries[i].rows > 0)
-      turns.push_back({{knob, result.summaries[i].setting[knob]}, i});
+      turns.push_back({{parameter, result.summaries[i].setting[parameter]}, i});
   }
   std::sort(turns.begin(), turns.end());
-  std::vector<std::size_t> settings{result.usual};
+  std::vector<std::size_t> settings{result.defaults};
   for (const auto& [place, setting] : turns) settings.push_back(setting);
   return settings;
 }
@@ -201,7 +201,7 @@ std::string about(const TradeResult& result) {
 
 std::string section_of(const TradeResult& result) {
   const PresetChoice& choice = result.choice;
-  std::vector<std::size_t> presets{result.usual};
+  std::vector<std::size_t> presets{result.defaults};
   for (const auto& preset : {choice.fast, choice.balanced, choice.accurate})
     if (preset && std::find(presets.begin(), presets.end(), *preset) == presets.end())
       presets.push_back(*preset);
@@ -218,7 +218,7 @@ std::vector<std::string> faults_of(const TradeResult& result) {
   std::vector<std::string> faults;
   for (const SweepRow& row : result.rows)
     if (!row.fault.empty() && told.insert(row.setting).second)
-      faults.push_back(describe(result.work.knobs, result.settings[row.setting]) + ", in " +
+      faults.push_back(describe(result.work.parameters, result.settings[row.setting]) + ", in " +
                        result.work.scenes[row.scene] + ": " + row.fault);
   return faults;
 }
@@ -226,7 +226,7 @@ std::vector<std::string> faults_of(const TradeResult& result) {
 void write_trade_page(const std::vector<TradeResult>& results, const std::vector<std::string>& about,
                       const std::filesystem::path& path) {
   if (path.empty()) return;
-  WholeFile whole(path);
+  AtomicFile whole(path);
   std::ostream& file = whole.stream();
   file << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
           "content=\"width=device-width\"><title>roomradar: time against accuracy</title><style>"
@@ -254,7 +254,7 @@ void write_trade_page(const std::vector<TradeResult>& results, const std::vector
          "the front of all errors one more than 10 times.</p>\n";
   for (const TradeResult& result : results) file << section_of(result);
   file << "</html>\n";
-  whole.put_in_place();
+  whole.commit();
 }
 
 }  // namespace roomradar

@@ -10,11 +10,11 @@ namespace roomradar {
 
 /// A work with all that was measured of it.
 struct TradeResult {
-  TradeWork work = {};
+  MeasuredWork work = {};
   std::vector<Setting> settings = {};
   std::vector<SweepRow> rows = {};
   std::vector<SettingSummary> summaries = {};
-  std::size_t usual = 0;  ///< the default's place among the settings
+  std::size_t defaults = 0;  ///< the default's place among the settings
   PresetChoice choice = {};
   bool was_cut_short = false;  ///< before all settings had been measured in all scenes
   std::string fault = {};      ///< why it was, if not because the user wanted it so

@@ -26,7 +26,7 @@ void add_figures(const TradeResult& result, std::size_t setting, const std::stri
     if (std::isfinite(value)) figures[before + name] = value;
   };
   add("time_ratio", summary.time_ratio);
-  add("loss", loss_of(result.work, summary, result.summaries[result.usual]));
+  add("loss", loss_of(result.work, summary, result.summaries[result.defaults]));
   for (std::size_t i = 0; i < result.work.figures.size(); ++i)
     add(result.work.figures[i].name, summary.figures[i]);
 }
@@ -37,11 +37,11 @@ double part_ratio(const TradeResult& result, std::size_t setting, const std::vec
   double sum = 0.0, whole = 0.0;
   for (const std::string& stage : stages) {
     const std::size_t figure = place_of(result.work, stage + "_ms");
-    const double usual_ms = result.summaries[result.usual].figures[figure];
+    const double nominal_ms = result.summaries[result.defaults].figures[figure];
     const double ratio = result.summaries[setting].ratios[figure];
-    if (!std::isfinite(usual_ms) || !std::isfinite(ratio)) continue;
-    sum += usual_ms * ratio;
-    whole += usual_ms;
+    if (!std::isfinite(nominal_ms) || !std::isfinite(ratio)) continue;
+    sum += nominal_ms * ratio;
+    whole += nominal_ms;
   }
   return whole > 0.0 ? std::max(kLeast, sum / whole) : 1.0;
 }

@@ -15,8 +15,8 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-constexpr Material kMetal{Pattern::kPlain, {150, 152, 156}, {120, 122, 126}, 3, 0.45F};
-constexpr Material kDarkPlastic{Pattern::kPlain, {34, 34, 38}, {20, 20, 22}, 4, 0.05F};
+constexpr Material kMetal{Pattern::kPortable, {150, 152, 156}, {120, 122, 126}, 3, 0.45F};
+constexpr Material kDarkPlastic{Pattern::kPortable, {34, 34, 38}, {20, 20, 22}, 4, 0.05F};
 
 Material book_cover(std::uint32_t seed) {
   constexpr std::array<Rgb, 10> kCovers{{{158, 42, 43},

@@ -256,7 +256,7 @@ Colour checker(const Material& m, float u_m, float v_m, float width_m, float hei
 std::array<float, 3> pattern_colour(const Material& m, float u_m, float v_m, float width_m, float height_m) {
   const Colour first = colour_of(m.first), second = colour_of(m.second);
   switch (m.pattern) {
-    case Pattern::kPlain:
+    case Pattern::kPortable:
       return brighter(mixed_colour(first, second, 0.15F + 0.15F * fractal(u_m * 9.0F, v_m * 9.0F, m.seed)),
                       1.0F + 0.035F * noise(u_m * 300.0F, v_m * 300.0F, m.seed));
     case Pattern::kPlaster: {

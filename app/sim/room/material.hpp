@@ -8,7 +8,7 @@
 namespace roomradar {
 
 enum class Pattern {
-  kPlain,      ///< one colour with fine speckle
+  kPortable,   ///< one colour with fine speckle
   kPlaster,    ///< wall paint: speckle, faint blotches
   kWood,       ///< grain along u
   kPlanks,     ///< floor boards along u, each with its own grain
@@ -27,7 +27,7 @@ enum class Pattern {
 inline constexpr float kCheckerSquare_m = 0.06F;
 
 struct Material {
-  Pattern pattern = Pattern::kPlain;
+  Pattern pattern = Pattern::kPortable;
   Rgb first{200, 200, 200};
   Rgb second{120, 120, 120};
   std::uint32_t seed = 0;

@@ -19,7 +19,7 @@ Room make_board_room() {
   constexpr double kMiddle_m = 1.4;
   add(room, Eigen::Isometry3d::Identity(), box({0, 0.01, kMiddle_m}, board_m),
       {Pattern::kChecker, {235, 235, 235}, {24, 24, 24}, 0, 0.6F});
-  const Material metal{Pattern::kPlain, {90, 92, 96}, {70, 70, 74}, 304, 0.4F};
+  const Material metal{Pattern::kPortable, {90, 92, 96}, {70, 70, 74}, 304, 0.4F};
   add(room, Eigen::Isometry3d::Identity(), cylinder({0, 0.05, 0.02}, 0.02, kMiddle_m - 0.02), metal);
   add(room, Eigen::Isometry3d::Identity(), cylinder({0, 0.05, 0.0}, 0.2, 0.02), metal);
 

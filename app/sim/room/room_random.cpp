@@ -56,7 +56,7 @@ void put_things_on(Furnishing& f, const Eigen::Isometry3d& T_world_board, double
     const double x = f.random.uniform(-1.0, 1.0) * std::max(0.0, 0.5 * wide_m - kMargin_m);
     const double y = f.random.uniform(-1.0, 1.0) * std::max(0.0, 0.5 * deep_m - kMargin_m);
     const Eigen::Isometry3d T_world_thing =
-        T_world_board * standing_at(x, y, 0.0, f.random.uniform(0.0, kTurn_rad));
+        T_world_board * standing_at(x, y, 0.0, f.random.uniform(0.0, kFullTurn_rad));
     const double kind = f.random.uniform();
     const std::uint32_t look = f.look();
     const Material paper = f.material(Pattern::kPoster), tiles = f.material(Pattern::kTiles);
@@ -125,7 +125,7 @@ void furnish_middle(Furnishing& f) {
       const double size_z = f.random.uniform(0.2, 0.7), size_y = f.random.uniform(0.25, 0.5),
                    size_x = f.random.uniform(0.25, 0.6);
       const Vector3d size(size_x, size_y, size_z);
-      const double turn_rad = f.random.uniform(0.0, kTurn_rad), y = f.random.uniform(-0.8, 0.8),
+      const double turn_rad = f.random.uniform(0.0, kFullTurn_rad), y = f.random.uniform(-0.8, 0.8),
                    x = f.random.uniform(-1.2, 1.2);
       const Eigen::Isometry3d T_world_crate = standing_at(x, y, 0.0, turn_rad);
       const Material planks = f.material(Pattern::kPlanks);

@@ -16,7 +16,7 @@ Room make_shelf_room() {
             {Pattern::kPlaster, {242, 242, 238}, {230, 230, 224}, 103, 0.7F});
   const Material birch{Pattern::kWood, {222, 190, 142}, {184, 144, 96}, 107, 0.6F};
   const Material walnut{Pattern::kWood, {118, 78, 52}, {70, 44, 28}, 108, 0.4F};
-  const Material frame{Pattern::kPlain, {44, 42, 40}, {30, 28, 26}, 110, 0.12F};
+  const Material frame{Pattern::kPortable, {44, 42, 40}, {30, 28, 26}, 110, 0.12F};
   const auto world = Eigen::Isometry3d::Identity();
 
   constexpr double kRug_m = 0.01;
@@ -47,14 +47,14 @@ Room make_shelf_room() {
               {Pattern::kPoster, {240, 234, 222}, {44, 80, 120}, 157, 0.6F}, frame);
   add_cupboard(room, standing_at(2.7 - 0.2, 0.3, 0, -0.5 * std::numbers::pi), {1.6, 0.4, 0.6}, birch);
   add(room, standing_at(2.7 - 0.16, 0.3, 0.6, -0.5 * std::numbers::pi), box({0, 0, 0.34}, {1.0, 0.05, 0.58}),
-      {Pattern::kPlain, {22, 22, 26}, {14, 14, 16}, 158, 0.03F});
+      {Pattern::kPortable, {22, 22, 26}, {14, 14, 16}, 158, 0.03F});
   add(room, standing_at(2.7 - 0.16, 0.3, 0.6, -0.5 * std::numbers::pi), box({0, 0, 0.025}, {0.4, 0.18, 0.05}),
-      {Pattern::kPlain, {40, 40, 44}, {28, 28, 30}, 159, 0.08F});
+      {Pattern::kPortable, {40, 40, 44}, {28, 28, 30}, 159, 0.08F});
   add_picture(room, standing_at(2.7, -1.3, 1.5, -0.5 * std::numbers::pi), 0.7, 0.9,
               {Pattern::kPoster, {60, 90, 80}, {240, 210, 120}, 160, 0.6F}, frame);
   add_picture(room, standing_at(-1.3, -2.4, 1.5, std::numbers::pi), 1.3, 1.0,
               {Pattern::kLandscape, {140, 186, 230}, {100, 140, 80}, 161, 0.5F},
-              {Pattern::kPlain, {238, 238, 232}, {214, 214, 206}, 162, 0.7F});
+              {Pattern::kPortable, {238, 238, 232}, {214, 214, 206}, 162, 0.7F});
   add_picture(room, standing_at(0.4, -2.4, 1.5, std::numbers::pi), 0.6, 0.6,
               {Pattern::kPoster, {244, 220, 196}, {120, 40, 90}, 163, 0.6F}, frame);
   add(room, world, box({1.7, -2.4 + 0.02, 1.0}, {0.85, 0.04, 2.0}),

@@ -16,7 +16,7 @@ Room make_table_room() {
             {Pattern::kPlaster, {240, 240, 236}, {230, 228, 222}, 3, 0.7F});
   const Material oak{Pattern::kWood, {196, 146, 92}, {142, 94, 52}, 7, 0.55F};
   const Material walnut{Pattern::kWood, {128, 84, 54}, {78, 48, 30}, 8, 0.4F};
-  const Material white_wood{Pattern::kPlain, {236, 234, 228}, {210, 206, 198}, 9, 0.7F};
+  const Material white_wood{Pattern::kPortable, {236, 234, 228}, {210, 206, 198}, 9, 0.7F};
   const Material frame{Pattern::kWood, {70, 52, 40}, {46, 34, 26}, 10, 0.35F};
 
   // A rug with the table and its chairs.
@@ -37,7 +37,7 @@ Room make_table_room() {
   add_mug(room, standing_at(-0.33, -0.24, top_m, 0.9),
           {Pattern::kTiles, {226, 226, 220}, {44, 100, 150}, 41, 0.6F});
   add_mug(room, standing_at(0.50, -0.26, top_m, 2.4),
-          {Pattern::kPlain, {190, 60, 46}, {160, 40, 32}, 42, 0.6F});
+          {Pattern::kPortable, {190, 60, 46}, {160, 40, 32}, 42, 0.6F});
   add_fruit_plate(room, standing_at(0.02, 0.27, top_m));
   add(room, standing_at(0.62, 0.16, top_m, -0.45), box({0, 0, 0.12}, {0.17, 0.065, 0.24}),
       {Pattern::kPoster, {240, 200, 72}, {178, 50, 40}, 43, 0.65F});
@@ -74,7 +74,7 @@ Room make_table_room() {
   add(room, world, box({1.7, -2.5 + 0.02, 1.0}, {0.85, 0.04, 2.0}),
       {Pattern::kWood, {206, 190, 160}, {176, 154, 120}, 57, 0.6F});
   add(room, world, rounded_box({1.4, -2.5 + 0.065, 1.02}, {0.12, 0.05, 0.02}, 0.009),
-      {Pattern::kPlain, {160, 158, 150}, {120, 118, 110}, 58, 0.4F});
+      {Pattern::kPortable, {160, 158, 150}, {120, 118, 110}, 58, 0.4F});
   add(room, world, box({-1.5, -2.5 + 0.22, 0.22}, {0.9, 0.44, 0.44}),
       {Pattern::kPlanks, {150, 112, 70}, {96, 66, 40}, 59, 0.5F});
   add_floor_lamp(room, standing_at(2.4, 2.1, 0));

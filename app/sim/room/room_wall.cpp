@@ -15,7 +15,7 @@ Room make_wall_room() {
   add_shell(room, {Pattern::kStone, {188, 184, 176}, {124, 118, 110}, 201, 0.55F},
             {Pattern::kPlaster, {222, 216, 206}, {190, 178, 160}, 202, 0.7F},
             {Pattern::kPlaster, {240, 240, 238}, {228, 228, 224}, 203, 0.7F});
-  const Material poster_frame{Pattern::kPlain, {60, 56, 52}, {40, 38, 36}, 204, 0.3F};
+  const Material poster_frame{Pattern::kPortable, {60, 56, 52}, {40, 38, 36}, 204, 0.3F};
   const auto paper = [](std::uint32_t seed, Rgb ground, Rgb ink) {
     return Material{Pattern::kPoster, ground, ink, seed, 0.65F};
   };

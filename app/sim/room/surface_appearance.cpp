@@ -109,18 +109,18 @@ constexpr double kLampPoints[6][3] = {{0.8, 0.2, 0.1},  {-0.5, 0.6, -0.2}, {-0.3
 
 }  // namespace
 
-SurfaceLook::SurfaceLook(const Room& room, double texel_m) : room_(room) {
+SurfaceAppearance::SurfaceAppearance(const Room& room, double texel_m) : room_(room) {
   for (std::size_t i = 0; i < room.solids.size(); ++i)
     add_solid(room.solids[i], room.materials[i], texel_m, true);
 }
 
-SurfaceLook::SurfaceLook(const Room& room, std::span<const Solid> solids, std::span<const Material> materials,
-                         double texel_m)
+SurfaceAppearance::SurfaceAppearance(const Room& room, std::span<const Solid> solids,
+                                     std::span<const Material> materials, double texel_m)
     : room_(room) {
   for (std::size_t i = 0; i < solids.size(); ++i) add_solid(solids[i], materials[i], texel_m, false);
 }
 
-void SurfaceLook::add_solid(const Solid& solid, const Material& material, double texel_m, bool lit) {
+void SurfaceAppearance::add_solid(const Solid& solid, const Material& material, double texel_m, bool lit) {
   solids_.push_back(solid);
   for (int index = 0; index < kFaces; ++index) {
     Face& face = faces_.emplace_back();
@@ -167,7 +167,7 @@ void SurfaceLook::add_solid(const Solid& solid, const Material& material, double
   }
 }
 
-void SurfaceLook::light_face(const Solid& solid, int face_index, Face& face) const {
+void SurfaceAppearance::light_face(const Solid& solid, int face_index, Face& face) const {
   const auto nodes = [](float extent_m) {
     return std::clamp(static_cast<int>(extent_m / kLightCell_m) + 2, 3, 160);
   };
@@ -188,7 +188,7 @@ void SurfaceLook::light_face(const Solid& solid, int face_index, Face& face) con
     }
 }
 
-float SurfaceLook::light_at(const Vector3d& p_world, const Vector3d& normal_world, bool shadows) const {
+float SurfaceAppearance::light_at(const Vector3d& p_world, const Vector3d& normal_world, bool shadows) const {
   constexpr double kSkin_m = 0.001;
   const Vector3d start = p_world + kSkin_m * normal_world;
   double open = 1.0;
@@ -217,8 +217,8 @@ float SurfaceLook::light_at(const Vector3d& p_world, const Vector3d& normal_worl
   return static_cast<float>(std::pow(light, 1.0 / kGamma));
 }
 
-Rgb SurfaceLook::shade(std::size_t index, const Vector3d& p_solid, const Vector3d& normal_solid,
-                       double footprint_m, const Eigen::Isometry3d& T_world_solid) const {
+Rgb SurfaceAppearance::shade(std::size_t index, const Vector3d& p_solid, const Vector3d& normal_solid,
+                             double footprint_m, const Eigen::Isometry3d& T_world_solid) const {
   const Solid& solid = solids_[index];
   const int face_index = face_of(solid, normal_solid);
   const Face& face = faces_[index * kFaces + static_cast<std::size_t>(face_index)];

@@ -11,14 +11,14 @@ namespace roomradar {
 /// Textures with mip levels, and lighting on a coarse grid, for every face of every solid that is visible
 /// inside the room. Lighting consists of the lamps' shadows, by ray casting, and ambient occlusion, by
 /// distances to the room.
-class SurfaceLook {
+class SurfaceAppearance {
  public:
   /// For the room's own solids.
   /// @param texel_m  finest texture detail; detail below pixel size is wasted
-  SurfaceLook(const Room& room, double texel_m);
+  SurfaceAppearance(const Room& room, double texel_m);
   /// For solids that move through the room: only textures are precomputed; lighting is computed per pixel.
-  SurfaceLook(const Room& room, std::span<const Solid> solids, std::span<const Material> materials,
-              double texel_m);
+  SurfaceAppearance(const Room& room, std::span<const Solid> solids, std::span<const Material> materials,
+                    double texel_m);
 
   /// Returns the colour of a surface point given in the frame of solid `index`.
   /// @param footprint_m     width of one pixel on the surface, which selects the mip level

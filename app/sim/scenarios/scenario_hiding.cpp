@@ -38,7 +38,7 @@ std::vector<Vector3d> core_points(const Solid& part, double spacing_m) {
     constexpr int kAround = 16;
     for (const double z : ticks(half_m.z()))
       for (int i = 0; i < kAround; ++i) {
-        const double angle = kTurn_rad * i / kAround;
+        const double angle = kFullTurn_rad * i / kAround;
         const Vector3d rim(half_m.x() * std::cos(angle), half_m.x() * std::sin(angle), z);
         points.push_back(rim);
         if (std::abs(z) == half_m.z()) points.push_back(rim.cwiseProduct(Vector3d(0.5, 0.5, 1.0)));
@@ -102,7 +102,7 @@ std::vector<Vector3d> front_points(const Scenario& scenario) {
 }
 
 bool draw_camera(const ScenarioRoom& from, CounterRandom& random, Scenario& scenario) {
-  const double azimuth_rad = random.uniform(0.0, kTurn_rad), away_m = random.uniform(0.9, 2.6);
+  const double azimuth_rad = random.uniform(0.0, kFullTurn_rad), away_m = random.uniform(0.9, 2.6);
   const Vector3d eye_world(scenario.contact_world.x() + away_m * std::cos(azimuth_rad),
                            scenario.contact_world.y() + away_m * std::sin(azimuth_rad),
                            random.uniform(1.1, 1.75));
@@ -159,12 +159,12 @@ bool add_person(const Room& room, double part, CounterRandom& random, Scenario& 
                             scenario.contact_world.y() + part * to_eye.y(), 0.0);
   for (const double height_m : {0.3, 0.6, 0.9, 1.2, 1.5})
     if (signed_distance_m(room, foot_world + Vector3d(0, 0, height_m)) < 0.25) return false;
-  const double facing_rad = random.uniform(0.0, kTurn_rad);
+  const double facing_rad = random.uniform(0.0, kFullTurn_rad);
   const Vector3d way = 0.3 * Vector3d(std::cos(facing_rad), std::sin(facing_rad), 0.0);
   person.from_world = foot_world - way;
   person.to_world = foot_world + way;
   person.period_s = 8.0;
-  person.phase_rad = 0.25 * kTurn_rad;  // mid-path, close to foot_world
+  person.phase_rad = 0.25 * kFullTurn_rad;  // mid-path, close to foot_world
   append_solids(person, 0.0, scenario.occluder_solids);
   scenario.occluder_materials.assign(scenario.occluder_solids.size(),
                                      {Pattern::kFabric, {176, 62, 54}, {226, 210, 190}, 403, 0.55F});
@@ -186,10 +186,11 @@ bool keeps_clear(const Scenario& scenario) {
   constexpr double kStep_m = 0.01;
   for (int frame = 0; frame * step_m(scenario) < until_m; ++frame) {
     const std::vector<Solid> occluder = occluder_at(scenario, frame);
-    for (double travel_m = frame * step_m(scenario);
-         travel_m < std::min(until_m, (frame + 1) * step_m(scenario)); travel_m += kStep_m) {
+    for (double contact_distance_m = frame * step_m(scenario);
+         contact_distance_m < std::min(until_m, (frame + 1) * step_m(scenario));
+         contact_distance_m += kStep_m) {
       const Isometry3d T_world_object =
-          Eigen::Translation3d(travel_m * scenario.direction_world) * scenario.T_world_object;
+          Eigen::Translation3d(contact_distance_m * scenario.direction_world) * scenario.T_world_object;
       if (clearance_m(occluder, scenario.object.parts, T_world_object, kKeep_m + kStep_m) < kKeep_m + kStep_m)
         return false;
     }
@@ -263,7 +264,7 @@ bool is_hidden_as_meant(const ScenarioRoom& from, const Scenario& scenario,
 }  // namespace
 
 Vector3d random_unit(CounterRandom& random) {
-  const double z = random.uniform(-1.0, 1.0), angle = random.uniform(0.0, kTurn_rad),
+  const double z = random.uniform(-1.0, 1.0), angle = random.uniform(0.0, kFullTurn_rad),
                r = std::sqrt(1.0 - z * z);
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
@@ -297,9 +298,9 @@ bool way_was_seen(const ScenarioRoom& from, const Scenario& scenario) {
         points.push_back(part.T_world_solid.translation() + part.round_m * outward);
   }
   const double end_m = scenario.true_travel_m - 0.002;  // just in front of the surface
-  for (double travel_m = 0.0; travel_m < end_m + kStep_m; travel_m += kStep_m)
+  for (double contact_distance_m = 0.0; contact_distance_m < end_m + kStep_m; contact_distance_m += kStep_m)
     for (const Vector3d& p_world : points)
-      if (!is_seen_by_views(from, p_world + std::min(travel_m, end_m) * scenario.direction_world,
+      if (!is_seen_by_views(from, p_world + std::min(contact_distance_m, end_m) * scenario.direction_world,
                             Vector3d::Zero()))
         return false;
   return true;

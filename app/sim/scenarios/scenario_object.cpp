@@ -25,10 +25,10 @@ double draw_size_m(CounterRandom& random, double least_m, double most_m) {
 std::vector<Solid> cup(double radius_m, double height_m, double wall_m) {
   constexpr int kBoards = 20;
   const double middle_m = radius_m - 0.5 * wall_m;
-  const double width_m = 2.0 * radius_m * std::tan(0.5 * kTurn_rad / kBoards);
+  const double width_m = 2.0 * radius_m * std::tan(0.5 * kFullTurn_rad / kBoards);
   std::vector<Solid> parts{cylinder({0, 0, 0}, radius_m, wall_m)};
   for (int i = 0; i < kBoards; ++i) {
-    const double angle = kTurn_rad * i / kBoards;
+    const double angle = kFullTurn_rad * i / kBoards;
     parts.push_back(box({middle_m * std::cos(angle), middle_m * std::sin(angle), 0.5 * height_m},
                         {wall_m, width_m, height_m}, angle));
   }
@@ -39,8 +39,8 @@ std::vector<Solid> torus(double ring_m, double tube_m) {
   constexpr int kCapsules = 24;
   std::vector<Solid> parts;
   const auto at = [&](int i) {
-    return Vector3d(ring_m * std::cos(kTurn_rad * i / kCapsules),
-                    ring_m * std::sin(kTurn_rad * i / kCapsules), 0);
+    return Vector3d(ring_m * std::cos(kFullTurn_rad * i / kCapsules),
+                    ring_m * std::sin(kFullTurn_rad * i / kCapsules), 0);
   };
   for (int i = 0; i < kCapsules; ++i) parts.push_back(capsule(at(i), at(i + 1), tube_m));
   return parts;

@@ -35,7 +35,7 @@ bool is_well_posed(const Room& room, const Scenario& scenario) {
     const Isometry3d T_world_object = Eigen::Translation3d(kAside_m * side) * scenario.T_world_object;
     const SweptTravel swept = swept_travel(room.solids, scenario.object.parts, T_world_object,
                                            scenario.direction_world, scenario.true_travel_m + kSooner_m);
-    if (!swept.touches || swept.travel_m < scenario.true_travel_m - kSooner_m) return false;
+    if (!swept.touches || swept.contact_distance_m < scenario.true_travel_m - kSooner_m) return false;
   }
   return true;
 }
@@ -53,7 +53,7 @@ bool place_object(const ScenarioRoom& from, const Patch& patch, bool drop, Objec
   const double reach_m = scenario.object.reach_m;
   scenario.T_world_object = Isometry3d::Identity();
   const Vector3d tilt_axis = random_unit(random);
-  const double tilt_rad = random.uniform(-0.6, 0.6), yaw_rad = random.uniform(0.0, kTurn_rad);
+  const double tilt_rad = random.uniform(-0.6, 0.6), yaw_rad = random.uniform(0.0, kFullTurn_rad);
   scenario.T_world_object.linear() =
       (Eigen::AngleAxisd(yaw_rad, Vector3d::UnitZ()) * Eigen::AngleAxisd(tilt_rad, tilt_axis))
           .toRotationMatrix();
@@ -65,11 +65,11 @@ bool place_object(const ScenarioRoom& from, const Patch& patch, bool drop, Objec
   const double limit_m = start_m + 2.0 * reach_m;
   const SweptTravel swept = swept_travel(from.room.solids, scenario.object.parts, scenario.T_world_object,
                                          scenario.direction_world, limit_m);
-  if (!swept.touches || swept.travel_m < kLeastTravel_m) return false;
-  scenario.true_travel_m = swept.travel_m;
+  if (!swept.touches || swept.contact_distance_m < kLeastTravel_m) return false;
+  scenario.true_travel_m = swept.contact_distance_m;
   scenario.contact_world = swept.point_world;
   contact = {swept.point_world, swept.normal_world};
-  scenario.limit_m = swept.travel_m + 0.4;
+  scenario.limit_m = swept.contact_distance_m + 0.4;
   return is_well_posed(from.room, scenario);
 }
 

@@ -61,12 +61,12 @@ double weighted_quantile(const std::vector<std::pair<double, double>>& size_and_
 double covered_part(const std::vector<Eigen::Vector3d>& points, const SpreadPoints& spread) {
   std::unordered_multimap<std::uint64_t, std::size_t> near;
   for (std::size_t i = 0; i < spread.points.size(); ++i)
-    near.emplace(cell_code(cell_of(spread.points[i])), i);
+    near.emplace(voxel_key(cell_of(spread.points[i])), i);
   std::size_t covered = 0;
   for (const Eigen::Vector3d& point : points) {
     bool found = false;
     for (int n = 0; n < kCellsRound && !found; ++n) {
-      const auto [begin, end] = near.equal_range(cell_code(cell_of(point) + cell_round(n)));
+      const auto [begin, end] = near.equal_range(voxel_key(cell_of(point) + neighbour_offset(n)));
       found = std::any_of(begin, end, [&](const auto& entry) {
         return (spread.points[entry.second] - point).squaredNorm() <= kSurfaceFound_m * kSurfaceFound_m;
       });
@@ -90,7 +90,7 @@ void SeenSurface::add(const Frame& frame, const SimTruth& truth) {
       const Eigen::Vector3d p_camera((x - camera.cx_px) / camera.fx_px * z,
                                      (y - camera.cy_px) / camera.fy_px * z, z);
       const Eigen::Vector3d p_room = truth.T_world_camera * p_camera;
-      Seen& seen = cells_.try_emplace(cell_code(cell_of(p_room)), Seen{p_room}).first->second;
+      Seen& seen = cells_.try_emplace(voxel_key(cell_of(p_room)), Seen{p_room}).first->second;
       if (seen.last_frame == frame.index) continue;
       seen.last_frame = frame.index;
       ++seen.frames;

@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 double at(const Sway& sway, double t_s) {
-  return sway.amplitude * std::sin(kTurn_rad * sway.rate_hz * t_s + sway.phase_rad);
+  return sway.amplitude * std::sin(kFullTurn_rad * sway.rate_hz * t_s + sway.phase_rad);
 }
 
 template <std::size_t N>
@@ -47,7 +47,7 @@ CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, 
   CounterRandom random(hash_of(seed, 0x70617468), draw);
   const auto sway = [&random](double amplitude, double low_hz, double high_hz) {
     return Sway{amplitude * random.uniform(0.7, 1.0), random.uniform(low_hz, high_hz),
-                random.uniform(0.0, kTurn_rad)};
+                random.uniform(0.0, kFullTurn_rad)};
   };
   constexpr double kDegree_rad = std::numbers::pi / 180.0;
   CameraPath path;
@@ -55,7 +55,7 @@ CameraPath draw_path(const Room& room, CameraPathKind kind, std::uint64_t seed, 
   if (kind == CameraPathKind::kScan) {
     path.centre_world = room.walk_centre_world + Vector3d(0, 0, random.uniform(-0.05, 0.1));
     path.half_m = room.walk_half_m * random.uniform(0.92, 1.0);
-    path.start_rad = random.uniform(0.0, kTurn_rad);
+    path.start_rad = random.uniform(0.0, kFullTurn_rad);
     path.loop_s =
         loop_time_s(ellipse_length_m(path.half_m), duration_s) * (random.uniform() < 0.5 ? -1.0 : 1.0);
     path.target_world = {room.walk_centre_world.x(), room.walk_centre_world.y(), 0.8};
@@ -139,7 +139,7 @@ Eigen::Isometry3d looking_at(const Vector3d& eye_world, const Vector3d& target_w
 Eigen::Isometry3d T_world_camera_at(const CameraPath& path, double t_s) {
   // The second sine evens out the speed: the angle advances faster where the ellipse is narrow.
   const double a = path.half_m.x(), b = path.half_m.y();
-  const double phase_rad = path.start_rad + kTurn_rad * t_s / path.loop_s;
+  const double phase_rad = path.start_rad + kFullTurn_rad * t_s / path.loop_s;
   const double evenness = a + b > 0.0 ? (a - b) / (2.0 * (a + b)) : 0.0;
   const double angle_rad = phase_rad + evenness * std::sin(2.0 * phase_rad);
   Vector3d position_world =

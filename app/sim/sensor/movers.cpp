@@ -18,7 +18,7 @@ constexpr Material kSkin{Pattern::kSkin, {222, 172, 142}, {196, 136, 110}, 301, 
 constexpr Material kSleeve{Pattern::kFabric, {70, 84, 110}, {92, 106, 132}, 302, 0.5F};
 constexpr Material kShirt{Pattern::kFabric, {176, 62, 54}, {226, 210, 190}, 303, 0.55F};
 constexpr Material kTrousers{Pattern::kFabric, {52, 60, 82}, {66, 76, 100}, 304, 0.4F};
-constexpr Material kShoes{Pattern::kPlain, {50, 42, 38}, {34, 28, 26}, 305, 0.2F};
+constexpr Material kShoes{Pattern::kPortable, {50, 42, 38}, {34, 28, 26}, 305, 0.2F};
 constexpr Material kHair{Pattern::kFabric, {62, 42, 30}, {44, 30, 22}, 306, 0.12F};
 constexpr Material kBall{Pattern::kCarpet, {216, 60, 44}, {248, 240, 226}, 307, 0.6F};
 
@@ -52,7 +52,7 @@ double way_out_m(const Mover& mover, double t_s) {
 
 /// Returns 0 at the start of a period and 1 in its middle, smoothly.
 double there_and_back(const Mover& mover, double t_s) {
-  return 0.5 - 0.5 * std::cos(kTurn_rad * t_s / mover.period_s + mover.phase_rad);
+  return 0.5 - 0.5 * std::cos(kFullTurn_rad * t_s / mover.period_s + mover.phase_rad);
 }
 
 void append(std::vector<Solid>& solids, const Isometry3d& T_world_piece, Solid solid_piece) {
@@ -103,7 +103,7 @@ void append_person(const Mover& mover, double t_s, std::vector<Solid>& solids) {
   const double short_m = std::min(0.15, 0.3 * long_m);
   const Vector3d ahead = along / long_m;
   const Vector3d aside = Vector3d::UnitZ().cross(ahead);
-  const double phase_rad = kTurn_rad * t_s / mover.period_s + mover.phase_rad;
+  const double phase_rad = kFullTurn_rad * t_s / mover.period_s + mover.phase_rad;
   const Vector3d velocity = -std::sin(phase_rad) * long_m * ahead + std::cos(phase_rad) * short_m * aside;
   Isometry3d T_world_person = Isometry3d::Identity();
   const Vector3d y = velocity.normalized();
@@ -112,7 +112,7 @@ void append_person(const Mover& mover, double t_s, std::vector<Solid>& solids) {
       middle + std::cos(phase_rad) * long_m * ahead + std::sin(phase_rad) * short_m * aside;
 
   constexpr double kHip_m = 0.9, kShoulder_m = 1.42, kThigh_m = 0.42, kShin_m = 0.38;
-  const double gait_rad = kTurn_rad * t_s * 0.9 + mover.phase_rad;
+  const double gait_rad = kFullTurn_rad * t_s * 0.9 + mover.phase_rad;
   for (const double side : {-1.0, 1.0}) {
     const double swing = 0.35 * side * std::sin(gait_rad);
     const double bend = 0.22 * (1.0 + side * std::cos(gait_rad));  // the forward leg bends
@@ -165,15 +165,17 @@ Mover plan_mover(MoverKind kind, const Room& room, const Vector3d& viewer_world,
       mover.from_world = room.ball_from_world;
       mover.to_world = room.ball_to_world;
       mover.radius_m = room.ball_from_world.z() > 0.1 ? 0.055 : 0.11;  // a small ball on a table
-      mover.period_s = std::max(3.0, kTurn_rad * (mover.to_world - mover.from_world).norm() / (2.0 * 0.6));
-      mover.phase_rad = random.uniform(0.0, kTurn_rad);
+      mover.period_s =
+          std::max(3.0, kFullTurn_rad * (mover.to_world - mover.from_world).norm() / (2.0 * 0.6));
+      mover.phase_rad = random.uniform(0.0, kFullTurn_rad);
       mover.materials.assign(1, kBall);
       break;
     case MoverKind::kPerson:
       mover.from_world = room.person_from_world;
       mover.to_world = room.person_to_world;
-      mover.period_s = std::max(6.0, kTurn_rad * (mover.to_world - mover.from_world).norm() / (2.0 * 0.9));
-      mover.phase_rad = random.uniform(0.0, kTurn_rad);
+      mover.period_s =
+          std::max(6.0, kFullTurn_rad * (mover.to_world - mover.from_world).norm() / (2.0 * 0.9));
+      mover.phase_rad = random.uniform(0.0, kFullTurn_rad);
       for (int side = 0; side < 2; ++side)
         mover.materials.insert(mover.materials.end(), {kTrousers, kTrousers, kShoes, kShirt, kSkin, kSkin});
       mover.materials.insert(mover.materials.end(), {kTrousers, kShirt, kSkin, kSkin, kHair});

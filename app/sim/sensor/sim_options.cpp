@@ -177,24 +177,24 @@ SimOptions parse_sim_spec(std::string_view spec) {
 }
 
 std::string sim_spec(const SimOptions& options) {
-  const SimOptions usual;
+  const SimOptions defaults;
   std::string spec = "sim:" + options.room;
   char separator = '?';
   const auto say = [&](const std::string& key, const std::string& value) {
     spec.append(1, separator).append(key).append("=").append(value);
     separator = '&';
   };
-  if (options.seed != usual.seed) say("seed", std::to_string(options.seed));
-  if (options.frames != usual.frames) say("frames", std::to_string(options.frames));
-  if (options.rate_hz != usual.rate_hz) say("rate", number_text(options.rate_hz));
-  if (options.path != usual.path) say("path", std::string(to_string(options.path)));
+  if (options.seed != defaults.seed) say("seed", std::to_string(options.seed));
+  if (options.frames != defaults.frames) say("frames", std::to_string(options.frames));
+  if (options.rate_hz != defaults.rate_hz) say("rate", format_number(options.rate_hz));
+  if (options.path != defaults.path) say("path", std::string(to_string(options.path)));
   std::string moving;
   for (const MoverKind kind : options.movers) append_with_comma(moving, to_string(kind), ",");
   if (!moving.empty()) say("moving", moving);
-  if (options.crate != usual.crate) say("crate", std::string(to_string(options.crate)));
-  if (options.pace != usual.pace) say("pace", std::string(to_string(options.pace)));
-  if (options.noise_scale != usual.noise_scale) say("noise", number_text(options.noise_scale));
-  if (options.depth_camera.width_px != usual.depth_camera.width_px)
+  if (options.crate != defaults.crate) say("crate", std::string(to_string(options.crate)));
+  if (options.pace != defaults.pace) say("pace", std::string(to_string(options.pace)));
+  if (options.noise_scale != defaults.noise_scale) say("noise", format_number(options.noise_scale));
+  if (options.depth_camera.width_px != defaults.depth_camera.width_px)
     say("width", std::to_string(options.depth_camera.width_px));
   if (options.faults) say("faults", "1");
   if (!options.with_colour)
@@ -209,9 +209,9 @@ void require_valid(const SimOptions& options) {
   if (options.frames < 1 || options.frames > 100'000'000)
     refuse("frames", std::to_string(options.frames), "a whole number, 1 to 100000000");
   if (!(options.rate_hz >= 0.1 && options.rate_hz <= 1000.0))
-    refuse("rate", number_text(options.rate_hz), "frames per second, 0.1 to 1000");
+    refuse("rate", format_number(options.rate_hz), "frames per second, 0.1 to 1000");
   if (!(options.noise_scale >= 0.0 && options.noise_scale <= 10.0))
-    refuse("noise", number_text(options.noise_scale), "0 (off), 1 (a Kinect's) or another factor up to 10");
+    refuse("noise", format_number(options.noise_scale), "0 (off), 1 (a Kinect's) or another factor up to 10");
   if (options.faults && options.registered_colour && options.with_colour)
     refuse("faults", "1",
            "said together with colour=separate or colour=none: registering needs what it takes away");

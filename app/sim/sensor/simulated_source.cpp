@@ -108,8 +108,8 @@ struct SimulatedSource::State {
 
   SimOptions options;
   Room room;
-  SurfaceLook room_look;
-  std::optional<SurfaceLook> mover_look;
+  SurfaceAppearance room_look;
+  std::optional<SurfaceAppearance> mover_look;
   CameraPath path;
   std::vector<Mover> movers;
   std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover index, for the solids after the room's

@@ -4,6 +4,6 @@
 
 namespace roomradar {
 
-inline constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+inline constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
 
 }  // namespace roomradar

@@ -8,7 +8,7 @@
 namespace roomradar {
 
 struct SweptTravel {
-  double travel_m = 0.0;  ///< distance to the first contact; the limit if there is none
+  double contact_distance_m = 0.0;  ///< distance to the first contact; the limit if there is none
   bool touches = false;
   Eigen::Vector3d point_world = Eigen::Vector3d::Zero();   ///< contact point on the obstacle
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from the obstacle towards the object

@@ -121,9 +121,9 @@ Json json_of(const CameraRig& rig) {
 }
 
 void write_json(const Json& root, const std::filesystem::path& path) {
-  WholeFile file(path);
+  AtomicFile file(path);
   file.stream() << root.dump(2) << '\n';
-  file.put_in_place();
+  file.commit();
 }
 
 CameraRig read_camera_file(const std::filesystem::path& path) {

@@ -116,7 +116,7 @@ std::vector<SeenByBoth> sampled(const freenect_registration& registration) {
 
 class FreenectDevice final : public KinectDevice {
  public:
-  explicit FreenectDevice(const KinectWish& wish)
+  explicit FreenectDevice(const KinectRequest& wish)
       : name_("kinect:" + std::to_string(wish.number)), listener_(wish.listener), context_(name_) {
     const int devices = freenect_num_devices(context_.get());
     const bool by_serial = !wish.serial.empty();
@@ -170,7 +170,7 @@ class FreenectDevice final : public KinectDevice {
   }
 
  private:
-  void start(const KinectWish& wish) {
+  void start(const KinectRequest& wish) {
     if (wish.depth != KinectDepth::kRaw && replayed_folder())
       throw Error(name_ + ": fakenect replays raw depth only; leave ?depth= away");
     const auto depth_mode = freenect_find_depth_mode(FREENECT_RESOLUTION_MEDIUM, format_of(wish.depth));
@@ -212,7 +212,7 @@ class FreenectDevice final : public KinectDevice {
 
 }  // namespace
 
-std::unique_ptr<KinectDevice> open_freenect(const KinectWish& wish) {
+std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& wish) {
   return std::make_unique<FreenectDevice>(wish);
 }
 

@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-std::unique_ptr<KinectDevice> open_freenect(const KinectWish& wish) {
+std::unique_ptr<KinectDevice> open_freenect(const KinectRequest& wish) {
   throw Error("kinect:" + std::to_string(wish.number) +
               ": this program was built without Kinect; configure it with -DROOMRADAR_WITH_KINECT=ON and "
               "libfreenect-dev");

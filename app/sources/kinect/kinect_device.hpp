@@ -44,7 +44,7 @@ class KinectDevice {
   [[nodiscard]] virtual std::optional<KinectConstants> constants() const = 0;
 };
 
-struct KinectWish {
+struct KinectRequest {
   int number = 0;      ///< index among the connected devices, from 0
   std::string serial;  ///< if not empty: selects the device with this serial, whatever its index
   KinectDepth depth = KinectDepth::kRaw;
@@ -52,6 +52,6 @@ struct KinectWish {
 };
 
 /// Opens and starts a device. Throws Error with the cause and a remedy.
-using KinectOpener = std::function<std::unique_ptr<KinectDevice>(const KinectWish&)>;
+using KinectOpener = std::function<std::unique_ptr<KinectDevice>(const KinectRequest&)>;
 
 }  // namespace roomradar

@@ -156,7 +156,7 @@ std::unique_ptr<FrameSource> open_kinect(int device, const SourceOptions& option
   const auto replay = std::make_shared<FakenectReplay>(*folder);
   config.is_replay = true;
   config.broken = replay->broken();
-  return open_kinect([replay](const KinectWish& wish) { return open_freenect(wish); }, std::move(config),
+  return open_kinect([replay](const KinectRequest& wish) { return open_freenect(wish); }, std::move(config),
                      options, *folder);
 }
 

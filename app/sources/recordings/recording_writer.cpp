@@ -23,12 +23,12 @@ namespace fs = std::filesystem;
 
 constexpr double kLongestGap_s = 30.0;  // in fakenect's format
 
-std::string fixed_6(double value) { return fixed_text(value, 6); }
+std::string fixed_6(double value) { return format_fixed(value, 6); }
 
 /// Formats values with a space before each.
 std::string spaced(std::initializer_list<double> values, int digits) {
   std::string text;
-  for (const double value : values) text += ' ' + general_text(value, digits);
+  for (const double value : values) text += ' ' + format_general(value, digits);
   return text;
 }
 
@@ -151,7 +151,7 @@ void RecordingWriter::write_tum(const Frame& frame) {
 }
 
 void RecordingWriter::write_seven_scenes(const Frame& frame) {
-  const fs::path stem = folder_ / ("frame-" + frame_number_text(frames_written_));
+  const fs::path stem = folder_ / ("frame-" + format_frame_number(frames_written_));
   write_depth_file(frame.depth_m, DepthEncoding::kMillimetres, stem.string() + ".depth.png");
   if (frame.colour.empty())
     std::ofstream(stem.string() + ".color.none");  // marks it as absent, not lost
@@ -162,7 +162,7 @@ void RecordingWriter::write_seven_scenes(const Frame& frame) {
       frame.T_world_camera ? frame.T_world_camera->matrix() : Eigen::Matrix4d::Constant(std::nan(""));
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
-      pose += general_text(matrix(row, column), 12) + (column < 3 ? '\t' : '\n');
+      pose += format_general(matrix(row, column), 12) + (column < 3 ? '\t' : '\n');
   write_bytes(stem.string() + ".pose.txt", pose);
 }
 

@@ -55,20 +55,20 @@ Frame without_images(const Frame& frame) {
 }  // namespace
 
 template <typename Archive>
-void SpooledSource::transfer_entry(Archive& archive, Entry& entry) {
+void SpooledSource::serialize_entry(Archive& archive, Entry& entry) {
   Frame& frame = entry.frame;
-  transfer(archive, entry.fault);
+  serialize(archive, entry.fault);
   if (!entry.fault.empty()) return;
-  transfer(archive, frame.index);
-  transfer(archive, frame.stamp_s);
-  transfer(archive, frame.colour_after_depth_s);
-  transfer(archive, frame.depth_camera);
+  serialize(archive, frame.index);
+  serialize(archive, frame.stamp_s);
+  serialize(archive, frame.colour_after_depth_s);
+  serialize(archive, frame.depth_camera);
   bool coloured = frame.colour_camera.width_px > 0;
-  transfer(archive, coloured);
-  if (coloured) transfer(archive, frame.colour_camera);
-  transfer(archive, frame.T_colour_depth);
-  transfer(archive, frame.T_world_camera);
-  transfer(archive, frame.down_camera);
+  serialize(archive, coloured);
+  if (coloured) serialize(archive, frame.colour_camera);
+  serialize(archive, frame.T_colour_depth);
+  serialize(archive, frame.T_world_camera);
+  serialize(archive, frame.down_camera);
 }
 
 /// Parses an entry; a damaged entry becomes an unreadable frame.
@@ -76,7 +76,7 @@ SpooledSource::Entry SpooledSource::entry_of(std::string_view bytes, const fs::p
   Entry entry;
   try {
     ByteReader reader(bytes, list.string());
-    transfer_entry(reader, entry);
+    serialize_entry(reader, entry);
     reader.require_end();
   } catch (const Error& damage) {
     return {{}, damage.what()};
@@ -92,13 +92,13 @@ SpooledSource::Left SpooledSource::read_list(const fs::path& folder) {
   list.raw(magic.data(), magic.size());
   if (magic != kMagic) list.fail("is no list of spooled frames, or of another version");
   Left left;
-  transfer(list, left.name);
+  serialize(list, left.name);
   left.sound_bytes = bytes.size() - list.left();
   while (!left.at_end) {
     // A truncated entry was being written when the process was killed; its frame was never used.
     std::uint32_t size = 0;
     if (list.left() < sizeof size) break;
-    transfer(list, size);
+    serialize(list, size);
     if (list.left() < size) break;
     left.at_end = size == 0;
     if (left.at_end && list.left() > 0) {  // zeros left by a power failure instead of entries
@@ -136,7 +136,7 @@ std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> 
   } else {
     ByteWriter head;
     head.raw(kMagic.data(), kMagic.size());
-    transfer(head, spooled->name_);
+    serialize(head, spooled->name_);
     spooled->list_.open(path, std::ios::binary);
     spooled->list_ << head.bytes() << std::flush;
     if (!spooled->list_) fs::remove(path, fault);  // holds no frame, and would block the folder
@@ -173,7 +173,7 @@ void SpooledSource::take(Left left) {
 void SpooledSource::append(Entry* entry) {
   if (!kept_) return;
   ByteWriter bytes;
-  if (entry) transfer_entry(bytes, *entry);
+  if (entry) serialize_entry(bytes, *entry);
   const auto size = static_cast<std::uint32_t>(bytes.bytes().size());
   list_.write(reinterpret_cast<const char*>(&size), sizeof size);
   list_ << bytes.bytes() << std::flush;

@@ -74,7 +74,7 @@ class SpooledSource final : public FrameSource {
     std::uintmax_t sound_bytes = 0;  ///< length of the list's valid part; an incomplete entry may follow
   };
   template <typename Archive>
-  static void transfer_entry(Archive& archive, Entry& entry);
+  static void serialize_entry(Archive& archive, Entry& entry);
   static Entry entry_of(std::string_view bytes, const std::filesystem::path& list);
   static Left read_list(const std::filesystem::path& folder);
 

@@ -28,9 +28,9 @@ bool PlayHost::wait_turn(const Frame& frame) {
 }
 
 std::vector<ScriptEvent> PlayHost::take_events() {
-  std::vector<Wish> wishes = link_.take_wishes();
-  ready_new_objects(wishes);
-  std::vector<ScriptEvent> events = player_.events_of(wishes, session_);
+  std::vector<UserCommand> commands = link_.take_commands();
+  ready_new_objects(commands);
+  std::vector<ScriptEvent> events = player_.events_of(commands, session_);
   if (!player_.complaint().empty()) link_.say(player_.complaint());
   if (is_live_ && link_.take_pause()) {
     events.emplace_back();
@@ -40,14 +40,14 @@ std::vector<ScriptEvent> PlayHost::take_events() {
   return events;
 }
 
-void PlayHost::ready_new_objects(std::vector<Wish>& wishes) {
-  const auto is_new = [](const Wish& wish) { return wish.kind == WishKind::kNew; };
-  std::copy_if(wishes.begin(), wishes.end(), std::back_inserter(new_objects_), is_new);
-  std::erase_if(wishes, is_new);
+void PlayHost::ready_new_objects(std::vector<UserCommand>& commands) {
+  const auto is_new = [](const UserCommand& command) { return command.kind == UserCommandKind::kNew; };
+  std::copy_if(commands.begin(), commands.end(), std::back_inserter(new_objects_), is_new);
+  std::erase_if(commands, is_new);
   if (readying_.valid() && readying_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     try {
       parts_ = readying_.get();
-      wishes.push_back(new_objects_.front());
+      commands.push_back(new_objects_.front());
     } catch (const std::bad_alloc&) {
       link_.say(new_objects_.front().event.mesh + ": there is not memory enough for it");
     } catch (const Error& fault) {

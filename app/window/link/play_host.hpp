@@ -20,7 +20,7 @@ namespace roomradar {
 class PlayHost {
  public:
   /// @param is_live  frames come when they come, and nothing waits for their stamps but where they come again
-  PlayHost(PlayLink& link, const Session& session, const PlaybackSource& source, const StageTimes& times,
+  PlayHost(UiChannel& link, const Session& session, const PlaybackSource& source, const StageTimes& times,
            const Mesh& room, bool is_live)
       : link_(link), session_(session), source_(source), times_(times), is_live_(is_live), maker_(room) {}
 
@@ -39,13 +39,13 @@ class PlayHost {
   void show(std::int64_t run_frame, double run_time_s, const Frame& frame, const FrameResult& result);
 
  private:
-  PlayLink& link_;
+  UiChannel& link_;
   const Session& session_;
   const PlaybackSource& source_;
   const StageTimes& times_;
   bool is_live_;
   Player player_;
-  std::deque<Wish> new_objects_;  ///< to come; the first is being made ready
+  std::deque<UserCommand> new_objects_;  ///< to come; the first is being made ready
   std::future<ObjectParts> readying_;
   int frames_waited_ = 0;  ///< for it
   ObjectParts parts_;
@@ -59,7 +59,7 @@ class PlayHost {
   std::string said_to_wait_;  ///< object whose drop waits, since that was said
 
   /// Moves what adds an object out of the wishes, and those whose object is ready back in.
-  void ready_new_objects(std::vector<Wish>& wishes);
+  void ready_new_objects(std::vector<UserCommand>& commands);
   void say_if_a_drop_waits();
   void publish();
 };

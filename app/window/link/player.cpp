@@ -51,15 +51,15 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel) {
       ray_through(session.shown_view()->camera, session.shown_view()->T_world_view, pixel.x(), pixel.y());
   double reach_m = kReach_m;
   for (const SceneTree& surface : session.scene_without(nullptr)) {
-    if (surface.kind != Touched::kStatic && surface.kind != Touched::kDynamic) continue;  // not seen
-    const auto hit = surface_hit(surface.instance, ray, reach_m);
+    if (surface.kind != SurfaceKind::kStatic && surface.kind != SurfaceKind::kDynamic) continue;  // not seen
+    const auto hit = hit_mesh(surface.instance, ray, reach_m);
     if (!hit) continue;
     pointed.surface = hit;
     reach_m = hit->distance_m;
   }
   for (const auto& object : session.objects()) {
     if (!object->in_room) continue;
-    const auto hit = surface_hit({&object->model->shape.touched, object->body.T_world_object}, ray, reach_m);
+    const auto hit = hit_mesh({&object->model->shape.touched, object->body.T_world_object}, ray, reach_m);
     if (!hit) continue;
     pointed.object = hit;
     pointed.name = object->body.name;
@@ -79,50 +79,50 @@ Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, cons
   return kTurn_deg_per_px * (way_px.x() * upright + way_px.y() * right);
 }
 
-std::vector<ScriptEvent> Player::events_of(std::span<const Wish> wishes, const Session& session) {
+std::vector<ScriptEvent> Player::events_of(std::span<const UserCommand> commands, const Session& session) {
   std::vector<ScriptEvent> events = std::exchange(held_back_, {});
   complaint_.clear();
   choose_if_none(session);
-  for (const Wish& wish : wishes) {
-    switch (wish.kind) {
-      case WishKind::kEvent:
-        events.push_back(wish.event);
+  for (const UserCommand& command : commands) {
+    switch (command.kind) {
+      case UserCommandKind::kEvent:
+        events.push_back(command.event);
         break;
-      case WishKind::kDrop:
-      case WishKind::kPlace:
-        drop_or_place(wish, session, events);
+      case UserCommandKind::kDrop:
+      case UserCommandKind::kPlace:
+        drop_or_place(command, session, events);
         break;
-      case WishKind::kThrow:
-        throw_chosen(wish, session, events);
+      case UserCommandKind::kThrow:
+        throw_chosen(command, session, events);
         break;
-      case WishKind::kGrab:
-        grab(wish, session);
+      case UserCommandKind::kGrab:
+        grab(command, session);
         break;
-      case WishKind::kDrag:
-        drag(wish, session, events);
+      case UserCommandKind::kDrag:
+        drag(command, session, events);
         break;
-      case WishKind::kLetGo:
-        let_go(wish, session, events);
+      case UserCommandKind::kLetGo:
+        let_go(command, session, events);
         break;
-      case WishKind::kTurn: {
+      case UserCommandKind::kTurn: {
         const std::string& name = grabbed_ ? grabbed_->name : chosen_;
         if (name.empty()) break;
-        events.push_back(wish.event);
+        events.push_back(command.event);
         events.back().action = Action::kTurn;
         events.back().name = name;
         break;
       }
-      case WishKind::kChoose:
-        if (find_object(session, wish.event.name) != nullptr) chosen_ = wish.event.name;
+      case UserCommandKind::kChoose:
+        if (find_object(session, command.event.name) != nullptr) chosen_ = command.event.name;
         break;
-      case WishKind::kNew:
-        add(wish, session, events);
+      case UserCommandKind::kNew:
+        add(command, session, events);
         break;
-      case WishKind::kRemove:
+      case UserCommandKind::kRemove:
         if (!chosen_.empty()) events.push_back(event_of(Action::kRemove, chosen_));
         if (grabbed_ && grabbed_->name == chosen_) grabbed_.reset();
         break;
-      case WishKind::kReset:
+      case UserCommandKind::kReset:
         for (const auto& object : session.objects())  // a drop that one outside of the room waits for, too
           events.push_back(event_of(Action::kRemove, object->body.name));
         if (!chosen_.empty()) events.push_back(event_of(Action::kDrop, chosen_));
@@ -139,8 +139,8 @@ void Player::choose_if_none(const Session& session) {
   chosen_ = session.objects().empty() ? "" : session.objects().front()->body.name;
 }
 
-void Player::add(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
-  const std::string& mesh = wish.event.mesh;
+void Player::add(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
+  const std::string& mesh = command.event.mesh;
   // A word of a script, and no other object's.
   std::string stem = mesh.substr(mesh.find_last_of('/') + 1);
   stem = stem.substr(0, stem.find('.'));
@@ -151,15 +151,16 @@ void Player::add(const Wish& wish, const Session& session, std::vector<ScriptEve
   for (int number = 2; find_object(session, name) != nullptr; ++number) name = stem + std::to_string(number);
   ScriptEvent event = event_of(Action::kAdd, name);
   event.mesh = mesh;
-  event.size_m = wish.event.size_m;
+  event.size_m = command.event.size_m;
   events.push_back(event);
   events.push_back(event_of(Action::kDrop, name));
   chosen_ = name;
 }
 
-void Player::drop_or_place(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+void Player::drop_or_place(const UserCommand& command, const Session& session,
+                           std::vector<ScriptEvent>& events) {
   const VirtualObject* object = find_object(session, chosen_);
-  const Pointed pointed = pointed_at(session, wish.pixel);
+  const Pointed pointed = pointed_at(session, command.pixel);
   // On top of another object, if that is what was pointed at.
   const auto& hit = pointed.object && pointed.name != chosen_ ? pointed.object : pointed.surface;
   if (object == nullptr || !hit) {
@@ -168,30 +169,33 @@ void Player::drop_or_place(const Wish& wish, const Session& session, std::vector
                                          : "there is no surface at that place";
     return;
   }
-  ScriptEvent event = event_of(wish.kind == WishKind::kPlace ? Action::kPlace : Action::kDrop, chosen_);
+  ScriptEvent event =
+      event_of(command.kind == UserCommandKind::kPlace ? Action::kPlace : Action::kDrop, chosen_);
   event.position_world = hit->point_world - level_to_middle(*object, object->body.T_world_object.linear());
-  event.height_m = wish.event.height_m;
-  if (wish.kind == WishKind::kPlace) event.position_world->z() += kOverSurface_m - lowest_m(*object);
+  event.height_m = command.event.height_m;
+  if (command.kind == UserCommandKind::kPlace)
+    event.position_world->z() += kOverSurface_m - lowest_m(*object);
   events.push_back(event);
 }
 
-void Player::throw_chosen(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+void Player::throw_chosen(const UserCommand& command, const Session& session,
+                          std::vector<ScriptEvent>& events) {
   const VirtualObject* object = find_object(session, chosen_);
   if (object == nullptr || !session.shown_view()) {
     complaint_ = "there is nothing to throw, or the camera is not located";
     return;
   }
   const Ray ray = ray_through(session.shown_view()->camera, session.shown_view()->T_world_view,
-                              wish.pixel.x(), wish.pixel.y());
+                              command.pixel.x(), command.pixel.y());
   ScriptEvent event = event_of(Action::kThrow, chosen_);
   event.position_world = ray.origin_world + kThrownFrom_m * ray.direction_world -
                          object->body.T_world_object.linear() * object->model->middle;
-  event.velocity_world_mps = std::min(wish.speed_mps, kFastest_mps) * ray.direction_world;
+  event.velocity_world_mps = std::min(command.speed_mps, kFastest_mps) * ray.direction_world;
   events.push_back(event);
 }
 
-void Player::grab(const Wish& wish, const Session& session) {
-  const Pointed pointed = pointed_at(session, wish.pixel);
+void Player::grab(const UserCommand& command, const Session& session) {
+  const Pointed pointed = pointed_at(session, command.pixel);
   grabbed_.reset();
   if (!pointed.object) return;
   chosen_ = pointed.name;
@@ -200,12 +204,12 @@ void Player::grab(const Wish& wish, const Session& session) {
               object.body.T_world_object * object.model->middle - pointed.object->point_world, false};
 }
 
-void Player::drag(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+void Player::drag(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
   const VirtualObject* object = grabbed_ ? find_object(session, grabbed_->name) : nullptr;
   if (object == nullptr || !session.shown_view()) return;
   const Ray ray = ray_through(session.shown_view()->camera, session.shown_view()->T_world_view,
-                              wish.pixel.x(), wish.pixel.y());
-  const double distance_m = std::max(grabbed_->distance_m - wish.nearer_m, kNearest_m);
+                              command.pixel.x(), command.pixel.y());
+  const double distance_m = std::max(grabbed_->distance_m - command.nearer_m, kNearest_m);
   ScriptEvent event = event_of(Action::kCarry, grabbed_->name);
   event.position_world = ray.origin_world + distance_m * ray.direction_world + grabbed_->middle_from_point -
                          object->body.T_world_object.linear() * object->model->middle;
@@ -213,9 +217,9 @@ void Player::drag(const Wish& wish, const Session& session, std::vector<ScriptEv
   grabbed_->is_carried = true;
 }
 
-void Player::let_go(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events) {
+void Player::let_go(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
   if (!grabbed_) {
-    if (!wish.was_dragged) drop_or_place(wish, session, events);
+    if (!command.was_dragged) drop_or_place(command, session, events);
     return;
   }
   const Grabbed grabbed = *grabbed_;
@@ -226,11 +230,12 @@ void Player::let_go(const Wish& wish, const Session& session, std::vector<Script
     // As fast as the mouse was, at the distance at which it was held.
     constexpr double kLately_s = 0.05;
     const auto& [camera, T_world_view] = *session.shown_view();
-    const Eigen::Vector2d before = wish.pixel - kLately_s * wish.pixel_velocity_s;
-    const double distance_m = std::max(grabbed.distance_m - wish.nearer_m, kNearest_m);
+    const Eigen::Vector2d before = command.pixel - kLately_s * command.pixel_velocity_s;
+    const double distance_m = std::max(grabbed.distance_m - command.nearer_m, kNearest_m);
     const Eigen::Vector3d way =
-        distance_m * (ray_through(camera, T_world_view, wish.pixel.x(), wish.pixel.y()).direction_world -
-                      ray_through(camera, T_world_view, before.x(), before.y()).direction_world);
+        distance_m *
+        (ray_through(camera, T_world_view, command.pixel.x(), command.pixel.y()).direction_world -
+         ray_through(camera, T_world_view, before.x(), before.y()).direction_world);
     const double speed_mps = way.norm() / kLately_s;
     if (std::isfinite(speed_mps) && speed_mps > 0.0)
       event.velocity_world_mps = way / kLately_s * std::min(1.0, kFastest_mps / speed_mps);

@@ -15,9 +15,9 @@ namespace roomradar {
 
 /// What is at a pixel of the session's picture.
 struct Pointed {
-  std::optional<SurfaceHit> surface;  ///< nearest of the room and of what moved
-  std::optional<SurfaceHit> object;   ///< nearest of the virtual objects, if it is before that surface
-  std::string name;                   ///< of that object
+  std::optional<MeshHit> surface;  ///< nearest of the room and of what moved
+  std::optional<MeshHit> object;   ///< nearest of the virtual objects, if it is before that surface
+  std::string name;                ///< of that object
 };
 /// Nothing where the camera was not located.
 Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel);
@@ -34,7 +34,7 @@ class Player {
   /// The events, without their frame, in the order in which they are to be applied before the next frame.
   /// Some may be of earlier wishes: of a carry and a release together, the release is held back for one
   /// frame.
-  std::vector<ScriptEvent> events_of(std::span<const Wish> wishes, const Session& session);
+  std::vector<ScriptEvent> events_of(std::span<const UserCommand> commands, const Session& session);
 
   [[nodiscard]] const std::string& chosen() const { return chosen_; }
   [[nodiscard]] bool is_grabbed() const { return grabbed_.has_value(); }
@@ -54,12 +54,12 @@ class Player {
   std::vector<ScriptEvent> held_back_;  ///< for the next call
 
   void choose_if_none(const Session& session);
-  void add(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events);
-  void drop_or_place(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events);
-  void throw_chosen(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events);
-  void grab(const Wish& wish, const Session& session);
-  void drag(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events);
-  void let_go(const Wish& wish, const Session& session, std::vector<ScriptEvent>& events);
+  void add(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
+  void drop_or_place(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
+  void throw_chosen(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
+  void grab(const UserCommand& command, const Session& session);
+  void drag(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
+  void let_go(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events);
 };
 
 }  // namespace roomradar

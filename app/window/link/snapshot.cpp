@@ -39,7 +39,7 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
     if (!mesh) mesh = std::make_shared<const Mesh>(mesh_of(object->model->shape.touched));
     shown.objects.push_back({object->body.name, mesh, object->body.T_world_object,
                              object->model->shape.drawn.bounds(), object->body.velocity_world_mps,
-                             object->in_room, object->body.at_rest, object->carried_to_world.has_value(),
+                             object->in_room, object->body.asleep, object->carried_to_world.has_value(),
                              object->body.rests_on});
   }
   shown.surfaces = session.config().scene.surfaces;
@@ -51,8 +51,8 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
     room_ = std::make_shared<const Mesh>(mesh_of(room));  // something was adopted
   room_revision_ = room.revision();
   shown.room = room_;
-  shown.seen_world = wanted.models ? session.scene().moved_world().seen_world : Mesh{};
-  shown.inferred_world = wanted.models ? session.scene().moved_world().inferred_world : Mesh{};
+  shown.seen_world = wanted.models ? session.scene().dynamic_world().seen_world : Mesh{};
+  shown.inferred_world = wanted.models ? session.scene().dynamic_world().inferred_world : Mesh{};
   shown.shown_radar = {};
   if (wanted.radar) fill_radar(session, shown.chosen, shown.shown_radar);
 }

@@ -1,4 +1,4 @@
-// play_link.cpp: one mutex, one condition.
+// ui_channel.cpp: one mutex, one condition.
 #include "app/window/link/ui_channel.hpp"
 
 #include <algorithm>
@@ -11,13 +11,13 @@ namespace {
 
 /// Of a mouse that moves faster than frames come, only the newest place counts, and turns add up to one.
 /// False: the next is a wish of its own.
-bool merge(Wish& last, const Wish& next) {
+bool merge(UserCommand& last, const UserCommand& next) {
   if (last.kind != next.kind) return false;
-  if (next.kind == WishKind::kDrag) {
+  if (next.kind == UserCommandKind::kDrag) {
     last = next;
     return true;
   }
-  if (next.kind != WishKind::kTurn) return false;
+  if (next.kind != UserCommandKind::kTurn) return false;
   const Eigen::Vector3d turn_world_deg = last.event.turn_world_deg + next.event.turn_world_deg;
   if (turn_world_deg.cwiseAbs().maxCoeff() > kMaxTurn_deg) return false;
   last.event.turn_world_deg = turn_world_deg;
@@ -26,13 +26,14 @@ bool merge(Wish& last, const Wish& next) {
 
 }  // namespace
 
-void PlayLink::ask(Wish wish) {
+void UiChannel::ask(UserCommand command) {
   const std::lock_guard lock(mutex_);
-  if (is_paused_ && wish.kind != WishKind::kGrab) message_ = "paused: it happens with the next frame";
-  if (wishes_.empty() || !merge(wishes_.back(), wish)) wishes_.push_back(std::move(wish));
+  if (is_paused_ && command.kind != UserCommandKind::kGrab)
+    message_ = "paused: it happens with the next frame";
+  if (commands_.empty() || !merge(commands_.back(), command)) commands_.push_back(std::move(command));
 }
 
-void PlayLink::set_paused(bool is_paused) {
+void UiChannel::set_paused(bool is_paused) {
   const std::lock_guard lock(mutex_);
   is_paused_ = is_paused;
   was_paused_ = was_paused_ || is_paused;
@@ -40,25 +41,25 @@ void PlayLink::set_paused(bool is_paused) {
   changed_.notify_all();
 }
 
-bool PlayLink::is_paused() const {
+bool UiChannel::is_paused() const {
   const std::lock_guard lock(mutex_);
   return is_paused_;
 }
 
-void PlayLink::step() {
+void UiChannel::step() {
   const std::lock_guard lock(mutex_);
   ++steps_;
   changed_.notify_all();
 }
 
-void PlayLink::set_speed(double speed) {
+void UiChannel::set_speed(double speed) {
   const std::lock_guard lock(mutex_);
   speed_ = speed;
   last_turn_.reset();
   changed_.notify_all();
 }
 
-void PlayLink::want(const ViewsWanted& views) {
+void UiChannel::want(const ViewsWanted& views) {
   const std::lock_guard lock(mutex_);
   if (views == wanted_) return;
   wanted_ = views;
@@ -66,7 +67,7 @@ void PlayLink::want(const ViewsWanted& views) {
   changed_.notify_all();
 }
 
-bool PlayLink::take(Snapshot& shown) {
+bool UiChannel::take(Snapshot& shown) {
   const std::lock_guard lock(mutex_);
   if (!is_fresh_) return false;
   std::swap(newest_, shown);
@@ -74,23 +75,23 @@ bool PlayLink::take(Snapshot& shown) {
   return true;
 }
 
-std::string PlayLink::take_message() {
+std::string UiChannel::take_message() {
   const std::lock_guard lock(mutex_);
   return std::exchange(message_, {});
 }
 
-void PlayLink::close() {
+void UiChannel::close() {
   const std::lock_guard lock(mutex_);
   is_closed_ = true;
   changed_.notify_all();
 }
 
-bool PlayLink::is_over() const {
+bool UiChannel::is_over() const {
   const std::lock_guard lock(mutex_);
   return is_over_;
 }
 
-bool PlayLink::wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh) {
+bool UiChannel::wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh) {
   constexpr double kCatchUp_s = 0.2;  // what was missed by more is not made up for
   constexpr std::chrono::milliseconds kLookUp{200};
   std::unique_lock lock(mutex_);
@@ -127,27 +128,27 @@ bool PlayLink::wait_turn(double stamp_s, bool in_time, const std::function<void(
   return false;
 }
 
-bool PlayLink::take_pause() {
+bool UiChannel::take_pause() {
   const std::lock_guard lock(mutex_);
   return std::exchange(was_paused_, is_paused_);
 }
 
-bool PlayLink::is_closed() const {
+bool UiChannel::is_closed() const {
   const std::lock_guard lock(mutex_);
   return is_closed_;
 }
 
-std::vector<Wish> PlayLink::take_wishes() {
+std::vector<UserCommand> UiChannel::take_commands() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(wishes_, {});
+  return std::exchange(commands_, {});
 }
 
-ViewsWanted PlayLink::wanted() const {
+ViewsWanted UiChannel::wanted() const {
   const std::lock_guard lock(mutex_);
   return wanted_;
 }
 
-void PlayLink::publish(Snapshot& filled) {
+void UiChannel::publish(Snapshot& filled) {
   {
     const std::lock_guard lock(mutex_);
     std::swap(newest_, filled);
@@ -156,7 +157,7 @@ void PlayLink::publish(Snapshot& filled) {
   wake_();
 }
 
-void PlayLink::say(std::string message) {
+void UiChannel::say(std::string message) {
   {
     const std::lock_guard lock(mutex_);
     message_ = std::move(message);
@@ -164,7 +165,7 @@ void PlayLink::say(std::string message) {
   wake_();
 }
 
-void PlayLink::finish() {
+void UiChannel::finish() {
   {
     const std::lock_guard lock(mutex_);
     is_over_ = true;

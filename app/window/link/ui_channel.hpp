@@ -1,9 +1,9 @@
-// play_link.hpp: what the thread that draws the window and the thread that runs the session say to each
+// ui_channel.hpp: what the thread that draws the window and the thread that runs the session say to each
 // other.
 //
 // The session runs on a thread of its own, so that the window answers while a camera stalls or a frame takes
 // long. Nothing of the session is touched by the window: it gets copies (Snapshot), and says what the user
-// wants (Wish), which the session's thread turns into events between two frames.
+// wants (UserCommand), which the session's thread turns into events between two frames.
 #pragma once
 #include <Eigen/Geometry>
 #include <chrono>
@@ -24,7 +24,7 @@
 
 namespace roomradar {
 
-enum class WishKind {
+enum class UserCommandKind {
   kEvent,   ///< `event`, as it is
   kDrop,    ///< the chosen object, over what is at the pixel
   kPlace,   ///< the chosen object, onto what is at the pixel
@@ -39,8 +39,8 @@ enum class WishKind {
   kReset,   ///< all objects out of the room, the chosen one over a surface in view
 };
 
-struct Wish {
-  WishKind kind = WishKind::kEvent;
+struct UserCommand {
+  UserCommandKind kind = UserCommandKind::kEvent;
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();             ///< of the picture
   Eigen::Vector2d pixel_velocity_s = Eigen::Vector2d::Zero();  ///< of the mouse, pixels a second
   bool was_dragged = false;                                    ///< kLetGo
@@ -63,9 +63,9 @@ struct ShownObject {
   Eigen::AlignedBox3d box;  ///< in its own frame
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
   bool in_room = false;
-  bool at_rest = false;
+  bool asleep = false;
   bool is_carried = false;
-  Touched rests_on = Touched::kNothing;
+  SurfaceKind rests_on = SurfaceKind::kNothing;
 };
 
 /// One query of the radar for the chosen object: along its motion, or along gravity while it stands.
@@ -99,13 +99,13 @@ struct Snapshot {
 };
 
 /// Thread safe; one window, one session.
-class PlayLink {
+class UiChannel {
  public:
   /// @param wake  called on the session's thread when there is something new to show
-  explicit PlayLink(std::function<void()> wake = [] {}) : wake_(std::move(wake)) {}
+  explicit UiChannel(std::function<void()> wake = [] {}) : wake_(std::move(wake)) {}
 
   // The window's side.
-  void ask(Wish wish);
+  void ask(UserCommand command);
   void set_paused(bool is_paused);
   [[nodiscard]] bool is_paused() const;
   /// One frame more while it is paused.
@@ -127,7 +127,7 @@ class PlayLink {
   [[nodiscard]] bool is_closed() const;
   /// Whether it was paused since the last call.
   bool take_pause();
-  std::vector<Wish> take_wishes();
+  std::vector<UserCommand> take_commands();
   [[nodiscard]] ViewsWanted wanted() const;
   /// Swaps `filled` with a snapshot whose allocations can be used again.
   void publish(Snapshot& filled);
@@ -139,7 +139,7 @@ class PlayLink {
   std::function<void()> wake_;
   mutable std::mutex mutex_;  ///< of all below
   std::condition_variable changed_;
-  std::vector<Wish> wishes_;
+  std::vector<UserCommand> commands_;
   Snapshot newest_;
   bool is_fresh_ = false;
   bool is_paused_ = false, is_closed_ = false, is_over_ = false;

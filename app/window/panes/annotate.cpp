@@ -30,7 +30,7 @@ void draw_label(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colo
 std::string what_it_does(const ShownObject& object) {
   if (!object.in_room) return "not in the room";
   if (object.is_carried) return "carried";
-  if (object.at_rest) return "at rest on " + std::string(to_string(object.rests_on));
+  if (object.asleep) return "at rest on " + std::string(to_string(object.rests_on));
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "moves at %.1f m/s", object.velocity_world_mps.norm());
   return text.data();
@@ -115,7 +115,7 @@ void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindo
     draw.AddCircleFilled(*touch, look::px(4.5F), look::kBad);
     draw.AddCircle(*touch, look::px(8.0F), look::kBad, 0, look::px(1.5F));
     std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), "contact after %.1f mm", 1e3 * radar.contact.travel_m);
+    std::snprintf(text.data(), text.size(), "contact after %.1f mm", 1e3 * radar.contact.contact_distance_m);
     draw_label(draw, {touch->x + look::px(13.0F), touch->y - look::px(7.0F)}, text.data(), look::kText,
                fonts);
   }

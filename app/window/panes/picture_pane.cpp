@@ -50,29 +50,29 @@ void PicturePane::leave() {
   pixel_.reset();
   if (!is_down_) return;
   is_down_ = false;
-  Wish wish;
-  wish.kind = WishKind::kLetGo;
-  wish.was_dragged = true;
-  wish.pixel = lately_.back().pixel;
-  wish.nearer_m = nearer_m_;
-  link_.ask(wish);
+  UserCommand command;
+  command.kind = UserCommandKind::kLetGo;
+  command.was_dragged = true;
+  command.pixel = lately_.back().pixel;
+  command.nearer_m = nearer_m_;
+  link_.ask(command);
 }
 
 void PicturePane::press_and_drag(const Eigen::Vector2d& pixel, double drop_height_m) {
   const ImVec2 mouse = ImGui::GetMousePos();
   const Eigen::Vector2d at(mouse.x, mouse.y);
   const double now_s = ImGui::GetTime();
-  Wish wish;
-  wish.pixel = pixel;
-  wish.event.height_m = drop_height_m;
+  UserCommand command;
+  command.pixel = pixel;
+  command.event.height_m = drop_height_m;
   if (ImGui::IsItemActive() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
     is_down_ = true;
     was_dragged_ = ImGui::GetIO().KeyShift;  // a click with Shift places at once
     pressed_at_ = at;
     nearer_m_ = 0.0;
     lately_.fill({now_s, pixel});
-    wish.kind = ImGui::GetIO().KeyShift ? WishKind::kPlace : WishKind::kGrab;
-    link_.ask(wish);
+    command.kind = ImGui::GetIO().KeyShift ? UserCommandKind::kPlace : UserCommandKind::kGrab;
+    link_.ask(command);
     return;
   }
   if (!is_down_) return;
@@ -88,15 +88,15 @@ void PicturePane::press_and_drag(const Eigen::Vector2d& pixel, double drop_heigh
     if (!was_dragged_ || ImGui::GetIO().KeyShift) return;
     const ImVec2 way = ImGui::GetIO().MouseDelta;
     if (way.x == 0.0F && way.y == 0.0F && wheel == 0.0F) return;
-    wish.kind = WishKind::kDrag;
+    command.kind = UserCommandKind::kDrag;
   } else {
     is_down_ = false;
-    wish.kind = WishKind::kLetGo;
-    wish.was_dragged = was_dragged_;
-    wish.pixel_velocity_s = velocity_px_s();
+    command.kind = UserCommandKind::kLetGo;
+    command.was_dragged = was_dragged_;
+    command.pixel_velocity_s = velocity_px_s();
   }
-  wish.nearer_m = nearer_m_;
-  link_.ask(wish);
+  command.nearer_m = nearer_m_;
+  link_.ask(command);
 }
 
 Eigen::Vector2d PicturePane::velocity_px_s() const {
@@ -116,11 +116,11 @@ void PicturePane::turn(const Snapshot& shown) {
   if (!ImGui::IsMouseDown(ImGuiMouseButton_Right) || !shown.view) return;
   const ImVec2 way = ImGui::GetIO().MouseDelta;
   if (way.x == 0.0F && way.y == 0.0F) return;
-  Wish wish;
-  wish.kind = WishKind::kTurn;
-  wish.event.turn_world_deg =
+  UserCommand command;
+  command.kind = UserCommandKind::kTurn;
+  command.event.turn_world_deg =
       turn_of_drag_world_deg(shown.view->T_world_view.linear(), Eigen::Vector2d(way.x, way.y));
-  link_.ask(wish);
+  link_.ask(command);
 }
 
 }  // namespace roomradar

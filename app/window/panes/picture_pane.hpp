@@ -14,7 +14,7 @@ namespace roomradar {
 
 class PicturePane {
  public:
-  explicit PicturePane(PlayLink& link) : link_(link) {}
+  explicit PicturePane(UiChannel& link) : link_(link) {}
 
   /// A new snapshot has come.
   void upload(const Snapshot& shown) { texture_.upload(shown.picture); }
@@ -26,7 +26,7 @@ class PicturePane {
   [[nodiscard]] const std::optional<Eigen::Vector2d>& pixel() const { return pixel_; }
 
  private:
-  PlayLink& link_;
+  UiChannel& link_;
   GlTexture texture_{/*smooth=*/true};
   std::optional<Eigen::Vector2d> pixel_;
   bool is_down_ = false, was_dragged_ = false;

@@ -123,7 +123,7 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
   }
   numbers += "min L " + in_mm(least_m_, least_x_ >= 0);
   if (radar.contact)
-    numbers += "   exact " + in_mm(static_cast<float>(radar.contact.travel_m), true) + " to " +
+    numbers += "   exact " + in_mm(static_cast<float>(radar.contact.contact_distance_m), true) + " to " +
                std::string(to_string(radar.contact.touched));
   draw->AddText(fonts.small, fonts.small->FontSize, {from.x, from.y + room.y - below + look::px(4.0F)},
                 look::kText, numbers.c_str());

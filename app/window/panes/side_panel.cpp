@@ -10,28 +10,28 @@
 namespace roomradar {
 namespace {
 
-Wish wish_of(Action action) {
-  Wish wish;
-  wish.event.action = action;
-  return wish;
+UserCommand command_of(Action action) {
+  UserCommand command;
+  command.event.action = action;
+  return command;
 }
 
-void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings, const look::Fonts& fonts) {
+void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings, const look::Fonts& fonts) {
   look::heading("OBJECTS", fonts);
   for (const ShownObject& object : shown.objects) {
     ImGui::PushID(object.name.c_str());
     const bool is_chosen = object.name == shown.chosen;
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (ImGui::Selectable("##choose", is_chosen, 0, {0.0F, look::px(34.0F)})) {
-      Wish wish;
-      wish.kind = WishKind::kChoose;
-      wish.event.name = object.name;
-      link.ask(wish);
+      UserCommand command;
+      command.kind = UserCommandKind::kChoose;
+      command.event.name = object.name;
+      link.ask(command);
     }
     ImDrawList* draw = ImGui::GetWindowDrawList();
     const ImU32 dot = !object.in_room     ? look::kLine
                       : object.is_carried ? look::kWarn
-                      : object.at_rest    ? look::kGood
+                      : object.asleep     ? look::kGood
                                           : look::kAccent;
     draw->AddCircleFilled({at.x + look::px(8.0F), at.y + look::px(17.0F)}, look::px(4.5F), dot);
     draw->AddText({at.x + look::px(20.0F), at.y + look::px(1.0F)}, look::kText, object.name.c_str());
@@ -39,15 +39,16 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
                   look::kDim, what_it_does(object).c_str());
     ImGui::PopID();
   }
-  const auto ask = [&](WishKind kind) {
-    Wish wish;
-    wish.kind = kind;
-    link.ask(wish);
+  const auto ask = [&](UserCommandKind kind) {
+    UserCommand command;
+    command.kind = kind;
+    link.ask(command);
   };
   const float half = look::px(128.0F);
-  if (look::button("Remove", "Del", false, {half, 0.0F}, !shown.objects.empty())) ask(WishKind::kRemove);
+  if (look::button("Remove", "Del", false, {half, 0.0F}, !shown.objects.empty()))
+    ask(UserCommandKind::kRemove);
   ImGui::SameLine();
-  if (look::button("Reset", "R", false, {half, 0.0F}, !shown.objects.empty())) ask(WishKind::kReset);
+  if (look::button("Reset", "R", false, {half, 0.0F}, !shown.objects.empty())) ask(UserCommandKind::kReset);
   ImGui::SetNextItemWidth(half);
   const auto short_name = [](const std::string& mesh) { return mesh.substr(mesh.find_last_of('/') + 1); };
   if (ImGui::BeginCombo("##mesh", short_name(settings.meshes[settings.mesh]).c_str())) {
@@ -61,7 +62,7 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
     ImGui::EndCombo();
   }
   ImGui::SameLine();
-  if (look::button("Add", "A", false, {half, 0.0F})) link.ask(new_object_wish(settings));
+  if (look::button("Add", "A", false, {half, 0.0F})) link.ask(new_object_command(settings));
   ImGui::PushItemWidth(-1.0F);
   ImGui::SliderFloat("##size", &settings.new_size_m, 0.0F, 0.6F,
                      settings.new_size_m < 0.001F ? "new: its own size" : "new: %.2f m long",
@@ -73,19 +74,19 @@ void draw_objects(const Snapshot& shown, PlayLink& link, PlaySettings& settings,
   ImGui::PopItemWidth();
 }
 
-void draw_policies(const Snapshot& shown, PlayLink& link, PlaySettings& settings, const look::Fonts& fonts) {
+void draw_policies(const Snapshot& shown, UiChannel& link, PlaySettings& settings, const look::Fonts& fonts) {
   constexpr std::array<SurfacePolicy, 4> kPolicies = {SurfacePolicy::kMap, SurfacePolicy::kBorder,
                                                       SurfacePolicy::kSkirt, SurfacePolicy::kHoles};
   look::heading("WHAT CAN BE TOUCHED", fonts);
   constexpr std::array<const char*, 4> kWords = {"map", "border", "skirt", "holes"};
   const auto lit = std::find(kPolicies.begin(), kPolicies.end(), shown.surfaces) - kPolicies.begin();
   const int surfaces = look::segments("surfaces", kWords.data(), 4, static_cast<int>(lit));
-  if (surfaces >= 0) link.ask(surfaces_wish(kPolicies[static_cast<std::size_t>(surfaces)]));
+  if (surfaces >= 0) link.ask(surfaces_command(kPolicies[static_cast<std::size_t>(surfaces)]));
 
   look::heading("SPACE THAT NOBODY HAS SEEN IS", fonts);
   constexpr std::array<const char*, 2> kUnknown = {"free", "solid"};
   const int unknown = look::segments("unknown", kUnknown.data(), 2, shown.unknown_is_solid ? 1 : 0);
-  if (unknown >= 0) link.ask(unknown_wish(unknown == 1));
+  if (unknown >= 0) link.ask(unknown_command(unknown == 1));
 
   look::heading("RADAR", fonts);
   constexpr std::array<const char*, 2> kModes = {"exact", "sampled"};
@@ -93,14 +94,14 @@ void draw_policies(const Snapshot& shown, PlayLink& link, PlaySettings& settings
   const int mode = look::segments("mode", kModes.data(), 2, radar.mode == RadarMode::kSampled ? 1 : 0);
   if (mode >= 0) {
     radar.mode = mode == 1 ? RadarMode::kSampled : RadarMode::kExact;
-    link.ask(radar_wish(radar));
+    link.ask(radar_command(radar));
   }
   if (!ImGui::IsAnyItemActive()) settings.radar_px = radar.resolution_px;
   ImGui::SetNextItemWidth(-1.0F);
   ImGui::SliderInt("##px", &settings.radar_px, 8, 256, "%d pixels", ImGuiSliderFlags_AlwaysClamp);
   if (ImGui::IsItemDeactivatedAfterEdit()) {
     radar.resolution_px = settings.radar_px;
-    link.ask(radar_wish(radar));
+    link.ask(radar_command(radar));
   }
 }
 
@@ -128,39 +129,39 @@ void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
 
 }  // namespace
 
-Wish new_object_wish(const PlaySettings& settings) {
-  Wish wish;
-  wish.kind = WishKind::kNew;
-  wish.event.mesh = settings.meshes[settings.mesh];
-  if (settings.new_size_m >= 0.001F) wish.event.size_m = static_cast<double>(settings.new_size_m);
-  return wish;
+UserCommand new_object_command(const PlaySettings& settings) {
+  UserCommand command;
+  command.kind = UserCommandKind::kNew;
+  command.event.mesh = settings.meshes[settings.mesh];
+  if (settings.new_size_m >= 0.001F) command.event.size_m = static_cast<double>(settings.new_size_m);
+  return command;
 }
 
-Wish surfaces_wish(SurfacePolicy surfaces) {
-  Wish wish = wish_of(Action::kSurfaces);
-  wish.event.surfaces = surfaces;
-  return wish;
+UserCommand surfaces_command(SurfacePolicy surfaces) {
+  UserCommand command = command_of(Action::kSurfaces);
+  command.event.surfaces = surfaces;
+  return command;
 }
 
-Wish unknown_wish(bool is_solid) {
-  Wish wish = wish_of(Action::kUnknown);
-  wish.event.unknown_is_solid = is_solid;
-  return wish;
+UserCommand unknown_command(bool is_solid) {
+  UserCommand command = command_of(Action::kUnknown);
+  command.event.unknown_is_solid = is_solid;
+  return command;
 }
 
-Wish radar_wish(const RadarConfig& radar) {
-  Wish wish = wish_of(Action::kRadar);
-  wish.event.radar = radar;
-  return wish;
+UserCommand radar_command(const RadarConfig& radar) {
+  UserCommand command = command_of(Action::kRadar);
+  command.event.radar = radar;
+  return command;
 }
 
-Wish camera_wish(CameraPlay camera) {
-  Wish wish = wish_of(Action::kCamera);
-  wish.event.camera = camera;
-  return wish;
+UserCommand camera_command(CameraPlay camera) {
+  UserCommand command = command_of(Action::kCamera);
+  command.event.camera = camera;
+  return command;
 }
 
-void draw_side_panel(const Area& area, const Snapshot& shown, PlayLink& link, PlaySettings& settings,
+void draw_side_panel(const Area& area, const Snapshot& shown, UiChannel& link, PlaySettings& settings,
                      const look::Fonts& fonts) {
   look::begin_pane("side", area, look::kPanel, /*scrolls=*/true);
   draw_objects(shown, link, settings, fonts);

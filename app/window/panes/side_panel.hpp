@@ -19,15 +19,15 @@ struct PlaySettings {
   int radar_px = 64;  ///< while it is being dragged
 };
 
-void draw_side_panel(const Area& area, const Snapshot& shown, PlayLink& link, PlaySettings& settings,
+void draw_side_panel(const Area& area, const Snapshot& shown, UiChannel& link, PlaySettings& settings,
                      const look::Fonts& fonts);
 
 /// One more of the mesh and size that the settings say.
-Wish new_object_wish(const PlaySettings& settings);
+UserCommand new_object_command(const PlaySettings& settings);
 /// The events that change a policy, for keys and panels alike.
-Wish surfaces_wish(SurfacePolicy surfaces);
-Wish unknown_wish(bool is_solid);
-Wish radar_wish(const RadarConfig& radar);
-Wish camera_wish(CameraPlay camera);
+UserCommand surfaces_command(SurfacePolicy surfaces);
+UserCommand unknown_command(bool is_solid);
+UserCommand radar_command(const RadarConfig& radar);
+UserCommand camera_command(CameraPlay camera);
 
 }  // namespace roomradar

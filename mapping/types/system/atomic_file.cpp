@@ -44,7 +44,7 @@ int stream_of_process(const fs::path& path) {
 
 }  // namespace
 
-WholeFile::WholeFile(const fs::path& target) : target_(target) {
+AtomicFile::AtomicFile(const fs::path& target) : target_(target) {
   std::error_code fault;
   if (fs::is_symlink(target, fault) && fs::exists(target, fault)) {
     const fs::path real = fs::canonical(target, fault);
@@ -61,14 +61,14 @@ WholeFile::WholeFile(const fs::path& target) : target_(target) {
   if (!stream_) fail(target, std::strerror(errno));
 }
 
-WholeFile::~WholeFile() {
+AtomicFile::~AtomicFile() {
   if (partial_ == target_) return;
   stream_.close();
   std::error_code ignored;
   fs::remove(partial_, ignored);
 }
 
-void WholeFile::put_in_place() {
+void AtomicFile::commit() {
   errno = 0;
   stream_.close();
   if (!stream_) fail(target_, errno != 0 ? std::strerror(errno) : "not all of it was taken");

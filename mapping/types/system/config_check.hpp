@@ -9,12 +9,12 @@ namespace roomradar {
 
 /// Rules of one group of settings. A call with `holds` false throws Error: "fusion.max_range_m = -1: must be
 /// in 0..100 m".
-struct SettingRules {
+struct ConfigCheck {
   const char* group;
   template <typename Number>
   void operator()(bool holds, const char* field, Number value, const char* rule) const {
     if (!holds)
-      throw Error(std::string(group) + "." + field + " = " + number_text(value) + ": must be " + rule);
+      throw Error(std::string(group) + "." + field + " = " + format_number(value) + ": must be " + rule);
   }
 };
 

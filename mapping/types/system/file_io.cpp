@@ -10,7 +10,7 @@ namespace roomradar {
 
 namespace fs = std::filesystem;
 
-std::string read_bytes(const fs::path& path, std::string_view what, std::uintmax_t most_bytes) {
+std::string read_bytes(const fs::path& path, std::string_view what, std::uintmax_t max_bytes) {
   std::error_code fault;
   const fs::file_status status = fs::status(path, fault);
   if (status.type() == fs::file_type::not_found)
@@ -20,7 +20,7 @@ std::string read_bytes(const fs::path& path, std::string_view what, std::uintmax
     throw Error(path.string() + ": is no plain file; wanted " + std::string(what));
   const std::uintmax_t size = fs::file_size(path, fault);
   if (fault) throw Error(path.string() + ": cannot be read: " + fault.message());
-  if (size > most_bytes)
+  if (size > max_bytes)
     throw Error(path.string() + ": has " + std::to_string(size) + " bytes, too many for " +
                 std::string(what));
   std::ifstream file(path, std::ios::binary);

@@ -12,11 +12,11 @@ namespace roomradar {
 /// Reads the regular file `path`, following links. Allocates no more than the file's size.
 /// @param what  expected content, for messages: "a camera file"
 /// @throws Error naming the file if it is missing, not a regular file (a folder, a pipe), larger than
-/// `most_bytes`, or cannot be read to its end
+/// `max_bytes`, or cannot be read to its end
 [[nodiscard]] std::string read_bytes(const std::filesystem::path& path, std::string_view what,
-                                     std::uintmax_t most_bytes = std::numeric_limits<std::uintmax_t>::max());
+                                     std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
 
-/// Replaces the contents of the file `path`. Not atomic: use WholeFile for that.
+/// Replaces the contents of the file `path`. Not atomic: use AtomicFile for that.
 /// @throws Error naming the file if some bytes could not be written; the partial file is removed
 void write_bytes(const std::filesystem::path& path, std::string_view bytes);
 

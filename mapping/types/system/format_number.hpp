@@ -1,4 +1,4 @@
-// number_text.hpp: locale-independent formatting of numbers.
+// format_number.hpp: locale-independent formatting of numbers.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -10,20 +10,20 @@ namespace roomradar {
 
 /// Shortest text that reads back as the same number, in any locale: "0.1", "-3", "1e-09", "nan".
 template <typename Number>
-std::string number_text(Number value) {
+std::string format_number(Number value) {
   std::array<char, 32> text;  // a double needs at most 24
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
 /// Formats with `digits` (0..20) digits after the point, like "%.6f" in the C locale.
-inline std::string fixed_text(double value, int digits) {
+inline std::string format_fixed(double value, int digits) {
   std::array<char, 340> text;  // the largest double has 309 digits before the point
   return {text.data(),
           std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, digits).ptr};
 }
 
 /// Formats with `digits` (1..20) significant digits, like "%.6g" in the C locale.
-inline std::string general_text(double value, int digits) {
+inline std::string format_general(double value, int digits) {
   std::array<char, 40> text;
   return {
       text.data(),
@@ -31,7 +31,7 @@ inline std::string general_text(double value, int digits) {
 }
 
 /// A frame's number for file names: zero-padded to six digits, longer if needed.
-inline std::string frame_number_text(std::int64_t number) {
+inline std::string format_frame_number(std::int64_t number) {
   std::string text = std::to_string(number);
   return text.insert(0, 6 - std::min<std::size_t>(text.size(), 6), '0');
 }

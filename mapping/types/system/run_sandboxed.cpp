@@ -1,4 +1,4 @@
-// run_apart.cpp: fork, resource limits, and a pipe for the result.
+// run_sandboxed.cpp: fork, resource limits, and a pipe for the result.
 #include "mapping/types/system/run_sandboxed.hpp"
 
 #include <fcntl.h>
@@ -95,7 +95,7 @@ std::size_t taken_bytes() {
 }
 
 [[noreturn]] void be_child(const std::function<std::string()>& work, int to, unsigned most_s,
-                           std::size_t most_bytes, pid_t parent) {
+                           std::size_t max_bytes, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // otherwise an orphan would never be ended
   if (::getppid() != parent) _exit(1);
   for (const int number : {SIGINT, SIGSEGV, SIGABRT, SIGFPE, SIGBUS, SIGILL}) std::signal(number, SIG_DFL);
@@ -106,7 +106,7 @@ std::size_t taken_bytes() {
   setrlimit(RLIMIT_CORE, &no_core);
   setrlimit(RLIMIT_CPU, &time);
   if (const std::size_t taken = taken_bytes(); kMemoryCanBeLimited && taken > 0) {
-    const rlimit memory{taken + most_bytes, taken + most_bytes};
+    const rlimit memory{taken + max_bytes, taken + max_bytes};
     setrlimit(RLIMIT_AS, &memory);
   }
   try {
@@ -125,8 +125,8 @@ std::size_t taken_bytes() {
 
 }  // namespace
 
-std::string run_apart(const std::function<std::string()>& work, const std::string& complaint, unsigned most_s,
-                      std::size_t most_bytes) {
+std::string run_sandboxed(const std::function<std::string()>& work, const std::string& complaint,
+                          unsigned most_s, std::size_t max_bytes) {
   const auto fail = [&](const std::string& reason) { throw Error(complaint + " (" + reason + ")"); };
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) fail(std::string("no pipe can be made: ") + std::strerror(errno));
@@ -134,7 +134,7 @@ std::string run_apart(const std::function<std::string()>& work, const std::strin
   const pid_t child = ::fork();
   if (child == 0) {
     ::close(ends[0]);
-    be_child(work, ends[1], most_s, most_bytes, parent);
+    be_child(work, ends[1], most_s, max_bytes, parent);
   }
   const int fork_fault = errno;
   ::close(ends[1]);

@@ -1,4 +1,4 @@
-// run_apart.hpp: runs third-party code on untrusted files in a separate process.
+// run_sandboxed.hpp: runs third-party code on untrusted files in a separate process.
 #pragma once
 #include <functional>
 #include <string>
@@ -10,9 +10,9 @@ namespace roomradar {
 /// Error that `work` throws is rethrown here.
 /// @param complaint  message if the child does not finish: "a.obj: cannot be read; is it damaged?"
 /// @param most_s     max processor time, s; the max elapsed time is ten times this
-/// @param most_bytes max memory beyond what this process already has
+/// @param max_bytes max memory beyond what this process already has
 /// @throws Error with the complaint and, in brackets, what ended the child; or if the child cannot be started
-std::string run_apart(const std::function<std::string()>& work, const std::string& complaint, unsigned most_s,
-                      std::size_t most_bytes);
+std::string run_sandboxed(const std::function<std::string()>& work, const std::string& complaint,
+                          unsigned most_s, std::size_t max_bytes);
 
 }  // namespace roomradar

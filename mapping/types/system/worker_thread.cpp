@@ -3,18 +3,18 @@
 
 namespace roomradar {
 
-SecondThread::SecondThread() {
+WorkerThread::WorkerThread() {
   if (std::thread::hardware_concurrency() > 1) thread_ = std::thread([this] { serve(); });
 }
 
-SecondThread::~SecondThread() {
+WorkerThread::~WorkerThread() {
   if (!thread_.joinable()) return;
   state_.store(kStop);
   state_.notify_one();
   thread_.join();
 }
 
-void SecondThread::start(Call call, const void* work) {
+void WorkerThread::start(Call call, const void* work) {
   call_ = call;
   work_ = work;
   fault_ = nullptr;
@@ -23,12 +23,12 @@ void SecondThread::start(Call call, const void* work) {
   state_.notify_one();
 }
 
-void SecondThread::finish() {
+void WorkerThread::finish() {
   if (!thread_.joinable()) return do_work();
   state_.wait(kWork);
 }
 
-void SecondThread::serve() {
+void WorkerThread::serve() {
   for (;;) {
     state_.wait(kIdle);
     if (state_.load() == kStop) return;
@@ -38,7 +38,7 @@ void SecondThread::serve() {
   }
 }
 
-void SecondThread::do_work() noexcept {
+void WorkerThread::do_work() noexcept {
   try {
     call_(work_);
   } catch (...) {

@@ -9,12 +9,12 @@ namespace roomradar {
 /// Owns the thread, which sleeps between calls. A machine with one processor gets no thread: the two pieces
 /// of work run one after the other, and results must not depend on which. Call run() from one thread only,
 /// and not from inside run().
-class SecondThread {
+class WorkerThread {
  public:
-  SecondThread();
-  ~SecondThread();
-  SecondThread(const SecondThread&) = delete;
-  SecondThread& operator=(const SecondThread&) = delete;
+  WorkerThread();
+  ~WorkerThread();
+  WorkerThread(const WorkerThread&) = delete;
+  WorkerThread& operator=(const WorkerThread&) = delete;
 
   /// Calls here() on the caller's thread and beside() on the worker; returns when both are done. Exceptions
   /// are rethrown then; here()'s takes precedence.

@@ -52,7 +52,7 @@ bool has_own_mounts() {
   return has;
 }
 
-class Faults : public ::testing::Test {
+class DeferredErrors : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!has_own_mounts()) GTEST_SKIP() << "no disks can be mounted here";
@@ -137,7 +137,7 @@ std::string line_of(const std::vector<std::string>& words) {
   return line;
 }
 
-TEST_F(Faults, AFolderThatCannotBeWrittenIsNamedAndStaysAsItIs) {
+TEST_F(DeferredErrors, AFolderThatCannotBeWrittenIsNamedAndStaysAsItIs) {
   ASSERT_EQ(scan(at("made")), 0) << said();
   mount_disk(4096);
   fs::copy(at("made"), disk() / "map", fs::copy_options::recursive);
@@ -154,7 +154,7 @@ TEST_F(Faults, AFolderThatCannotBeWrittenIsNamedAndStaysAsItIs) {
   }
 }
 
-TEST_F(Faults, AFullDiskIsSaidAndWhatWasSavedIsWhatItWas) {
+TEST_F(DeferredErrors, AFullDiskIsSaidAndWhatWasSavedIsWhatItWas) {
   ASSERT_EQ(scan(at("made")), 0) << said();
   for (const auto& words : writers(at("made"))) {
     mount_disk(4096);
@@ -177,7 +177,7 @@ TEST_F(Faults, AFullDiskIsSaidAndWhatWasSavedIsWhatItWas) {
   }
 }
 
-TEST_F(Faults, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
+TEST_F(DeferredErrors, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
   // With recorded poses a scan that goes on comes to the very same map.
   const auto words = [](const fs::path& map) {
     return std::vector<std::string>{
@@ -197,7 +197,7 @@ TEST_F(Faults, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
   EXPECT_TRUE(text_of(disk() / "map" / "octree.ot") == text_of(at("reference") / "octree.ot"));
 }
 
-TEST_F(Faults, ARunThatIsCutShortSavesAndReportsWhatCameBefore) {
+TEST_F(DeferredErrors, ARunThatIsCutShortSavesAndReportsWhatCameBefore) {
   ASSERT_EQ(scan(at("made")), 0) << said();
   mount_disk(128);
   ASSERT_EQ(run({"run", kSource, "--map", at("made"), "--pictures", disk() / "pictures", "--pictures-every",
@@ -212,7 +212,7 @@ TEST_F(Faults, ARunThatIsCutShortSavesAndReportsWhatCameBefore) {
   EXPECT_NE(report.at("fault").get<std::string>().find(disk().string()), std::string::npos);
 }
 
-TEST_F(Faults, ASessionThatFilledTheDiskReplaysToWhereItCame) {
+TEST_F(DeferredErrors, ASessionThatFilledTheDiskReplaysToWhereItCame) {
   ASSERT_EQ(scan(at("made")), 0) << said();
   mount_disk(128);
   ASSERT_EQ(run({"run", kSource, "--map", at("made"), "--record-session", disk() / "session"}), 1) << said();
@@ -223,7 +223,7 @@ TEST_F(Faults, ASessionThatFilledTheDiskReplaysToWhereItCame) {
   EXPECT_EQ(words.find("that is not"), std::string::npos) << words;
 }
 
-TEST_F(Faults, ARecordingThatFilledTheDiskIsReadToWhereItCame) {
+TEST_F(DeferredErrors, ARecordingThatFilledTheDiskIsReadToWhereItCame) {
   mount_disk(128);
   ASSERT_EQ(run({"record", kSource, disk() / "walk", "--format", "tum"}), 1) << said();
   make_room(4096);
@@ -247,7 +247,7 @@ void turn_back_clock(const fs::path& list) {
   std::ofstream(list) << text;
 }
 
-TEST_F(Faults, ARecordingWhoseClockGoesBackIsSaidAndMapped) {
+TEST_F(DeferredErrors, ARecordingWhoseClockGoesBackIsSaidAndMapped) {
   ASSERT_EQ(run({"record", kSource, at("walk"), "--format", "tum"}), 0) << said();
   turn_back_clock(at("walk") / "depth.txt");
   EXPECT_EQ(run({"prescan", at("walk"), "--map", at("map"), "--resolution", "0.05"}), 0) << said();
@@ -256,7 +256,7 @@ TEST_F(Faults, ARecordingWhoseClockGoesBackIsSaidAndMapped) {
   EXPECT_EQ(run({"run", at("walk"), "--map", at("map")}), 0) << said();
 }
 
-TEST_F(Faults, ARunInAMapThatDoesNotKnowUpSaysWhichWayThingsFall) {
+TEST_F(DeferredErrors, ARunInAMapThatDoesNotKnowUpSaysWhichWayThingsFall) {
   ASSERT_EQ(scan(at("map")), 0) << said();
   EXPECT_EQ(run({"run", kSource, "--map", at("map")}), 0) << said();
   EXPECT_EQ(said().find("which way is up"), std::string::npos) << said();
@@ -269,7 +269,7 @@ TEST_F(Faults, ARunInAMapThatDoesNotKnowUpSaysWhichWayThingsFall) {
   EXPECT_NE(said().find("which way is up was not known"), std::string::npos) << said();
 }
 
-TEST_F(Faults, AMapIsReadWholeWhileAnotherProcessSavesItAnew) {
+TEST_F(DeferredErrors, AMapIsReadWholeWhileAnotherProcessSavesItAnew) {
   ASSERT_EQ(scan(at("map")), 0) << said();
   SavedMap a = load_map(at("map"));
   SavedMap b = load_map(at("map"));

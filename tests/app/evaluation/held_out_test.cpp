@@ -46,7 +46,7 @@ Mesh wall(float left_m) {
   return mesh;
 }
 
-std::vector<TimedPose> at_rest(std::int64_t frames) {
+std::vector<TimedPose> asleep(std::int64_t frames) {
   std::vector<TimedPose> poses;
   for (std::int64_t i = 0; i < frames; ++i) poses.push_back({i, 0.0, Eigen::Isometry3d::Identity()});
   return poses;
@@ -63,7 +63,7 @@ TEST(HeldOut, EveryNthFromTheMiddleOfTheFirstN) {
 TEST(HeldOut, OnlyTheHeldOutFramesAreCompared) {
   // Frames 1 and 3 of N = 2 measure the wall 10 mm too far; the mesh is before it. The others lie wildly.
   FlatSource source({0.5F, 2.01F, 0.5F, 2.01F});
-  const HeldOutScore score = score_held_out(source, wall(-9.0F), at_rest(4), 2);
+  const HeldOutScore score = score_held_out(source, wall(-9.0F), asleep(4), 2);
   EXPECT_EQ(score.frames, 2);
   EXPECT_EQ(score.pixels, 2 * 16 * 12);
   EXPECT_DOUBLE_EQ(score.cover, 1.0);
@@ -74,7 +74,7 @@ TEST(HeldOut, OnlyTheHeldOutFramesAreCompared) {
 
 TEST(HeldOut, HalfAWallCoversHalfOfThePixels) {
   FlatSource source({1.7F, 1.7F});  // 0.3 m before the mesh: covered, and outliers
-  const HeldOutScore score = score_held_out(source, wall(0.0F), at_rest(2), 2);
+  const HeldOutScore score = score_held_out(source, wall(0.0F), asleep(2), 2);
   EXPECT_DOUBLE_EQ(score.cover, 0.5);
   EXPECT_NEAR(score.bias_m, 0.3, 5e-5);
   EXPECT_DOUBLE_EQ(score.outliers, 1.0);
@@ -82,7 +82,7 @@ TEST(HeldOut, HalfAWallCoversHalfOfThePixels) {
 
 TEST(HeldOut, NothingIsClaimedWhereNothingCanBeCompared) {
   FlatSource far({4.5F, 4.5F});  // beyond what is compared
-  EXPECT_EQ(score_held_out(far, wall(-9.0F), at_rest(2), 2).pixels, 0);
+  EXPECT_EQ(score_held_out(far, wall(-9.0F), asleep(2), 2).pixels, 0);
   FlatSource one({2.0F});
   const HeldOutScore without_pose = score_held_out(one, wall(-9.0F), {}, 2);
   EXPECT_EQ(without_pose.frames, 0);

@@ -71,11 +71,11 @@ Mesh fine_cube(int n) {
 
 TEST(ObjectLevels, EachHasFewerTrianglesAndLiesWhereItSays) {
   const Mesh full = shapes::torus(120, 50, 0.08F, 0.035F, 0.01F);
-  const std::vector<ObjectLevel> levels = object_levels(full);
+  const std::vector<LevelOfDetail> levels = levels_of_detail(full);
   ASSERT_GE(levels.size(), 3U);
   std::size_t triangles = full.triangles.size();
   float deviation_m = 0.0F;
-  for (const ObjectLevel& level : levels) {
+  for (const LevelOfDetail& level : levels) {
     EXPECT_LT(level.mesh.triangles.size(), triangles);
     EXPECT_GT(level.deviation_m, deviation_m);
     triangles = level.mesh.triangles.size();
@@ -119,7 +119,7 @@ TEST(ObjectLevels, EachIsLitAsTheFullMeshIs) {
   // With the means of what was merged for normals: 8 degrees, and 14 to 17 from 4,000 triangles on.
   const Mesh full = shapes::torus(240, 100, 0.08F, 0.035F, 0.01F);
   int judged = 0;
-  for (const ObjectLevel& level : object_levels(full)) {
+  for (const LevelOfDetail& level : levels_of_detail(full)) {
     const std::size_t triangles = level.mesh.triangles.size();
     if (triangles < 1000) break;
     EXPECT_LT(lit_off_deg(full, level.mesh, 47), triangles > 8000 ? 7.5 : 13.0) << triangles;
@@ -129,7 +129,7 @@ TEST(ObjectLevels, EachIsLitAsTheFullMeshIs) {
 }
 
 TEST(ObjectLevels, AFinelyMeshedCubeKeepsItsEdgesSharp) {
-  const std::vector<ObjectLevel> levels = object_levels(fine_cube(30));
+  const std::vector<LevelOfDetail> levels = levels_of_detail(fine_cube(30));
   ASSERT_FALSE(levels.empty());
   const Mesh& mesh = levels.back().mesh;
   EXPECT_LT(mesh.triangles.size(), 2500U);
@@ -142,8 +142,8 @@ TEST(ObjectLevels, AFinelyMeshedCubeKeepsItsEdgesSharp) {
 }
 
 TEST(ObjectLevels, AMeshOfFewTrianglesHasNone) {
-  EXPECT_TRUE(object_levels(shapes::torus(30, 16, 0.08F, 0.035F, 0.01F)).empty());
-  EXPECT_TRUE(object_levels({}).empty());
+  EXPECT_TRUE(levels_of_detail(shapes::torus(30, 16, 0.08F, 0.035F, 0.01F)).empty());
+  EXPECT_TRUE(levels_of_detail({}).empty());
 }
 
 TEST(ObjectLevels, TheDrawnMeshIsCoarserTheFartherTheObjectAndNeverOffByMoreThanHalfAPixel) {
@@ -212,7 +212,7 @@ TEST(ObjectLevels, ThePictureOfTheUsualOneIsNearlyThatOfTheFullMesh) {
     GpuMesh full(context), drawn(context);
     full.upload(lit, MeshUsage::kStatic);
     std::size_t triangles = lit.triangles.size();
-    for (const ObjectLevel& level : object_levels(meshes[i])) {
+    for (const LevelOfDetail& level : levels_of_detail(meshes[i])) {
       if (!is_fine_enough(level.deviation_m, (away_m - 0.15) / kCamera.fx_px, usual_px)) break;
       drawn.upload(level.mesh, MeshUsage::kStatic);
       triangles = level.mesh.triangles.size();

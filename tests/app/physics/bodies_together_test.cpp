@@ -47,11 +47,11 @@ class Pair {
   void step(const PhysicsConfig& config) {
     for (std::size_t i = 0; i < 2; ++i) {
       const std::size_t j = 1 - i;
-      const std::vector<SceneTree> scene{{{&floor_, Eigen::Isometry3d::Identity()}, Touched::kStatic},
-                                         {{&trees_[j], bodies[j].T_world_object}, Touched::kObject}};
-      const std::array others{OtherBody{}, OtherBody{&bodies[j], gives[i]}};
+      const std::vector<SceneTree> scene{{{&floor_, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic},
+                                         {{&trees_[j], bodies[j].T_world_object}, SurfaceKind::kObject}};
+      const std::array others{SceneBody{}, SceneBody{&bodies[j], mass_ratio[i]}};
       const RadarScene radar_scene{scene, {}};
-      BodyProbe probe = probe_of(radar_, field_, trees_[i], radar_scene);
+      CollisionQueries probe = make_collision_queries(radar_, field_, trees_[i], radar_scene);
       probe.others = others;
       PhysicsConfig own = config;
       if (i == 1 && is_second_held_) own.gravity_world_mps2.setZero();
@@ -63,23 +63,23 @@ class Pair {
     for (double t = 0.0; t < seconds - 1e-9; t += kFrame_s) step(config);
   }
   void weigh() {
-    gives = {bodies[0].mass.mass_kg / bodies[1].mass.mass_kg,
-             bodies[1].mass.mass_kg / bodies[0].mass.mass_kg};
+    mass_ratio = {bodies[0].mass.mass_kg / bodies[1].mass.mass_kg,
+                  bodies[1].mass.mass_kg / bodies[0].mass.mass_kg};
   }
   [[nodiscard]] Vec3 momentum() const {
     return bodies[0].mass.mass_kg * bodies[0].velocity_world_mps +
            bodies[1].mass.mass_kg * bodies[1].velocity_world_mps;
   }
-  [[nodiscard]] Vec3 spin_momentum() const {
+  [[nodiscard]] Vec3 angular_momentum() const {
     Vec3 sum = Vec3::Zero();
     for (const Body& body : bodies)
-      sum += body.mass.mass_kg * (inertia_world_m2(body) * body.spin_world_rad_s +
+      sum += body.mass.mass_kg * (inertia_world_m2(body) * body.angular_velocity_world_rad_s +
                                   centre_world(body).cross(body.velocity_world_mps));
     return sum;
   }
 
   std::array<Body, 2> bodies;
-  std::array<double, 2> gives{1.0, 1.0};
+  std::array<double, 2> mass_ratio{1.0, 1.0};
   double deepest_m = 0.0;
 
  private:
@@ -87,7 +87,7 @@ class Pair {
   TriangleTree floor_;
   bool is_second_held_ = false;
   CyberRadar radar_;
-  NearField field_;
+  ProximityQuery field_;
 };
 
 Mesh box(double x, double y, double z) { return shapes::box(Vec3(x, y, z).cast<float>()); }
@@ -102,7 +102,7 @@ TEST(BodiesTogether, EqualOnesSwapTheirVelocitiesWhereAllComesBack) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
   pair.put({-0.3, 0, 1}, {0.3, 0, 1});
   pair.bodies[0].velocity_world_mps = {2, 0, 0};
-  pair.bodies[1].at_rest = true;
+  pair.bodies[1].asleep = true;
   pair.run(0.5, weightless(1.0));
   EXPECT_LT(pair.bodies[0].velocity_world_mps.norm(), 1e-6);
   EXPECT_LT((pair.bodies[1].velocity_world_mps - Vec3(2, 0, 0)).norm(), 1e-6);
@@ -132,14 +132,14 @@ TEST(BodiesTogether, KeepMomentumAndTheirTurningWhenTheyMeetOffCentre) {
     pair.weigh();
     pair.put({-0.3, 0.1, 1}, {0.3, 0, 1});
     pair.bodies[0].velocity_world_mps = {3, 0, 0};
-    pair.bodies[0].spin_world_rad_s = {0, 0, 2};
-    const Vec3 before = pair.momentum(), turning_before = pair.spin_momentum();
+    pair.bodies[0].angular_velocity_world_rad_s = {0, 0, 2};
+    const Vec3 before = pair.momentum(), turning_before = pair.angular_momentum();
     pair.run(0.4, weightless(restitution));
     EXPECT_LT((pair.momentum() - before).norm(), 1e-6);
     EXPECT_GT(pair.bodies[1].velocity_world_mps.x(), 0.3);
-    EXPECT_GT(std::abs(pair.bodies[1].spin_world_rad_s.z()), 0.3);
+    EXPECT_GT(std::abs(pair.bodies[1].angular_velocity_world_rad_s.z()), 0.3);
     // The contact lies a margin off the one or the other.
-    EXPECT_LT((pair.spin_momentum() - turning_before).norm(), 0.02 * turning_before.norm());
+    EXPECT_LT((pair.angular_momentum() - turning_before).norm(), 0.02 * turning_before.norm());
     EXPECT_EQ(pair.deepest_m, 0.0);
   }
 }
@@ -149,7 +149,7 @@ TEST(BodiesTogether, AThrownOneShovesARestingOneAlongTheFloorAndBothComeToRest) 
   pair.add_floor();
   pair.put({-0.4, 0, 0.06}, {0, 0, 0.0511});
   pair.run(1.0, {});
-  ASSERT_TRUE(pair.bodies[1].at_rest);
+  ASSERT_TRUE(pair.bodies[1].asleep);
   const Vec3 stood = pair.bodies[1].T_world_object.translation();
   pair.bodies[0].velocity_world_mps = {3, 0, 0};
   pair.run(3.0, {});
@@ -158,7 +158,7 @@ TEST(BodiesTogether, AThrownOneShovesARestingOneAlongTheFloorAndBothComeToRest) 
   EXPECT_LT(went.x(), 0.4);
   EXPECT_LT(std::abs(went.y()) + std::abs(went.z()), 0.01);
   for (const Body& body : pair.bodies) {
-    EXPECT_TRUE(body.at_rest);
+    EXPECT_TRUE(body.asleep);
     EXPECT_NEAR(body.T_world_object.translation().z(), 0.051, 1e-3);
   }
   EXPECT_LT(pair.deepest_m, 1e-3);
@@ -168,19 +168,19 @@ TEST(BodiesTogether, OneThatIsSetDownOnAnotherLetsItRest) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.2, 0.2, 0.1));
   pair.add_floor();
   pair.put({0.02, 0, 0.152}, {0, 0, 0.051});
-  pair.bodies[0].at_rest = false;
+  pair.bodies[0].asleep = false;
   pair.run(2.0, {});
   const Eigen::Isometry3d stood = pair.bodies[1].T_world_object;
-  EXPECT_TRUE(pair.bodies[0].at_rest);
-  EXPECT_TRUE(pair.bodies[1].at_rest);
+  EXPECT_TRUE(pair.bodies[0].asleep);
+  EXPECT_TRUE(pair.bodies[1].asleep);
   pair.run(2.0, {});
   EXPECT_TRUE(pair.bodies[1].T_world_object.isApprox(stood, 0.0));
-  EXPECT_EQ(pair.bodies[0].rests_on, Touched::kObject);
+  EXPECT_EQ(pair.bodies[0].rests_on, SurfaceKind::kObject);
 }
 
 /// A body of 10 cm in the middle of a board of 30 cm that a hand holds at 1 m.
 void put_on_a_held_board(Pair& pair, const Vec3& at) {
-  pair.gives = {0.0, 1e6};
+  pair.mass_ratio = {0.0, 1e6};
   pair.put(at, {0, 0, 1});
   pair.run(1.5, {});
 }
@@ -191,14 +191,14 @@ TEST(BodiesTogether, OneThatRestsIsCarriedAlongByWhatItRestsOn) {
     Pair pair(box(0.1, 0.1, 0.1), box(0.3, 0.3, 0.1));
     pair.hold_second();
     put_on_a_held_board(pair, {0, 0, 1.102});
-    ASSERT_TRUE(pair.bodies[0].at_rest);
+    ASSERT_TRUE(pair.bodies[0].asleep);
     pair.bodies[1].velocity_world_mps = {speed_mps, 0, 0};
     pair.run(seconds, {});
     EXPECT_NEAR(pair.bodies[0].T_world_object.translation().x(), speed_mps * seconds, 0.02);
     EXPECT_NEAR(pair.bodies[0].T_world_object.translation().z(), 1.101, 2e-3);
     pair.bodies[1].velocity_world_mps.setZero();
     pair.run(1.0, {});
-    EXPECT_TRUE(pair.bodies[0].at_rest);
+    EXPECT_TRUE(pair.bodies[0].asleep);
   }
 }
 
@@ -207,13 +207,13 @@ TEST(BodiesTogether, OneTipsWhoseSupportIsDrawnAwayFromUnderHalfOfIt) {
     Pair pair(box(0.1, 0.1, 0.1), box(0.3, 0.3, 0.1));
     pair.hold_second();
     put_on_a_held_board(pair, {0.1, 0, 1.102});
-    ASSERT_TRUE(pair.bodies[0].at_rest);
+    ASSERT_TRUE(pair.bodies[0].asleep);
     pair.bodies[1].T_world_object.translation().x() = 0.1 - 0.15 - beyond_m;
     pair.run(1.0, {});
     if (beyond_m > 0.0) {
       EXPECT_LT(pair.bodies[0].T_world_object.translation().z(), 0.5);
     } else {
-      EXPECT_TRUE(pair.bodies[0].at_rest);
+      EXPECT_TRUE(pair.bodies[0].asleep);
       EXPECT_NEAR(pair.bodies[0].T_world_object.translation().z(), 1.101, 2e-3);
     }
   }
@@ -221,7 +221,7 @@ TEST(BodiesTogether, OneTipsWhoseSupportIsDrawnAwayFromUnderHalfOfIt) {
 
 TEST(BodiesTogether, OneInAHandGoesOnAndTakesTheOtherWithIt) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
-  pair.gives = {1e6, 0.0};
+  pair.mass_ratio = {1e6, 0.0};
   pair.put({-0.3, 0, 1}, {0, 0, 1});
   pair.bodies[0].velocity_world_mps = {0.5, 0, 0};
   pair.run(1.0, weightless(0.0));
@@ -232,7 +232,7 @@ TEST(BodiesTogether, OneInAHandGoesOnAndTakesTheOtherWithIt) {
 
 TEST(BodiesTogether, OneStandsStillThatIsNotNamedAsABody) {
   Pair pair(box(0.1, 0.1, 0.1), box(0.1, 0.1, 0.1));
-  pair.gives = {0.0, 0.0};
+  pair.mass_ratio = {0.0, 0.0};
   pair.put({-0.3, 0, 1}, {0.3, 0, 1});
   pair.bodies[0].velocity_world_mps = {2, 0, 0};
   pair.run(0.5, weightless(0.0));
@@ -258,21 +258,23 @@ TEST(BodiesTogether, AHandThatReachesIntoOneDoesNotPushItIntoAnotherThatLiesInIt
   const Eigen::Isometry3d T_world_leans =
       pose({0.2384, -0.3216, 0.8928}, {0.10893, 0.92496, -0.26430, 0.25044});
   const Vec3 to_hand = Vec3(0.96, 0.27, 0.0).normalized(), across(-to_hand.y(), to_hand.x(), 0.0);
-  const SceneTree lies{{&teapot_tree, T_world_lies}, Touched::kObject};
+  const SceneTree lies{{&teapot_tree, T_world_lies}, SurfaceKind::kObject};
   CyberRadar radar;
-  NearField field;
-  std::vector<NearPoint> points;
+  ProximityQuery field;
+  std::vector<ClosestPoint> points;
   for (int place = 0; place < 36; ++place) {
     Eigen::Isometry3d T_world_fist = Eigen::Isometry3d::Identity();
     T_world_fist.translation() = T_world_leans.translation() + 0.03 * (place / 9) * to_hand +
                                  0.05 * (place % 3 - 1) * across + Vec3(0.0, 0.0, 0.05 * (place / 3 % 3 - 1));
-    const std::vector<SceneTree> scene{{{&fist_tree, T_world_fist}, Touched::kDynamic}, lies};
+    const std::vector<SceneTree> scene{{{&fist_tree, T_world_fist}, SurfaceKind::kDynamic}, lies};
     const RadarScene radar_scene{scene, {}};
     Body body;
     body.mass = mass_properties(teapot, false);
     body.T_world_object = T_world_leans;
-    (void)advance(body, kFrame_s, probe_of(radar, field, teapot_tree, radar_scene), {}, {&to_hand, 1});
-    const Kinds crossed = field.near({&teapot_tree, body.T_world_object}, {{&lies, 1}, {}}, 1e-6, 0, points);
+    (void)advance(body, kFrame_s, make_collision_queries(radar, field, teapot_tree, radar_scene), {},
+                  {&to_hand, 1});
+    const SurfaceKindMask crossed =
+        field.near({&teapot_tree, body.T_world_object}, {{&lies, 1}, {}}, 1e-6, 0, points);
     EXPECT_EQ(crossed, 0U) << place;
   }
 }

@@ -61,8 +61,8 @@ class InferredBack : public ::testing::Test {
       }
     }
     const FineRegion near_body{body_.T_world_object.translation(), 2.0 * kCube_m};
-    mesh_moved(depth_m, mask, DepthImage(kCamera.width_px, kCamera.height_px), kCamera, T_world_camera_,
-               {&near_body, 1}, {}, scratch_, surface_);
+    mesh_dynamic(depth_m, mask, DepthImage(kCamera.width_px, kCamera.height_px), kCamera, T_world_camera_,
+                 {&near_body, 1}, {}, scratch_, surface_);
     seen_.build_in_order(surface_.seen_world);
     inferred_.build_in_order(surface_.inferred_world);
   }
@@ -74,29 +74,29 @@ class InferredBack : public ::testing::Test {
     return radar_.query({{&cube_, T}, direction, distance_m}, {scene, {}});
   }
   [[nodiscard]] SceneTree seen() const {
-    return {{&seen_, Eigen::Isometry3d::Identity()}, Touched::kDynamic};
+    return {{&seen_, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic};
   }
   [[nodiscard]] SceneTree inferred() const {
-    return {{&inferred_, Eigen::Isometry3d::Identity()}, Touched::kInferredBack};
+    return {{&inferred_, Eigen::Isometry3d::Identity()}, SurfaceKind::kInferredBack};
   }
 
   StepReport step() {
-    std::vector<SceneTree> scene = {{{&table_, Eigen::Isometry3d::Identity()}, Touched::kStatic}, seen()};
-    const PushDirections push = push_directions({&surface_.seen_world, &surface_.inferred_world},
-                                                body_.T_world_object.translation(), 0.25);
+    std::vector<SceneTree> scene = {{{&table_, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic}, seen()};
+    const PushDirections push = depenetration_directions({&surface_.seen_world, &surface_.inferred_world},
+                                                         body_.T_world_object.translation(), 0.25);
     const std::vector<SceneTree> back = {inferred()};
     const RadarScene of_back{back, {}};
-    const BodyProbe back_probe = probe_of(radar_, field_, cube_, of_back);
-    if (!is_swallowed(body_, kFrame_s, back_probe.travel, {}, push.span())) scene.push_back(inferred());
+    const CollisionQueries back_probe = make_collision_queries(radar_, field_, cube_, of_back);
+    if (!is_engulfed(body_, kFrame_s, back_probe.travel, {}, push.span())) scene.push_back(inferred());
     const RadarScene of_all{scene, {}};
-    return advance(body_, kFrame_s, probe_of(radar_, field_, cube_, of_all), {}, push.span());
+    return advance(body_, kFrame_s, make_collision_queries(radar_, field_, cube_, of_all), {}, push.span());
   }
 
   CyberRadar radar_;
-  NearField field_;
+  ProximityQuery field_;
   Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();
-  MovedSurfaceScratch scratch_;
-  MovedSurface surface_;
+  DynamicSurfaceScratch scratch_;
+  DynamicSurface surface_;
   TriangleTree cube_, table_, seen_, inferred_;
   Body body_;
 };
@@ -105,24 +105,24 @@ TEST_F(InferredBack, WhatComesFromBehindStopsAtTheBack) {
   see_hand({0.0, 0.8, 0.0});
   const Contact contact = ask({0.0, 1.3, 0.0}, -Vec3::UnitY(), 1.0, {seen(), inferred()});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_EQ(contact.touched, Touched::kInferredBack);
-  EXPECT_NEAR(contact.travel_m, 1.3 - kCube_m - 0.8 - kHand_m, 0.02);
+  EXPECT_EQ(contact.touched, SurfaceKind::kInferredBack);
+  EXPECT_NEAR(contact.contact_distance_m, 1.3 - kCube_m - 0.8 - kHand_m, 0.02);
   EXPECT_GT(contact.normal_world.y(), 0.7) << "faces the object";
   // Without its back the object went into the hand.
   const Contact open = ask({0.0, 1.3, 0.0}, -Vec3::UnitY(), 1.0, {seen()});
-  EXPECT_GT(open.travel_m, contact.travel_m + 0.9 * kHand_m);
+  EXPECT_GT(open.contact_distance_m, contact.contact_distance_m + 0.9 * kHand_m);
 }
 
 TEST_F(InferredBack, EachSideSaysWhatItIs) {
   see_hand({0.0, 0.8, 0.0});
   const Contact front = ask({0.0, 0.5, 0.0}, Vec3::UnitY(), 1.0, {seen(), inferred()});
-  EXPECT_EQ(front.touched, Touched::kDynamic);
-  EXPECT_NEAR(front.travel_m, 0.3 - kCube_m - kHand_m, 0.003);
+  EXPECT_EQ(front.touched, SurfaceKind::kDynamic);
+  EXPECT_NEAR(front.contact_distance_m, 0.3 - kCube_m - kHand_m, 0.003);
   for (const double behind_m : {0.0, 0.02}) {  // beside the outline, where only the back is
     const Contact side =
         ask({0.3, 0.8 + kCube_m + 0.005 + behind_m, 0.0}, -Vec3::UnitX(), 1.0, {seen(), inferred()});
     ASSERT_EQ(side.status, ContactStatus::kContact) << behind_m;
-    EXPECT_EQ(side.touched, Touched::kInferredBack);
+    EXPECT_EQ(side.touched, SurfaceKind::kInferredBack);
   }
 }
 
@@ -141,7 +141,7 @@ TEST_F(InferredBack, AHandPushesFromAnySide) {
     const Vec3 start(0.0, 1.0, 0.0);
     body_ = Body{};
     body_.T_world_object.translation() = start;
-    body_.at_rest = true;
+    body_.asleep = true;
     double fastest_mps = 0.0;
     for (int frame = 0; frame < 18; ++frame) {  // 0.5 m/s, from 17 cm away to 13 cm past where the cube was
       see_hand(start + direction * (-0.17 + 0.5 * kFrame_s * frame));
@@ -162,7 +162,7 @@ TEST_F(InferredBack, ABodyThatTheBackComesAboutStaysWhereItIs) {
   for (const double radius_m : {0.1, 0.07}) {
     body_ = Body{};
     body_.T_world_object.translation() = start;
-    body_.at_rest = true;
+    body_.asleep = true;
     for (int frame = 0; frame < 20; ++frame) {  // of a sudden before it; the back reaches 7 cm into it
       see_hand(start - Vec3(0.0, radius_m + kCube_m - 0.07, 0.0), radius_m);
       EXPECT_EQ(step().status, StepStatus::kMoved);

@@ -22,11 +22,11 @@ constexpr double kHalf_m = 0.1;  // the body is a cube with this half side
 struct Plane {
   Vec3 normal = Vec3::UnitZ();
   double offset_m = 0.0;
-  Touched kind = Touched::kStatic;
+  SurfaceKind kind = SurfaceKind::kStatic;
 };
 struct Box {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();
-  Touched kind = Touched::kStatic;
+  SurfaceKind kind = SurfaceKind::kStatic;
 };
 
 /// Planes and boxes for the radar, made anew each time it is asked.
@@ -60,7 +60,7 @@ class Surfaces {
     cube_.build_by_place(cube_mesh());
     std::size_t i = 0;
     std::uniform_real_distribution<double> noise(-room.noise_m, room.noise_m);
-    const auto add = [&](Mesh mesh, Touched kind) {
+    const auto add = [&](Mesh mesh, SurfaceKind kind) {
       if (room.noise_m > 0.0) mesh.origin.z() += noise(room.random);
       trees_[i].build_by_place(mesh);
       scene_.push_back({{&trees_[i], Eigen::Isometry3d::Identity()}, kind});
@@ -70,11 +70,11 @@ class Surfaces {
     for (const Box& box : room.boxes) add(mesh_of(box), box.kind);
     radar_scene_.trees = scene_;
   }
-  BodyProbe probe() { return probe_of(radar_, field_, cube_, radar_scene_); }
+  CollisionQueries probe() { return make_collision_queries(radar_, field_, cube_, radar_scene_); }
 
  private:
   CyberRadar radar_;
-  NearField field_;
+  ProximityQuery field_;
   TriangleTree cube_;
   std::vector<TriangleTree> trees_;
   std::vector<SceneTree> scene_;
@@ -111,13 +111,13 @@ TEST(Physics, FallsWithGravityWhereNothingIs) {
   EXPECT_NEAR(body.velocity_world_mps.z(), -9.81, 1e-6);
   // g dt / 2: first-order steps.
   EXPECT_NEAR(body.T_world_object.translation().z(), 10.0 - 9.81 / 2.0, 0.006);
-  EXPECT_FALSE(body.at_rest);
+  EXPECT_FALSE(body.asleep);
 }
 
 TEST(Physics, ComesToRestAMarginAboveTheFloor) {
   Body body = body_at({0.3, -0.2, 1.0});
   (void)run(body, kFloor, 2.0);
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
   EXPECT_NEAR(height(body), PhysicsConfig{}.contact_margin_m, 1e-4);
   EXPECT_EQ(body.velocity_world_mps, Vec3::Zero());
   EXPECT_NEAR(body.T_world_object.translation().x(), 0.3, 1e-6);
@@ -128,8 +128,8 @@ TEST(Physics, DoesNotTunnelThroughAThinSheetAtTenMetresASecond) {
   for (const double dt_s : {1e-3, 1.0 / 60.0, 1.0 / 30.0, 0.2, 10.0}) {
     Body body = body_at({0, 0, 1.234});
     body.velocity_world_mps = {0, 0, -10};
-    for (int i = 0; i < 1200 && !body.at_rest; ++i) (void)step(body, dt_s, sheet, {});
-    EXPECT_TRUE(body.at_rest) << dt_s;
+    for (int i = 0; i < 1200 && !body.asleep; ++i) (void)step(body, dt_s, sheet, {});
+    EXPECT_TRUE(body.asleep) << dt_s;
     EXPECT_NEAR(height(body), 1e-4 + 0.001, 1e-4) << dt_s;
   }
 }
@@ -143,10 +143,10 @@ TEST(Physics, SticksOnAGentleSlopeAndSlidesDownASteepOne) {
   config.friction = std::tan(25.0 * M_PI / 180.0);
   Body gentle = body_at({0, 0, 0.3});
   (void)run(gentle, slope(20.0), 3.0, config);
-  EXPECT_TRUE(gentle.at_rest);
+  EXPECT_TRUE(gentle.asleep);
   Body steep = body_at({0, 0, 0.3});
   (void)run(steep, slope(35.0), 1.0, config);
-  EXPECT_FALSE(steep.at_rest);
+  EXPECT_FALSE(steep.asleep);
   // After the fall it gains g (sin - mu cos) along the slope each second.
   const double before_mps = steep.velocity_world_mps.norm();
   (void)run(steep, slope(35.0), 0.5 - 1e-9, config);
@@ -161,7 +161,7 @@ TEST(Physics, SlidesToAHaltWithinTheDistanceOfCoulombFriction) {
   Body body = body_at({0, 0, kHalf_m + 0.001});
   body.velocity_world_mps = {2, 0, 0};
   (void)run(body, kFloor, 2.0, config);
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
   EXPECT_NEAR(body.T_world_object.translation().x(), 2.0 * 2.0 / (2.0 * 0.4 * 9.81), 0.05);  // v^2 / (2 mu g)
   EXPECT_NEAR(height(body), 0.001, 1e-4);
 }
@@ -178,7 +178,7 @@ TEST(Physics, StopsAtAStepAndFallsOffATablesEdge) {
   Body slider = body_at({0, 0, 0.7 + kHalf_m + 0.001});
   slider.velocity_world_mps = {4, 0, 0};
   (void)run(slider, table, 2.0);
-  EXPECT_TRUE(slider.at_rest);
+  EXPECT_TRUE(slider.asleep);
   EXPECT_NEAR(height(slider), 0.001, 1e-4);
 }
 
@@ -187,7 +187,7 @@ TEST(Physics, SettlesInACornerOfThreeWalls) {
   Body body = body_at({0.4, 0.5, 0.4});
   body.velocity_world_mps = {-3, -3, 1};
   (void)run(body, corner, 3.0);
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
   EXPECT_GE((body.T_world_object.translation().array() - kHalf_m).minCoeff(), 0.0);
 }
 
@@ -198,7 +198,7 @@ TEST(Physics, RestsInAValleyOfTwoSteepSlopes) {
                     .boxes = {}};
   Body body = body_at({0.2, 0, 0.8});
   (void)run(body, valley, 4.0);
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
   EXPECT_NEAR(body.T_world_object.translation().x(), 0.0, 0.005);
 }
 
@@ -211,7 +211,7 @@ TEST(Physics, SlidesAlongTheCreaseOfAValley) {
   config.friction = 0.0;
   Body body = body_at({0, 0, 0.4});
   (void)run(body, valley, 1.0, config);
-  body.at_rest = false;
+  body.asleep = false;
   body.velocity_world_mps = {0, 1, 0};
   const double from_y_m = body.T_world_object.translation().y();
   (void)run(body, valley, 1.0 - 1e-9, config);
@@ -231,7 +231,7 @@ TEST(Physics, BouncesByItsRestitutionThenRests) {
     if (has_bounced) highest_after_m = std::max(highest_after_m, height(body));
   }
   EXPECT_NEAR(highest_after_m, 0.25, 0.01);  // e^2 of the height
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
 }
 
 TEST(Physics, ARestingBodyIgnoresNoiseOfSomeMillimetres) {
@@ -239,7 +239,7 @@ TEST(Physics, ARestingBodyIgnoresNoiseOfSomeMillimetres) {
   noisy.noise_m = 0.005;
   Body body = body_at({0, 0, 0.5});
   (void)run(body, noisy, 10.0);
-  ASSERT_TRUE(body.at_rest);
+  ASSERT_TRUE(body.asleep);
   const Vec3 before = body.T_world_object.translation();
   int wakes = 0;
   for (int i = 0; i < 600; ++i) wakes += step(body, kFrame_s, noisy, {}).woke;
@@ -253,7 +253,7 @@ TEST(Physics, ARestingBodyStaysUntilItsSupportMovesByMoreThanNoise) {
   for (const double moved_m : {0.007, -0.011, 0.011, -0.020}) {
     Room room = kFloor;
     Body body = body_at({0, 0, kHalf_m + 0.001});
-    body.at_rest = true;
+    body.asleep = true;
     room.planes[0].offset_m = moved_m;
     const bool is_noise =
         moved_m - 0.001 < config.wake_overlap_m && 0.001 - moved_m < config.wake_gap_m + 0.001;
@@ -268,15 +268,15 @@ TEST(Physics, ARestingBodyStaysUntilItsSupportMovesByMoreThanNoise) {
 }
 
 TEST(Physics, FallsAgainWhenItsSupportIsTakenAway) {
-  Room room{.planes = {Plane{}}, .boxes = {{{-0.5, -0.5, 0.4}, {0.5, 0.5, 0.5}, Touched::kDynamic}}};
+  Room room{.planes = {Plane{}}, .boxes = {{{-0.5, -0.5, 0.4}, {0.5, 0.5, 0.5}, SurfaceKind::kDynamic}}};
   Body body = body_at({0, 0, 1.0});
   (void)run(body, room, 2.0);
-  ASSERT_TRUE(body.at_rest);
+  ASSERT_TRUE(body.asleep);
   EXPECT_NEAR(height(body), 0.501, 1e-4);
   room.boxes.clear();
   EXPECT_TRUE(step(body, kFrame_s, room, {}).woke);
   (void)run(body, room, 2.0);
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
   EXPECT_NEAR(height(body), 0.001, 1e-4);
 }
 
@@ -284,8 +284,8 @@ TEST(Physics, IsLiftedByAHandFromBelow) {
   Room room{.planes = {Plane{}}, .boxes = {}};
   Body body = body_at({0, 0, 0.3});
   (void)run(body, room, 1.5);
-  ASSERT_TRUE(body.at_rest);
-  room.boxes = {{{-0.05, -0.05, -0.2}, {0.05, 0.05, 0.0}, Touched::kDynamic}};
+  ASSERT_TRUE(body.asleep);
+  room.boxes = {{{-0.05, -0.05, -0.2}, {0.05, 0.05, 0.0}, SurfaceKind::kDynamic}};
   double worst_m = 0.0;
   for (int i = 0; i < 60; ++i) {  // 0.3 m/s upward
     room.boxes[0].high.z() += 0.01;
@@ -298,16 +298,16 @@ TEST(Physics, IsLiftedByAHandFromBelow) {
 }
 
 TEST(Physics, IsPushedAsideByAHandFromTheSide) {
-  Room room{.planes = {Plane{}}, .boxes = {{{-0.9, -0.05, 0.05}, {-0.4, 0.05, 0.15}, Touched::kDynamic}}};
+  Room room{.planes = {Plane{}}, .boxes = {{{-0.9, -0.05, 0.05}, {-0.4, 0.05, 0.15}, SurfaceKind::kDynamic}}};
   Body body = body_at({0, 0, kHalf_m + 0.001});
-  body.at_rest = true;
+  body.asleep = true;
   const Vec3 towards_hand = -Vec3::UnitX();
   bool was_touched = false;
   for (int i = 0; i < 60; ++i) {  // 0.3 m/s towards +x, from 0.3 m away to 0.3 m past the body's side
     room.boxes[0].low.x() += 0.01;
     room.boxes[0].high.x() += 0.01;
     const StepReport report = step(body, kFrame_s, room, {}, {&towards_hand, 1});
-    was_touched |= report.contacts_by_kind[static_cast<std::size_t>(Touched::kDynamic)] > 0;
+    was_touched |= report.contacts_by_kind[static_cast<std::size_t>(SurfaceKind::kDynamic)] > 0;
     EXPECT_GT(body.T_world_object.translation().x() - kHalf_m, room.boxes[0].high.x() - 0.009);
     EXPECT_NEAR(height(body), 0.001, 3e-4);
   }
@@ -317,7 +317,7 @@ TEST(Physics, IsPushedAsideByAHandFromTheSide) {
 
 TEST(Physics, APushedBodyStopsAtTheWallBehindIt) {
   Room room{.planes = {Plane{}, {-Vec3::UnitX(), -0.25}},
-            .boxes = {{{-0.9, -0.05, 0.05}, {-0.15, 0.05, 0.15}, Touched::kDynamic}}};
+            .boxes = {{{-0.9, -0.05, 0.05}, {-0.15, 0.05, 0.15}, SurfaceKind::kDynamic}}};
   Body body = body_at({0, 0, kHalf_m + 0.001});
   const Vec3 towards_hand = -Vec3::UnitX();
   for (int i = 0; i < 25; ++i) {
@@ -331,7 +331,7 @@ TEST(Physics, APushedBodyStopsAtTheWallBehindIt) {
 TEST(Physics, LeavesAnOverlapNoFasterThanAllowed) {
   Body body = body_at({0, 0, kHalf_m - 0.02});  // placed 2 cm into the floor
   PhysicsConfig config;
-  config.push_out_mps = 0.15;  // 5 mm a frame
+  config.max_depenetration_mps = 0.15;  // 5 mm a frame
   const StepReport first = step(body, kFrame_s, kFloor, config);
   EXPECT_NEAR(first.deepest_static_overlap_m, 0.02, 1e-7);
   EXPECT_NEAR(height(body), -0.015, 1e-6);
@@ -358,7 +358,7 @@ TEST(Physics, TheAnswerHardlyDependsOnTheStep) {
     Body body = body_at({0, 0, 1.2});
     body.velocity_world_mps = {0.5, 0.2, 0};
     (void)run(body, room, 4.0, {}, dt_s);
-    EXPECT_TRUE(body.at_rest);
+    EXPECT_TRUE(body.asleep);
     ends.push_back(body.T_world_object.translation());
   }
   for (const Vec3& end : ends) EXPECT_LT((end - ends[0]).norm(), 0.03);
@@ -367,9 +367,9 @@ TEST(Physics, TheAnswerHardlyDependsOnTheStep) {
 TEST(Physics, ManyTinyStepsFallAndRestToo) {
   Body body = body_at({0, 0, kHalf_m + 0.001 + 1e-5});
   Surfaces surfaces(kFloor);
-  const BodyProbe probe = surfaces.probe();
+  const CollisionQueries probe = surfaces.probe();
   for (int i = 0; i < 350'000; ++i) (void)advance(body, 1e-6, probe, {});
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
   EXPECT_NEAR(height(body), 0.001, 1e-4);
 }
 
@@ -404,11 +404,11 @@ TEST(Physics, HoldsStillAndSaysSoWhereTheRadarAnswersNonsense) {
   const auto nan_travel = [](const Eigen::Isometry3d&, const Vec3&, double) {
     Contact contact;
     contact.status = ContactStatus::kContact;
-    contact.travel_m = std::numeric_limits<double>::quiet_NaN();
+    contact.contact_distance_m = std::numeric_limits<double>::quiet_NaN();
     return contact;
   };
   const auto invalid = [](const Eigen::Isometry3d&, const Vec3&, double) { return Contact{}; };
-  for (const TravelQuery& query : {TravelQuery(nan_travel), TravelQuery(invalid)}) {
+  for (const DistanceQuery& query : {DistanceQuery(nan_travel), DistanceQuery(invalid)}) {
     Body body = body_at({0, 0, 1});
     body.velocity_world_mps = {1, 0, -1};
     EXPECT_EQ(advance(body, kFrame_s, {query, {}, {}}, {}).status, StepStatus::kHeld);
@@ -419,7 +419,7 @@ TEST(Physics, HoldsStillAndSaysSoWhereTheRadarAnswersNonsense) {
 
 TEST(Physics, AVelocityWakesABodyAtRest) {
   Body body = body_at({0, 0, kHalf_m + 0.001});
-  body.at_rest = true;
+  body.asleep = true;
   body.velocity_world_mps = {1, 0, 2};
   EXPECT_TRUE(step(body, kFrame_s, kFloor, {}).woke);
   EXPECT_GT(height(body), 0.03);
@@ -457,7 +457,7 @@ TEST(Physics, RandomThrowsIntoARoomNeverLeaveIt) {
       ASSERT_GE(p.z(), kHalf_m - 1e-6);
       ASSERT_LE(p.z(), 2.5 - kHalf_m + 1e-6);
     }
-    EXPECT_TRUE(body.at_rest) << i;
+    EXPECT_TRUE(body.asleep) << i;
   }
 }
 
@@ -465,13 +465,13 @@ TEST(PushDirections, PointFromTheBodyToWhatMovesNearIt) {
   Mesh hand;
   hand.origin = {10, 0, 0};
   hand.vertices = {{0.3F, 0, 0.1F}, {0.35F, 0.02F, 0.1F}, {2, 0, 0}, {std::nanf(""), 0, 0}};
-  const PushDirections found = push_directions({&hand}, {10, 0, 0}, 0.5);
+  const PushDirections found = depenetration_directions({&hand}, {10, 0, 0}, 0.5);
   ASSERT_EQ(found.count, 1);
   EXPECT_NEAR(found.direction_world[0].dot(Vec3::UnitX()), 1.0, 1e-9);
-  EXPECT_EQ(push_directions({&hand}, {10, 0, 0}, 0.1).count, 0);
-  EXPECT_EQ(push_directions({}, {0, 0, 0}, 1.0).count, 0);
+  EXPECT_EQ(depenetration_directions({&hand}, {10, 0, 0}, 0.1).count, 0);
+  EXPECT_EQ(depenetration_directions({}, {0, 0, 0}, 1.0).count, 0);
   hand.vertices = {{0, 0, 0.3F}};  // straight above
-  EXPECT_EQ(push_directions({&hand}, {10, 0, 0}, 0.5).count, 0);
+  EXPECT_EQ(depenetration_directions({&hand}, {10, 0, 0}, 0.5).count, 0);
 }
 
 TEST(PhysicsConfig, NamesTheFieldThatIsWrong) {

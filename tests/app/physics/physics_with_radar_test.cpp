@@ -59,11 +59,13 @@ class PhysicsWithRadar : public ::testing::Test {
     table_.build_by_place(mesh);
   }
   StepReport step() {
-    const std::vector<SceneTree> scene = {{{&table_, Eigen::Isometry3d::Identity()}, Touched::kStatic},
-                                          {{&hand_, Eigen::Isometry3d::Identity()}, Touched::kDynamic}};
+    const std::vector<SceneTree> scene = {{{&table_, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic},
+                                          {{&hand_, Eigen::Isometry3d::Identity()}, SurfaceKind::kDynamic}};
     const RadarScene radar_scene{scene, {}};
-    const PushDirections push = push_directions({&hand_mesh_}, body_.T_world_object * Vec3(0, 0, 0.07), 0.25);
-    return advance(body_, kFrame_s, probe_of(radar_, field_, teapot_, radar_scene), {}, push.span());
+    const PushDirections push =
+        depenetration_directions({&hand_mesh_}, body_.T_world_object * Vec3(0, 0, 0.07), 0.25);
+    return advance(body_, kFrame_s, make_collision_queries(radar_, field_, teapot_, radar_scene), {},
+                   push.span());
   }
   void set_hand(const Mesh& mesh) {
     hand_mesh_ = mesh;
@@ -73,13 +75,13 @@ class PhysicsWithRadar : public ::testing::Test {
   [[nodiscard]] double exact_gap_m() const {
     Eigen::Isometry3d raised = body_.T_world_object;
     raised.translation().z() += 0.05;
-    const std::optional<double> travel_m =
+    const std::optional<double> contact_distance_m =
         exact_travel(teapot_mesh_, raised, -Vec3::UnitZ(), 0.5, table_mesh_, Eigen::Isometry3d::Identity());
-    return travel_m ? *travel_m - 0.05 : 1.0;
+    return contact_distance_m ? *contact_distance_m - 0.05 : 1.0;
   }
 
   CyberRadar radar_;
-  NearField field_;
+  ProximityQuery field_;
   Mesh teapot_mesh_ = utah_teapot(8, 0.15);
   TriangleTree teapot_, table_, hand_;
   Mesh table_mesh_, hand_mesh_;
@@ -89,7 +91,7 @@ class PhysicsWithRadar : public ::testing::Test {
 TEST_F(PhysicsWithRadar, TheTeapotRestsOnTheTableWithinAFewMillimetres) {
   set_table(sheet(0.4, kTableTop_m));
   for (int i = 0; i < 45; ++i) EXPECT_EQ(step().status, StepStatus::kMoved);
-  EXPECT_TRUE(body_.at_rest);
+  EXPECT_TRUE(body_.asleep);
   EXPECT_GE(exact_gap_m(), 0.0);
   EXPECT_LE(exact_gap_m(), 0.002);  // a margin of 1 mm
   const Vec3 before = body_.T_world_object.translation();
@@ -104,7 +106,7 @@ TEST_F(PhysicsWithRadar, ARoughTableHoldsItWithoutCreeping) {
     (void)step();
     deepest_m = std::max(deepest_m, -exact_gap_m());
   }
-  EXPECT_TRUE(body_.at_rest);
+  EXPECT_TRUE(body_.asleep);
   EXPECT_LT(deepest_m, 0.004);  // the requirement is 10 mm
   EXPECT_LT(body_.T_world_object.translation().head<2>().norm(), 0.03);
 }
@@ -118,7 +120,7 @@ TEST_F(PhysicsWithRadar, ThrownItSlidesAndStops) {
     (void)step();
     deepest_m = std::max(deepest_m, -exact_gap_m());
   }
-  EXPECT_TRUE(body_.at_rest);
+  EXPECT_TRUE(body_.asleep);
   EXPECT_GT(body_.T_world_object.translation().x(), -0.4);
   EXPECT_LT(body_.T_world_object.translation().x(), 0.2);
   EXPECT_LT(deepest_m, 0.002);
@@ -127,7 +129,7 @@ TEST_F(PhysicsWithRadar, ThrownItSlidesAndStops) {
 TEST_F(PhysicsWithRadar, APalmPushesItAlongTheTable) {
   set_table(sheet(0.8, kTableTop_m));
   body_.T_world_object.translation() = Vec3(0, 0, kTableTop_m + 0.003);
-  body_.at_rest = true;
+  body_.asleep = true;
   double palm_x_m = -0.25;  // the handle ends at -0.15
   double deepest_m = 0.0;
   for (int i = 0; i < 60; ++i) {
@@ -153,7 +155,7 @@ TEST_F(PhysicsWithRadar, AHandLiftsItFromBelowAndLetsItFall) {
   EXPECT_NEAR(body_.T_world_object.translation().z(), hand_z_m, 0.01);
   set_hand({});
   for (int i = 0; i < 120; ++i) (void)step();  // a pot wobbles for a while
-  EXPECT_TRUE(body_.at_rest);
+  EXPECT_TRUE(body_.asleep);
   EXPECT_NEAR(exact_gap_m(), 0.002, 0.002);
 }
 

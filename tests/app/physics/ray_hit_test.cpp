@@ -38,7 +38,7 @@ double distance_by_volumes(const Ray& ray, const Vec3& a, const Vec3& b, const V
   return is_inside && t > 0.0 ? t : std::numeric_limits<double>::infinity();
 }
 
-TEST(SurfaceHit, IsTheNearestOfAllTriangles) {
+TEST(MeshHit, IsTheNearestOfAllTriangles) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   const Mesh mesh = scattered_triangles(random, 3000);
@@ -63,19 +63,19 @@ TEST(SurfaceHit, IsTheNearestOfAllTriangles) {
       };
       nearest_m = std::min(nearest_m, distance_by_volumes(ray, corner(0), corner(1), corner(2)));
     }
-    const auto hit = surface_hit({&tree, T_world_mesh}, ray, 10.0);
+    const auto hit = hit_mesh({&tree, T_world_mesh}, ray, 10.0);
     ASSERT_EQ(hit.has_value(), nearest_m < 10.0) << i;
     if (!hit) continue;
     ++hits;
     EXPECT_NEAR(hit->distance_m, nearest_m, 1e-9);
     EXPECT_NEAR((hit->point_world - ray.origin_world).norm(), nearest_m, 1e-9);
     EXPECT_LT(hit->normal_world.dot(ray.direction_world), 0.0);
-    EXPECT_FALSE(surface_hit({&tree, T_world_mesh}, ray, nearest_m - 1e-6)) << "out of reach";
+    EXPECT_FALSE(hit_mesh({&tree, T_world_mesh}, ray, nearest_m - 1e-6)) << "out of reach";
   }
   EXPECT_GT(hits, 100);
 }
 
-TEST(SurfaceHit, ARayThroughAPixelMeetsWhatIsProjectedThere) {
+TEST(MeshHit, ARayThroughAPixelMeetsWhatIsProjectedThere) {
   const Intrinsics camera{640, 480, 525.0, 530.0, 319.5, 239.5};
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   T_world_camera.rotate(Eigen::AngleAxisd(2.0, Vec3(1, 0.2, 0).normalized())).pretranslate(Vec3(1, 2, 3));
@@ -86,7 +86,7 @@ TEST(SurfaceHit, ARayThroughAPixelMeetsWhatIsProjectedThere) {
   EXPECT_NEAR(pixel.y(), 400.0, 1e-9);
 }
 
-TEST(SurfaceHit, NoRaySlipsThroughBetweenTwoTriangles) {
+TEST(MeshHit, NoRaySlipsThroughBetweenTwoTriangles) {
   Mesh mesh;
   mesh.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -95,26 +95,26 @@ TEST(SurfaceHit, NoRaySlipsThroughBetweenTwoTriangles) {
   for (int i = -99; i < 100; ++i) {
     const double at = 0.02 * i;  // on the diagonal that both share
     const Vec3 from(0.3, -1.2, 1.7);
-    EXPECT_TRUE(surface_hit({&tree, Eigen::Isometry3d::Identity()},
-                            {from, (Vec3(at, at, 0.0) - from).normalized()}, 10.0));
+    EXPECT_TRUE(hit_mesh({&tree, Eigen::Isometry3d::Identity()},
+                         {from, (Vec3(at, at, 0.0) - from).normalized()}, 10.0));
   }
 }
 
-TEST(SurfaceHit, NothingIsMetWhereNothingIsOrTheRayIsNone) {
+TEST(MeshHit, NothingIsMetWhereNothingIsOrTheRayIsNone) {
   const Ray ray{{0, 0, 0}, {0, 0, 1}};
-  EXPECT_FALSE(surface_hit({}, ray, 10.0));
+  EXPECT_FALSE(hit_mesh({}, ray, 10.0));
   TriangleTree tree;
-  EXPECT_FALSE(surface_hit({&tree, Eigen::Isometry3d::Identity()}, ray, 10.0));
+  EXPECT_FALSE(hit_mesh({&tree, Eigen::Isometry3d::Identity()}, ray, 10.0));
   Mesh mesh;
   mesh.vertices = {{-1, -1, 2}, {1, -1, 2}, {0, 1, 2}};
   mesh.triangles = {{0, 1, 2}};
   tree.build_by_place(mesh);
   const TreeInstance sheet{&tree, Eigen::Isometry3d::Identity()};
-  EXPECT_TRUE(surface_hit(sheet, ray, 10.0));
-  EXPECT_FALSE(surface_hit(sheet, {{0, 0, 3}, {0, 0, 1}}, 10.0)) << "behind";
-  EXPECT_FALSE(surface_hit(sheet, {{0, 0, 0}, {0, 0, 0}}, 10.0));
-  EXPECT_FALSE(surface_hit(sheet, {{0, std::nan(""), 0}, {0, 0, 1}}, 10.0));
-  EXPECT_FALSE(surface_hit(sheet, {{5, 0, 0}, {0, 0, 1}}, 10.0)) << "beside";
+  EXPECT_TRUE(hit_mesh(sheet, ray, 10.0));
+  EXPECT_FALSE(hit_mesh(sheet, {{0, 0, 3}, {0, 0, 1}}, 10.0)) << "behind";
+  EXPECT_FALSE(hit_mesh(sheet, {{0, 0, 0}, {0, 0, 0}}, 10.0));
+  EXPECT_FALSE(hit_mesh(sheet, {{0, std::nan(""), 0}, {0, 0, 1}}, 10.0));
+  EXPECT_FALSE(hit_mesh(sheet, {{5, 0, 0}, {0, 0, 1}}, 10.0)) << "beside";
 }
 
 }  // namespace

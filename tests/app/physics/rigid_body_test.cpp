@@ -26,30 +26,31 @@ struct BallOverPlane {
   Vec3 normal = Vec3::UnitZ();
 
   [[nodiscard]] double gap_m(const Vec3& centre) const { return normal.dot(centre) - radius_m; }
-  [[nodiscard]] BodyProbe probe() const {
-    BodyProbe probe;
+  [[nodiscard]] CollisionQueries probe() const {
+    CollisionQueries probe;
     probe.travel = [this](const Eigen::Isometry3d& T, const Vec3& direction, double distance_m) {
       Contact contact;
       contact.status = ContactStatus::kNoTarget;
       contact.lower_m = distance_m;
       const double closing = -normal.dot(direction);
-      const double travel_m = gap_m(T.translation()) / closing;
-      if (closing < 1e-9 || travel_m > distance_m) return contact;
-      contact.status = travel_m < 0.0 ? ContactStatus::kOverlap : ContactStatus::kContact;
-      contact.travel_m = contact.lower_m = contact.upper_m = travel_m;
+      const double contact_distance_m = gap_m(T.translation()) / closing;
+      if (closing < 1e-9 || contact_distance_m > distance_m) return contact;
+      contact.status = contact_distance_m < 0.0 ? ContactStatus::kOverlap : ContactStatus::kContact;
+      contact.contact_distance_m = contact.lower_m = contact.upper_m = contact_distance_m;
       contact.normal_world = normal;
-      contact.touched = Touched::kStatic;
+      contact.touched = SurfaceKind::kStatic;
       return contact;
     };
-    probe.near = [this](const Eigen::Isometry3d& T, double reach_m, Kinds, std::vector<NearPoint>& points) {
+    probe.near = [this](const Eigen::Isometry3d& T, double reach_m, SurfaceKindMask,
+                        std::vector<ClosestPoint>& points) {
       points.clear();
       const double gap = gap_m(T.translation());
       if (gap > 0.0 && gap <= reach_m)
-        points.push_back({T.translation() - (radius_m + gap) * normal, normal, gap, Touched::kStatic});
-      return Kinds{0};
+        points.push_back({T.translation() - (radius_m + gap) * normal, normal, gap, SurfaceKind::kStatic});
+      return SurfaceKindMask{0};
     };
     probe.free_time = [this](const Eigen::Isometry3d& T, const RigidMotion& motion, double duration_s,
-                             double keep_m, Kinds) {
+                             double keep_m, SurfaceKindMask) {
       const double closing_mps = -normal.dot(motion.linear_m_s);
       const double gap = gap_m(T.translation());
       const double allowed_m = gap > 2.0 * keep_m ? gap - keep_m : 0.5 * gap;
@@ -76,7 +77,7 @@ class Stage {
     object_.build_by_place(object);
     mass = mass_properties(object, object_.is_closed());
   }
-  void add(const Mesh& mesh, Touched kind = Touched::kStatic) {
+  void add(const Mesh& mesh, SurfaceKind kind = SurfaceKind::kStatic) {
     trees_.emplace_back().build_by_place(mesh);
     kinds_.push_back(kind);
   }
@@ -97,7 +98,7 @@ class Stage {
     for (std::size_t i = 0; i < trees_.size(); ++i)
       scene.push_back({{&trees_[i], Eigen::Isometry3d::Identity()}, kinds_[i]});
     const RadarScene radar_scene{scene, {}};
-    return advance(body, dt_s, probe_of(radar_, field_, object_, radar_scene), config, push);
+    return advance(body, dt_s, make_collision_queries(radar_, field_, object_, radar_scene), config, push);
   }
   void run(Body& body, double seconds, const PhysicsConfig& config = {}) {
     for (double t = 0.0; t < seconds - 1e-9; t += kFrame_s) (void)step(body, kFrame_s, config);
@@ -109,9 +110,9 @@ class Stage {
  private:
   TriangleTree object_;
   std::vector<TriangleTree> trees_;
-  std::vector<Touched> kinds_;
+  std::vector<SurfaceKind> kinds_;
   CyberRadar radar_;
-  NearField field_;
+  ProximityQuery field_;
 };
 
 Mesh moved(Mesh mesh, const Vec3& by) {
@@ -188,7 +189,7 @@ TEST(RigidBody, SlidesAsFarAsFrictionLetsIt) {
   Body body = stage.body_at({0, 0, 0.051});
   body.velocity_world_mps = {1.5, 0, 0};
   stage.run(body, 2.0, config);
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
   EXPECT_NEAR(body.T_world_object.translation().x(), 1.5 * 1.5 / (2.0 * 0.3 * kG), 0.004);
   EXPECT_NEAR(on_a_face(body), 1.0, 1e-6);
 }
@@ -200,9 +201,9 @@ TEST(RigidBody, WhatHasRestedSlidesAsFarAsAnyOther) {
   config.friction = 0.3;
   Body body = stage.body_at({0, 0, 0.051});
   stage.run(body, 2.0, config);
-  ASSERT_TRUE(body.at_rest);
+  ASSERT_TRUE(body.asleep);
   const double from_m = body.T_world_object.translation().x();
-  body.at_rest = false;  // as a throw leaves it
+  body.asleep = false;  // as a throw leaves it
   body.velocity_world_mps = {0.6, 0, 0};
   stage.run(body, 2.0, config);
   EXPECT_NEAR(body.T_world_object.translation().x() - from_m, 0.6 * 0.6 / (2.0 * 0.3 * kG), 0.004);
@@ -221,7 +222,8 @@ TEST(RigidBody, ABallRollsDownASlopeAtFiveSevenths) {
   EXPECT_NEAR((body.T_world_object.translation() - 0.0510 * slope.normal).norm(), 0.5 * acceleration * t * t,
               0.005 * acceleration);
   // It rolls: the place of contact stands still.
-  EXPECT_NEAR(body.spin_world_rad_s.norm() * 0.0510, body.velocity_world_mps.norm(), 0.03 * acceleration);
+  EXPECT_NEAR(body.angular_velocity_world_rad_s.norm() * 0.0510, body.velocity_world_mps.norm(),
+              0.03 * acceleration);
 }
 
 TEST(RigidBody, AMeshBallRollsDownASlopeAndComesToRestOnTheFloor) {
@@ -252,11 +254,11 @@ TEST(RigidBody, AMeshBallRollsDownASlopeAndComesToRestOnTheFloor) {
   stage.add(shapes::floor(20.0F, 0.0F));
   Body body = stage.body_at({-0.8, 0, 0.8 * static_cast<double>(rise) + 0.065});
   double fastest_mps = 0.0;
-  for (int i = 0; i < 600 && !body.at_rest; ++i) {
+  for (int i = 0; i < 600 && !body.asleep; ++i) {
     (void)stage.step(body);
     fastest_mps = std::max(fastest_mps, body.velocity_world_mps.norm());
   }
-  EXPECT_TRUE(body.at_rest);
+  EXPECT_TRUE(body.asleep);
   const double without_loss_mps = std::sqrt(10.0 / 7.0 * kG * 0.8 * static_cast<double>(rise));
   EXPECT_GT(fastest_mps, 0.8 * without_loss_mps);
   EXPECT_LT(fastest_mps, without_loss_mps);
@@ -267,13 +269,13 @@ TEST(RigidBody, AMeshBallRollsDownASlopeAndComesToRestOnTheFloor) {
 TEST(RigidBody, WhatTurnsFreelyKeepsItsAngularMomentum) {
   Body body;
   body.mass = mass_properties(box(0.1, 0.2, 0.4), true);
-  body.spin_world_rad_s = {0.3, 8.0, 0.2};  // about the middle axis: it tumbles
+  body.angular_velocity_world_rad_s = {0.3, 8.0, 0.2};  // about the middle axis: it tumbles
   const BallOverPlane far_below;
-  const BodyProbe nothing = far_below.probe();
+  const CollisionQueries nothing = far_below.probe();
   body.T_world_object.translation() = Vec3(0, 0, 100);
   PhysicsConfig config;
   config.gravity_world_mps2.setZero();
-  const auto momentum = [&]() -> Vec3 { return inertia_world_m2(body) * body.spin_world_rad_s; };
+  const auto momentum = [&]() -> Vec3 { return inertia_world_m2(body) * body.angular_velocity_world_rad_s; };
   const Vec3 before = momentum();
   double least_along_y = 1.0;
   for (int i = 0; i < 3000; ++i) {
@@ -282,16 +284,16 @@ TEST(RigidBody, WhatTurnsFreelyKeepsItsAngularMomentum) {
   }
   EXPECT_LT((momentum() - before).norm(), 1e-9 * before.norm());
   EXPECT_LT(least_along_y, -0.8);  // it turned over
-  const double turning = body.spin_world_rad_s.dot(momentum());
+  const double turning = body.angular_velocity_world_rad_s.dot(momentum());
   EXPECT_NEAR(turning, Vec3(0.3, 8.0, 0.2).dot(before), 0.01 * turning);
 }
 
 TEST(RigidBody, ItsAxesStayAtRightAnglesThroughAMillionSteps) {
   Body body = ball_at({0, 0, 1e6});
   body.mass = mass_properties(box(0.1, 0.2, 0.4), true);
-  body.spin_world_rad_s = {1, 2, 3};
+  body.angular_velocity_world_rad_s = {1, 2, 3};
   const BallOverPlane far_below;
-  const BodyProbe nothing = far_below.probe();
+  const CollisionQueries nothing = far_below.probe();
   PhysicsConfig config;
   config.gravity_world_mps2.setZero();
   for (int i = 0; i < 1'000'000; ++i) (void)advance(body, 1e-3, nothing, config);
@@ -307,7 +309,7 @@ TEST(RigidBody, ATiltedCubeFallsOntoAFaceAndRestsThere) {
     Body body = stage.body_at({0, 0, 0.4});
     body.T_world_object.rotate(Eigen::AngleAxisd(0.6, axis.normalized()));
     stage.run(body, 3.0);
-    EXPECT_TRUE(body.at_rest);
+    EXPECT_TRUE(body.asleep);
     EXPECT_NEAR(on_a_face(body), 1.0, 1e-4);
     EXPECT_NEAR(body.T_world_object.translation().z(), 0.101, 2e-4);
   }
@@ -319,7 +321,7 @@ TEST(RigidBody, WhatStandsMoreThanHalfOverAnEdgeTipsOverIt) {
   stage.add(shapes::floor(5.0F, 0.0F));
   Body stays = stage.body_at({-0.02, 0, 0.601});
   stage.run(stays, 2.0);
-  EXPECT_TRUE(stays.at_rest);
+  EXPECT_TRUE(stays.asleep);
   EXPECT_NEAR(stays.T_world_object.translation().x(), -0.02, 1e-3);
   Body tips = stage.body_at({0.02, 0, 0.601});
   double most_turned = 0.0;
@@ -327,14 +329,14 @@ TEST(RigidBody, WhatStandsMoreThanHalfOverAnEdgeTipsOverIt) {
     (void)stage.step(tips);
     most_turned = std::max(most_turned, std::abs(tips.T_world_object.linear()(0, 2)));
   }
-  EXPECT_TRUE(tips.at_rest);
+  EXPECT_TRUE(tips.asleep);
   EXPECT_GT(most_turned, 0.5);
   EXPECT_NEAR(on_a_face(tips), 1.0, 1e-4);
   EXPECT_NEAR(tips.T_world_object.translation().z(), 0.101, 1e-3);
 }
 
 TEST(RigidBody, TheEdgeOfWhatIsMetFromOneSideHoldsAsAnyOther) {
-  for (const Touched kind : {Touched::kStatic, Touched::kUnknownFrontier}) {
+  for (const SurfaceKind kind : {SurfaceKind::kStatic, SurfaceKind::kUnknownFrontier}) {
     Stage stage(shapes::box({0.3F, 0.3F, 0.3F}));
     stage.add(shapes::box({1.0F, 1.0F, 1.0F}), kind);
     // Tips over the edge of its top.
@@ -369,7 +371,7 @@ TEST(RigidBody, PushedHighATallBoxTipsPushedLowItSlides) {
     Stage stage(box(0.1, 0.1, 0.4));
     const double z_m = is_high ? 0.35 : 0.05;
     stage.add(shapes::floor(5.0F, 0.0F));
-    stage.add(hand(-0.2, z_m), Touched::kDynamic);
+    stage.add(hand(-0.2, z_m), SurfaceKind::kDynamic);
     Body body = stage.body_at({0, 0, 0.201});
     const Vec3 towards_hand = -Vec3::UnitX();
     for (int i = 0; i < 120; ++i) {
@@ -397,12 +399,12 @@ TEST(RigidBody, TwoBoxesStandOnEachOtherInWhicheverOrderTheyAreMoved) {
       for (const bool is_upper : {upper_first, !upper_first}) {
         Body& body = is_upper ? upper : lower;
         const Body& other = is_upper ? lower : upper;
-        const SceneTree tree{{&stage.object(), other.T_world_object}, Touched::kObject};
+        const SceneTree tree{{&stage.object(), other.T_world_object}, SurfaceKind::kObject};
         (void)stage.step(body, kFrame_s, {}, {}, {&tree, 1});
       }
     }
-    EXPECT_TRUE(lower.at_rest);
-    EXPECT_TRUE(upper.at_rest);
+    EXPECT_TRUE(lower.asleep);
+    EXPECT_TRUE(upper.asleep);
     EXPECT_NEAR(lower.T_world_object.translation().z(), 0.101, 1e-3);
     EXPECT_NEAR(upper.T_world_object.translation().z(), 0.302, 2e-3);
     EXPECT_LT((upper.T_world_object.translation().head<2>() - Eigen::Vector2d(0.03, 0.02)).norm(), 2e-3);
@@ -419,15 +421,15 @@ TEST(RigidBody, ExtremeSizesAndStepsStayFinite) {
       Body body = stage.body_at({0, 0, 1.0 + stage.mass.radius_m});
       body.T_world_object.rotate(Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()));
       body.velocity_world_mps = {3, -2, -8};
-      body.spin_world_rad_s = {1e4, -300, 20};
+      body.angular_velocity_world_rad_s = {1e4, -300, 20};
       for (int i = 0; i < 40; ++i) {
         (void)stage.step(body, dt_s);
         ASSERT_TRUE(body.T_world_object.matrix().allFinite());
-        ASSERT_TRUE(body.velocity_world_mps.allFinite() && body.spin_world_rad_s.allFinite());
+        ASSERT_TRUE(body.velocity_world_mps.allFinite() && body.angular_velocity_world_rad_s.allFinite());
         ASSERT_GT(body.T_world_object.translation().z(), 0.0);
       }
       if (dt_s > 0.0) {
-        EXPECT_LE(body.spin_world_rad_s.norm(), PhysicsConfig{}.max_spin_rad_s * (1.0 + 1e-9));
+        EXPECT_LE(body.angular_velocity_world_rad_s.norm(), PhysicsConfig{}.max_angular_rad_s * (1.0 + 1e-9));
       }
     }
   }
@@ -444,7 +446,7 @@ TEST(RigidBody, AThinSheetIsNotPassedByTurning) {
     stage.add(sheet);
     Body body = stage.body_at({0, 0, 0});
     body.T_world_object.rotate(Eigen::AngleAxisd(std::numbers::pi / 2.0, Vec3::UnitY()));
-    body.spin_world_rad_s = {0, 50, 0};
+    body.angular_velocity_world_rad_s = {0, 50, 0};
     for (int i = 0; i < 60; ++i) {
       (void)stage.step(body, dt_s, config);
       for (const double end : {-0.5, 0.5})
@@ -466,7 +468,7 @@ TEST(RigidBody, SetExactlyOnAFaceItStaysThereAndIsLiftedToItsMargin) {
     }
     EXPECT_NEAR(body.T_world_object.translation().z() - half_m, 0.001, 0.0002);
     EXPECT_LT(body.T_world_object.translation().head<2>().norm(), 1e-6);
-    EXPECT_TRUE(body.at_rest);
+    EXPECT_TRUE(body.asleep);
   }
 }
 

@@ -23,11 +23,11 @@ std::vector<BudgetStep> steps(std::size_t count) {
 }
 
 constexpr FrameLoad kCalm{};
-constexpr FrameLoad kCrowd{.moved_fraction = 0.5, .moving = 50, .resting = 0};
+constexpr FrameLoad kCrowd{.dynamic_fraction = 0.5, .moving = 50, .resting = 0};
 
 /// A machine on which frames take what they take.
 struct Machine {
-  double speed = 1.0;  ///< of all parts, times usual_ms()
+  double speed = 1.0;  ///< of all parts, times nominal_ms()
   double noise = 0.0;  ///< a frame takes longer or shorter by up to this part
   double wrong = 0.0;  ///< by so much more than their ratios say the steps take
   std::mt19937 random{1};
@@ -43,17 +43,17 @@ struct Machine {
     double elapsed_ms = 0.0;
     std::array<double, kFrameParts> parts_ms{};
     FrameLoad known = load;
-    known.moved_fraction = moved_before_;
+    known.dynamic_fraction = moved_before_;
     for (std::size_t i = 0; i < kFrameParts; ++i) {
       const auto which = static_cast<FramePart>(i);
       if (which == FramePart::kMesh) known = load;
       changes += decide(state, config, which, known, elapsed_ms) ? 1 : 0;
       const double ratio = state.front[state.step].ratios[i];
-      parts_ms[i] = factor * usual_ms(which, load) * (ratio + (1.0 - ratio) * wrong);
+      parts_ms[i] = factor * nominal_ms(which, load) * (ratio + (1.0 - ratio) * wrong);
       elapsed_ms += parts_ms[i];
     }
     learn(state, config, parts_ms);
-    moved_before_ = load.moved_fraction;
+    moved_before_ = load.dynamic_fraction;
     return elapsed_ms;
   }
 
@@ -79,7 +79,7 @@ TEST(Budget, SuddenLoadIsHeldAndAllComesBackAfterIt) {
     Machine machine;
     machine.noise = noise;
     machine.config.budget_ms = 16.0;
-    ASSERT_GT(usual_ms(FramePart::kPhysics, kCrowd) + usual_ms(FramePart::kMesh, kCrowd), 14.0)
+    ASSERT_GT(nominal_ms(FramePart::kPhysics, kCrowd) + nominal_ms(FramePart::kMesh, kCrowd), 14.0)
         << "the load alone would fill the budget";
     std::vector<double> took_ms, loaded_ms;
     machine.run(250, kCalm, &took_ms);
@@ -99,7 +99,7 @@ TEST(Budget, ThePersonIsSeenBeforeSheIsMeshed) {
   machine.config.budget_ms = 12.0;
   machine.run(50, kCalm);
   // The same frame in which half of the image moves, and no frame later.
-  const double ms = machine.frame({.moved_fraction = 0.5});
+  const double ms = machine.frame({.dynamic_fraction = 0.5});
   EXPECT_LE(ms, machine.config.budget_ms);
   EXPECT_GT(machine.state.step, 0U);
 }
@@ -217,11 +217,11 @@ TEST(Budget, APartThatIsNotMadeIsNotForeseen) {
   front.front().ratios[index_of(FramePart::kCompose)] = 1.0;
   const BudgetState with = start_budget(front, {});
   EXPECT_NEAR(foreseen_ms(with, 0, kCalm) - foreseen_ms(without, 0, kCalm),
-              with.spread * usual_ms(FramePart::kCompose, kCalm), 1e-9);
+              with.spread * nominal_ms(FramePart::kCompose, kCalm), 1e-9);
   front.front().alternates = true;
   const BudgetState alternating = start_budget(front, {});
   EXPECT_NEAR(foreseen_ms(with, 0, kCalm) - foreseen_ms(alternating, 0, kCalm),
-              with.spread * usual_ms(FramePart::kPhysics, kCalm), 1e-9);
+              with.spread * nominal_ms(FramePart::kPhysics, kCalm), 1e-9);
 }
 
 TEST(Budget, WhatTurnsSaveDependsOnHowManyObjectsTakeThem) {
@@ -229,11 +229,11 @@ TEST(Budget, WhatTurnsSaveDependsOnHowManyObjectsTakeThem) {
   const auto physics_ms = [](int measured_objects, double ratio, int objects) {
     std::vector<BudgetStep> front(1);
     front.front().ratios = {0.0, 0.0, ratio, 0.0};
-    front.front().object_turns = 4;
+    front.front().move_every_n_frames = 4;
     front.front().objects = measured_objects;
     const BudgetState state = start_budget(front, {});
     const FrameLoad load{.moving = objects};
-    return foreseen_ms(state, 0, load) / (state.spread * usual_ms(FramePart::kPhysics, load));
+    return foreseen_ms(state, 0, load) / (state.spread * nominal_ms(FramePart::kPhysics, load));
   };
   EXPECT_NEAR(physics_ms(1, 1.0, 1), 1.0, 1e-12);
   EXPECT_NEAR(physics_ms(1, 1.0, 100), 0.25, 1e-12) << "a frame moves a quarter of many";
@@ -311,9 +311,9 @@ TEST(RunBudget, ComesBackToWhatWasAskedForThoughTheFrontHasSlowerSettings) {
         if (const auto changed = budget.before(static_cast<FramePart>(part), kCalm)) quality = *changed;
         const double ratio = quality == RunQuality{} ? 1.0 : quality.object_error_px / 3.0;
         if (part < kFrameParts)
-          now_ms += ratio * (has_load ? 60.0 : default_ms) * usual_ms(static_cast<FramePart>(part), kCalm) /
-                    (usual_ms(FramePart::kLocate, kCalm) + usual_ms(FramePart::kMesh, kCalm) +
-                     usual_ms(FramePart::kPhysics, kCalm) + usual_ms(FramePart::kCompose, kCalm));
+          now_ms += ratio * (has_load ? 60.0 : default_ms) * nominal_ms(static_cast<FramePart>(part), kCalm) /
+                    (nominal_ms(FramePart::kLocate, kCalm) + nominal_ms(FramePart::kMesh, kCalm) +
+                     nominal_ms(FramePart::kPhysics, kCalm) + nominal_ms(FramePart::kCompose, kCalm));
       }
       budget.end_frame();
       if (frame == 140) {
@@ -331,8 +331,8 @@ TEST(RunBudget, SaysWhatItGaveUpAndRecordsItAsEvents) {
   presets.front[1].run.depth_stride = 2;
   presets.front[1].part_ratios = {0.1, 0.1, 0.1, 0.1};
   double now_ms = 0.0;
-  const RunQuality asked{.mesh_sigmas = 1.0};
-  for (FrontStep& step : presets.front) step.run.mesh_sigmas = asked.mesh_sigmas;
+  const RunQuality asked{.mesh_tolerance_sigmas = 1.0};
+  for (FrontStep& step : presets.front) step.run.mesh_tolerance_sigmas = asked.mesh_tolerance_sigmas;
   RunBudget budget(front_for(presets, asked, {}), 20.0, /*has_picture=*/true, [&] { return now_ms; });
   EXPECT_EQ(budget.given_up(), "") << "what was asked for is not given up";
   budget.keep({.mode = RadarMode::kSampled, .resolution_px = 32});

@@ -1,6 +1,6 @@
 // quality_test.cpp: what can be traded for time: its rules, its words, its JSON, and what it sets.
-#include "app/cli/apply_scan_quality.hpp"
 #include "app/quality/quality.hpp"
+#include "app/cli/apply_scan_quality.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,17 +15,17 @@ namespace {
 RunQuality coarse() {
   return {.depth_stride = 4,
           .tracking_px = 80,
-          .mesh_sigmas = 1.0 / 3.0,
+          .mesh_tolerance_sigmas = 1.0 / 3.0,
           .fine_mesh = true,
           .radar = RadarMode::kSampled,
           .radar_px = 24,
           .physics_step_s = 0.1,
-          .object_turns = 3,
+          .move_every_n_frames = 3,
           .object_error_px = 2.0,
           .soft_edges = false,
           .shadows = false,
-          .shadow_turns = 8,
-          .picture_turns = 2};
+          .shadow_every_n_frames = 8,
+          .picture_every_n_frames = 2};
 }
 
 TEST(Quality, EveryFieldIsInTheListOnce) {
@@ -71,7 +71,7 @@ TEST(Quality, NumbersThatAreNoneAreRefused) {
   for (const char* word : {"nan", "inf", "-1", "", "1e400", "0.5 "})
     EXPECT_THROW(set_field(quality, "mesh_sigmas", word), Error) << word;
   EXPECT_EQ(quality, RunQuality{});
-  quality.mesh_sigmas = std::numeric_limits<double>::quiet_NaN();
+  quality.mesh_tolerance_sigmas = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(require_valid(quality), Error);
   EXPECT_THROW(require_valid(ScanQuality{.fuse_every = 0}), Error);
 }
@@ -80,10 +80,10 @@ TEST(Quality, LengthsInPixelsAreOfWholeDepthImages) {
   for (const int stride : {2, 4}) {
     SessionConfig config;
     apply(RunQuality{.depth_stride = stride}, config);
-    const SessionConfig usual;
-    EXPECT_EQ(config.scene.mesh.skirt_gap_px * stride, usual.scene.mesh.skirt_gap_px);
+    const SessionConfig defaults;
+    EXPECT_EQ(config.scene.mesh.skirt_gap_px * stride, defaults.scene.mesh.skirt_gap_px);
     EXPECT_EQ(config.scene.mesh.stride_px, 1);  // of 2 whole pixels; 4 are as fine as it can be
-    EXPECT_EQ(config.scene.foreground.hole_reach_px * stride, usual.scene.foreground.hole_reach_px);
+    EXPECT_EQ(config.scene.foreground.hole_reach_px * stride, defaults.scene.foreground.hole_reach_px);
   }
 }
 
@@ -91,31 +91,31 @@ TEST(Quality, DefaultsChangeNothing) {
   // Each field's default is that of the config it sets: otherwise a run would not be what it was.
   SessionConfig config;
   apply(RunQuality{}, config);
-  const SessionConfig usual;
-  EXPECT_EQ(config.depth_stride, usual.depth_stride);
-  EXPECT_EQ(config.tracking_px, usual.tracking_px);
-  EXPECT_EQ(config.scene.moved.deviation_sigmas, usual.scene.moved.deviation_sigmas);
-  EXPECT_EQ(config.scene.foreground.min_region_px, usual.scene.foreground.min_region_px);
-  EXPECT_EQ(config.scene.foreground.hole_reach_px, usual.scene.foreground.hole_reach_px);
-  EXPECT_EQ(config.scene.foreground.weak_reach_px, usual.scene.foreground.weak_reach_px);
-  EXPECT_EQ(config.scene.mesh.stride_px, usual.scene.mesh.stride_px);
-  EXPECT_EQ(config.scene.mesh.skirt_gap_px, usual.scene.mesh.skirt_gap_px);
-  EXPECT_EQ(config.fine_mesh, usual.fine_mesh);
-  EXPECT_EQ(config.radar, usual.radar);
-  EXPECT_EQ(config.physics.max_step_s, usual.physics.max_step_s);
-  EXPECT_EQ(config.object_turns, usual.object_turns);
-  EXPECT_EQ(config.object_error_px, usual.object_error_px);
-  EXPECT_EQ(config.picture.occlusion.edge_reach_px, usual.picture.occlusion.edge_reach_px);
-  EXPECT_EQ(config.picture.shadow_strength, usual.picture.shadow_strength);
-  EXPECT_EQ(config.shadow_turns, usual.shadow_turns);
-  EXPECT_EQ(config.picture_turns, usual.picture_turns);
+  const SessionConfig defaults;
+  EXPECT_EQ(config.depth_stride, defaults.depth_stride);
+  EXPECT_EQ(config.tracking_px, defaults.tracking_px);
+  EXPECT_EQ(config.scene.moved.deviation_sigmas, defaults.scene.moved.deviation_sigmas);
+  EXPECT_EQ(config.scene.foreground.min_region_px, defaults.scene.foreground.min_region_px);
+  EXPECT_EQ(config.scene.foreground.hole_reach_px, defaults.scene.foreground.hole_reach_px);
+  EXPECT_EQ(config.scene.foreground.weak_reach_px, defaults.scene.foreground.weak_reach_px);
+  EXPECT_EQ(config.scene.mesh.stride_px, defaults.scene.mesh.stride_px);
+  EXPECT_EQ(config.scene.mesh.skirt_gap_px, defaults.scene.mesh.skirt_gap_px);
+  EXPECT_EQ(config.fine_mesh, defaults.fine_mesh);
+  EXPECT_EQ(config.radar, defaults.radar);
+  EXPECT_EQ(config.physics.max_step_s, defaults.physics.max_step_s);
+  EXPECT_EQ(config.move_every_n_frames, defaults.move_every_n_frames);
+  EXPECT_EQ(config.object_error_px, defaults.object_error_px);
+  EXPECT_EQ(config.picture.occlusion.edge_reach_px, defaults.picture.occlusion.edge_reach_px);
+  EXPECT_EQ(config.picture.shadow_strength, defaults.picture.shadow_strength);
+  EXPECT_EQ(config.shadow_every_n_frames, defaults.shadow_every_n_frames);
+  EXPECT_EQ(config.picture_every_n_frames, defaults.picture_every_n_frames);
   PrescanConfig scan;
   apply(ScanQuality{}, scan);
-  const PrescanConfig usual_scan;
-  EXPECT_EQ(scan.resolution_m, usual_scan.resolution_m);
-  EXPECT_EQ(scan.surface.max_deviation_m, usual_scan.surface.max_deviation_m);
-  EXPECT_EQ(scan.odometry.view.finest_width_px, usual_scan.odometry.view.finest_width_px);
-  EXPECT_EQ(scan.fuse_every, usual_scan.fuse_every);
+  const PrescanConfig default_scan;
+  EXPECT_EQ(scan.resolution_m, default_scan.resolution_m);
+  EXPECT_EQ(scan.surface.max_deviation_m, default_scan.surface.max_deviation_m);
+  EXPECT_EQ(scan.odometry.view.finest_width_px, default_scan.odometry.view.finest_width_px);
+  EXPECT_EQ(scan.fuse_every, default_scan.fuse_every);
 }
 
 }  // namespace

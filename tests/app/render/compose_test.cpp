@@ -149,7 +149,7 @@ TEST(ContactShadow, AgreesWithTheFormFactorOfASquarePlate) {
     const double a = half_m / below_m;
     const double root = std::sqrt(1.0 + a * a);
     const double exact = 4.0 / (2.0 * M_PI) * 2.0 * a / root * std::atan(a / root);
-    const float taken = sky_taken(shadow, Eigen::Vector3f(0, 0, static_cast<float>(-below_m)));
+    const float taken = ambient_occlusion(shadow, Eigen::Vector3f(0, 0, static_cast<float>(-below_m)));
     EXPECT_NEAR(taken, exact, 0.03) << below_m;
   }
 }
@@ -159,25 +159,25 @@ TEST(ContactShadow, IsDarkestInContactAndFadesSidewaysAndDownwards) {
   EXPECT_NEAR(shadow.bottom_m, 0.05, 1e-6);
   float before = 2.0F;
   for (float below_m = 0.0F; below_m < 0.25F; below_m += 0.01F) {
-    const float taken = sky_taken(shadow, {0, 0, 0.05F - below_m});
+    const float taken = ambient_occlusion(shadow, {0, 0, 0.05F - below_m});
     EXPECT_LE(taken, before + 1e-4F);
     before = taken;
   }
-  EXPECT_GT(sky_taken(shadow, {0, 0, 0.05F}), 0.9F);
+  EXPECT_GT(ambient_occlusion(shadow, {0, 0, 0.05F}), 0.9F);
   EXPECT_LT(before, 0.01F);
   before = 2.0F;
   for (float x_m = 0.0F; x_m < 0.4F; x_m += 0.01F) {
-    const float taken = sky_taken(shadow, {x_m, 0, 0.03F});
+    const float taken = ambient_occlusion(shadow, {x_m, 0, 0.03F});
     EXPECT_LE(taken, before + 1e-4F);
     before = taken;
   }
   EXPECT_EQ(before, 0.0F);
-  const float in_contact = sky_taken(shadow, {0, 0, 0.05F});
+  const float in_contact = ambient_occlusion(shadow, {0, 0, 0.05F});
   // A noisy surface reaches above the bottom ...
-  EXPECT_NEAR(sky_taken(shadow, {0, 0, 0.06F}), in_contact, 1e-3F);
-  EXPECT_NEAR(sky_taken(shadow, {0, 0, 0.08F}), in_contact / 2, 1e-3F);  // ... not by so much, though
-  EXPECT_EQ(sky_taken(shadow, {0, 0, 0.10F}), 0.0F);
-  EXPECT_EQ(sky_taken(shadow, {0, 0, -5.0F}), 0.0F);
+  EXPECT_NEAR(ambient_occlusion(shadow, {0, 0, 0.06F}), in_contact, 1e-3F);
+  EXPECT_NEAR(ambient_occlusion(shadow, {0, 0, 0.08F}), in_contact / 2, 1e-3F);  // ... not by so much, though
+  EXPECT_EQ(ambient_occlusion(shadow, {0, 0, 0.10F}), 0.0F);
+  EXPECT_EQ(ambient_occlusion(shadow, {0, 0, -5.0F}), 0.0F);
 }
 
 TEST(ContactShadow, WithFewerCellsIsNearlyTheSame) {
@@ -189,7 +189,8 @@ TEST(ContactShadow, WithFewerCellsIsNearlyTheSame) {
   for (const float clearance_m : {0.02F, 0.05F, 0.1F})
     for (float x_m = -0.2F; x_m <= 0.2F; x_m += 0.01F) {
       const Eigen::Vector3f p_m(x_m, 0.03F, -clearance_m);
-      EXPECT_NEAR(sky_taken(coarse, p_m), sky_taken(fine, p_m), 0.05F) << x_m << " " << clearance_m;
+      EXPECT_NEAR(ambient_occlusion(coarse, p_m), ambient_occlusion(fine, p_m), 0.05F)
+          << x_m << " " << clearance_m;
     }
 }
 
@@ -198,9 +199,9 @@ TEST(ContactShadow, OfAPlateOnEdgeIsASliver) {
   const ContactShadow on_edge =
       shadow_of(plate(0.1F, 0.0F), Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()).toRotationMatrix());
   EXPECT_NEAR(on_edge.bottom_m, -0.1F, 0.002F);
-  EXPECT_GT(sky_taken(flat, {0, 0.06F, -0.02F}), 0.7F);
-  EXPECT_LT(sky_taken(on_edge, {0, 0.06F, -0.12F}), 0.1F);
-  EXPECT_GT(sky_taken(on_edge, {0, 0.0F, -0.1F}), 0.2F);
+  EXPECT_GT(ambient_occlusion(flat, {0, 0.06F, -0.02F}), 0.7F);
+  EXPECT_LT(ambient_occlusion(on_edge, {0, 0.06F, -0.12F}), 0.1F);
+  EXPECT_GT(ambient_occlusion(on_edge, {0, 0.0F, -0.1F}), 0.2F);
 }
 
 TEST(ContactShadow, PointsStandForTheSameArea) {
@@ -219,12 +220,12 @@ TEST(ContactShadow, PointsStandForTheSameArea) {
 }
 
 TEST(ContactShadow, NothingCastsNone) {
-  EXPECT_EQ(sky_taken(shadow_of(Mesh{}), {0, 0, 0}), 0.0F);
+  EXPECT_EQ(ambient_occlusion(shadow_of(Mesh{}), {0, 0, 0}), 0.0F);
   Mesh broken = plate(0.1F, 0.0F);
   broken.vertices[0].x() = std::nanf("");
   broken.triangles[1][2] = 99;
-  EXPECT_EQ(sky_taken(shadow_of(broken), {0, 0, -0.01F}), 0.0F);
-  EXPECT_EQ(sky_taken(ContactShadow{}, {0, 0, 0}), 0.0F);
+  EXPECT_EQ(ambient_occlusion(shadow_of(broken), {0, 0, -0.01F}), 0.0F);
+  EXPECT_EQ(ambient_occlusion(ContactShadow{}, {0, 0, 0}), 0.0F);
 }
 
 TEST(Compose, AShadowStaysUnderAnObjectThatTurnedALittleWhereverItsOriginIs) {

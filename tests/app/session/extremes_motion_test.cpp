@@ -64,9 +64,9 @@ class Falling {
     if (!tree_.is_closed()) throw std::logic_error("the box is open");
   }
   StepReport step(double dt_s, const PhysicsConfig& config = {}) {
-    const std::vector<SceneTree> scene = {{{&floor_, Eigen::Isometry3d::Identity()}, Touched::kStatic}};
+    const std::vector<SceneTree> scene = {{{&floor_, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic}};
     const RadarScene radar_scene{scene, {}};
-    return advance(body, dt_s, probe_of(radar_, field_, tree_, radar_scene), config);
+    return advance(body, dt_s, make_collision_queries(radar_, field_, tree_, radar_scene), config);
   }
   [[nodiscard]] double height_m() const { return body.T_world_object.translation().z(); }
 
@@ -76,7 +76,7 @@ class Falling {
  private:
   TriangleTree tree_, floor_;
   CyberRadar radar_;
-  NearField field_;
+  ProximityQuery field_;
 };
 
 TEST(Extremes, AMillionStepsOfASpinningBodyKeepARotation) {
@@ -85,10 +85,10 @@ TEST(Extremes, AMillionStepsOfASpinningBodyKeepARotation) {
   PhysicsConfig weightless;
   weightless.gravity_world_mps2.setZero();
   box.body.T_world_object.translation() = Vec3(0, 0, 2.0);
-  box.body.spin_world_rad_s = Vec3(3.0, -7.0, 5.0);
+  box.body.angular_velocity_world_rad_s = Vec3(3.0, -7.0, 5.0);
   const auto momentum = [&] {
     const Eigen::Matrix3d R = box.body.T_world_object.linear();
-    return Vec3(R * box.body.mass.inertia_m2 * R.transpose() * box.body.spin_world_rad_s);
+    return Vec3(R * box.body.mass.inertia_m2 * R.transpose() * box.body.angular_velocity_world_rad_s);
   };
   const Vec3 before = momentum();
   double worst = 0.0;
@@ -138,8 +138,8 @@ TEST(Extremes, ChainedPosesStayRotations) {
   constexpr int kViews = 24;
   constexpr Intrinsics kSmall{64, 48, 58.5, 58.5, 31.5, 23.5};
   struct View {
-    LiveView live;
-    ReferenceView reference;
+    SourcePoints live;
+    TargetView reference;
     Eigen::Isometry3d T_world_camera;
   };
   std::vector<View> views(kViews);
@@ -150,8 +150,8 @@ TEST(Extremes, ChainedPosesStayRotations) {
     const ViewConfig config{.noisy = false};
     ViewPyramid pyramid;
     make_pyramid(frame.depth_m, frame.depth_camera, config, pyramid);
-    make_live(pyramid, view.live);
-    make_reference(pyramid, view.T_world_camera, config, view.reference);
+    make_source_points(pyramid, view.live);
+    make_target_view(pyramid, view.T_world_camera, config, view.reference);
   }
   AlignConfig config;
   config.min_points = 100;
@@ -185,12 +185,12 @@ TEST(Extremes, AMicrosecondAtATimeABodyFallsAndComesToRest) {
   Falling low;
   low.body.T_world_object.translation() = Vec3(0, 0, Falling::kHalfHeight_m + 0.0015);
   int steps = 0;
-  while (!low.body.at_rest && steps < 600'000) {
+  while (!low.body.asleep && steps < 600'000) {
     ASSERT_EQ(low.step(kStep_s).status, StepStatus::kMoved);
     ++steps;
   }
   const double gap_m = low.height_m() - Falling::kHalfHeight_m;
-  EXPECT_TRUE(low.body.at_rest);
+  EXPECT_TRUE(low.body.asleep);
   EXPECT_GT(gap_m, 0.0);
   EXPECT_LT(gap_m, 0.0015);
   print_row("1 µs between frames", "0.1 s of fall are 49.050 mm; it comes to rest in its margin of 1 mm",
@@ -254,10 +254,10 @@ TEST(Extremes, TenSecondsBetweenFramesLaunchNothing) {
   for (int i = 0; i < 12; ++i) pot.step(10.0 * i);
   EXPECT_GT(pot.lowest_bottom_m(), 0.0);
   EXPECT_LT(pot.bottom_m(), 0.002);
-  EXPECT_TRUE(pot.body().at_rest);
+  EXPECT_TRUE(pot.body().asleep);
   print_row("10 s between frames, a pot thrown down at 20 m/s", "never in the floor; at rest on it",
             text("lowest point %.2f mm over it at the least, ", 1e3 * pot.lowest_bottom_m()) +
-                (pot.body().at_rest ? "at rest" : "not at rest"));
+                (pot.body().asleep ? "at rest" : "not at rest"));
 }
 
 TEST(Extremes, StampsThatJumpBackStandStillForOneFrame) {
@@ -277,7 +277,7 @@ TEST(Extremes, StampsThatJumpBackStandStillForOneFrame) {
   EXPECT_EQ(done, 124);
   EXPECT_GT(pot.lowest_bottom_m(), 0.0);
   EXPECT_LT(pot.bottom_m(), 0.002);
-  EXPECT_TRUE(pot.body().at_rest);
+  EXPECT_TRUE(pot.body().asleep);
   print_row(
       "stamps that jump back by 100 s every tenth frame, then NaN, infinity, -1e300 and 0 s",
       "every frame done; a pot falls on as if the odd steps were none",

@@ -63,7 +63,7 @@ Quantiles errors_m(
 
 /// A pot dropped from 0.3 m over a point, after some seconds of frames that see nothing; where it ended.
 struct Dropped {
-  bool at_rest = false;
+  bool asleep = false;
   double bottom_m = 0.0;
 };
 Dropped drop_pot(const SavedMap& map, const Vec3& onto_world) {
@@ -90,7 +90,7 @@ Dropped drop_pot(const SavedMap& map, const Vec3& onto_world) {
     static_cast<void>(session.step(frame, times));
   }
   const VirtualObject& pot = *session.objects().front();
-  return {pot.body.at_rest, pot.body.T_world_object.translation().z() + lowest_m(pot)};
+  return {pot.body.asleep, pot.body.T_world_object.translation().z() + lowest_m(pot)};
 }
 
 Frame numbered(Frame frame, std::size_t index) {
@@ -132,7 +132,7 @@ TEST(Extremes, ARoomOfTwoMetres) {
   test::KeptSource source(std::move(frames));
   StageTimes times;
   const PrescanResult scan = prescan(source, {}, times);
-  ASSERT_TRUE(scan.counts.against_recorded);
+  ASSERT_TRUE(scan.counts.trajectory_error);
   const TrajectoryError error = absolute_trajectory_error(scan.map.trajectory, truth);
   const Quantiles surface = errors_m(scan.map.mesh, error.T_reference_estimate, distance_m);
   EXPECT_EQ(scan.counts.frames_tracked, static_cast<std::int64_t>(kOnceRound));
@@ -142,7 +142,7 @@ TEST(Extremes, ARoomOfTwoMetres) {
   const Eigen::Isometry3d T_map_room = error.T_reference_estimate.inverse();
   const Vec3 onto = T_map_room * Vec3(0.0, -0.5, 0.0);
   const Dropped pot = drop_pot(scan.map, onto);
-  EXPECT_TRUE(pot.at_rest);
+  EXPECT_TRUE(pot.asleep);
   EXPECT_NEAR(pot.bottom_m, onto.z(), 0.02);
   print_row("a room of 2 × 2 × 2 m, 1 cm, tracked once round with a Kinect's noise",
             "all frames tracked, RMSE under 10 mm; surface 5 mm median; a pot rests on its floor",
@@ -215,7 +215,7 @@ TEST(Extremes, ARoomOfTwoHundredMetres) {
   EXPECT_EQ(loaded.octree.counts().occupied_leaves, counts.occupied_leaves);
   const Vec3 onto = scan.map.info.T_world_recorded * Vec3(kHall_m - 4.0, 0.0, 0.0);
   const Dropped pot = drop_pot(loaded, onto);
-  EXPECT_TRUE(pot.at_rest);
+  EXPECT_TRUE(pot.asleep);
   EXPECT_NEAR(pot.bottom_m, onto.z(), 0.2 * config.resolution_m + 0.002);
   print_row(
       text("a room of 200 × 4 × 3 m, exact poses, %.0f cm", 1e2 * config.resolution_m),

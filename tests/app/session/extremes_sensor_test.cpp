@@ -38,7 +38,7 @@ struct Outcome {
   std::int64_t located = 0;  ///< of kLive
   double pose_m = 0.0;       ///< worst of the located
   double moved = 0.0;        ///< part of the pixels that is taken for moved, mean; nothing does
-  bool at_rest = false;
+  bool asleep = false;
   double fell_m = 0.0;  ///< towards the room's floor
   double gap_m = 0.0;   ///< from the pot's lowest point to the true surface
 };
@@ -117,11 +117,11 @@ Outcome scan_and_run(const SimOptions& options, const Alter& alter) {
   }
   // On a rough surface it may rock for another second or two.
   Frame& last = live.back();
-  for (int i = 0; i < 60 && !pot.body.at_rest; ++i) {
+  for (int i = 0; i < 60 && !pot.body.asleep; ++i) {
     last.stamp_s += 1.0 / 30.0;
     session.step(last, times);
   }
-  outcome.at_rest = pot.in_room && pot.body.at_rest;
+  outcome.asleep = pot.in_room && pot.body.asleep;
   outcome.fell_m = began_m - height_m();
   double gap_m = 1.0;
   const GpuMesh& shape = pot.model->shape.drawn;
@@ -139,7 +139,7 @@ std::string described(const Outcome& o) {
          text("surface %.1f mm median; ", 1e3 * o.surface_m) + "up by " + o.up_source +
          text(", %.2f° off; ", o.tilt_deg) + text("%.0f of 45 located, ", static_cast<double>(o.located)) +
          text("%.1f mm off at most, ", 1e3 * o.pose_m) + text("%.2f %% taken for moved; ", 1e2 * o.moved) +
-         "the pot fell " + text("%.2f m", o.fell_m) + (o.at_rest ? " and rests " : " and does not rest ") +
+         "the pot fell " + text("%.2f m", o.fell_m) + (o.asleep ? " and rests " : " and does not rest ") +
          text("%.1f mm from the table", 1e3 * o.gap_m);
 }
 
@@ -177,17 +177,17 @@ void expect_good(const Outcome& outcome, double worse = 1.0) {
   EXPECT_EQ(outcome.located, kLive);
   EXPECT_LT(outcome.pose_m, 0.008 * worse);
   EXPECT_LT(outcome.moved, 0.002 * worse);
-  EXPECT_TRUE(outcome.at_rest);
+  EXPECT_TRUE(outcome.asleep);
   EXPECT_GT(outcome.fell_m, 0.25);
   EXPECT_LT(std::abs(outcome.gap_m), 0.006 * worse);
 }
 
-constexpr const char* kAsUsual = "tracked, located, the pot falls 0.3 m onto the table and rests";
+constexpr const char* kDefaultForm = "tracked, located, the pot falls 0.3 m onto the table and rests";
 
 TEST(Extremes, AsUsualForComparison) {
   const Outcome outcome = scan_and_run(parse_sim_spec(kSource), leave);
   expect_good(outcome);
-  print_row("a simulated dining room, 160 × 120, for comparison", kAsUsual, described(outcome));
+  print_row("a simulated dining room, 160 × 120, for comparison", kDefaultForm, described(outcome));
 }
 
 TEST(Extremes, ThirtyPercentOfThePixelsInvalid) {

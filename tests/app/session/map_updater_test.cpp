@@ -31,21 +31,21 @@ SavedMap map_of(const std::string& crate) {
 }
 
 /// @param after_s  none: only what is asked for
-SessionConfig adopting(std::optional<double> after_s) {
+SessionConfig updating(std::optional<double> after_s) {
   SessionConfig config;
   config.poses = PoseOrigin::kRecorded;
   config.make_picture = false;
-  config.adopt.emplace();
-  config.adopt->after_s = after_s;
-  config.adopt->views = 6;
-  config.adopt->apply_after_frames = 5;
+  config.map_updates.emplace();
+  config.map_updates->after_s = after_s;
+  config.map_updates->views = 6;
+  config.map_updates->apply_after_frames = 5;
   return config;
 }
 
 /// A session over a simulated source, and a pot in it.
-class AdoptingSession {
+class UpdatingSession {
  public:
-  AdoptingSession(SavedMap& map, const SimOptions& options, const SessionConfig& config)
+  UpdatingSession(SavedMap& map, const SimOptions& options, const SessionConfig& config)
       : source_(options), session(map, config, &map.octree) {}
 
   /// Runs so many frames; `hidden`: a hand right before the lens covers the middle of the image.
@@ -104,23 +104,23 @@ class AdoptingSession {
 
 void ask(Session& session) {
   ScriptEvent event;
-  event.action = Action::kAdopt;
+  event.action = Action::kCommit;
   session.apply(event);
 }
 
 TEST(Adopt, ACrateThatCameHoldsAPotAlsoWhenAHandHidesIt) {
   SavedMap map = map_of("0");
-  AdoptingSession run(map, view("frames=90&crate=comes"), adopting(1.5));
+  UpdatingSession run(map, view("frames=90&crate=comes"), updating(1.5));
   run.run(45);
-  EXPECT_TRUE(run.session.adopted().empty());
+  EXPECT_TRUE(run.session.committed_changes().empty());
   const FrameResult moved = run.run(5);
   EXPECT_GT(moved.foreground.moved, 150U);
   run.run(30);
-  ASSERT_EQ(run.session.adopted().size(), 1U);
-  const AdoptedChange adopted = run.session.adopted().front();
-  EXPECT_EQ(adopted.kind, LastingKind::kCame);
-  EXPECT_GE(adopted.frame, 45 + 15 + 6 + 5);
-  EXPECT_LT((adopted.box_world.center() - kCrateTop + Vector3d(0, 0, 0.11)).norm(), 0.06);
+  ASSERT_EQ(run.session.committed_changes().size(), 1U);
+  const CommittedChange committed_changes = run.session.committed_changes().front();
+  EXPECT_EQ(committed_changes.kind, LastingKind::kCame);
+  EXPECT_GE(committed_changes.frame, 45 + 15 + 6 + 5);
+  EXPECT_LT((committed_changes.box_world.center() - kCrateTop + Vector3d(0, 0, 0.11)).norm(), 0.06);
   // It is no longer foreground, and holds what is dropped on it behind a hand.
   const FrameResult now = run.run(1);
   EXPECT_LT(now.foreground.moved, 20U);
@@ -131,9 +131,9 @@ TEST(Adopt, ACrateThatCameHoldsAPotAlsoWhenAHandHidesIt) {
 
 TEST(Adopt, WithoutItAHiddenCrateHoldsNothing) {
   SavedMap map = map_of("0");
-  SessionConfig config = adopting(1.5);
-  config.adopt.reset();
-  AdoptingSession run(map, view("frames=90&crate=comes"), config);
+  SessionConfig config = updating(1.5);
+  config.map_updates.reset();
+  UpdatingSession run(map, view("frames=90&crate=comes"), config);
   run.run(75);
   run.drop_pot(kCrateTop);
   run.run(12, true);
@@ -142,80 +142,80 @@ TEST(Adopt, WithoutItAHiddenCrateHoldsNothing) {
 
 TEST(Adopt, WhatACrateHeldFallsWhenItIsTakenAway) {
   SavedMap map = map_of("1");
-  AdoptingSession run(map, view("frames=120&crate=goes"), adopting(1.5));
+  UpdatingSession run(map, view("frames=120&crate=goes"), updating(1.5));
   run.drop_pot(kCrateTop);
   run.run(62);
   EXPECT_NEAR(run.pot_m(), kCrateTop.z(), 0.01) << "not seen for long enough to be gone";
   run.run(58);
-  ASSERT_EQ(run.session.adopted().size(), 1U);
-  EXPECT_EQ(run.session.adopted().front().kind, LastingKind::kWent);
+  ASSERT_EQ(run.session.committed_changes().size(), 1U);
+  EXPECT_EQ(run.session.committed_changes().front().kind, LastingKind::kWent);
   EXPECT_NEAR(run.pot_m(), 0.75, 0.01);
   EXPECT_EQ(map.octree.occupancy_at(kCrateTop - Vector3d(0, 0, 0.1)), Occupancy::kFree);
 }
 
 TEST(Adopt, SolidUnknownSpaceInsideACrateGoesWithIt) {
   SavedMap map = map_of("1");
-  AdoptingSession run(map, view("frames=90&crate=goes"), adopting(1.5));
+  UpdatingSession run(map, view("frames=90&crate=goes"), updating(1.5));
   run.make_unknown_solid();
   const Vector3d inside = kCrateTop - Vector3d(0, 0, 0.11);
   EXPECT_TRUE(is_unknown(run.session.unknown(), inside));
   run.drop_pot(kCrateTop);
   run.run(90);
-  ASSERT_EQ(run.session.adopted().size(), 1U);
+  ASSERT_EQ(run.session.committed_changes().size(), 1U);
   EXPECT_FALSE(is_unknown(run.session.unknown(), inside));
   EXPECT_NEAR(run.pot_m(), 0.75, 0.01);
 }
 
 TEST(Adopt, WhatIsAskedForIsAdoptedAtOnce) {
   SavedMap map = map_of("0");
-  AdoptingSession run(map, view("frames=80&crate=comes"), adopting(std::nullopt));
+  UpdatingSession run(map, view("frames=80&crate=comes"), updating(std::nullopt));
   run.run(60);
-  EXPECT_TRUE(run.session.adopted().empty()) << "nobody asked";
+  EXPECT_TRUE(run.session.committed_changes().empty()) << "nobody asked";
   ask(run.session);
   run.run(15);
-  EXPECT_EQ(run.session.adopted().size(), 1U);
+  EXPECT_EQ(run.session.committed_changes().size(), 1U);
 }
 
 TEST(Adopt, WhatWasAskedForWhileTheCameraWasLostIsNotDoneLater) {
   SavedMap map = map_of("0");
-  AdoptingSession run(map, view("frames=90&crate=comes"), adopting(std::nullopt));
+  UpdatingSession run(map, view("frames=90&crate=comes"), updating(std::nullopt));
   run.run(46);
   ask(run.session);
   run.run_lost(14);
   run.run(30);
-  EXPECT_TRUE(run.session.adopted().empty()) << "nobody asked for what stands there by then";
+  EXPECT_TRUE(run.session.committed_changes().empty()) << "nobody asked for what stands there by then";
 }
 
 TEST(Adopt, AHandThatWavesAndAPersonWhoStandsForTwoSecondsAreNot) {
   for (const char* const moving : {"hand", "hand&pace=slow", "person&pace=waits"}) {
     SavedMap map = map_of("0");
-    AdoptingSession run(map, view(std::string("frames=100&moving=") + moving), adopting(5.0));
+    UpdatingSession run(map, view(std::string("frames=100&moving=") + moving), updating(5.0));
     run.run(100);
-    run.session.finish_adopting();
-    EXPECT_TRUE(run.session.adopted().empty()) << moving;
+    run.session.finish_commits();
+    EXPECT_TRUE(run.session.committed_changes().empty()) << moving;
   }
 }
 
 TEST(Adopt, WhatMovesIsNotBecauseTheCameraIsHeld) {
   for (const char* const moving : {"moving=hand", "crate=comes"}) {
     SavedMap map = map_of("0");
-    AdoptingSession run(map, view(std::string("frames=100&") + moving), adopting(1.5));
+    UpdatingSession run(map, view(std::string("frames=100&") + moving), updating(1.5));
     std::size_t moved = 0;
     for (int i = 0; i < 90 && moved < 150; ++i) moved = run.run(1).foreground.moved;
     ASSERT_GE(moved, 150U) << moving;
     run.hold(150);
-    run.session.finish_adopting();
-    EXPECT_TRUE(run.session.adopted().empty()) << moving;
+    run.session.finish_commits();
+    EXPECT_TRUE(run.session.committed_changes().empty()) << moving;
   }
 }
 
 TEST(Adopt, APersonInTheBackgroundDoesNotKeepTheCrateOut) {
   SavedMap map = map_of("0");
-  AdoptingSession run(map, view("frames=90&crate=comes&moving=person"), adopting(1.5));
+  UpdatingSession run(map, view("frames=90&crate=comes&moving=person"), updating(1.5));
   run.run(90);
-  run.session.finish_adopting();
-  ASSERT_EQ(run.session.adopted().size(), 1U);
-  EXPECT_LT(run.session.adopted().front().box_world.sizes().maxCoeff(), 0.4);
+  run.session.finish_commits();
+  ASSERT_EQ(run.session.committed_changes().size(), 1U);
+  EXPECT_LT(run.session.committed_changes().front().box_world.sizes().maxCoeff(), 0.4);
 }
 
 TEST(Adopt, AMapWithoutAnOctreeIsRefusedInWords) {
@@ -223,19 +223,19 @@ TEST(Adopt, AMapWithoutAnOctreeIsRefusedInWords) {
   map.mesh.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}};
   map.mesh.triangles = {{0, 1, 2}};
   try {
-    Session session(map, adopting(1.0), &map.octree);
+    Session session(map, updating(1.0), &map.octree);
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("octree holds no surface"), std::string::npos) << error.what();
   }
-  EXPECT_THROW(Session(map, adopting(1.0)), Error);
-  EXPECT_THROW(Session(map, adopting(0.0), &map.octree), Error);
+  EXPECT_THROW(Session(map, updating(1.0)), Error);
+  EXPECT_THROW(Session(map, updating(0.0), &map.octree), Error);
 }
 
 TEST(Adopt, AskingASessionThatDoesNotWatchIsSaid) {
   SavedMap map = map_of("0");
-  SessionConfig config = adopting(1.0);
-  config.adopt.reset();
+  SessionConfig config = updating(1.0);
+  config.map_updates.reset();
   Session session(map, config, &map.octree);
   EXPECT_THROW(ask(session), Error);
 }

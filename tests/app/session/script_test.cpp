@@ -65,7 +65,7 @@ TEST(Script, ReadsEachAction) {
   EXPECT_EQ(script.events[4].action, Action::kThrow);
   EXPECT_EQ(script.events[4].velocity_world_mps, Eigen::Vector3d(1, 0, 0.5));
   EXPECT_EQ(script.events[5].action, Action::kRemove);
-  EXPECT_EQ(script.events[6].action, Action::kAdopt);
+  EXPECT_EQ(script.events[6].action, Action::kCommit);
   EXPECT_TRUE(script.events[6].name.empty());
   EXPECT_EQ(script.events[7].action, Action::kTurn);
   EXPECT_EQ(script.events[7].turn_world_deg, Eigen::Vector3d(0, 0, -45.5));
@@ -81,9 +81,10 @@ TEST(Script, ReadsEachAction) {
   EXPECT_EQ(script.events[13].camera, CameraPlay::kHold);
   EXPECT_EQ(
       script.events[14].quality,
-      (RunQuality{.depth_stride = 2, .mesh_sigmas = 0.1, .radar = RadarMode::kSampled, .shadows = false}));
+      (RunQuality{
+          .depth_stride = 2, .mesh_tolerance_sigmas = 0.1, .radar = RadarMode::kSampled, .shadows = false}));
   EXPECT_EQ(script.events[14].from, FramePart::kLocate);
-  EXPECT_EQ(script.events[15].quality, (RunQuality{.object_turns = 4}));
+  EXPECT_EQ(script.events[15].quality, (RunQuality{.move_every_n_frames = 4}));
   EXPECT_EQ(script.events[15].from, FramePart::kPhysics);
   EXPECT_EQ(script.events[16].action, Action::kQuit);
   EXPECT_EQ(script.events[14].line, 17);
@@ -124,7 +125,7 @@ TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
     EXPECT_EQ(a.height_m, b.height_m);
     EXPECT_EQ(a.velocity_world_mps, b.velocity_world_mps);
     EXPECT_EQ(a.turn_world_deg, b.turn_world_deg);
-    EXPECT_EQ(a.spin_world_rad_s, b.spin_world_rad_s);
+    EXPECT_EQ(a.angular_velocity_world_rad_s, b.angular_velocity_world_rad_s);
     EXPECT_EQ(a.R_world_object, b.R_world_object);
     EXPECT_EQ(a.surfaces, b.surfaces);
     EXPECT_EQ(a.unknown_is_solid, b.unknown_is_solid);

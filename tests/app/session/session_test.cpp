@@ -119,7 +119,7 @@ TEST(Session, ACameraWhoseColourHasStoppedShowsItsDepthUntilThereIsColourAgain) 
 TEST(Session, ColourThatComesBetweenTwoPicturesIsInTheNextOne) {
   const SavedMap map = floor_map();
   SessionConfig config = by_recorded_poses();
-  config.picture_turns = 2;
+  config.picture_every_n_frames = 2;
   Session session(map, config);
   StageTimes times;
   for (std::int64_t i = 0; i < 40; ++i) {
@@ -353,11 +353,11 @@ TEST(Session, OneThatSpinsOnAndOnDoesNotKeepTheOthersFromTheirShadows) {
   put = event(Action::kThrow);
   put.name = "spins";
   put.position_world = Eigen::Vector3d(0.5, 0.0, -5.0);  // it falls on and on, below the floor
-  put.spin_world_rad_s = Eigen::Vector3d(0.0, 0.0, 10.0);
+  put.angular_velocity_world_rad_s = Eigen::Vector3d(0.0, 0.0, 10.0);
   session.apply(put);
   for (std::int64_t i = 0; i < 40; ++i) static_cast<void>(session.step(in_colour(i, kAtTheFloor), times));
-  ASSERT_TRUE(session.objects()[0]->body.at_rest);
-  ASSERT_FALSE(session.objects()[1]->body.at_rest);
+  ASSERT_TRUE(session.objects()[0]->body.asleep);
+  ASSERT_FALSE(session.objects()[1]->body.asleep);
   const VirtualObject& rests = *session.objects()[0];
   EXPECT_EQ(rests.shadow.cells_across, 16);
   EXPECT_TRUE(rests.shadow.R_world_object.isApprox(rests.body.T_world_object.linear(), 0.05));
@@ -436,17 +436,17 @@ Body fallen(const SessionConfig& config) {
 
 TEST(Session, ObjectsThatAreMovedInTurnsFallAsFastAsOthers) {
   SessionConfig config = by_recorded_poses();
-  const Body usual = fallen(config);
-  config.object_turns = 16;
-  config.picture_turns = 2;
+  const Body defaults = fallen(config);
+  config.move_every_n_frames = 16;
+  config.picture_every_n_frames = 2;
   const Body in_turns = fallen(config);  // moved in frames 1 and 33
   EXPECT_NEAR(in_turns.velocity_world_mps.z(), -9.81 * 33.0 / 30.0, 1e-9);
-  EXPECT_NEAR(in_turns.T_world_object.translation().z(), usual.T_world_object.translation().z(), 1e-6);
+  EXPECT_NEAR(in_turns.T_world_object.translation().z(), defaults.T_world_object.translation().z(), 1e-6);
 }
 
 TEST(Session, ObjectsMoveInTheSameFramesWhereNoPicturesAreMade) {
   SessionConfig config = by_recorded_poses();
-  config.picture_turns = 3;
+  config.picture_every_n_frames = 3;
   const Body seen = fallen(config);
   config.make_picture = false;
   EXPECT_TRUE(fallen(config).T_world_object.isApprox(seen.T_world_object, 0.0));
@@ -457,11 +457,11 @@ TEST(Session, AQualityThatWasDueInALostFrameHoldsFromThereOn) {
   Session session(map, by_recorded_poses());
   StageTimes times;
   ScriptEvent change = event(Action::kQuality);
-  change.quality.shadow_turns = 7;
+  change.quality.shadow_every_n_frames = 7;
   change.from = FramePart::kCompose;
   session.apply(change);
   ASSERT_EQ(session.step(depth_only(0, std::nullopt), times).status, FrameStatus::kNotLocated);
-  EXPECT_EQ(session.config().shadow_turns, 7);
+  EXPECT_EQ(session.config().shadow_every_n_frames, 7);
 }
 
 TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
@@ -471,7 +471,7 @@ TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
     drop_pots(session, {{-1.0, 0.0, 0.0}, {-1.4, 0.0, 0.0}});
     go_on(session, 0, 45);
     const Body& shoved = session.objects().front()->body;
-    ASSERT_TRUE(shoved.at_rest);
+    ASSERT_TRUE(shoved.asleep);
     const Eigen::Vector3d stood = shoved.T_world_object.translation();
     ScriptEvent shove = event(how);
     shove.name = "pot1";
@@ -625,7 +625,7 @@ Thrown thrown(Session& session, const Eigen::Vector3d& from_world, double up_mps
     Frame frame = depth_only(i, kAtTheSky);
     frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
     result.unknown_contacts +=
-        session.step(frame, times).contacts_by_kind[static_cast<std::size_t>(Touched::kUnknownFrontier)];
+        session.step(frame, times).contacts_by_kind[static_cast<std::size_t>(SurfaceKind::kUnknownFrontier)];
   }
   return result;
 }
@@ -641,8 +641,8 @@ TEST(Session, SolidUnknownSpaceHoldsAnObjectUpAndSaysSo) {
     EXPECT_FALSE(pot.began_in_unknown);
     EXPECT_EQ(unknown_contacts > 0, is_solid);
     if (is_solid) {
-      EXPECT_TRUE(pot.body.at_rest);
-      EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+      EXPECT_TRUE(pot.body.asleep);
+      EXPECT_EQ(pot.body.rests_on, SurfaceKind::kUnknownFrontier);
       EXPECT_NEAR(bottom_m, 0.0, 0.005);
     } else {
       EXPECT_LT(bottom_m, -1.0);
@@ -656,8 +656,8 @@ TEST(Session, OverASeenFloorSolidUnknownSpaceChangesNothing) {
   StageTimes times;
   session.make_unknown_solid(times);
   const auto [pot, unknown_contacts] = thrown(session, {-1.0, 0.0, 0.6}, 0.0);
-  EXPECT_TRUE(pot.body.at_rest);
-  EXPECT_EQ(pot.body.rests_on, Touched::kStatic);
+  EXPECT_TRUE(pot.body.asleep);
+  EXPECT_EQ(pot.body.rests_on, SurfaceKind::kStatic);
   EXPECT_EQ(unknown_contacts, 0);
 }
 
@@ -669,7 +669,7 @@ TEST(Session, WhatIsPutIntoUnknownSpaceCanLeaveItAndCannotComeBack) {
   const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.5}, 4.2).pot;
   EXPECT_TRUE(pot.began_in_unknown);
   EXPECT_FALSE(pot.in_unknown);
-  EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+  EXPECT_EQ(pot.body.rests_on, SurfaceKind::kUnknownFrontier);
   EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
 }
 
@@ -681,8 +681,8 @@ TEST(Session, WhatIsPutOnTheBorderOfUnknownSpaceComesOutAndStaysOnIt) {
   const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.04}, 0.0).pot;  // sunk in by 4 of its 15 cm
   EXPECT_TRUE(pot.began_in_unknown);
   EXPECT_FALSE(pot.in_unknown);
-  EXPECT_TRUE(pot.body.at_rest);
-  EXPECT_EQ(pot.body.rests_on, Touched::kUnknownFrontier);
+  EXPECT_TRUE(pot.body.asleep);
+  EXPECT_EQ(pot.body.rests_on, SurfaceKind::kUnknownFrontier);
   EXPECT_NEAR(pot.body.T_world_object.translation().z() + lowest_m(pot), 0.0, 0.005);
 }
 

@@ -54,23 +54,23 @@ class Playing : public ::testing::Test {
     result_ = session_.step(frame_, times_);
   }
   /// Does what one wish leads to, and goes one frame on.
-  std::vector<ScriptEvent> play(const Wish& wish) {
-    std::vector<ScriptEvent> events = player_.events_of({&wish, 1}, session_);
+  std::vector<ScriptEvent> play(const UserCommand& command) {
+    std::vector<ScriptEvent> events = player_.events_of({&command, 1}, session_);
     for (const ScriptEvent& event : events) session_.apply(event);
     step();
     return events;
   }
-  static Wish wish(WishKind kind, const Vec3& p_world = Vec3::Zero()) {
-    Wish wish;
-    wish.kind = kind;
-    wish.pixel = project(kCamera, kAtTheFloor.inverse() * p_world);
-    return wish;
+  static UserCommand command(UserCommandKind kind, const Vec3& p_world = Vec3::Zero()) {
+    UserCommand command;
+    command.kind = kind;
+    command.pixel = project(kCamera, kAtTheFloor.inverse() * p_world);
+    return command;
   }
-  static Wish new_teapot() {
-    Wish wish;
-    wish.kind = WishKind::kNew;
-    wish.event.mesh = "teapot";
-    return wish;
+  static UserCommand new_teapot() {
+    UserCommand command;
+    command.kind = UserCommandKind::kNew;
+    command.event.mesh = "teapot";
+    return command;
   }
   [[nodiscard]] const VirtualObject& pot() const { return *session_.objects().front(); }
   [[nodiscard]] Vec3 position() const { return pot().body.T_world_object.translation(); }
@@ -93,8 +93,8 @@ class Playing : public ::testing::Test {
 
 TEST_F(Playing, AnObjectIsDroppedWhereOneClicks) {
   const Vec3 there(0.3, 0.2, 0.0);
-  EXPECT_TRUE(play(wish(WishKind::kGrab, there)).empty());  // nothing is there to be grabbed
-  Wish click = wish(WishKind::kLetGo, there);
+  EXPECT_TRUE(play(command(UserCommandKind::kGrab, there)).empty());  // nothing is there to be grabbed
+  UserCommand click = command(UserCommandKind::kLetGo, there);
   click.event.height_m = 0.25;
   const auto events = play(click);
   ASSERT_EQ(events.size(), 1U);
@@ -104,12 +104,12 @@ TEST_F(Playing, AnObjectIsDroppedWhereOneClicks) {
   EXPECT_LT((*events[0].position_world + to_middle - there).norm(), 1e-6);
   EXPECT_EQ(events[0].height_m, 0.25);
   for (int i = 0; i < 60; ++i) step();
-  EXPECT_TRUE(pot().body.at_rest);
+  EXPECT_TRUE(pot().body.asleep);
   EXPECT_LT((middle() - there).head<2>().norm(), 0.01);
 }
 
 TEST_F(Playing, AnObjectIsPlacedOntoTheSurface) {
-  const auto events = play(wish(WishKind::kPlace, {-0.4, 0.1, 0.0}));
+  const auto events = play(command(UserCommandKind::kPlace, {-0.4, 0.1, 0.0}));
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].action, Action::kPlace);
   EXPECT_NEAR(events[0].position_world->z() + lowest_m(pot()), 0.002, 1e-6);
@@ -118,27 +118,27 @@ TEST_F(Playing, AnObjectIsPlacedOntoTheSurface) {
 }
 
 TEST_F(Playing, WhatIsTurnedWhileItIsDraggedStaysUnderTheMouse) {
-  play(wish(WishKind::kPlace, Vec3::Zero()));
-  play(wish(WishKind::kGrab, middle()));
+  play(command(UserCommandKind::kPlace, Vec3::Zero()));
+  play(command(UserCommandKind::kGrab, middle()));
   const Vec3 there = middle() + Vec3(0.0, 0.0, 0.3);
-  for (int i = 0; i < 10; ++i) play(wish(WishKind::kDrag, there));
+  for (int i = 0; i < 10; ++i) play(command(UserCommandKind::kDrag, there));
   const Vec3 held = middle();
-  Wish turn = wish(WishKind::kTurn);
+  UserCommand turn = command(UserCommandKind::kTurn);
   turn.event.turn_world_deg = Vec3(90.0, 0.0, 0.0);
   play(turn);
-  for (int i = 0; i < 3; ++i) play(wish(WishKind::kDrag, there));
+  for (int i = 0; i < 3; ++i) play(command(UserCommandKind::kDrag, there));
   EXPECT_LT((middle() - held).norm(), 0.005);
 }
 
 TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
-  play(wish(WishKind::kPlace, Vec3::Zero()));
+  play(command(UserCommandKind::kPlace, Vec3::Zero()));
   for (int i = 0; i < 30; ++i) step();
-  ASSERT_TRUE(play(wish(WishKind::kGrab, middle())).empty());
+  ASSERT_TRUE(play(command(UserCommandKind::kGrab, middle())).empty());
   EXPECT_TRUE(player_.is_grabbed());
   // Half a metre to the right and up, at the distance at which it was taken.
   const Vec3 before = position();
   const double distance_m = (middle() - kAtTheFloor.translation()).norm();
-  for (int i = 1; i <= 10; ++i) play(wish(WishKind::kDrag, middle() + Vec3(0.05, 0.0, 0.04)));
+  for (int i = 1; i <= 10; ++i) play(command(UserCommandKind::kDrag, middle() + Vec3(0.05, 0.0, 0.04)));
   for (int i = 0; i < 3; ++i) step();
   EXPECT_GT(position().x(), before.x() + 0.2);
   EXPECT_GT(position().z(), before.z() + 0.1);
@@ -147,9 +147,9 @@ TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
   for (int i = 0; i < 20; ++i) step();
   EXPECT_LT((position() - held).norm(), 1e-6) << "it hangs in the air while it is held";
   // Through the floor, if nothing stopped it.
-  for (int i = 0; i < 10; ++i) play(wish(WishKind::kDrag, {0.3, -0.4, 0.0}));
+  for (int i = 0; i < 10; ++i) play(command(UserCommandKind::kDrag, {0.3, -0.4, 0.0}));
   EXPECT_GT(position().z() + lowest_m(pot()), -1e-6);
-  const auto events = play(wish(WishKind::kLetGo, {0.3, -0.4, 0.0}));
+  const auto events = play(command(UserCommandKind::kLetGo, {0.3, -0.4, 0.0}));
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].action, Action::kRelease);
   EXPECT_FALSE(player_.is_grabbed());
@@ -157,12 +157,13 @@ TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
 }
 
 TEST_F(Playing, WhatIsDraggedAndLetGoBetweenTwoFramesIsCarriedThere) {
-  play(wish(WishKind::kPlace, Vec3::Zero()));
+  play(command(UserCommandKind::kPlace, Vec3::Zero()));
   for (int i = 0; i < 30; ++i) step();
   const Vec3 before = position(), way(0.2, 0.0, 0.3);
-  const std::vector<Wish> wishes = {wish(WishKind::kGrab, middle()), wish(WishKind::kDrag, middle() + way),
-                                    wish(WishKind::kLetGo, middle() + way)};
-  const std::vector<ScriptEvent> first = player_.events_of(wishes, session_);
+  const std::vector<UserCommand> commands = {command(UserCommandKind::kGrab, middle()),
+                                             command(UserCommandKind::kDrag, middle() + way),
+                                             command(UserCommandKind::kLetGo, middle() + way)};
+  const std::vector<ScriptEvent> first = player_.events_of(commands, session_);
   ASSERT_EQ(first.size(), 1U);
   EXPECT_EQ(first[0].action, Action::kCarry);
   session_.apply(first[0]);
@@ -175,26 +176,26 @@ TEST_F(Playing, WhatIsDraggedAndLetGoBetweenTwoFramesIsCarriedThere) {
 }
 
 TEST_F(Playing, RemovingAnotherObjectDoesNotLeaveTheHeldOneHanging) {
-  play(wish(WishKind::kPlace, Vec3::Zero()));
+  play(command(UserCommandKind::kPlace, Vec3::Zero()));
   play(new_teapot());
-  play(wish(WishKind::kPlace, Vec3(0.5, 0.0, 0.0)));
-  play(wish(WishKind::kGrab, middle()));
-  play(wish(WishKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
+  play(command(UserCommandKind::kPlace, Vec3(0.5, 0.0, 0.0)));
+  play(command(UserCommandKind::kGrab, middle()));
+  play(command(UserCommandKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
   ASSERT_TRUE(pot().carried_to_world);
-  Wish choose = wish(WishKind::kChoose);
+  UserCommand choose = command(UserCommandKind::kChoose);
   choose.event.name = "teapot";
   play(choose);
-  ASSERT_EQ(play(wish(WishKind::kRemove)).at(0).name, "teapot");
+  ASSERT_EQ(play(command(UserCommandKind::kRemove)).at(0).name, "teapot");
   EXPECT_TRUE(player_.is_grabbed());
-  play(wish(WishKind::kLetGo, middle()));
+  play(command(UserCommandKind::kLetGo, middle()));
   EXPECT_FALSE(pot().carried_to_world);
 }
 
 TEST_F(Playing, WhatIsLetGoInMotionFliesOnAsFastAsTheMouseWas) {
-  play(wish(WishKind::kPlace, Vec3::Zero()));
-  play(wish(WishKind::kGrab, middle()));
-  play(wish(WishKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
-  Wish let_go = wish(WishKind::kLetGo, middle() + Vec3(0.02, 0.0, 0.2));
+  play(command(UserCommandKind::kPlace, Vec3::Zero()));
+  play(command(UserCommandKind::kGrab, middle()));
+  play(command(UserCommandKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
+  UserCommand let_go = command(UserCommandKind::kLetGo, middle() + Vec3(0.02, 0.0, 0.2));
   let_go.pixel_velocity_s = {146.0, 0.0};  // one metre a second, a metre away
   const auto events = play(let_go);
   ASSERT_EQ(events.size(), 1U);
@@ -204,9 +205,9 @@ TEST_F(Playing, WhatIsLetGoInMotionFliesOnAsFastAsTheMouseWas) {
 }
 
 TEST_F(Playing, AThrownObjectFliesThroughThePixel) {
-  Wish wish = Playing::wish(WishKind::kThrow, {0.5, 0.5, 0.0});
-  wish.speed_mps = 4.0;
-  const auto events = play(wish);
+  UserCommand command = Playing::command(UserCommandKind::kThrow, {0.5, 0.5, 0.0});
+  command.speed_mps = 4.0;
+  const auto events = play(command);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_NEAR(events[0].velocity_world_mps.norm(), 4.0, 1e-9);
   const Vec3 to_there = Vec3(0.5, 0.5, 0.0) - kAtTheFloor.translation();
@@ -221,7 +222,7 @@ TEST_F(Playing, AnotherObjectHasANameOfItsOwnAndIsChosen) {
   EXPECT_EQ(player_.chosen(), "teapot");
   EXPECT_EQ(play(new_teapot())[0].name, "teapot2");
   EXPECT_EQ(session_.objects().size(), 3U);
-  const auto reset = play(wish(WishKind::kReset));
+  const auto reset = play(command(UserCommandKind::kReset));
   EXPECT_EQ(reset.back().action, Action::kDrop);
   EXPECT_EQ(reset.back().name, "teapot2");
 }
@@ -234,16 +235,16 @@ TEST_F(Playing, ResetLeavesNoDropWaiting) {
     other.mesh = "teapot";
     session_.apply(other);  // its drop waits for the next frame
   }
-  (void)play(wish(WishKind::kReset));
+  (void)play(command(UserCommandKind::kReset));
   EXPECT_TRUE(session_.objects()[0]->in_room);
   EXPECT_FALSE(session_.objects()[1]->in_room);
 }
 
 TEST_F(Playing, WhereThereIsNothingTheUserIsTold) {
-  const Wish at_the_sky = wish(WishKind::kDrop, {0.0, 40.0, 0.0});
+  const UserCommand at_the_sky = command(UserCommandKind::kDrop, {0.0, 40.0, 0.0});
   EXPECT_TRUE(play(at_the_sky).empty());
   EXPECT_NE(player_.complaint().find("no surface"), std::string::npos);
-  EXPECT_EQ(play(wish(WishKind::kDrop)).size(), 1U);
+  EXPECT_EQ(play(command(UserCommandKind::kDrop)).size(), 1U);
   EXPECT_TRUE(player_.complaint().empty());
 }
 
@@ -321,15 +322,15 @@ class Hosted : public Playing {
     return {};
   }
   std::string said_;
-  PlayLink link_;
+  UiChannel link_;
   PlaybackSource source_{std::make_unique<NoFrames>(), AtEnd::kEnd};
   PlayHost host_{link_, session_, source_, times_, map_.mesh, /*is_live=*/true};
 };
 
 TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
-  Wish wish = new_teapot();
-  wish.event.size_m = 0.25;  // no model of that size is there yet
-  link_.ask(wish);
+  UserCommand command = new_teapot();
+  command.event.size_m = 0.25;  // no model of that size is there yet
+  link_.ask(command);
   EXPECT_TRUE(host_.take_events().empty());  // it takes longer than this
   const std::vector<ScriptEvent> events = awaited_events();
   ASSERT_EQ(events.size(), 2U);
@@ -348,7 +349,7 @@ TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
 }
 
 TEST_F(Hosted, AMeshThatCannotBeReadIsSaidAndThoseAfterItCome) {
-  Wish broken = new_teapot();
+  UserCommand broken = new_teapot();
   broken.event.mesh = "/nowhere/chair.ply";
   link_.ask(broken);
   link_.ask(new_teapot());
@@ -396,17 +397,17 @@ TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
 /// While it is read a user adds what is in a mesh file, and turns it, until something was said.
 class AskedMeanwhile : public NoFrames {
  public:
-  AskedMeanwhile(PlayLink& link, const std::string& mesh, std::string& said) : link_(link), said_(said) {
-    wish_.kind = WishKind::kNew;
-    wish_.event.mesh = mesh;
+  AskedMeanwhile(UiChannel& link, const std::string& mesh, std::string& said) : link_(link), said_(said) {
+    command_.kind = UserCommandKind::kNew;
+    command_.event.mesh = mesh;
   }
   ReadResult next(Frame& frame) override {
     said_ += link_.take_message();
     if (said_.find("cannot be copied") != std::string::npos) frames_left_ = std::min(frames_left_, 5);
     if (--frames_left_ == 0) return {};
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    link_.ask(wish_);
-    wish_.kind = WishKind::kTurn;
+    link_.ask(command_);
+    command_.kind = UserCommandKind::kTurn;
     frame.depth_camera = kCamera;
     frame.depth_m.resize(kCamera.width_px, kCamera.height_px, 0.0F);
     frame.stamp_s += 0.01;
@@ -414,9 +415,9 @@ class AskedMeanwhile : public NoFrames {
   }
 
  private:
-  PlayLink& link_;
+  UiChannel& link_;
   std::string& said_;
-  Wish wish_;
+  UserCommand command_;
   int frames_left_ = 6000;  // a minute
 };
 
@@ -430,7 +431,7 @@ TEST(RecordedRun, AnObjectWhoseMeshCannotBeKeptDoesNotComeIn) {
   run.session = std::make_unique<Session>(run.map, SessionConfig());
   run.recorder.emplace(folder.path() / "session", command, run.map.info, /*are_calibrated=*/false);
   std::ofstream(folder.path() / "session" / "meshes") << "where the folder of meshes should be";
-  PlayLink link;
+  UiChannel link;
   std::string said;
   auto source = std::make_unique<PlaybackSource>(
       std::make_unique<AskedMeanwhile>(link, (folder.path() / "roof.obj").string(), said), AtEnd::kEnd);
@@ -443,8 +444,8 @@ TEST(RecordedRun, AnObjectWhoseMeshCannotBeKeptDoesNotComeIn) {
   EXPECT_NO_THROW(static_cast<void>(read_script(folder.path() / "session" / "events.txt")));
 }
 
-TEST(PlayLink, APausedSessionWaitsForAStepOrTheEnd) {
-  PlayLink link;
+TEST(UiChannel, APausedSessionWaitsForAStepOrTheEnd) {
+  UiChannel link;
   link.set_paused(true);
   link.step();
   int refreshed = 0;
@@ -455,52 +456,52 @@ TEST(PlayLink, APausedSessionWaitsForAStepOrTheEnd) {
   EXPECT_FALSE(link.wait_turn(2.0, true, [] {}));
 }
 
-TEST(PlayLink, CtrlCEndsAPausedSession) {
+TEST(UiChannel, CtrlCEndsAPausedSession) {
   const Interrupt interrupt;
-  PlayLink link;
+  UiChannel link;
   link.set_paused(true);
   std::raise(SIGINT);
   EXPECT_FALSE(link.wait_turn(1.0, true, [] {}));
   EXPECT_TRUE(Interrupt::take()) << "whoever reads the source is told, too";
 }
 
-TEST(PlayLink, OfManyDragsOnlyTheNewestCountsAndTheOrderOfTheRestStays) {
-  PlayLink link;
-  Wish wish;
-  for (const WishKind kind :
-       {WishKind::kGrab, WishKind::kDrag, WishKind::kDrag, WishKind::kDrag, WishKind::kLetGo}) {
-    wish.kind = kind;
-    wish.pixel.x() += 1.0;
-    link.ask(wish);
+TEST(UiChannel, OfManyDragsOnlyTheNewestCountsAndTheOrderOfTheRestStays) {
+  UiChannel link;
+  UserCommand command;
+  for (const UserCommandKind kind : {UserCommandKind::kGrab, UserCommandKind::kDrag, UserCommandKind::kDrag,
+                                     UserCommandKind::kDrag, UserCommandKind::kLetGo}) {
+    command.kind = kind;
+    command.pixel.x() += 1.0;
+    link.ask(command);
   }
-  const std::vector<Wish> wishes = link.take_wishes();
-  ASSERT_EQ(wishes.size(), 3U);
-  EXPECT_EQ(wishes[1].kind, WishKind::kDrag);
-  EXPECT_EQ(wishes[1].pixel.x(), 4.0);
-  EXPECT_EQ(wishes[2].kind, WishKind::kLetGo);
-  EXPECT_TRUE(link.take_wishes().empty());
+  const std::vector<UserCommand> commands = link.take_commands();
+  ASSERT_EQ(commands.size(), 3U);
+  EXPECT_EQ(commands[1].kind, UserCommandKind::kDrag);
+  EXPECT_EQ(commands[1].pixel.x(), 4.0);
+  EXPECT_EQ(commands[2].kind, UserCommandKind::kLetGo);
+  EXPECT_TRUE(link.take_commands().empty());
 }
 
-TEST(PlayLink, TurnsBetweenTwoFramesAddUpAsFarAsAScriptCanSayThem) {
-  PlayLink link;
-  Wish turn;
-  turn.kind = WishKind::kTurn;
+TEST(UiChannel, TurnsBetweenTwoFramesAddUpAsFarAsAScriptCanSayThem) {
+  UiChannel link;
+  UserCommand turn;
+  turn.kind = UserCommandKind::kTurn;
   turn.event.turn_world_deg = {0.5, 0.0, -1.0};
   for (int i = 0; i < 1000; ++i) link.ask(turn);
-  std::vector<Wish> wishes = link.take_wishes();
-  ASSERT_EQ(wishes.size(), 1U);
-  EXPECT_TRUE(wishes[0].event.turn_world_deg.isApprox(Vec3(500.0, 0.0, -1000.0)));
+  std::vector<UserCommand> commands = link.take_commands();
+  ASSERT_EQ(commands.size(), 1U);
+  EXPECT_TRUE(commands[0].event.turn_world_deg.isApprox(Vec3(500.0, 0.0, -1000.0)));
   for (int i = 0; i < 5000; ++i) link.ask(turn);
-  wishes = link.take_wishes();
-  ASSERT_EQ(wishes.size(), 2U);
-  EXPECT_EQ(wishes[0].event.turn_world_deg.z(), -3600.0);
-  EXPECT_EQ(wishes[1].event.turn_world_deg.z(), -1400.0);
+  commands = link.take_commands();
+  ASSERT_EQ(commands.size(), 2U);
+  EXPECT_EQ(commands[0].event.turn_world_deg.z(), -3600.0);
+  EXPECT_EQ(commands[1].event.turn_world_deg.z(), -1400.0);
   link.ask(turn);
-  Wish choose;
-  choose.kind = WishKind::kChoose;
+  UserCommand choose;
+  choose.kind = UserCommandKind::kChoose;
   link.ask(choose);
   link.ask(turn);
-  EXPECT_EQ(link.take_wishes().size(), 3U) << "of two objects, maybe";
+  EXPECT_EQ(link.take_commands().size(), 3U) << "of two objects, maybe";
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ std::vector<int> flood(const DepthImage& depth_m, const std::vector<std::uint8_t
   return number;
 }
 
-TEST(DepthRegions, AreThoseOfAFloodFill) {
+TEST(ConnectedComponents, AreThoseOfAFloodFill) {
   std::mt19937 random(1);
   for (int round = 0; round < 40; ++round) {
     const int width = 1 + static_cast<int>(random() % 70), height = 1 + static_cast<int>(random() % 40);
@@ -61,8 +61,8 @@ TEST(DepthRegions, AreThoseOfAFloodFill) {
       depth_m.pixels[i] = 1.0F + 0.05F * static_cast<float>(random() % 4);
       evidence[i] = static_cast<std::uint8_t>(random() % holes == 0 && holes > 1 ? 0 : random() % 32);
     }
-    DepthRegions found;
-    find_regions(depth_m, evidence, kBits, camera, found);
+    ConnectedComponents found;
+    find_components(depth_m, evidence, kBits, camera, found);
     const std::vector<int> truth = flood(depth_m, evidence, 100.0);
 
     std::vector<int> number(evidence.size(), 0);
@@ -74,25 +74,25 @@ TEST(DepthRegions, AreThoseOfAFloodFill) {
       }
     }
     std::map<int, int> of_truth, of_found;
-    std::map<int, DepthRegion> sums;
+    std::map<int, ConnectedComponent> sums;
     for (std::size_t i = 0; i < evidence.size(); ++i) {
       ASSERT_EQ(number[i] == 0, truth[i] == 0) << i;
       if (truth[i] == 0) continue;
       EXPECT_EQ(of_truth.try_emplace(truth[i], number[i]).first->second, number[i]);
       EXPECT_EQ(of_found.try_emplace(number[i], truth[i]).first->second, truth[i]);
-      DepthRegion& sum = sums[number[i]];
+      ConnectedComponent& sum = sums[number[i]];
       ++sum.pixels;
       sum.strong += (evidence[i] & 2) != 0;
-      sum.doubtful += (evidence[i] & 6) == 4;
+      sum.ambiguous += (evidence[i] & 6) == 4;
       sum.before += (evidence[i] & 8) != 0;
       sum.core += (evidence[i] & 16) != 0;
       sum.depth2_m2 += depth_m.pixels[i] * depth_m.pixels[i];
     }
     for (const auto& [id, sum] : sums) {
-      const DepthRegion& region = found.regions[static_cast<std::size_t>(id - 1)];
+      const ConnectedComponent& region = found.regions[static_cast<std::size_t>(id - 1)];
       EXPECT_EQ(region.pixels, sum.pixels);
       EXPECT_EQ(region.strong, sum.strong);
-      EXPECT_EQ(region.doubtful, sum.doubtful);
+      EXPECT_EQ(region.ambiguous, sum.ambiguous);
       EXPECT_EQ(region.before, sum.before);
       EXPECT_EQ(region.core, sum.core);
       EXPECT_NEAR(region.depth2_m2, sum.depth2_m2, 1e-4F * sum.depth2_m2);

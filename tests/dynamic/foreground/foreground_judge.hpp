@@ -75,7 +75,7 @@ inline MaskScore judge_foreground(const SimOptions& options, std::int64_t step, 
   DepthImage expected_m;
   ForegroundState state;
   LabelImage labels;
-  MaskImage moved_mask;
+  MaskImage dynamic_mask;
   MaskScore score;
   for (std::int64_t i = 0; i < options.frames; i += step) {
     source.seek(i);
@@ -84,8 +84,8 @@ inline MaskScore judge_foreground(const SimOptions& options, std::int64_t step, 
         source.truth().T_world_camera * pose_error(shift_m, turn_deg, static_cast<int>(i));
     cast_room(source.room(), frame.depth_camera, T_world_camera, caster, expected_m);
     mark_foreground(frame.depth_m, expected_m, frame.depth_camera, T_world_camera, config, state, labels,
-                    moved_mask);
-    add_frame(frame.depth_m, moved_mask, source.truth().moved, score);
+                    dynamic_mask);
+    add_frame(frame.depth_m, dynamic_mask, source.truth().moved, score);
   }
   return score;
 }

@@ -57,7 +57,7 @@ TEST(Foreground, HandThreeCentimetresBeforeASurfaceIsFoundToItsEdges) {
     DepthImage live_m = flat(1.0F);
     fill_rectangle(live_m, 200, 150, 320, 260, 1.0F - clearance_m);
     add_noise(live_m, 4);
-    EXPECT_GT(intersection_over_union(mark(live_m, flat(1.0F)).moved_mask, hand), 0.95) << clearance_m;
+    EXPECT_GT(intersection_over_union(mark(live_m, flat(1.0F)).dynamic_mask, hand), 0.95) << clearance_m;
   }
 }
 
@@ -70,7 +70,7 @@ TEST(Foreground, HandThreeCentimetresOverAnObliqueTableIsFound) {
       add_noise(live_m, 7);
       const Marked marked = mark(live_m, expected_m, {}, kKinect, 2);
       const double iou =
-          intersection_over_union(marked.moved_mask, [&](int x, int y) { return truth.at(x, y) != 0; });
+          intersection_over_union(marked.dynamic_mask, [&](int x, int y) { return truth.at(x, y) != 0; });
       EXPECT_GT(iou, 0.93) << below_deg << " degrees, " << above_m << " m";
     }
   }
@@ -82,7 +82,7 @@ TEST(Foreground, FoundAtBothEndsOfTheRange) {
     DepthImage live_m = flat(far_m);
     fill_rectangle(live_m, 280, 200, 340, 260, near_m);
     add_noise(live_m, 5);
-    EXPECT_GT(intersection_over_union(mark(live_m, flat(far_m)).moved_mask, square), 0.97) << near_m;
+    EXPECT_GT(intersection_over_union(mark(live_m, flat(far_m)).dynamic_mask, square), 0.97) << near_m;
   }
 }
 
@@ -98,7 +98,7 @@ TEST(Foreground, WhatWasTakenAwayIsRevealedNotMoved) {
   EXPECT_EQ(marked.counts.moved, 0U);
   EXPECT_NEAR(static_cast<double>(marked.counts.revealed), 60.0 * 60.0, 60.0);
   EXPECT_EQ(marked.labels.at(330, 230), PixelLabel::kRevealed);
-  EXPECT_EQ(marked.moved_mask.at(330, 230), 0);
+  EXPECT_EQ(marked.dynamic_mask.at(330, 230), 0);
 }
 
 TEST(Foreground, WhatIsTakenAwayIsWiderThanWhatAMisplacedEdgeUncovers) {
@@ -129,7 +129,7 @@ TEST(Foreground, UnmeasuredPixelsAreNotKnown) {
   fill_rectangle(live_m, 240, 190, 270, 220, 0.0F);  // a hole in the middle of the hand
   const Marked marked = mark(live_m, flat(1.0F));
   EXPECT_EQ(marked.labels.at(255, 205), PixelLabel::kNotKnown);
-  EXPECT_EQ(marked.moved_mask.at(255, 205), 0);
+  EXPECT_EQ(marked.dynamic_mask.at(255, 205), 0);
   EXPECT_EQ(marked.counts.moved, 120U * 110U - 30U * 30U);
   EXPECT_EQ(marked.counts.not_known, 0U) << "counts pixels with live depth only";
 
@@ -151,7 +151,7 @@ TEST(Foreground, ArmOverTheModelsHolesIsMovedAsAWhole) {
   DepthImage live_m = flat(2.0F);
   fill_rectangle(live_m, 300, 0, 360, 400, 1.5F);
   const auto arm = [](int x, int y) { return x >= 300 && x < 360 && y < 400; };
-  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).moved_mask, arm), 0.95);
+  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).dynamic_mask, arm), 0.95);
 }
 
 TEST(Foreground, HoleOfTheModelIsMovedOnlyNearerThanAllAroundIt) {
@@ -196,7 +196,7 @@ TEST(Foreground, PersonLeavingThroughTheBorderIsFoundUpToTheLastPixel) {
   fill_rectangle(live_m, 630, 100, 640, 480, 2.0F);
   const Marked marked = mark(live_m, flat(3.0F));
   EXPECT_EQ(marked.counts.moved, 10U * 380U);
-  EXPECT_EQ(marked.moved_mask.at(639, 479), 255);
+  EXPECT_EQ(marked.dynamic_mask.at(639, 479), 255);
 }
 
 TEST(Foreground, HandBesideANearEdgeKeepsItsRim) {
@@ -208,7 +208,7 @@ TEST(Foreground, HandBesideANearEdgeKeepsItsRim) {
   fill_rectangle(live_m, 300, 200, 380, 300, 1.5F);
   add_noise(live_m, 6);
   const auto hand = [](int x, int y) { return x >= 300 && x < 380 && y >= 200 && y < 300; };
-  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).moved_mask, hand), 0.99);
+  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).dynamic_mask, hand), 0.99);
 }
 
 TEST(Foreground, BallHalfBehindABoxIsFound) {
@@ -220,7 +220,7 @@ TEST(Foreground, BallHalfBehindABoxIsFound) {
   fill_rectangle(live_m, 280, 226, 330, 240, 1.4F);
   add_noise(live_m, 8);
   const auto ball = [](int x, int y) { return x >= 280 && x < 330 && y >= 226 && y < 240; };
-  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).moved_mask, ball), 0.95);
+  EXPECT_GT(intersection_over_union(mark(live_m, expected_m).dynamic_mask, ball), 0.95);
 }
 
 TEST(Foreground, HandOnAMisplacedSurfaceIsFoundAndTheSurfaceIsNot) {
@@ -228,10 +228,10 @@ TEST(Foreground, HandOnAMisplacedSurfaceIsFoundAndTheSurfaceIsNot) {
   // hand.
   DepthImage live_m = flat(1.0F);
   fill_rectangle(live_m, 0, 0, 320, 480, 0.98F);
-  const MaskImage without_hand = mark(live_m, flat(1.0F)).moved_mask;
+  const MaskImage without_hand = mark(live_m, flat(1.0F)).dynamic_mask;
   EXPECT_EQ(std::count(without_hand.pixels.begin(), without_hand.pixels.end(), 255), 0);
   fill_rectangle(live_m, 80, 100, 240, 260, 0.966F);  // too low a step to stop the region from growing
-  const MaskImage mask = mark(live_m, flat(1.0F)).moved_mask;
+  const MaskImage mask = mark(live_m, flat(1.0F)).dynamic_mask;
   EXPECT_EQ(mask.at(160, 180), 255);
   EXPECT_EQ(mask.at(60, 400), 0);
 }

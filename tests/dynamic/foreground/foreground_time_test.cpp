@@ -19,7 +19,7 @@ struct Watch {
   void see(const DepthImage& live_m, const DepthImage& expected_m,
            const Eigen::Isometry3d& T_world_camera = Eigen::Isometry3d::Identity()) {
     marked.counts = mark_foreground(live_m, expected_m, kKinect, T_world_camera, {}, state, marked.labels,
-                                    marked.moved_mask);
+                                    marked.dynamic_mask);
   }
 };
 
@@ -111,7 +111,7 @@ TEST(ForegroundInTime, AnotherCameraRemembersNothing) {
   wider.fx_px = wider.fy_px = 500.0;
   const ForegroundCounts counts =
       mark_foreground(wall_with(1.5F, 5), flat(2.0F), wider, Eigen::Isometry3d::Identity(), {}, run.state,
-                      run.marked.labels, run.marked.moved_mask);
+                      run.marked.labels, run.marked.dynamic_mask);
   EXPECT_EQ(counts.moved, 0U);
 }
 

@@ -79,7 +79,7 @@ inline DepthImage hand_over_table(double below_deg, double above_m, MaskImage& t
 // What is marked after so many frames that show the same.
 struct Marked {
   LabelImage labels;
-  MaskImage moved_mask;
+  MaskImage dynamic_mask;
   ForegroundCounts counts;
 };
 
@@ -89,7 +89,7 @@ inline Marked mark(const DepthImage& depth_m, const DepthImage& expected_m,
   ForegroundState state;
   for (int i = 0; i < frames; ++i) {
     marked.counts = mark_foreground(depth_m, expected_m, camera, Eigen::Isometry3d::Identity(), config, state,
-                                    marked.labels, marked.moved_mask);
+                                    marked.labels, marked.dynamic_mask);
   }
   return marked;
 }

@@ -102,7 +102,7 @@ TEST(PixelBits, MajorityAndFarAreWhatCountingSays) {
 
 // Every triangle stays within the tolerance of every point on it, and no vertex lies inside another
 // triangle's side.
-TEST(BisectedGrid, FollowsTheValuesWithoutCracks) {
+TEST(Rtin, FollowsTheValuesWithoutCracks) {
   constexpr int kPoints = 33;
   std::mt19937 random(4);
   std::normal_distribution<float> normal;
@@ -116,7 +116,7 @@ TEST(BisectedGrid, FollowsTheValuesWithoutCracks) {
             0.3F * static_cast<float>(x) + bend * std::pow(static_cast<float>(y - 16), 2.0F) / 8.0F +
             (round % 3 == 0 ? 0.05F * normal(random) : 0.0F);
     needed[17 * kPoints + 11] = 1;
-    const BisectedGrid grid{kPoints, kPoints, cells};
+    const Rtin grid{kPoints, kPoints, cells};
     find_needed(grid, values, tolerances, needed);
     std::map<std::pair<int, int>, int> edges;  // directed, as points
     long area = 0;

@@ -62,12 +62,12 @@ struct Scene {
   }
 };
 
-MovedSurface meshed(const Scene& scene, const MovedSurfaceConfig& config = {},
-                    std::span<const FineRegion> regions = {}) {
-  MovedSurfaceScratch scratch;
-  MovedSurface surface;
-  mesh_moved(scene.depth_m, scene.mask, scene.expected_m, kKinect, scene.T_world_camera, regions, config,
-             scratch, surface);
+DynamicSurface meshed(const Scene& scene, const DynamicSurfaceConfig& config = {},
+                      std::span<const FineRegion> regions = {}) {
+  DynamicSurfaceScratch scratch;
+  DynamicSurface surface;
+  mesh_dynamic(scene.depth_m, scene.mask, scene.expected_m, kKinect, scene.T_world_camera, regions, config,
+               scratch, surface);
   return surface;
 }
 
@@ -80,18 +80,18 @@ Mesh in_full(const Scene& scene) {
   return mesh;
 }
 
-DepthImage seen_depth(const MovedSurface& surface, const Scene& scene) {
+DepthImage seen_depth(const DynamicSurface& surface, const Scene& scene) {
   return rasterise(surface.seen_world, kKinect, scene.T_world_camera);
 }
 
 /// The back faces away from the camera; walls run along its rays and have no area in the image.
-DepthImage back_depth(const MovedSurface& surface, const Scene& scene) {
+DepthImage back_depth(const DynamicSurface& surface, const Scene& scene) {
   return rasterise(surface.inferred_world, kKinect, scene.T_world_camera);
 }
 
 /// Edges of both meshes, vertices at the same place being one, that have not as many triangles on one side as
 /// on the other.
-std::size_t open_edges(const MovedSurface& surface) {
+std::size_t open_edges(const DynamicSurface& surface) {
   using Place = std::tuple<float, float, float>;
   std::map<std::pair<Place, Place>, int> edges;
   const auto add = [&](const Mesh& mesh) {
@@ -117,7 +117,7 @@ std::size_t open_edges(const MovedSurface& surface) {
   return open;
 }
 
-double volume_m3(const MovedSurface& surface) {
+double volume_m3(const DynamicSurface& surface) {
   double six = 0.0;
   for (const Mesh* mesh : {&surface.seen_world, &surface.inferred_world}) {
     for (const Triangle& t : mesh->triangles) {
@@ -128,7 +128,7 @@ double volume_m3(const MovedSurface& surface) {
   return six / 6.0;
 }
 
-void expect_sound(const MovedSurface& surface, const Scene& scene) {
+void expect_sound(const DynamicSurface& surface, const Scene& scene) {
   const Mesh& seen = surface.seen_world;
   ASSERT_EQ(seen.normals.size(), seen.vertices.size());
   EXPECT_EQ(seen.origin, scene.T_world_camera.translation());
@@ -145,7 +145,7 @@ void expect_sound(const MovedSurface& surface, const Scene& scene) {
 }
 
 /// Mask pixels that have no surface within a pixel of them.
-std::size_t pixels_lost(const MovedSurface& surface, const Scene& scene) {
+std::size_t pixels_lost(const DynamicSurface& surface, const Scene& scene) {
   const DepthImage seen = seen_depth(surface, scene);
   std::size_t lost = 0;
   for (int y = 0; y < 480; ++y) {
@@ -161,17 +161,17 @@ std::size_t pixels_lost(const MovedSurface& surface, const Scene& scene) {
   return lost;
 }
 
-TEST(MovedSurface, NothingMovedGivesNothing) {
-  const MovedSurface surface = meshed({});
+TEST(DynamicSurface, NothingMovedGivesNothing) {
+  const DynamicSurface surface = meshed({});
   EXPECT_TRUE(surface.seen_world.vertices.empty());
   EXPECT_TRUE(surface.inferred_world.vertices.empty());
   EXPECT_TRUE(meshed({.depth_m{640, 480, 0.0F}, .mask{640, 480, 255}}).seen_world.triangles.empty());
 }
 
-TEST(MovedSurface, AHandOverTheLensIsAFewTriangles) {
+TEST(DynamicSurface, AHandOverTheLensIsAFewTriangles) {
   Scene scene;
   scene.put_rectangle(0, 0, 640, 480, 0.4F);
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   EXPECT_LT(surface.seen_world.triangles.size(), 4000U);  // 612,162 in full
   const DepthImage seen = seen_depth(surface, scene);
@@ -185,13 +185,13 @@ TEST(MovedSurface, AHandOverTheLensIsAFewTriangles) {
   EXPECT_GE(covered, 640U * 480U - 12U);  // the image's corners are cut
 }
 
-TEST(MovedSurface, WorksAtFortyCentimetresAndAtEightMetres) {
+TEST(DynamicSurface, WorksAtFortyCentimetresAndAtEightMetres) {
   for (const float z : {0.4F, 8.0F}) {
     Scene scene;
     scene.expected_m = DepthImage(640, 480, 9.5F);
     scene.put_rectangle(250, 180, 391, 301, z);
     scene.add_noise(3);
-    const MovedSurface surface = meshed(scene);
+    const DynamicSurface surface = meshed(scene);
     expect_sound(surface, scene);
     EXPECT_EQ(pixels_lost(surface, scene), 0U);
     EXPECT_LT(surface.seen_world.triangles.size(), in_full(scene).triangles.size() / 10) << z;
@@ -207,10 +207,10 @@ TEST(MovedSurface, WorksAtFortyCentimetresAndAtEightMetres) {
   }
 }
 
-TEST(MovedSurface, ABallIsATenthOfTheTrianglesWithinASigma) {
+TEST(DynamicSurface, ABallIsATenthOfTheTrianglesWithinASigma) {
   Scene scene;
   scene.put_ball({0.05, -0.03, 0.9}, 0.12);
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   const std::size_t full = in_full(scene).triangles.size();
   EXPECT_LT(surface.seen_world.triangles.size(), full / 20) << full;
@@ -230,19 +230,19 @@ TEST(MovedSurface, ABallIsATenthOfTheTrianglesWithinASigma) {
   EXPECT_LT(sigmas.back(), 2.0F);
 }
 
-TEST(MovedSurface, NoiseOnATiltedPlaneIsNoShape) {
+TEST(DynamicSurface, NoiseOnATiltedPlaneIsNoShape) {
   Scene scene;
   for (int y = 100; y < 400; ++y)
     for (int x = 150; x < 500; ++x)
       scene.put(x, y, 1.2F / (1.0F - 1.0F * (static_cast<float>(x) - 320.0F) / 585.0F));  // 45 degrees
   scene.add_noise(11);
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   EXPECT_EQ(pixels_lost(surface, scene), 0U);
   EXPECT_LT(surface.seen_world.triangles.size(), in_full(scene).triangles.size() / 40);
 }
 
-TEST(MovedSurface, WhereEveryPixelIsAVertexTheNoiseIsAveragedAway) {
+TEST(DynamicSurface, WhereEveryPixelIsAVertexTheNoiseIsAveragedAway) {
   const Eigen::Vector3d centre(0.05, -0.02, 1.2);
   constexpr double kRadius_m = 0.12;
   Scene scene;
@@ -250,7 +250,7 @@ TEST(MovedSurface, WhereEveryPixelIsAVertexTheNoiseIsAveragedAway) {
   const double sigma_m = depth_sigma_m(1.1F);
   scene.add_noise(5);
   const FineRegion everywhere[] = {{scene.T_world_camera * centre, 0.3}};
-  const MovedSurface surface = meshed(scene, {}, everywhere);
+  const DynamicSurface surface = meshed(scene, {}, everywhere);
   expect_sound(surface, scene);
   const Eigen::Isometry3d T_camera_world = scene.T_world_camera.inverse();
   double squares_m2 = 0.0, off_m = 0.0;
@@ -269,11 +269,11 @@ TEST(MovedSurface, WhereEveryPixelIsAVertexTheNoiseIsAveragedAway) {
   EXPECT_LT(std::abs(off_m / count), 0.05 * sigma_m);       // and the ball is as large as it was
 }
 
-TEST(MovedSurface, NothingSpansAHugeJumpInTheMask) {
+TEST(DynamicSurface, NothingSpansAHugeJumpInTheMask) {
   Scene scene;
   scene.put_rectangle(150, 100, 450, 400, 1.6F);   // a body
   scene.put_rectangle(251, 183, 343, 262, 0.61F);  // a hand before it
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   EXPECT_EQ(pixels_lost(surface, scene), 0U);
   const Eigen::Isometry3d T_camera_world = scene.T_world_camera.inverse();
@@ -290,12 +290,12 @@ TEST(MovedSurface, NothingSpansAHugeJumpInTheMask) {
   EXPECT_LT(surface.seen_world.triangles.size(), in_full(scene).triangles.size() / 20);
 }
 
-TEST(MovedSurface, ThePixelsOfTheRimAreThere) {
+TEST(DynamicSurface, ThePixelsOfTheRimAreThere) {
   Scene scene;  // a slanted strip: no side of it lies on the grid
   for (int y = 60; y < 420; ++y)
     for (int x = 0; x < 640; ++x)
       if (std::abs(0.8 * (x - 320) - 0.6 * (y - 240)) < 25.3) scene.put(x, y, 0.7F);
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   const DepthImage seen = seen_depth(surface, scene),
                    full = rasterise(in_full(scene), kKinect, scene.T_world_camera);
@@ -308,14 +308,14 @@ TEST(MovedSurface, ThePixelsOfTheRimAreThere) {
   EXPECT_LT(static_cast<double>(missing), 0.02 * static_cast<double>(all));
 }
 
-TEST(MovedSurface, AHoleInAHandStaysOpenAndSpecksAreClosed) {
+TEST(DynamicSurface, AHoleInAHandStaysOpenAndSpecksAreClosed) {
   Scene scene;
   scene.put_rectangle(250, 180, 390, 300, 0.7F);
   const std::size_t without = meshed(scene).seen_world.triangles.size();
   for (int y = 230; y < 250; ++y)
     for (int x = 310; x < 330; ++x) scene.depth_m.at(x, y) = 0.0F;
   scene.depth_m.at(270, 200) = scene.depth_m.at(271, 200) = 0.0F;
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   EXPECT_GT(surface.seen_world.triangles.size(), without);
   const DepthImage seen = seen_depth(surface, scene), back = back_depth(surface, scene);
@@ -324,10 +324,10 @@ TEST(MovedSurface, AHoleInAHandStaysOpenAndSpecksAreClosed) {
   EXPECT_NEAR(seen.at(270, 200), 0.7F, 1e-5F);
 }
 
-TEST(MovedSurface, WhatTheImageCutsOffIsThickThere) {
+TEST(DynamicSurface, WhatTheImageCutsOffIsThickThere) {
   Scene scene;
   scene.put_rectangle(0, 200, 120, 280, 0.7F);  // an arm that comes in from the left
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   const DepthImage back = back_depth(surface, scene);
   const float at_border_m = back.at(1, 240) - 0.7F, inside_m = back.at(60, 240) - 0.7F;
@@ -335,14 +335,14 @@ TEST(MovedSurface, WhatTheImageCutsOffIsThickThere) {
   EXPECT_NEAR(at_border_m, inside_m, 0.005F);
 }
 
-TEST(MovedSurface, ALineOnePixelWideIsASlab) {
+TEST(DynamicSurface, ALineOnePixelWideIsASlab) {
   Scene scene;
   for (int k = 0; k < 100; ++k) {
     scene.put(300, 100 + k, 1.0F);
     scene.put(350 + k, 321, 1.0F);
     scene.put(400 + k, 100 + k, 1.0F);
   }
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   EXPECT_TRUE(in_full(scene).triangles.empty());
   const DepthImage seen = seen_depth(surface, scene), back = back_depth(surface, scene);
@@ -357,26 +357,26 @@ TEST(MovedSurface, ALineOnePixelWideIsASlab) {
   }
 }
 
-TEST(MovedSurface, ABallIsAsThickAsItIsWide) {
+TEST(DynamicSurface, ABallIsAsThickAsItIsWide) {
   Scene scene;
   scene.put_ball({0.0, 0.0, 1.0}, 0.1);
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   EXPECT_NEAR(back_depth(surface, scene).at(320, 240), 1.1F, 0.03F);
   const double ball_m3 = 4.0 / 3.0 * M_PI * 1e-3;
   EXPECT_GT(volume_m3(surface), 0.4 * ball_m3);
   EXPECT_LT(volume_m3(surface), 1.2 * ball_m3);
 }
 
-TEST(MovedSurface, TheBackClosesWhereTheModelHasAHole) {
+TEST(DynamicSurface, TheBackClosesWhereTheModelHasAHole) {
   Scene scene;
   scene.expected_m = DepthImage(640, 480, 0.0F);
   scene.put_ball({0.0, 0.0, 1.0}, 0.1);
-  const MovedSurface surface = meshed(scene);
+  const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   EXPECT_NEAR(back_depth(surface, scene).at(320, 240), 1.1F, 0.03F);
 }
 
-TEST(MovedSurface, TheBackStaysBeforeWhatTheThingLiesOn) {
+TEST(DynamicSurface, TheBackStaysBeforeWhatTheThingLiesOn) {
   for (const float gap_m : {0.03F, 0.01F, 0.003F}) {
     Scene scene;
     for (int y = 0; y < 480; ++y) {  // a table seen at 50 degrees, and a hand along it
@@ -386,7 +386,7 @@ TEST(MovedSurface, TheBackStaysBeforeWhatTheThingLiesOn) {
         if (std::hypot(x - 300, (y - 250) * 1.4) < 110.0) scene.put(x, y, z - gap_m);
       }
     }
-    const MovedSurface surface = meshed(scene);
+    const DynamicSurface surface = meshed(scene);
     expect_sound(surface, scene);
     const DepthImage back = back_depth(surface, scene);
     for (std::size_t i = 0; i < back.pixels.size(); ++i) {
@@ -397,11 +397,11 @@ TEST(MovedSurface, TheBackStaysBeforeWhatTheThingLiesOn) {
   }
 }
 
-TEST(MovedSurface, RegionsAreAsFineAsTheImage) {
+TEST(DynamicSurface, RegionsAreAsFineAsTheImage) {
   Scene scene;
   scene.put_ball({0.0, 0.0, 0.9}, 0.12);
   const FineRegion region{scene.T_world_camera * Eigen::Vector3d(0.03, 0.0, 0.8), 0.05};
-  const MovedSurface surface = meshed(scene, {}, {&region, 1});
+  const DynamicSurface surface = meshed(scene, {}, {&region, 1});
   expect_sound(surface, scene);
   const DepthImage seen = seen_depth(surface, scene);
   std::size_t inside = 0;
@@ -423,7 +423,7 @@ TEST(MovedSurface, RegionsAreAsFineAsTheImage) {
 }
 
 // Whatever the mask and the depths are: closed, facing the camera, and no pixel of the mask far from it.
-TEST(MovedSurface, IsClosedAndLosesNothingWhateverMoved) {
+TEST(DynamicSurface, IsClosedAndLosesNothingWhateverMoved) {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> across(0, 639), down(0, 479), size(1, 120);
   std::uniform_real_distribution<float> depth(0.4F, 4.0F), unit(0.0F, 1.0F);
@@ -448,37 +448,37 @@ TEST(MovedSurface, IsClosedAndLosesNothingWhateverMoved) {
       }
     }
     const FineRegion region{scene.T_world_camera * Eigen::Vector3d(0.0, 0.0, depth(random)), 0.3};
-    const MovedSurface surface = meshed(scene, {}, {&region, 1});
+    const DynamicSurface surface = meshed(scene, {}, {&region, 1});
     expect_sound(surface, scene);
     EXPECT_GT(volume_m3(surface), 0.0);
     EXPECT_LE(pixels_lost(surface, scene), 20U) << round;  // specks of two depths in one cell
   }
 }
 
-TEST(MovedSurface, ImagesOfAnySizeAreMeshed) {
+TEST(DynamicSurface, ImagesOfAnySizeAreMeshed) {
   for (const auto& [width, height] : {std::pair{1, 1}, {2, 2}, {5, 3}, {33, 65}, {641, 479}}) {
     const Intrinsics camera{width, height, 585.0, 585.0, 0.5 * width, 0.5 * height};
-    MovedSurfaceScratch scratch;
-    MovedSurface surface;
-    mesh_moved(DepthImage(width, height, 1.0F), MaskImage(width, height, 255),
-               DepthImage(width, height, 0.0F), camera, somewhere(), {}, {}, scratch, surface);
+    DynamicSurfaceScratch scratch;
+    DynamicSurface surface;
+    mesh_dynamic(DepthImage(width, height, 1.0F), MaskImage(width, height, 255),
+                 DepthImage(width, height, 0.0F), camera, somewhere(), {}, {}, scratch, surface);
     EXPECT_EQ(open_edges(surface), 0U);
     EXPECT_FALSE(surface.seen_world.triangles.empty()) << width << " x " << height;
   }
 }
 
-TEST(MovedSurface, NoFrameAfterTheFirstAllocates) {
+TEST(DynamicSurface, NoFrameAfterTheFirstAllocates) {
   Scene nothing, ball, all;
   ball.put_ball({0.0, 0.0, 0.9}, 0.2);
   ball.put(5, 5, 1.0F);
   all.put_rectangle(0, 0, 640, 480, 0.5F);
   all.add_noise(1);
   const FineRegion regions[] = {{all.T_world_camera * Eigen::Vector3d(0.0, 0.0, 0.5), 0.5}};
-  MovedSurfaceScratch scratch;
-  MovedSurface surface;
+  DynamicSurfaceScratch scratch;
+  DynamicSurface surface;
   const auto mesh = [&](const Scene& scene, std::span<const FineRegion> fine) {
-    mesh_moved(scene.depth_m, scene.mask, scene.expected_m, kKinect, scene.T_world_camera, fine, {}, scratch,
-               surface);
+    mesh_dynamic(scene.depth_m, scene.mask, scene.expected_m, kKinect, scene.T_world_camera, fine, {},
+                 scratch, surface);
   };
   mesh(nothing, regions);
   const std::size_t before = allocations;
@@ -489,18 +489,18 @@ TEST(MovedSurface, NoFrameAfterTheFirstAllocates) {
   EXPECT_FALSE(surface.seen_world.triangles.empty());
 }
 
-TEST(MovedSurface, WithoutABackThereIsNone) {
+TEST(DynamicSurface, WithoutABackThereIsNone) {
   Scene scene;
   scene.put_ball({0.0, 0.0, 1.0}, 0.1);
-  MovedSurfaceConfig config;
+  DynamicSurfaceConfig config;
   config.has_back = false;
-  const MovedSurface surface = meshed(scene, config);
+  const DynamicSurface surface = meshed(scene, config);
   EXPECT_TRUE(surface.inferred_world.triangles.empty());
   EXPECT_EQ(surface.seen_world.triangles, meshed(scene).seen_world.triangles);
 }
 
-TEST(MovedSurface, ImpossibleSettingsAreNamed) {
-  MovedSurfaceConfig config;
+TEST(DynamicSurface, ImpossibleSettingsAreNamed) {
+  DynamicSurfaceConfig config;
   EXPECT_NO_THROW(require_valid(config));
   config.most_thickness_m = 0.001F;
   try {

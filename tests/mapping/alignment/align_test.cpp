@@ -24,22 +24,22 @@ Eigen::Isometry3d eye() { return test::looking_at({0.6, 0.2, 1.3}, {0.0, 2.2, 0.
 Eigen::Isometry3d moved(double x_m, double y_m, double z_m, double rx, double ry, double rz) {
   Eigen::Matrix<double, 6, 1> twist;
   twist << x_m, y_m, z_m, rx, ry, rz;
-  return exp_twist(twist);
+  return retract(twist);
 }
 
-ReferenceView reference_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+TargetView reference_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   ViewPyramid pyramid;
-  ReferenceView reference;
+  TargetView reference;
   make_pyramid(frame, {}, pyramid);
-  make_reference(pyramid, T_world_camera, {}, reference);
+  make_target_view(pyramid, T_world_camera, {}, reference);
   return reference;
 }
 
-LiveView live_of(const Frame& frame, const MaskImage& ignore = {}) {
+SourcePoints live_of(const Frame& frame, const MaskImage& ignore = {}) {
   ViewPyramid pyramid;
-  LiveView live;
+  SourcePoints live;
   make_pyramid(frame, {}, pyramid);
-  make_live(pyramid, live, ignore);
+  make_source_points(pyramid, live, ignore);
   return live;
 }
 
@@ -60,17 +60,17 @@ const Eigen::Isometry3d kStep = moved(0.03, -0.02, 0.025, 0.02, -0.03, 0.015);
 TEST(Twist, LogIsTheInverseOfExp) {
   Eigen::Matrix<double, 6, 1> twist;
   twist << 1.0, -2.0, 0.5, 0.3, -0.8, 0.1;
-  EXPECT_TRUE(log_twist(exp_twist(twist)).isApprox(twist, 1e-12));
-  EXPECT_TRUE(log_twist(Eigen::Isometry3d::Identity()).isZero(1e-15));
+  EXPECT_TRUE(local(retract(twist)).isApprox(twist, 1e-12));
+  EXPECT_TRUE(local(Eigen::Isometry3d::Identity()).isZero(1e-15));
 }
 
 TEST(MakeReference, PlanesLieOnTheSurface) {
   const Eigen::Isometry3d T = eye();
-  const ReferenceView reference = reference_of(test::exact_frame(test::plane({0, 0, 1}, 0.0), kCamera, T), T);
+  const TargetView reference = reference_of(test::exact_frame(test::plane({0, 0, 1}, 0.0), kCamera, T), T);
   const Eigen::Vector3d up_camera = T.linear().transpose() * Eigen::Vector3d::UnitZ();
-  for (const ReferenceLevel& level : reference.levels) {
+  for (const TargetLevel& level : reference.levels) {
     int planes = 0;
-    for (const ReferencePixel& pixel : level.pixels.pixels) {
+    for (const TargetPixel& pixel : level.pixels.pixels) {
       if (pixel.inverse_sigma_per_m <= 0.0F) continue;
       ++planes;
       ASSERT_GT(pixel.normal.cast<double>().dot(up_camera), 0.9999);  // 0.8 degrees
@@ -82,13 +82,13 @@ TEST(MakeReference, PlanesLieOnTheSurface) {
 
 TEST(Align, FindsAKnownMotion) {
   const Eigen::Isometry3d T = eye(), truth = T * kStep;
-  const ReferenceView reference = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
+  const TargetView reference = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
   const Tracking tracking =
       align(live_of(test::exact_frame(corner_with_ball(), kCamera, truth)), reference, T);
   EXPECT_EQ(tracking.status, TrackStatus::kTracked);
   EXPECT_LT(translation_error_m(tracking, truth), kFit_m);
   EXPECT_LT(rotation_error_rad(tracking, truth), kFit_rad);
-  EXPECT_EQ(tracking.held_directions, 0);
+  EXPECT_EQ(tracking.unconstrained_dofs, 0);
   EXPECT_GT(tracking.inlier_fraction, 0.9);
 }
 
@@ -96,9 +96,9 @@ TEST(Align, FollowsARenderedViewWithoutColour) {
   const Eigen::Isometry3d T = eye(), truth = T * kStep;
   const ViewConfig rendered{.noisy = false};
   ViewPyramid pyramid;
-  ReferenceView reference;
+  TargetView reference;
   make_pyramid(test::exact_frame(corner_with_ball(), kCamera, T).depth_m, kCamera, rendered, pyramid);
-  make_reference(pyramid, T, rendered, reference);
+  make_target_view(pyramid, T, rendered, reference);
   Frame now = test::exact_frame(corner_with_ball(), kCamera, truth);
   test::add_depth_noise(now, 4);
   const Tracking tracking = align(live_of(now), reference, T);
@@ -121,7 +121,7 @@ TEST(Align, StandsTheNoiseOfAKinect) {
 
 TEST(Align, WhatHasMovedDoesNotPull) {
   const Eigen::Isometry3d T = eye(), truth = T * kStep;
-  const ReferenceView reference = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
+  const TargetView reference = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
   const test::Scene with_person = test::nearest_of(
       corner_with_ball(),
       test::box(Eigen::AlignedBox3d(Eigen::Vector3d(-0.6, 1.2, 0.0), Eigen::Vector3d(0.0, 1.5, 1.4))));
@@ -136,9 +136,9 @@ TEST(Align, IgnoredPixelsAreLeftOut) {
   const Frame frame = test::exact_frame(corner_with_ball(), kCamera, eye());
   MaskImage left(kCamera.width_px, kCamera.height_px, 0);
   for (int y = 0; y < left.height; ++y) std::fill_n(left.row(y), left.width / 2, std::uint8_t{255});
-  const LiveView live = live_of(frame, left);
+  const SourcePoints live = live_of(frame, left);
   ASSERT_FALSE(live.levels.front().empty());
-  for (const LivePoint& point : live.levels.front()) EXPECT_GT(point.p_camera.x(), 0.0F);
+  for (const SourcePoint& point : live.levels.front()) EXPECT_GT(point.p_camera.x(), 0.0F);
 }
 
 TEST(Align, OneWallFixesDistanceAndTiltAndHoldsTheRest) {
@@ -146,10 +146,10 @@ TEST(Align, OneWallFixesDistanceAndTiltAndHoldsTheRest) {
   const Eigen::Isometry3d T = test::looking_at({0, 0, 1}, {0, 2, 1});
   // 2 cm nearer and tilted, and 3 cm along the wall, which nobody can see.
   const Eigen::Isometry3d truth = T * moved(0.03, 0, 0.02, 0.01, 0.02, 0);
-  const ReferenceView reference = reference_of(test::exact_frame(wall, kCamera, T), T);
+  const TargetView reference = reference_of(test::exact_frame(wall, kCamera, T), T);
   const Tracking tracking = align(live_of(test::exact_frame(wall, kCamera, truth)), reference, T);
   EXPECT_EQ(tracking.status, TrackStatus::kDegenerate);
-  EXPECT_EQ(tracking.held_directions, 3);  // two shifts along the wall, one turn in it
+  EXPECT_EQ(tracking.unconstrained_dofs, 3);  // two shifts along the wall, one turn in it
   EXPECT_FALSE(tracking);
   const Eigen::Vector3d position = tracking.T_world_camera.translation();
   EXPECT_NEAR(position.y(), truth.translation().y(), 0.001);
@@ -183,10 +183,10 @@ TEST(Align, IdenticalFramesDoNotMove) {
 
 TEST(Align, SeveralReferencesAreMetAtOnce) {
   const Eigen::Isometry3d T = eye(), other = T * moved(-0.08, 0.02, 0, 0, -0.05, 0), truth = T * kStep;
-  const ReferenceView a = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
-  const ReferenceView b = reference_of(test::exact_frame(corner_with_ball(), kCamera, other), other);
+  const TargetView a = reference_of(test::exact_frame(corner_with_ball(), kCamera, T), T);
+  const TargetView b = reference_of(test::exact_frame(corner_with_ball(), kCamera, other), other);
   const std::array<PosedReference, 2> both{PosedReference{&a, T}, PosedReference{&b, other}};
-  const LiveView live = live_of(test::exact_frame(corner_with_ball(), kCamera, truth));
+  const SourcePoints live = live_of(test::exact_frame(corner_with_ball(), kCamera, truth));
   const Tracking tracking = align(live, both, T);
   EXPECT_EQ(tracking.status, TrackStatus::kTracked);
   EXPECT_LT(translation_error_m(tracking, truth), kFit_m);
@@ -198,7 +198,7 @@ TEST(Align, A300MetreOffsetChangesNothing) {
   Eigen::Isometry3d far_away = Eigen::Isometry3d::Identity();
   far_away.translation() = Eigen::Vector3d(300, -300, 300);
   const Frame before = test::exact_frame(corner_with_ball(), kCamera, T);
-  const LiveView live = live_of(test::exact_frame(corner_with_ball(), kCamera, T * kStep));
+  const SourcePoints live = live_of(test::exact_frame(corner_with_ball(), kCamera, T * kStep));
   const Tracking here = align(live, reference_of(before, T), T);
   const Tracking there = align(live, reference_of(before, far_away * T), far_away * T);
   EXPECT_EQ(there.status, TrackStatus::kTracked);
@@ -209,7 +209,7 @@ TEST(Align, A300MetreOffsetChangesNothing) {
 void expect_guess_kept(const DepthImage& depth_m, TrackStatus expected) {
   const Eigen::Isometry3d T = eye();
   Frame now = test::exact_frame(corner_with_ball(), kCamera, T);
-  const ReferenceView reference = reference_of(now, T);
+  const TargetView reference = reference_of(now, T);
   now.depth_m = depth_m;
   const Tracking tracking = align(live_of(now), reference, T);
   EXPECT_EQ(tracking.status, expected) << to_string(tracking.status);
@@ -238,7 +238,7 @@ TEST(Align, ConstantDepthIsAWallSquareToTheCamera) {
   const Eigen::Isometry3d T = eye();
   const Tracking tracking = align(live_of(frame), reference_of(frame, T), T);
   EXPECT_EQ(tracking.status, TrackStatus::kDegenerate);
-  EXPECT_EQ(tracking.held_directions, 3);
+  EXPECT_EQ(tracking.unconstrained_dofs, 3);
   EXPECT_LT(translation_error_m(tracking, T), 1e-4);
 }
 
@@ -256,7 +256,7 @@ TEST(Align, AnEmptyReferenceIsNoReference) {
   Frame nothing = frame;
   nothing.depth_m.resize(kCamera.width_px, kCamera.height_px);
   EXPECT_EQ(align(live_of(frame), reference_of(nothing, eye()), eye()).status, TrackStatus::kTooFewPoints);
-  EXPECT_EQ(align(live_of(frame), ReferenceView{}, eye()).status, TrackStatus::kTooFewPoints);
+  EXPECT_EQ(align(live_of(frame), TargetView{}, eye()).status, TrackStatus::kTooFewPoints);
 }
 
 }  // namespace

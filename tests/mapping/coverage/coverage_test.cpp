@@ -59,7 +59,7 @@ TEST(CoveragePicture, HolesAreMarkedAtTheirPlace) {
                             .size_m = 0.2,
                             .area_m2 = 0.04,
                             .look_direction_world = Vector3d::UnitY(),
-                            .stand_world = std::nullopt});
+                            .viewpoint_world = std::nullopt});
   frontier.cells.push_back({{0.3, 1.9, 1.2}, 0});
   EXPECT_GT(count_pixels(picture_of(map, frontier), is_violet),
             before + 300);  // a badge and a cell, in two views
@@ -89,8 +89,8 @@ TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {
   EXPECT_NEAR(holes[0].size_m, 0.3, 0.06);
   EXPECT_NEAR(holes[0].area_m2, 0.0707, 0.02);  // of the disc
   EXPECT_GT(holes[0].look_direction_world.y(), 0.95);
-  ASSERT_TRUE(holes[0].stand_world);
-  EXPECT_NEAR(holes[0].stand_world->y(), 0.8, 0.1);
+  ASSERT_TRUE(holes[0].viewpoint_world);
+  EXPECT_NEAR(holes[0].viewpoint_world->y(), 0.8, 0.1);
 
   Frontier known{.cell_m = 0.08, .holes = {Hole{}}, .cells = {{middle, 0}}};
   const std::vector<Hole> once = find_holes(map.octree, map.mesh, known);

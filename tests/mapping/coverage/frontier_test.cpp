@@ -70,9 +70,9 @@ TEST(Frontier, ACornerThatWasNotScannedIsTheOneHole) {
   EXPECT_GT(holes[0].size_m, 0.6);
   EXPECT_LT(holes[0].size_m, 1.8);
   EXPECT_GT(holes[0].look_direction_world.dot((corner).normalized()), 0.5);
-  ASSERT_TRUE(holes[0].stand_world);
-  EXPECT_TRUE(kRoom.contains(*holes[0].stand_world));
-  EXPECT_EQ(map.occupancy_at(*holes[0].stand_world), Occupancy::kFree);
+  ASSERT_TRUE(holes[0].viewpoint_world);
+  EXPECT_TRUE(kRoom.contains(*holes[0].viewpoint_world));
+  EXPECT_EQ(map.occupancy_at(*holes[0].viewpoint_world), Occupancy::kFree);
 }
 
 TEST(Frontier, TheShadowBehindABoxIsUnknownSpaceInside) {

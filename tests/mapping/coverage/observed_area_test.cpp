@@ -17,8 +17,8 @@ Frame wall_at(double depth_m, double stamp_s) {
   return frame;
 }
 
-TEST(SeenArea, OfAWallIsItsAreaAndSeeingItAgainAddsNothing) {
-  SeenArea seen;
+TEST(ObservedArea, OfAWallIsItsAreaAndSeeingItAgainAddsNothing) {
+  ObservedArea seen;
   EXPECT_EQ(seen.total_m2(), 0.0);
   EXPECT_EQ(seen.last_second_m2(), 0.0);
   seen.add(wall_at(2.05, 0.0), Eigen::Isometry3d::Identity());
@@ -31,8 +31,8 @@ TEST(SeenArea, OfAWallIsItsAreaAndSeeingItAgainAddsNothing) {
   EXPECT_EQ(seen.last_second_m2(), 0.0);
 }
 
-TEST(SeenArea, GrowsWithTheCamerasWay) {
-  SeenArea seen;
+TEST(ObservedArea, GrowsWithTheCamerasWay) {
+  ObservedArea seen;
   seen.add(wall_at(2.05, 0.0), Eigen::Isometry3d::Identity());
   const double before_m2 = seen.total_m2();
   const Eigen::Isometry3d aside(Eigen::Translation3d(1.0, 0.0, 0.0));
@@ -41,8 +41,8 @@ TEST(SeenArea, GrowsWithTheCamerasWay) {
   EXPECT_NEAR(seen.last_second_m2(), seen.total_m2() - before_m2, 1e-9);
 }
 
-TEST(SeenArea, IgnoresWhatIsNotMeasuredOrFar) {
-  SeenArea seen;
+TEST(ObservedArea, IgnoresWhatIsNotMeasuredOrFar) {
+  ObservedArea seen;
   seen.add(wall_at(5.0, 0.0), Eigen::Isometry3d::Identity());
   seen.add(Frame{}, Eigen::Isometry3d::Identity());
   Frame nothing = wall_at(2.0, 0.1);

@@ -28,16 +28,16 @@ Frame seen_from(const Eigen::Isometry3d& T_world_camera) {
 }
 
 /// A camera turned in the room's middle, looking ahead and down.
-Places scanned() {
-  Places places;
+KeyframeDatabase scanned() {
+  KeyframeDatabase keyframe_database;
   for (int i = 0; i < 20; ++i) {
     const double angle_rad = 0.628 * i;
     const Eigen::Vector3d outward(std::cos(angle_rad), std::sin(angle_rad), 0.0);
     const Eigen::Isometry3d eye = test::looking_at(Eigen::Vector3d(0, 0, 1.3) - 0.4 * outward,
                                                    Eigen::Vector3d(0, 0, i < 10 ? 1.2 : 0.6) + outward);
-    places.keyframes.push_back(describe_place(seen_from(eye), eye));
+    keyframe_database.keyframes.push_back(make_map_keyframe(seen_from(eye), eye));
   }
-  return places;
+  return keyframe_database;
 }
 
 double error_m(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -52,10 +52,10 @@ const std::array kViews{test::looking_at({1.1, -0.9, 1.0}, {-1.2, 1.6, 0.5}),
                         test::looking_at({0.8, 0.9, 0.7}, {-1.5, 0.9, 0.5}, {0.1, 0.1, 0.9})};
 
 TEST(ShapeSearch, FindsViewsOfThingsFromWhereNobodyWas) {
-  const KnownShape known = known_shape(scanned());
+  const ShapeIndex known = shape_index(scanned());
   for (const Eigen::Isometry3d& truth : kViews) {
     const Frame frame = seen_from(truth);
-    const auto found = propose_by_shape(frame.depth_m, frame.depth_camera, *frame.down_camera, known, 4);
+    const auto found = search_by_shape(frame.depth_m, frame.depth_camera, *frame.down_camera, known, 4);
     ASSERT_FALSE(found.empty());
     ASSERT_LE(found.size(), 4U);
     EXPECT_LT(error_m(found.front().T_world_camera, truth), 0.1);
@@ -70,36 +70,37 @@ TEST(ShapeSearch, FindsViewsOfThingsFromWhereNobodyWas) {
 TEST(ShapeSearch, MovesWithTheRoom) {
   Eigen::Isometry3d T_new_old(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitZ()));
   T_new_old.translation() = Eigen::Vector3d(30.0, -7.0, 2.0);
-  Places places = scanned();
-  transform(places, T_new_old);
+  KeyframeDatabase keyframe_database = scanned();
+  transform(keyframe_database, T_new_old);
   const Frame frame = seen_from(kViews[0]);
-  const auto found =
-      propose_by_shape(frame.depth_m, frame.depth_camera, *frame.down_camera, known_shape(places), 1);
+  const auto found = search_by_shape(frame.depth_m, frame.depth_camera, *frame.down_camera,
+                                     shape_index(keyframe_database), 1);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_LT(error_m(found.front().T_world_camera, T_new_old * kViews[0]), 0.1);
 }
 
 TEST(ShapeSearch, StaysWithinItsMemoryHoweverFarThePlacesAreApart) {
-  const Places room = scanned();
+  const KeyframeDatabase room = scanned();
   for (const double apart_m : {100.0, 1e3, 3e4})
     for (int axis = 0; axis < 3; ++axis) {
-      Places places = room;
-      Places other = room;
+      KeyframeDatabase keyframe_database = room;
+      KeyframeDatabase other = room;
       transform(other, Eigen::Isometry3d(Eigen::Translation3d(apart_m * Eigen::Vector3d::Unit(axis))));
-      places.keyframes.insert(places.keyframes.end(), other.keyframes.begin(), other.keyframes.end());
-      const KnownShape known = known_shape(places);
+      keyframe_database.keyframes.insert(keyframe_database.keyframes.end(), other.keyframes.begin(),
+                                         other.keyframes.end());
+      const ShapeIndex known = shape_index(keyframe_database);
       EXPECT_GE(known.coarse.cell_m, 0.15);
       EXPECT_LE(known.coarse.nearness.size(), 500'000U) << apart_m;
       EXPECT_LE(known.fine.nearness.size(), 8U * 500'000U) << apart_m;
       EXPECT_GT(known.coarse.nearness.size(), 100U) << apart_m;
     }
-  Places damaged = room;
+  KeyframeDatabase damaged = room;
   damaged.keyframes.front().preview_camera.fx_px = 1e-300;
-  EXPECT_DOUBLE_EQ(known_shape(damaged).coarse.cell_m, 0.15);
+  EXPECT_DOUBLE_EQ(shape_index(damaged).coarse.cell_m, 0.15);
 }
 
 TEST(ShapeSearch, IsNearWhereSurfacesAreAndNowhereElse) {
-  const ShapeGrid grid = known_shape(scanned()).coarse;
+  const ShapeGrid grid = shape_index(scanned()).coarse;
   const auto at = [&grid](const Eigen::Vector3d& p_world) {
     const Eigen::Vector3i cell = ((p_world - grid.low) / grid.cell_m).array().floor().cast<int>();
     return grid
@@ -111,16 +112,16 @@ TEST(ShapeSearch, IsNearWhereSurfacesAreAndNowhereElse) {
 }
 
 TEST(ShapeSearch, SaysNothingWithoutDepthGravityOrRoom) {
-  const KnownShape known = known_shape(scanned());
+  const ShapeIndex known = shape_index(scanned());
   const Frame frame = seen_from(kViews[0]);
   const DepthImage none(kCamera.width_px, kCamera.height_px);
-  EXPECT_TRUE(propose_by_shape(none, kCamera, *frame.down_camera, known, 4).empty());
-  EXPECT_TRUE(propose_by_shape({}, kCamera, *frame.down_camera, known, 4).empty());
-  EXPECT_TRUE(propose_by_shape(frame.depth_m, kCamera, Eigen::Vector3d::Zero(), known, 4).empty());
+  EXPECT_TRUE(search_by_shape(none, kCamera, *frame.down_camera, known, 4).empty());
+  EXPECT_TRUE(search_by_shape({}, kCamera, *frame.down_camera, known, 4).empty());
+  EXPECT_TRUE(search_by_shape(frame.depth_m, kCamera, Eigen::Vector3d::Zero(), known, 4).empty());
   const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(std::nan(""));
-  EXPECT_TRUE(propose_by_shape(frame.depth_m, kCamera, unknown, known, 4).empty());
-  EXPECT_TRUE(known_shape({}).empty());
-  EXPECT_TRUE(propose_by_shape(frame.depth_m, kCamera, *frame.down_camera, known_shape({}), 4).empty());
+  EXPECT_TRUE(search_by_shape(frame.depth_m, kCamera, unknown, known, 4).empty());
+  EXPECT_TRUE(shape_index({}).empty());
+  EXPECT_TRUE(search_by_shape(frame.depth_m, kCamera, *frame.down_camera, shape_index({}), 4).empty());
 }
 
 }  // namespace

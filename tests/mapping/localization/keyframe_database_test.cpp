@@ -29,19 +29,19 @@ Frame painted(const Eigen::Isometry3d& T_world_camera, const test::Scene& scene 
 
 Eigen::Isometry3d eye(double x_m) { return test::looking_at({x_m, -0.3, 1.2}, {x_m, 2.0, 0.6}); }
 
-Places three_places() {
-  Places places;
+KeyframeDatabase three_places() {
+  KeyframeDatabase keyframe_database;
   for (const double x_m : {-0.8, 0.0, 0.8})
-    places.keyframes.push_back(describe_place(painted(eye(x_m)), eye(x_m)));
-  return places;
+    keyframe_database.keyframes.push_back(make_map_keyframe(painted(eye(x_m)), eye(x_m)));
+  return keyframe_database;
 }
 
-Places without_features(Places places) {
-  for (Place& place : places.keyframes) {
+KeyframeDatabase without_features(KeyframeDatabase keyframe_database) {
+  for (MapKeyframe& place : keyframe_database.keyframes) {
     place.descriptors.clear();
     place.points_camera.clear();
   }
-  return places;
+  return keyframe_database;
 }
 
 double error_m(const Relocalisation& found, const Eigen::Isometry3d& truth) {
@@ -59,7 +59,7 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
 
 std::string refusal(const std::filesystem::path& path) {
   try {
-    (void)read_places(path);
+    (void)read_keyframe_database(path);
   } catch (const Error& error) {
     return error.what();
   }
@@ -68,7 +68,7 @@ std::string refusal(const std::filesystem::path& path) {
 
 TEST(DescribePlace, FeaturePointsLieOnTheSurface) {
   const Eigen::Isometry3d T = eye(0.0);
-  const Place place = describe_place(painted(T), T);
+  const MapKeyframe place = make_map_keyframe(painted(T), T);
   ASSERT_GT(place.descriptors.size(), 100U);
   ASSERT_EQ(place.descriptors.size(), place.points_camera.size());
   for (const Eigen::Vector3f& p : place.points_camera) {
@@ -82,20 +82,22 @@ TEST(DescribePlace, FeaturePointsLieOnTheSurface) {
 
 TEST(PlacesFile, ComesBackAsItWas) {
   const test::TemporaryFolder folder;
-  const Places places = three_places();
-  write_places(places, folder.path() / "places.bin");
-  const Places read = read_places(folder.path() / "places.bin");
+  const KeyframeDatabase keyframe_database = three_places();
+  write_keyframe_database(keyframe_database, folder.path() / "places.bin");
+  const KeyframeDatabase read = read_keyframe_database(folder.path() / "places.bin");
   ASSERT_EQ(read.keyframes.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(read.keyframes[i].T_world_camera.matrix(), places.keyframes[i].T_world_camera.matrix());
-    EXPECT_EQ(read.keyframes[i].descriptors, places.keyframes[i].descriptors);
-    EXPECT_EQ(read.keyframes[i].points_camera, places.keyframes[i].points_camera);
-    EXPECT_EQ(read.keyframes[i].preview_depth_mm.pixels, places.keyframes[i].preview_depth_mm.pixels);
-    EXPECT_EQ(read.keyframes[i].preview_camera, places.keyframes[i].preview_camera);
+    EXPECT_EQ(read.keyframes[i].T_world_camera.matrix(),
+              keyframe_database.keyframes[i].T_world_camera.matrix());
+    EXPECT_EQ(read.keyframes[i].descriptors, keyframe_database.keyframes[i].descriptors);
+    EXPECT_EQ(read.keyframes[i].points_camera, keyframe_database.keyframes[i].points_camera);
+    EXPECT_EQ(read.keyframes[i].preview_depth_mm.pixels,
+              keyframe_database.keyframes[i].preview_depth_mm.pixels);
+    EXPECT_EQ(read.keyframes[i].preview_camera, keyframe_database.keyframes[i].preview_camera);
     ASSERT_GT(read.keyframes[i].patches.size(), 100U);
-    ASSERT_EQ(read.keyframes[i].patches.size(), places.keyframes[i].patches.size());
+    ASSERT_EQ(read.keyframes[i].patches.size(), keyframe_database.keyframes[i].patches.size());
     for (std::size_t k = 0; k < read.keyframes[i].patches.size(); ++k) {
-      const SurfacePatch &is = read.keyframes[i].patches[k], &was = places.keyframes[i].patches[k];
+      const SurfacePatch &is = read.keyframes[i].patches[k], &was = keyframe_database.keyframes[i].patches[k];
       EXPECT_EQ(is.point, was.point);
       EXPECT_EQ(is.normal, was.normal);
       EXPECT_EQ(is.along, was.along);
@@ -103,14 +105,14 @@ TEST(PlacesFile, ComesBackAsItWas) {
       EXPECT_EQ(is.bits, was.bits);
     }
   }
-  write_places({}, folder.path() / "none.bin");
-  EXPECT_TRUE(read_places(folder.path() / "none.bin").keyframes.empty());
+  write_keyframe_database({}, folder.path() / "none.bin");
+  EXPECT_TRUE(read_keyframe_database(folder.path() / "none.bin").keyframes.empty());
 }
 
 TEST(PlacesFile, WhatIsCutOrAlteredIsRefused) {
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "places.bin";
-  write_places(three_places(), path);
+  write_keyframe_database(three_places(), path);
   const std::string whole = read_bytes(path);
   for (const std::size_t size : {std::size_t{0}, std::size_t{4}, std::size_t{11}, std::size_t{17},
                                  whole.size() / 2, whole.size() - 1}) {
@@ -135,9 +137,9 @@ TEST(PlacesFile, WhatIsCutOrAlteredIsRefused) {
 TEST(PlacesFile, APlaceThatNoMapReachesIsRefused) {
   const test::TemporaryFolder folder;
   for (const double away_m : {-1.1e5, 1e12}) {
-    Places places = three_places();
-    places.keyframes.back().T_world_camera.translation().z() = away_m;
-    write_places(places, folder.path() / "far.bin");
+    KeyframeDatabase keyframe_database = three_places();
+    keyframe_database.keyframes.back().T_world_camera.translation().z() = away_m;
+    write_keyframe_database(keyframe_database, folder.path() / "far.bin");
     EXPECT_NE(refusal(folder.path() / "far.bin").find("where no map reaches"), std::string::npos) << away_m;
   }
 }
@@ -148,13 +150,13 @@ TEST(PlacesFile, AViewOfMoreThanAnySearchComparesIsRefused) {
   const auto most = static_cast<std::size_t>(kMostDescribed);
   for (const std::size_t count : {most, most + 1}) {
     const std::string wanted = count == most ? "accepted" : "a view of 10001 ";
-    Places features = three_places(), patches = features;
+    KeyframeDatabase features = three_places(), patches = features;
     features.keyframes.back().points_camera.resize(count, Eigen::Vector3f::Zero());
     features.keyframes.back().descriptors.resize(count);
-    write_places(features, path);
+    write_keyframe_database(features, path);
     EXPECT_NE(refusal(path).find(wanted), std::string::npos) << refusal(path);
     patches.keyframes.back().patches.resize(count);
-    write_places(patches, path);
+    write_keyframe_database(patches, path);
     EXPECT_NE(refusal(path).find(wanted), std::string::npos) << refusal(path);
   }
 }
@@ -172,7 +174,7 @@ TEST(PlacesFile, SizesThatLieAreRefusedBeforeMemoryIsTaken) {
 }
 
 TEST(PlacesFile, AFolderThatIsNotThereIsNamed) {
-  EXPECT_THROW(write_places({}, "/no/such/folder/places.bin"), Error);
+  EXPECT_THROW(write_keyframe_database({}, "/no/such/folder/places.bin"), Error);
 }
 
 TEST(Relocalise, FindsAViewBetweenPlaces) {
@@ -185,11 +187,11 @@ TEST(Relocalise, FindsAViewBetweenPlaces) {
 }
 
 TEST(Relocalise, FollowsTheWorldWhenItIsTurned) {
-  Places places = three_places();
+  KeyframeDatabase keyframe_database = three_places();
   const Eigen::Isometry3d T_new_old =
       Eigen::Translation3d(300.0, 2.0, -1.0) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitX());
-  transform(places, T_new_old);
-  const Relocalisation found = relocalise(painted(eye(0.1)), places);
+  transform(keyframe_database, T_new_old);
+  const Relocalisation found = relocalise(painted(eye(0.1)), keyframe_database);
   ASSERT_TRUE(found);
   EXPECT_LT(error_m(found, T_new_old * eye(0.1)), 0.015);
 }
@@ -218,9 +220,9 @@ TEST(Relocalise, FeaturesWithoutTheDepthAreUnproven) {
   for (int y = 2 * frame.depth_m.height / 5; y < frame.depth_m.height; ++y) {
     std::fill_n(frame.depth_m.row(y), frame.depth_m.width, 0.7F);
   }
-  const Places one{{three_places().keyframes[1]}};
+  const KeyframeDatabase one{{three_places().keyframes[1]}};
   EXPECT_TRUE(relocalise(painted(eye(0.0)), one));
-  EXPECT_EQ(relocalise(frame, one).status, RelocalisationStatus::kUnproven);
+  EXPECT_EQ(relocalise(frame, one).status, RelocalisationStatus::kNotVerified);
 }
 
 TEST(Relocalise, WithoutColourTheDepthDecides) {
@@ -234,21 +236,21 @@ TEST(Relocalise, WithoutColourTheDepthDecides) {
 
 TEST(Relocalise, WithoutColourItIsFoundAmongMoreViewsThanAreTried) {
   // The only one that helps is the last of 130; the others look elsewhere.
-  Places places;
-  Place elsewhere = describe_place(painted(eye(0.0)), eye(0.0));
+  KeyframeDatabase keyframe_database;
+  MapKeyframe elsewhere = make_map_keyframe(painted(eye(0.0)), eye(0.0));
   for (std::uint16_t& mm : elsewhere.preview_depth_mm.pixels) mm = static_cast<std::uint16_t>(mm + 1000);
-  places.keyframes.assign(129, elsewhere);
-  places.keyframes.push_back(three_places().keyframes[1]);
+  keyframe_database.keyframes.assign(129, elsewhere);
+  keyframe_database.keyframes.push_back(three_places().keyframes[1]);
   Frame frame = painted(eye(0.05));
   frame.colour.resize(0, 0);
-  const Relocalisation found = relocalise(frame, without_features(places));
+  const Relocalisation found = relocalise(frame, without_features(keyframe_database));
   ASSERT_TRUE(found) << to_string(found.status);
   EXPECT_EQ(found.keyframe, 129);
   EXPECT_LT(error_m(found, eye(0.05)), 0.03);
 }
 
 TEST(Relocalise, SaysWhyItCannot) {
-  EXPECT_EQ(relocalise(painted(eye(0.0)), {}).status, RelocalisationStatus::kNoPlaces);
+  EXPECT_EQ(relocalise(painted(eye(0.0)), {}).status, RelocalisationStatus::kNoKeyframes);
   Frame dark = painted(eye(0.0));
   std::fill(dark.depth_m.pixels.begin(), dark.depth_m.pixels.end(), 0.0F);
   EXPECT_EQ(relocalise(dark, three_places()).status, RelocalisationStatus::kNoDepth);
@@ -258,7 +260,7 @@ TEST(RelocaliseOnARecording, KitchenFramesAreFoundAgain) {
   ROOMRADAR_RECORDING_OR_SKIP(folder, "kitchen");
   const auto source = open_folder(folder);
   Odometry odometry;
-  Places places;
+  KeyframeDatabase keyframe_database;
   Frame frame;
   int asked = 0, right = 0, wrong = 0;
   while (source->next(frame).status == ReadStatus::kFrame && frame.index < 500) {
@@ -267,10 +269,10 @@ TEST(RelocaliseOnARecording, KitchenFramesAreFoundAgain) {
       if (frame.index % 4 == 0) odometry.add_posed(frame, *frame.T_world_camera);
       continue;
     }
-    if (places.keyframes.empty()) places = odometry.take_places();
+    if (keyframe_database.keyframes.empty()) keyframe_database = odometry.take_keyframe_database();
     if (frame.index % 10 != 0) continue;
     ++asked;
-    const Relocalisation found = relocalise(frame, places);
+    const Relocalisation found = relocalise(frame, keyframe_database);
     if (!found) continue;
     const Eigen::Isometry3d error = frame.T_world_camera->inverse() * found.T_world_camera;
     const bool near = error.translation().norm() < 0.05 && Eigen::AngleAxisd(error.linear()).angle() < 0.0873;

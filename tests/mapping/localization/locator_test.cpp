@@ -38,7 +38,7 @@ struct Mapped {
       const Eigen::Vector3d outward(std::cos(angle_rad), std::sin(angle_rad), 0.0);
       const Eigen::Isometry3d eye =
           test::looking_at(Eigen::Vector3d(0, 0, 1.3) - 0.4 * outward, Eigen::Vector3d(0, 0, 0.8) + outward);
-      places.keyframes.push_back(describe_place(seen_from(eye), eye));
+      keyframe_database.keyframes.push_back(make_map_keyframe(seen_from(eye), eye));
     }
   }
   [[nodiscard]] Frame seen_from(const Eigen::Isometry3d& T_world_camera) const {
@@ -48,15 +48,16 @@ struct Mapped {
     return frame;
   }
   Tracking find(const Frame& frame) {
-    return locate(locator, frame, places, {}, [this](const Eigen::Isometry3d& T) -> const DepthImage& {
-      expected_m = test::exact_frame(scene, kCamera, T).depth_m;
-      return expected_m;
-    });
+    return locate(locator, frame, keyframe_database, {},
+                  [this](const Eigen::Isometry3d& T) -> const DepthImage& {
+                    expected_m = test::exact_frame(scene, kCamera, T).depth_m;
+                    return expected_m;
+                  });
   }
 
   test::Scene scene;
   Grey grey;
-  Places places;
+  KeyframeDatabase keyframe_database;
   Locator locator;
   DepthImage expected_m;
 };
@@ -174,7 +175,7 @@ TEST(Locator, OneSmallPosterSaysWhereAlongABareWallItIs) {
     const Tracking found = fresh.find(fresh.seen_from(truth));
     ASSERT_TRUE(has_pose(found)) << aim;
     EXPECT_LT(error_m(found, truth), 0.02) << aim;
-    EXPECT_LT(fresh.locator.findings.front().look.alike.size(), 40U) << aim;
+    EXPECT_LT(fresh.locator.hypotheses.front().appearance.alike.size(), 40U) << aim;
   }
 }
 
@@ -185,7 +186,7 @@ TEST(Locator, OneOfTwoEqualPostersDoesNotSayWhereItIs) {
     });
     const Frame frame = mapped.seen_from(test::looking_at({0.3, 0.4, 1.2}, {0.3, 2.5, 0.4}));
     EXPECT_FALSE(has_pose(mapped.find(frame))) << width_m;
-    EXPECT_EQ(mapped.locator.search_end, SearchEnd::kRivalled) << width_m;
+    EXPECT_EQ(mapped.locator.search_end, SearchEnd::kAmbiguous) << width_m;
   }
 }
 
@@ -239,17 +240,17 @@ TEST(Locator, DoesNotSayWhereAlongABareWallItIs) {
   EXPECT_NE(bare.locator.search_end, SearchEnd::kFound);
 }
 
-TEST(Evidence, CountsWhatFitsAndWhatIsSeenThrough) {
+TEST(DepthAgreement, CountsWhatFitsAndWhatIsSeenThrough) {
   DepthImage live(40, 40, 2.0F), expected(40, 40, 2.0F);
-  EXPECT_EQ(evidence_of(live, expected).alike_part(), 1.0);
-  EXPECT_EQ(evidence_of(live, expected).valid, 100);
+  EXPECT_EQ(depth_agreement_of(live, expected).alike_part(), 1.0);
+  EXPECT_EQ(depth_agreement_of(live, expected).valid, 100);
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 20; ++x) expected.at(x, y) = y < 20 ? 1.5F : 2.5F;
-  const Evidence half = evidence_of(live, expected);
+  const DepthAgreement half = depth_agreement_of(live, expected);
   EXPECT_EQ(half.alike, 50);
   EXPECT_EQ(half.farther, 25);
   EXPECT_DOUBLE_EQ(half.score(), 0.0);
-  const Evidence none = evidence_of(DepthImage(40, 40), expected);
+  const DepthAgreement none = depth_agreement_of(DepthImage(40, 40), expected);
   EXPECT_EQ(none.valid, 0);
   EXPECT_EQ(none.score(), 0.0);
   EXPECT_EQ(none.alike_part(), 0.0);

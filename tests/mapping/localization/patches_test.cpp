@@ -19,8 +19,8 @@ Frame painted(const Eigen::Isometry3d& T_world_camera) {
   return frame;
 }
 
-Places place_at(const Eigen::Isometry3d& T_world_camera) {
-  return {{describe_place(painted(T_world_camera), T_world_camera)}};
+KeyframeDatabase place_at(const Eigen::Isometry3d& T_world_camera) {
+  return {{make_map_keyframe(painted(T_world_camera), T_world_camera)}};
 }
 
 const Eigen::Isometry3d kEye = test::looking_at({-0.2, -0.3, 1.2}, {0.0, 2.0, 0.6});
@@ -43,7 +43,7 @@ TEST(Patches, LieOnTheSurfaceAndFaceTheViewer) {
 }
 
 TEST(Patches, OfOneViewSayWhereAViewFromAsideStands) {
-  const KnownPatches known = known_patches(place_at(kEye));
+  const PatchIndex known = build_patch_index(place_at(kEye));
   const auto candidates = propose_poses(describe_patches(painted(kAside), 400), known, 4, 6);
   ASSERT_FALSE(candidates.empty());
   const Eigen::Isometry3d error = kAside.inverse() * candidates.front().T_world_camera;
@@ -57,23 +57,23 @@ TEST(Patches, OfAnotherRoomAreNotFound) {
   };
   Frame frame = test::exact_frame(test::corner_with_ball(), kCamera, kAside);
   test::paint_with(other, frame, kAside);
-  EXPECT_TRUE(propose_poses(describe_patches(frame, 400), known_patches(place_at(kEye)), 4, 6).empty());
+  EXPECT_TRUE(propose_poses(describe_patches(frame, 400), build_patch_index(place_at(kEye)), 4, 6).empty());
 }
 
 TEST(Patches, SpeakForTheTruePoseAndAgainstOthers) {
-  const KnownPatches known = known_patches(place_at(kEye));
+  const PatchIndex known = build_patch_index(place_at(kEye));
   const std::vector<SurfacePatch> seen = describe_patches(painted(kAside), 400);
-  const PatchProof right = prove_with_patches(seen, known, kAside);
+  const PatchAgreement right = match_patches_at(seen, known, kAside);
   EXPECT_GT(right.alike.size(), 30U);
   EXPECT_GT(right.alike_part(), 0.35);
   for (const PointPair& pair : right.alike) EXPECT_LT((kAside * pair.b - pair.a).norm(), 0.03);
   Eigen::Isometry3d along_the_wall = kAside;
   along_the_wall.pretranslate(Eigen::Vector3d(0.12, 0.0, 0.0));
-  const PatchProof wrong = prove_with_patches(seen, known, along_the_wall);
+  const PatchAgreement wrong = match_patches_at(seen, known, along_the_wall);
   EXPECT_GT(wrong.compared, 30);
   EXPECT_LT(wrong.alike_part(), 0.1);
-  EXPECT_EQ(prove_with_patches({}, known, kAside).compared, 0);
-  EXPECT_EQ(prove_with_patches(seen, {}, kAside).alike_part(), 0.0);
+  EXPECT_EQ(match_patches_at({}, known, kAside).compared, 0);
+  EXPECT_EQ(match_patches_at(seen, {}, kAside).alike_part(), 0.0);
 }
 
 TEST(Patches, NeedColourAndDepth) {
@@ -84,8 +84,8 @@ TEST(Patches, NeedColourAndDepth) {
   dark.depth_m.resize(kCamera.width_px, kCamera.height_px);
   EXPECT_TRUE(describe_patches(dark, 300).empty());
   EXPECT_TRUE(describe_patches(painted(kEye), 0).empty());
-  EXPECT_TRUE(propose_poses({}, known_patches({}), 4, 6).empty());
-  EXPECT_TRUE(known_patches({}).empty());
+  EXPECT_TRUE(propose_poses({}, build_patch_index({}), 4, 6).empty());
+  EXPECT_TRUE(build_patch_index({}).empty());
 }
 
 }  // namespace

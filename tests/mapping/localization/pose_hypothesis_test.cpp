@@ -13,84 +13,84 @@ namespace {
 /// @param alike       patches, of 100 that were compared
 /// @param depth_alike part of 1,000 pixels whose depth the model explains
 /// @param farther     part of them where the camera looks through the model
-TriedPose finding(TrackStatus status, std::size_t alike, double depth_alike, double farther = 0.0) {
-  TriedPose tried;
+PoseHypothesis hypothesis(TrackStatus status, std::size_t alike, double depth_alike, double farther = 0.0) {
+  PoseHypothesis tried;
   tried.tracking.status = status;
   tried.uncertainty_m = 0.005;
-  tried.look.compared = 100;
-  tried.look.alike.resize(alike);
-  tried.evidence = {1000, 1000, static_cast<int>(std::lround(1000 * depth_alike)),
-                    static_cast<int>(std::lround(1000 * farther))};
+  tried.appearance.compared = 100;
+  tried.appearance.alike.resize(alike);
+  tried.agreement = {1000, 1000, static_cast<int>(std::lround(1000 * depth_alike)),
+                     static_cast<int>(std::lround(1000 * farther))};
   return tried;
 }
 
 constexpr TrackStatus kFixed = TrackStatus::kTracked, kOpen = TrackStatus::kDegenerate;
 
-TEST(TriedPose, LookAndDepthTogetherMakeItCertain) {
-  EXPECT_TRUE(is_certain(finding(kFixed, 50, 0.8)));
-  EXPECT_FALSE(is_certain(finding(kFixed, 50, 0.3))) << "the depth speaks against it";
-  EXPECT_TRUE(is_certain(finding(kFixed, 50, 0.8, 0.1))) << "something was taken away";
-  EXPECT_FALSE(is_certain(finding(kFixed, 50, 0.8, 0.13)));
-  EXPECT_FALSE(is_certain(finding(TrackStatus::kDiverged, 90, 0.99)));
+TEST(PoseHypothesis, LookAndDepthTogetherMakeItCertain) {
+  EXPECT_TRUE(is_certain(hypothesis(kFixed, 50, 0.8)));
+  EXPECT_FALSE(is_certain(hypothesis(kFixed, 50, 0.3))) << "the depth speaks against it";
+  EXPECT_TRUE(is_certain(hypothesis(kFixed, 50, 0.8, 0.1))) << "something was taken away";
+  EXPECT_FALSE(is_certain(hypothesis(kFixed, 50, 0.8, 0.13)));
+  EXPECT_FALSE(is_certain(hypothesis(TrackStatus::kDiverged, 90, 0.99)));
 }
 
-TEST(TriedPose, DepthAloneMustBeClear) {
-  TriedPose bare = finding(kFixed, 0, 0.95);
-  bare.look.compared = 5;
+TEST(PoseHypothesis, DepthAloneMustBeClear) {
+  PoseHypothesis bare = hypothesis(kFixed, 0, 0.95);
+  bare.appearance.compared = 5;
   EXPECT_TRUE(is_certain(bare)) << "a bare wall has no patches";
-  bare.evidence.alike = 850;
+  bare.agreement.alike = 850;
   EXPECT_FALSE(is_certain(bare));
-  EXPECT_FALSE(is_certain(finding(kFixed, 10, 0.99))) << "of many patches hardly any is alike";
-  bare = finding(kOpen, 0, 0.99);
-  bare.look.compared = 5;
+  EXPECT_FALSE(is_certain(hypothesis(kFixed, 10, 0.99))) << "of many patches hardly any is alike";
+  bare = hypothesis(kOpen, 0, 0.99);
+  bare.appearance.compared = 5;
   EXPECT_FALSE(is_certain(bare)) << "a direction is open";
 }
 
-TEST(TriedPose, WithADirectionOpenTheDepthOrBothTogetherAreClear) {
+TEST(PoseHypothesis, WithADirectionOpenTheDepthOrBothTogetherAreClear) {
   // Half of a floor's boards are alike a board's width aside, where the depth says much the same.
-  EXPECT_FALSE(is_certain(finding(kOpen, 50, 0.93)));
-  EXPECT_TRUE(is_certain(finding(kFixed, 50, 0.93)));
-  EXPECT_TRUE(is_certain(finding(kOpen, 65, 0.93)));
-  EXPECT_TRUE(is_certain(finding(kOpen, 50, 0.96)));
+  EXPECT_FALSE(is_certain(hypothesis(kOpen, 50, 0.93)));
+  EXPECT_TRUE(is_certain(hypothesis(kFixed, 50, 0.93)));
+  EXPECT_TRUE(is_certain(hypothesis(kOpen, 65, 0.93)));
+  EXPECT_TRUE(is_certain(hypothesis(kOpen, 50, 0.96)));
   // Two thirds of a rug's flowers are alike some flowers aside; a person before the view takes as much depth.
-  EXPECT_FALSE(is_certain(finding(kOpen, 70, 0.79)));
-  EXPECT_TRUE(is_certain(finding(kOpen, 71, 0.84)));
-  EXPECT_FALSE(is_certain(finding(kOpen, 65, 0.90, 0.06))) << "edges stand where none is seen";
-  EXPECT_TRUE(is_certain(finding(kFixed, 65, 0.90, 0.06)));
+  EXPECT_FALSE(is_certain(hypothesis(kOpen, 70, 0.79)));
+  EXPECT_TRUE(is_certain(hypothesis(kOpen, 71, 0.84)));
+  EXPECT_FALSE(is_certain(hypothesis(kOpen, 65, 0.90, 0.06))) << "edges stand where none is seen";
+  EXPECT_TRUE(is_certain(hypothesis(kFixed, 65, 0.90, 0.06)));
 }
 
-TEST(TriedPose, AFewPatchesFixNoOpenDirection) {
-  TriedPose few = finding(kOpen, 30, 0.95);
-  few.look.compared = 50;
+TEST(PoseHypothesis, AFewPatchesFixNoOpenDirection) {
+  PoseHypothesis few = hypothesis(kOpen, 30, 0.95);
+  few.appearance.compared = 50;
   EXPECT_FALSE(is_certain(few)) << "boards repeat";
-  few.look.compared = 38;
+  few.appearance.compared = 38;
   EXPECT_TRUE(is_certain(few)) << "next to nothing speaks against it";
 }
 
-TEST(TriedPose, WhatIsNotKnownWellOrHardlyCoveredIsNotCertain) {
-  TriedPose loose = finding(kFixed, 80, 0.99);
+TEST(PoseHypothesis, WhatIsNotKnownWellOrHardlyCoveredIsNotCertain) {
+  PoseHypothesis loose = hypothesis(kFixed, 80, 0.99);
   loose.uncertainty_m = 0.016;
   EXPECT_FALSE(is_certain(loose));
   loose.uncertainty_m = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(is_certain(loose));
-  TriedPose outside = finding(kFixed, 80, 0.99);
-  outside.evidence.both = 190;
+  PoseHypothesis outside = hypothesis(kFixed, 80, 0.99);
+  outside.agreement.both = 190;
   EXPECT_FALSE(is_certain(outside));
-  EXPECT_FALSE(is_certain(TriedPose{}));
+  EXPECT_FALSE(is_certain(PoseHypothesis{}));
 }
 
-TEST(TriedPose, ATwinElsewhereMakesItDoubtful) {
-  const TriedPose best = finding(kFixed, 80, 0.95);
-  TriedPose twin = finding(kFixed, 78, 0.94);
-  EXPECT_FALSE(is_rivalled(best, {best, twin})) << "they are one place";
+TEST(PoseHypothesis, ATwinElsewhereMakesItDoubtful) {
+  const PoseHypothesis best = hypothesis(kFixed, 80, 0.95);
+  PoseHypothesis twin = hypothesis(kFixed, 78, 0.94);
+  EXPECT_FALSE(is_ambiguous(best, {best, twin})) << "they are one place";
   twin.tracking.T_world_camera.translation().x() = 1.0;
-  EXPECT_TRUE(is_rivalled(best, {best, twin}));
-  twin.look.alike.resize(40);
-  twin.evidence.alike = 700;
-  EXPECT_FALSE(is_rivalled(best, {best, twin}));
+  EXPECT_TRUE(is_ambiguous(best, {best, twin}));
+  twin.appearance.alike.resize(40);
+  twin.agreement.alike = 700;
+  EXPECT_FALSE(is_ambiguous(best, {best, twin}));
 }
 
-TEST(TriedPose, WhatNothingFixesIsInfinitelyUncertain) {
+TEST(PoseHypothesis, WhatNothingFixesIsInfinitelyUncertain) {
   Tracking tracking;
   tracking.information.setZero();
   EXPECT_EQ(uncertainty_m(tracking), std::numeric_limits<double>::infinity());

@@ -41,14 +41,14 @@ SavedMap a_room() {
   map.octree = StaticMap(0.0234);
   map.octree.fuse(test::exact_frame(scene, kCamera, T_world_camera, Rgb{90, 60, 30}), T_world_camera);
   map.mesh = extract_surface(map.octree);
-  Place place;
+  MapKeyframe place;
   place.frame_index = 7;
   place.T_world_camera = T_world_camera;
   place.points_camera = {{0.1F, 0.2F, 1.5F}};
   place.descriptors = {Descriptor{1, 2, 3}};
   place.preview_camera = {4, 3, 4.0, 4.0, 1.5, 1.0};
   place.preview_depth_mm = {4, 3, 1500};
-  map.places.keyframes = {place};
+  map.keyframe_database.keyframes = {place};
   for (int i = 0; i < 5; ++i) {
     TimedPose pose{i, i / 30.0, T_world_camera};
     pose.T_world_camera.translation().y() = 0.01 * i;
@@ -135,8 +135,8 @@ TEST_F(MapFolder, ComesBackAsItWasSaved) {
         (read.mesh.vertices[i].cast<double>() - room_.mesh.origin - room_.mesh.vertices[i].cast<double>())
             .norm(),
         1e-6);
-  ASSERT_EQ(read.places.keyframes.size(), 1U);
-  EXPECT_EQ(read.places.keyframes[0].frame_index, 7);
+  ASSERT_EQ(read.keyframe_database.keyframes.size(), 1U);
+  EXPECT_EQ(read.keyframe_database.keyframes[0].frame_index, 7);
   ASSERT_EQ(read.trajectory.size(), 5U);
   EXPECT_TRUE(read.trajectory[4].T_world_camera.isApprox(room_.trajectory[4].T_world_camera, 1e-9));
 }
@@ -377,7 +377,7 @@ TEST_F(MapFolder, WhatASaveKilledBetweenTwoRenamesSetAsideIsNamedAndBroughtBack)
   const std::string fault = error_of([&] { load_map(map_); });
   EXPECT_NE(fault.find("rename"), std::string::npos) << fault;
   EXPECT_NE(fault.find(aside.filename().string()), std::string::npos) << fault;
-  { const PartialFolder never_put_in_place(map_); }
+  { const AtomicFolder never_put_in_place(map_); }
   EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
 
   fs::create_directory(aside);  // killed after the second rename: the new one is there, and the old one goes

@@ -50,7 +50,7 @@ SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& 
     frame.index = i;
     const Isometry3d T_own_camera = T_own_world * T_world_camera;
     EXPECT_EQ(map.octree.fuse(frame, T_own_camera), FuseStatus::kFused);
-    if (i % 2 == 0) map.places.keyframes.push_back(describe_place(frame, T_own_camera));
+    if (i % 2 == 0) map.keyframe_database.keyframes.push_back(make_map_keyframe(frame, T_own_camera));
     map.trajectory.push_back({i, i / 30.0, T_own_camera});
   }
   map.mesh = extract_surface(map.octree);
@@ -143,7 +143,7 @@ TEST_F(MapPairs, ALookAlikeIsRefused) {
 
 TEST_F(MapPairs, WithoutColourNothingIsRecognised) {
   SavedMap blind = scan(room(), -0.6, 0.8, Isometry3d::Identity(), 3);
-  for (Place& place : blind.places.keyframes) {
+  for (MapKeyframe& place : blind.keyframe_database.keyframes) {
     place.points_camera.clear();
     place.descriptors.clear();
   }
@@ -181,9 +181,9 @@ TEST_F(MapPairs, MergedItsSurfaceIsAsCloseAsTheFirstOnes) {
     if (*deviation_m != 0) first.info.settings[kDeviationSetting] = deviation_m;
     return merge_maps(std::move(first), b(), kT_a_b).mesh.triangles.size();
   };
-  const std::size_t usual = triangles("");
-  EXPECT_EQ(triangles("0.002"), usual);
-  EXPECT_LT(triangles("0.02"), usual * 3 / 4);
+  const std::size_t defaults = triangles("");
+  EXPECT_EQ(triangles("0.002"), defaults);
+  EXPECT_LT(triangles("0.02"), defaults * 3 / 4);
   for (const char* impossible : {"", "-1", "nan", "inf", "2 mm", "1e99"}) {
     MapInfo info;
     info.settings[kDeviationSetting] = impossible;
@@ -193,7 +193,8 @@ TEST_F(MapPairs, MergedItsSurfaceIsAsCloseAsTheFirstOnes) {
 
 TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
   const SavedMap merged = merge_maps(scan(room(), -0.6, 0.8, Isometry3d::Identity(), 1), b(), kT_a_b);
-  EXPECT_EQ(merged.places.keyframes.size(), a().places.keyframes.size() + b().places.keyframes.size());
+  EXPECT_EQ(merged.keyframe_database.keyframes.size(),
+            a().keyframe_database.keyframes.size() + b().keyframe_database.keyframes.size());
   ASSERT_EQ(merged.trajectory.size(), 32U);
   for (std::size_t i = 1; i < merged.trajectory.size(); ++i)
     EXPECT_GT(merged.trajectory[i].stamp_s, merged.trajectory[i - 1].stamp_s);

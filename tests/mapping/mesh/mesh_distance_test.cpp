@@ -62,11 +62,11 @@ TEST(TriangleDistance, OfTrianglesWithCornersInOnePlaceIsThatOfTheirSide) {
     }
 }
 
-TEST(SurfaceNear, FindsWhatAskingEveryTriangleFinds) {
+TEST(MeshDistanceQuery, FindsWhatAskingEveryTriangleFinds) {
   std::mt19937 random(2);
   const Mesh mesh = random_triangles(random);
   const float reach_m = 0.04F;
-  const SurfaceNear surface(mesh, reach_m);
+  const MeshDistanceQuery surface(mesh, reach_m);
   int within = 0;
   for (int n = 0; n < 3000; ++n) {
     const Eigen::Vector3f p = 1.4F * point_in(random, 1.0F) - Eigen::Vector3f::Constant(0.2F);
@@ -89,7 +89,7 @@ TEST(SurfaceNear, FindsWhatAskingEveryTriangleFinds) {
 
 // A reach of a millionth of the triangles, and of less than a float tells apart: neither countless cubes nor
 // endless halving.
-TEST(SurfaceNear, AnswersWithinAReachThatIsNextToNothing) {
+TEST(MeshDistanceQuery, AnswersWithinAReachThatIsNextToNothing) {
   std::mt19937 random(3);
   Mesh mesh = random_triangles(random);
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -97,7 +97,7 @@ TEST(SurfaceNear, AnswersWithinAReachThatIsNextToNothing) {
     mesh.vertices.push_back(corner);
   mesh.triangles.push_back({first, first + 1, first + 2});
   for (const float reach_m : {1e-5F, 1e-8F, 1e-30F}) {
-    const SurfaceNear surface(mesh, reach_m);
+    const MeshDistanceQuery surface(mesh, reach_m);
     EXPECT_EQ(surface.distance_m(mesh.vertices.front()), 0.0F);
     EXPECT_EQ(surface.distance_m(mesh.vertices.back()), 0.0F);
     EXPECT_TRUE(std::isinf(surface.distance_m({0.0F, 10.0F, 3.1F})));
@@ -107,7 +107,7 @@ TEST(SurfaceNear, AnswersWithinAReachThatIsNextToNothing) {
 TEST(MeshDistance, AMeshIsOnItselfAndALiftedOneIsNot) {
   std::mt19937 random(4);
   Mesh mesh = random_triangles(random);
-  const SurfaceNear surface(mesh, 0.01F);
+  const MeshDistanceQuery surface(mesh, 0.01F);
   std::vector<FarPoint> far;
   EXPECT_LT(greatest_distance_m(mesh, surface, 0.01F, 0.005F, far), 1e-5F);
   EXPECT_TRUE(far.empty());
@@ -115,7 +115,7 @@ TEST(MeshDistance, AMeshIsOnItselfAndALiftedOneIsNot) {
   for (Eigen::Vector3f& vertex : lifted.vertices) vertex.z() += 10.0F;
   greatest_distance_m(lifted, surface, 0.01F, 0.005F, far);
   EXPECT_GT(far.size(), lifted.vertices.size());
-  EXPECT_TRUE(std::isinf(SurfaceNear(Mesh{}, 0.01F).distance_m({0, 0, 0})));
+  EXPECT_TRUE(std::isinf(MeshDistanceQuery(Mesh{}, 0.01F).distance_m({0, 0, 0})));
 }
 
 }  // namespace

@@ -115,8 +115,10 @@ TEST(MeshSimplify, ALargeSheetIsDoneInBlocksAndNotTornBetweenThem) {
   EXPECT_GT(coarse.deviation_m, 0.0F);
   EXPECT_LE(coarse.deviation_m, 0.004F);
   std::vector<FarPoint> far;
-  static_cast<void>(greatest_distance_m(coarse.mesh, SurfaceNear(fine, 0.01F), 0.008F, 1.2F * 0.004F, far));
-  static_cast<void>(greatest_distance_m(fine, SurfaceNear(coarse.mesh, 0.01F), 0.008F, 1.2F * 0.004F, far));
+  static_cast<void>(
+      greatest_distance_m(coarse.mesh, MeshDistanceQuery(fine, 0.01F), 0.008F, 1.2F * 0.004F, far));
+  static_cast<void>(
+      greatest_distance_m(fine, MeshDistanceQuery(coarse.mesh, 0.01F), 0.008F, 1.2F * 0.004F, far));
   EXPECT_TRUE(far.empty());
   expect_whole(coarse.mesh);
   EXPECT_EQ(border_loops(coarse.mesh).size(), border_loops(fine).size());
@@ -172,7 +174,7 @@ TEST(MeshSimplify, VerticesThatMayNotMoveGetNoNewEdgeAmongThem) {
     const bool on_rim = std::min(x, y) == 0 || std::max(x, y) == kSize - 1;
     tolerance_m.push_back(on_rim ? 0.0F : 0.002F);
   }
-  const Mesh coarse = collapsed(fine, SurfaceNear(fine, 0.01F), tolerance_m);
+  const Mesh coarse = collapsed(fine, MeshDistanceQuery(fine, 0.01F), tolerance_m);
   EXPECT_LT(coarse.triangles.size() * 2, fine.triangles.size());
   const auto before = test::edge_uses(fine);
   for (const auto& [edge, use] : test::edge_uses(coarse))

@@ -174,7 +174,7 @@ TEST(FusionEdges, PlainAndFastestArithmeticMakeTheSameMapBitForBit) {
       depth_m = random() % 12 == 0 ? 0.0F : std::max(depth_m + noise_m(random), 0.1F);
     ASSERT_EQ(collect_hits(frame, T_world_camera, 0.02, config, scratch), HitStatus::kCollected);
     fuse_depth(fastest, frame, T_world_camera, config, scratch, Arithmetic::kFastest);
-    fuse_depth(plain, frame, T_world_camera, config, scratch, Arithmetic::kPlain);
+    fuse_depth(plain, frame, T_world_camera, config, scratch, Arithmetic::kPortable);
   }
   const auto a = content(fastest), b = content(plain);
   EXPECT_GT(a.size(), 50'000U);
@@ -218,19 +218,19 @@ TEST(BlockOctree, OnePlaceLeavesNothingBehindWhenItIsFreedAgain) {
   EXPECT_LE(map.memory_bytes(), bytes + bytes / 20);
 }
 
-TEST(RoomOcTree, OctoMapReadsLogOddsDistancesAndColoursFromOurFile) {
+TEST(OctoMapTree, OctoMapReadsLogOddsDistancesAndColoursFromOurFile) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "room.ot";
   StaticMap map(0.02);
   for (int i = 0; i < 3; ++i) map.fuse(wall_at(1.51), kAtOrigin);
   map.write_ot(path);
   const std::unique_ptr<octomap::AbstractOcTree> any(octomap::AbstractOcTree::read(path.string()));
-  auto* tree = dynamic_cast<RoomOcTree*>(any.get());
+  auto* tree = dynamic_cast<OctoMapTree*>(any.get());
   ASSERT_TRUE(tree);
   int samples = 0;
   map.visit_samples([&](const SurfaceSample& sample) {
     const Eigen::Vector3d p = (sample.voxel.cast<double>().array() + 0.5) * 0.02;
-    const RoomNode* node = tree->search(p.x(), p.y(), p.z());
+    const OctoMapNode* node = tree->search(p.x(), p.y(), p.z());
     ASSERT_TRUE(node);
     ASSERT_EQ(node->distance_m, sample.distance_m);
     ASSERT_EQ(node->weight, sample.weight);
@@ -244,7 +244,7 @@ TEST(RoomOcTree, OctoMapReadsLogOddsDistancesAndColoursFromOurFile) {
   EXPECT_EQ(tree->getRoot()->getLogOdds(), greatest);  // inner nodes hold their children's greatest
 }
 
-TEST(RoomOcTree, AWorldOfOneCubeIsWrittenInBothForms) {
+TEST(OctoMapTree, AWorldOfOneCubeIsWrittenInBothForms) {
   const test::TemporaryFolder folder;
   StaticMap map(0.05);
   map.add_evidence(MapLeaf{{-32768, -32768, -32768}, 65536, -1.0F});

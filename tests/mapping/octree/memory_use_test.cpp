@@ -17,7 +17,7 @@ TEST(MemoryUse, LargeBlocksGoBackAtOnceThoughSmallOnesBetweenThemStay) {
   GTEST_SKIP() << "the address sanitizer keeps what is freed for a while";
 #endif
   constexpr std::size_t kBlock = 3 << 20, kBlocks = 20, kSmall = 1000;
-  keep_large_blocks_apart();
+  mmap_large_allocations();
   { const std::vector<char> once(2 * kBlock, 1); }  // after this glibc would keep such blocks in its heap
   std::vector<std::vector<char>> large, small;
   for (std::size_t i = 0; i < kBlocks; ++i) {

@@ -175,9 +175,9 @@ TEST(StaticMap, TheSameFrameTenThousandTimesStaysFiniteAndInPlace) {
 TEST(StaticMap, FramesThatCannotBeFusedChangeNothingAndSayWhy) {
   StaticMap map(0.01);
   Frame frame = wall_at(2.0);
-  EXPECT_EQ(map.fuse(frame, looking_at({400, 0, 0}, {401, 0, 0})), FuseStatus::kOutOfReach);
-  EXPECT_EQ(map.fuse(frame, looking_at({327, 0, 0}, {328, 0, 0})), FuseStatus::kOutOfReach);  // its wall is
-  EXPECT_EQ(map.fuse(frame, looking_at({1e30, 0, 0}, {2e30, 0, 0})), FuseStatus::kOutOfReach);
+  EXPECT_EQ(map.fuse(frame, looking_at({400, 0, 0}, {401, 0, 0})), FuseStatus::kOutOfBounds);
+  EXPECT_EQ(map.fuse(frame, looking_at({327, 0, 0}, {328, 0, 0})), FuseStatus::kOutOfBounds);  // its wall is
+  EXPECT_EQ(map.fuse(frame, looking_at({1e30, 0, 0}, {2e30, 0, 0})), FuseStatus::kOutOfBounds);
   Eigen::Isometry3d bad = kAtOrigin;
   bad.translation().x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(map.fuse(frame, bad), FuseStatus::kInvalidPose);

@@ -14,13 +14,13 @@ namespace {
 using test::frame_at, test::on_path;
 
 /// One keyframe of a frame, thought to be at T_world_camera.
-Keyframe keyframe_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double way_m) {
+Keyframe keyframe_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double path_length_m) {
   ViewPyramid pyramid;
   make_pyramid(frame, {}, pyramid);
   const Image<std::uint8_t> measured(pyramid.levels[0].camera.width_px, pyramid.levels[0].camera.height_px,
                                      1);
   return {frame.index, T_world_camera, std::make_shared<const StoredView>(store(pyramid, measured)), 0,
-          way_m};
+          path_length_m};
 }
 
 /// A camera goes away and comes back to where it was at its first keyframe. Drift puts the last keyframe
@@ -29,11 +29,11 @@ struct RoundTrip {
   Eigen::Isometry3d T_first = on_path(0, 1);
   Eigen::Isometry3d T_last = on_path(0, 1) * Eigen::Translation3d(0.03, 0.0, 0.02);
   Frame first = frame_at(T_first, 0), last = frame_at(T_last, 9);
-  Places places;
+  KeyframeDatabase keyframe_database;
   KeyframeGraph graph;
 
-  RoundTrip(const Eigen::Isometry3d& drift, double way_m) {
-    graph.keyframes = {keyframe_of(first, T_first, 0.0), keyframe_of(last, T_last * drift, way_m)};
+  RoundTrip(const Eigen::Isometry3d& drift, double path_length_m) {
+    graph.keyframes = {keyframe_of(first, T_first, 0.0), keyframe_of(last, T_last * drift, path_length_m)};
     // In between, away from both: three keyframes that see nothing of this.
     for (int i = 1; i <= 3; ++i) {
       Keyframe blind = graph.keyframes[0];
@@ -43,16 +43,16 @@ struct RoundTrip {
         return view;
       }());
       blind.T_world_camera.translation().x() += 3.0 * i;
-      blind.way_m = way_m * i / 4.0;
+      blind.path_length_m = path_length_m * i / 4.0;
       graph.keyframes.insert(graph.keyframes.end() - 1, blind);
     }
-    places.keyframes.push_back(describe_place(first, T_first));
+    keyframe_database.keyframes.push_back(make_map_keyframe(first, T_first));
     for (int i = 1; i <= 3; ++i)
-      places.keyframes.push_back(
+      keyframe_database.keyframes.push_back(
           {i, graph.keyframes[static_cast<std::size_t>(i)].T_world_camera, {}, {}, {}, {}, {}});
   }
   KeyframeJobResult run_job() const {
-    return run({last, graph, WarmKeyframes(8), &places, nullptr},
+    return run({last, graph, KeyframeCache(8), &keyframe_database, nullptr},
                {{{}, {.max_correction_m = 0.25F}, {}}, {}, {}});
   }
 };
@@ -83,18 +83,18 @@ TEST(StoredView, HasNoIntensityWhereThereWasNoColour) {
   for (const ViewPyramid::Level& level : after.levels) EXPECT_TRUE(level.intensity.empty());
 }
 
-TEST(WarmKeyframes, ForgetsTheOneThatWasNotAskedForTheLongest) {
-  WarmKeyframes warm(2);
-  warm.put(1, std::make_shared<WarmKeyframe>());
-  warm.put(2, std::make_shared<WarmKeyframe>());
-  const auto one = warm.find(1);
-  warm.put(3, std::make_shared<WarmKeyframe>());
-  EXPECT_EQ(warm.find(1), one);
-  EXPECT_EQ(warm.find(2), nullptr);
-  EXPECT_NE(warm.find(3), nullptr);
-  warm.put(3, one);  // in place of what was held
-  EXPECT_EQ(warm.find(3), one);
-  EXPECT_EQ(warm.find(1), one);
+TEST(KeyframeCache, ForgetsTheOneThatWasNotAskedForTheLongest) {
+  KeyframeCache prepare_keyframe(2);
+  prepare_keyframe.put(1, std::make_shared<CachedKeyframe>());
+  prepare_keyframe.put(2, std::make_shared<CachedKeyframe>());
+  const auto one = prepare_keyframe.find(1);
+  prepare_keyframe.put(3, std::make_shared<CachedKeyframe>());
+  EXPECT_EQ(prepare_keyframe.find(1), one);
+  EXPECT_EQ(prepare_keyframe.find(2), nullptr);
+  EXPECT_NE(prepare_keyframe.find(3), nullptr);
+  prepare_keyframe.put(3, one);  // in place of what was held
+  EXPECT_EQ(prepare_keyframe.find(3), one);
+  EXPECT_EQ(prepare_keyframe.find(1), one);
 }
 
 TEST(KeyframeGraph, ALoopIsFoundByItsLooksThoughDriftHasParted) {
@@ -127,8 +127,8 @@ TEST(KeyframeGraph, AJoinMustAgreeBothWays) {
   RoundTrip trip(Eigen::Isometry3d::Identity(), 3.0);
   const test::Scene other = test::nearest_of(test::plane({0, 1, 0}, 1.4), test::sphere({0.3, 1.0, 0.9}, 0.4));
   trip.graph.keyframes.back() = keyframe_of(frame_at(trip.T_last, 9, other), trip.T_last, 3.0);
-  WarmKeyframes warm(4);
-  EXPECT_FALSE(join(trip.graph, 0, 4, trip.T_first.inverse() * trip.T_last, {}, warm));
+  KeyframeCache prepare_keyframe(4);
+  EXPECT_FALSE(join(trip.graph, 0, 4, trip.T_first.inverse() * trip.T_last, {}, prepare_keyframe));
   EXPECT_EQ(trip.graph.loops_rejected, 1);
   EXPECT_TRUE(trip.graph.constraints.empty());
 }
@@ -140,8 +140,8 @@ TEST(KeyframeGraph, JoiningAllAnewDoesNotDependOnThreads) {
     graph.keyframes.push_back(keyframe_of(frame_at(T, i), T, 0.1 * i));
   }
   KeyframeGraph again = graph;
-  join_all(graph, {});
-  join_all(again, {});
+  close_loops(graph, {});
+  close_loops(again, {});
   ASSERT_GT(graph.constraints.size(), 8U);
   ASSERT_EQ(again.constraints.size(), graph.constraints.size());
   for (std::size_t i = 0; i < graph.constraints.size(); ++i) {
@@ -149,9 +149,9 @@ TEST(KeyframeGraph, JoiningAllAnewDoesNotDependOnThreads) {
     EXPECT_EQ(again.constraints[i].T_a_b.matrix(), graph.constraints[i].T_a_b.matrix());
   }
   KeyframeGraph none, one;
-  join_all(none, {});
+  close_loops(none, {});
   one.keyframes.push_back(again.keyframes[0]);
-  join_all(one, {});
+  close_loops(one, {});
   EXPECT_TRUE(one.constraints.empty());
 }
 

@@ -41,7 +41,7 @@ TEST(OdometryCheckpoint, GoesOnAsIfItHadNeverEnded) {
   const fs::path checkpoint = folder_in(folder, "a");
   Odometry whole;
   track(whole, 0, 16);
-  whole.settle();
+  whole.finish_jobs();
   save_odometry(whole, checkpoint, {});
   Odometry resumed = load_odometry(checkpoint, {});
   EXPECT_EQ(resumed.counts().frames, 16);
@@ -57,7 +57,8 @@ TEST(OdometryCheckpoint, GoesOnAsIfItHadNeverEnded) {
     EXPECT_LT(gap.translation().norm(), 0.001) << i;  // depth is kept in steps
   }
   EXPECT_EQ(resumed.counts().keyframes, whole.counts().keyframes);
-  EXPECT_EQ(resumed.take_places().keyframes.size(), whole.take_places().keyframes.size());
+  EXPECT_EQ(resumed.take_keyframe_database().keyframes.size(),
+            whole.take_keyframe_database().keyframes.size());
 }
 
 TEST(OdometryCheckpoint, TakingOneMovesNoPose) {
@@ -67,7 +68,7 @@ TEST(OdometryCheckpoint, TakingOneMovesNoPose) {
     const Frame frame = frame_at(on_path(i, kFrames), i);
     const Tracking expected = plain.track(frame), found = watched.track(frame);
     EXPECT_TRUE(found.T_world_camera.matrix() == expected.T_world_camera.matrix()) << i;
-    watched.settle();
+    watched.finish_jobs();
     save_odometry(watched, folder_in(folder, std::to_string(i).c_str()), {});
   }
   const std::vector<TrackedFrame> expected = plain.optimise(), found = watched.optimise();
@@ -82,10 +83,10 @@ TEST(OdometryCheckpoint, OnlyWhatIsNewIsWrittenAgain) {
   const fs::path first = folder_in(folder, "a"), second = folder_in(folder, "b");
   Odometry odometry;
   track(odometry, 0, 16);
-  odometry.settle();
+  odometry.finish_jobs();
   save_odometry(odometry, first, {});
   track(odometry, 16, 22);
-  odometry.settle();
+  odometry.finish_jobs();
   save_odometry(odometry, second, first);
   int linked = 0, fresh = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(second)) {
@@ -106,7 +107,8 @@ TEST(OdometryCheckpoint, GivenPosesComeBackToo) {
   const std::vector<TrackedFrame> all = resumed.optimise();
   ASSERT_EQ(all.size(), 10U);
   EXPECT_TRUE(all[7].T_world_camera.isApprox(on_path(7, 10)));
-  EXPECT_EQ(resumed.take_places().keyframes.size(), odometry.take_places().keyframes.size());
+  EXPECT_EQ(resumed.take_keyframe_database().keyframes.size(),
+            odometry.take_keyframe_database().keyframes.size());
 }
 
 TEST(OdometryCheckpoint, AnEmptyOneIsEmptyAgain) {
@@ -121,7 +123,7 @@ TEST(OdometryCheckpoint, WhatIsCutAlteredOrMissingIsNamed) {
   const test::TemporaryFolder folder;
   Odometry odometry;
   track(odometry, 0, 12);
-  odometry.settle();
+  odometry.finish_jobs();
   save_odometry(odometry, folder.path(), {});
   int files = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.path())) {
@@ -151,15 +153,15 @@ TEST(OdometryCheckpoint, AFolderThatIsNotThereIsNamed) {
             std::string::npos);
 }
 
-Places places_of_the_room() {
+KeyframeDatabase places_of_the_room() {
   Odometry mapped;
   for (int i = 0; i < 20; ++i) mapped.add_posed(frame_at(on_path(i, 20), i), on_path(i, 20));
-  return mapped.take_places();
+  return mapped.take_keyframe_database();
 }
 
 TEST(OdometryThatKnowsAMap, IsInTheMapsWorldFromTheFirstFrameOn) {
   Odometry odometry;
-  odometry.know(places_of_the_room());
+  odometry.set_prior_map(places_of_the_room());
   EXPECT_FALSE(odometry.is_located());
   std::vector<TimedPose> truth;
   for (int i = 20; i < 36; ++i) {
@@ -181,7 +183,7 @@ TEST(OdometryThatKnowsAMap, AnotherRoomIsTrackedInAWorldOfItsOwn) {
       test::nearest_of(test::plane({0, 0, 1}, -0.3),
                        test::nearest_of(test::plane({0.3, 1, 0}, 1.9), test::sphere({-0.4, 1.2, 0.4}, 0.5)));
   Odometry odometry;
-  odometry.know(places_of_the_room());
+  odometry.set_prior_map(places_of_the_room());
   for (int i = 0; i < 6; ++i) {
     const Eigen::Isometry3d T = on_path(i, kFrames);
     EXPECT_TRUE(odometry.track(frame_at(T, i, other)));

@@ -30,7 +30,8 @@ TEST(Odometry, FollowsANoisyLoopWithinMillimetres) {
   EXPECT_LT(gap.translation().norm(), 0.005);
   EXPECT_EQ(odometry.counts().tracked, kFrames + 1);
   EXPECT_GT(odometry.counts().keyframes, 3);
-  EXPECT_EQ(static_cast<std::int64_t>(odometry.take_places().keyframes.size()), odometry.counts().keyframes);
+  EXPECT_EQ(static_cast<std::int64_t>(odometry.take_keyframe_database().keyframes.size()),
+            odometry.counts().keyframes);
 }
 
 TEST(Odometry, StandsStillWhileThingsMoveBeforeIt) {
@@ -94,7 +95,7 @@ TEST(Odometry, BeforeOneBareWallItSaysSoAndHoldsWhatItCannotSee) {
   for (int i = 1; i < 8; ++i) {
     const Tracking tracking = odometry.track(bare_frame(i));
     EXPECT_EQ(tracking.status, TrackStatus::kDegenerate) << i;
-    EXPECT_EQ(tracking.held_directions, 3) << i;
+    EXPECT_EQ(tracking.unconstrained_dofs, 3) << i;
     EXPECT_NEAR(tracking.T_world_camera.translation().z(), -0.01 * i, 0.003) << i;
     EXPECT_LT(tracking.T_world_camera.translation().head<2>().norm(), 0.003) << i;
   }
@@ -117,7 +118,7 @@ TEST(Odometry, BeginsWithTheFirstFrameThatShowsAnything) {
 TEST(Odometry, NothingTrackedIsNothingFound) {
   Odometry odometry;
   EXPECT_TRUE(odometry.optimise().empty());
-  EXPECT_TRUE(odometry.take_places().keyframes.empty());
+  EXPECT_TRUE(odometry.take_keyframe_database().keyframes.empty());
 }
 
 TEST(Odometry, GivenPosesAreKeptAndBecomePlaces) {
@@ -128,10 +129,10 @@ TEST(Odometry, GivenPosesAreKeptAndBecomePlaces) {
   ASSERT_EQ(all.size(), static_cast<std::size_t>(kFrames));
   EXPECT_TRUE(all[11].T_world_camera.isApprox(on_path(11, kFrames)));
   EXPECT_TRUE(all[11].trusted);
-  const Places places = odometry.take_places();
-  EXPECT_GT(places.keyframes.size(), 2U);
-  EXPECT_LT(places.keyframes.size(), static_cast<std::size_t>(kFrames));
-  for (const Place& place : places.keyframes) {
+  const KeyframeDatabase keyframe_database = odometry.take_keyframe_database();
+  EXPECT_GT(keyframe_database.keyframes.size(), 2U);
+  EXPECT_LT(keyframe_database.keyframes.size(), static_cast<std::size_t>(kFrames));
+  for (const MapKeyframe& place : keyframe_database.keyframes) {
     EXPECT_TRUE(place.T_world_camera.isApprox(on_path(static_cast<int>(place.frame_index), kFrames)));
   }
 }
@@ -148,12 +149,12 @@ TEST(Stillness, SeesAShiftOfHalfAPixelAndNotAHand) {
   }
   Image<float> with_hand = before;
   for (int y = 0; y < 120; ++y) std::fill_n(with_hand.row(y), 50, 200.0F);
-  EXPECT_TRUE(shows_the_same(before, before));
-  EXPECT_TRUE(shows_the_same(before, with_hand));
-  EXPECT_FALSE(shows_the_same(before, shifted));
+  EXPECT_TRUE(is_camera_stationary(before, before));
+  EXPECT_TRUE(is_camera_stationary(before, with_hand));
+  EXPECT_FALSE(is_camera_stationary(before, shifted));
   // No edges to tell by.
-  EXPECT_FALSE(shows_the_same(Image<float>(160, 120, 9.0F), Image<float>(160, 120, 9.0F)));
-  EXPECT_FALSE(shows_the_same(before, Image<float>()));
+  EXPECT_FALSE(is_camera_stationary(Image<float>(160, 120, 9.0F), Image<float>(160, 120, 9.0F)));
+  EXPECT_FALSE(is_camera_stationary(before, Image<float>()));
 }
 
 TEST(OdometryOnARecording, KitchenIsFollowedWithoutALoss) {

@@ -77,8 +77,8 @@ Scan scan(FrameList source, double pose_noise_m = 0.0) {
     fused.push_back({position, frame.index, frame.depth_camera, T_world_camera});
   }
   StageTimes times;
-  GhostRevision revision = take_out_ghosts(source, fused, {}, scan.map, times);
-  look_again(source, fused, revision, scan.map, times);
+  GhostRevision revision = remove_ghosts(source, fused, {}, scan.map, times);
+  refuse_surroundings(source, fused, revision, scan.map, times);
   scan.ghosts = revision.voxels();
   return scan;
 }
@@ -206,12 +206,12 @@ TEST(Ghosts, OccupiedVoxelsWithoutASampleGoWithWhatTheyTouch) {
     sample.weight = weight;
     return zone.fate_of(sample);
   };
-  EXPECT_EQ(fate_at({1, 1, 0}, 0.0F), SampleFate::kUnknown);
-  EXPECT_EQ(fate_at({1, 1, 0}, 1.0F), SampleFate::kForget);  // to be measured anew
-  EXPECT_EQ(fate_at({3, 0, 0}, 0.0F), SampleFate::kForget);  // near what is still there
-  EXPECT_EQ(fate_at({0, 3, 0}, 0.0F), SampleFate::kKeep);    // near what no frame of this scan tells of
-  EXPECT_EQ(fate_at({0, 5, 0}, 1.0F), SampleFate::kKeep);
-  EXPECT_EQ(fate_at({40, 0, 0}, 0.0F), SampleFate::kKeep);
+  EXPECT_EQ(fate_at({1, 1, 0}, 0.0F), SampleAction::kUnknown);
+  EXPECT_EQ(fate_at({1, 1, 0}, 1.0F), SampleAction::kEraseSample);  // to be measured anew
+  EXPECT_EQ(fate_at({3, 0, 0}, 0.0F), SampleAction::kEraseSample);  // near what is still there
+  EXPECT_EQ(fate_at({0, 3, 0}, 0.0F), SampleAction::kKeep);  // near what no frame of this scan tells of
+  EXPECT_EQ(fate_at({0, 5, 0}, 1.0F), SampleAction::kKeep);
+  EXPECT_EQ(fate_at({40, 0, 0}, 0.0F), SampleAction::kKeep);
 }
 
 // The map holds an earlier scan; the frames of this one end beside what it sees through.
@@ -237,15 +237,15 @@ TEST(Ghosts, SurfaceOfAnEarlierScanThatNoFrameMeasuresAnewStays) {
   const std::vector<FusedFrame> fused = fuse_all(frames, scanned.map);
   FrameList source(frames);
   StageTimes times;
-  GhostRevision revision = take_out_ghosts(source, fused, {}, scanned.map, times);
-  look_again(source, fused, revision, scanned.map, times);
+  GhostRevision revision = remove_ghosts(source, fused, {}, scanned.map, times);
+  refuse_surroundings(source, fused, revision, scanned.map, times);
   EXPECT_GT(revision.voxels(), 100);  // the box
   EXPECT_GE(wall_beside(), before);
 }
 
 TEST(Ghosts, NoDepthBesideSomethingNearerMayBeItsShadow) {
   const Frame frame = exact_frame(wall(), kCamera, looking_at({0, 0, 0}, {0, 2, 0}));
-  AbsenceLooks looks;
+  AbsenceVoter looks;
   looks.begin(frame, Eigen::Isometry3d::Identity());
   AbsenceVotes votes;
   looks.unmeasured(frame, 80, 60, {0.0F, 0.0F, 2.0F}, 0.3F, /*beside_nearer=*/true, false, votes);
@@ -274,7 +274,7 @@ TEST(Ghosts, AWallIsNoneHoweverCoarseTheCells) {
     StaticMap map(resolution_m);
     const std::vector<FusedFrame> fused = fuse_all(frames, map);
     StageTimes times;
-    EXPECT_EQ(take_out_ghosts(source, fused, {}, map, times).voxels(), 0) << resolution_m;
+    EXPECT_EQ(remove_ghosts(source, fused, {}, map, times).voxels(), 0) << resolution_m;
   }
 }
 
@@ -411,18 +411,18 @@ TEST(Ghosts, ASecondLookThatIsCutOffGoesOnToTheSameMap) {
   StaticMap map(kResolution_m);
   const std::vector<FusedFrame> fused = fuse_all(source.frames(), map);
   StageTimes times;
-  GhostRevision revision = take_out_ghosts(source, fused, {}, map, times);
+  GhostRevision revision = remove_ghosts(source, fused, {}, map, times);
   ASSERT_GT(revision.voxels(), 0);
   const test::TemporaryFolder folder;
   GhostRevision kept;
-  look_again(source, fused, revision, map, times, [&](const std::string&) {
+  refuse_surroundings(source, fused, revision, map, times, [&](const std::string&) {
     if (revision.next != 11) return;
     kept = revision;
     map.write_ot(folder.path() / "octree.ot");
   });
   ASSERT_EQ(kept.next, 11U);
   StaticMap resumed = StaticMap::read_ot(folder.path() / "octree.ot");
-  look_again(source, fused, kept, resumed, times);
+  refuse_surroundings(source, fused, kept, resumed, times);
   std::vector<SurfaceSample> expected;
   map.visit_samples([&](const SurfaceSample& sample) { expected.push_back(sample); });
   std::size_t next = 0;

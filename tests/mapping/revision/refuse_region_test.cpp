@@ -89,7 +89,7 @@ int on_crate(const StaticMap& map) {
 TEST(RenewRegion, PutsInWhatCame) {
   StaticMap map = map_of(room());
   ASSERT_EQ(on_crate(map), 0);
-  const AlignedBox3d box = renew_region(map, crate_region(), views_of(room_with_crate(), room()));
+  const AlignedBox3d box = refuse_region(map, crate_region(), views_of(room_with_crate(), room()));
   EXPECT_TRUE(box.contains(kCrate.center()));
   EXPECT_GT(on_crate(map), 150) << "15 x 10 voxels of top and as many of front";
   EXPECT_EQ(map.occupancy_at({0.0, 0.0, 0.195}), Occupancy::kOccupied);
@@ -98,7 +98,7 @@ TEST(RenewRegion, PutsInWhatCame) {
 TEST(RenewRegion, CarvesWhatWentWithItsFarSide) {
   StaticMap map = map_of(room_with_crate());
   ASSERT_GT(on_crate(map), 150);
-  renew_region(map, crate_region(), views_of(room(), room_with_crate()));
+  refuse_region(map, crate_region(), views_of(room(), room_with_crate()));
   EXPECT_EQ(on_crate(map), 0);
   const Mesh mesh = extract_surface(map, {.max_deviation_m = 0.0F});
   for (const Eigen::Vector3f& v : mesh.vertices) {
@@ -117,7 +117,7 @@ TEST(RenewRegion, AThinThingOnTheTableTakesTheTablesPlace) {
   std::vector<Vector3d> points;
   for (double u = 0.0; u <= 1.0; u += 0.05)
     for (double v = 0.0; v <= 1.0; v += 0.05) points.emplace_back(-0.15 + 0.3 * u, -0.1 + 0.2 * v, 0.03);
-  renew_region(map, WorldRegion(points, 0.03), views_of(test::nearest_of(room(), test::box(book)), room()));
+  refuse_region(map, WorldRegion(points, 0.03), views_of(test::nearest_of(room(), test::box(book)), room()));
   const Mesh mesh = extract_surface(map, {.max_deviation_m = 0.0F});
   int on_top = 0;
   for (const Eigen::Vector3f& v : mesh.vertices) {
@@ -134,12 +134,12 @@ TEST(RenewRegion, ChangesNothingElsewhere) {
                                 kCrate.max() + Vector3d::Constant(0.12));
   // The views' pixels that show past the crate reach the table and the wall behind it; the rest stays.
   const Samples before = samples_beyond(map, around);
-  const AlignedBox3d box = renew_region(map, crate_region(), views_of(room(), room_with_crate()));
+  const AlignedBox3d box = refuse_region(map, crate_region(), views_of(room(), room_with_crate()));
   EXPECT_EQ(samples_beyond(map, around), before);
   EXPECT_TRUE(around.contains(box)) << box.min().transpose() << " .. " << box.max().transpose();
   const Samples before_nothing = samples_beyond(map, near_crate);
-  EXPECT_TRUE(renew_region(map, WorldRegion({}, 0.03), views_of(room(), room())).isEmpty());
-  EXPECT_TRUE(renew_region(map, crate_region(), {}).isEmpty());
+  EXPECT_TRUE(refuse_region(map, WorldRegion({}, 0.03), views_of(room(), room())).isEmpty());
+  EXPECT_TRUE(refuse_region(map, crate_region(), {}).isEmpty());
   EXPECT_EQ(samples_beyond(map, near_crate), before_nothing);
 }
 
@@ -149,7 +149,7 @@ TEST(RenewRegion, AHandThatPassesBeforeWhatWentIsNotTakenIn) {
   for (std::size_t i = 0; i < 4; ++i)
     views[i].frame = seen(test::nearest_of(room(), test::sphere({0.0, -0.4, 0.45}, 0.12)),
                           views[i].T_world_camera, static_cast<unsigned>(200 + i));
-  renew_region(map, crate_region(), views);
+  refuse_region(map, crate_region(), views);
   EXPECT_EQ(on_crate(map), 0);
   EXPECT_NE(map.occupancy_at({0.0, -0.47, 0.52}), Occupancy::kOccupied);
 }

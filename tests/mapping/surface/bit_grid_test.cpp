@@ -31,18 +31,18 @@ void for_each_voxel(const Vector3i& size, const Visit& visit) {
       for (int x = 0; x < size.x(); ++x) visit(Vector3i(x, y, z));
 }
 
-VoxelBits random_bits(std::mt19937& random, unsigned out_of_8) {
-  VoxelBits bits(kSize, false);
+BitGrid random_bits(std::mt19937& random, unsigned out_of_8) {
+  BitGrid bits(kSize, false);
   for_each_voxel(kSize, [&](const Vector3i& p) { bits.set(p, random() % 8 < out_of_8); });
   return bits;
 }
 
-TEST(VoxelBits, ShiftingTakesTheNeighboursValueAndClearPastTheEnd) {
+TEST(BitGrid, ShiftingTakesTheNeighboursValueAndClearPastTheEnd) {
   std::mt19937 random(1);
-  const VoxelBits bits = random_bits(random, 4);
+  const BitGrid bits = random_bits(random, 4);
   for (int axis = 0; axis < 3; ++axis)
     for (const int step : {-1, 1}) {
-      const VoxelBits shifted = bits.shifted(axis, step);
+      const BitGrid shifted = bits.shifted(axis, step);
       int wrong = 0;
       for_each_voxel(kSize, [&](const Vector3i& p) {
         wrong += shifted.at(p) != bits.at(p + step * Vector3i::Unit(axis)) ? 1 : 0;
@@ -51,8 +51,8 @@ TEST(VoxelBits, ShiftingTakesTheNeighboursValueAndClearPastTheEnd) {
     }
 }
 
-TEST(VoxelBits, ABoxIsSetAsFarAsItLiesInside) {
-  VoxelBits bits(kSize, false);
+TEST(BitGrid, ABoxIsSetAsFarAsItLiesInside) {
+  BitGrid bits(kSize, false);
   bits.set_box({60, -3, 2}, {131, 4, 99}, true);
   bits.set_box({70, 1, 3}, {70, 5, 5}, true);  // empty
   std::size_t count = 0;
@@ -62,11 +62,11 @@ TEST(VoxelBits, ABoxIsSetAsFarAsItLiesInside) {
   EXPECT_FALSE(bits.at({131, 0, 6}));
 }
 
-TEST(VoxelBits, OpeningKeepsWhatLiesInAWholeCube) {
+TEST(BitGrid, OpeningKeepsWhatLiesInAWholeCube) {
   std::mt19937 random(2);
   for (const auto& cube : {std::pair(2, 1), std::pair(2, 2), std::pair(3, 1), std::pair(3, 3)}) {
     const int edge = cube.first, lattice = cube.second;
-    const VoxelBits bits = random_bits(random, 7), result = opened(bits, edge, lattice);
+    const BitGrid bits = random_bits(random, 7), result = opened(bits, edge, lattice);
     int wrong = 0;
     std::size_t kept = 0;
     for_each_voxel(kSize, [&](const Vector3i& p) {
@@ -87,14 +87,13 @@ TEST(VoxelBits, OpeningKeepsWhatLiesInAWholeCube) {
 }
 
 // Steps as they are defined, from voxel to voxel.
-VoxelBits slowly_spread(const VoxelBits& from, const VoxelBits& where,
-                        const std::array<VoxelBits, 3>& barred) {
-  VoxelBits to = from;
+BitGrid slowly_spread(const BitGrid& from, const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
+  BitGrid to = from;
   for_each_voxel(kSize, [&](const Vector3i& p) {
     if (!from.at(p)) return;
     for (int axis = 0; axis < 3; ++axis) {
       const Vector3i up = p + Vector3i::Unit(axis), down = p - Vector3i::Unit(axis);
-      const VoxelBits& bars = barred[static_cast<std::size_t>(axis)];
+      const BitGrid& bars = blocked[static_cast<std::size_t>(axis)];
       if (where.at(up) && !bars.at(p)) to.set(up, true);
       if (where.at(down) && !bars.at(down)) to.set(down, true);
     }
@@ -102,40 +101,40 @@ VoxelBits slowly_spread(const VoxelBits& from, const VoxelBits& where,
   return to;
 }
 
-TEST(VoxelBits, SpreadingAndFloodingTakeTheStepsThatAreNotBarred) {
+TEST(BitGrid, SpreadingAndFloodingTakeTheStepsThatAreNotBarred) {
   std::mt19937 random(3);
-  const VoxelBits where = random_bits(random, 6);
-  const std::array<VoxelBits, 3> barred = {random_bits(random, 2), random_bits(random, 2),
-                                           random_bits(random, 2)};
-  VoxelBits bits(kSize, false);
+  const BitGrid where = random_bits(random, 6);
+  const std::array<BitGrid, 3> blocked = {random_bits(random, 2), random_bits(random, 2),
+                                          random_bits(random, 2)};
+  BitGrid bits(kSize, false);
   bits.set_box({64, 3, 3}, {67, 5, 5}, true);
-  const VoxelBits seed = bits;
-  VoxelBits slow = bits;
+  const BitGrid seed = bits;
+  BitGrid slow = bits;
   for (int step = 0; step < 5; ++step) {
-    bits.spread(where, barred);
-    slow = slowly_spread(slow, where, barred);
+    bits.spread(where, blocked);
+    slow = slowly_spread(slow, where, blocked);
     ASSERT_EQ(bits, slow) << "step " << step;
   }
-  for (VoxelBits before; !(before == slow);) {
+  for (BitGrid before; !(before == slow);) {
     before = slow;
-    slow = slowly_spread(slow, where, barred);
+    slow = slowly_spread(slow, where, blocked);
   }
   bits = seed;
-  bits.flood(where, barred);
+  bits.flood(where, blocked);
   EXPECT_EQ(bits, slow);
   EXPECT_NE(bits, seed);
 }
 
 // Every face is in one rectangle, and nothing else is.
-TEST(CellFaces, RectanglesCoverEachFaceOnce) {
+TEST(VoxelFaces, RectanglesCoverEachFaceOnce) {
   std::mt19937 random(4);
   const CellGrid grid{{-3, 5, 100}, kSize, 0.5};
   for (int axis = 0; axis < 3; ++axis)
     for (const int step : {-1, 1}) {
-      const VoxelBits cells = random_bits(random, 6);
+      const BitGrid cells = random_bits(random, 6);
       const Mesh mesh = mesh_of({{cells, axis, step}}, grid);
       const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      VoxelBits covered(kSize, false);
+      BitGrid covered(kSize, false);
       for (std::size_t i = 0; i < mesh.triangles.size(); i += 2) {
         // Two triangles, a b c and a c d: a rectangle from its lowest to its highest corner.
         Eigen::AlignedBox3d bounds;
@@ -196,10 +195,10 @@ TEST(BarredSteps, NoWayOfStepsLeadsOutOfAClosedSurface) {
     grid.cell_m = 0.02;
     grid.first_cell = (mesh.origin / grid.cell_m).array().floor().cast<int>() - 30;
     grid.size = Vector3i::Constant(60);
-    const VoxelBits everywhere(grid.size, true);
-    VoxelBits inside(grid.size, false);
+    const BitGrid everywhere(grid.size, true);
+    BitGrid inside(grid.size, false);
     inside.set(Vector3i::Constant(30), true);
-    inside.flood(everywhere, barred_steps(mesh, grid));
+    inside.flood(everywhere, blocked_neighbours(mesh, grid));
     std::size_t cells = 0;
     inside.for_each_set([&](const Vector3i&) { ++cells; });
     const double volume_cells = 4.0 / 3.0 * std::numbers::pi * std::pow(0.5 / 0.02, 3);
@@ -215,9 +214,9 @@ TEST(BarredSteps, OnlyStepsThatMeetTheSurfaceAreBarred) {
   mesh.vertices = {{0.05F, 0.05F, 0.1F}, {0.35F, 0.05F, 0.1F}, {0.05F, 0.35F, 0.1F}};
   mesh.triangles = {{0, 1, 2}};
   const CellGrid grid{Vector3i::Zero(), Vector3i(8, 8, 4), 0.05};
-  const auto barred = barred_steps(mesh, grid);
+  const auto blocked = blocked_neighbours(mesh, grid);
   std::set<std::tuple<int, int, int>> cells;
-  barred[2].for_each_set([&](const Vector3i& p) { cells.insert({p.x(), p.y(), p.z()}); });
+  blocked[2].for_each_set([&](const Vector3i& p) { cells.insert({p.x(), p.y(), p.z()}); });
   // Middles of cells at 0.075, 0.125, ...: those with x + y <= 0.4 are over it.
   std::set<std::tuple<int, int, int>> expected;
   for (int y = 0; y < 8; ++y)
@@ -225,13 +224,13 @@ TEST(BarredSteps, OnlyStepsThatMeetTheSurfaceAreBarred) {
       if (x >= 1 && y >= 1 && 0.05 * (x + y + 1) <= 0.4 + 1e-6) expected.insert({x, y, 1});
   EXPECT_EQ(cells, expected);
   for (const std::size_t axis : {0U, 1U}) {
-    barred[axis].for_each_set([&](const Vector3i& p) { ADD_FAILURE() << p.transpose(); });
+    blocked[axis].for_each_set([&](const Vector3i& p) { ADD_FAILURE() << p.transpose(); });
   }
   mesh.vertices[1].x() = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(barred_steps(mesh, grid)[2], VoxelBits(grid.size, false));
+  EXPECT_EQ(blocked_neighbours(mesh, grid)[2], BitGrid(grid.size, false));
   mesh.vertices[1].x() = 1e30F;  // far past the grid
   mesh.vertices[2].y() = -1e30F;
-  EXPECT_NO_THROW(static_cast<void>(barred_steps(mesh, grid)));
+  EXPECT_NO_THROW(static_cast<void>(blocked_neighbours(mesh, grid)));
 }
 
 }  // namespace

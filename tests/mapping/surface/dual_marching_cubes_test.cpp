@@ -44,7 +44,7 @@ TEST(SurfaceNet, RandomSignsMakeASurfaceWhoseBorderIsWhereSamplesEnd) {
     std::uniform_real_distribution<float> size_m(0.001F, 0.009F);
     const StaticMap map =
         cube_map([&](const VoxelIndex&) { return is_inside(random) ? -size_m(random) : size_m(random); });
-    const Mesh mesh = surface_net(SampleBricks(map, 0.0F), kResolution_m);
+    const Mesh mesh = dual_marching_cubes(TsdfBricks(map, 0.0F), kResolution_m);
     ASSERT_GT(mesh.triangles.size(), 5'000U);
     ASSERT_EQ(mesh.normals.size(), mesh.vertices.size());
     ASSERT_EQ(mesh.colours.size(), mesh.vertices.size());
@@ -64,9 +64,9 @@ TEST(SurfaceNet, APlaneIsWhereTheDistancesSay) {
                               0.0123);
   });
   for (const float strength : {0.0F, 50.0F}) {  // what is linear is not moved by smoothing
-    SampleBricks bricks(map, 0.0F);
+    TsdfBricks bricks(map, 0.0F);
     if (strength > 0.0F) smooth(bricks, strength, 5);
-    const Mesh mesh = surface_net(bricks, kResolution_m);
+    const Mesh mesh = dual_marching_cubes(bricks, kResolution_m);
     ASSERT_GT(mesh.triangles.size(), 500U);
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
       // Distances are kept in steps of 5 micrometres.
@@ -77,9 +77,10 @@ TEST(SurfaceNet, APlaneIsWhereTheDistancesSay) {
 }
 
 TEST(SurfaceNet, SamplesOfOneSignOrNoneMakeNone) {
-  EXPECT_TRUE(surface_net(SampleBricks(StaticMap(kResolution_m), 0.0F), kResolution_m).vertices.empty());
+  EXPECT_TRUE(
+      dual_marching_cubes(TsdfBricks(StaticMap(kResolution_m), 0.0F), kResolution_m).vertices.empty());
   const StaticMap map = cube_map([](const VoxelIndex&) { return 0.004F; });
-  EXPECT_TRUE(surface_net(SampleBricks(map, 0.0F), kResolution_m).triangles.empty());
+  EXPECT_TRUE(dual_marching_cubes(TsdfBricks(map, 0.0F), kResolution_m).triangles.empty());
 }
 
 TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
@@ -94,9 +95,9 @@ TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
       for (int z = -4; z < 4; ++z)
         map.add_evidence(
             SurfaceSample{.voxel = {x, y, z}, .distance_m = distance_m({x, y, z}), .weight = 1.0F});
-  SampleBricks bricks(map, 0.0F);
+  TsdfBricks bricks(map, 0.0F);
   const auto reach = [&] {
-    const Mesh mesh = surface_net(bricks, 0.01);
+    const Mesh mesh = dual_marching_cubes(bricks, 0.01);
     Eigen::AlignedBox3f box;
     for (const Triangle& t : mesh.triangles)
       for (const std::uint32_t v : t) {
@@ -110,7 +111,7 @@ TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
   };
   const Eigen::Vector3f before = reach();
   EXPECT_LT(before.y(), 0.105F);
-  guess_neighbours(bricks);
+  extrapolate_neighbours(bricks);
   const Eigen::Vector3f after = reach();
   for (const float side_m : {after.x(), after.y()}) {
     EXPECT_GE(side_m, 0.01F * (kLast - kFirst));
@@ -122,16 +123,16 @@ TEST(SampleGuess, RandomSignsWithGapsStillMakeASurface) {
   std::mt19937 random(9);
   std::bernoulli_distribution is_inside(0.4), is_missing(0.2);
   std::uniform_real_distribution<float> size_m(0.001F, 0.009F);
-  SampleBricks bricks(
+  TsdfBricks bricks(
       cube_map([&](const VoxelIndex&) { return is_inside(random) ? -size_m(random) : size_m(random); }),
       0.0F);
   for (Brick& brick : bricks.bricks())
-    for (BrickSample& sample : brick.samples)
+    for (TsdfSample& sample : brick.samples)
       if (is_missing(random)) sample.weight = 0.0F;
-  const std::size_t without_guesses = surface_net(bricks, kResolution_m).triangles.size();
-  guess_neighbours(bricks);
-  const Mesh mesh = surface_net(bricks, kResolution_m);
-  EXPECT_GT(mesh.triangles.size(), 2 * without_guesses);
+  const std::size_t without_extrapolated = dual_marching_cubes(bricks, kResolution_m).triangles.size();
+  extrapolate_neighbours(bricks);
+  const Mesh mesh = dual_marching_cubes(bricks, kResolution_m);
+  EXPECT_GT(mesh.triangles.size(), 2 * without_extrapolated);
   for (const Eigen::Vector3f& vertex : mesh.vertices) ASSERT_TRUE(vertex.allFinite());
   for (const auto& [edge, use] : test::edge_uses(mesh)) {
     ASSERT_LE(use.forward, 1);
@@ -143,11 +144,11 @@ TEST(SampleSmoothing, WhatIsWellMeasuredStays) {
   const auto spread_m = [](float weight) {
     std::mt19937 random(3);
     std::normal_distribution<float> noise_m(0.0F, 0.004F);
-    SampleBricks bricks(cube_map([&](const VoxelIndex&) { return noise_m(random); }, weight), 0.0F);
+    TsdfBricks bricks(cube_map([&](const VoxelIndex&) { return noise_m(random); }, weight), 0.0F);
     smooth(bricks, 0.4F, 6);
     double sum = 0.0;
     for (const Brick& brick : bricks.bricks())
-      for (const BrickSample& sample : brick.samples) sum += sample.distance_m * sample.distance_m;
+      for (const TsdfSample& sample : brick.samples) sum += sample.distance_m * sample.distance_m;
     return std::sqrt(sum / (kEdge * kEdge * kEdge));
   };
   EXPECT_NEAR(spread_m(60.0F), 0.004, 1e-4);

@@ -93,7 +93,7 @@ TEST(Surface, ABallIsRoundClosedAndLooksOutward) {
 TEST(Surface, AWallIsAFewTrianglesAndABallStaysRound) {
   StaticMap map(0.02);
   map.fuse(exact_frame(test::plane(Eigen::Vector3d(0.8, 0.6, 0), 1.5), kCamera, kAtOrigin), kAtOrigin);
-  SurfaceFacts facts;
+  SurfaceStats facts;
   const Mesh wall = extract_surface(map, {}, &facts);
   EXPECT_EQ(facts.triangles, wall.triangles.size());
   EXPECT_GT(facts.full_triangles, 5'000U);
@@ -161,7 +161,7 @@ TEST(Surface, WhatNobodySawStaysOpen) {
 TEST(Surface, AnEmptyMapHasNone) {
   EXPECT_TRUE(extract_surface(StaticMap(0.05)).triangles.empty());
   EXPECT_TRUE(extract_surface(StaticMap(0.05)).vertices.empty());
-  EXPECT_TRUE(without_specks(Mesh{}, 1.0F).triangles.empty());
+  EXPECT_TRUE(drop_small_components(Mesh{}, 1.0F).triangles.empty());
 }
 
 TEST(Surface, ThreeHundredMetresAwayItIsTheSame) {

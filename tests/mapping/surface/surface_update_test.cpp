@@ -48,7 +48,7 @@ float farthest_m(const Mesh& from, const Mesh& to) {
   Mesh moved = from;
   for (Eigen::Vector3f& v : moved.vertices) v += (from.origin - to.origin).cast<float>();
   moved.origin = to.origin;
-  const SurfaceNear near(to, 0.05F);
+  const MeshDistanceQuery near(to, 0.05F);
   std::vector<FarPoint> beyond;
   const float within_m = greatest_distance_m(moved, near, 0.01F, 0.05F, beyond);
   return beyond.empty() ? within_m : std::numeric_limits<float>::infinity();
@@ -62,7 +62,7 @@ TEST(OutsideOf, CutsTrianglesAtTheSidesAndKeepsTheRest) {
   floor.colours = {{0, 0, 0}, {200, 0, 0}, {200, 0, 0}, {0, 0, 0}};
   floor.triangles = {{0, 1, 2}, {0, 2, 3}};
   const AlignedBox3d box(Vector3d(9.5, 19.0, 29.9), Vector3d(10.5, 21.0, 30.1));
-  const Mesh left = outside_of(floor, box);
+  const Mesh left = clip_outside(floor, box);
   EXPECT_NEAR(area_m2(left), 16.0 - 2.0, 1e-5);
   ASSERT_EQ(left.normals.size(), left.vertices.size());
   ASSERT_EQ(left.colours.size(), left.vertices.size());
@@ -78,10 +78,10 @@ TEST(OutsideOf, LeavesAMeshThatTheBoxMissesAndTakesOneThatItHolds) {
   Mesh floor;
   floor.vertices = {{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}};
   floor.triangles = {{0, 1, 2}, {0, 2, 3}};
-  EXPECT_EQ(outside_of(floor, AlignedBox3d(Vector3d(-1, -1, 0.5), Vector3d(1, 1, 1))).triangles.size(), 2U);
-  EXPECT_EQ(outside_of(floor, AlignedBox3d()).triangles.size(), 2U);
-  EXPECT_TRUE(outside_of(floor, AlignedBox3d(Vector3d(-3, -3, -1), Vector3d(3, 3, 1))).triangles.empty());
-  EXPECT_TRUE(outside_of(Mesh{}, AlignedBox3d(Vector3d(-3, -3, -1), Vector3d(3, 3, 1))).triangles.empty());
+  EXPECT_EQ(clip_outside(floor, AlignedBox3d(Vector3d(-1, -1, 0.5), Vector3d(1, 1, 1))).triangles.size(), 2U);
+  EXPECT_EQ(clip_outside(floor, AlignedBox3d()).triangles.size(), 2U);
+  EXPECT_TRUE(clip_outside(floor, AlignedBox3d(Vector3d(-3, -3, -1), Vector3d(3, 3, 1))).triangles.empty());
+  EXPECT_TRUE(clip_outside(Mesh{}, AlignedBox3d(Vector3d(-3, -3, -1), Vector3d(3, 3, 1))).triangles.empty());
 }
 
 TEST(RenewSurface, OfAMapThatDidNotChangeIsTheSameSurface) {
@@ -91,7 +91,7 @@ TEST(RenewSurface, OfAMapThatDidNotChangeIsTheSameSurface) {
   for (const AlignedBox3d& box : {AlignedBox3d(Vector3d(-0.3, -0.25, -0.1), Vector3d(0.25, 0.3, 0.4)),
                                   AlignedBox3d(Vector3d(-0.05, -0.5, 0.0), Vector3d(0.5, 0.02, 0.11))}) {
     Mesh after = before;
-    renew_surface(map, box, {}, after);
+    update_surface(map, box, {}, after);
     // Each within 2 mm of the full surface.
     EXPECT_LE(farthest_m(after, before), 0.0041F);
     EXPECT_LE(farthest_m(before, after), 0.0041F);
@@ -105,7 +105,7 @@ TEST(RenewSurface, TakesWhatIsNewInTheBoxAndNothingElse) {
   const StaticMap with_box = map_of(floor_with_box());
   Mesh mesh = extract_surface(empty_floor);
   const AlignedBox3d box(Vector3d(-0.25, -0.2, -0.1), Vector3d(0.25, 0.2, 0.3));
-  renew_surface(with_box, box, {}, mesh);
+  update_surface(with_box, box, {}, mesh);
   const Mesh all_new = extract_surface(with_box);
   Mesh top;
   top.vertices = {{-0.1F, -0.05F, 0.2F}, {0.1F, -0.05F, 0.2F}, {0.0F, 0.05F, 0.2F}};
@@ -119,12 +119,12 @@ TEST(RenewSurface, OfAnEmptyBoxOrAnEmptyMeshIsNoFault) {
   const StaticMap map = map_of(floor_with_box());
   Mesh mesh = extract_surface(map);
   const std::size_t triangles = mesh.triangles.size();
-  renew_surface(map, AlignedBox3d(), {}, mesh);
+  update_surface(map, AlignedBox3d(), {}, mesh);
   EXPECT_EQ(mesh.triangles.size(), triangles);
   Mesh none;
-  renew_surface(map, AlignedBox3d(Vector3d(-0.3, -0.3, -0.1), Vector3d(0.3, 0.3, 0.3)), {}, none);
+  update_surface(map, AlignedBox3d(Vector3d(-0.3, -0.3, -0.1), Vector3d(0.3, 0.3, 0.3)), {}, none);
   EXPECT_FALSE(none.triangles.empty());
-  renew_surface(StaticMap(0.02), AlignedBox3d(Vector3d(-9, -9, -9), Vector3d(9, 9, 9)), {}, mesh);
+  update_surface(StaticMap(0.02), AlignedBox3d(Vector3d(-9, -9, -9), Vector3d(9, 9, 9)), {}, mesh);
   EXPECT_TRUE(mesh.triangles.empty());
 }
 

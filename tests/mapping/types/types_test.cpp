@@ -130,28 +130,28 @@ TEST(StageTimes, TakeNoMoreMemoryHoweverManyFramesThereAre) {
 }
 
 TEST(NumberText, IsTheShortestThatReadsBack) {
-  EXPECT_EQ(number_text(-1.0), "-1");
-  EXPECT_EQ(number_text(0.1), "0.1");
-  EXPECT_EQ(number_text(0.1F), "0.1");
-  EXPECT_EQ(number_text(1e-9), "1e-09");
-  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "inf");
-  EXPECT_EQ(number_text(std::numeric_limits<int>::min()), "-2147483648");
+  EXPECT_EQ(format_number(-1.0), "-1");
+  EXPECT_EQ(format_number(0.1), "0.1");
+  EXPECT_EQ(format_number(0.1F), "0.1");
+  EXPECT_EQ(format_number(1e-9), "1e-09");
+  EXPECT_EQ(format_number(std::numeric_limits<double>::infinity()), "inf");
+  EXPECT_EQ(format_number(std::numeric_limits<int>::min()), "-2147483648");
   for (const double longest : {-std::numeric_limits<double>::denorm_min(), -1.0 / 3e200, 1.0 / 3.0})
-    EXPECT_EQ(std::strtod(number_text(longest).c_str(), nullptr), longest);
+    EXPECT_EQ(std::strtod(format_number(longest).c_str(), nullptr), longest);
 }
 
 TEST(NumberText, HasTheDigitsThatAreAskedForWhateverTheLocale) {
-  EXPECT_EQ(fixed_text(1.5, 9), "1.500000000");
-  EXPECT_EQ(fixed_text(-0.0000004, 6), "-0.000000");
-  EXPECT_EQ(fixed_text(std::numeric_limits<double>::max(), 9).size(), 309U + 10U);
-  EXPECT_EQ(general_text(1.0 / 3.0, 12), "0.333333333333");
-  EXPECT_EQ(general_text(-1e-7, 12), "-1e-07");
-  EXPECT_EQ(general_text(std::nan(""), 12), "nan");
-  EXPECT_EQ(general_text(-std::numeric_limits<double>::max(), 20), "-1.7976931348623157081e+308");
+  EXPECT_EQ(format_fixed(1.5, 9), "1.500000000");
+  EXPECT_EQ(format_fixed(-0.0000004, 6), "-0.000000");
+  EXPECT_EQ(format_fixed(std::numeric_limits<double>::max(), 9).size(), 309U + 10U);
+  EXPECT_EQ(format_general(1.0 / 3.0, 12), "0.333333333333");
+  EXPECT_EQ(format_general(-1e-7, 12), "-1e-07");
+  EXPECT_EQ(format_general(std::nan(""), 12), "nan");
+  EXPECT_EQ(format_general(-std::numeric_limits<double>::max(), 20), "-1.7976931348623157081e+308");
 }
 
-TEST(SettingRules, SayWhatWasGivenHoweverSmall) {
-  const SettingRules require{"fusion"};
+TEST(ConfigCheck, SayWhatWasGivenHoweverSmall) {
+  const ConfigCheck require{"fusion"};
   EXPECT_NO_THROW(require(true, "max_range_m", -1.0, "in 0..100 m"));
   try {
     require(false, "max_range_m", -1e-9, "in 0..100 m");

@@ -31,7 +31,7 @@ int expect_bounds(const std::string& name, const Mesh& object, const Mesh& scene
   GpuMesh object_gpu(context), scene_gpu(context);
   object_gpu.upload(object, MeshUsage::kStatic);
   scene_gpu.upload(scene, MeshUsage::kStatic);
-  const SceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  const SceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   std::vector<GlQuery> queries;
   for (const Throw& t : throws) {
     queries.push_back({{&object_gpu, t.T_world_object}, t.direction, t.distance_m, GlQuery::kNotInScene});
@@ -48,7 +48,7 @@ int expect_bounds(const std::string& name, const Mesh& object, const Mesh& scene
     judged.T_world_mesh = throws[i].T_world_object;
     const Contact truth = judged_scene.query(exact, judged, throws[i].direction, throws[i].distance_m);
     if (truth.status == ContactStatus::kOverlap) continue;
-    const auto truth_m = judged_scene.travel_m(judged, throws[i].direction, throws[i].distance_m);
+    const auto truth_m = judged_scene.contact_distance_m(judged, throws[i].direction, throws[i].distance_m);
     EXPECT_TRUE(holds(contacts[i], truth_m, throws[i].distance_m))
         << name << " at " << resolution_px << " px, pose " << i << ": "
         << describe(judged, throws[i].direction, throws[i].distance_m, contacts[i], truth_m);
@@ -157,7 +157,7 @@ TEST(GlBounds, HoldAndAreNarrowAtTheExtremes) {
           GpuMesh cube_gpu(context), floor_gpu(context);
           cube_gpu.upload(cube.mesh, MeshUsage::kStatic);
           floor_gpu.upload(floor_mesh, MeshUsage::kStatic);
-          const SceneMesh target{{&floor_gpu, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+          const SceneMesh target{{&floor_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
           const Eigen::Vector3d down(0, 0, -1);
           const Contact got = radar.query({&cube_gpu, cube.T_world_mesh}, down, distance_m, {&target, 1});
           // At 1e6 m the world's double step puts the cube 1e-10 m off.

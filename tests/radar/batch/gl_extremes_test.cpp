@@ -29,7 +29,7 @@ class GlExtremes : public testing::Test {
     GpuMesh object_gpu(context), scene_gpu(context);
     object_gpu.upload(object, MeshUsage::kStreamed);  // leaves out what cannot be drawn
     scene_gpu.upload(scene, MeshUsage::kStreamed);
-    const SceneMesh target{{&scene_gpu, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+    const SceneMesh target{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     return radar.query({&object_gpu, T_world_object}, direction, distance_m, {&target, 1});
   }
   void expect_holds(const Mesh& object, const Eigen::Isometry3d& T_world_object,
@@ -48,7 +48,7 @@ TEST_F(GlExtremes, ATenthOfAMicrometreBeforeOrPastTouchingIsTouching) {
   for (const double gap_m : {1e-7, 0.0, -1e-7}) {
     const Contact got = ask(quarter_box(), at(0.2, 0, 0.125 + gap_m), kDown, 1.0, shapes::floor(1.0F, 0.0F));
     EXPECT_EQ(got.status, ContactStatus::kContact) << gap_m;
-    EXPECT_NEAR(got.travel_m, gap_m, 2e-6);  // float over a volume of 1.25 m
+    EXPECT_NEAR(got.contact_distance_m, gap_m, 2e-6);  // float over a volume of 1.25 m
     EXPECT_LE(got.lower_m, std::max(gap_m, 0.0) + kBoundRounding_m);
     EXPECT_GE(got.upper_m, gap_m);
   }
@@ -80,12 +80,12 @@ TEST_F(GlExtremes, DegenerateDuplicateAndNaNTrianglesChangeNothing) {
     const Contact clean = ask(torus, T, direction, 1.0, ground);
     const Contact got = ask(shapes::spoilt(torus), T, direction, 1.0, shapes::spoilt(ground));
     EXPECT_EQ(got.status, clean.status);
-    EXPECT_NEAR(got.travel_m, clean.travel_m, 1e-6);
+    EXPECT_NEAR(got.contact_distance_m, clean.contact_distance_m, 1e-6);
     EXPECT_NEAR(got.upper_m, clean.upper_m, 1e-6);
     JudgedScene judged;
     judged.add(ground);
     expect_holds(shapes::spoilt(torus), T, direction, 1.0, shapes::spoilt(ground),
-                 judged.travel_m(JudgedMesh(torus, T), direction, 1.0));
+                 judged.contact_distance_m(JudgedMesh(torus, T), direction, 1.0));
   }
 }
 
@@ -107,7 +107,7 @@ TEST_F(GlExtremes, TenMillionTinyTriangles) {
   GpuMesh box_gpu(context), grid_gpu(context);
   box_gpu.upload(quarter_box(), MeshUsage::kStatic);
   grid_gpu.upload(grid, MeshUsage::kStreamed);
-  const SceneMesh target{{&grid_gpu, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  const SceneMesh target{{&grid_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   const auto ask_at = [&](const Eigen::Isometry3d& T) {
     return radar.query({&box_gpu, T}, kDown, 2.0, {&target, 1});
   };

@@ -17,7 +17,7 @@ class GlFaults : public testing::Test {
   }
   Contact ask(GlRadar& radar) {
     const MeshInstance object{&cube, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 0.8))};
-    const SceneMesh scene{{&floor, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+    const SceneMesh scene{{&floor, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     return radar.query(object, {0, 0, -1}, 2.0, {&scene, 1});
   }
 
@@ -37,7 +37,7 @@ TEST_F(GlFaults, WithoutTheContextThereIsNoAnswerAndWithItAgainThereIs) {
       EXPECT_EQ(contact.lower_m, 0.0) << "nothing is known to be free";
       const Contact again = ask(radar);
       EXPECT_EQ(again.status, ContactStatus::kContact);
-      EXPECT_NEAR(again.travel_m, 0.7, 1e-6);
+      EXPECT_NEAR(again.contact_distance_m, 0.7, 1e-6);
     }
   }
 }
@@ -66,7 +66,7 @@ TEST_F(GlFaults, AMeshThatTheRendererDidNotTakeIsSaidAndNotDrawn) {
     EXPECT_EQ(floor.triangle_count(), 0U);
     EXPECT_EQ(ask(radar).status, ContactStatus::kNoTarget);
     floor.upload(shapes::floor(3.0F, 0.0F), usage);
-    EXPECT_NEAR(ask(radar).travel_m, 0.7, 1e-6);
+    EXPECT_NEAR(ask(radar).contact_distance_m, 0.7, 1e-6);
   }
 }
 
@@ -81,7 +81,7 @@ TEST_F(GlFaults, TextureThatIsNotGivenIsSaid) {
 
 TEST_F(GlFaults, AtlasSmallerThanATileGrowsToIt) {
   GlRadar radar(context, {.resolution_px = 300, .atlas_px = 1});
-  EXPECT_NEAR(ask(radar).travel_m, 0.7, 1e-6);
+  EXPECT_NEAR(ask(radar).contact_distance_m, 0.7, 1e-6);
 }
 
 TEST_F(GlFaults, AMillionTriangles) {
@@ -89,13 +89,13 @@ TEST_F(GlFaults, AMillionTriangles) {
   ASSERT_GT(ground.triangles.size(), 1'000'000U);
   GpuMesh ground_gpu(context);
   ground_gpu.upload(ground, MeshUsage::kStatic);
-  const SceneMesh scene{{&ground_gpu, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  const SceneMesh scene{{&ground_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   GlRadar radar(context, {.resolution_px = 64});
   const Contact contact = radar.query({&cube, Eigen::Isometry3d(Eigen::Translation3d(0.3, 0.1, 0.5))},
                                       {0, 0, -1}, 1.0, {&scene, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_LE(contact.lower_m, contact.travel_m);
-  EXPECT_LE(contact.travel_m, contact.upper_m);
+  EXPECT_LE(contact.lower_m, contact.contact_distance_m);
+  EXPECT_LE(contact.contact_distance_m, contact.upper_m);
   EXPECT_LT(contact.upper_m - contact.lower_m, 0.01);
 }
 

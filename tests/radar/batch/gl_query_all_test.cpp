@@ -19,7 +19,7 @@ Eigen::Isometry3d at(double x, double y, double z) {
 
 void expect_same(const Contact& a, const Contact& b, std::size_t i) {
   EXPECT_EQ(a.status, b.status) << i;
-  EXPECT_EQ(a.travel_m, b.travel_m) << i;
+  EXPECT_EQ(a.contact_distance_m, b.contact_distance_m) << i;
   EXPECT_EQ(a.lower_m, b.lower_m) << i;
   EXPECT_EQ(a.upper_m, b.upper_m) << i;
   EXPECT_EQ(a.touched, b.touched) << i;
@@ -40,12 +40,12 @@ class GlQueryAll : public testing::Test {
       Eigen::Isometry3d T(shapes::random_rotation(random));
       T.pretranslate(Eigen::Vector3d(0, 0, 0.6) +
                      Eigen::Vector3d(0.5, 0.5, 0.3).cwiseProduct(shapes::random_point(random)));
-      scene.push_back({{meshes[i % 3].get(), T}, Touched::kObject});
+      scene.push_back({{meshes[i % 3].get(), T}, SurfaceKind::kObject});
       queries.push_back(
           {scene.back().instance, kDown + 0.8 * shapes::random_point(random), 0.2 + 0.01 * double(i), i});
     }
     upload(shapes::bumpy_ground(60));
-    scene.push_back({{meshes.back().get(), Eigen::Isometry3d::Identity()}, Touched::kStatic});
+    scene.push_back({{meshes.back().get(), Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic});
   }
   void upload(const Mesh& mesh) {
     trees.push_back(std::make_unique<TriangleTree>());
@@ -68,15 +68,15 @@ class GlQueryAll : public testing::Test {
 
 TEST_F(GlQueryAll, ObjectsAreSceneForEachOtherAndNotForThemselves) {
   GlRadar radar(context);
-  const SceneMesh pile[] = {{{meshes[0].get(), at(0, 0, 1.00)}, Touched::kObject},
-                            {{meshes[0].get(), at(0, 0, 1.26)}, Touched::kObject}};
+  const SceneMesh pile[] = {{{meshes[0].get(), at(0, 0, 1.00)}, SurfaceKind::kObject},
+                            {{meshes[0].get(), at(0, 0, 1.26)}, SurfaceKind::kObject}};
   const GlQuery both[] = {{pile[0].instance, kDown, 0.5, 0}, {pile[1].instance, kDown, 0.5, 1}};
   std::vector<Contact> contacts(2);
   radar.query_all(both, pile, contacts);
   EXPECT_EQ(contacts[0].status, ContactStatus::kNoTarget);
   ASSERT_EQ(contacts[1].status, ContactStatus::kContact);
-  EXPECT_NEAR(contacts[1].travel_m, 0.2, 1e-6);
-  EXPECT_EQ(contacts[1].touched, Touched::kObject);
+  EXPECT_NEAR(contacts[1].contact_distance_m, 0.2, 1e-6);
+  EXPECT_EQ(contacts[1].touched, SurfaceKind::kObject);
 }
 
 TEST_F(GlQueryAll, AnswersAsEachAlone) {
@@ -149,17 +149,17 @@ TEST_F(GlQueryAll, WhatThePassesCannotTellIsSettledExactly) {
   // A peg inside the cup, behind the front wall as the cup moves sideways: the rear wall comes to it.
   const Mesh cup = shapes::cup(0.04F, 0.1F, 0.004F, 16), peg = shapes::box({0.01F, 0.01F, 0.04F});
   upload(peg);
-  const SceneMesh target{{meshes.back().get(), at(0, 0, 0.06)}, Touched::kDynamic};
-  GlRadar radar(context), unsettled(context, {.settle = false});
+  const SceneMesh target{{meshes.back().get(), at(0, 0, 0.06)}, SurfaceKind::kDynamic};
+  GlRadar radar(context), unsettled(context, {.exact_fallback = false});
   const MeshInstance object{meshes[2].get(), at(0, 0, 0)};
   const Eigen::Vector3d sideways(1, 0.1, 0);
   const auto truth_m = exact_travel(cup, at(0, 0, 0), sideways, 0.2, peg, at(0, 0, 0.06));
   ASSERT_TRUE(truth_m);
   const Contact contact = radar.query(object, sideways, 0.2, {&target, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, *truth_m, 1e-9);
+  EXPECT_NEAR(contact.contact_distance_m, *truth_m, 1e-9);
   EXPECT_LT(contact.upper_m - contact.lower_m, 1e-9);
-  EXPECT_EQ(contact.touched, Touched::kDynamic);
+  EXPECT_EQ(contact.touched, SurfaceKind::kDynamic);
   const Contact wide = unsettled.query(object, sideways, 0.2, {&target, 1});
   EXPECT_EQ(wide.status, ContactStatus::kNoTarget);
   EXPECT_EQ(wide.lower_m, 0.0) << "holds, but says little";

@@ -50,7 +50,7 @@ class GlRadarTest : public testing::Test {
   }
   SceneMesh scene_mesh(const Mesh& mesh,
                        const Eigen::Isometry3d& T_world_mesh = Eigen::Isometry3d::Identity(),
-                       Touched kind = Touched::kStatic) {
+                       SurfaceKind kind = SurfaceKind::kStatic) {
     return {{uploaded(mesh), T_world_mesh}, kind};
   }
 
@@ -66,12 +66,12 @@ TEST_F(GlRadarTest, BallAboveFloorTravelsItsClearance) {
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   // The sample nearest to the pole is up to 0.71 pixels away, on facets that rise by 1 in 30: late by 0.11 mm
   // at most.
-  EXPECT_GE(contact.travel_m, 0.7 - 1e-5);
-  EXPECT_LE(contact.travel_m, 0.7 + 0.71 * contact.pixel_m / 30.0);
+  EXPECT_GE(contact.contact_distance_m, 0.7 - 1e-5);
+  EXPECT_LE(contact.contact_distance_m, 0.7 + 0.71 * contact.pixel_m / 30.0);
   EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.1, 0.2, 0.0)).norm(), 0.0, 1.5 * contact.pixel_m);
   EXPECT_NEAR(contact.point_world.z(), 0.0, 1e-6);
   EXPECT_NEAR((contact.normal_world - Eigen::Vector3d::UnitZ()).norm(), 0.0, 1e-6);
-  EXPECT_EQ(contact.touched, Touched::kStatic);
+  EXPECT_EQ(contact.touched, SurfaceKind::kStatic);
   EXPECT_NEAR(contact.pixel_m, 0.6 / 128, 1e-6);
 }
 
@@ -79,7 +79,7 @@ TEST_F(GlRadarTest, FlatLandingIsReportedInTheMiddle) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({cube, at(0.5, -0.5, 0.4)}, kDown, 2.0, {&floor, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.3, 1e-6);
+  EXPECT_NEAR(contact.contact_distance_m, 0.3, 1e-6);
   EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.5, -0.5, 0.0)).norm(), 0.0, contact.pixel_m);
 }
 
@@ -99,7 +99,7 @@ TEST_F(GlRadarTest, TouchingIsContactAtZero) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({cube, at(0, 0, 0.1)}, kDown, 0.5, {&floor, 1});
   EXPECT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.0, 1e-6);
+  EXPECT_NEAR(contact.contact_distance_m, 0.0, 1e-6);
 }
 
 TEST_F(GlRadarTest, TouchingObjectMayLeaveAndSlide) {
@@ -113,7 +113,7 @@ TEST_F(GlRadarTest, OverlapIsReportedWithItsDepth) {
   for (const double depth_m : {0.001, 0.01, 0.02}) {
     const Contact contact = radar.query({cube, at(0, 0, 0.1 - depth_m)}, kDown, 0.5, {&floor, 1});
     EXPECT_EQ(contact.status, ContactStatus::kOverlap);
-    EXPECT_NEAR(contact.travel_m, -depth_m, 1e-6);
+    EXPECT_NEAR(contact.contact_distance_m, -depth_m, 1e-6);
     EXPECT_NEAR(contact.normal_world.z(), 1.0, 1e-6);
   }
 }
@@ -130,19 +130,19 @@ TEST_F(GlRadarTest, SurfaceFarInsideDoesNotHideWhatIsAhead) {
   const SceneMesh scene[] = {scene_mesh(shapes::floor(2.0F, 0.5F)), scene_mesh(shapes::floor(2.0F, 0.0F))};
   const Contact contact = radar.query({cube, at(0, 0, 0.5)}, kDown, 1.0, scene);
   EXPECT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.4, 1e-6);
+  EXPECT_NEAR(contact.contact_distance_m, 0.4, 1e-6);
 }
 
 TEST_F(GlRadarTest,
        SurfaceSeenFromBehindStopsTheObject) {  // a hand's mesh faces the camera, not the object
   Mesh ceiling_seen_from_above = shapes::floor(2.0F, 1.0F);
   const SceneMesh scene =
-      scene_mesh(ceiling_seen_from_above, Eigen::Isometry3d::Identity(), Touched::kDynamic);
+      scene_mesh(ceiling_seen_from_above, Eigen::Isometry3d::Identity(), SurfaceKind::kDynamic);
   const Contact contact = radar.query({cube, at(0, 0, 0.5)}, -kDown, 1.0, {&scene, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.4, 1e-6);
+  EXPECT_NEAR(contact.contact_distance_m, 0.4, 1e-6);
   EXPECT_NEAR(contact.normal_world.z(), -1.0, 1e-6) << "turned to face the object";
-  EXPECT_EQ(contact.touched, Touched::kDynamic);
+  EXPECT_EQ(contact.touched, SurfaceKind::kDynamic);
 }
 
 TEST_F(GlRadarTest, SceneInAHollowIsNotAnOverlap) {
@@ -159,12 +159,12 @@ TEST_F(GlRadarTest, SceneInAHollowIsNotAnOverlap) {
   const SceneMesh scene[] = {scene_mesh(shelf), scene_mesh(shapes::floor(2.0F, 0.0F))};
   const Contact contact = deep.query({uploaded(ring), T_world_ring}, kDown, 1.0, scene);
   EXPECT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.38, 2e-4);  // pixels of 1.9 mm on facets that rise by 1 in 10
+  EXPECT_NEAR(contact.contact_distance_m, 0.38, 2e-4);  // pixels of 1.9 mm on facets that rise by 1 in 10
   // The same shelf inside the lower arc's tube is one.
   const SceneMesh inside[] = {scene_mesh(shelf, at(0, 0, -0.03)), scene[1]};
   const Contact overlap = deep.query({uploaded(ring), T_world_ring}, kDown, 1.0, inside);
   EXPECT_EQ(overlap.status, ContactStatus::kOverlap);
-  EXPECT_NEAR(overlap.travel_m, -0.02, 1e-3);
+  EXPECT_NEAR(overlap.contact_distance_m, -0.02, 1e-3);
 }
 
 TEST_F(GlRadarTest, PixelOutsideTheMaskSaysNothing) {
@@ -176,7 +176,7 @@ TEST_F(GlRadarTest, PixelOutsideTheMaskSaysNothing) {
                              scene_mesh(shapes::floor(2.0F, 0.0F))};
   const Contact contact = radar.query({uploaded(ball), at(0, 0, 0.6)}, kDown, 1.0, scene);
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.5, 1e-4);
+  EXPECT_NEAR(contact.contact_distance_m, 0.5, 1e-4);
 }
 
 TEST_F(GlRadarTest, SurfaceEdgeOnIsNotInTheWayButItsRimIs) {
@@ -190,7 +190,7 @@ TEST_F(GlRadarTest, SurfaceEdgeOnIsNotInTheWayButItsRimIs) {
   const SceneMesh slab = scene_mesh(shapes::box({0.004F, 2.0F, 1.0F}), at(0, 0, -0.5));
   const Contact contact = radar.query({cube, at(0, 0, 0.5)}, kDown, 1.0, {&slab, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.4, 1e-6);
+  EXPECT_NEAR(contact.contact_distance_m, 0.4, 1e-6);
   // Along the wall nothing stops it.
   EXPECT_EQ(radar.query({cube, at(0.11, 0, -0.5)}, {0, 1, 0}, 0.5, {&slab, 1}).status,
             ContactStatus::kNoTarget);
@@ -200,11 +200,11 @@ TEST_F(GlRadarTest, DistancesFromATenthOfAMillimetreTo100Metres) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact near = radar.query({cube, at(0, 0, 0.10005)}, kDown, 1e-4, {&floor, 1});
   ASSERT_EQ(near.status, ContactStatus::kContact);
-  EXPECT_NEAR(near.travel_m, 5e-5, 1e-6);
+  EXPECT_NEAR(near.contact_distance_m, 5e-5, 1e-6);
   EXPECT_EQ(radar.query({cube, at(0, 0, 0.1003)}, kDown, 1e-4, {&floor, 1}).status, ContactStatus::kNoTarget);
   const Contact far = radar.query({cube, at(0, 0, 90.1)}, kDown, 100.0, {&floor, 1});
   ASSERT_EQ(far.status, ContactStatus::kContact);
-  EXPECT_NEAR(far.travel_m, 90.0, 1e-4);  // depth step 6 um
+  EXPECT_NEAR(far.contact_distance_m, 90.0, 1e-4);  // depth step 6 um
 }
 
 TEST_F(GlRadarTest, LosesNothingAThousandKilometresFromZero) {
@@ -216,7 +216,7 @@ TEST_F(GlRadarTest, LosesNothingAThousandKilometresFromZero) {
     T_world_cube.pretranslate(place);
     const Contact contact = radar.query({cube, T_world_cube}, kDown, 2.0, {&scene, 1});
     ASSERT_EQ(contact.status, ContactStatus::kContact);
-    EXPECT_NEAR(contact.travel_m, 0.7, 1e-6);
+    EXPECT_NEAR(contact.contact_distance_m, 0.7, 1e-6);
     EXPECT_NEAR((contact.point_world - place - Eigen::Vector3d(0.3, 0.2, 0.0)).norm(), 0.0, contact.pixel_m);
     EXPECT_NEAR(contact.normal_world.z(), 1.0, 1e-6);
   }
@@ -237,7 +237,7 @@ TEST_F(GlRadarTest, EveryAxisAndAHairOffIt) {
         const SceneMesh scene = scene_mesh(wall, T_world_wall);
         const Contact contact = radar.query({cube, at(0, 0, 0)}, direction, 1.0, {&scene, 1});
         ASSERT_EQ(contact.status, ContactStatus::kContact) << direction.transpose();
-        EXPECT_NEAR(contact.travel_m, 0.4, 1e-6 + hair) << direction.transpose();
+        EXPECT_NEAR(contact.contact_distance_m, 0.4, 1e-6 + hair) << direction.transpose();
         EXPECT_NEAR(contact.normal_world.dot(towards), -1.0, 1e-6) << direction.transpose();
       }
     }
@@ -249,10 +249,10 @@ TEST_F(GlRadarTest, NanTrianglesInAStreamedSceneAreLeftOut) {
   scene_cpu.vertices.emplace_back(std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.5F);
   scene_cpu.triangles.push_back({0, 1, 4});
   scene_cpu.triangles.push_back({0, 1, 77});
-  const SceneMesh scene{{uploaded(scene_cpu, MeshUsage::kStreamed)}, Touched::kDynamic};
+  const SceneMesh scene{{uploaded(scene_cpu, MeshUsage::kStreamed)}, SurfaceKind::kDynamic};
   const Contact contact = radar.query({cube, at(0, 0, 0.8)}, kDown, 2.0, {&scene, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.7, 1e-6);
+  EXPECT_NEAR(contact.contact_distance_m, 0.7, 1e-6);
 }
 
 TEST_F(GlRadarTest, OneTriangleLargerThanTheVolume) {
@@ -262,7 +262,7 @@ TEST_F(GlRadarTest, OneTriangleLargerThanTheVolume) {
   const SceneMesh scene = scene_mesh(huge);
   const Contact contact = radar.query({cube, at(3.3, 1.7, 0.8)}, kDown, 2.0, {&scene, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.7, 5e-6);
+  EXPECT_NEAR(contact.contact_distance_m, 0.7, 5e-6);
 }
 
 TEST_F(GlRadarTest, InvalidInputIsSaid) {
@@ -287,13 +287,14 @@ TEST_F(GlRadarTest, InvalidInputIsSaid) {
 }
 
 TEST_F(GlRadarTest, NearestOfSeveralMeshesIsTouched) {
-  const SceneMesh scene[] = {scene_mesh(shapes::floor(2.0F, 0.0F)),
-                             scene_mesh(shapes::box({0.1F, 0.1F, 0.1F}), at(0, 0, 0.05), Touched::kObject),
-                             scene_mesh(shapes::floor(2.0F, -0.5F), at(0, 0, 0), Touched::kDynamic)};
+  const SceneMesh scene[] = {
+      scene_mesh(shapes::floor(2.0F, 0.0F)),
+      scene_mesh(shapes::box({0.1F, 0.1F, 0.1F}), at(0, 0, 0.05), SurfaceKind::kObject),
+      scene_mesh(shapes::floor(2.0F, -0.5F), at(0, 0, 0), SurfaceKind::kDynamic)};
   const Contact contact = radar.query({cube, at(0, 0, 0.8)}, kDown, 2.0, scene);
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.6, 1e-6);
-  EXPECT_EQ(contact.touched, Touched::kObject);
+  EXPECT_NEAR(contact.contact_distance_m, 0.6, 1e-6);
+  EXPECT_EQ(contact.touched, SurfaceKind::kObject);
 }
 
 TEST_F(GlRadarTest, ImagesObeyTheirDefinition) {
@@ -317,7 +318,7 @@ TEST_F(GlRadarTest, ImagesObeyTheirDefinition) {
     least_m = std::min(least_m, l);
   }
   EXPECT_GT(undefined, 0);
-  EXPECT_NEAR(contact.travel_m, least_m, 1e-7);
+  EXPECT_NEAR(contact.contact_distance_m, least_m, 1e-7);
 }
 
 TEST_F(GlRadarTest, ResolutionsFrom1To4096) {
@@ -326,7 +327,7 @@ TEST_F(GlRadarTest, ResolutionsFrom1To4096) {
     GlRadar other(context, {.resolution_px = resolution_px});
     const Contact contact = other.query({cube, at(0, 0, 0.8)}, kDown, 2.0, {&floor, 1});
     ASSERT_EQ(contact.status, ContactStatus::kContact) << resolution_px;
-    EXPECT_NEAR(contact.travel_m, 0.7, 1e-6) << resolution_px;
+    EXPECT_NEAR(contact.contact_distance_m, 0.7, 1e-6) << resolution_px;
     EXPECT_NEAR(contact.pixel_m, 0.2 / resolution_px, 1e-6);
   }
   EXPECT_THROW(GlRadar(context, {.resolution_px = 0}), Error);

@@ -37,7 +37,7 @@ Eigen::Isometry3d at(const Eigen::Vector3d& p) { return Eigen::Isometry3d(Eigen:
 /// The way a tree moved from `pose` along a direction has to another tree that stands at the world's origin.
 Contact ask(CyberRadar& radar, const TriangleTree& object, const Eigen::Isometry3d& pose,
             const Eigen::Vector3d& direction, double distance_m, const TriangleTree& scene) {
-  const SceneTree s{{&scene, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  const SceneTree s{{&scene, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   return radar.query({{&object, pose}, direction, distance_m}, {{&s, 1}, {}});
 }
 
@@ -85,10 +85,10 @@ TEST(CyberRadar, ABoxAboveAFloorTravelsItsClearance) {
                      scene = tree_of(shapes::floor(2.0F, 0.0F));
   const Contact contact = ask(radar, object, at({0.1, 0.2, 1.0}), 3.0 * kDown, 2.0, scene);
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.8, kExact_m);
-  EXPECT_EQ(contact.lower_m, contact.travel_m);
-  EXPECT_EQ(contact.upper_m, contact.travel_m);
-  EXPECT_EQ(contact.touched, Touched::kStatic);
+  EXPECT_NEAR(contact.contact_distance_m, 0.8, kExact_m);
+  EXPECT_EQ(contact.lower_m, contact.contact_distance_m);
+  EXPECT_EQ(contact.upper_m, contact.contact_distance_m);
+  EXPECT_EQ(contact.touched, SurfaceKind::kStatic);
   // A face that lands flat: the point is its middle.
   EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.1, 0.2, 0.0)).norm(), 0.0, kExact_m);
   EXPECT_NEAR((contact.normal_world - kUp).norm(), 0.0, kExact_m);
@@ -101,7 +101,7 @@ TEST(CyberRadar, AFlatLandingOnThousandsOfTrianglesIsReportedInTheMiddleOfThemAl
   const TriangleTree box = tree_of(shapes::box({0.2F, 0.3F, 0.1F}));   // over 1,900 of its triangles
   const Contact contact = ask(radar, box, at({0.113, 0.207, 0.5}), kDown, 1.0, fine);
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.travel_m, 0.45, kExact_m);
+  EXPECT_NEAR(contact.contact_distance_m, 0.45, kExact_m);
   EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.113, 0.207, 0.0)).norm(), 0.0, kExact_m);
   // Upside down on its rim: the middle is in no piece; the point is on the rim all the same.
   const TriangleTree cup = tree_of(shapes::cup(0.2F, 0.1F, 0.03F, 60));
@@ -109,7 +109,7 @@ TEST(CyberRadar, AFlatLandingOnThousandsOfTrianglesIsReportedInTheMiddleOfThemAl
       at({0.1, 0.2, 0.5}) * Eigen::Isometry3d(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
   const Contact on_rim = ask(radar, cup, T, kDown, 1.0, fine);
   ASSERT_EQ(on_rim.status, ContactStatus::kContact);
-  EXPECT_NEAR(on_rim.travel_m, 0.4, kExact_m);
+  EXPECT_NEAR(on_rim.contact_distance_m, 0.4, kExact_m);
   EXPECT_NEAR(on_rim.point_world.z(), 0.0, kExact_m);
   const double radius_m = (on_rim.point_world.head<2>() - Eigen::Vector2d(0.1, 0.2)).norm();
   EXPECT_GE(radius_m, 0.169);
@@ -140,7 +140,7 @@ TEST(CyberRadar, ExactModeAgreesWithTheJudgeOnRandomPosesOfConvexAndConcaveObjec
   const Mesh floor = bumpy_floor(40, 1.0F, 0.05F, 3);
   TriangleTree in_order;
   in_order.build_in_order(floor);
-  const TriangleTree by_place = tree_of(floor);
+  const TriangleTree by_key = tree_of(floor);
   int contacts = 0;
   for (const Mesh& mesh : {shapes::box({0.2F, 0.3F, 0.1F}), shapes::torus(40, 20, 0.2F, 0.06F, 0.02F)}) {
     const TriangleTree object = tree_of(mesh);
@@ -150,14 +150,14 @@ TEST(CyberRadar, ExactModeAgreesWithTheJudgeOnRandomPosesOfConvexAndConcaveObjec
       pose.translation() = 0.4 * random_point(random) + Eigen::Vector3d(0.0, 0.0, 0.8);
       const Eigen::Vector3d direction = kDown + 0.8 * random_point(random);
       const auto truth_m = exact_travel(mesh, pose, direction, 2.0, floor, Eigen::Isometry3d::Identity());
-      for (const TriangleTree* scene : std::initializer_list<const TriangleTree*>{&by_place, &in_order}) {
+      for (const TriangleTree* scene : std::initializer_list<const TriangleTree*>{&by_key, &in_order}) {
         const Contact contact = ask(exact, object, pose, direction, 2.0, *scene);
         const Contact rough = ask(sampled, object, pose, direction, 2.0, *scene);
         ASSERT_EQ(contact.status, truth_m ? ContactStatus::kContact : ContactStatus::kNoTarget) << i;
         ASSERT_EQ(rough.status, contact.status) << i;
         if (!truth_m) continue;
         ++contacts;
-        ASSERT_NEAR(contact.travel_m, *truth_m, 1e-9) << i;
+        ASSERT_NEAR(contact.contact_distance_m, *truth_m, 1e-9) << i;
         ASSERT_EQ(contact.lower_m, contact.upper_m);
         ASSERT_LE(rough.lower_m, *truth_m + 1e-9) << i;
         ASSERT_GE(rough.upper_m, *truth_m - 1e-9) << i;
@@ -181,7 +181,7 @@ TEST(CyberRadar, ADepthImageIsTouchedLikeItsMesh) {
   scene.T_world_camera = Eigen::Isometry3d(random_rotation(random));
   scene.T_world_camera.translation() = Eigen::Vector3d(3.0, -2.0, 1.0);
   scene.max_jump_m = 0.2F;
-  scene.kind = Touched::kDynamic;
+  scene.kind = SurfaceKind::kDynamic;
   const Mesh torus = shapes::torus(40, 20, 0.1F, 0.03F, 0.01F);
   const TriangleTree object = tree_of(torus);
   int contacts = 0;
@@ -202,8 +202,8 @@ TEST(CyberRadar, ADepthImageIsTouchedLikeItsMesh) {
     ASSERT_EQ(contact.status, truth_m ? ContactStatus::kContact : ContactStatus::kNoTarget) << i;
     if (!truth_m) continue;
     ++contacts;
-    ASSERT_NEAR(contact.travel_m, *truth_m, 1e-9) << i;
-    ASSERT_EQ(contact.touched, Touched::kDynamic);
+    ASSERT_NEAR(contact.contact_distance_m, *truth_m, 1e-9) << i;
+    ASSERT_EQ(contact.touched, SurfaceKind::kDynamic);
   }
   EXPECT_GT(contacts, 150);
 }
@@ -214,9 +214,9 @@ TEST(CyberRadar, AnOverlapIsAsDeepAsTheWayBack) {
                      scene = tree_of(shapes::floor(2.0F, 0.0F));
   const Contact contact = ask(radar, object, at({0.1, 0.2, 0.15}), kDown, 2.0, scene);
   ASSERT_EQ(contact.status, ContactStatus::kOverlap);
-  EXPECT_NEAR(contact.travel_m, -0.05, kExact_m);
-  EXPECT_EQ(contact.lower_m, contact.travel_m);
-  EXPECT_EQ(contact.upper_m, contact.travel_m);
+  EXPECT_NEAR(contact.contact_distance_m, -0.05, kExact_m);
+  EXPECT_EQ(contact.lower_m, contact.contact_distance_m);
+  EXPECT_EQ(contact.upper_m, contact.contact_distance_m);
   EXPECT_NEAR((contact.normal_world - kUp).norm(), 0.0, kExact_m);
   // Upwards the floor is what it leaves.
   EXPECT_EQ(ask(radar, object, at({0.1, 0.2, 0.15}), kUp, 2.0, scene).status, ContactStatus::kNoTarget);
@@ -228,12 +228,12 @@ TEST(CyberRadar, SceneInsideAClosedObjectIsAnOverlapAndInsideAnOpenOneAContact) 
   const TriangleTree speck = tree_of(shapes::floor(0.05F, 0.1F));
   const Contact contact = ask(radar, tree_of(box), at({0.0, 0.0, 0.0}), kDown, 2.0, speck);
   ASSERT_EQ(contact.status, ContactStatus::kOverlap);
-  EXPECT_NEAR(contact.travel_m, -0.3, kExact_m);
+  EXPECT_NEAR(contact.contact_distance_m, -0.3, kExact_m);
   Mesh open = box;
   open.triangles.pop_back();  // one triangle of the +z face
   const Contact surface = ask(radar, tree_of(open), at({0.0, 0.0, 0.0}), kDown, 2.0, speck);
   ASSERT_EQ(surface.status, ContactStatus::kContact);
-  EXPECT_NEAR(surface.travel_m, 0.1, kExact_m);
+  EXPECT_NEAR(surface.contact_distance_m, 0.1, kExact_m);
 }
 
 TEST(CyberRadar, SceneInAHollowIsMetByTheLayerBehindIt) {
@@ -247,8 +247,8 @@ TEST(CyberRadar, SceneInAHollowIsMetByTheLayerBehindIt) {
                                     shapes::box({0.05F, 0.05F, 0.3F}), Eigen::Isometry3d::Identity());
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   ASSERT_TRUE(truth_m);
-  EXPECT_NEAR(contact.travel_m, *truth_m, 1e-9);
-  EXPECT_NEAR(contact.travel_m, std::sqrt(0.16 * 0.16 - 0.025 * 0.025) - 0.025, 0.001);
+  EXPECT_NEAR(contact.contact_distance_m, *truth_m, 1e-9);
+  EXPECT_NEAR(contact.contact_distance_m, std::sqrt(0.16 * 0.16 - 0.025 * 0.025) - 0.025, 0.001);
 }
 
 TEST(CyberRadar, TouchingIsZeroAndWhatIsLeftOrSlidAlongIsNothing) {
@@ -260,10 +260,10 @@ TEST(CyberRadar, TouchingIsZeroAndWhatIsLeftOrSlidAlongIsNothing) {
     const Eigen::Isometry3d pose = at({0.0, 0.0, 0.25 + gap_m});
     const Contact contact = ask(radar, object, pose, kDown, 1.0, scene);
     ASSERT_EQ(contact.status, ContactStatus::kContact);
-    EXPECT_NEAR(contact.travel_m, std::max(gap_m, 0.0), 1e-9);
+    EXPECT_NEAR(contact.contact_distance_m, std::max(gap_m, 0.0), 1e-9);
     EXPECT_EQ(ask(radar, object, pose, kUp, 1.0, scene).status, ContactStatus::kNoTarget);
     const Contact sliding = ask(radar, object, pose, Eigen::Vector3d::UnitX(), 1.0, scene);
-    EXPECT_EQ(sliding.status, ContactStatus::kNoTarget) << sliding.travel_m;
+    EXPECT_EQ(sliding.status, ContactStatus::kNoTarget) << sliding.contact_distance_m;
   }
 }
 
@@ -273,7 +273,7 @@ TEST(CyberRadar, AskingWronglyIsSaidSo) {
                      scene = tree_of(shapes::floor(2.0F, 0.0F));
   const TriangleTree empty = tree_of(Mesh{});
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const SceneTree s{{&scene, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  const SceneTree s{{&scene, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   const RadarScene scenes{{&s, 1}, {}};
   const auto status = [&](const RadarQuery& query) { return radar.query(query, scenes).status; };
   const Eigen::Isometry3d pose = at({0.0, 0.0, 1.0});
@@ -310,7 +310,7 @@ TEST(CyberRadar, AMarginLowersTheLowerBoundByWhatItThickens) {
   CyberRadar radar;
   const TriangleTree object = tree_of(shapes::box({0.2F, 0.3F, 0.4F})),
                      scene = tree_of(shapes::floor(2.0F, 0.0F));
-  const SceneTree s{{&scene, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  const SceneTree s{{&scene, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   const Contact contact = radar.query({{&object, at({0.1, 0.2, 1.0})}, kDown, 2.0, 0.01}, {{&s, 1}, {}});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.lower_m, 0.79, kExact_m);
@@ -320,7 +320,7 @@ TEST(CyberRadar, AMarginLowersTheLowerBoundByWhatItThickens) {
 TEST(CyberRadar, ASpeckInsideIsAnOverlapThickenedOrInSeveralSolidsAtOnce) {
   CyberRadar radar;
   const TriangleTree speck = tree_of(shapes::box({0.001F, 0.001F, 0.001F}));
-  const SceneTree s{{&speck, Eigen::Isometry3d::Identity()}, Touched::kObject};
+  const SceneTree s{{&speck, Eigen::Isometry3d::Identity()}, SurfaceKind::kObject};
   const std::pair<Mesh, Eigen::Vector3f> two[] = {{shapes::box({0.4F, 0.4F, 0.4F}), {0.01F, 0.02F, 0.0F}},
                                                   {shapes::box({0.3F, 0.3F, 0.3F}), {0.02F, 0.01F, 0.05F}}};
   for (const TriangleTree& object :
@@ -337,7 +337,8 @@ TEST(CyberRadar, OneSidedSurfacesAreMetFromTheirOutsideOnly) {
   CyberRadar radar;
   const TriangleTree ball = tree_of(shapes::ball(0.1F, 12, 24));
   const TriangleTree hull = tree_of(shapes::box({1.0F, 1.0F, 1.0F}));
-  for (const Touched kind : {Touched::kInferredBack, Touched::kUnknownFrontier, Touched::kDynamic}) {
+  for (const SurfaceKind kind :
+       {SurfaceKind::kInferredBack, SurfaceKind::kUnknownFrontier, SurfaceKind::kDynamic}) {
     const SceneTree scene{{&hull, Eigen::Isometry3d::Identity()}, kind};
     const auto ask_at = [&](double height_m, const Eigen::Vector3d& direction) {
       return radar.query({{&ball, at({0.01, 0.02, height_m})}, direction, 2.0}, {{&scene, 1}, {}});
@@ -345,7 +346,7 @@ TEST(CyberRadar, OneSidedSurfacesAreMetFromTheirOutsideOnly) {
     const Contact from_outside = ask_at(1.0, kDown);
     ASSERT_EQ(from_outside.status, ContactStatus::kContact);
     EXPECT_EQ(from_outside.touched, kind);
-    const bool is_left = kind != Touched::kDynamic;
+    const bool is_left = kind != SurfaceKind::kDynamic;
     EXPECT_EQ(ask_at(0.0, kUp).status, is_left ? ContactStatus::kNoTarget : ContactStatus::kContact);
     EXPECT_EQ(ask_at(0.47, kUp).status, ContactStatus::kNoTarget) << "half out of it";
     EXPECT_EQ(ask_at(0.47, kDown).status, ContactStatus::kOverlap);

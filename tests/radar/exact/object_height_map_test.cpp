@@ -54,7 +54,7 @@ TEST_F(FrontMapTest, IsNowhereLowerThanTheObject) {
   for (const Mesh& mesh : meshes()) {
     for (const int resolution_px : {1, 7, 64, 500}) {
       const TurnedTree object = turned(mesh);
-      FrontMap front;
+      ObjectHeightMap front;
       front.build(object, resolution_px);
       for (int i = 0; i < 3000; ++i) {
         const auto t = static_cast<std::uint32_t>(random() % tree.triangle_count());
@@ -75,7 +75,7 @@ TEST_F(FrontMapTest, ATriangleIsNoNearerThanItsBoundAndThatIsFinerThanItsBoxs) {
   for (const Mesh& mesh : meshes()) {
     for (const int resolution_px : {1, 24, 256}) {
       const TurnedTree object = turned(mesh);
-      FrontMap front;
+      ObjectHeightMap front;
       front.build(object, resolution_px);
       Mesh scene = splinters(200, random);
       // And some that are larger than the object, and far away as float goes.
@@ -106,7 +106,7 @@ TEST_F(FrontMapTest, ATriangleIsNoNearerThanItsBoundAndThatIsFinerThanItsBoxs) {
 TEST_F(FrontMapTest, AFlatTriangleOverABoxIsBoundedToAPixelsRounding) {
   TurnedTree object = turned(shapes::box({0.2F, 0.2F, 0.2F}));
   object.R_frame_mesh.setIdentity();
-  FrontMap front;
+  ObjectHeightMap front;
   front.build(object, 64);
   FrameTriangle slope{{Eigen::Vector3d(-1, -1, 0.5), {1, -1, 0.5}, {0, 1, 0.9}},
                       {}};  // rises by 0.2 m a metre
@@ -118,7 +118,7 @@ TEST_F(FrontMapTest, AFlatTriangleOverABoxIsBoundedToAPixelsRounding) {
 
 TEST_F(FrontMapTest, WhatIsBesideTheObjectCannotBeMet) {
   const TurnedTree object = turned(shapes::ball(0.1F, 10, 12));
-  FrontMap front;
+  ObjectHeightMap front;
   front.build(object, 32);
   FrameTriangle beside{{Eigen::Vector3d(0.2, 0.0, 1.0), {0.4, 0.0, 1.0}, {0.3, 0.2, 1.0}}, {}};
   set_normal(beside);

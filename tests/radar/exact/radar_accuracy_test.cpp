@@ -44,7 +44,7 @@ Errors measure(const Mesh& object, const Mesh& scene, int resolution_px, int cou
                                 Eigen::Vector3d(0.4, 0.4, 0.1).cwiseProduct(shapes::random_point(random)));
     const Eigen::Vector3d direction = Eigen::Vector3d(0, 0, -1) + 0.9 * shapes::random_point(random);
     const double reach_m = distance_m(random);
-    const SceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+    const SceneMesh scene_mesh{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     const Contact got = radar.query({&object_gpu, T_world_object}, direction, reach_m, {&scene_mesh, 1});
     const auto expected_m =
         exact_travel(object, T_world_object, direction, reach_m, scene, Eigen::Isometry3d::Identity());
@@ -57,7 +57,7 @@ Errors measure(const Mesh& object, const Mesh& scene, int resolution_px, int cou
     if (got) errors.width_m.push_back(got.upper_m - got.lower_m);
     EXPECT_NE(got.status, ContactStatus::kOverlap) << "pose " << i << " is free";
     errors.pixel_m = std::max(errors.pixel_m, got.pixel_m);
-    if (got && expected_m) errors.late_m.push_back(got.travel_m - *expected_m);
+    if (got && expected_m) errors.late_m.push_back(got.contact_distance_m - *expected_m);
     if (!got && expected_m) ++errors.missed;
     if (got && !expected_m) ++errors.invented;
   }

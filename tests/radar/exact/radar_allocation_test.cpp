@@ -26,11 +26,11 @@ TEST(RadarAllocation, AQueryTakesNothingFromTheHeapAfterTheFirstOnesOfItsSize) {
   depth.T_world_camera =
       Eigen::Translation3d(0.0, 0.0, 1.3) * Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX());  // looks down
   const JudgedMesh ground(shapes::bumpy_ground(60)), ball(shapes::ball(0.1F, 12, 16));
-  std::vector<SceneTree> trees = {{{&ground.tree, ground.T_world_mesh}, Touched::kStatic}};
+  std::vector<SceneTree> trees = {{{&ground.tree, ground.T_world_mesh}, SurfaceKind::kStatic}};
   std::mt19937 random(8);
   for (int i = 0; i < 40; ++i) {
     trees.push_back({{&ball.tree, Eigen::Isometry3d(Eigen::Translation3d(shapes::random_point(random)))},
-                     Touched::kObject});
+                     SurfaceKind::kObject});
   }
   SceneBoxes boxes;
   const std::vector<JudgedMesh> objects = {JudgedMesh(shapes::box({0.2F, 0.1F, 0.2F})),
@@ -77,8 +77,8 @@ TEST(RadarAllocation, QueriesThatAreCutShortTakeNoMoreFromTheHeapEachTime) {
     return mesh;
   }());
   const JudgedMesh ball(shapes::ball(0.1F, 40, 60)), wall(shapes::floor(1.0F, 0.25F));
-  const SceneTree trees[] = {{{&ground.tree, ground.T_world_mesh}, Touched::kStatic},
-                             {{&wall.tree, wall.T_world_mesh}, Touched::kDynamic}};
+  const SceneTree trees[] = {{{&ground.tree, ground.T_world_mesh}, SurfaceKind::kStatic},
+                             {{&wall.tree, wall.T_world_mesh}, SurfaceKind::kDynamic}};
   CyberRadar radar;
   const auto ask_all = [&] {
     int cut_short = 0;

@@ -55,11 +55,11 @@ class Radars {
   /// Asks all of them about a pose that is free now; returns whether there was a contact.
   bool expect_right(const JudgedMesh& object, const Eigen::Vector3d& direction, double distance_m,
                     const JudgedScene& scene, const std::string& what) {
-    const auto truth_m = scene.travel_m(object, direction, distance_m);
+    const auto truth_m = scene.contact_distance_m(object, direction, distance_m);
     const Contact exact = scene.query(exact_, object, direction, distance_m);
     EXPECT_TRUE(is_exact(exact, truth_m, distance_m))
         << what << ", exact: " << describe(object, direction, distance_m, exact, truth_m);
-    if (exact && truth_m) worst_m_ = std::max(worst_m_, std::abs(exact.travel_m - *truth_m));
+    if (exact && truth_m) worst_m_ = std::max(worst_m_, std::abs(exact.contact_distance_m - *truth_m));
     for (std::size_t i = 0; i < sampled_.size(); ++i) {
       const Contact sampled = scene.query(sampled_[i], object, direction, distance_m);
       EXPECT_TRUE(holds(sampled, truth_m, distance_m))
@@ -161,7 +161,7 @@ TEST(RadarBounds, HoldOverConcaveThings) {
   for (int i = 0; i < 3; ++i) {
     scene.add(shapes::cup(0.2F, 0.3F, 0.02F, 16), random_pose(random, {0, 0, -0.4}, {0.5, 0.5, 0}));
     scene.add(shapes::torus(24, 12, 0.25F, 0.07F, 0.02F), random_pose(random, {0, 0, -0.4}, {0.5, 0.5, 0}),
-              Touched::kObject);
+              SurfaceKind::kObject);
     scene.add(shapes::chair(), random_pose(random, {0, 0, -1.0}, {0.5, 0.5, 0}));
   }
   throw_all(std::move(scene), 0.0, poses(3200), 2);
@@ -202,7 +202,7 @@ TEST(RadarBounds, HoldOverDepthImages) {
               .stride_px = 4,
               .max_jump_m = 0.02F,
               .max_jump_slope = 0.01F});
-  coarse.add(shapes::torus(24, 12, 0.25F, 0.07F, 0.02F), at(0.1, 0.2, 0.1), Touched::kObject);
+  coarse.add(shapes::torus(24, 12, 0.25F, 0.07F, 0.02F), at(0.1, 0.2, 0.1), SurfaceKind::kObject);
   throw_all(std::move(fine), 0.26, poses(2400), 3);
   throw_all(std::move(coarse), 0.45, poses(800), 4);
 }
@@ -338,9 +338,9 @@ TEST(RadarBounds, OverlapIsToldWithItsDepth) {
         continue;
       }
       ASSERT_EQ(got.status, ContactStatus::kOverlap) << text;
-      EXPECT_EQ(got.travel_m, got.lower_m) << text;
-      EXPECT_EQ(got.travel_m, got.upper_m) << text;
-      EXPECT_NEAR(got.travel_m, -depth_m, kExactError_m) << text;
+      EXPECT_EQ(got.contact_distance_m, got.lower_m) << text;
+      EXPECT_EQ(got.contact_distance_m, got.upper_m) << text;
+      EXPECT_NEAR(got.contact_distance_m, -depth_m, kExactError_m) << text;
       EXPECT_NEAR(got.normal_world.norm(), 1.0, 1e-6);
     }
     ++(overlap ? into : other);
@@ -400,9 +400,9 @@ TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
     thing.T_world_mesh = random_pose(random, {0, 0, 0.3 + 0.2 * uniform(random)}, {0.4, 0.4, 0});
     const Eigen::Vector3d direction = Eigen::Vector3d(0, 0, -1) + 0.9 * shapes::random_point(random);
     const double margin_m = std::pow(10.0, -3.0 + 2.0 * uniform(random)), distance_m = 0.6;
-    const auto clearance_m = [&](double travel_m) {
+    const auto clearance_m = [&](double contact_distance_m) {
       Eigen::Isometry3d T = thing.T_world_mesh;
-      T.pretranslate(travel_m * direction.normalized());
+      T.pretranslate(contact_distance_m * direction.normalized());
       return exact_clearance(thing.mesh, T, ground.mesh, ground.T_world_mesh);
     };
     // Steps by what is clear for certain: the thickened object's travel, from below.
@@ -416,8 +416,9 @@ TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
       const std::string text = "pose " + std::to_string(i) + " margin " + std::to_string(margin_m) + ": " +
                                describe(thing, direction, distance_m, got, truth_m);
       // Way beyond the judge's own stop is allowed only as far as nothing comes within the margin there.
-      for (double travel_m = std::max(got.lower_m, 0.0); travel_m > truth_m; travel_m -= 1e-3) {
-        ASSERT_GT(clearance_m(travel_m), margin_m - kExactError_m) << text;
+      for (double contact_distance_m = std::max(got.lower_m, 0.0); contact_distance_m > truth_m;
+           contact_distance_m -= 1e-3) {
+        ASSERT_GT(clearance_m(contact_distance_m), margin_m - kExactError_m) << text;
       }
       timid_margins.push_back((truth_m - got.lower_m) / margin_m);
     }
@@ -436,7 +437,7 @@ TEST(RadarBounds, ARadarThatAnsweredBeforeAnswersLikeANewOne) {
   JudgedScene ground, things_about;
   ground.add(shapes::bumpy_ground(20));
   things_about.add(shapes::chair(), at(0.2, 0.1, -0.6));
-  things_about.add(shapes::cup(0.2F, 0.3F, 0.02F, 16), at(-0.3, 0, 0), Touched::kObject);
+  things_about.add(shapes::cup(0.2F, 0.3F, 0.02F, 16), at(-0.3, 0, 0), SurfaceKind::kObject);
   std::deque<Named> things = objects();
   std::mt19937 random(51);
   for (const RadarMode mode : {RadarMode::kExact, RadarMode::kSampled}) {
@@ -454,9 +455,9 @@ TEST(RadarBounds, ARadarThatAnsweredBeforeAnswersLikeANewOne) {
       const Contact a = scene.query(old, thing.mesh, direction, 0.7, margin_m);
       const Contact b = scene.query(fresh, thing.mesh, direction, 0.7, margin_m);
       const std::string text = thing.name + " query " + std::to_string(i) + ": " +
-                               describe(thing.mesh, direction, 0.7, a, b.travel_m);
+                               describe(thing.mesh, direction, 0.7, a, b.contact_distance_m);
       EXPECT_EQ(a.status, b.status) << text;
-      EXPECT_NEAR(a.travel_m, b.travel_m, 1e-9) << text;
+      EXPECT_NEAR(a.contact_distance_m, b.contact_distance_m, 1e-9) << text;
       EXPECT_NEAR(a.lower_m, b.lower_m, 1e-6) << text;  // float boxes: where sampling stops may differ a hair
       EXPECT_TRUE(a.upper_m == b.upper_m || std::abs(a.upper_m - b.upper_m) < 1e-9) << text;
       EXPECT_EQ(a.touched, b.touched) << text;

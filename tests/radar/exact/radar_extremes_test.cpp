@@ -33,7 +33,7 @@ struct Radars {
     const std::string text = describe(object, direction, distance_m, got, truth_m);
     EXPECT_EQ(got.status, truth_m ? ContactStatus::kContact : ContactStatus::kNoTarget) << text;
     if (truth_m) {
-      EXPECT_NEAR(got.travel_m, *truth_m, error_m) << text;
+      EXPECT_NEAR(got.contact_distance_m, *truth_m, error_m) << text;
     }
     EXPECT_NEAR(got.lower_m, truth_m.value_or(distance_m), error_m) << text;
     if (truth_m) {
@@ -45,7 +45,7 @@ struct Radars {
   /// As the judge says.
   void expect_judged(const JudgedMesh& object, const Eigen::Vector3d& direction, double distance_m,
                      const JudgedScene& scene) {
-    const auto truth_m = scene.travel_m(object, direction, distance_m);
+    const auto truth_m = scene.contact_distance_m(object, direction, distance_m);
     expect(object, direction, distance_m, scene, truth_m, kExactError_m);
   }
 };
@@ -91,9 +91,10 @@ TEST(RadarExtremes, ObjectOfAMillimetreAndOfFiftyMetres) {
     // On a box of the other's size.
     const float other_m = 0.05F / size_m;
     const JudgedScene box = scene_of(shapes::box({other_m, other_m, other_m}));
-    const double way_m = static_cast<double>(size_m);
-    radars.expect_judged(JudgedMesh(object, at(0.4 * way_m, 0, way_m + static_cast<double>(other_m))), kDown,
-                         2.0 * way_m + static_cast<double>(other_m), box);
+    const double path_length_m = static_cast<double>(size_m);
+    radars.expect_judged(
+        JudgedMesh(object, at(0.4 * path_length_m, 0, path_length_m + static_cast<double>(other_m))), kDown,
+        2.0 * path_length_m + static_cast<double>(other_m), box);
   }
 }
 
@@ -206,7 +207,7 @@ TEST(RadarExtremes, ATenthOfAMicrometreBeforeOrPastTouching) {
     const Contact got = floor.query(*radar, past, kDown, 1.0);
     EXPECT_TRUE(got) << describe(past, kDown, 1.0, got, -1e-7);  // contact or overlap
     EXPECT_LE(got.lower_m, 0.0);
-    EXPECT_NEAR(got.travel_m, -1e-7, kExactError_m);
+    EXPECT_NEAR(got.contact_distance_m, -1e-7, kExactError_m);
   }
 }
 
@@ -248,7 +249,7 @@ TEST(RadarExtremes, DegenerateDuplicateAndNaNTrianglesChangeNothing) {
     Eigen::Isometry3d T(shapes::random_rotation(random));
     T.pretranslate(Eigen::Vector3d(0, 0, 0.5));
     const Eigen::Vector3d direction = kDown + 0.5 * shapes::random_point(random);
-    const auto truth_m = scene_of(ground).travel_m(JudgedMesh(torus, T), direction, 1.0);
+    const auto truth_m = scene_of(ground).contact_distance_m(JudgedMesh(torus, T), direction, 1.0);
     radars.expect(JudgedMesh(shapes::spoilt(torus), T), direction, 1.0, scene_of(shapes::spoilt(ground)),
                   truth_m, 1e-9);
   }
@@ -283,16 +284,16 @@ TEST(RadarExtremes, OneTriangleLargerThanTheVolume) {
 TEST(RadarExtremes, TenMillionTinyTriangles) {
   // By place is slow to build: a million, or all where there is time.
   const bool is_long = std::getenv("ROOMRADAR_LONG_TESTS") != nullptr;
-  TriangleTree in_order, by_place;
+  TriangleTree in_order, by_key;
   {
     const Mesh all = shapes::thorny_grid(2240);
     ASSERT_GT(all.triangles.size(), 10'000'000U);
     in_order.build_in_order(all);
-    by_place.build_by_place(is_long ? all : shapes::thorny_grid(710));
+    by_key.build_by_place(is_long ? all : shapes::thorny_grid(710));
   }
   const JudgedMesh over(quarter_box(), at(0.01, 0.02, 1)), beside(quarter_box(), at(0.5, 0.4, 1));
-  for (const TriangleTree* tree : {&by_place, &in_order}) {
-    const SceneTree scene_tree{{tree, Eigen::Isometry3d::Identity()}, Touched::kStatic};
+  for (const TriangleTree* tree : {&by_key, &in_order}) {
+    const SceneTree scene_tree{{tree, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     const RadarScene scene{{&scene_tree, 1}, {}};
     for (const RadarMode mode : {RadarMode::kExact, RadarMode::kSampled}) {
       CyberRadar radar({.mode = mode});
@@ -303,7 +304,7 @@ TEST(RadarExtremes, TenMillionTinyTriangles) {
             scene);
         EXPECT_TRUE(holds(got, truth_m, 2.0)) << describe(*object, kDown, 2.0, got, truth_m);
         if (mode == RadarMode::kExact) {
-          EXPECT_NEAR(got.travel_m, truth_m, 1e-9);
+          EXPECT_NEAR(got.contact_distance_m, truth_m, 1e-9);
         }
       }
     }
@@ -322,7 +323,7 @@ TEST(RadarExtremes, ResolutionOfOnePixelAndOf4096) {
       T.pretranslate(Eigen::Vector3d(0, 0, 0.5));
       const JudgedMesh object(torus, T);
       const Eigen::Vector3d direction = kDown + 0.5 * shapes::random_point(random);
-      const auto truth_m = scene.travel_m(object, direction, 1.0);
+      const auto truth_m = scene.contact_distance_m(object, direction, 1.0);
       const Contact got = scene.query(exact, object, direction, 1.0);
       EXPECT_TRUE(is_exact(got, truth_m, 1.0)) << describe(object, direction, 1.0, got, truth_m);
       for (int kept = 0; kept < 4; ++kept) {  // M has all its pixels from the third time on
@@ -348,10 +349,10 @@ TEST(RadarExtremes, AnOpenMeshTouchesWithItsSurfaceAndHoldsNothingInside) {
 
 TEST(RadarExtremes, SaysWhatKindOfThingIsTouched) {
   CyberRadar radar;
-  for (const Touched kind :
-       {Touched::kStatic, Touched::kDynamic, Touched::kObject, Touched::kUnknownFrontier}) {
+  for (const SurfaceKind kind :
+       {SurfaceKind::kStatic, SurfaceKind::kDynamic, SurfaceKind::kObject, SurfaceKind::kUnknownFrontier}) {
     JudgedScene scene;
-    scene.add(shapes::floor(1.0F, -0.5F), at(0, 0, 0), Touched::kStatic);
+    scene.add(shapes::floor(1.0F, -0.5F), at(0, 0, 0), SurfaceKind::kStatic);
     scene.add(shapes::floor(0.5F, 0.0F), at(0, 0, 0), kind);
     const Contact got = scene.query(radar, JudgedMesh(quarter_box(), at(0, 0, 1)), kDown, 2.0);
     EXPECT_EQ(got.touched, kind);

@@ -25,7 +25,7 @@ const Eigen::Vector3d kDown = -Eigen::Vector3d::UnitZ();
 class RadarPicturesTest : public ::testing::Test {
  protected:
   GlContext context{RendererChoice::kSoftware};
-  GlRadar gl{context, {.resolution_px = kResolution_px, .settle = false}};
+  GlRadar gl{context, {.resolution_px = kResolution_px, .exact_fallback = false}};
 
   RadarPictures of_gl(const Mesh& object, const Eigen::Isometry3d& T_world_object,
                       const Eigen::Vector3d& direction, const Mesh& scene,
@@ -33,7 +33,7 @@ class RadarPicturesTest : public ::testing::Test {
     GpuMesh object_mesh(context), scene_mesh(context);
     object_mesh.upload(object, MeshUsage::kStatic);
     scene_mesh.upload(scene, MeshUsage::kStreamed);
-    const SceneMesh in_scene{{&scene_mesh, T_world_scene}, Touched::kStatic};
+    const SceneMesh in_scene{{&scene_mesh, T_world_scene}, SurfaceKind::kStatic};
     static_cast<void>(gl.query({&object_mesh, T_world_object}, direction, kDistance_m, {&in_scene, 1}));
     return gl.pictures();
   }
@@ -89,7 +89,7 @@ TEST_F(RadarPicturesTest, AreTheSameDepthsAsGls) {
   std::mt19937 random(3);
   const Mesh ground = shapes::bumpy_ground(60);
   const JudgedMesh scene(ground);
-  const SceneTree in_scene{{&scene.tree, scene.T_world_mesh}, Touched::kStatic};
+  const SceneTree in_scene{{&scene.tree, scene.T_world_mesh}, SurfaceKind::kStatic};
   for (const Mesh& mesh : {shapes::box({0.2F, 0.3F, 0.25F}), shapes::torus(60, 40, 0.12F, 0.05F, 0.02F),
                            shapes::cup(0.1F, 0.2F, 0.01F, 40), shapes::chair()}) {
     for (int i = 0; i < 8; ++i) {
@@ -151,7 +151,7 @@ TEST_F(RadarPicturesTest, MOfTheRadarIsNowhereLessThanGlsAndLessThanAPixelMore) 
     TurnedTree turned;
     turned.tree = &object.tree;
     turned.R_frame_mesh = frame_along(T.linear().transpose() * kDown);
-    FrontMap front;
+    ObjectHeightMap front;
     front.build(turned, kResolution_px);
     std::vector<PendingNode> pending;
     const Eigen::AlignedBox3d bounds = turned_bounds(turned, 0.0, pending);

@@ -30,7 +30,7 @@ JudgedMesh sunk(const Mesh& mesh, std::mt19937& random, double depth_m) {
 }
 
 Contact ask(CyberRadar& radar, const JudgedMesh& object, const Eigen::Vector3d& direction) {
-  const SceneTree ground{{&fine_ground().tree, fine_ground().T_world_mesh}, Touched::kStatic};
+  const SceneTree ground{{&fine_ground().tree, fine_ground().T_world_mesh}, SurfaceKind::kStatic};
   return radar.query(
       {.object = {&object.tree, object.T_world_mesh}, .direction_world = direction, .distance_m = 0.3},
       {.trees = {&ground, 1}, .depths = {}});
@@ -52,23 +52,23 @@ TEST(RadarSunk, AWayBackThatIsTooLongIsSaidToBeAtLeastAsFarAsWasLooked) {
       EXPECT_TRUE(got.lower_m == 0.0 || direction.z() > 0.0);
       continue;
     }
-    EXPECT_EQ(got.upper_m, got.travel_m);
-    EXPECT_LE(got.travel_m, 0.0);
-    EXPECT_GE(got.travel_m, -1.5) << "no farther than the ground goes";
-    const auto back_by = [&](double way_m) {
+    EXPECT_EQ(got.upper_m, got.contact_distance_m);
+    EXPECT_LE(got.contact_distance_m, 0.0);
+    EXPECT_GE(got.contact_distance_m, -1.5) << "no farther than the ground goes";
+    const auto back_by = [&](double path_length_m) {
       Eigen::Isometry3d T = object.T_world_mesh;
-      T.pretranslate(-way_m * direction);
+      T.pretranslate(-path_length_m * direction);
       return ask(radar, JudgedMesh(box, T), direction);
     };
     if (got.lower_m == -std::numeric_limits<double>::infinity()) {
       ++cut_short;
-      if (got.travel_m > -1e-4) continue;
-      const Contact still = back_by(-got.travel_m - 1e-4);
+      if (got.contact_distance_m > -1e-4) continue;
+      const Contact still = back_by(-got.contact_distance_m - 1e-4);
       EXPECT_TRUE(still.status == ContactStatus::kOverlap || still.lower_m == 0.0) << i;
     } else {
       ++whole;
-      EXPECT_EQ(got.lower_m, got.travel_m);
-      const Contact free = back_by(-got.travel_m + 1e-6);
+      EXPECT_EQ(got.lower_m, got.contact_distance_m);
+      const Contact free = back_by(-got.contact_distance_m + 1e-6);
       EXPECT_NE(free.status, ContactStatus::kOverlap) << i;
     }
   }
@@ -88,8 +88,8 @@ TEST(RadarSunk, AnOverlapIsOfSomethingAndSomewhereOnItHoweverSoonTheSearchIsCutS
     const Contact got = ask(radar, object, direction.normalized());
     if (got.status != ContactStatus::kOverlap) continue;
     cut_short += got.lower_m == -std::numeric_limits<double>::infinity() ? 1 : 0;
-    EXPECT_EQ(got.touched, Touched::kStatic) << i;
-    EXPECT_LT(got.travel_m, 0.0) << i;
+    EXPECT_EQ(got.touched, SurfaceKind::kStatic) << i;
+    EXPECT_LT(got.contact_distance_m, 0.0) << i;
     EXPECT_LT(std::abs(got.point_world.z()), 0.03) << i << ": the ground is no higher nor deeper";
   }
   EXPECT_GT(cut_short, 10);
@@ -100,8 +100,8 @@ TEST(RadarSunk, LeavingAVeryFineMeshIsFreeForAsMuchAsIsKnownAndAWallAheadIsFound
   CyberRadar radar;
   const Mesh ball = shapes::ball(0.1F, 40, 60);
   const JudgedMesh wall(shapes::floor(1.0F, 0.25F));
-  const SceneTree trees[] = {{{&fine_ground().tree, fine_ground().T_world_mesh}, Touched::kStatic},
-                             {{&wall.tree, wall.T_world_mesh}, Touched::kDynamic}};
+  const SceneTree trees[] = {{{&fine_ground().tree, fine_ground().T_world_mesh}, SurfaceKind::kStatic},
+                             {{&wall.tree, wall.T_world_mesh}, SurfaceKind::kDynamic}};
   for (int i = 0; i < 10; ++i) {
     const JudgedMesh object = sunk(ball, random, 0.08);
     const Contact alone = ask(radar, object, Eigen::Vector3d::UnitZ());

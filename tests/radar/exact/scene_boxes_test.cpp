@@ -23,7 +23,7 @@ class SceneBoxesTest : public ::testing::Test {
     for (int i = 0; i < count; ++i) {
       Eigen::Isometry3d T(shapes::random_rotation(random));
       T.pretranslate(2.0 * shapes::random_point(random) + Eigen::Vector3d(1e5, 0.0, -1e5));
-      trees.push_back({{i % 2 == 0 ? &ball.tree : &torus.tree, T}, Touched::kObject});
+      trees.push_back({{i % 2 == 0 ? &ball.tree : &torus.tree, T}, SurfaceKind::kObject});
     }
     return trees;
   }
@@ -48,7 +48,7 @@ TEST_F(SceneBoxesTest, EachIsSceneForTheOthersWithAndWithoutBoxes) {
     const Contact among_others = radar.query(query, {.trees = others, .depths = {}});
     for (const Contact& other : {without, among_others}) {
       ASSERT_EQ(with.status, other.status) << i;
-      ASSERT_EQ(with.travel_m, other.travel_m) << i;
+      ASSERT_EQ(with.contact_distance_m, other.contact_distance_m) << i;
       ASSERT_EQ(with.lower_m, other.lower_m) << i;
     }
     met += with ? 1 : 0;

@@ -74,9 +74,9 @@ TEST(TriangleTree, UnusableTrianglesAreLeftOutAndDegenerateOnesStay) {
   mesh.triangles.push_back({0, 0, 1});
   mesh.triangles.push_back({2, 2, 2});
   mesh.triangles.push_back({0, 1, 2});
-  for (const bool by_place : {true, false}) {
+  for (const bool by_key : {true, false}) {
     TriangleTree tree;
-    by_place ? tree.build_by_place(mesh) : tree.build_in_order(mesh);
+    by_key ? tree.build_by_place(mesh) : tree.build_in_order(mesh);
     EXPECT_EQ(tree.triangle_count(), 15U);
     EXPECT_EQ(tree.dropped_triangles(), 2U);
     expect_sound(tree);

@@ -29,15 +29,15 @@ void expect_boxes_hold_their_triangles(const Mesh& mesh, const ChunkedTriangles&
 
 TEST(MeshChunks, EveryTriangleIsInOneRun) {
   const Mesh mesh = shapes::torus(60, 40, 1.0F, 0.3F, 0.05F);
-  ChunkedTriangles by_place, in_order;
-  chunk_by_place(mesh, 100, by_place);
+  ChunkedTriangles by_key, in_order;
+  chunk_by_place(mesh, 100, by_key);
   chunk_in_order(mesh, 100, in_order);
   EXPECT_EQ(in_order.triangles, mesh.triangles);
-  std::vector<Triangle> sorted = by_place.triangles, expected = mesh.triangles;
+  std::vector<Triangle> sorted = by_key.triangles, expected = mesh.triangles;
   std::sort(sorted.begin(), sorted.end());
   std::sort(expected.begin(), expected.end());
   EXPECT_EQ(sorted, expected);
-  expect_boxes_hold_their_triangles(mesh, by_place);
+  expect_boxes_hold_their_triangles(mesh, by_key);
   expect_boxes_hold_their_triangles(mesh, in_order);
 }
 

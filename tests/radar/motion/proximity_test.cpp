@@ -21,16 +21,16 @@ struct Pair {
   Mesh object, scene;
   TriangleTree object_tree, scene_tree;
   SceneTree tree;
-  NearField field;
+  ProximityQuery field;
 
-  Pair(const Mesh& object_mesh, const Mesh& scene_mesh, Touched kind = Touched::kStatic)
+  Pair(const Mesh& object_mesh, const Mesh& scene_mesh, SurfaceKind kind = SurfaceKind::kStatic)
       : object(object_mesh), scene(scene_mesh) {
     object_tree.build_by_place(object);
     scene_tree.build_by_place(scene);
     tree = {{&scene_tree, Eigen::Isometry3d::Identity()}, kind};
   }
   [[nodiscard]] RadarScene radar_scene() const { return {{&tree, 1}, {}}; }
-  Kinds near(const Eigen::Isometry3d& T, double reach_m, std::vector<NearPoint>& points) {
+  SurfaceKindMask near(const Eigen::Isometry3d& T, double reach_m, std::vector<ClosestPoint>& points) {
     return field.near({&object_tree, T}, radar_scene(), reach_m, 0, points);
   }
   FreeTime free_time(const Eigen::Isometry3d& T, const RigidMotion& motion, double duration_s,
@@ -46,17 +46,17 @@ Eigen::Isometry3d at(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
-TEST(NearField, ABoxOverAFloorIsNearAtItsFourCorners) {
+TEST(ProximityQuery, ABoxOverAFloorIsNearAtItsFourCorners) {
   Pair pair(shapes::box({0.2F, 0.3F, 0.1F}), shapes::floor(2.0F, 0.0F));
-  std::vector<NearPoint> points;
+  std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(at(0, 0, 0.051), 0.002, points), 0U);
   ASSERT_EQ(points.size(), 4U);
-  for (const NearPoint& p : points) {
+  for (const ClosestPoint& p : points) {
     EXPECT_NEAR(p.gap_m, 0.001, 1e-7);
     EXPECT_NEAR(p.normal_world.z(), 1.0, 1e-9);
     EXPECT_NEAR(std::abs(p.point_world.x()), 0.1, 1e-7);
     EXPECT_NEAR(std::abs(p.point_world.y()), 0.15, 1e-7);
-    EXPECT_EQ(p.kind, Touched::kStatic);
+    EXPECT_EQ(p.kind, SurfaceKind::kStatic);
   }
   EXPECT_EQ(pair.near(at(0, 0, 0.053), 0.002, points), 0U);
   EXPECT_TRUE(points.empty());
@@ -79,8 +79,8 @@ Mesh grid(std::uint32_t cells) {
   return mesh;
 }
 
-TEST(NearField, WhatTouchesExactlyIsNearAndKnowsItsSide) {
-  std::vector<NearPoint> points;
+TEST(ProximityQuery, WhatTouchesExactlyIsNearAndKnowsItsSide) {
+  std::vector<ClosestPoint> points;
   // On a floor and under a ceiling, of two faces and of many: some of these have corners below its edges.
   for (const Mesh& sheet : {shapes::floor(2.0F, 0.0F), grid(32)}) {
     Pair pair(shapes::box({0.25F, 0.5F, 0.125F}), sheet);
@@ -88,7 +88,7 @@ TEST(NearField, WhatTouchesExactlyIsNearAndKnowsItsSide) {
       EXPECT_EQ(pair.near(at(0.125, 0, side * 0.0625), 0.002, points), 0U);
       ASSERT_GE(points.size(), 4U);
       double widest_m = 0.0;
-      for (const NearPoint& p : points) {
+      for (const ClosestPoint& p : points) {
         EXPECT_EQ(p.gap_m, 0.0);
         EXPECT_EQ(p.normal_world.z(), side) << p.normal_world.transpose();
         widest_m = std::max(widest_m, (p.point_world - points.front().point_world).norm());
@@ -98,47 +98,47 @@ TEST(NearField, WhatTouchesExactlyIsNearAndKnowsItsSide) {
   }
 }
 
-TEST(NearField, RoundingDoesNotTurnTheNormalOfWhatTouches) {
+TEST(ProximityQuery, RoundingDoesNotTurnTheNormalOfWhatTouches) {
   Pair pair(shapes::box({0.25F, 0.5F, 0.125F}), shapes::floor(2.0F, 0.0F));
   Eigen::Isometry3d T = at(0, 0, 0.0625);
   T.rotate(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
   T.translation().z() = std::nextafter(0.0625, 1.0);
-  std::vector<NearPoint> points;
+  std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(T, 0.002, points), 0U);
   ASSERT_GE(points.size(), 4U);
-  for (const NearPoint& p : points) EXPECT_EQ(p.normal_world.z(), 1.0);
+  for (const ClosestPoint& p : points) EXPECT_EQ(p.normal_world.z(), 1.0);
 }
 
-TEST(NearField, AnEdgeAcrossAnEdgeIsNearWhereTheyPass) {
+TEST(ProximityQuery, AnEdgeAcrossAnEdgeIsNearWhereTheyPass) {
   // A box turned so that an edge of it lies over the edge of another, at right angles.
   Mesh ridge = shapes::box({4, 0.2F, 0.2F});
   Pair pair(shapes::box({0.2F, 4, 0.2F}), ridge);
   Eigen::Isometry3d T = at(0.02, 0, 0.0);
   T.rotate(Eigen::AngleAxisd(std::numbers::pi / 4.0, Vec3::UnitY()));  // its lowest edge runs along y
   T.translation().z() = 0.1 + std::sqrt(2.0) * 0.1 + 0.001;
-  std::vector<NearPoint> points;
+  std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(T, 0.002, points), 0U);
   ASSERT_GE(points.size(), 2U);  // over both of the ridge's upper edges
-  for (const NearPoint& p : points) {
+  for (const ClosestPoint& p : points) {
     EXPECT_NEAR(p.gap_m, 0.001, 1e-6);
     EXPECT_NEAR(p.normal_world.z(), 1.0, 1e-6);
     EXPECT_NEAR(p.point_world.x(), 0.02, 1e-6);
   }
 }
 
-TEST(NearField, WhatCrossesIsToldByItsKindAndGivesNoPoint) {
-  Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F), Touched::kDynamic);
-  std::vector<NearPoint> points;
-  EXPECT_EQ(pair.near(at(0, 0, 0.05), 0.002, points), bit_of(Touched::kDynamic));
+TEST(ProximityQuery, WhatCrossesIsToldByItsKindAndGivesNoPoint) {
+  Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F), SurfaceKind::kDynamic);
+  std::vector<ClosestPoint> points;
+  EXPECT_EQ(pair.near(at(0, 0, 0.05), 0.002, points), bit_of(SurfaceKind::kDynamic));
   EXPECT_TRUE(points.empty());
   EXPECT_EQ(pair.field.near({&pair.object_tree, at(0, 0, 0.05)}, pair.radar_scene(), 0.002,
-                            bit_of(Touched::kDynamic), points),
+                            bit_of(SurfaceKind::kDynamic), points),
             0U);
 }
 
-TEST(NearField, AOneSidedSurfaceIsNearFromItsOutsideOnly) {
-  std::vector<NearPoint> points;
-  Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F), Touched::kUnknownFrontier);
+TEST(ProximityQuery, AOneSidedSurfaceIsNearFromItsOutsideOnly) {
+  std::vector<ClosestPoint> points;
+  Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F), SurfaceKind::kUnknownFrontier);
   pair.near(at(0, 0, 0.101), 0.002, points);
   EXPECT_EQ(points.size(), 4U);
   pair.near(at(0, 0, -0.101), 0.002, points);
@@ -147,11 +147,11 @@ TEST(NearField, AOneSidedSurfaceIsNearFromItsOutsideOnly) {
   EXPECT_EQ(pair.free_time(at(0, 0, -0.101), up, 1.0, 5e-4).free_s, 1.0);
 }
 
-TEST(NearField, TheNearestPointIsAsNearAsTheMeshes) {
+TEST(ProximityQuery, TheNearestPointIsAsNearAsTheMeshes) {
   Pair pair(shapes::torus(14, 8, 0.1F, 0.03F, 0.01F), shapes::torus(20, 10, 0.3F, 0.08F, 0.02F));
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  std::vector<NearPoint> points;
+  std::vector<ClosestPoint> points;
   int near_ones = 0;
   for (int i = 0; i < 300; ++i) {
     Eigen::Isometry3d T = at(0.4 * unit(random), 0.4 * unit(random), 0.2 * unit(random));
@@ -161,7 +161,7 @@ TEST(NearField, TheNearestPointIsAsNearAsTheMeshes) {
     const bool crosses = pair.near(T, 0.01, points) != 0;
     EXPECT_EQ(crosses, distance_m == 0.0) << i;
     if (crosses) continue;
-    for (const NearPoint& p : points) EXPECT_GE(p.gap_m, distance_m - 1e-9);
+    for (const ClosestPoint& p : points) EXPECT_GE(p.gap_m, distance_m - 1e-9);
     if (!points.empty()) {
       ++near_ones;
       EXPECT_NEAR(points.front().gap_m, distance_m, 2e-3);  // corners over corners are left out
@@ -173,7 +173,7 @@ TEST(NearField, TheNearestPointIsAsNearAsTheMeshes) {
   EXPECT_GT(near_ones, 10);
 }
 
-TEST(NearField, NoMotionIsFreeForLongerThanItIs) {
+TEST(ProximityQuery, NoMotionIsFreeForLongerThanItIs) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   const auto vector = [&](double size) {
@@ -193,7 +193,7 @@ TEST(NearField, NoMotionIsFreeForLongerThanItIs) {
       const FreeTime free = pair.free_time(T, motion, 0.3, kKeep_m);
       ASSERT_GT(free.free_s, 0.0);
       stopped += free.free_s < 0.3;
-      EXPECT_EQ(free.limit.kind != Touched::kNothing, free.free_s < 0.3);
+      EXPECT_EQ(free.limit.kind != SurfaceKind::kNothing, free.free_s < 0.3);
       for (int k = 1; k <= 12; ++k) {
         const double distance_m = pair.distance_m(pose_after(T, motion, free.free_s * k / 12.0));
         ASSERT_GE(distance_m, std::min(kKeep_m, 0.5 * from_m) - 1e-7) << i;
@@ -209,18 +209,19 @@ struct Boards {
   Pair fine{shapes::box_of_cells({0.3F, 0.2F, 0.02F}, 13), shapes::box_of_cells({0.5F, 0.25F, 0.02F}, 11)};
 };
 
-TEST(NearField, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
+TEST(ProximityQuery, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
   Boards boards;
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  std::vector<NearPoint> coarse, fine;
+  std::vector<ClosestPoint> coarse, fine;
   int near = 0, crossed = 0;
   for (int i = 0; i < 400; ++i) {
     // Over, across the border of, or in the other board; flat on each other, or tilted by up to 1 mm.
     Eigen::Isometry3d T = at(0.4 * unit(random), 0.2 * unit(random), 0.02 + 0.0015 * unit(random));
     T.rotate(Eigen::AngleAxisd(3.0 * unit(random), Vec3::UnitZ()));
     if (i % 2 == 0) T.rotate(Eigen::AngleAxisd(0.005 * unit(random), Vec3(unit(random), 1, 0).normalized()));
-    const Kinds of_coarse = boards.coarse.near(T, 0.005, coarse), of_fine = boards.fine.near(T, 0.005, fine);
+    const SurfaceKindMask of_coarse = boards.coarse.near(T, 0.005, coarse),
+                          of_fine = boards.fine.near(T, 0.005, fine);
     ASSERT_EQ(of_fine, of_coarse) << i;
     crossed += of_coarse != 0;
     ASSERT_EQ(fine.empty(), coarse.empty()) << i;
@@ -231,9 +232,9 @@ TEST(NearField, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
     // What holds up reaches as far, in each direction.
     for (int k = 0; k < 8; ++k) {
       const Vec3 out(std::cos(k * std::numbers::pi / 4), std::sin(k * std::numbers::pi / 4), 0.0);
-      const auto farthest = [&](const std::vector<NearPoint>& points) {
+      const auto farthest = [&](const std::vector<ClosestPoint>& points) {
         double most = -1.0;
-        for (const NearPoint& p : points)
+        for (const ClosestPoint& p : points)
           if (p.normal_world.z() > 0.9) most = std::max(most, out.dot(p.point_world) - 20.0 * p.gap_m);
         return most;
       };
@@ -244,7 +245,7 @@ TEST(NearField, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
   EXPECT_GT(crossed, 50);
 }
 
-TEST(NearField, NoFaceOfManyTrianglesIsPassed) {
+TEST(ProximityQuery, NoFaceOfManyTrianglesIsPassed) {
   Boards boards;
   std::mt19937 random(10);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
@@ -270,7 +271,7 @@ TEST(NearField, NoFaceOfManyTrianglesIsPassed) {
   EXPECT_GT(stopped, 100);
 }
 
-TEST(NearField, AStraightFallIsFreeUntilItsKeptDistance) {
+TEST(ProximityQuery, AStraightFallIsFreeUntilItsKeptDistance) {
   Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), shapes::floor(2.0F, 0.0F));
   const RigidMotion fall{{0, 0, -2}, Vec3::Zero(), Vec3::Zero()};
   EXPECT_NEAR(pair.free_time(at(0, 0, 1.1), fall, 10.0, 5e-4).free_s, (1.0 - 5e-4) / 2.0, 1e-6);
@@ -278,7 +279,7 @@ TEST(NearField, AStraightFallIsFreeUntilItsKeptDistance) {
   EXPECT_EQ(pair.free_time(at(0, 0, 0.101), slide, 0.2, 5e-4).free_s, 0.2);
 }
 
-TEST(NearField, ATipOverAnEdgeIsFreeForAWholePiece) {
+TEST(ProximityQuery, ATipOverAnEdgeIsFreeForAWholePiece) {
   // It turns about its lower edge, a margin over the floor: nothing comes nearer but by the square of the
   // turn.
   Pair pair(shapes::box({0.1F, 0.1F, 0.4F}), shapes::floor(2.0F, 0.0F));
@@ -292,10 +293,10 @@ TEST(NearField, ATipOverAnEdgeIsFreeForAWholePiece) {
   EXPECT_GT(pair.free_time(T, motion, 1.0 / 60.0, 5e-4).free_s, 0.9 / 60.0);
 }
 
-TEST(NearField, RodsEndToEndAreNearAndAreMetFromFarAway) {
+TEST(ProximityQuery, RodsEndToEndAreNearAndAreMetFromFarAway) {
   const Mesh rod = shapes::box({1.0F, 0.01F, 0.01F});
   Pair pair(rod, rod);
-  std::vector<NearPoint> points;
+  std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(at(1.001, 0, 0), 0.002, points), 0U);
   EXPECT_FALSE(points.empty());
   EXPECT_EQ(pair.near(at(1.003, 0, 0), 0.002, points), 0U);
@@ -312,9 +313,9 @@ TEST(NearField, RodsEndToEndAreNearAndAreMetFromFarAway) {
   EXPECT_LT(pair.free_time(at(3, 0, 0), round, 1.0, 0.001).free_s, 1.0);
 }
 
-TEST(NearField, NothingIsFreeForEverAndNonsenseIsRefused) {
+TEST(ProximityQuery, NothingIsFreeForEverAndNonsenseIsRefused) {
   Pair pair(shapes::box({0.2F, 0.2F, 0.2F}), Mesh{});
-  std::vector<NearPoint> points;
+  std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(at(0, 0, 0), 0.01, points), 0U);
   EXPECT_EQ(pair.free_time(at(0, 0, 0), {{1, 2, 3}, {4, 5, 6}, Vec3::Zero()}, 1e3, 1e-3).free_s, 1e3);
   EXPECT_EQ(pair.free_time(at(0, 0, std::nan("")), {}, 1.0, 1e-3).free_s, 0.0);

@@ -33,11 +33,12 @@ struct Stage {
   JudgedMesh scene;
   RadarConfig radar = {};
 
-  SweepResult sweep_for(const RigidMotion& motion, double duration_s, const SweepConfig& config = {}) const {
+  TimeOfImpact sweep_for(const RigidMotion& motion, double duration_s,
+                         const TimeOfImpactConfig& config = {}) const {
     CyberRadar cyber_radar(radar);
-    const SceneTree tree{{&scene.tree, scene.T_world_mesh}, Touched::kStatic};
-    return sweep(cyber_radar, {&object.tree, object.T_world_mesh}, motion, duration_s, {{&tree, 1}, {}},
-                 config);
+    const SceneTree tree{{&scene.tree, scene.T_world_mesh}, SurfaceKind::kStatic};
+    return time_of_impact(cyber_radar, {&object.tree, object.T_world_mesh}, motion, duration_s,
+                          {{&tree, 1}, {}}, config);
   }
   double clearance_m(const RigidMotion& motion, double time_s, double at_most_m = kInfinity) const {
     return exact_clearance(object.mesh, pose_after(object.T_world_mesh, motion, time_s), scene.mesh,
@@ -76,15 +77,15 @@ TEST(PoseAfter, TurnsAboutTheCentreThatGoesStraight) {
 TEST(Sweep, FallsForTheTimeOfItsClearance) {
   const Stage stage{JudgedMesh(shapes::box({0.25F, 0.25F, 0.25F}), at(0, 0, 1)),
                     JudgedMesh(shapes::floor(1.0F, 0.0F))};
-  const SweepResult hit = stage.sweep_for({.linear_m_s = {0, 0, -2}}, 1.0);
-  EXPECT_EQ(hit.status, SweepStatus::kContact);
+  const TimeOfImpact hit = stage.sweep_for({.linear_m_s = {0, 0, -2}}, 1.0);
+  EXPECT_EQ(hit.status, TimeOfImpactStatus::kContact);
   EXPECT_NEAR(hit.safe_s, 0.4375, 1e-9);
   EXPECT_NEAR(hit.contact_s, 0.4375, 1e-9);
   EXPECT_NEAR(hit.T_world_object.translation().z(), 0.125, 1e-9);
   EXPECT_EQ(hit.queries, 1);
-  EXPECT_EQ(hit.contact.touched, Touched::kStatic);
-  const SweepResult free = stage.sweep_for({.linear_m_s = {0, 0, -2}}, 0.4);
-  EXPECT_EQ(free.status, SweepStatus::kFree);
+  EXPECT_EQ(hit.contact.touched, SurfaceKind::kStatic);
+  const TimeOfImpact free = stage.sweep_for({.linear_m_s = {0, 0, -2}}, 0.4);
+  EXPECT_EQ(free.status, TimeOfImpactStatus::kFree);
   EXPECT_EQ(free.safe_s, 0.4);
   EXPECT_EQ(free.contact_s, kInfinity);
 }
@@ -97,8 +98,8 @@ TEST(Sweep, ABarThatTurnsOnTheSpotStrikesTheFloorAtItsAngle) {
   const double r = std::hypot(0.25, 0.015625);
   const double angle = std::asin(0.2 / r) - std::atan2(0.015625, 0.25);
   for (const double speed_rad_s : {0.01, 1.0, 1000.0}) {
-    const SweepResult hit = stage.sweep_for({.angular_rad_s = {0, speed_rad_s, 0}}, 10.0 / speed_rad_s);
-    EXPECT_EQ(hit.status, SweepStatus::kContact);
+    const TimeOfImpact hit = stage.sweep_for({.angular_rad_s = {0, speed_rad_s, 0}}, 10.0 / speed_rad_s);
+    EXPECT_EQ(hit.status, TimeOfImpactStatus::kContact);
     EXPECT_LE(hit.safe_s * speed_rad_s, angle);
     EXPECT_GE(hit.safe_s * speed_rad_s, angle - 1e-2);
     EXPECT_GE(hit.contact_s * speed_rad_s, angle - 1e-6);
@@ -107,8 +108,8 @@ TEST(Sweep, ABarThatTurnsOnTheSpotStrikesTheFloorAtItsAngle) {
   // Above its reach it turns for ever.
   const Stage high{JudgedMesh(shapes::box({0.5F, 0.03125F, 0.03125F}), at(0, 0, 0.3)),
                    JudgedMesh(shapes::floor(1.0F, 0.0F))};
-  const SweepResult free = high.sweep_for({.angular_rad_s = {0, 1000.0, 0}}, 1000.0);
-  EXPECT_EQ(free.status, SweepStatus::kFree);
+  const TimeOfImpact free = high.sweep_for({.angular_rad_s = {0, 1000.0, 0}}, 1000.0);
+  EXPECT_EQ(free.status, TimeOfImpactStatus::kFree);
   EXPECT_EQ(free.safe_s, 1000.0);
 }
 
@@ -116,9 +117,9 @@ TEST(Sweep, TheCentreOfTurningMatters) {
   // A bar that turns about its own end, a wall 0.4 m beside: only so it reaches the wall.
   const Stage stage{JudgedMesh(shapes::box({0.5F, 0.03125F, 0.03125F}), at(0, 0, 0)),
                     JudgedMesh(shapes::box({1.0F, 0.0625F, 1.0F}), at(0, 0.4, 0))};
-  EXPECT_EQ(stage.sweep_for({.angular_rad_s = {0, 0, 1}}, 3.0).status, SweepStatus::kFree);
-  const SweepResult hit = stage.sweep_for({.angular_rad_s = {0, 0, 1}, .centre_object = {-0.25, 0, 0}}, 3.0);
-  EXPECT_EQ(hit.status, SweepStatus::kContact);
+  EXPECT_EQ(stage.sweep_for({.angular_rad_s = {0, 0, 1}}, 3.0).status, TimeOfImpactStatus::kFree);
+  const TimeOfImpact hit = stage.sweep_for({.angular_rad_s = {0, 0, 1}, .centre_object = {-0.25, 0, 0}}, 3.0);
+  EXPECT_EQ(hit.status, TimeOfImpactStatus::kContact);
   EXPECT_LT(hit.contact_s, M_PI / 2);
 }
 
@@ -132,8 +133,8 @@ TEST(Sweep, NothingTunnelsAtAnySpeed) {
                           JudgedMesh(sheet)};
         const RigidMotion motion{.linear_m_s = {speed_m_s, 0, 0},
                                  .angular_rad_s = {0, 0.6 * turn_rad_s, 0.8 * turn_rad_s}};
-        const SweepResult hit = stage.sweep_for(motion, 100.0 / speed_m_s, {.max_queries = 20000});
-        ASSERT_EQ(hit.status, SweepStatus::kContact) << turn_rad_s << " " << speed_m_s;
+        const TimeOfImpact hit = stage.sweep_for(motion, 100.0 / speed_m_s, {.max_queries = 20000});
+        ASSERT_EQ(hit.status, TimeOfImpactStatus::kContact) << turn_rad_s << " " << speed_m_s;
         EXPECT_LT(hit.T_world_object.translation().x(), -0.0004);
         EXPECT_LT(hit.safe_s * speed_m_s, 5.0);
         EXPECT_GT(hit.safe_s * speed_m_s, 5.0 - 0.16);
@@ -166,12 +167,12 @@ TEST(Sweep, FreeTimesAreFreeAndContactsAreReal) {
     if (i % 7 == 0) motion.linear_m_s.setZero();
     if (exact_clearance(stage.object.mesh, T, stage.scene.mesh, at(0, 0, 0)) < 1e-3) continue;
     constexpr double kDuration_s = 0.5;
-    const SweepResult got = stage.sweep_for(motion, kDuration_s, {.max_queries = 1000});
+    const TimeOfImpact got = stage.sweep_for(motion, kDuration_s, {.max_queries = 1000});
     queries += got.queries;
     const std::string text = "sweep " + std::to_string(i) + " safe " + std::to_string(got.safe_s) +
                              " contact " + std::to_string(got.contact_s) + " after " +
                              std::to_string(got.queries) + " queries";
-    ASSERT_TRUE(got.status == SweepStatus::kFree || got.status == SweepStatus::kContact)
+    ASSERT_TRUE(got.status == TimeOfImpactStatus::kFree || got.status == TimeOfImpactStatus::kContact)
         << text << " status " << static_cast<int>(got.status);
     // Pose by pose, in steps in which nothing can come and go unseen: no point moves farther than what is
     // clear.
@@ -182,7 +183,7 @@ TEST(Sweep, FreeTimesAreFreeAndContactsAreReal) {
       ASSERT_GT(clearance_m, 0.0) << text << " at " << time_s;
       time_s += std::max(clearance_m, 2e-4) / speed_m_s;
     }
-    if (got.status == SweepStatus::kFree) {
+    if (got.status == TimeOfImpactStatus::kFree) {
       EXPECT_EQ(got.safe_s, kDuration_s);
       ++frees;
       continue;
@@ -207,15 +208,15 @@ TEST(Sweep, FreeTimesAreFreeAndContactsAreReal) {
 
 TEST(Sweep, StandingStillIsFreeUnlessItOverlaps) {
   const Mesh box = shapes::box({0.25F, 0.25F, 0.25F}), floor = shapes::floor(1.0F, 0.0F);
-  const SweepResult free = Stage{JudgedMesh(box, at(0, 0, 1)), JudgedMesh(floor)}.sweep_for({}, 2.0);
-  EXPECT_EQ(free.status, SweepStatus::kFree);
+  const TimeOfImpact free = Stage{JudgedMesh(box, at(0, 0, 1)), JudgedMesh(floor)}.sweep_for({}, 2.0);
+  EXPECT_EQ(free.status, TimeOfImpactStatus::kFree);
   EXPECT_EQ(free.safe_s, 2.0);
   const Stage through{JudgedMesh(box, at(0, 0, 0.1)), JudgedMesh(floor)};
   for (const RigidMotion& motion :
        {RigidMotion{}, RigidMotion{.linear_m_s = {0, 0, -1}}, RigidMotion{.angular_rad_s = {1, 0, 0}},
         RigidMotion{.linear_m_s = {0, 0, -1}, .angular_rad_s = {1, 2, 0}}}) {
-    const SweepResult stuck = through.sweep_for(motion, 2.0);
-    EXPECT_EQ(stuck.status, SweepStatus::kOverlap);
+    const TimeOfImpact stuck = through.sweep_for(motion, 2.0);
+    EXPECT_EQ(stuck.status, TimeOfImpactStatus::kOverlap);
     EXPECT_EQ(stuck.safe_s, 0.0);
     EXPECT_EQ(stuck.contact_s, 0.0);
     EXPECT_TRUE(stuck.T_world_object.isApprox(at(0, 0, 0.1), 0.0));
@@ -223,33 +224,33 @@ TEST(Sweep, StandingStillIsFreeUnlessItOverlaps) {
   // What could not be asked is not free.
   Stage nowhere{JudgedMesh(box, at(0, 0, 1)), JudgedMesh(floor)};
   nowhere.scene.T_world_mesh.translation().x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(nowhere.sweep_for({}, 2.0).status, SweepStatus::kInvalidInput);
+  EXPECT_EQ(nowhere.sweep_for({}, 2.0).status, TimeOfImpactStatus::kInvalidInput);
   EXPECT_EQ(nowhere.sweep_for({}, 2.0).safe_s, 0.0);
   Mesh upright = floor;  // met along the first axis alone if it is asked from the other side
   for (Eigen::Vector3f& vertex : upright.vertices) vertex = {vertex.z(), vertex.x(), vertex.y()};
   const Stage crossed{JudgedMesh(box, at(0, 0, 0)), JudgedMesh(upright)};
-  EXPECT_EQ(crossed.sweep_for({}, 2.0, {.max_queries = 1}).status, SweepStatus::kOutOfQueries);
-  EXPECT_EQ(crossed.sweep_for({}, 2.0, {.max_queries = 2}).status, SweepStatus::kOverlap);
-  const SweepResult no_time = through.sweep_for({.linear_m_s = {0, 0, 1}}, 0.0);
-  EXPECT_NE(no_time.status, SweepStatus::kInvalidInput);
+  EXPECT_EQ(crossed.sweep_for({}, 2.0, {.max_queries = 1}).status, TimeOfImpactStatus::kOutOfQueries);
+  EXPECT_EQ(crossed.sweep_for({}, 2.0, {.max_queries = 2}).status, TimeOfImpactStatus::kOverlap);
+  const TimeOfImpact no_time = through.sweep_for({.linear_m_s = {0, 0, 1}}, 0.0);
+  EXPECT_NE(no_time.status, TimeOfImpactStatus::kInvalidInput);
 }
 
 TEST(Sweep, WhatTouchesAndTurnsIsStoppedAndWhatKeepsAGapMayLeave) {
   const Mesh box = shapes::box({0.25F, 0.25F, 0.25F}), floor = shapes::floor(1.0F, 0.0F);
   const RigidMotion leaving{.linear_m_s = {0, 0, 1}, .angular_rad_s = {0, 1, 0}};
-  const SweepResult stopped =
+  const TimeOfImpact stopped =
       Stage{JudgedMesh(box, at(0, 0, 0.125)), JudgedMesh(floor)}.sweep_for(leaving, 0.5);
-  EXPECT_EQ(stopped.status, SweepStatus::kContact);
+  EXPECT_EQ(stopped.status, TimeOfImpactStatus::kContact);
   EXPECT_EQ(stopped.safe_s, 0.0);
   const RigidMotion hardly{.linear_m_s = {0, 0, 1}, .angular_rad_s = {0, 1e-9, 0}};
   EXPECT_EQ((Stage{JudgedMesh(box, at(0, 0, 0.125)), JudgedMesh(floor)}.sweep_for(hardly, 0.5).status),
-            SweepStatus::kFree);
+            TimeOfImpactStatus::kFree);
   const Stage gap{JudgedMesh(box, at(0, 0, 0.125 + 2e-5)), JudgedMesh(floor)};
-  EXPECT_EQ(gap.sweep_for(leaving, 0.5).status, SweepStatus::kFree);
+  EXPECT_EQ(gap.sweep_for(leaving, 0.5).status, TimeOfImpactStatus::kFree);
   // But not where it turns a corner into the floor faster than it rises.
   const RigidMotion digging{.linear_m_s = {0, 0, 0.1}, .angular_rad_s = {0, 5, 0}};
-  const SweepResult dug = gap.sweep_for(digging, 0.5);
-  EXPECT_EQ(dug.status, SweepStatus::kContact);
+  const TimeOfImpact dug = gap.sweep_for(digging, 0.5);
+  EXPECT_EQ(dug.status, TimeOfImpactStatus::kContact);
   EXPECT_LT(dug.safe_s, 1e-4);
 }
 
@@ -258,34 +259,35 @@ TEST(Sweep, RunsOutOfQueriesHonestly) {
                     JudgedMesh(shapes::floor(1.0F, 0.0F))};
   // Slides 1 mm above the floor, turning about the vertical: many short steps.
   const RigidMotion motion{.linear_m_s = {1, 0, 0}, .angular_rad_s = {0, 0, 20}};
-  const SweepResult got = stage.sweep_for(motion, 1.5, {.max_queries = 20});
-  EXPECT_EQ(got.status, SweepStatus::kOutOfQueries);
+  const TimeOfImpact got = stage.sweep_for(motion, 1.5, {.max_queries = 20});
+  EXPECT_EQ(got.status, TimeOfImpactStatus::kOutOfQueries);
   EXPECT_LE(got.queries, 20);
   EXPECT_GT(got.safe_s, 0.0);
   EXPECT_LT(got.safe_s, 1.5);
-  EXPECT_EQ(stage.sweep_for(motion, 1.5, {.max_queries = 20000}).status, SweepStatus::kFree);
+  EXPECT_EQ(stage.sweep_for(motion, 1.5, {.max_queries = 20000}).status, TimeOfImpactStatus::kFree);
 }
 
 TEST(Sweep, WhatIsNoQuestionIsRefused) {
   const double nan = std::nan("");
   const Stage stage{JudgedMesh(shapes::box({0.25F, 0.25F, 0.25F}), at(0, 0, 1)),
                     JudgedMesh(shapes::floor(1.0F, 0.0F))};
-  const auto status = [&](const RigidMotion& motion, double duration_s, const SweepConfig& config = {}) {
-    const SweepResult got = stage.sweep_for(motion, duration_s, config);
+  const auto status = [&](const RigidMotion& motion, double duration_s,
+                          const TimeOfImpactConfig& config = {}) {
+    const TimeOfImpact got = stage.sweep_for(motion, duration_s, config);
     EXPECT_EQ(got.safe_s, 0.0);
     return got.status;
   };
-  EXPECT_EQ(status({.linear_m_s = {nan, 0, 0}}, 1.0), SweepStatus::kInvalidInput);
-  EXPECT_EQ(status({.angular_rad_s = {0, kInfinity, 0}}, 1.0), SweepStatus::kInvalidInput);
-  EXPECT_EQ(status({.centre_object = {0, 0, nan}}, 1.0), SweepStatus::kInvalidInput);
-  EXPECT_EQ(status({}, nan), SweepStatus::kInvalidInput);
-  EXPECT_EQ(status({}, -1.0), SweepStatus::kInvalidInput);
-  EXPECT_EQ(status({}, kInfinity), SweepStatus::kInvalidInput);
-  EXPECT_EQ(status({.linear_m_s = {1e300, 0, 0}}, 1e300), SweepStatus::kInvalidInput);
-  EXPECT_EQ(status({}, 1.0, {.tolerance_m = 0.0}), SweepStatus::kInvalidInput);
-  EXPECT_EQ(status({}, 1.0, {.max_queries = 0}), SweepStatus::kInvalidInput);
+  EXPECT_EQ(status({.linear_m_s = {nan, 0, 0}}, 1.0), TimeOfImpactStatus::kInvalidInput);
+  EXPECT_EQ(status({.angular_rad_s = {0, kInfinity, 0}}, 1.0), TimeOfImpactStatus::kInvalidInput);
+  EXPECT_EQ(status({.centre_object = {0, 0, nan}}, 1.0), TimeOfImpactStatus::kInvalidInput);
+  EXPECT_EQ(status({}, nan), TimeOfImpactStatus::kInvalidInput);
+  EXPECT_EQ(status({}, -1.0), TimeOfImpactStatus::kInvalidInput);
+  EXPECT_EQ(status({}, kInfinity), TimeOfImpactStatus::kInvalidInput);
+  EXPECT_EQ(status({.linear_m_s = {1e300, 0, 0}}, 1e300), TimeOfImpactStatus::kInvalidInput);
+  EXPECT_EQ(status({}, 1.0, {.tolerance_m = 0.0}), TimeOfImpactStatus::kInvalidInput);
+  EXPECT_EQ(status({}, 1.0, {.max_queries = 0}), TimeOfImpactStatus::kInvalidInput);
   CyberRadar radar;
-  EXPECT_EQ(sweep(radar, {}, {}, 1.0, {}).status, SweepStatus::kInvalidInput);
+  EXPECT_EQ(time_of_impact(radar, {}, {}, 1.0, {}).status, TimeOfImpactStatus::kInvalidInput);
 }
 
 TEST(Sweep, HugeSpeedsAreAnsweredWithinTheirQueries) {
@@ -295,14 +297,14 @@ TEST(Sweep, HugeSpeedsAreAnsweredWithinTheirQueries) {
        {RigidMotion{.linear_m_s = {0, 0, -1e12}},
         RigidMotion{.linear_m_s = {0, 0, -1e12}, .angular_rad_s = {1e12, 0, 0}},
         RigidMotion{.linear_m_s = {0, 0, -1e-12}, .angular_rad_s = {1e12, 1, 0}}}) {
-    const SweepResult got = stage.sweep_for(motion, 1.0);
-    EXPECT_NE(got.status, SweepStatus::kInvalidInput);
+    const TimeOfImpact got = stage.sweep_for(motion, 1.0);
+    EXPECT_NE(got.status, TimeOfImpactStatus::kInvalidInput);
     EXPECT_LE(got.queries, 256);
     if (motion.linear_m_s.z() < -1.0) {
-      EXPECT_EQ(got.status, SweepStatus::kContact);
+      EXPECT_EQ(got.status, TimeOfImpactStatus::kContact);
       EXPECT_LE(got.safe_s, 0.875e-12 * (1 + 1e-9));
     } else {
-      EXPECT_EQ(got.status, SweepStatus::kFree);
+      EXPECT_EQ(got.status, TimeOfImpactStatus::kFree);
     }
   }
 }

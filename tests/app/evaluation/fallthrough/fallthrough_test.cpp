@@ -83,7 +83,7 @@ TEST(Fallthrough, EveryRoomMeetsEveryKindOfOccluderMotionAndShape) {
   }
 }
 
-ScenarioRow row_with(double error_m, Touched rested_on, double frame_ms) {
+ScenarioRow row_with(double error_m, SurfaceKind rested_on, double frame_ms) {
   ScenarioRow row;
   Scenario scenario;
   scenario.true_travel_m = 0.3;
@@ -94,8 +94,8 @@ ScenarioRow row_with(double error_m, Touched rested_on, double frame_ms) {
 
 TEST(FallthroughTotals, CountOutcomesAndLeaveErrorsOfWhatNothingStoppedOut) {
   std::vector<ScenarioRow> rows{
-      row_with(0.001, Touched::kStatic, 2.0), row_with(-0.002, Touched::kStatic, 4.0),
-      row_with(0.4, Touched::kNothing, 6.0), row_with(-0.1, Touched::kDynamic, 8.0)};
+      row_with(0.001, SurfaceKind::kStatic, 2.0), row_with(-0.002, SurfaceKind::kStatic, 4.0),
+      row_with(0.4, SurfaceKind::kNothing, 6.0), row_with(-0.1, SurfaceKind::kDynamic, 8.0)};
   for (ScenarioRow& row : rows) row.trials[1].frame_ms *= 3.0;
   const auto totals = totals_of(rows);
   EXPECT_EQ(totals[0].passed, 1);
@@ -119,8 +119,8 @@ std::string text_of(const std::filesystem::path& path) {
 
 TEST(FallthroughFiles, CsvHasALineAScenarioAndPolicyAndThePageNeedsNothingElse) {
   const test::TemporaryFolder folder;
-  const std::vector<ScenarioRow> rows{row_with(0.001, Touched::kStatic, 2.0),
-                                      row_with(0.4, Touched::kNothing, 6.0)};
+  const std::vector<ScenarioRow> rows{row_with(0.001, SurfaceKind::kStatic, 2.0),
+                                      row_with(0.4, SurfaceKind::kNothing, 6.0)};
   write_csv(rows, folder.path() / "rows.csv");
   const std::string csv = text_of(folder.path() / "rows.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), static_cast<std::ptrdiff_t>(1 + 2 * kPolicyCount));

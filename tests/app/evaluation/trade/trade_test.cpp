@@ -40,7 +40,7 @@ std::string text_of(const std::filesystem::path& path) {
   return text.str();
 }
 
-const std::vector<Knob> kKnobs{
+const std::vector<Parameter> kParameters{
     {"fine", {"4", "2", "1"}, 2}, {"how", {"fast", "slow"}, 1}, {"many", {"1", "9"}, 0, true}};
 
 TEST(Front, HoldsWhatNothingBeatsInBothAndOnlyThat) {
@@ -48,7 +48,7 @@ TEST(Front, HoldsWhatNothingBeatsInBothAndOnlyThat) {
   std::vector<CostAndError> points;
   for (int i = 0; i < 200; ++i)  // coarse numbers, so that many are alike
     points.push_back({std::floor(10.0 * random.uniform()), std::floor(10.0 * random.uniform())});
-  const std::vector<std::size_t> front = front_of(points);
+  const std::vector<std::size_t> front = pareto_front_of(points);
   std::set<std::size_t> on(front.begin(), front.end());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool is_beaten =
@@ -68,41 +68,42 @@ TEST(Front, HoldsWhatNothingBeatsInBothAndOnlyThat) {
 }
 
 TEST(Front, LeavesOutWhatIsNotFiniteAndOfNothingIsEmpty) {
-  EXPECT_TRUE(front_of({}).empty());
-  EXPECT_TRUE(front_of({{kNone, 0.0}, {0.0, kNone}, {1.0, std::numeric_limits<double>::infinity()}}).empty());
-  EXPECT_EQ(front_of({{kNone, 0.0}, {2.0, 2.0}, {2.0, 2.0}}), std::vector<std::size_t>{1});
+  EXPECT_TRUE(pareto_front_of({}).empty());
+  EXPECT_TRUE(
+      pareto_front_of({{kNone, 0.0}, {0.0, kNone}, {1.0, std::numeric_limits<double>::infinity()}}).empty());
+  EXPECT_EQ(pareto_front_of({{kNone, 0.0}, {2.0, 2.0}, {2.0, 2.0}}), std::vector<std::size_t>{1});
   EXPECT_FALSE(dominates({1.0, 1.0}, {1.0, 1.0}));
 }
 
 TEST(DrawSettings, GivesEachWordAndNoSettingTwiceAndTheSameForTheSameSeed) {
-  for (const std::vector<Knob>& knobs : {scan_knobs(), run_knobs()}) {
+  for (const std::vector<Parameter>& parameters : {scan_parameters(), run_parameters()}) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
-      const std::vector<Setting> settings = draw_settings(knobs, 24, seed);
+      const std::vector<Setting> settings = draw_settings(parameters, 24, seed);
       ASSERT_EQ(settings.size(), 24U);
-      EXPECT_EQ(draw_settings(knobs, 24, seed), settings);
-      EXPECT_NE(draw_settings(knobs, 24, seed + 10), settings);
+      EXPECT_EQ(draw_settings(parameters, 24, seed), settings);
+      EXPECT_NE(draw_settings(parameters, 24, seed + 10), settings);
       EXPECT_EQ(std::set<Setting>(settings.begin(), settings.end()).size(), settings.size());
-      EXPECT_EQ(std::count(settings.begin(), settings.end(), usual_setting(knobs)), 0);
-      for (std::size_t k = 0; k < knobs.size(); ++k) {
-        if (knobs[k].is_load) continue;
-        for (std::size_t word = 0; word < knobs[k].words.size(); ++word)
+      EXPECT_EQ(std::count(settings.begin(), settings.end(), default_setting(parameters)), 0);
+      for (std::size_t k = 0; k < parameters.size(); ++k) {
+        if (parameters[k].is_load) continue;
+        for (std::size_t word = 0; word < parameters[k].words.size(); ++word)
           EXPECT_TRUE(
               std::any_of(settings.begin(), settings.end(), [&](const Setting& s) { return s[k] == word; }))
-              << knobs[k].name << " " << knobs[k].words[word];
+              << parameters[k].name << " " << parameters[k].words[word];
       }
     }
   }
 }
 
 TEST(DrawSettings, TurnsOneKnobAloneInUpToTwoThirdsAndALoadNeverWithOthers) {
-  const std::vector<Setting> settings = draw_settings(kKnobs, 8, 1);
-  const Setting usual = usual_setting(kKnobs);
+  const std::vector<Setting> settings = draw_settings(kParameters, 8, 1);
+  const Setting defaults = default_setting(kParameters);
   int single = 0;
   for (const Setting& setting : settings) {
     int turned = 0;
-    for (std::size_t k = 0; k < usual.size(); ++k) turned += setting[k] != usual[k] ? 1 : 0;
+    for (std::size_t k = 0; k < defaults.size(); ++k) turned += setting[k] != defaults[k] ? 1 : 0;
     single += turned == 1 ? 1 : 0;
-    if (!has_usual_load(kKnobs, setting)) {
+    if (!has_default_load(kParameters, setting)) {
       EXPECT_EQ(turned, 1);
     }
   }
@@ -110,16 +111,16 @@ TEST(DrawSettings, TurnsOneKnobAloneInUpToTwoThirdsAndALoadNeverWithOthers) {
 }
 
 TEST(DrawSettings, SingleTurnsTowardsWhatIsFasterComeFirst) {
-  const std::vector<Knob> knobs = run_knobs(20);
-  const Setting usual = usual_setting(knobs);
+  const std::vector<Parameter> parameters = run_parameters(20);
+  const Setting defaults = default_setting(parameters);
   std::size_t faster = 0, faster_drawn = 0;
-  for (const Knob& knob : knobs)
-    if (!knob.is_load) faster += knob.usual;
-  for (const Setting& setting : draw_settings(knobs, 3 * faster / 2, 1)) {
+  for (const Parameter& parameter : parameters)
+    if (!parameter.is_load) faster += parameter.defaults;
+  for (const Setting& setting : draw_settings(parameters, 3 * faster / 2, 1)) {
     int turned = 0, towards_faster = 0;
-    for (std::size_t k = 0; k < knobs.size(); ++k) {
-      turned += setting[k] != usual[k] ? 1 : 0;
-      towards_faster += setting[k] < usual[k] && !knobs[k].is_load ? 1 : 0;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      turned += setting[k] != defaults[k] ? 1 : 0;
+      towards_faster += setting[k] < defaults[k] && !parameters[k].is_load ? 1 : 0;
     }
     faster_drawn += turned == 1 && towards_faster == 1 ? 1 : 0;
   }
@@ -127,37 +128,39 @@ TEST(DrawSettings, SingleTurnsTowardsWhatIsFasterComeFirst) {
 }
 
 TEST(DrawSettings, TheNextFasterWordOfEveryKnobComesBeforeAnyFartherOne) {
-  const std::vector<Knob> knobs = run_knobs(5);
+  const std::vector<Parameter> parameters = run_parameters(5);
   std::size_t next_words = 0;
-  for (const Knob& knob : knobs) next_words += !knob.is_load && knob.usual > 0 ? 1 : 0;
+  for (const Parameter& parameter : parameters)
+    next_words += !parameter.is_load && parameter.defaults > 0 ? 1 : 0;
   for (std::uint64_t seed = 1; seed < 20; ++seed) {
-    const std::vector<Setting> settings = draw_settings(knobs, 3 * next_words / 2, seed);
-    for (std::size_t k = 0; k < knobs.size(); ++k) {
-      if (knobs[k].is_load || knobs[k].usual == 0) continue;
-      Setting turn = usual_setting(knobs);
+    const std::vector<Setting> settings = draw_settings(parameters, 3 * next_words / 2, seed);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      if (parameters[k].is_load || parameters[k].defaults == 0) continue;
+      Setting turn = default_setting(parameters);
       --turn[k];
-      EXPECT_EQ(std::count(settings.begin(), settings.end(), turn), 1) << knobs[k].name << ", seed " << seed;
+      EXPECT_EQ(std::count(settings.begin(), settings.end(), turn), 1)
+          << parameters[k].name << ", seed " << seed;
     }
   }
 }
 
 TEST(DrawSettings, GivesFewerWhereThereAreNotSoManyToBeFound) {
-  const std::vector<Setting> settings = draw_settings(kKnobs, 1000, 1);
+  const std::vector<Setting> settings = draw_settings(kParameters, 1000, 1);
   EXPECT_EQ(settings.size(), 6U);  // 3 x 2, less the usual one, and the load
   EXPECT_TRUE(draw_settings({}, 5, 1).empty());
 }
 
 TEST(Knobs, WordsMakeAQualityAndTheUsualOnesTheDefault) {
-  EXPECT_EQ(scan_quality_of(usual_setting(scan_knobs())), ScanQuality{});
-  EXPECT_EQ(run_setting_of(usual_setting(run_knobs())).quality, RunQuality{});
-  EXPECT_EQ(run_setting_of(usual_setting(run_knobs())).objects, 1);
-  EXPECT_EQ(run_setting_of(usual_setting(run_knobs(20))).objects, 20);
-  EXPECT_THROW((void)run_knobs(2), Error);
-  for (const std::vector<Knob>& knobs : {scan_knobs(), run_knobs()}) {
-    const bool is_scan = knobs.front().name == scan_knobs().front().name;
-    for (std::size_t k = 0; k < knobs.size(); ++k)
-      for (std::size_t word = 0; word < knobs[k].words.size(); ++word) {
-        Setting setting = usual_setting(knobs);
+  EXPECT_EQ(scan_quality_of(default_setting(scan_parameters())), ScanQuality{});
+  EXPECT_EQ(run_setting_of(default_setting(run_parameters())).quality, RunQuality{});
+  EXPECT_EQ(run_setting_of(default_setting(run_parameters())).objects, 1);
+  EXPECT_EQ(run_setting_of(default_setting(run_parameters(20))).objects, 20);
+  EXPECT_THROW((void)run_parameters(2), Error);
+  for (const std::vector<Parameter>& parameters : {scan_parameters(), run_parameters()}) {
+    const bool is_scan = parameters.front().name == scan_parameters().front().name;
+    for (std::size_t k = 0; k < parameters.size(); ++k)
+      for (std::size_t word = 0; word < parameters[k].words.size(); ++word) {
+        Setting setting = default_setting(parameters);
         setting[k] = word;
         if (is_scan)
           require_valid(scan_quality_of(setting));
@@ -165,8 +168,8 @@ TEST(Knobs, WordsMakeAQualityAndTheUsualOnesTheDefault) {
           require_valid(run_setting_of(setting).quality);
       }
   }
-  EXPECT_EQ(describe(kKnobs, {2, 1, 0}), "default");
-  EXPECT_EQ(describe(kKnobs, {0, 1, 1}), "fine 4, many 9");
+  EXPECT_EQ(describe(kParameters, {2, 1, 0}), "default");
+  EXPECT_EQ(describe(kParameters, {0, 1, 1}), "fine 4, many 9");
 }
 
 /// Time: 10 ms for the usual setting, half of it for each step that `fine` is turned, on a machine that
@@ -176,14 +179,14 @@ struct Machine {
   int asked = 0;
   std::vector<std::string> order;
 
-  TradeWork work(std::vector<std::string> scenes = {"a", "b"}) {
-    TradeWork work{.name = "work", .knobs = kKnobs, .scenes = std::move(scenes)};
+  MeasuredWork work(std::vector<std::string> scenes = {"a", "b"}) {
+    MeasuredWork work{.name = "work", .parameters = kParameters, .scenes = std::move(scenes)};
     work.figures = {{"time_ms", "time, ms", 1.0, FigureKind::kTime},
                     {"error_m", "error, mm", 1e3, FigureKind::kError, 0.0001},
                     {"cells", "cells"}};
     work.open = [this](std::size_t scene) -> Measure {
       return [this, scene](const Setting& setting) -> Readings {
-        order.push_back(describe(kKnobs, setting));
+        order.push_back(describe(kParameters, setting));
         const double busy = std::pow(slower, asked++);
         const double steps = 2.0 - static_cast<double>(setting[0]);
         if (setting[1] == 0) throw Error("cannot be done");
@@ -197,7 +200,7 @@ struct Machine {
 
 TEST(Sweep, RatiosAreFlatThoughTheMachineSlowsDownTwofold) {
   Machine machine;
-  const TradeWork work = machine.work();
+  const MeasuredWork work = machine.work();
   const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}, {0, 1, 0}};
   machine.slower = std::pow(2.0, 1.0 / (2.0 * 2.0 * 7.0));  // over all of the sweep's measurements
   const std::vector<SweepRow> rows = sweep(work, {settings, 2, 1}).rows;
@@ -217,7 +220,7 @@ TEST(Sweep, RatiosAreFlatThoughTheMachineSlowsDownTwofold) {
 
 TEST(Sweep, MeasuresTheDefaultBetweenAnyTwoAndEachRepeatInAnOrderOfItsOwn) {
   Machine machine;
-  const TradeWork work = machine.work({"a"});
+  const MeasuredWork work = machine.work({"a"});
   const std::vector<Setting> settings{{1, 1, 0}, {0, 1, 0}, {2, 1, 1}, {1, 1, 1}, {0, 1, 1}};
   (void)sweep(work, {settings, 2, 3});
   ASSERT_EQ(machine.order.size(), 22U);
@@ -237,7 +240,7 @@ TEST(Sweep, MeasuresTheDefaultBetweenAnyTwoAndEachRepeatInAnOrderOfItsOwn) {
 
 TEST(Sweep, TheDefaultsOwnRowIsTheFirstSoThatACutOffSweepCanBeCompared) {
   Machine machine;
-  const TradeWork work = machine.work({"a"});
+  const MeasuredWork work = machine.work({"a"});
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const std::vector<SweepRow> rows = sweep(work, {{{0, 1, 0}, {1, 1, 0}, {2, 1, 0}}, 2, seed}).rows;
     ASSERT_EQ(rows.size(), 6U);
@@ -248,7 +251,7 @@ TEST(Sweep, TheDefaultsOwnRowIsTheFirstSoThatACutOffSweepCanBeCompared) {
 
 TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) {
   Machine machine;
-  const TradeWork work = machine.work();
+  const MeasuredWork work = machine.work();
   const std::vector<Setting> settings{{2, 1, 0}, {2, 0, 0}, {1, 1, 0}};
   const std::vector<SweepRow> rows = sweep(work, {settings, 1, 1}).rows;
   ASSERT_EQ(rows.size(), 6U);
@@ -278,7 +281,7 @@ TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
   // The default of the second scene, or the scene itself: what there is of the first stays.
   for (const bool is_opened : {true, false}) {
     Machine machine;
-    TradeWork work = machine.work({"a", "b"});
+    MeasuredWork work = machine.work({"a", "b"});
     const auto sound = work.open;
     work.open = [&, sound](std::size_t scene) -> Measure {
       if (scene == 0) return sound(scene);
@@ -299,7 +302,7 @@ TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
   EXPECT_EQ(full.fault, "the disk is full");
   EXPECT_EQ(full.rows.size(), 2U);
   // A default that fails in its own row spoils all comparisons: said at once, and not at the end.
-  TradeWork once = machine.work({"a"});
+  MeasuredWork once = machine.work({"a"});
   int asked = 0;
   once.open = [&](std::size_t) -> Measure {
     return [&](const Setting&) -> Readings {
@@ -309,8 +312,8 @@ TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
   };
   EXPECT_EQ(sweep(once, {settings, 1, 1}).fault, "no memory");
   EXPECT_EQ(asked, 2);
-  TradeWork impossible = machine.work();
-  impossible.knobs[1].usual = 0;
+  MeasuredWork impossible = machine.work();
+  impossible.parameters[1].defaults = 0;
   EXPECT_EQ(sweep(impossible, {settings, 1, 1}).fault, "cannot be done");
   EXPECT_TRUE(sweep(impossible, {settings, 1, 1}).rows.empty());
   // Ctrl-C ends what is being measured, too, and is no fault.
@@ -333,7 +336,7 @@ TEST(TradeFrames, AreAsManyAsTheRecordingHas) {
 
 TEST(Summaries, OfASceneThatOthersWereMeasuredInTooAreNotComplete) {
   Machine machine;
-  const TradeWork work = machine.work();
+  const MeasuredWork work = machine.work();
   const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}};
   std::vector<SweepRow> rows = sweep(work, {settings, 1, 1}).rows;
   std::erase_if(rows, [](const SweepRow& row) { return row.scene == 1 && row.setting == 1; });
@@ -351,7 +354,7 @@ SettingSummary summary_of(const Setting& setting, double time_ratio, double erro
 
 TEST(Presets, AreTheFastestTheFastestOfLittleLossAndTheBestWithinReason) {
   Machine machine;
-  const TradeWork work = machine.work();
+  const MeasuredWork work = machine.work();
   const std::vector<SettingSummary> summaries{
       summary_of({2, 1, 0}, 1.0, 0.0019),   // the default
       summary_of({1, 1, 0}, 0.5, 0.00209),  // balanced: a loss of nearly 1.1
@@ -375,7 +378,7 @@ TEST(Presets, AreTheFastestTheFastestOfLittleLossAndTheBestWithinReason) {
 
 TEST(Presets, WhatIsTooBadForOneInASingleErrorDoesNotPushAsideWhatIsNot) {
   Machine machine;
-  TradeWork work = machine.work();
+  MeasuredWork work = machine.work();
   work.figures.push_back({"other_m", "another error, mm", 1e3, FigureKind::kError, 0.0001});
   const auto of = [&](double time_ratio, double error_m, double other_m) {
     SettingSummary summary = summary_of({1, 1, 0}, time_ratio, error_m);
@@ -394,7 +397,7 @@ TEST(Presets, WhatIsTooBadForOneInASingleErrorDoesNotPushAsideWhatIsNot) {
 
 TEST(Presets, WhatIsBetterByChanceAloneIsNotCalledAccurate) {
   Machine machine;
-  const TradeWork work = machine.work();
+  const MeasuredWork work = machine.work();
   std::vector<SettingSummary> summaries{summary_of({2, 1, 0}, 1.0, 0.0019),
                                         summary_of({1, 1, 0}, 0.95, 0.00189)};
   EXPECT_EQ(choose_presets(work, summaries, 0).accurate, 0U);
@@ -407,35 +410,35 @@ TEST(Presets, WhatIsBetterByChanceAloneIsNotCalledAccurate) {
 
 TEST(Ladder, TurnsFirstWhatGivesMostForLeastAndKeepsItTurned) {
   Machine machine;
-  const TradeWork work = machine.work();
+  const MeasuredWork work = machine.work();
   const std::vector<SettingSummary> summaries{
       summary_of({2, 1, 0}, 1.0, 0.0019),                                       // the default
       summary_of({1, 1, 0}, 0.8, 0.0020),  summary_of({0, 1, 0}, 0.5, 0.0030),  // one knob
       summary_of({2, 0, 0}, 0.6, 0.00191), summary_of({2, 1, 1}, 0.1, 0.0001),  // another, and a load
       summary_of({0, 0, 0}, 0.2, 0.0001)};                                      // a mixture: says nothing
-  EXPECT_EQ(ladder_settings(work, summaries, 0, 9), (std::vector<Setting>{{1, 0, 0}}));
+  EXPECT_EQ(greedy_settings(work, summaries, 0, 9), (std::vector<Setting>{{1, 0, 0}}));
   std::vector<SettingSummary> without = summaries;
   without.pop_back();
-  EXPECT_EQ(ladder_settings(work, without, 0, 9), (std::vector<Setting>{{1, 0, 0}, {0, 0, 0}}));
-  EXPECT_EQ(ladder_settings(work, without, 0, 1), (std::vector<Setting>{{0, 0, 0}}));
-  EXPECT_TRUE(ladder_settings(work, without, 0, 0).empty());
-  EXPECT_TRUE(ladder_settings(work, {summary_of({2, 1, 0}, 1.0, kNone)}, 0, 9).empty());
+  EXPECT_EQ(greedy_settings(work, without, 0, 9), (std::vector<Setting>{{1, 0, 0}, {0, 0, 0}}));
+  EXPECT_EQ(greedy_settings(work, without, 0, 1), (std::vector<Setting>{{0, 0, 0}}));
+  EXPECT_TRUE(greedy_settings(work, without, 0, 0).empty());
+  EXPECT_TRUE(greedy_settings(work, {summary_of({2, 1, 0}, 1.0, kNone)}, 0, 9).empty());
 }
 
 TEST(Ladder, GoesTheOtherWayToWhatIsBetter) {
   Machine machine;
-  TradeWork work = machine.work();
-  work.knobs[0].usual = 0;
-  work.knobs[1].usual = 0;
+  MeasuredWork work = machine.work();
+  work.parameters[0].defaults = 0;
+  work.parameters[1].defaults = 0;
   const std::vector<SettingSummary> summaries{
       summary_of({0, 0, 0}, 1.0, 0.0019), summary_of({1, 0, 0}, 1.1, 0.0015),
       summary_of({2, 0, 0}, 3.0, 0.0014), summary_of({0, 1, 0}, 1.2, 0.0016)};
-  EXPECT_EQ(ladder_settings(work, summaries, 0, 9), (std::vector<Setting>{{2, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(greedy_settings(work, summaries, 0, 9), (std::vector<Setting>{{2, 1, 0}, {1, 1, 0}}));
 }
 
 TEST(Presets, OfAnErrorThatNobodyKnowsAreNone) {
   Machine machine;
-  const TradeWork work = machine.work();
+  const MeasuredWork work = machine.work();
   const PresetChoice choice = choose_presets(work, {summary_of({2, 1, 0}, 1.0, kNone)}, 0);
   EXPECT_TRUE(choice.front.empty());
   EXPECT_FALSE(choice.fast || choice.balanced || choice.accurate);
@@ -445,10 +448,10 @@ TEST(Presets, OfAnErrorThatNobodyKnowsAreNone) {
 /// the frames, in each of which that takes as long as ever.
 TradeResult run_result() {
   TradeResult result{.work = run_work({"table"}, {}, TradeScale{})};
-  result.settings = {usual_setting(result.work.knobs), usual_setting(result.work.knobs)};
-  const auto knob = std::find_if(result.work.knobs.begin(), result.work.knobs.end(),
-                                 [](const Knob& k) { return k.name == "object_turns"; });
-  result.settings[1][static_cast<std::size_t>(knob - result.work.knobs.begin())] = 2;
+  result.settings = {default_setting(result.work.parameters), default_setting(result.work.parameters)};
+  const auto parameter = std::find_if(result.work.parameters.begin(), result.work.parameters.end(),
+                                      [](const Parameter& k) { return k.name == "object_turns"; });
+  result.settings[1][static_cast<std::size_t>(parameter - result.work.parameters.begin())] = 2;
   for (const double part : {1.0, 0.5}) {
     SettingSummary summary{.setting = result.settings[part < 1.0 ? 1 : 0], .rows = 1, .time_ratio = part};
     for (const FigureName& figure : result.work.figures) {
@@ -471,7 +474,7 @@ TEST(Presets, AFrontSaysWhatAPartTakesInTheFramesThatHaveIt) {
   const Presets presets = chosen_presets({run_result()}, {{"seed", "1"}});
   ASSERT_EQ(presets.front.size(), 2U);
   EXPECT_EQ(presets.front[0].run, RunQuality{});
-  EXPECT_EQ(presets.front[1].run.object_turns, 2);
+  EXPECT_EQ(presets.front[1].run.move_every_n_frames, 2);
   const auto& ratios = presets.front[1].part_ratios;
   EXPECT_EQ(ratios[index_of(FramePart::kLocate)], 0.5);
   EXPECT_EQ(ratios[index_of(FramePart::kMesh)], 0.5);
@@ -554,7 +557,7 @@ constexpr TradeScale kTiny{.scan_px = 160,
                            .scenarios = 4};
 
 /// A work's figures by name, all of them finite.
-std::map<std::string, double> figures_of(const TradeWork& work, const Readings& readings) {
+std::map<std::string, double> figures_of(const MeasuredWork& work, const Readings& readings) {
   std::map<std::string, double> figures;
   for (std::size_t i = 0; i < work.figures.size(); ++i) {
     EXPECT_TRUE(std::isfinite(readings[i])) << work.figures[i].name;
@@ -564,8 +567,8 @@ std::map<std::string, double> figures_of(const TradeWork& work, const Readings& 
 }
 
 TEST(TradeWorks, AScanIsMeasuredAgainstTheRoomAndACoarserOneIsSmaller) {
-  const TradeWork work = prescan_work({"table"}, {}, kTiny);
-  Setting setting = usual_setting(work.knobs);
+  const MeasuredWork work = prescan_work({"table"}, {}, kTiny);
+  Setting setting = default_setting(work.parameters);
   const Measure measure = work.open(0);
   setting[0] = 2;  // 2 cm
   auto fine = figures_of(work, measure(setting));
@@ -581,8 +584,8 @@ TEST(TradeWorks, AScanIsMeasuredAgainstTheRoomAndACoarserOneIsSmaller) {
 }
 
 TEST(TradeWorks, ARunIsMeasuredAgainstTheRoomWhatMovesInItAndTheRightPicture) {
-  const TradeWork work = run_work({"table"}, {}, kTiny);
-  auto figures = figures_of(work, work.open(0)(usual_setting(work.knobs)));
+  const MeasuredWork work = run_work({"table"}, {}, kTiny);
+  auto figures = figures_of(work, work.open(0)(default_setting(work.parameters)));
   EXPECT_LT(figures["pose_error_m"], 0.03);
   EXPECT_EQ(figures["not_located"], 0.0);
   EXPECT_EQ(figures["passed_through"], 0.0);
@@ -688,7 +691,7 @@ TEST(PictureJudge, WhatIsDrawnOverWhatHidesItCounts) {
 
 TEST(TradeWorks, ASourceWithoutPosesIsRefusedBeforeAnythingIsMeasured) {
   const test::TemporaryFolder folder;
-  const TradeWork work = prescan_work({}, {folder.path().string()}, kTiny);
+  const MeasuredWork work = prescan_work({}, {folder.path().string()}, kTiny);
   EXPECT_THROW((void)work.open(0), Error);
   EXPECT_THROW((void)prescan_work({"attic"}, {}, kTiny).open(0), Error);
 }

@@ -23,32 +23,34 @@ Isometry3d at(double x, double y, double z) {
   return T;
 }
 
-double travel_m(const Room& room, const Solid& object, const Isometry3d& T_world_object,
-                const Vector3d& direction, double limit_m) {
-  return swept_travel(room.solids, {&object, 1}, T_world_object, direction, limit_m).travel_m;
+double contact_distance_m(const Room& room, const Solid& object, const Isometry3d& T_world_object,
+                          const Vector3d& direction, double limit_m) {
+  return swept_travel(room.solids, {&object, 1}, T_world_object, direction, limit_m).contact_distance_m;
 }
 
 TEST(SimSweep, TravelHasItsClosedForm) {
   Room room;
   room.solids = {box({0, 0, -0.5}, {4, 4, 1}), sphere({1, 0, 0.3}, 0.2)};
   const Vector3d down = -Vector3d::UnitZ();
-  EXPECT_NEAR(travel_m(room, sphere({0, 0, 0}, 0.1), at(0, 0, 1), down, 2.0), 0.9, 1e-7);
+  EXPECT_NEAR(contact_distance_m(room, sphere({0, 0, 0}, 0.1), at(0, 0, 1), down, 2.0), 0.9, 1e-7);
   // A ball of 0.1 m onto a ball of 0.2 m, 0.18 m aside: centres 0.3 m apart when they touch, 0.24 m in
   // height.
-  EXPECT_NEAR(travel_m(room, sphere({0, 0, 0}, 0.1), at(1.18, 0, 1), down, 2.0), 1.0 - 0.3 - 0.24, 1e-7);
-  EXPECT_NEAR(travel_m(room, box({0, 0, 0}, {0.2, 0.2, 0.2}), at(0, 0, 1), down, 2.0), 0.9, 1e-7);
+  EXPECT_NEAR(contact_distance_m(room, sphere({0, 0, 0}, 0.1), at(1.18, 0, 1), down, 2.0), 1.0 - 0.3 - 0.24,
+              1e-7);
+  EXPECT_NEAR(contact_distance_m(room, box({0, 0, 0}, {0.2, 0.2, 0.2}), at(0, 0, 1), down, 2.0), 0.9, 1e-7);
   Isometry3d on_edge = at(0, 0, 1);
   on_edge.rotate(Eigen::AngleAxisd(0.25 * 3.14159265358979, Vector3d::UnitX()));
-  EXPECT_NEAR(travel_m(room, box({0, 0, 0}, {0.2, 0.2, 0.2}), on_edge, down, 2.0), 1.0 - 0.1 * std::sqrt(2.0),
-              1e-7);
-  EXPECT_NEAR(travel_m(room, capsule({-0.2, 0, 0}, {0.2, 0, 0}, 0.05), at(0, 0, 1), down, 2.0), 0.95, 1e-7);
+  EXPECT_NEAR(contact_distance_m(room, box({0, 0, 0}, {0.2, 0.2, 0.2}), on_edge, down, 2.0),
+              1.0 - 0.1 * std::sqrt(2.0), 1e-7);
+  EXPECT_NEAR(contact_distance_m(room, capsule({-0.2, 0, 0}, {0.2, 0, 0}, 0.05), at(0, 0, 1), down, 2.0),
+              0.95, 1e-7);
   const Solid ball = sphere({0, 0, 0}, 0.1);
   const SweptTravel free = swept_travel(room.solids, {&ball, 1}, at(0, 0, 1), Vector3d::UnitZ(), 2.0);
   EXPECT_FALSE(free.touches);
-  EXPECT_EQ(free.travel_m, 2.0);
+  EXPECT_EQ(free.contact_distance_m, 2.0);
   const SweptTravel inside = swept_travel(room.solids, {&ball, 1}, at(0, 0, -0.5), down, 2.0);
   EXPECT_TRUE(inside.touches);
-  EXPECT_EQ(inside.travel_m, 0.0);
+  EXPECT_EQ(inside.contact_distance_m, 0.0);
 }
 
 TEST(SimSweep, CrossedEdgesMeetWhereTheyCross) {
@@ -59,7 +61,7 @@ TEST(SimSweep, CrossedEdgesMeetWhereTheyCross) {
   const SweptTravel swept =
       swept_travel({&lower, 1}, {&upper, 1}, at(0.013, 0.027, 1), -Vector3d::UnitZ(), 2.0);
   ASSERT_TRUE(swept.touches);
-  EXPECT_NEAR(swept.travel_m, 1.0 - 0.2 * std::sqrt(2.0), 1e-7);
+  EXPECT_NEAR(swept.contact_distance_m, 1.0 - 0.2 * std::sqrt(2.0), 1e-7);
   EXPECT_LT((swept.point_world - Vector3d(0.013, 0, 0.1 * std::sqrt(2.0))).norm(), 1e-6);
 }
 
@@ -70,13 +72,13 @@ double traced_travel_m(const Room& room, const Mesh& object, const Isometry3d& T
   double least_m = limit_m;
   const auto trace = [&](const Vector3d& p_object) {
     const Vector3d start_world = T_world_object * p_object;
-    for (double travel_m = 0.0; travel_m < least_m;) {
-      const double clear_m = signed_distance_m(room, start_world + travel_m * direction_world);
+    for (double contact_distance_m = 0.0; contact_distance_m < least_m;) {
+      const double clear_m = signed_distance_m(room, start_world + contact_distance_m * direction_world);
       if (clear_m < 1e-6) {
-        least_m = travel_m;
+        least_m = contact_distance_m;
         return;
       }
-      travel_m += std::max(clear_m, 1e-6);
+      contact_distance_m += std::max(clear_m, 1e-6);
     }
   };
   for (const Triangle& t : object.triangles) {

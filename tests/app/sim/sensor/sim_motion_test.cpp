@@ -127,18 +127,18 @@ TEST(SimPace, WhoWaitsStandsStillForTwoSecondsAndWhoLeavesIsGoneInTheEnd) {
     append_solids(mover, t_s, solids);
     return Vector3d(solids.back().T_world_solid.translation());
   };
-  const auto way_m = [&](Pace pace, double from_s, double to_s) {
+  const auto path_length_m = [&](Pace pace, double from_s, double to_s) {
     return (middle_at(pace, to_s) - middle_at(pace, from_s)).norm();
   };
-  EXPECT_LT(way_m(Pace::kWaits, 0.1, 1.9), 1e-9);
-  EXPECT_GT(way_m(Pace::kWaits, 2.0, 4.0), 0.1);
-  EXPECT_LT(way_m(Pace::kWaits, 4.1, 5.9), 1e-9);
-  EXPECT_NEAR(way_m(Pace::kSlow, 0.0, 3.0), way_m(Pace::kSteady, 0.0, 1.0), 1e-9);
-  EXPECT_LT(way_m(Pace::kLeaves, 0.0, 4.9), 1e-9);
+  EXPECT_LT(path_length_m(Pace::kWaits, 0.1, 1.9), 1e-9);
+  EXPECT_GT(path_length_m(Pace::kWaits, 2.0, 4.0), 0.1);
+  EXPECT_LT(path_length_m(Pace::kWaits, 4.1, 5.9), 1e-9);
+  EXPECT_NEAR(path_length_m(Pace::kSlow, 0.0, 3.0), path_length_m(Pace::kSteady, 0.0, 1.0), 1e-9);
+  EXPECT_LT(path_length_m(Pace::kLeaves, 0.0, 4.9), 1e-9);
   const Vector3d last = middle_at(Pace::kLeaves, 10.0);
   EXPECT_GT((last - last.cwiseMax(room.interior_min_world).cwiseMin(room.interior_max_world)).norm(), 1.0);
   for (double t_s = 0.0; t_s < 10.0; t_s += 0.01)
-    EXPECT_LT(way_m(Pace::kLeaves, t_s, t_s + 0.01), 0.03) << "at " << t_s << " s";
+    EXPECT_LT(path_length_m(Pace::kLeaves, t_s, t_s + 0.01), 0.03) << "at " << t_s << " s";
 }
 
 TEST(SimBall, RollsWithoutSlippingAndTouchesTheTable) {

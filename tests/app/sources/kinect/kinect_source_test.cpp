@@ -43,7 +43,7 @@ struct Script {
   std::atomic<bool> release = false;  // of a call that hangs
   std::atomic<int> alive = 0;         // devices
   std::mutex mutex;
-  std::vector<std::string> wished_serials;
+  std::vector<std::string> requested_serials;
   std::vector<std::string> said;
 
   [[nodiscard]] bool has_said(const std::string& part) {
@@ -133,11 +133,11 @@ std::unique_ptr<FrameSource> open_scripted(const std::shared_ptr<Script>& script
   };
   options.keep_all = most_waiting == 0;
   return open_kinect(
-      [script](const KinectWish& wish) -> std::unique_ptr<KinectDevice> {
+      [script](const KinectRequest& wish) -> std::unique_ptr<KinectDevice> {
         const std::size_t opening = script->opened++;
         {
           const std::lock_guard lock(script->mutex);
-          script->wished_serials.push_back(wish.serial);
+          script->requested_serials.push_back(wish.serial);
         }
         const auto refusal = script->refusals.find(opening);
         if (refusal != script->refusals.end()) throw Error(refusal->second);
@@ -202,8 +202,8 @@ TEST(KinectSource, OneThatFallsSilentIsSaidAndStartedAnewAndGoesOn) {
   EXPECT_GT(frames[3].stamp_s - frames[2].stamp_s, 0.1);  // what passed here
   EXPECT_TRUE(script->has_said("no depth image"));
   EXPECT_TRUE(script->has_said("is back after"));
-  EXPECT_EQ(script->wished_serials.at(0), "");
-  EXPECT_EQ(script->wished_serials.at(1), "A123");  // the same one, whatever its number is by now
+  EXPECT_EQ(script->requested_serials.at(0), "");
+  EXPECT_EQ(script->requested_serials.at(1), "A123");  // the same one, whatever its number is by now
 }
 
 TEST(KinectSource, OneThatIsUnpluggedIsWaitedForUntilItIsBack) {

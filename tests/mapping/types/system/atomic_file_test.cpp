@@ -27,14 +27,14 @@ std::string text_of(const fs::path& path) {
 }
 
 void write(const fs::path& path, const std::string& text) {
-  WholeFile file(path);
+  AtomicFile file(path);
   file.stream() << text;
-  file.put_in_place();
+  file.commit();
 }
 
 std::ptrdiff_t entries(const fs::path& folder) { return std::distance(fs::directory_iterator(folder), {}); }
 
-TEST(WholeFile, ReplacesAndLeavesNothingBeside) {
+TEST(AtomicFile, ReplacesAndLeavesNothingBeside) {
   const test::TemporaryFolder folder;
   const fs::path path = folder.path() / "r.json";
   write(path, "old");
@@ -43,19 +43,19 @@ TEST(WholeFile, ReplacesAndLeavesNothingBeside) {
   EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(WholeFile, WhatIsGivenUpChangesNothing) {
+TEST(AtomicFile, WhatIsGivenUpChangesNothing) {
   const test::TemporaryFolder folder;
   const fs::path path = folder.path() / "r.json";
   write(path, "old");
   {
-    WholeFile file(path);
+    AtomicFile file(path);
     file.stream() << "half of the new" << std::flush;
   }
   EXPECT_EQ(text_of(path), "old");
   EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(WholeFile, AFullDiskKeepsTheOldOne) {
+TEST(AtomicFile, AFullDiskKeepsTheOldOne) {
   const test::TemporaryFolder folder;
   const fs::path path = folder.path() / "r.json";
   write(path, "old");
@@ -75,7 +75,7 @@ TEST(WholeFile, AFullDiskKeepsTheOldOne) {
   EXPECT_EQ(entries(folder.path()), 1);
 }
 
-TEST(WholeFile, ALinkStaysOneAndADeviceIsWrittenAsItComes) {
+TEST(AtomicFile, ALinkStaysOneAndADeviceIsWrittenAsItComes) {
   const test::TemporaryFolder folder;
   write(folder.path() / "there", "old");
   fs::create_symlink(folder.path() / "there", folder.path() / "link");
@@ -89,7 +89,7 @@ TEST(WholeFile, ALinkStaysOneAndADeviceIsWrittenAsItComes) {
   }
 }
 
-TEST(WholeFile, APipeByItsNameIsWrittenAsItComes) {
+TEST(AtomicFile, APipeByItsNameIsWrittenAsItComes) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
   write("/proc/self/fd/" + std::to_string(ends[1]), "through");  // as /dev/stdout: a link to what has no path
@@ -100,13 +100,13 @@ TEST(WholeFile, APipeByItsNameIsWrittenAsItComes) {
   close(ends[1]);
 }
 
-TEST(WholeFile, AFolderThatIsNotThereIsSaid) {
+TEST(AtomicFile, AFolderThatIsNotThereIsSaid) {
   const test::TemporaryFolder folder;
   const std::string error = test::error_of([&] { write(folder.path() / "no" / "r.json", "x"); });
   EXPECT_NE(error.find("No such file"), std::string::npos) << error;
 }
 
-TEST(WholeFile, AFileThatStdoutGoesToIsWrittenOn) {
+TEST(AtomicFile, AFileThatStdoutGoesToIsWrittenOn) {
   const test::TemporaryFolder folder;
   const fs::path path = folder.path() / "log";
   std::ofstream(path) << "before\n";

@@ -21,11 +21,11 @@ namespace {
 constexpr std::size_t kBytes = std::size_t{256} << 20U;
 
 std::string apart(const std::function<std::string()>& work) {
-  return run_apart(work, "file.obj: cannot be read", 1, kBytes);
+  return run_sandboxed(work, "file.obj: cannot be read", 1, kBytes);
 }
 
 TEST(RunApart, WorkThatWaitsForEverIsEnded) {
-  EXPECT_THROW((void)run_apart(
+  EXPECT_THROW((void)run_sandboxed(
                    [] {
                      pause();  // takes no processor time
                      return std::string();

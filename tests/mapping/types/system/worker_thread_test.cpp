@@ -11,8 +11,8 @@
 namespace roomradar::worker_thread_test {
 namespace {
 
-TEST(SecondThread, BothPiecesAreDoneWhenTheCallReturns) {
-  SecondThread second;
+TEST(WorkerThread, BothPiecesAreDoneWhenTheCallReturns) {
+  WorkerThread second;
   std::vector<int> numbers(1000);
   for (int round = 0; round < 2000; ++round) {
     const auto fill = [&](std::size_t first, std::size_t end) {
@@ -23,8 +23,8 @@ TEST(SecondThread, BothPiecesAreDoneWhenTheCallReturns) {
   }
 }
 
-TEST(SecondThread, WhatEitherThrowsIsThrownAndTheNextCallIsAsEver) {
-  SecondThread second;
+TEST(WorkerThread, WhatEitherThrowsIsThrownAndTheNextCallIsAsEver) {
+  WorkerThread second;
   const auto fault_of_run = [&](const auto& here, const auto& beside) -> std::string {
     try {
       second.run(here, beside);
@@ -42,7 +42,7 @@ TEST(SecondThread, WhatEitherThrowsIsThrownAndTheNextCallIsAsEver) {
   EXPECT_EQ(fault_of_run(fine, fine), "none");
 }
 
-TEST(SecondThread, OneThatNeverWorkedEndsToo) { const SecondThread second; }
+TEST(WorkerThread, OneThatNeverWorkedEndsToo) { const WorkerThread second; }
 
 }  // namespace
 }  // namespace roomradar::worker_thread_test
