@@ -1,4 +1,4 @@
-// main.cpp: parse, do, say what went wrong.
+// main.cpp: runs the command and reports errors.
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -10,16 +10,16 @@
 #include "mapping/types/system/error.hpp"
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error to be said, not a death
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit causes a write error instead of a kill
   try {
     const roomradar::ParsedCommand command = roomradar::parse_command_line(argc, argv);
     const int status = command.work ? command.work() : command.exit_status;
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout.flush())
-      throw roomradar::Error("stdout: not all that was to be said could be written; is the disk full?");
+      throw roomradar::Error("stdout: the output could not be written completely; is the disk full?");
     return status;
   } catch (const std::bad_alloc&) {
-    std::fprintf(
-        stderr, "roomradar: memory ran out; close other programs, or take coarser cells or smaller images\n");
+    std::fprintf(stderr,
+                 "roomradar: memory ran out; close other programs, or use coarser cells or smaller images\n");
     return 1;
   } catch (const std::filesystem::filesystem_error& error) {
     std::fprintf(stderr, "roomradar: %s: cannot be used: %s\n", error.path1().c_str(),

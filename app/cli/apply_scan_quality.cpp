@@ -1,4 +1,4 @@
-// apply_scan_quality.cpp: scan quality to prescan config.
+// apply_scan_quality.cpp: maps the fields of a scan quality to the prescan's config.
 #include "app/cli/apply_scan_quality.hpp"
 
 namespace roomradar {

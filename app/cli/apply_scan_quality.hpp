@@ -1,12 +1,11 @@
-// apply_scan_quality.hpp: sets a prescan's configuration by a scan quality.
+// apply_scan_quality.hpp: applies a scan quality to a prescan's configuration.
 #pragma once
 #include "app/quality/quality.hpp"
 #include "mapping/prescan.hpp"
 
 namespace roomradar {
 
-/// Sets the fields that the quality decides, and no others. A default quality leaves a default config
-/// unchanged.
+/// Sets only the fields that depend on the quality. A default quality leaves a default config unchanged.
 void apply(const ScanQuality& quality, PrescanConfig& config);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// faults.hpp: what goes wrong while results are put away: the rest of them are put away all the same.
+// faults.hpp: collects errors while results are saved, so one failure does not prevent saving the others.
 #pragma once
 #include <cstdio>
 #include <exception>
@@ -8,7 +8,7 @@
 
 namespace roomradar {
 
-/// The first fault is thrown at the end, once; the others are said on stderr when they come.
+/// Keeps the first error, to be thrown at the end. Later errors are printed to stderr at once.
 class DeferredErrors {
  public:
   template <typename Act>
@@ -25,9 +25,9 @@ class DeferredErrors {
     else
       std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   }
-  /// Empty: none.
+  /// Returns the first error's message; empty if there was none.
   [[nodiscard]] const std::string& first() const { return first_; }
-  /// Throws Error with the first of them, if there is one.
+  /// Throws Error with the first error's message, if there is one.
   void throw_first() const {
     if (!first_.empty()) throw Error(first_);
   }

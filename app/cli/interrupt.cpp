@@ -1,4 +1,4 @@
-// interrupt.cpp: one flag that a signal handler may set.
+// interrupt.cpp: a flag set by a signal handler.
 #include "app/cli/interrupt.hpp"
 
 #include <unistd.h>
@@ -14,15 +14,15 @@ namespace roomradar {
 namespace {
 
 enum Asked { kNothing, kToEnd, kEnds };
-// Set by a signal handler, taken by whichever thread reads the source.
+// Set by the signal handler, taken by the thread that reads the source.
 std::atomic<int> asked = kNothing;
 static_assert(std::atomic<int>::is_always_lock_free);
 constexpr const char* kEndsWithWhatItHas =
-    "\nroomradar: takes no more frames and ends with those it has; Ctrl-C once more ends it at once\n";
+    "\nroomradar: reads no more frames and finishes with those so far; press Ctrl-C again to end at once\n";
 std::atomic<const char*> said = kEndsWithWhatItHas;
 static_assert(std::atomic<const char*>::is_always_lock_free);
 
-/// Calls only what a signal handler may call.
+/// Calls only functions that are allowed in a signal handler.
 void on_interrupt(int signal) {
   if (asked != kNothing) {
     std::signal(signal, SIG_DFL);

@@ -1,4 +1,4 @@
-// interrupt.hpp: Ctrl-C asks the work to end well; a second one ends it as ever.
+// interrupt.hpp: the first Ctrl-C ends the work in an orderly way; the second kills the process.
 #pragma once
 #include <memory>
 
@@ -6,8 +6,8 @@
 
 namespace roomradar {
 
-/// While one lives, SIGINT is counted instead of ending the process; a second one that comes before the first
-/// was taken ends it. One at a time.
+/// While an instance exists, the first SIGINT only sets a flag; the second ends the process. At most one
+/// instance at a time.
 class Interrupt {
  public:
   Interrupt();
@@ -15,16 +15,16 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  /// From now on Ctrl-C prints this, which stays and ends its line, instead of that the work takes no more
-  /// frames and ends with those it has.
+  /// Replaces the message that Ctrl-C prints. By default it says that no more frames are read and the work
+  /// ends with those so far. The string must stay valid and end with a line break.
   static void say(const char* sentence);
-  /// Whether Ctrl-C was pressed since it was last taken.
+  /// Returns true if Ctrl-C was pressed, once; later calls return false.
   static bool take();
-  /// Whether it was pressed and is not taken yet.
+  /// Returns true if Ctrl-C was pressed and take() has not returned it.
   static bool is_asked();
 };
 
-/// A source that comes to its end when Ctrl-C is pressed while it is read.
+/// Wraps a source so it ends when Ctrl-C is pressed.
 std::unique_ptr<FrameSource> ended_by_interrupt(std::unique_ptr<FrameSource> source);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// manual_page.cpp: the manual page from the command line's own help.
+// manual_page.cpp: generates the manual page from the command line's help.
 #include "app/cli/manual_page.hpp"
 
 #include <CLI/CLI.hpp>
@@ -13,23 +13,23 @@ constexpr std::string_view kSections = R"(.SH SOURCES
 A SOURCE is one of
 .TP
 .BR kinect: N
-a Kinect v1, the first being 0; it goes on until Ctrl-C, pressed once
+a Kinect v1, numbered from 0; it continues until Ctrl-C is pressed once
 .TP
 .BR sim: ROOM [ ?key=value & ... ]
 a simulated Kinect in the room
 .BR table ", " shelf ", " wall ", " random " or " board ;
 keys are seed, frames, rate, path (scan, view, swing), moving (hand, ball, person, with commas between them), pace
 (steady, slow, waits, leaves), noise (0 is none, 1 a Kinect's), crate (0, 1, comes, goes), width (pixels of the image),
-colour (registered, separate, none) and faults (1: the cameras are not quite what they are said to be)
+colour (registered, separate, none) and faults (1: the cameras deviate from their stated parameters)
 .TP
 .I DIR
-a recording, recognised by what is in it: 7-Scenes (frame-XXXXXX.depth.png, .color.jpg, .png or, empty, .none, .pose.txt), TUM RGB-D
+a recording, recognised by its files: 7-Scenes (frame-XXXXXX.depth.png, .color.jpg, .png or, empty, .none, .pose.txt), TUM RGB-D
 (depth.txt, rgb.txt), fakenect (INDEX.txt), or numbered images (depth/00000.png, color/00000.jpg). A camera.json in
 it gives the cameras, a calibration.json their errors: \fBroomradar record\fR and \fBcalibrate\fR write these.
 .SH SCRIPT
-What
+The events file of
 .B run \-\-script
-reads: one event a line, in the order in which they happen, due before a frame of the run or at a time (s). Positions are in
+has one event per line, in the order of execution, each due before a frame of the run or at a time (s). Positions are in
 the map's world (m, z up), velocities in m/s, # begins a comment.
 .nf
 frame 0    add pot teapot size 0.2           # or a mesh file
@@ -42,22 +42,22 @@ time 5.5   turn pot 0 0 45                   # about the world's axes, degrees
 time 5.6   carry pot 0.4 \-0.1 1.0
 time 5.9   release pot velocity 0 0 0
 time 6     remove pot
-time 7     adopt                             # what stands still now in view becomes part of the room
+time 7     adopt                             # objects in view that stand still become part of the room
 frame 200  surfaces skirt                    # holes, skirt, border or map
 frame 210  unknown solid                     # or free
 frame 220  radar sampled 64                  # exact or sampled; pixels
-frame 225  quality depth_stride 2 shadows off  # the rest as usual; what an option asks for stays
+frame 225  quality depth_stride 2 shadows off  # others get their defaults; options keep theirs
 frame 230  camera hold                       # go, rewind, loop, stay or resume
 frame 300  quit
 .fi
 .SH FILES
 .TP
 .I MAP/
-a saved map: map.json (facts and checksums), the octree as .ot and .bt, the mesh, the places by which a camera is
-found again, trajectory.txt and coverage.png. It is saved whole or not at all.
+a saved map: map.json (facts and checksums), the octree as .ot and .bt, the mesh, the keyframe database for
+localisation, trajectory.txt and coverage.png. It is saved completely or not at all.
 .TP
 .I MAP.unfinished
-what a scan that was cut off has done so far, for
+checkpoint of an interrupted scan, for
 .BR "prescan \-\-resume" .
 .SH ENVIRONMENT
 .TP
@@ -65,7 +65,7 @@ what a scan that was cut off has done so far, for
 .B gpu
 or
 .B software
-insists on one; else a GPU is taken where there is one.
+selects one; otherwise a GPU is used if there is one.
 .SH EXIT STATUS
 0: done. 1: the work failed; standard error says what, where and what to do. 2: wrong usage.
 .SH EXAMPLES
@@ -81,7 +81,7 @@ roomradar simulate table \-\-room table \-\-frames 600
 .BR octovis (1)
 )";
 
-/// Text as man(7) takes it: nothing in it is a request, a minus is a minus.
+/// Escapes text for man(7): no line becomes a request, and a minus stays a minus.
 std::string escaped(std::string_view text) {
   std::string result;
   bool begins_line = true;

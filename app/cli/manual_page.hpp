@@ -1,4 +1,4 @@
-// manual_page.hpp: the manual page, made from the commands' own help, so that it cannot fall behind.
+// manual_page.hpp: generates the manual page from the commands' own help, so the two cannot differ.
 #pragma once
 #include <string>
 
@@ -8,8 +8,8 @@ class App;
 
 namespace roomradar {
 
-/// roomradar(1) in man(7)'s macros: every command of `app` with its arguments and options as --help has them,
-/// and what help does not say: sources, files, environment, examples. Options without a group are left out.
+/// Returns roomradar(1) in man(7) macros: every command of `app` with its arguments and options as in --help,
+/// plus sources, files, environment and examples. Options without a group are omitted.
 std::string manual_page(const CLI::App& app);
 
 }  // namespace roomradar

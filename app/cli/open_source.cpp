@@ -1,4 +1,4 @@
-// open_source.cpp: tells the kinds of source apart by their names.
+// open_source.cpp: tells the kinds of source apart by name and opens them.
 #include "app/cli/open_source.hpp"
 
 #include <charconv>
@@ -22,7 +22,7 @@ constexpr std::string_view kKinect = "kinect:";
 constexpr std::string_view kSim = "sim:";
 constexpr std::string_view kRegistered = "?depth=registered";
 
-/// kinect:N[?depth=raw|mm|registered]
+/// Opens kinect:N[?depth=raw|mm|registered].
 std::unique_ptr<FrameSource> open_kinect_named(const std::string& source, SourceOptions options) {
   int device = -1;
   const char* begin = source.data() + kKinect.size();
@@ -35,11 +35,10 @@ std::unique_ptr<FrameSource> open_kinect_named(const std::string& source, Source
     options.kinect_depth = KinectDepth::kRegistered;
   const bool is_known = rest.empty() || rest == "?depth=raw" || options.kinect_depth != KinectDepth::kRaw;
   if (parsed.ec != std::errc() || !is_known || device < 0)
-    throw Error(
-        source +
-        ": must be kinect:N with N the number of the device, from 0, and maybe ?depth=raw (as it "
-        "measures), ?depth=mm (made millimetres by libfreenect) or ?depth=registered (and seen from its "
-        "colour camera)");
+    throw Error(source +
+                ": must be kinect:N with the device's number N, from 0, optionally followed by ?depth=raw "
+                "(as measured), ?depth=mm (converted to millimetres by libfreenect) or ?depth=registered "
+                "(also transformed to the colour camera)");
   return open_kinect(device, options);
 }
 
@@ -54,7 +53,7 @@ std::unique_ptr<FrameSource> open_whole(const std::string& source, const SourceO
   return open_folder(source, options);
 }
 
-/// Whether a folder's frames were freed of lens and depth errors before they were recorded.
+/// Returns true if a folder's frames had their lens and depth errors corrected before recording.
 bool was_calibrated(const std::string& source) {
   std::filesystem::path folder = source;
   if (source.starts_with(kKinect)) {
@@ -86,17 +85,17 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
   const bool is_registered = source.starts_with(kKinect) && source.ends_with(kRegistered);
   if (is_registered && (options.as_recorded || !used.empty()))
     throw Error(source +
-                ": registered depth is seen from the colour camera, and a calibration is the depth camera's: "
-                "take ?depth=raw or ?depth=mm with it");
+                ": registered depth is in the colour camera's view, but a calibration is for the depth "
+                "camera; use ?depth=raw or ?depth=mm");
   std::unique_ptr<FrameSource> opened = open_whole(source, options);
   if ((options.as_recorded || !used.empty()) && was_calibrated(source))
-    throw Error(source + ": its frames were freed of lens and depth errors before they were recorded; " +
-                (used.empty() ? "a calibration is made from frames as the device gives them"
-                              : used.string() + " would do so a second time: leave it out"));
+    throw Error(source + ": lens and depth errors of its frames were corrected before they were recorded; " +
+                (used.empty() ? "a calibration needs frames as the device delivers them"
+                              : used.string() + " would correct them a second time; leave it out"));
   if (!used.empty()) opened = calibrated(std::move(opened), read_calibration(used));
   if (!frames) {
     if (!opened->frame_count() && !replayed_folder())
-      options.say(opened->name() + ": goes on until Ctrl-C, pressed once");
+      options.say(opened->name() + ": continues until Ctrl-C is pressed once");
     return opened;
   }
   return limit_frames(std::move(opened), frames->first, frames->last);
@@ -104,8 +103,8 @@ std::unique_ptr<FrameSource> open_source(const std::string& source, const std::o
 
 void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source) {
   if (knows_recorded_world(info)) return;
-  throw Error(map + ": was scanned without recorded poses, so nobody knows where those of " + source +
-              " are in it; take --poses tracked");
+  throw Error(map + ": was scanned without recorded poses, so the poses of " + source +
+              " have no meaning in it; take --poses tracked");
 }
 
 }  // namespace roomradar

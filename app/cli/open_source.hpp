@@ -1,4 +1,4 @@
-// open_source.hpp: from what the user calls a source to its frames.
+// open_source.hpp: opens the frame source that a user names.
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -13,24 +13,26 @@ namespace roomradar {
 
 struct MapInfo;
 
-/// The calibration file that frames of a source are seen with: the one chosen, else calibration.json in the
-/// source's folder; empty: none.
+/// Returns the calibration file for a source: the chosen one, or else calibration.json in the source's
+/// folder; empty if there is none.
 std::filesystem::path calibration_for(const std::string& source, const std::filesystem::path& chosen);
 
-/// Whether frames that open_source gives are freed of lens and depth errors: by calibration_for's file, or
-/// before they were recorded. Throws Error as reading the recording's description of itself does.
+/// Returns true if open_source() delivers frames with lens and depth errors corrected, either by the file of
+/// calibration_for() or before recording. Throws Error as reading the recording's description does.
 bool gives_calibrated_frames(const std::string& source, const std::filesystem::path& chosen);
 
-/// `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder with a recording or a
-/// recorded session, recognised by what is in it; only `frames` of it where given. With a calibration, or a
-/// file calibration.json in the folder, frames are as the calibrated cameras would have taken them. Throws
-/// Error saying what SOURCE can be if it is none of these, if its frames would be calibrated a second time,
-/// and whatever opening it or the calibration throws.
+/// Opens `kinect:N[?depth=raw|mm|registered]`, `sim:ROOM[?key=value&...]`, or a folder with a recording or a
+/// recorded session, recognised by its files. With `frames`, delivers only that range. With a calibration, or
+/// a file calibration.json in the folder, frames are as if taken by ideal, calibrated cameras.
+///
+/// Throws Error listing the kinds of source if this is none of them, and Error if the frames would be
+/// calibrated twice. Also throws whatever opening the source or the calibration throws.
 std::unique_ptr<FrameSource> open_source(const std::string& source, const std::optional<FrameRange>& frames,
                                          const std::filesystem::path& calibration = {},
                                          const SourceOptions& options = {});
 
-/// Poses of one world mean nothing in a map that was scanned without any. Throws Error if the map is such.
+/// Throws Error if the map was scanned from frames without recorded poses: a recording's poses have no
+/// meaning in its world.
 /// @param map,source  names for the message
 void require_recorded_world(const MapInfo& info, const std::string& map, const std::string& source);
 

@@ -1,4 +1,4 @@
-// progress.cpp: draws the bar or the line.
+// progress.cpp: draws the bar or prints the line.
 #include "app/cli/progress.hpp"
 
 #include <unistd.h>
@@ -63,7 +63,7 @@ void Progress::step(const std::string& note) {
   const Time now = Clock::now();
   if (now - shown_ < (is_terminal_ ? Clock::duration(kRedrawEvery) : kLineEvery)) return;
   shown_ = now;
-  // Of at least a second, but for the first time.
+  // Measured over at least a second, except the first time.
   if (state_.per_s == 0.0 || now - counted_ >= std::chrono::seconds(1))
     state_.per_s = static_cast<double>(state_.done - counted_from_) / seconds(now - counted_);
   if (now - counted_ >= kRateOver) {
@@ -74,7 +74,7 @@ void Progress::step(const std::string& note) {
 }
 
 void Progress::show(bool last) {
-  // In the end the rate is that of the whole.
+  // The last line shows the mean rate of the whole work.
   if (last) {
     state_.is_over = true;
     state_.per_s = static_cast<double>(state_.done) / std::max(seconds(Clock::now() - started_), 1e-6);

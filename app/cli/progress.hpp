@@ -1,4 +1,4 @@
-// progress.hpp: how far a long piece of work is, on stderr.
+// progress.hpp: displays the progress of long work on stderr.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -7,30 +7,30 @@
 
 namespace roomradar {
 
-/// What a line of progress shows.
+/// Content of a progress line.
 struct ProgressState {
-  std::string what;                   ///< "track", "fuse": what the user waits for
-  std::int64_t done = 0;              ///< steps
-  std::optional<std::int64_t> total;  ///< where known
-  double per_s = 0.0;                 ///< steps a second, of late; 0: not known yet
-  std::string note;                   ///< "tracked; 12.4 m2 seen"
-  bool is_over = false;               ///< no more is to come, whatever the total was
+  std::string what;                   ///< name of the work: "track", "fuse"
+  std::int64_t done = 0;              ///< number of steps
+  std::optional<std::int64_t> total;  ///< unset: unknown
+  double per_s = 0.0;                 ///< recent steps per second; 0: not measured so far
+  std::string note;                   ///< such as "tracked; 12.4 m2 seen"
+  bool is_over = false;               ///< finished, even if done < total
 };
 
-/// "track [######      ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". The bar only if asked for, and
-/// only where the total is known, as is the time left.
+/// Returns "track [######      ] 120/300, 24.1/s, 0:07 left, tracked; 12.4 m2 seen". Bar and time left appear
+/// only if the total is known, and the bar only if requested.
 std::string progress_line(const ProgressState& state, bool with_bar);
 
-/// A bar that redraws itself where stderr is a terminal, a line every few seconds where it is not.
+/// Redraws a bar in place if stderr is a terminal; otherwise prints a line every few seconds.
 class Progress {
  public:
   Progress(std::string what, std::optional<std::int64_t> total);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// Ends the line that is being redrawn.
+  /// Ends the line being redrawn.
   ~Progress();
 
-  /// One more step is done; `note` is shown behind the count ("tracked", "lost", ...).
+  /// Counts one finished step; `note` is shown after the count ("tracked", "lost", ...).
   void step(const std::string& note = {});
 
  private:
@@ -41,8 +41,8 @@ class Progress {
   bool is_terminal_;
   Time started_;
   Time shown_;
-  Time counted_;                   ///< since when steps are counted for the rate
-  std::int64_t counted_from_ = 0;  ///< steps that were done then
+  Time counted_;                   ///< start of the interval over which the rate is measured
+  std::int64_t counted_from_ = 0;  ///< number of steps done at that time
 };
 
 }  // namespace roomradar

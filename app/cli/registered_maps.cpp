@@ -1,4 +1,4 @@
-// registered_maps.cpp: how two maps stand to each other, said and reported.
+// registered_maps.cpp: registers two maps, prints and reports the result.
 #include "app/cli/registered_maps.hpp"
 
 #include <cstdio>
@@ -11,8 +11,8 @@ Registration require_registered(const SavedMap& a, const SavedMap& b, const std:
                                 const std::string& name_b, Report& report) {
   Registration found = report.times.timed("register", [&] { return register_maps(a, b); });
   if (!found)
-    throw Error(name_b + ": cannot be placed in " + name_a + ": " + describe(found) +
-                "; both must have seen a good part of the same room");
+    throw Error(name_b + ": cannot be registered to " + name_a + ": " + describe(found) +
+                "; both must show a large common part of one room");
   std::printf("%s in %s: %s\n", name_b.c_str(), name_a.c_str(), describe(found).c_str());
   nlohmann::json T_a_b = nlohmann::json::array();
   for (int row = 0; row < 4; ++row)

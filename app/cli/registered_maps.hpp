@@ -1,4 +1,4 @@
-// registered_maps.hpp: two maps of one room, for commands that need to know how they stand to each other.
+// registered_maps.hpp: registers two maps of one room for a command, with output and report.
 #pragma once
 #include <string>
 
@@ -7,7 +7,8 @@
 
 namespace roomradar {
 
-/// By register_maps(); prints what was found and adds it to the report. Throws Error where it is not certain.
+/// Calls register_maps(), prints the result and adds it to the report. Throws Error if the registration is
+/// not reliable.
 /// @param name_a,name_b  for messages
 Registration require_registered(const SavedMap& a, const SavedMap& b, const std::string& name_a,
                                 const std::string& name_b, Report& report);

@@ -1,4 +1,4 @@
-// report.cpp: gathers and writes a command's report.
+// report.cpp: assembles and writes a command's report.
 #include "app/cli/report.hpp"
 
 #include <sys/resource.h>
@@ -23,7 +23,7 @@ double process_cpu_ms() {
 double peak_rss_mb() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6;  // Linux counts in KiB
+  return static_cast<double>(usage.ru_maxrss) * 1024.0 / 1e6;  // ru_maxrss is in KiB on Linux
 }
 
 nlohmann::json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -60,7 +60,7 @@ void require_writable(const std::filesystem::path& path) {
   if (is_pipe_or_device && access(path.c_str(), W_OK) == 0) return;
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   if (!std::filesystem::is_directory(folder, fault) || access(folder.c_str(), W_OK) != 0)
-    throw Error(path.string() + ": cannot be written: its folder is not there or not writable");
+    throw Error(path.string() + ": cannot be written: its folder does not exist or is not writable");
   if (std::filesystem::is_directory(path, fault))
     throw Error(path.string() + ": cannot be written: a folder has that name; give the name of a file");
   require_outside_maps(path);
@@ -69,7 +69,7 @@ void require_writable(const std::filesystem::path& path) {
 void write_report(const Report& report, const std::filesystem::path& path) {
   if (path.empty()) return;
   AtomicFile file(path);
-  // A file's name need not be UTF-8, which JSON has to be.
+  // File names need not be valid UTF-8, but JSON must be.
   file.stream() << to_json(report).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
   file.commit();
 }

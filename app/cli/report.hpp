@@ -1,4 +1,4 @@
-// report.hpp: the JSON file that --report leaves: settings, times of each stage, memory, results.
+// report.hpp: JSON file written by --report: settings, times per stage, memory, results.
 #pragma once
 #include <Eigen/Core>
 #include <chrono>
@@ -11,8 +11,8 @@
 
 namespace roomradar {
 
-/// The keys that every command's report has. The command adds its own to `results`, which are merged at top
-/// level.
+/// Contents common to all commands' reports. Each command's own keys go into `results`, which is merged into
+/// the top level.
 struct Report {
   std::string command;
   std::string source;
@@ -25,22 +25,23 @@ struct Report {
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
 };
 
-/// [x, y, z].
+/// Returns [x, y, z].
 nlohmann::json to_json(const Eigen::Vector3d& v);
 
-/// All of it as one object; peak_rss_mb and wall_s are taken now. A number that is not finite becomes null.
+/// Returns the report as one object, with peak_rss_mb and wall_s as of now. Numbers that are not finite
+/// become null.
 nlohmann::json to_json(const Report& report);
 
-/// Throws Error if a file cannot be written there, or should not, because it would lie in a map's folder: a
-/// check to make before minutes of work. An empty path is fine.
+/// Throws Error if a file cannot be written there, or would be inside a map's folder. Call this before
+/// long work. An empty path is allowed.
 void require_writable(const std::filesystem::path& path);
 
-/// Writes the report, or does nothing for an empty path. Throws Error if the file cannot be written.
+/// Writes the report; does nothing if the path is empty. Throws Error if the file cannot be written.
 void write_report(const Report& report, const std::filesystem::path& path);
 
-/// Largest resident memory of this process so far, in 10^6 bytes.
+/// Returns this process's peak resident memory so far, in 10^6 bytes.
 double peak_rss_mb();
-/// What all threads of this process have computed so far.
+/// Returns the CPU time of all threads of this process so far.
 double process_cpu_ms();
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// run_options.hpp: the options of `roomradar run`.
+// run_options.hpp: options of `roomradar run`.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -17,25 +17,25 @@ struct RunCommand {
   std::string map;
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
-  std::string calibration;        ///< file of the cameras and their errors; empty: what the source says
-  std::string object = "teapot";  ///< built in, or a mesh file
-  std::string script;             ///< events file; empty: the object is dropped over a level surface in view
+  std::string calibration;        ///< file with the cameras and their errors; empty: as the source says
+  std::string object = "teapot";  ///< built-in name or mesh file
+  std::string script;             ///< events file; empty: drop the object over a level surface in view
   SurfacePolicy surfaces = SurfacePolicy::kMap;
-  bool unknown_is_solid = false;  ///< kMap only: objects do not enter what the scan has not seen
+  bool unknown_is_solid = false;  ///< kMap only: objects cannot enter space that the scan has not observed
   RunQuality quality;
-  FieldWords fixed;     ///< what of it was asked for by name; no preset, script or budget changes that
-  std::string preset;   ///< name; empty: none
-  std::string presets;  ///< file; empty: the program's own
-  std::optional<double> budget_ms;       ///< of a frame
-  std::optional<double> commit_after_s;  ///< none: only what the script asks for, if it does
-  AtEnd at_end = AtEnd::kEnd;            ///< what follows the source's last frame
+  FieldWords fixed;                 ///< settings given as options; no preset, script or budget changes them
+  std::string preset;               ///< name; empty: none
+  std::string presets;              ///< file; empty: the program's own
+  std::optional<double> budget_ms;  ///< time limit per frame
+  std::optional<double> commit_after_s;  ///< none: changes are adopted only by events of the script
+  AtEnd at_end = AtEnd::kEnd;            ///< behaviour after the source's last frame
   bool window = false;
-  std::string record_session;  ///< folder for frames, events and settings; empty: none
-  std::string save_map;        ///< folder for the map as it is at the end; empty: it is not saved
+  std::string record_session;  ///< folder for frames, events and settings; empty: not recorded
+  std::string save_map;        ///< folder for the map at the end of the run; empty: not saved
   std::string video;
   std::string pictures;  ///< folder for composed frames as PNG
   std::int64_t pictures_every = 10;
-  std::string frames_csv;  ///< file with a line a frame: how much of room and depth it needed, and why
+  std::string frames_csv;  ///< file with a line per frame: use of room and depth, with reasons
   std::string report;
 };
 

@@ -21,7 +21,8 @@ namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;  // as qualities have it: what is nested deeply must not be copied
+using Json = nlohmann::ordered_json;  // as in quality_json.hpp; do not copy untrusted nested values: copying
+                                      // recurses
 
 constexpr const char* kSettings = "session.json";
 constexpr const char* kEvents = "events.txt";
@@ -51,7 +52,7 @@ Json read_settings(const fs::path& folder) {
   return json;
 }
 
-/// Seconds of --adopt; Error if they are none.
+/// Returns the seconds of --adopt; throws Error if the value is not valid.
 double commit_after_s(const Json& value, const fs::path& folder) {
   constexpr double kMost_s = 86400.0;
   const double seconds = value.is_number() ? value.get<double>() : -1.0;
@@ -76,8 +77,7 @@ void require_can_become_session(const fs::path& folder) {
   require_contents_outside_maps(folder);
   std::error_code fault;
   if (fs::exists(folder, fault) && (!fs::is_empty(folder, fault) || fault))
-    throw Error(folder.string() +
-                ": is not empty; a session is recorded to a folder of its own, name a new one");
+    throw Error(folder.string() + ": is not empty; a session needs an empty or new folder");
 }
 
 SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map,
@@ -85,7 +85,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
     : folder_(std::move(folder)) {
   std::error_code fault;
   fs::create_directories(folder_, fault);
-  if (fault) throw Error(folder_.string() + ": the folder cannot be made: " + fault.message());
+  if (fault) throw Error(folder_.string() + ": the folder cannot be created: " + fault.message());
   require_can_become_session(folder_);
   Json json = {{"format", kFormat},
                {"format_version", kFormatVersion},
@@ -110,7 +110,7 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
 }
 
 std::unique_ptr<FrameSource> SessionRecorder::recorded(std::unique_ptr<FrameSource> source) const {
-  constexpr std::size_t kAhead = 2;  // a run shows the newest frame, also after a pause
+  constexpr std::size_t kAhead = 2;  // so a run shows the newest frame, also after a pause
   return SpooledSource::kept(std::move(source), folder_ / kFrames, kAhead);
 }
 
@@ -183,12 +183,12 @@ std::string map_difference(const fs::path& folder, const MapInfo& map) {
   const Json settings = read_settings(folder);
   const auto recorded = settings.find("map_sha256");
   if (recorded == settings.end() || *recorded == "" || *recorded == checksum_of(map)) return {};
-  return folder.string() + ": was recorded in a map that was another one than this; results will differ";
+  return folder.string() + ": was recorded with a different map; results will differ";
 }
 
 ReplayCheck::ReplayCheck(const fs::path& folder) {
   std::ifstream file(folder / kResults);
-  for (std::string line; std::getline(file, line) && !file.eof();) {  // a last line that was cut says nothing
+  for (std::string line; std::getline(file, line) && !file.eof();) {  // ignores a last line that is cut off
     FrameFingerprint fingerprint;
     if (std::sscanf(line.c_str(), "%" SCNd64 " %" SCNx64 " %" SCNx64, &fingerprint.run_frame,
                     &fingerprint.objects, &fingerprint.picture) == 3)
@@ -197,7 +197,7 @@ ReplayCheck::ReplayCheck(const fs::path& folder) {
 }
 
 void ReplayCheck::compare(const FrameFingerprint& fingerprint) {
-  if (next_ == recorded_.size()) return;  // the recording was cut off
+  if (next_ == recorded_.size()) return;  // recording cut off: nothing to compare with
   const FrameFingerprint& recorded = recorded_[next_++];
   const bool both_pictures = recorded.picture != 0 && fingerprint.picture != 0;
   const bool is_same = recorded.run_frame == fingerprint.run_frame &&

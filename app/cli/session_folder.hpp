@@ -1,10 +1,10 @@
-// session_folder.hpp: a run as it was played, in a folder: its frames, its events, its settings, its results.
+// session_folder.hpp: records a run in a folder and replays it: frames, events, settings and results.
 //
 //   session.json   format, settings, source, map
-//   events.txt     every event, as `--script` reads it
-//   frames/        the source's frames, to the bit (SpooledSource)
+//   events.txt     every event, in the format of `--script`
+//   frames/        the source's frames, bit by bit (SpooledSource)
 //   meshes/        files of virtual objects
-//   results.txt    a line a frame: number, fingerprint of the objects, fingerprint of the picture
+//   results.txt    a line per frame: number, fingerprint of the objects, fingerprint of the picture
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -21,26 +21,27 @@
 
 namespace roomradar {
 
-/// Throws Error if there is something in the folder already.
+/// Throws Error if the folder exists and is not empty.
 void require_can_become_session(const std::filesystem::path& folder);
 
-/// Writes a session while it is played. What is written is whole lines at any moment, so that a run that was
-/// killed replays to where it came.
+/// Writes a session during the run. Files contain only whole lines at any time, so a killed run can be
+/// replayed up to its last frame.
 class SessionRecorder {
  public:
-  /// Makes the folder, or takes an empty one. Throws Error if it holds anything, or cannot be written.
-  /// @param map  as it was loaded; its checksums tell later whether it is still the same
-  /// @param are_calibrated  frames are freed of lens and depth errors
+  /// Creates the folder, or uses an empty one. Throws Error if it is not empty or cannot be written.
+  /// @param map  as loaded; its checksums show later whether the map has changed
+  /// @param are_calibrated  lens and depth errors of the frames are corrected
   SessionRecorder(std::filesystem::path folder, const RunCommand& command, const MapInfo& map,
                   bool are_calibrated);
 
-  /// The source, which from now on is recorded as it is read, and can be read again.
+  /// Wraps a source so its frames are recorded as they are read and can be read again.
   [[nodiscard]] std::unique_ptr<FrameSource> recorded(std::unique_ptr<FrameSource> source) const;
-  /// The event, naming a copy of the mesh file where it adds an object. Before it is applied: throws Error if
-  /// the file cannot be copied, and then there must be no object that the session knows nothing of.
+  /// Copies the mesh file of a kAdd event to the folder and returns the event with the copy's name. Call
+  /// before applying the event: if the copy fails, this throws Error, and the object must not be added
+  /// without being recorded.
   ScriptEvent with_mesh_kept(ScriptEvent event);
-  /// An event, with its mesh kept, as it was applied before frame `run_frame`. Throws Error if the disk does
-  /// not take it.
+  /// Records an event returned by with_mesh_kept() and applied before frame `run_frame`. Throws Error if the
+  /// event cannot be written.
   void write(ScriptEvent event, std::int64_t run_frame);
   void write(const FrameFingerprint& fingerprint);
 
@@ -50,25 +51,25 @@ class SessionRecorder {
   int meshes_ = 0;
 };
 
-/// Whether a folder holds a recorded session.
+/// Returns true if a folder holds a recorded session.
 bool is_session_folder(const std::filesystem::path& folder);
-/// Whether a session's frames were freed of lens and depth errors before they were recorded. Throws Error
-/// naming the file and the fault.
+/// Returns true if a session's frames had their lens and depth errors corrected before recording. Throws
+/// Error naming the file and the fault.
 bool is_session_calibrated(const std::filesystem::path& folder);
-/// Whether a file is the events of such a folder.
+/// Returns true if a file is the events file of a recorded session.
 bool is_session_events(const std::filesystem::path& file);
 
-/// The command that was recorded: source (the folder itself), map, script, and the settings that a session's
-/// results depend on. Throws Error naming the file and the fault.
+/// Returns the recorded command: source (the folder itself), map, script, and the settings that affect
+/// results. Throws Error naming the file and the fault.
 RunCommand read_session(const std::filesystem::path& folder);
 
-/// The recorded frames. Throws Error if there are none.
+/// Opens the recorded frames. Throws Error if there are none.
 std::unique_ptr<FrameSource> open_session_frames(const std::filesystem::path& folder);
 
-/// Says by a sentence that the map is not as it was when the session was recorded; empty if it is.
+/// Returns a sentence saying that the map has changed since the recording; empty if it has not.
 std::string map_difference(const std::filesystem::path& folder, const MapInfo& map);
 
-/// Compares a replay, frame by frame, with what was recorded.
+/// Compares the frames of a replay with the recorded results.
 class ReplayCheck {
  public:
   explicit ReplayCheck(const std::filesystem::path& folder);
@@ -78,7 +79,7 @@ class ReplayCheck {
   [[nodiscard]] std::int64_t different() const { return different_; }
   [[nodiscard]] std::int64_t recorded() const { return static_cast<std::int64_t>(recorded_.size()); }
   [[nodiscard]] std::int64_t first_different() const { return first_different_; }
-  /// Of the run's frames, that of the last result that was recorded; -1 if there is none.
+  /// Returns the run's frame number of the last recorded result; -1 if there is none.
   [[nodiscard]] std::int64_t last_frame() const {
     return recorded_.empty() ? -1 : recorded_.back().run_frame;
   }

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kMostViews = 100;
 
-/// Medians over the views that judge.
+/// Medians over the held-out views.
 struct Summary {
   double colour_px, depth_bias_m, depth_rms_m;
 };
@@ -70,14 +70,14 @@ void print_fit(const BoardViews& views, const CalibrationFit& fit, const Summary
   std::printf("depth, RMS       %7.2f mm %7.2f mm\n", 1e3 * before.depth_rms_m, 1e3 * after.depth_rms_m);
 }
 
-/// The size of the squares is all that says how far things are: a board printed at 97 % makes a camera that
-/// measures 3 % too far.
+/// Warns if the depth scale is suspicious. Only the squares' size sets the scale: a board printed at 97 %
+/// yields a camera that measures 3 % too far.
 void say_if_scaled(double inverse_scale, double square_m) {
   constexpr double kMost = 0.02;
   if (std::abs(inverse_scale - 1.0) <= kMost) return;
   std::fprintf(stderr,
-               "roomradar: the depth is taken for %+.1f %% off; where the squares are not %g m, measure one "
-               "and say so by --square\n",
+               "roomradar: the estimated depth scale is %+.1f %% off; if the squares are not %g m, measure "
+               "one and give its side with --square\n",
                100.0 * (inverse_scale - 1.0), square_m);
 }
 
@@ -97,7 +97,7 @@ int run(const CalibrateCommand& command) {
   for (const std::string& path : {command.calibration, command.plot, command.report}) require_writable(path);
 
   SourceOptions options;
-  options.as_recorded = true;  // not by a calibration that is there already
+  options.as_recorded = true;  // ignores an existing calibration
   const Interrupt interrupt;
   std::unique_ptr<FrameSource> source =
       ended_by_interrupt(open_source(command.source, command.frames, {}, options));
@@ -109,7 +109,7 @@ int run(const CalibrateCommand& command) {
                               [&](std::size_t found) { progress.step(std::to_string(found) + " views"); });
     });
   }
-  source.reset();  // a device does not go on sending
+  source.reset();  // stops the device
   report.frames_read = views.frames;
   const CalibrationFit fit =
       report.times.timed("fit", [&] { return calibrate(views, {.board = command.board}); });

@@ -1,4 +1,4 @@
-// command_line.cpp: the commands, their arguments and their help.
+// command_line.cpp: defines the commands, their arguments and their help.
 #include "app/commands/command_line.hpp"
 
 #include <CLI/CLI.hpp>
@@ -20,9 +20,9 @@ namespace roomradar {
 namespace {
 
 constexpr char kSourceHelp[] =
-    "where frames come from: kinect:N[?depth=raw|mm|registered], sim:ROOM[?seed=N&...], or a folder with a "
-    "recording\n"
-    "(7-Scenes, TUM RGB-D, fakenect, or numbered color/ and depth/); kinect:N goes on until Ctrl-C";
+    "source of frames: kinect:N[?depth=raw|mm|registered], sim:ROOM[?seed=N&...], or a folder with a\n"
+    "recording (7-Scenes, TUM RGB-D, fakenect, or numbered color/ and depth/); kinect:N continues\n"
+    "until Ctrl-C (required)";
 
 const std::map<std::string, PoseOrigin> kPoses = {{"tracked", PoseOrigin::kTracked},
                                                   {"recorded", PoseOrigin::kRecorded}};
@@ -47,22 +47,25 @@ void add_frames_option(CLI::App& app, std::optional<FrameRange>& frames) {
              throw CLI::ValidationError(error.what());
            }
          },
-         "only frames A to B, both included, counted from 0")
+         "use only frames A to B, inclusive, counted from 0 (default: all)")
       ->type_name("A:B");
 }
 
 void add_calibration_option(CLI::App& app, std::string& calibration) {
   app.add_option("--calibration", calibration,
-                 "the cameras and their errors, as `roomradar calibrate` writes them; without it a file\n"
-                 "calibration.json in SOURCE, else what SOURCE says")
+                 "cameras and their errors, as written by `roomradar calibrate`\n"
+                 "(default: calibration.json in SOURCE, otherwise the cameras that SOURCE describes)")
       ->type_name("FILE");
 }
 
 void add_report_option(CLI::App& app, std::string& report) {
-  app.add_option("--report", report, "write settings, times, memory and results as JSON")->type_name("FILE");
+  app.add_option("--report", report,
+                 "write settings, times, memory and results as JSON (default: not written)")
+      ->type_name("FILE");
 }
 
-/// Answers a word from a table; CLI11's own transformer would list the values as numbers.
+/// Adds an option with one of several words as its value. CLI11's own transformer would list the values as
+/// numbers.
 template <typename Value>
 void add_choice(CLI::App& app, const std::string& name, Value& value,
                 const std::map<std::string, Value>& choices, const std::string& help) {
@@ -79,8 +82,8 @@ void add_choice(CLI::App& app, const std::string& name, Value& value,
       ->type_name(type);
 }
 
-/// One option a field of the quality. What is given goes to `fixed`, and from there into the quality once it
-/// is known what else the command was given.
+/// Adds one option per field of the quality. Values go to `fixed` first, and into the quality once all other
+/// arguments are known.
 template <typename Quality>
 void add_quality_options(CLI::App& app, const Quality& defaults, FieldWords& fixed) {
   visit_fields(defaults, [&](const QualityField& field, const auto& /*value*/) {
@@ -101,16 +104,16 @@ void add_quality_options(CLI::App& app, const Quality& defaults, FieldWords& fix
 }
 
 void add_preset_options(CLI::App& app, std::string& preset, std::string& presets) {
-  app.add_option(
-         "--preset", preset,
-         "settings that were measured: fast, balanced or accurate; what is given by its own option goes\n"
-         "before them")
+  app.add_option("--preset", preset,
+                 "measured settings: fast, balanced or accurate; settings given by their own options take\n"
+                 "precedence (default: none)")
       ->type_name("NAME");
-  app.add_option("--presets", presets, "file of presets, as `roomradar trade` writes it (the program's own)")
+  app.add_option("--presets", presets,
+                 "presets file, as written by `roomradar trade` (default: the program's own)")
       ->type_name("FILE");
 }
 
-/// The preset's, if one is named, and then what was given by its own option.
+/// Sets the quality to the named preset's, if any, then applies the options' values.
 template <typename Command>
 void settle_quality(Command& command) {
   if (!command.preset.empty()) {
@@ -125,7 +128,7 @@ void settle_quality(Command& command) {
   set_fields(command.quality, command.fixed);
 }
 
-/// CLI11's own Range would let "nan" pass.
+/// Range check that rejects "nan", unlike CLI11's own Range.
 CLI::Validator within(double low, double high, const std::string& unit) {
   return CLI::Validator(
       [low, high, unit](const std::string& text) -> std::string {
@@ -138,7 +141,7 @@ CLI::Validator within(double low, double high, const std::string& unit) {
       "", "within");
 }
 
-/// All commands' arguments; CLI11 writes into these while it parses.
+/// Arguments of all commands; CLI11 writes into these while parsing.
 struct Arguments {
   PrescanCommand prescan;
   RunCommand run;
@@ -155,29 +158,33 @@ struct Arguments {
 };
 
 void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& work) {
-  CLI::App* sub = app.add_subcommand("prescan", "scan a room once and save it as a map");
+  CLI::App* sub = app.add_subcommand("prescan", "scan a room and save it as a map");
   sub->add_option("SOURCE", command.source, kSourceHelp)->required();
-  sub->add_option("--map", command.map, "folder to save the map in; an older map there is replaced")
+  sub->add_option("--map", command.map, "folder for the map; an existing map there is replaced (required)")
       ->required()
       ->type_name("DIR");
   add_choice(*sub, "--poses", command.poses, kPoses,
-             "find the camera's poses (tracked), or take the recording's own");
+             "estimate the camera poses (tracked), or use those of the recording (recorded)\n"
+             "(default: tracked)");
   add_frames_option(*sub, command.frames);
   add_calibration_option(*sub, command.calibration);
   sub->add_option("--hold-out", command.hold_out,
-                  "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them")
+                  "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them\n"
+                  "(default: none)")
       ->check(CLI::Range(std::int64_t{2}, std::int64_t{1'000'000}))
       ->type_name("N");
   sub->add_flag("--resume", command.resume,
-                "go on with the scan of this map that was cut off (DIR.unfinished), or else\n"
-                "add what SOURCE shows to the map that is in DIR");
+                "continue the interrupted scan of this map (DIR.unfinished); if there is none, extend the\n"
+                "map in DIR with the frames of SOURCE (default: off)");
   sub->add_option("--checkpoint-every", command.checkpoint_every_s,
-                  "seconds between two checkpoints (2.5); 0: none, then nothing can be resumed")
+                  "seconds between checkpoints; 0: none, so the scan cannot be resumed (default: 2.5)")
       ->check(within(0.0, 86400.0, "seconds"))
       ->type_name("S");
-  sub->add_option("--max-memory", command.max_memory_mb,
-                  "stop before the process takes more than so many megabytes; what was fused so far\n"
-                  "is saved as a whole map (one that is added to stays as it was), and the exit status is 1")
+  sub->add_option(
+         "--max-memory", command.max_memory_mb,
+         "stop before the process exceeds this many megabytes; the frames fused so far are saved as a\n"
+         "complete map (a map being extended is not changed), and the exit status is 1\n"
+         "(default: no limit)")
       ->check(within(1.0, 1e7, "megabytes"))
       ->type_name("MB");
   add_preset_options(*sub, command.preset, command.presets);
@@ -185,23 +192,25 @@ void add_prescan(CLI::App& app, PrescanCommand& command, std::function<int()>& w
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {
     if (sub->count("--presets") > 0 && sub->count("--preset") == 0)
-      throw CLI::ValidationError("--presets: says where --preset NAME is looked up, and none is given");
+      throw CLI::ValidationError("--presets: used only with --preset NAME, which is not given");
     settle_quality(command);
     work = [&command] { return run(command); };
   });
 }
 
-/// A recorded session brings its own settings; what is given on the command line goes before them.
+/// Takes a recorded session's settings, except those given on the command line.
 void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
   const RunCommand recorded = read_session(command.source);
   const auto is_given = [&](const char* name) { return sub.count(name) > 0; };
   if (is_given("--calibration"))
-    throw CLI::ValidationError("--calibration: a recorded session is played with the frames that it has");
+    throw CLI::ValidationError(
+        "--calibration: not allowed for a recorded session, which is replayed with its recorded frames");
   if (is_given("--frames"))
     throw CLI::ValidationError(
-        "--frames: a recorded session is played from its first frame, which its events count from");
+        "--frames: not allowed for a recorded session, which is replayed from its first frame");
   if (is_given("--object"))
-    throw CLI::ValidationError("--object: a recorded session has its own objects; --script gives it others");
+    throw CLI::ValidationError(
+        "--object: a recorded session has its own objects; use --script to replace them");
   if (!is_given("--map")) command.map = recorded.map;
   if (!is_given("--poses")) command.poses = recorded.poses;
   if (!is_given("--script")) command.script = recorded.script;
@@ -213,180 +222,204 @@ void take_recorded_settings(RunCommand& command, const CLI::App& sub) {
 }
 
 void add_run(CLI::App& app, RunCommand& command, std::function<int()>& work) {
-  CLI::App* sub = app.add_subcommand("run", "augmented reality in a saved map");
-  sub->add_option("SOURCE", command.source,
-                  std::string(kSourceHelp) +
-                      ",\nor a session that was recorded by --record-session: it is played again from its\n"
-                      "first frame on, with its own settings where none are given")
+  CLI::App* sub = app.add_subcommand("run", "run augmented reality in a saved map");
+  sub->add_option(
+         "SOURCE", command.source,
+         std::string(
+             "session recorded by --record-session, replayed from its first frame with its own settings\n"
+             "unless given here; or ") +
+             kSourceHelp)
       ->required();
-  sub->add_option("--map", command.map, "the saved map; it is only read")->type_name("DIR");
+  sub->add_option("--map", command.map,
+                  "folder of the saved map; not modified (required unless SOURCE is a recorded session)")
+      ->type_name("DIR");
   add_choice(*sub, "--poses", command.poses, kPoses,
-             "find the camera in the map (tracked), or take the recording's own poses");
+             "localise the camera in the map (tracked), or use the recording's poses (recorded)\n"
+             "(default: tracked)");
   add_frames_option(*sub, command.frames);
   add_calibration_option(*sub, command.calibration);
-  sub->add_option("--object", command.object, "virtual object: teapot (built in), or a mesh file")
+  sub->add_option("--object", command.object,
+                  "virtual object: teapot (built in) or a mesh file (default: teapot)")
       ->type_name("MESH");
-  sub->add_option("--script", command.script,
-                  "events file; without it the object is dropped over a surface in view")
+  sub->add_option("--script", command.script, "events file (default: drop the object over a surface in view)")
       ->type_name("FILE");
   add_choice(*sub, "--surfaces", command.surfaces, kSurfaces,
-             "what can be touched: this frame's pixels, the same with skirts across depth edges,\n"
-             "with the image's border pushed out as well, or the map and what moved (map)");
+             "surfaces that can be touched: this frame's pixels (holes), also with skirts across depth\n"
+             "discontinuities (skirt), also with the image's border pushed outwards (border), or the map\n"
+             "and the dynamic foreground (map) (default: map)");
   add_choice(*sub, "--unknown", command.unknown_is_solid, kUnknownIsSolid,
-             "space that the prescan has not seen lets objects through (free) or stops them (solid;\n"
-             "with --surfaces map)");
-  sub->add_option("--adopt", command.commit_after_s,
-                  "what came and stayed, or was gone, for so many seconds while it was seen becomes part of\n"
-                  "the room (of this run's own; the saved map stays as it is)")
+             "space that the prescan has not observed: objects pass (free) or are stopped (solid; needs\n"
+             "--surfaces map) (default: free)");
+  sub->add_option(
+         "--adopt", command.commit_after_s,
+         "add objects to this run's copy of the map, or remove them, once observed unchanged for this\n"
+         "many seconds; the saved map is not modified (default: only on adopt events of the script)")
       ->check(within(0.5, 86400.0, "seconds"))
       ->type_name("SECONDS");
   sub->add_option(
          "--save-map", command.save_map,
-         "folder to save the room with what was adopted in, as a map; an older map there is replaced,\n"
-         "so give --map's own folder to change that")
+         "folder for the map with the adopted changes; an existing map there is replaced, also if it is\n"
+         "that of --map (default: not saved)")
       ->type_name("DIR");
   sub->add_flag("--window", command.window,
-                "play in a window: pick, drop, throw, turn; watch what the radar sees");
+                "open a window: pick, drop, throw and rotate objects, and watch the radar's pictures\n"
+                "(default: off)");
   sub->add_option("--record-session", command.record_session,
-                  "folder for frames, events and settings; `run DIR` plays them again, the same to the bit")
+                  "folder for frames, events and settings; `run DIR` replays them with identical results\n"
+                  "(default: not recorded)")
       ->type_name("DIR");
   add_choice(*sub, "--at-end", command.at_end, kAtEnd,
-             "after the last frame: end (without a window), stay there (with one), or begin again");
-  sub->add_option(
-         "--video", command.video,
-         "write the composed pictures as .mp4, .avi or .mkv, 30 a second, as fast as they were taken")
+             "after the last frame: stop (end), hold it (stay) or begin again (loop)\n"
+             "(default: end; with --window: stay)");
+  sub->add_option("--video", command.video,
+                  "write the composed pictures at their original speed as .mp4, .avi or .mkv, 30 per second\n"
+                  "(default: not written)")
       ->type_name("FILE");
-  sub->add_option("--pictures", command.pictures,
-                  "write composed pictures and masks of what moved as PNG into this folder, named by the\n"
-                  "source's frame, and the run's where that comes again")
+  sub->add_option(
+         "--pictures", command.pictures,
+         "folder for composed pictures and masks of dynamic pixels as PNG, named by the source's frame\n"
+         "number, followed by the run's if the frame is repeated (default: not written)")
       ->type_name("DIR");
-  sub->add_option("--pictures-every", command.pictures_every, "one picture every N frames (10)")
+  sub->add_option("--pictures-every", command.pictures_every,
+                  "write pictures of every Nth frame (default: 10)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
   sub->add_option(
          "--budget-ms", command.budget_ms,
-         "hold the time of a frame: where more is to do than fits, what costs least accuracy is given\n"
-         "up, and it is said what")
+         "time limit per frame; if there is more work, quality is reduced where this costs the least\n"
+         "accuracy, with a message (default: no limit)")
       ->check(within(1.0, 10000.0, "milliseconds"))
       ->type_name("MS");
   add_preset_options(*sub, command.preset, command.presets);
   sub->add_option("--frames-csv", command.frames_csv,
-                  "write one line a frame: how much of room and depth was needed, and why")
+                  "write a line per frame: how much of room and depth was needed, and why\n"
+                  "(default: not written)")
       ->type_name("FILE");
   add_quality_options(*sub, command.quality, command.fixed);
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {
     if (command.window && sub->count("--at-end") == 0) command.at_end = AtEnd::kStay;
     if (sub->count("--object") > 0 && sub->count("--script") > 0 && !command.window)
-      throw CLI::ValidationError("--object: --script says which objects there are; add it there");
+      throw CLI::ValidationError("--object: --script says which objects to add; add it there");
     if (sub->count("--presets") > 0 && sub->count("--preset") == 0 && !command.budget_ms)
       throw CLI::ValidationError(
-          "--presets: says where --preset NAME and what --budget-ms gives up are looked up, and neither is "
-          "given");
+          "--presets: used only with --preset NAME or --budget-ms, and neither is given");
     if (sub->count("--pictures-every") > 0 && command.pictures.empty())
-      throw CLI::ValidationError("--pictures-every: --pictures says into which folder, and is not given");
+      throw CLI::ValidationError("--pictures-every: used only with --pictures, which is not given");
     if (is_session_folder(command.source)) take_recorded_settings(command, *sub);
     settle_quality(command);
     if (command.map.empty()) throw CLI::RequiredError("--map");
     if (command.unknown_is_solid && command.surfaces != SurfacePolicy::kMap)
       throw CLI::ValidationError(
-          "--unknown solid: only the map knows what was seen; it needs --surfaces map");
+          "--unknown solid: needs --surfaces map, because only the map knows which space was observed");
     work = [&command] { return run(command); };
   });
 }
 
 void add_map(CLI::App& app, Arguments& arguments, std::function<int()>& work) {
-  CLI::App* sub =
-      app.add_subcommand("map", "look at a saved map, check it, export it, join two, compare two");
+  CLI::App* sub = app.add_subcommand("map", "describe, verify, export, merge or compare saved maps");
   sub->require_subcommand(1);
-  CLI::App* info = sub->add_subcommand("info", "what is in the map");
-  info->add_option("DIR", arguments.map_info.map, "the map")->required();
+  CLI::App* info = sub->add_subcommand("info", "describe a map");
+  info->add_option("DIR", arguments.map_info.map, "folder of the map (required)")->required();
   info->callback([&] { work = [&arguments] { return run(arguments.map_info); }; });
   CLI::App* verify =
-      sub->add_subcommand("verify", "check every file against its checksum; exit status 1 if one is off");
-  verify->add_option("DIR", arguments.map_verify.map, "the map")->required();
+      sub->add_subcommand("verify", "check every file against its checksum; exit status 1 if one differs");
+  verify->add_option("DIR", arguments.map_verify.map, "folder of the map (required)")->required();
   verify->callback([&] { work = [&arguments] { return run(arguments.map_verify); }; });
-  CLI::App* to_file = sub->add_subcommand("export", "write octree or mesh for other programs");
-  to_file->add_option("DIR", arguments.map_export.map, "the map")->required();
+  CLI::App* to_file = sub->add_subcommand("export", "write the octree or the mesh for other programs");
+  to_file->add_option("DIR", arguments.map_export.map, "folder of the map (required)")->required();
   to_file
       ->add_option("FILE", arguments.map_export.path,
-                   "by extension: .ot .bt (octree), .ply .obj .stl .glb (mesh)")
+                   "file to write, by extension: .ot .bt (octree), .ply .obj .stl .glb (mesh) (required)")
       ->required();
   to_file->add_flag("--unknown", arguments.map_export.unknown,
-                    "the surface round space that the scan has not seen, in the place of the room's mesh");
+                    "write the border of unknown space instead of the room's mesh (default: off)");
   to_file->callback([&] { work = [&arguments] { return run(arguments.map_export); }; });
   CLI::App* merge = sub->add_subcommand(
       "merge",
-      "join two maps of one room, each having seen a part of it; B is placed in A by views that both have\n"
-      "and by their surfaces, and refused where that is not certain");
-  merge->add_option("A", arguments.map_merge.a, "its world becomes that of both")->required();
-  merge->add_option("B", arguments.map_merge.b, "is added; the finer resolution of the two is taken")
+      "merge two overlapping maps of one room; B is registered to A by common views and by surfaces,\n"
+      "and rejected if the registration is not reliable");
+  merge->add_option("A", arguments.map_merge.a, "map whose world frame is kept (required)")->required();
+  merge->add_option("B", arguments.map_merge.b, "map to add; the finer resolution of both is used (required)")
       ->required();
-  merge->add_option("--map", arguments.map_merge.map, "folder to save the map of both in")
+  merge->add_option("--map", arguments.map_merge.map, "folder for the merged map (required)")
       ->required()
       ->type_name("DIR");
   merge
       ->add_option("--deviation", arguments.map_merge.deviation_m,
-                   "how far its mesh with large triangles may lie from that with all, metres; 0 keeps all\n"
-                   "(as A was made)")
+                   "max distance of the simplified mesh from the full mesh, metres; 0 keeps all triangles\n"
+                   "(default: as for A)")
       ->check(within(0.0, 1.0, "metres"))
       ->type_name("M");
   add_report_option(*merge, arguments.map_merge.report);
   merge->callback([&] { work = [&arguments] { return run(arguments.map_merge); }; });
   CLI::App* diff = sub->add_subcommand(
-      "diff", "what appeared in B and what vanished since A, where both know; in A's world");
-  diff->add_option("A", arguments.map_diff.a, "the map before")->required();
-  diff->add_option("B", arguments.map_diff.b, "the map after")->required();
+      "diff", "list what appeared in B and what vanished since A, where both have data, in A's world");
+  diff->add_option("A", arguments.map_diff.a, "earlier map (required)")->required();
+  diff->add_option("B", arguments.map_diff.b, "later map (required)")->required();
   add_report_option(*diff, arguments.map_diff.report);
-  diff->add_option("--picture", arguments.map_diff.picture, "draw A, what appeared green, what vanished red")
+  diff->add_option("--picture", arguments.map_diff.picture,
+                   "draw A, with appeared parts in green and vanished parts in red (default: not written)")
       ->type_name("FILE.png");
   diff->callback([&] { work = [&arguments] { return run(arguments.map_diff); }; });
 }
 
 void add_simulate(CLI::App& app, SimulateCommand& command, std::function<int()>& work) {
-  CLI::App* sub = app.add_subcommand("simulate", "record a simulated Kinect, with ground truth beside it");
-  sub->add_option("DIR", command.folder, "folder to write; must be empty or not there")->required();
-  sub->add_option("--room", command.room, "table, shelf, wall, random or board (table)")->type_name("NAME");
-  sub->add_option("--seed", command.seed, "of the camera's path, the noise, and what is in a random room (1)")
+  CLI::App* sub = app.add_subcommand("simulate", "record a simulated Kinect, with ground truth");
+  sub->add_option("DIR", command.folder, "folder to write; must be empty or not exist (required)")
+      ->required();
+  sub->add_option("--room", command.room, "table, shelf, wall, random or board (default: table)")
+      ->type_name("NAME");
+  sub->add_option("--seed", command.seed,
+                  "seed of the camera's path, the noise and the furniture of a random room (default: 1)")
       ->type_name("N");
-  sub->add_option("--frames", command.frames, "how many (300)")
+  sub->add_option("--frames", command.frames, "number of frames (default: 300)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
-  sub->add_option("--path", command.path,
-                  "scan (round the room), view (looks at its focus) or swing (before the board)")
+  sub->add_option(
+         "--path", command.path,
+         "camera path: scan (round the room), view (looking at its focus) or swing (in front of the\n"
+         "board) (default: scan)")
       ->type_name("KIND");
-  sub->add_option("--moving", command.moving, "what moves: hand, ball, person; several with commas")
+  sub->add_option("--moving", command.moving,
+                  "moving things, separated by commas: hand, ball, person (default: none)")
       ->type_name("LIST");
-  add_choice(*sub, "--format", command.format, kFormats, "of the recording (tum)");
+  add_choice(*sub, "--format", command.format, kFormats, "format of the recording (default: tum)");
   sub->callback([&] { work = [&command] { return run(command); }; });
 }
 
 void add_record(CLI::App& app, RecordCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand("record", "write a source's frames as a recording");
   sub->add_option("SOURCE", command.source, kSourceHelp)->required();
-  sub->add_option("DIR", command.folder, "folder to write; must be empty or not there")->required();
+  sub->add_option("DIR", command.folder, "folder to write; must be empty or not exist (required)")
+      ->required();
   add_frames_option(*sub, command.frames);
   add_calibration_option(*sub, command.calibration);
-  add_choice(*sub, "--format", command.format, kFormats, "of the recording (tum)");
+  add_choice(*sub, "--format", command.format, kFormats, "format of the recording (default: tum)");
   sub->callback([&] { work = [&command] { return run(command); }; });
 }
 
 void add_calibrate(CLI::App& app, CalibrateCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand(
       "calibrate",
-      "find both cameras, their lenses, where they stand to each other, and the depth's errors, from\n"
-      "a recording of a checkerboard that is held still in 20 or more places: near, far, tilted, in\n"
+      "estimate both cameras, their lenses, their relative pose and the depth's errors from a\n"
+      "recording of a checkerboard that is held still in 20 or more places: near, far, tilted, in\n"
       "every part of the image");
   sub->add_option("SOURCE", command.source, kSourceHelp)->required();
-  sub->add_option("--out", command.calibration, "file to write, for --calibration of other commands")
+  sub->add_option("--out", command.calibration,
+                  "file to write, for --calibration of other commands (required)")
       ->required()
       ->type_name("FILE");
-  sub->add_option("--columns", command.board.columns, "inner corners along the board's longer side (8)")
+  sub->add_option("--columns", command.board.columns,
+                  "inner corners along the board's longer side (default: 8)")
       ->type_name("N");
-  sub->add_option("--rows", command.board.rows, "inner corners along the other (6)")->type_name("N");
-  sub->add_option("--square", command.board.square_m, "side of a square, metres (0.03)")->type_name("M");
+  sub->add_option("--rows", command.board.rows, "inner corners along the shorter side (default: 6)")
+      ->type_name("N");
+  sub->add_option("--square", command.board.square_m, "side of a square, metres (default: 0.03)")
+      ->type_name("M");
   add_frames_option(*sub, command.frames);
-  sub->add_option("--plot", command.plot, "draw what was seen, and the errors before and after")
+  sub->add_option("--plot", command.plot,
+                  "draw the views of the board, and the errors before and after (default: not written)")
       ->type_name("FILE.png");
   add_report_option(*sub, command.report);
   sub->callback([&] { work = [&command] { return run(command); }; });
@@ -395,44 +428,53 @@ void add_calibrate(CLI::App& app, CalibrateCommand& command, std::function<int()
 void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand(
       "fallthrough",
-      "drop and push objects behind occluders under each surface policy; simulated truth judges.\n"
-      "With a SOURCE: drop a ball over each cell of a grid in its map, with one frame's surfaces");
-  sub->add_option("SOURCE", command.source, "a recording of the room of --map; its first frame is taken");
-  sub->add_option("--map", command.map, "of SOURCE's room")->type_name("DIR");
+      "drop and push objects behind occluders under each surface policy, and compare with simulated\n"
+      "ground truth. With a SOURCE: drop a ball over each cell of a grid in its map, with the\n"
+      "surfaces of one frame");
+  sub->add_option("SOURCE", command.source,
+                  "recording of the room of --map; its first frame is used (default: simulated rooms)");
+  sub->add_option("--map", command.map, "map of SOURCE's room (required with SOURCE)")->type_name("DIR");
   sub->add_option("--reference", command.reference,
-                  "another map of the recording, whose surface is taken as the truth; else it is --map's own")
+                  "map whose surface is the ground truth (default: the one of --map)")
       ->type_name("DIR");
   add_choice(*sub, "--poses", command.poses, kPoses,
-             "find the frame's camera in the map (tracked), or take the recording's own pose");
+             "localise the frame's camera in the map (tracked), or use the recording's pose (recorded)\n"
+             "(default: tracked)");
   add_frames_option(*sub, command.frames);
   add_calibration_option(*sub, command.calibration);
-  sub->add_option("--cell", command.cell_m, "edge of the grid's cells, metres (0.1)")
+  sub->add_option("--cell", command.cell_m, "edge of the grid's cells, metres (default: 0.1)")
       ->check(within(0.01, 10.0, "metres"))
       ->type_name("M");
-  sub->add_option("--picture", command.picture, "plan: what the ball rests on in each cell")
+  sub->add_option("--picture", command.picture,
+                  "draw a plan of the surfaces that the balls rest on (default: not written)")
       ->type_name("FILE.png");
-  sub->add_option("--scenarios", command.scenarios, "how many (200)")
+  sub->add_option("--scenarios", command.scenarios, "number of scenarios (default: 200)")
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("N");
-  sub->add_option("--seed", command.seed, "of the scenarios (1)")->type_name("N");
+  sub->add_option("--seed", command.seed, "seed of the scenarios (default: 1)")->type_name("N");
   sub->add_option("--random-rooms", command.random_rooms,
-                  "rooms with drawn furniture beside table, shelf and wall (3)")
+                  "number of randomly furnished rooms, in addition to table, shelf and wall (default: 3)")
       ->check(CLI::Range(0, 1000))
       ->type_name("N");
-  sub->add_option("--threads", command.threads, "to scan rooms and make scenarios with (all processors)")
+  sub->add_option("--threads", command.threads,
+                  "threads for scanning rooms and preparing scenarios (default: all processors)")
       ->check(CLI::Range(1, 256))
       ->type_name("N");
   sub->add_option("--maps", command.maps,
-                  "keep the rooms' maps in this folder, and take them from there if they are in it")
+                  "folder in which the rooms' maps are stored and reused (default: not stored)")
       ->type_name("DIR");
-  sub->add_option("--csv", command.csv, "write one line a scenario and policy")->type_name("FILE");
-  sub->add_option("--html", command.html, "write one page with tables, plots and pictures of failures")
+  sub->add_option("--csv", command.csv, "write a line per scenario and policy (default: not written)")
       ->type_name("FILE");
-  CLI::Option* one = sub->add_option("--scenario", command.scenario, "replay only this one, as a video")
+  sub->add_option("--html", command.html,
+                  "write a page with tables, plots and pictures of failures (default: not written)")
+      ->type_name("FILE");
+  CLI::Option* one = sub->add_option("--scenario", command.scenario,
+                                     "replay only this scenario, as a video (default: run all)")
                          ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000}))
                          ->type_name("N");
-  CLI::Option* video =
-      sub->add_option("--video", command.video, "of --scenario: .mp4, .avi or .mkv")->type_name("FILE");
+  CLI::Option* video = sub->add_option("--video", command.video,
+                                       "video of --scenario: .mp4, .avi or .mkv (required with --scenario)")
+                           ->type_name("FILE");
   one->needs(video);
   video->needs(one);
   add_report_option(*sub, command.report);
@@ -447,11 +489,11 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
         if (sub->count(name) > 0) throw CLI::ValidationError(name + why);
     };
     if (command.source.empty())
-      refuse(of_source, ": is about a SOURCE, and none is given");
+      refuse(of_source, ": used only with a SOURCE, which is not given");
     else
-      refuse(of_rooms, ": is about simulated rooms, and not about a SOURCE");
+      refuse(of_rooms, ": used only for simulated rooms, not with a SOURCE");
     if (!command.source.empty() && command.map.empty()) throw CLI::RequiredError("--map");
-    if (command.scenario) refuse(of_many, ": is not made of one --scenario alone");
+    if (command.scenario) refuse(of_many, ": not available with --scenario");
     work = [&command] { return run(command); };
   });
 }
@@ -459,67 +501,75 @@ void add_fallthrough(CLI::App& app, FallthroughCommand& command, std::function<i
 void add_trade(CLI::App& app, TradeCommand& command, std::function<int()>& work) {
   CLI::App* sub = app.add_subcommand(
       "trade",
-      "measure what accuracy costs: settings of prescan and run, drawn at random, then the turns that gave\n"
-      "most for least on top of each other, in simulated rooms with known truth and in recordings, each\n"
-      "between two measurements of the default");
-  sub->add_option("SOURCE", command.recordings,
-                  "folders with recordings that have poses, beside the simulated rooms");
-  sub->add_option("--rooms", command.rooms, "simulated rooms, with commas between them (table,random?seed=2)")
-      ->allow_extra_args(false)  // what follows is a recording
+      "measure time against accuracy: random settings of prescan and run, then greedy combinations of\n"
+      "the best single changes, in simulated rooms with ground truth and in recordings; each setting is\n"
+      "measured between two measurements of the default");
+  sub->add_option(
+      "SOURCE", command.recordings,
+      "folders with recordings that have poses, in addition to the simulated rooms (default: none)");
+  sub->add_option("--rooms", command.rooms,
+                  "simulated rooms, separated by commas (default: table,random?seed=2)")
+      ->allow_extra_args(false)  // the next argument is a recording
       ->delimiter(',')
       ->type_name("LIST");
-  sub->add_option("--only", command.only, "of prescan and run")->check(CLI::IsMember({"prescan", "run"}));
-  sub->add_option("--settings", command.settings, "how many of each are tried beside the default (30)")
+  sub->add_option("--only", command.only, "measure only this command (default: both)")
+      ->check(CLI::IsMember({"prescan", "run"}));
+  sub->add_option("--settings", command.settings,
+                  "number of settings per command, in addition to the default (default: 30)")
       ->check(CLI::Range(1, 10'000))
       ->type_name("N");
-  sub->add_option("--repeats", command.repeats, "how often each is measured in each scene (2)")
+  sub->add_option("--repeats", command.repeats, "measurements per setting and scene (default: 2)")
       ->check(CLI::Range(1, 1000))
       ->type_name("N");
   sub->add_option("--objects", command.objects,
-                  "how many virtual objects a run has, where their number is not what is turned (1)")
+                  "virtual objects in a run, except in settings that change their number (default: 1)")
       ->check(CLI::IsMember({1, 5, 20}))
       ->type_name("N");
-  sub->add_option("--seed", command.seed, "of what is drawn, and of its order (1)")->type_name("N");
-  sub->add_option(
-         "--time", command.time,
-         "settings are compared by the time that passes (wall), or on a machine that has other work\n"
-         "by what all threads compute (cpu)")
+  sub->add_option("--seed", command.seed, "seed of the settings and of their order (default: 1)")
+      ->type_name("N");
+  sub->add_option("--time", command.time,
+                  "compare settings by wall-clock time (wall) or, on a busy machine, by the CPU time of all\n"
+                  "threads (cpu) (default: wall)")
       ->check(CLI::IsMember({"wall", "cpu"}));
-  sub->add_flag("--quick", command.quick, "few frames of small images: to look at, not to choose by");
+  sub->add_flag("--quick", command.quick,
+                "use few frames of small images: a functional test, not a basis for choices (default: off)");
   sub->add_flag("--table1", command.table1,
-                "only the published radar's three rows beside those of this machine");
+                "only compare the published radar's three rows with this machine (default: off)");
   sub->add_option("--csv", command.csv,
-                  "write one line a measurement as soon as it is made, and one a setting at the end")
+                  "write a line per measurement as it is made, and a line per setting at the end\n"
+                  "(default: not written)")
       ->type_name("FILE");
-  sub->add_option("--html", command.html, "write one page with the fronts as plots, and tables")
+  sub->add_option("--html", command.html,
+                  "write a page with plots of the fronts, and tables (default: not written)")
       ->type_name("FILE");
   sub->add_option("--presets", command.presets,
-                  "write fast, balanced, accurate and the front, for --preset and --budget-ms")
+                  "write fast, balanced, accurate and the front, for --preset and --budget-ms\n"
+                  "(default: not written)")
       ->type_name("FILE");
   add_report_option(*sub, command.report);
   sub->callback([&, sub] {
     if (sub->count("--presets") > 0 && sub->count("--only") > 0)
-      throw CLI::ValidationError("--presets: are of prescan and run, and --only leaves out one of them");
+      throw CLI::ValidationError("--presets: need measurements of both prescan and run; leave out --only");
     if (sub->count("--objects") > 0 && command.only == "prescan")
-      throw CLI::ValidationError("--objects: are of run, and --only leaves it out");
+      throw CLI::ValidationError("--objects: used only for run, which --only leaves out");
     if (command.table1) {
       if ((sub->count("--rooms") > 0 && command.rooms.size() > 1) || !command.recordings.empty())
-        throw CLI::ValidationError("--table1: is of one simulated room; name one by --rooms");
+        throw CLI::ValidationError("--table1: needs exactly one simulated room; give it with --rooms");
       for (const char* name : {"--only", "--settings", "--repeats", "--objects", "--seed", "--time", "--csv",
                                "--html", "--presets"})
         if (sub->count(name) > 0)
-          throw CLI::ValidationError(std::string(name) + ": is of a sweep, and --table1 makes none");
+          throw CLI::ValidationError(std::string(name) + ": used only for a sweep, not with --table1");
     }
     work = [&command] { return run(command); };
   });
 }
 
-/// CLI11 would read 010 as 8, and for a seed -1 as 18446744073709551615.
+/// Rejects numbers that CLI11 would misread: 010 as 8, and -1 for a seed as 18446744073709551615.
 void refuse_other_bases(CLI::App& app) {
   const auto fault_of = [](const std::string& text) -> std::string {
     const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
     if (is_plain && (text.size() == 1 || !text.starts_with('0'))) return {};
-    return "must be a whole number without a zero before it, not " + text;
+    return "must be a whole number without leading zeros, not " + text;
   };
   for (CLI::Option* option : app.get_options())
     if (option->get_type_name() == "N") option->check(fault_of);
@@ -529,7 +579,7 @@ void refuse_other_bases(CLI::App& app) {
 }  // namespace
 
 ParsedCommand parse_command_line(int argc, const char* const* argv) {
-  // The commands outlive this function inside `work`.
+  // Shared: `work` needs the commands after this function returns.
   const auto arguments = std::make_shared<Arguments>();
   std::function<int()> work;
   CLI::App app(
@@ -545,7 +595,7 @@ ParsedCommand parse_command_line(int argc, const char* const* argv) {
   add_record(app, arguments->record, work);
   add_calibrate(app, arguments->calibrate, work);
   CLI::App* doctor = app.add_subcommand(
-      "doctor", "say what of this set-up works, and what to do about the rest; exit status 1 if it is ill");
+      "doctor", "check this set-up and say how to repair it; exit status 1 if something must be repaired");
   doctor->callback([&] { work = [] { return run(DoctorCommand{}); }; });
   add_simulate(app, arguments->simulate, work);
   add_fallthrough(app, arguments->fallthrough, work);

@@ -1,4 +1,4 @@
-// commands.hpp: what each roomradar command is given; one function each, in a file of its name.
+// commands.hpp: arguments of each roomradar command, and its function; each command has its own file.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -18,15 +18,15 @@ struct PrescanCommand {
   std::string source;
   std::string map;
   ScanQuality quality;
-  FieldWords fixed;     ///< what of it was asked for by name; no preset changes that
+  FieldWords fixed;     ///< settings given as options; no preset changes them
   std::string preset;   ///< name; empty: none
   std::string presets;  ///< file; empty: the program's own
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
-  std::string calibration;          ///< file of the cameras and their errors; empty: what the source says
-  std::int64_t hold_out = 0;        ///< N > 0: every Nth frame judges the map instead of making it
-  bool resume = false;              ///< go on with a scan that was cut off, or with a map that is there
-  double checkpoint_every_s = 2.5;  ///< 0: none
+  std::string calibration;          ///< file with the cameras and their errors; empty: as the source says
+  std::int64_t hold_out = 0;        ///< N > 0: every Nth frame scores the map instead of being fused
+  bool resume = false;              ///< continue an interrupted scan, or extend an existing map
+  double checkpoint_every_s = 2.5;  ///< 0: no checkpoints
   double max_memory_mb = 0.0;       ///< of the process, 10^6 bytes; 0: no cap
   std::string report;
 };
@@ -40,14 +40,14 @@ struct MapVerifyCommand {
 struct MapExportCommand {
   std::string map;
   std::string path;
-  bool unknown = false;  ///< the surface round what the scan has not seen, in the place of the mesh
+  bool unknown = false;  ///< export the border of unknown space instead of the mesh
 };
 
 struct MapMergeCommand {
   std::string a;
   std::string b;
   std::string map;
-  std::optional<double> deviation_m;  ///< of the surface of both; a's if not given
+  std::optional<double> deviation_m;  ///< of the merged surface; none: as in map a
   std::string report;
 };
 struct MapDiffCommand {
@@ -63,7 +63,7 @@ struct SimulateCommand {
   std::uint64_t seed = 1;
   std::int64_t frames = 300;
   std::string path = "scan";
-  std::string moving;  ///< hand,ball,person
+  std::string moving;  ///< such as "hand,ball,person"
   RecordingFormat format = RecordingFormat::kTum;
 };
 
@@ -71,7 +71,7 @@ struct RecordCommand {
   std::string source;
   std::string folder;
   std::optional<FrameRange> frames;
-  std::string calibration;  ///< file of the cameras and their errors; empty: what the source says
+  std::string calibration;  ///< file with the cameras and their errors; empty: as the source says
   RecordingFormat format = RecordingFormat::kTum;
 };
 
@@ -87,9 +87,9 @@ struct CalibrateCommand {
 struct DoctorCommand {};
 
 struct FallthroughCommand {
-  std::string source;     ///< of a recorded room; empty: simulated ones
+  std::string source;     ///< of a recorded room; empty: simulated rooms
   std::string map;        ///< of that room
-  std::string reference;  ///< map whose surface is taken as the truth; empty: `map` itself
+  std::string reference;  ///< map whose surface is the ground truth; empty: `map` itself
   PoseOrigin poses = PoseOrigin::kTracked;
   std::optional<FrameRange> frames;
   std::string calibration;
@@ -99,35 +99,34 @@ struct FallthroughCommand {
   int scenarios = 200;
   std::uint64_t seed = 1;
   int random_rooms = 3;
-  int threads = 0;                       ///< 0: as many as there are processors
-  std::optional<std::int64_t> scenario;  ///< only this one, as a video
+  int threads = 0;                       ///< 0: one per processor
+  std::optional<std::int64_t> scenario;  ///< only this scenario, as a video
   std::string video;
-  std::string maps;  ///< folder that keeps the rooms' maps from run to run
+  std::string maps;  ///< folder in which the rooms' maps are stored and reused
   std::string csv;
   std::string html;
   std::string report;
 };
 
 struct TradeCommand {
-  std::vector<std::string> recordings;                          ///< folders with poses, beside the rooms
-  std::vector<std::string> rooms = {"table", "random?seed=2"};  ///< as `sim:` has them
+  std::vector<std::string> recordings;  ///< folders with poses, in addition to the rooms
+  std::vector<std::string> rooms = {"table", "random?seed=2"};  ///< in the form of `sim:`
   std::string only;                                             ///< prescan or run; empty: both
-  std::size_t settings = 30;                                    ///< of each, beside the default
+  std::size_t settings = 30;                                    ///< per work, in addition to the default
   int repeats = 2;
   std::uint64_t seed = 1;
-  std::string time = "wall";  ///< what settings are compared by: wall or cpu
-  int objects = 1;            ///< virtual ones that a run has, where their number is not what is turned
+  std::string time = "wall";  ///< time by which settings are compared: wall or cpu
+  int objects = 1;            ///< default number of virtual objects in a run
   bool quick = false;
-  bool table1 = false;  ///< the published radar's table beside ours, and nothing else
+  bool table1 = false;  ///< only compare with the published radar's table
   std::string csv;
   std::string html;
   std::string presets;
   std::string report;
 };
 
-/// Each does the whole work of its command, prints results on stdout and progress on stderr, and throws Error
-/// where the work fails. The return value is the exit status: 0, or 1 where the work was done and its answer
-/// is bad news.
+/// Each executes its command, prints results to stdout and progress to stderr, and throws Error if the work
+/// fails. Returns the exit status: 0, or 1 if the work was done but its result is negative.
 int run(const PrescanCommand& command);
 int run(const RunCommand& command);
 int run(const MapInfoCommand& command);

@@ -1,4 +1,4 @@
-// doctor.cpp: findings, one function a matter.
+// doctor.cpp: one function per check.
 #include "app/commands/doctor.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kUsb2_mbit_s = 480.0;
 
-// The compositor draws at the cameras' size; a map's coverage picture is the largest that anything draws.
+// The compositor draws at the cameras' size; a map's coverage picture is the largest image.
 constexpr GLint kLeastTexture_px = 4096;
 
 Finding judge_one(const KinectOnUsb& kinect) {
@@ -26,7 +26,7 @@ Finding judge_one(const KinectOnUsb& kinect) {
     return {Health::kBad, "a Kinect's motor or microphones are on USB, its cameras are not",
             "plug in its own power supply; if it is in, unplug the Kinect and plug it in again"};
   const std::string name = kinect.model + " at " + kinect.node.string();
-  if (!kinect.may_open && kinect.model == kKinectForWindows)  // which Debian's rule does not name
+  if (!kinect.may_open && kinect.model == kKinectForWindows)  // not named by Debian's rule
     return {Health::kBad, name + ": this user may not open it",
             "echo 'SUBSYSTEM==\"usb\", ATTR{idVendor}==\"045e\", MODE=\"0666\"' | sudo tee "
             "/etc/udev/rules.d/60-kinect.rules; sudo udevadm control --reload; then unplug the Kinect and "
@@ -93,7 +93,7 @@ Finding judge_replay(const std::filesystem::path& recording) {
     return {Health::kBad,
             what + "; " + std::to_string(replay.broken().size()) + " of its depth images " +
                 replay.broken().begin()->second,
-            "they are passed over; copy the recording again if there is a whole one"};
+            "they are skipped; copy the recording again if there is a complete one"};
   } catch (const Error& error) {
     return {Health::kBad, what + ": " + error.what(), "copy or record it again"};
   }

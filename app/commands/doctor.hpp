@@ -1,4 +1,4 @@
-// doctor.hpp: what of a set-up works, what does not, and what to do about it, in words.
+// doctor.hpp: checks the set-up and says how to repair it.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -10,8 +10,8 @@ namespace roomradar {
 
 enum class Health {
   kGood,
-  kMissing,  ///< something that not everybody needs
-  kBad,      ///< something that has to be mended
+  kMissing,  ///< optional, not needed by all users
+  kBad,      ///< must be repaired
 };
 
 struct Finding {
@@ -20,18 +20,17 @@ struct Finding {
   std::string what_to_do;  ///< empty if good
 };
 
-/// What the Kinects on the bus, and the number of them that libfreenect sees (negative: this program was
-/// built without it), say together.
+/// Checks the Kinects on the USB bus against the number that libfreenect sees (negative: this program was
+/// built without it).
 std::vector<Finding> judge_kinects(const std::vector<KinectOnUsb>& on_usb, int seen_by_libfreenect);
 
-/// What fakenect replays in the place of a Kinect, and what is broken in it.
+/// Checks the recording that fakenect replays in place of a Kinect.
 Finding judge_replay(const std::filesystem::path& recording);
 
-/// Whether there is a renderer, which, and how large the images are that it draws.
+/// Checks that there is a renderer, and the max size of its images.
 Finding judge_renderer();
 
-/// Whether the program that replays recordings as if they were a Kinect can be found in the folders of
-/// `path`, which is written as $PATH is.
+/// Checks whether the program `fakenect` is in the folders of `path`, which has the form of $PATH.
 Finding judge_fakenect(const std::string& path);
 
 }  // namespace roomradar

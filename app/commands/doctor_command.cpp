@@ -1,4 +1,4 @@
-// doctor_command.cpp: roomradar doctor: says what of the set-up works, and what to do about the rest.
+// doctor_command.cpp: roomradar doctor: checks the set-up and says how to repair it.
 #include <cstdio>
 #include <cstdlib>
 

@@ -1,4 +1,4 @@
-// fallthrough_command.cpp: roomradar fallthrough: the same hidden-surface scenarios under each policy.
+// fallthrough_command.cpp: roomradar fallthrough: runs the same hidden-surface scenarios under each policy.
 #include <unistd.h>
 
 #include <algorithm>
@@ -28,20 +28,20 @@ namespace {
 
 using Rooms = std::vector<std::unique_ptr<MappedRoom>>;
 
-/// Makes the folder that is to keep the rooms' maps; an empty name is fine. Throws Error if that cannot be,
-/// or if it has none and none can be written.
+/// Creates the folder for the rooms' maps; an empty name is allowed. Throws Error if it cannot be created, or
+/// if it is empty and not writable.
 void require_folder_of_maps(const std::filesystem::path& folder) {
   if (folder.empty()) return;
   require_contents_outside_maps(folder);
   std::error_code fault;
   std::filesystem::create_directories(folder, fault);
-  if (fault) throw Error(folder.string() + ": the folder cannot be made: " + fault.message());
+  if (fault) throw Error(folder.string() + ": the folder cannot be created: " + fault.message());
   if (access(folder.c_str(), W_OK) != 0 && std::filesystem::is_empty(folder, fault))
-    throw Error(folder.string() + ": no map can be kept there: the folder is not writable");
+    throw Error(folder.string() + ": no map can be stored there: the folder is not writable");
 }
 
-/// Scenario after scenario under all policies; `threads` of them are made ready ahead. Ends at the first
-/// fault, with the rows that were done.
+/// Runs all scenarios under all policies, with `threads` scenarios prepared ahead. Ends at the first error,
+/// with the rows so far.
 std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughCommand& command, int threads,
                                        DeferredErrors& faults) {
   std::deque<std::future<std::unique_ptr<PreparedScenario>>> ahead;
@@ -63,7 +63,7 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughComm
     const std::size_t room_number = turn_of(number, rooms.size()).room;
     MappedRoom& room = *rooms[room_number];
     ScenarioRow row = row_of(prepared->scenario, number, room_number, room.scanned.title);
-    // All have seen the frame before any is timed, and each is the first in turn.
+    // All policies see the frame before any is timed, and each is first in turn.
     for (std::size_t i = 0; i < kPolicyCount; ++i)
       (void)show_frame(*prepared, 0, {.policy = kFallthroughPolicies[i].surfaces}, {}, *room.scenes[i]);
     for (std::size_t k = 0; k < kPolicyCount; ++k) {
@@ -79,7 +79,7 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughComm
   return rows;
 }
 
-/// Each policy's failures, as far as `most` go, those of the last policies first.
+/// Draws a limited number of each policy's failures, last policies first.
 std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vector<ScenarioRow>& rows,
                                              std::uint64_t seed) {
   constexpr std::size_t kMostOfMaps = 24, kMostOfOthers = 4;
@@ -108,7 +108,7 @@ std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vect
   return pictures;
 }
 
-/// One scenario alone: only its room is scanned.
+/// Replays one scenario as a video; scans only its room.
 int replay(const FallthroughCommand& command, const RoomScan& scan) {
   require_writable(command.video);
   VideoWriter video(command.video, kReplayPicturesPerS);
@@ -152,7 +152,7 @@ int run(const FallthroughCommand& command) {
   report.renderer = context.renderer();
   const Rooms rooms = report.times.timed(
       "prescan", [&] { return map_rooms(context, choose_rooms(command.random_rooms), scan, threads); });
-  DeferredErrors faults;  // what was done before them is written all the same
+  DeferredErrors faults;  // earlier results are written all the same
   const std::vector<ScenarioRow> rows =
       report.times.timed("scenarios", [&] { return run_scenarios(rooms, command, threads, faults); });
   if (rows.empty()) faults.throw_first();

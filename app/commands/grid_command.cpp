@@ -1,4 +1,4 @@
-// grid_command.cpp: roomradar fallthrough SOURCE: the grid over a recorded room.
+// grid_command.cpp: roomradar fallthrough SOURCE: drops over a grid in a recorded room.
 #include "app/commands/grid_command.hpp"
 
 #include <cstdio>
@@ -17,7 +17,7 @@
 namespace roomradar {
 namespace {
 
-/// The first readable frame of the source, and where its camera stands in the map.
+/// Reads the source's first readable frame and returns its camera's pose in the map.
 Eigen::Isometry3d read_located(const FallthroughCommand& command, const SavedMap& map, GlContext& context,
                                Frame& frame) {
   const auto source = open_source(command.source, command.frames, command.calibration);
@@ -45,8 +45,8 @@ Eigen::Isometry3d read_located(const FallthroughCommand& command, const SavedMap
   return tracking.T_world_camera;
 }
 
-/// A map's source without the ", frames A:B" of limit_frames(). Several sources stay as they are: their poses
-/// are in several worlds.
+/// Returns a map's source without the ", frames A:B" of limit_frames(). A list of sources is unchanged: their
+/// poses have different worlds.
 std::string_view recording_of(std::string_view source) {
   constexpr std::string_view kFrames = ", frames ";
   const std::size_t at = source.rfind(kFrames);
@@ -55,7 +55,7 @@ std::string_view recording_of(std::string_view source) {
   return range.find_first_not_of("0123456789:") == std::string_view::npos ? source.substr(0, at) : source;
 }
 
-/// The reference's surface in the map's world.
+/// Returns the reference's surface in the map's world.
 Mesh reference_of(const FallthroughCommand& command, const SavedMap& map, Report& report) {
   if (command.reference.empty()) return map.mesh;
   SavedMap reference = load_map(command.reference);
@@ -94,7 +94,7 @@ int run_grid(const FallthroughCommand& command) {
 
   std::printf("frame %lld of %s in %s; truth: the surface of %s\n%s", static_cast<long long>(frame.index),
               command.source.c_str(), command.map.c_str(),
-              command.reference.empty() ? "this very map, so that `map` can only differ by what moved"
+              command.reference.empty() ? "this map, so `map` can differ only where something is dynamic"
                                         : command.reference.c_str(),
               table_of(grid).c_str());
   report.settings = {{"map", command.map},

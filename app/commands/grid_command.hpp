@@ -1,16 +1,16 @@
-// grid_command.hpp: the fall-through test in a recorded room.
+// grid_command.hpp: fall-through test in a recorded room.
 #pragma once
 #include "app/commands/commands.hpp"
 #include "mapping/map/map_folder.hpp"
 
 namespace roomradar {
 
-/// Drops a ball over each cell of a grid in the map, with the surfaces of the source's first frame; prints
-/// the table, writes plan and report. Throws Error if the frame cannot be located.
+/// Drops a ball over each cell of a grid in the map, with the surfaces of the source's first frame. Prints
+/// the table, writes picture and report. Throws Error if the frame cannot be localised.
 int run_grid(const FallthroughCommand& command);
 
-/// Whether the frames that both were made of came with poses in one world: those of one recording, maybe of
-/// different --frames.
+/// Returns true if the frames of both maps came with poses in one world: those of one recording, possibly
+/// with different --frames.
 bool share_recorded_world(const MapInfo& a, const MapInfo& b);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// map_command.cpp: roomradar map info|verify|export: look at a saved map, check it, hand it on.
+// map_command.cpp: roomradar map info|verify|export: describes, checks and exports a saved map.
 #include <cstdio>
 
 #include "app/commands/commands.hpp"

@@ -1,4 +1,4 @@
-// map_pair_commands.cpp: roomradar map merge|diff: two maps of one room.
+// map_pair_commands.cpp: roomradar map merge|diff: merges or compares two maps of one room.
 #include <cstdio>
 #include <utility>
 
@@ -28,13 +28,13 @@ int run(const MapMergeCommand& command) {
   }
   if (a.info.files.at("octree.ot").sha256 == b.info.files.at("octree.ot").sha256)
     throw Error(command.b + ": is the same map as " + command.a +
-                "; joined with itself it would count everything it saw twice");
+                "; merged with itself, it would count every observation twice");
   const Registration found = require_registered(a, b, command.a, command.b, report);
   const SavedMap both = report.times.timed("merge", [&] { return merge_maps(std::move(a), b, found.T_a_b); });
   report.times.timed("save", [&] { save_map(command.map, both); });
   report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree.memory_bytes()}};
   write_report(report, command.report);
-  std::printf("%s: %zu triangles, %zu places\n", command.map.c_str(), both.mesh.triangles.size(),
+  std::printf("%s: %zu triangles, %zu keyframes\n", command.map.c_str(), both.mesh.triangles.size(),
               both.keyframe_database.keyframes.size());
   return 0;
 }
@@ -49,7 +49,7 @@ int run(const MapDiffCommand& command) {
   require_writable(command.picture);
   const SavedMap a = load_map(command.a);
   const SavedMap b = load_map(command.b);
-  // A map that `run --save-map` made from another has its views, and so its world.
+  // A map saved by `run --save-map` has the keyframes of the map it came from, and so its world.
   const bool one_world = !a.keyframe_database.keyframes.empty() &&
                          a.info.files.at("places.bin").sha256 == b.info.files.at("places.bin").sha256;
   const Eigen::Isometry3d T_a_b = one_world ? Eigen::Isometry3d::Identity()

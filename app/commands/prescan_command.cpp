@@ -1,4 +1,4 @@
-// prescan_command.cpp: roomradar prescan: scan a room once and keep it.
+// prescan_command.cpp: roomradar prescan: scans a room once and saves it as a map.
 #include <unistd.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
   };
   results["holes"] = nlohmann::json::array();
   for (const Hole& hole : scanned.holes) results["holes"].push_back(hole_row(hole));
-  results["ate_rmse_m"] = nullptr;  // only where the recording has poses of its own and ours were tracked
+  results["ate_rmse_m"] = nullptr;  // set only for tracked poses of a recording that has poses
   if (counts.trajectory_error) {
     results["ate_rmse_m"] = counts.trajectory_error->rmse_m;
     results["ate_max_m"] = counts.trajectory_error->max_m;
@@ -67,7 +67,7 @@ nlohmann::json results_of(const PrescanResult& scanned) {
 }
 
 nlohmann::json held_out_json(const HeldOutScore& score) {
-  // So that no figure looks perfect of what could not be compared.
+  // Figures that could not be measured are omitted; as 0 they would look perfect.
   if (score.frames == 0) return {{"frames", 0}};
   if (score.cover == 0.0) return {{"frames", score.frames}, {"pixels", score.pixels}, {"cover", 0.0}};
   return {{"frames", score.frames}, {"pixels", score.pixels}, {"median_m", score.median_m},
@@ -87,10 +87,10 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
   }
   if (scanned.map.info.up_source == to_string(UpSource::kNone))
     std::printf(
-        "which way is up is not known: no gravity was recorded and no level surface stood out; the first "
-        "camera's upright is taken\n");
+        "the up direction is not known: no gravity was recorded and no level surface was found; up is taken "
+        "from the first camera\n");
   if (counts.trajectory_error)
-    std::printf("trajectory against the recorded poses: RMSE %.1f mm, at most %.1f mm\n",
+    std::printf("trajectory against the recorded poses: RMSE %.1f mm, max %.1f mm\n",
                 1e3 * counts.trajectory_error->rmse_m, 1e3 * counts.trajectory_error->max_m);
   if (held_out && held_out->frames == 0)
     std::printf(
@@ -107,67 +107,67 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
 
 constexpr double kMB = 1e6;
 
-/// Says what the scan will take, before it begins.
+/// Estimates and prints the scan's memory before it begins.
 void announce_memory(FrameSource& source, const PrescanConfig& config, Report& report) {
   const auto cap_bytes = static_cast<double>(config.max_memory_bytes);
   const std::optional<MemoryEstimate> estimate = estimate_memory(source, config.resolution_m);
   if (!estimate) return;
-  std::fprintf(stderr, "expected: octree %.0f MB, process %.0f MB at the most, for %lld frames%s\n",
+  std::fprintf(stderr, "expected: octree %.0f MB, process at most %.0f MB, for %lld frames%s\n",
                estimate->octree_bytes / kMB, estimate->process_bytes / kMB,
                static_cast<long long>(estimate->frames), estimate->length_known ? "" : " (a minute)");
   if (cap_bytes > 0.0 && estimate->process_bytes > cap_bytes)
-    std::fprintf(stderr,
-                 "which is more than --max-memory %.0f: the scan may stop on its way; a coarser "
-                 "--resolution takes less\n",
-                 cap_bytes / kMB);
+    std::fprintf(
+        stderr,
+        "which is more than --max-memory %.0f: the scan may stop early; a coarser --resolution needs less\n",
+        cap_bytes / kMB);
   report.results["memory_estimate"] = {{"octree_mb", estimate->octree_bytes / kMB},
                                        {"process_mb", estimate->process_bytes / kMB},
                                        {"frames", estimate->frames}};
 }
 
-/// The largest holes of those that a scan from more places would close.
+/// Prints the largest holes that a scan from more positions would close.
 void print_holes(const std::vector<Hole>& holes) {
   constexpr std::size_t kShown = 5;
   const std::size_t inside = static_cast<std::size_t>(std::count_if(
       holes.begin(), holes.end(), [](const Hole& hole) { return hole.kind != HoleKind::kOuterBorder; }));
-  if (inside == 0) std::printf("nothing inside of the scan is left unseen\n");
+  if (inside == 0) std::printf("everything inside the scan was observed\n");
   for (std::size_t i = 0; i < std::min(inside, kShown); ++i)
-    std::printf("not seen: %s\n", describe(holes[i]).c_str());
+    std::printf("not observed: %s\n", describe(holes[i]).c_str());
   if (inside > kShown) std::printf("and %zu smaller ones\n", inside - kShown);
 }
 
 constexpr const char* kStops =
-    "\nroomradar: stops before the next frame, without a map; past the last frame it goes on to the map. "
-    "Ctrl-C once more ends it at once\n";
+    "\nroomradar: stops before the next frame, without a map; after the last frame the map is still made. "
+    "Press Ctrl-C again to end at once\n";
 
 struct StoppedByUser : Error {
   using Error::Error;
 };
 
-/// Throws StoppedByUser that says how to go on.
+/// Throws StoppedByUser, with advice on how to continue.
 [[noreturn]] void stop(const std::string& map, Checkpoints* checkpoints) {
   const bool resumable = checkpoints && checkpoints->has_any();
   throw StoppedByUser(
       map + ": stopped by Ctrl-C; no map was saved" +
-      (resumable ? ", and the same command with --resume goes on from the last checkpoint" : ""));
+      (resumable ? ", and the same command with --resume continues from the last checkpoint" : ""));
 }
 
 bool holds_frames(const std::filesystem::path& spool) {
   return !spool.empty() && SpooledSource::has_frames(spool);
 }
 
-/// Throws Error that says what went wrong and, where the scan is not lost, how to go on.
+/// Throws Error with the fault and, if the scan is not lost, advice on how to continue.
 [[noreturn]] void fail(const std::string& fault, const ScanStart& start) {
   const bool is_kept = start.checkpoints && (start.checkpoints->has_any() || holds_frames(start.spool));
   if (!is_kept) {
-    if (start.checkpoints) start.checkpoints->remove();  // a spool without a frame would bar the name
+    if (start.checkpoints) start.checkpoints->remove();  // an empty spool would block the name
     throw Error(fault);
   }
   throw Error(fault + "\nroomradar: what was scanned is kept in " + start.checkpoints->folder().string() +
-              ": the same command with --resume goes on from there; delete it to scan anew");
+              ": the same command with --resume continues from there; delete it to start again");
 }
 
-/// Scans or saves.
+/// Calls act(), which scans or saves; errors say whether the scan can be resumed.
 template <typename Act>
 auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
   try {
@@ -176,20 +176,20 @@ auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
     throw;
   } catch (const std::bad_alloc&) {
     fail("memory ran out; close other programs, or give --max-memory", start);
-  } catch (const std::exception& error) {  // the libraries' too
+  } catch (const std::exception& error) {  // also those of libraries
     fail(error.what(), start);
   }
 }
 
-/// The beginning of a sentence.
+/// Returns the beginning of a sentence.
 std::string stopped_for_memory(const PrescanCommand& command, bool keep_frames) {
   return command.source + ": stopped by --max-memory " + std::to_string(std::llround(command.max_memory_mb)) +
          ": " +
-         (keep_frames ? "its frames are kept, and the same command with --resume scans them anew; " : "");
+         (keep_frames ? "its frames are kept, and the same command with --resume scans them again; " : "");
 }
 
-/// There is a map, or there will be none: the checkpoints go, and the frames of a live scan with them, unless
-/// they are to be scanned anew.
+/// Called once the map is saved, or will not be: deletes the checkpoints and, unless keep_frames, the stored
+/// frames of a live scan.
 void finish(Checkpoints& checkpoints, bool keep_frames) {
   if (keep_frames)
     checkpoints.forget();
@@ -221,8 +221,8 @@ int run(const PrescanCommand& command) {
   config.poses = command.poses;
   config.hold_out = command.hold_out;
   config.max_memory_bytes = static_cast<std::size_t>(1e6 * command.max_memory_mb);
-  // Recorded poses may disagree with the depth by more than what tells a ghost from a wall; there it would
-  // eat walls.
+  // Recorded poses may disagree with the depth by more than the threshold that tells a ghost from a wall;
+  // ghost removal would then erase walls.
   config.remove_ghosts = command.poses == PoseOrigin::kTracked;
   require_can_become_map(command.map, {command.report});
   require_writable(command.report);
@@ -249,7 +249,7 @@ int run(const PrescanCommand& command) {
     report.settings["deviation_m"] = nlohmann::json::parse(kept[kDeviationSetting]);
     if (config.resolution_m != command.quality.resolution_m ||
         config.surface.max_deviation_m != static_cast<float>(command.quality.deviation_m))
-      std::fprintf(stderr, "%s: is added to, and keeps its cells of %g m and its --deviation of %g m\n",
+      std::fprintf(stderr, "%s: is extended, and keeps its cells of %g m and its --deviation of %g m\n",
                    command.map.c_str(), config.resolution_m,
                    static_cast<double>(config.surface.max_deviation_m));
   }
@@ -258,17 +258,17 @@ int run(const PrescanCommand& command) {
   std::unique_ptr<Progress> progress;
   if (start.checkpoints)
     start.checkpoints->tell_failure([](const std::string& sentence) {
-      // On a terminal the line of the progress is not ended yet.
+      // On a terminal the progress line has no line end.
       std::fprintf(stderr, "%sroomradar: %s\n", isatty(STDERR_FILENO) != 0 ? "\n" : "", sentence.c_str());
     });
   std::string stage_shown;
   const auto show = [&](const std::string& stage, const std::string& note) {
-    if (stage_shown.empty() && start.checkpoints)  // they are read by now
+    if (stage_shown.empty() && start.checkpoints)  // the checkpoints have been read
       for (const std::string& fault : start.checkpoints->faults())
         std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
     if (stage != stage_shown) {
       progress.reset();
-      // The ghosts' passes read what they need, and some of it twice.
+      // The passes of ghost removal read only parts of the source, some twice.
       progress = std::make_unique<Progress>(stage, stage == "ghosts" ? std::nullopt : source->frame_count());
       stage_shown = stage;
       if (stage != "track") Interrupt::say(kStops);
@@ -290,8 +290,9 @@ int run(const PrescanCommand& command) {
   if (extends && was_stopped) {
     if (start.checkpoints) finish(*start.checkpoints, keep_frames);
     write_report(report, command.report);
-    throw Error(stopped_for_memory(command, keep_frames) + command.map +
-                " is as it was, since the rest could not be added later; more memory adds it whole");
+    throw Error(
+        stopped_for_memory(command, keep_frames) + command.map +
+        " is unchanged, because the rest could not be added later; with more memory it is added completely");
   }
   or_say_what_is_kept(start,
                       [&] { report.times.timed("save", [&] { save_map(command.map, scanned.map); }); });
@@ -299,7 +300,7 @@ int run(const PrescanCommand& command) {
   std::optional<HeldOutScore> held_out;
   std::string not_scored;
   if (command.hold_out > 0) {
-    // Of a map that was added to, the last poses are this scan's.
+    // An extended map's last poses are this scan's.
     const std::vector<TimedPose> poses(scanned.map.trajectory.end() - scanned.counts.frames_tracked,
                                        scanned.map.trajectory.end());
     try {
@@ -319,9 +320,10 @@ int run(const PrescanCommand& command) {
                  command.map.c_str(), not_scored.c_str());
   if (!was_stopped) return not_scored.empty() ? 0 : 1;
   throw Error(stopped_for_memory(command, keep_frames) + "the map of the " +
-              std::to_string(scanned.counts.frames_fused) + " frames that were fused is saved and whole; " +
-              (keep_frames ? "more memory takes in the rest"
-                           : "a coarser --resolution or more memory takes in the rest, from the beginning"));
+              std::to_string(scanned.counts.frames_fused) + " fused frames is saved and complete; " +
+              (keep_frames
+                   ? "with more memory the rest is included"
+                   : "with a coarser --resolution or more memory the rest is included, from the beginning"));
 }
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// record_command.cpp: roomradar record: a source's frames as a folder that can be read again.
+// record_command.cpp: roomradar record: writes a source's frames as a recording.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -14,8 +14,7 @@
 namespace roomradar {
 namespace {
 
-/// Takes the source's next frame over; where that fails, what was written before is whole, and said to be
-/// there.
+/// Copies the source's next frame to the recording. If this fails, the error says how many frames were saved.
 ReadResult take_over(FrameSource& source, RecordingWriter& writer, const std::string& folder, Frame& frame) {
   try {
     const ReadResult result = source.next(frame);
@@ -24,7 +23,7 @@ ReadResult take_over(FrameSource& source, RecordingWriter& writer, const std::st
   } catch (const Error& error) {
     if (writer.frames_written() == 0) throw;
     throw Error(std::string(error.what()) + ". The " + std::to_string(writer.frames_written()) +
-                " frames before that are whole, in " + folder);
+                " frames before that are complete, in " + folder);
   }
 }
 
@@ -59,12 +58,12 @@ int run(const RecordCommand& command) {
     }
   }
   writer.close();
-  if (writer.frames_written() == 0) throw Error(command.source + ": there is not one readable frame");
+  if (writer.frames_written() == 0) throw Error(command.source + ": there is no readable frame");
   std::printf("%s: %lld frames written as %s, %lld skipped\n", command.folder.c_str(),
               static_cast<long long>(writer.frames_written()), std::string(to_string(command.format)).c_str(),
               static_cast<long long>(skipped));
-  if (is_live && dropped.count > 0)  // they came while the disk was behind
-    std::printf("%lld of the device's frames in between are not in it; is the disk fast enough?\n",
+  if (is_live && dropped.count > 0)  // dropped while the disk was too slow
+    std::printf("%lld frames of the device were dropped; is the disk fast enough?\n",
                 static_cast<long long>(dropped.count));
   return 0;
 }

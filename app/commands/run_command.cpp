@@ -15,7 +15,7 @@
 namespace roomradar {
 namespace {
 
-/// The octree as the session has left it, with its surface made anew as a whole.
+/// Saves the octree as changed by the session, with its whole surface extracted again.
 void save_changed(SavedMap& map, std::size_t changes, const std::string& folder) {
   if (changes > 0) {
     map.mesh = extract_surface(map.octree, surface_config_of(map.info));
@@ -26,7 +26,7 @@ void save_changed(SavedMap& map, std::size_t changes, const std::string& folder)
   std::printf("%s: saved with %zu changes\n", folder.c_str(), changes);
 }
 
-/// Says on stderr how a replay compares with what was recorded.
+/// Prints to stderr how a replay compares with the recorded results.
 nlohmann::json report_replay(const ReplayCheck& check) {
   std::fprintf(stderr, "replay: %lld of %lld frames the same as recorded",
                static_cast<long long>(check.same()), static_cast<long long>(check.recorded()));
@@ -36,7 +36,7 @@ nlohmann::json report_replay(const ReplayCheck& check) {
   return {{"same", check.same()}, {"different", check.different()}, {"recorded", check.recorded()}};
 }
 
-/// Plays, saves, reports and prints what the run came to; the exit status.
+/// Plays the run, saves, reports and prints its results; returns the exit status.
 int play(OpenedRun& run) {
   const RunCommand& command = run.command;
   const RunTotals& totals = run.totals;
@@ -46,7 +46,7 @@ int play(OpenedRun& run) {
   if (run.frames_csv) faults.attempt([&] { run.frames_csv->close(); });
   if (totals.read == totals.skipped) {
     faults.throw_first();
-    throw Error(command.source + ": there is not one readable frame" +
+    throw Error(command.source + ": there is no readable frame" +
                 (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
   }
   faults.attempt([&] {
@@ -65,16 +65,18 @@ int play(OpenedRun& run) {
   faults.throw_first();
   if (totals.located > 0 || run.was_quit) return 0;
   if (command.poses == PoseOrigin::kRecorded) {
-    std::fprintf(stderr, "roomradar: %s: no frame has a pose of its own; take --poses tracked\n",
+    std::fprintf(stderr, "roomradar: %s: no frame has a recorded pose; take --poses tracked\n",
                  command.source.c_str());
     return 1;
   }
-  std::fprintf(stderr, "roomradar: %s: no frame shows where in %s the camera is; was that room mapped?\n",
-               command.source.c_str(), command.map.c_str());
+  std::fprintf(
+      stderr,
+      "roomradar: %s: the camera was not localised in %s in any frame; does the map show this room?\n",
+      command.source.c_str(), command.map.c_str());
   return 1;
 }
 
-/// @param link  to the window; null: there is none
+/// @param link  to the window; null: no window
 int run_frames(const RunCommand& command, UiChannel* link) { return play(*open_run(command, link)); }
 
 }  // namespace

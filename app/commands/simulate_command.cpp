@@ -1,4 +1,4 @@
-// simulate_command.cpp: roomradar simulate: a recording of a simulated Kinect, with the truth beside it.
+// simulate_command.cpp: roomradar simulate: records a simulated Kinect, with ground truth.
 #include <cstdio>
 
 #include "app/cli/progress.hpp"
@@ -10,7 +10,7 @@ namespace roomradar {
 
 int run(const SimulateCommand& command) {
   require_contents_outside_maps(command.folder);
-  // One parser for what can be simulated: the command's options are put together as a sim: source.
+  // Builds a `sim:` source from the options, so simulations are described in one syntax only.
   std::string spec = "sim:" + command.room + "?seed=" + std::to_string(command.seed) +
                      "&frames=" + std::to_string(command.frames) + "&path=" + command.path;
   if (!command.moving.empty()) spec += "&moving=" + command.moving;

@@ -1,4 +1,4 @@
-// trade_command.cpp: roomradar trade: what accuracy costs, measured.
+// trade_command.cpp: roomradar trade: measures time against accuracy.
 #include <algorithm>
 #include <cstdio>
 
@@ -26,7 +26,7 @@ namespace {
 
 TradeScale scale_of(const TradeCommand& command) { return command.quick ? kQuickScale : TradeScale{}; }
 
-/// Throws Error if more is said of the room than a scan in it would heed.
+/// Throws Error if the room's spec has keys that a scan in it would ignore.
 void require_scan_room(const std::string& room, SimOptions options) {
   const SimOptions defaults;
   const std::string said = sim_spec(options);
@@ -35,23 +35,23 @@ void require_scan_room(const std::string& room, SimOptions options) {
   options.depth_camera = defaults.depth_camera;
   if (sim_spec(options) != said)
     throw Error("trade: " + room +
-                ": how many frames there are, how fast and how wide, is the sweep's own; "
-                "leave out frames=, rate= and width=");
+                ": the sweep itself sets the number, rate and width of the frames; leave out frames=, rate= "
+                "and width=");
 }
 
-/// Throws Error if more is said of the room than a run in it would heed, or if it hides no surface.
+/// Throws Error if the room's spec has keys that a run in it would ignore, or if it has no hidden surface.
 void require_run_room(const std::string& room, const SimOptions& options) {
   SimOptions heeded;
   heeded.room = options.room;
   heeded.seed = options.seed;
   if (sim_spec(heeded) != sim_spec(options))
-    throw Error("trade: " + room +
-                ": of a run's room only its name and seed can be chosen; leave out the rest, "
-                "or take --only prescan");
+    throw Error(
+        "trade: " + room +
+        ": for a run's room only its name and seed can be chosen; leave out the rest, or use --only prescan");
   (void)make_scenario(make_scenario_room(options.room, options.seed), options.seed, 0);
 }
 
-/// A scene that cannot be measured in is said now, and not when the sweep comes to it.
+/// Rejects unsuitable scenes before the sweep begins.
 void require_scenes(const TradeCommand& command) {
   const bool scans = command.only != "run" && !command.table1,
              runs = command.only != "prescan" || command.table1;
@@ -76,13 +76,12 @@ std::vector<MeasuredWork> works_of(const TradeCommand& command) {
   return works;
 }
 
-/// Ctrl-C once is remembered: what is measured so far is the result.
+/// Remembers a Ctrl-C: the measurements so far are the result.
 class Stop {
  public:
   Stop() {
     Interrupt::say(
-        "\nroomradar: stops here: the scenes that are done are the result. Ctrl-C once more ends it at "
-        "once\n");
+        "\nroomradar: stops here; the completed scenes are the result. Press Ctrl-C again to end at once\n");
   }
   bool asked() { return was_asked_ = was_asked_ || Interrupt::take(); }
 
@@ -102,7 +101,7 @@ TradeResult traded(const MeasuredWork& work, const TradeCommand& command, Stop& 
     result.settings.insert(result.settings.end(), settings.begin(), settings.end());
     SweepWatch watch;
     watch.is_stopped = [&] { return stop.asked(); };
-    const auto of_all = [before](SweepRow row) {  // named among all settings, not these alone
+    const auto of_all = [before](SweepRow row) {  // index among all settings
       row.setting += before;
       return row;
     };
@@ -133,7 +132,7 @@ TradeResult traded(const MeasuredWork& work, const TradeCommand& command, Stop& 
   return result;
 }
 
-/// "sim:table; sim:random?seed=2; kitchen"
+/// Returns "sim:table; sim:random?seed=2; kitchen" and the like.
 std::string scenes_of(const TradeCommand& command) {
   std::string scenes;
   for (const std::string& room : command.rooms) scenes += (scenes.empty() ? "sim:" : "; sim:") + room;
@@ -141,7 +140,7 @@ std::string scenes_of(const TradeCommand& command) {
   return scenes;
 }
 
-/// What a preset is, in a line.
+/// Prints one line on a preset.
 void print_preset(const TradeResult& result, std::size_t setting) {
   const SettingSummary& summary = result.summaries[setting];
   std::printf("%-8s %-22s time x %5.2f (%.2f to %.2f), loss %5.2f: %s\n", result.work.name.c_str(),
@@ -206,7 +205,7 @@ int run(const TradeCommand& command) {
   TradeCsv csv(command.csv, works);
   Stop stop;
   std::vector<TradeResult> results;
-  DeferredErrors faults;  // what was measured before them is written all the same
+  DeferredErrors faults;  // earlier measurements are written all the same
   for (const MeasuredWork& work : works) {
     TradeResult result;
     if (!stop.asked())
@@ -225,7 +224,7 @@ int run(const TradeCommand& command) {
     print_presets(result);
     report.results[result.work.name] = result_json(result);
     if (result.was_cut_short)
-      std::fprintf(stderr, "roomradar: %s: cut short: not everything that was asked for was measured\n",
+      std::fprintf(stderr, "roomradar: %s: stopped early: not all settings were measured\n",
                    result.work.name.c_str());
     for (const std::string& setting : faults_of(result))
       std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
@@ -247,11 +246,11 @@ int run(const TradeCommand& command) {
     if (command.presets.empty()) return;
     if (results.size() < 2)
       throw Error(command.presets + ": not written: only " + results.front().work.name +
-                  " was measured, and presets are of both");
+                  " was measured, and presets need both");
     for (const TradeResult& result : results)
       if (result.was_cut_short)
         throw Error(command.presets + ": not written: " + result.work.name +
-                    " was cut short, and presets are chosen from all that was asked for");
+                    " was stopped early, and presets need all settings");
     write_presets(chosen_presets(results, {{"processor", machine.processor},
                                            {"renderer", machine.renderer},
                                            {"system", machine.system},

@@ -1,4 +1,4 @@
-// unfinished_scan.cpp: what lies at the map's place and beside it decides how a prescan begins.
+// unfinished_scan.cpp: decides how a prescan begins, by the existing map and the interrupted scan beside it.
 #include "app/commands/unfinished_scan.hpp"
 
 #include <cmath>
@@ -31,14 +31,16 @@ bool is_unfinished(const fs::path& folder) { return fs::exists(folder / "work.js
 
 void require_no_live_scan(const fs::path& folder) {
   if (!SpooledSource::has_frames(folder / kSpool)) return;
-  if (is_unfinished(folder)) Checkpoints(folder, {}, 0.0).ensure_folder();  // nobody is at work on it
-  throw Error(folder.string() +
-              ": holds a live scan that was cut off; go on with it by --resume, or delete "
-              "the folder to begin anew");
+  if (is_unfinished(folder))
+    Checkpoints(folder, {}, 0.0).ensure_folder();  // throws if another process works
+                                                   // on it
+  throw Error(
+      folder.string() +
+      ": holds an interrupted live scan; continue it with --resume, or delete the folder to start again");
 }
 
-/// Throws Error if the scan cannot even begin under the cap.
-/// @param later_bytes  that are needed whatever is scanned
+/// Throws Error if the cap is too low to begin the scan at all.
+/// @param later_bytes  needed later in any case
 void require_memory_to_begin(double cap_mb, double later_bytes = 0.0) {
   constexpr double kMB = 1e6, kToTrack_mb = 60.0;
   constexpr double kSpare_mb = 8.0;  // processes differ in how much of their libraries is in memory
@@ -49,12 +51,12 @@ void require_memory_to_begin(double cap_mb, double later_bytes = 0.0) {
               std::to_string(std::llround(std::ceil(least_mb + kSpare_mb))));
 }
 
-/// A scan that was cut off, and is not to be resumed: what can be read again may go.
+/// Deletes an interrupted scan that is not resumed; its source can be read again.
 void give_up_unfinished(const fs::path& folder) {
   if (!fs::exists(folder)) return;
   Checkpoints unfinished(folder, {}, 0.0);
-  unfinished.ensure_folder();  // nobody else is at work on it
-  std::fprintf(stderr, "%s: a scan that was cut off is given up; --resume would have gone on with it\n",
+  unfinished.ensure_folder();  // throws if another process works on it
+  std::fprintf(stderr, "%s: an interrupted scan is discarded; --resume would have continued it\n",
                folder.c_str());
   unfinished.remove();
 }
@@ -63,17 +65,16 @@ bool is_to_extend(bool resume, const fs::path& folder, const fs::path& map) {
   if (!resume) return false;
   if (is_unfinished(folder)) return identity_of(folder)["into"] != kNewMap;
   if (fs::exists(map / "map.json")) return true;
-  throw Error(map.string() + ": there is nothing to resume: no map, and no scan that was cut off (" +
-              folder.string() + "); leave --resume away to begin a new map");
+  throw Error(map.string() + ": there is nothing to resume: no map, and no interrupted scan (" +
+              folder.string() + "); leave out --resume to begin a new map");
 }
 
-/// Whether a map has a recording's frames already: then the scan to be resumed had come to its end.
+/// Returns true if the map already contains a recording: the scan to resume was complete.
 bool holds(const MapInfo& map, const FrameSource& source) {
   return ("; " + map.source + "; ").find("; " + source.name() + "; ") != std::string::npos;
 }
 
-/// The source; null where it is a device that is not there any more, but frames of it are, to be resumed
-/// with.
+/// Returns the source, or null if it is a disconnected device with stored frames to resume from.
 std::unique_ptr<FrameSource> open_or_say(const PrescanCommand& command, const SourceOptions& options,
                                          const fs::path& folder) {
   try {
@@ -84,7 +85,7 @@ std::unique_ptr<FrameSource> open_or_say(const PrescanCommand& command, const So
     if (!has_its_frames) throw;
     std::fprintf(
         stderr,
-        "%s. The map is made of what was scanned before; --resume adds to it once the device is back\n",
+        "%s. The map is made from the frames scanned before; --resume extends it once the device is back\n",
         fault.what());
     return nullptr;
   }
@@ -107,9 +108,9 @@ ScanStart start_scan(const PrescanCommand& command) {
   SourceOptions options;
   options.keep_all = true;
   if (!SpooledSource::has_end(spool)) start.source = open_or_say(command, options, folder);
-  const bool spooled = !start.source;  // all that there is: the device is not needed any more, or is gone
+  const bool spooled = !start.source;  // all frames are stored, or the device is gone
   if (!extend) require_memory_to_begin(command.max_memory_mb);
-  if (!command.resume) give_up_unfinished(folder);  // what follows it is there
+  if (!command.resume) give_up_unfinished(folder);  // only now that the source is open
   const bool live = spooled || !start.source->rewind();
   start.is_live = live && !spooled;
   if (start.is_live) start.source = ended_by_interrupt(std::move(start.source));
@@ -123,19 +124,18 @@ ScanStart start_scan(const PrescanCommand& command) {
       (!is_unfinished(folder) || identity_of(folder)["into"] != into)) {
     if (fs::exists(folder)) {
       Checkpoints unfinished(folder, {}, 0.0);
-      unfinished.ensure_folder();  // nobody else is at work on it
+      unfinished.ensure_folder();  // throws if another process works on it
       unfinished.remove();
     }
     const auto stopped = start.map->info.settings.find(kStoppedSetting);
     if (stopped != start.map->info.settings.end() && stopped->second == start.source->name())
-      throw Error(
-          map.string() + ": was stopped by --max-memory before all of " + stopped->second +
-          " was in it; scan that anew with more memory or a coarser --resolution: without --resume, or "
-          "as another map");
+      throw Error(map.string() + ": was stopped by --max-memory before all of " + stopped->second +
+                  " was in it; scan it again with more memory or a coarser --resolution: without --resume, "
+                  "or as another map");
     start.is_done = true;
     return start;
   }
-  // What is to be resumed is in the checkpoints, whether or not there are to be more of them.
+  // A scan to resume is in the checkpoints, even if no further ones are requested.
   if (command.checkpoint_every_s > 0.0 || spooled || is_unfinished(folder)) {
     const double every_s = command.checkpoint_every_s > 0.0 ? command.checkpoint_every_s
                                                             : std::numeric_limits<double>::infinity();
@@ -154,7 +154,7 @@ ScanStart start_scan(const PrescanCommand& command) {
         {"into", into}};
     if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
     start.checkpoints = std::make_unique<Checkpoints>(folder, identity, every_s);
-    start.checkpoints->ensure_folder();  // nobody else may begin this map, from now on
+    start.checkpoints->ensure_folder();  // from now on no other process can begin this map
     start.checkpoints->require_same_work();
   }
   if (live && start.checkpoints) start.spool = spool;

@@ -1,4 +1,4 @@
-// unfinished_scan.hpp: how a prescan begins: anew, where it was cut off, or in a map that is there already.
+// unfinished_scan.hpp: begins a prescan: a new one, an interrupted one, or one that extends a map.
 #pragma once
 #include <memory>
 #include <optional>
@@ -10,21 +10,21 @@
 
 namespace roomradar {
 
-/// What a prescan is given to work with.
+/// Input of a prescan.
 struct ScanStart {
-  std::unique_ptr<Checkpoints> checkpoints;  ///< null: none are asked for
-  /// Rewinds; a live one is spooled beside the checkpoints, and ended by Ctrl-C.
+  std::unique_ptr<Checkpoints> checkpoints;  ///< null: no checkpoints requested
+  /// Can be rewound. A live source is spooled beside the checkpoints, and ends on Ctrl-C.
   std::unique_ptr<FrameSource> source;
-  bool is_live = false;         ///< goes on until Ctrl-C, unless frames were asked for
-  std::filesystem::path spool;  ///< of a live one's frames, beside the checkpoints; empty: they go with it
-  std::optional<SavedMap> map;  ///< to be extended by what the source shows
-  bool is_done = false;         ///< to be resumed, but the map holds all of this recording
+  bool is_live = false;         ///< continues until Ctrl-C, unless limited by --frames
+  std::filesystem::path spool;  ///< a live source's stored frames, beside the checkpoints; empty: not stored
+  std::optional<SavedMap> map;  ///< map to extend
+  bool is_done = false;         ///< nothing to resume: the map already holds all of this recording
 };
 
-/// Opens the source and decides by --resume and by what lies at the map's place and beside it
+/// Opens the source, and decides by --resume, the existing map and the interrupted scan beside it
 /// (MAP.unfinished).
-/// @throws Error if there is nothing to resume, or what is there was begun by another command, or without
-/// --resume if a live scan would be lost, and as open_source does
+/// @throws Error if there is nothing to resume, if the interrupted scan belongs to another command, or if a
+/// live scan would be lost without --resume; also as open_source() does
 ScanStart start_scan(const PrescanCommand& command);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// held_out.cpp: signed differences of rendered and measured depth, counted in bins.
+// held_out.cpp: builds histograms of the differences of rendered and measured depth.
 #include "app/evaluation/held_out.hpp"
 
 #include <algorithm>
@@ -17,13 +17,13 @@ constexpr int kStride_px = 4;
 constexpr float kFarthest_m = 4.0F;
 constexpr double kOutlier_m = 0.1;
 constexpr double kBin_m = 0.00005;
-constexpr std::size_t kBins = 20'000;  // to 1 m; what is farther off goes into the last
+constexpr std::size_t kBins = 20'000;  // up to 1 m; larger differences go into the last bin
 
 using Histogram = std::array<std::int64_t, kBins>;
 
 std::size_t bin_of(double size_m) { return static_cast<std::size_t>(std::min(size_m / kBin_m, kBins - 1.0)); }
 
-/// The size at `rank` among the counted ones, 0 the smallest, to half a bin.
+/// Returns the value at `rank` (0: smallest) among those counted, to half a bin.
 double value_at(const Histogram& counts, std::int64_t rank) {
   std::int64_t sum = 0;
   for (std::size_t bin = 0; bin < kBins; ++bin) {
@@ -33,7 +33,7 @@ double value_at(const Histogram& counts, std::int64_t rank) {
   return 0.0;
 }
 
-/// How often the mesh was off by how much.
+/// Histograms of signed differences.
 struct Differences {
   Histogram behind{};  // mesh farther than measured
   Histogram before{};
@@ -85,7 +85,9 @@ HeldOutScore score_held_out(FrameSource& source, const Mesh& mesh, const std::ve
   Frame frame;
   for (ReadResult read = source.next(frame); read.status != ReadStatus::kEnd; read = source.next(frame)) {
     if (read.status != ReadStatus::kFrame) continue;
-    if (frame.index > T_world_camera.rbegin()->first) break;  // a live source would be recorded on
+    if (frame.index > T_world_camera.rbegin()->first)
+      break;  // reading on would make a live source record
+              // more
     const auto pose = T_world_camera.find(frame.index);
     if (pose == T_world_camera.end()) continue;
     depth_pass.render({&instance, 1}, frame.depth_camera, pose->second, mesh_m);
@@ -102,7 +104,7 @@ HeldOutScore score_held_out(FrameSource& source, const Mesh& mesh, const std::ve
   score.outliers = static_cast<double>(differences.outliers) / static_cast<double>(covered);
   score.median_m = value_at(sizes, covered / 2);
   const std::int64_t before = total(differences.before);
-  const std::int64_t middle = covered / 2;  // counted from 0, the most negative
+  const std::int64_t middle = covered / 2;  // rank from the most negative difference, from 0
   score.bias_m = middle < before ? -value_at(differences.before, before - 1 - middle)
                                  : value_at(differences.behind, middle - before);
   return score;

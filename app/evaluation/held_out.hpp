@@ -1,4 +1,4 @@
-// held_out.hpp: frames that were tracked but not fused judge the mesh that the others made.
+// held_out.hpp: scores a mesh by frames that were tracked but not fused into it.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,20 +10,20 @@
 namespace roomradar {
 
 struct HeldOutScore {
-  std::int64_t frames = 0;  ///< held out, with a pose
-  std::int64_t pixels = 0;  ///< compared: each 4th in both directions that measured 0 < depth <= 4 m
-  double cover = 0.0;       ///< part of them that the mesh lies behind or before, at any distance
-  double median_m = 0.0;    ///< of |mesh - measured| along the optical axis, where covered; to 0.05 mm
-  double bias_m = 0.0;      ///< median of mesh - measured, likewise
-  double outliers = 0.0;    ///< part of the covered pixels that are off by more than 0.1 m
+  std::int64_t frames = 0;  ///< held-out frames with a pose
+  std::int64_t pixels = 0;  ///< pixels compared: every 4th in both directions with 0 < depth <= 4 m
+  double cover = 0.0;       ///< fraction of these pixels that show the mesh, at any depth
+  double median_m = 0.0;  ///< median |mesh - measured| along the optical axis over covered pixels; to 0.05 mm
+  double bias_m = 0.0;    ///< median of mesh - measured, same pixels and precision
+  double outliers = 0.0;  ///< fraction of covered pixels that differ by more than 0.1 m
 };
 
-/// Draws the mesh as each held-out frame's camera would have measured it and compares. The source is read
-/// again. All figures are 0 where no frame was held out, or none of them has a pose.
+/// Renders the mesh's depth for each held-out frame's camera and compares it with the measured depth. Reads
+/// the source again. All results are 0 if no held-out frame has a pose.
 ///
 /// @param hold_out    as PrescanConfig::hold_out, > 0
-/// @param trajectory  poses by frame index; frames without one are left out
-/// @throws Error if the source cannot be rewound, or no GL context can be had
+/// @param trajectory  poses by frame index; frames without a pose are skipped
+/// @throws Error if the source cannot be rewound or no GL context is available
 HeldOutScore score_held_out(FrameSource& source, const Mesh& mesh, const std::vector<TimedPose>& trajectory,
                             std::int64_t hold_out);
 

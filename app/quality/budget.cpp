@@ -1,4 +1,4 @@
-// budget.cpp: foresees the parts of a frame by what they took lately, and picks a setting that has time.
+// budget.cpp: predicts the time of a frame's parts from recent frames, and chooses a setting that fits.
 #include "app/quality/budget.hpp"
 
 #include <algorithm>
@@ -12,13 +12,14 @@ constexpr double kMostSpread = 2.0;
 constexpr double kQuantile = 0.95, kQuantileStep = 0.02;
 constexpr std::int64_t kLongAgo = -1'000'000;
 constexpr double kNotMade = 0.02;
-constexpr int kMostNotMade_frames = 17;  // turns of pictures and objects are no longer than that
-constexpr double kMostStrain = 1.5, kStrainKept = 0.9;  // two frames of some ten that were cut on their way
+constexpr int kMostNotMade_frames = 17;                 // more than the longest cycle of pictures and objects
+constexpr double kMostStrain = 1.5, kStrainKept = 0.9;  // exceeded by two interrupted frames within about ten
 
-/// Of the objects in the room, those that a frame moves, where it moves any.
+/// Returns the fraction of the objects in the room that a frame moves, if it moves any.
 double moved_share(int objects, int turns) { return std::max(1.0 / std::max(objects, 1), 1.0 / turns); }
 
-/// A few objects that take many turns are not as small a part of themselves as many are.
+/// Returns the measured ratio, corrected for the number of objects: with few objects and many turns, a frame
+/// moves a larger fraction of them.
 double part_ratio(const BudgetStep& step, std::size_t part, const FrameLoad& load) {
   const double measured = step.ratios[part];
   if (part != index_of(FramePart::kPhysics) || step.objects == 0) return measured;
@@ -31,7 +32,7 @@ double part_ms(const BudgetState& state, std::size_t step, std::size_t part, con
          nominal_ms(static_cast<FramePart>(part), load);
 }
 
-/// What is left of a frame from a part on.
+/// Returns the predicted p95 of the time from a part to the end of the frame.
 double rest_ms(const BudgetState& state, std::size_t step, std::size_t part, const FrameLoad& load) {
   std::array<double, kFrameParts> ms{};
   for (; part < kFrameParts; ++part) ms[part] = part_ms(state, step, part, load);
@@ -41,8 +42,8 @@ double rest_ms(const BudgetState& state, std::size_t step, std::size_t part, con
   return state.spread * std::accumulate(ms.begin(), ms.end(), 0.0);
 }
 
-/// The most accurate step from one on in which the rest of the frame has time; where none has, the one that
-/// takes least.
+/// Returns the most accurate step, starting at `from`, in which the rest of the frame fits; if none fits, the
+/// fastest.
 std::size_t step_in_time(const BudgetState& state, const BudgetConfig& config, std::size_t from,
                          std::size_t first_part, const FrameLoad& load, double elapsed_ms) {
   std::size_t best = from;
@@ -58,13 +59,13 @@ std::size_t step_in_time(const BudgetState& state, const BudgetConfig& config, s
   return best;
 }
 
-/// Whether a frame with this step leaves so much of the budget that it is worth going back to.
+/// Returns true if a frame at this step leaves enough of the budget for an upgrade to it.
 bool has_time(const BudgetState& state, const BudgetConfig& config, std::size_t step, const FrameLoad& load) {
   return rest_ms(state, step, 0, load) < config.back_below * config.budget_ms;
 }
 
-/// The most accurate of the steps before the settled one that would have time: perhaps not the next, for what
-/// one step gains in a part it may lose in another. The settled one if none has.
+/// Returns the most accurate step before the settled one that fits, or the settled one if none does. It need
+/// not be the next: a step may gain time in one part and lose time in another.
 std::size_t most_accurate_in_time(const BudgetState& state, const BudgetConfig& config,
                                   const FrameLoad& load) {
   std::size_t step = 0;
@@ -72,7 +73,8 @@ std::size_t most_accurate_in_time(const BudgetState& state, const BudgetConfig& 
   return step;
 }
 
-/// Half of the way back to it, or farther where the steps there have no time: what is foreseen may be wrong.
+/// Returns the step half way to `with_time`, or closer to it if the steps there do not fit. Only half way,
+/// because predictions may be wrong.
 std::size_t half_way_back(const BudgetState& state, const BudgetConfig& config, std::size_t with_time,
                           const FrameLoad& load) {
   std::size_t step = state.settled - (state.settled - with_time + 1) / 2;
@@ -80,7 +82,7 @@ std::size_t half_way_back(const BudgetState& state, const BudgetConfig& config, 
   return step;
 }
 
-/// The step that the frames to come begin with.
+/// Chooses the step with which the following frames begin.
 void adapt(BudgetState& state, const BudgetConfig& config, const FrameLoad& load) {
   const std::size_t before = state.settled;
   const std::size_t with_time = most_accurate_in_time(state, config, load);
@@ -88,7 +90,7 @@ void adapt(BudgetState& state, const BudgetConfig& config, const FrameLoad& load
   if (rest_ms(state, before, 0, load) > config.budget_ms) {
     state.settled = with_time < before ? half_way_back(state, config, with_time, load)
                                        : step_in_time(state, config, before, 0, load, 0.0);
-  } else if (state.strain > kMostStrain) {  // foreseen it has time, and then it has not
+  } else if (state.strain > kMostStrain) {  // predicted to fit, but frames did not
     state.settled = std::min(before + 1, state.front.size() - 1);
   } else if (state.calm_frames >= state.patience_frames) {
     state.settled = half_way_back(state, config, with_time, load);
@@ -100,7 +102,7 @@ void adapt(BudgetState& state, const BudgetConfig& config, const FrameLoad& load
     state.strain = 0.0;
     if (state.frame - state.went_back_at < config.regret_frames) {
       state.patience_frames = std::min(2 * state.patience_frames, config.most_patience_frames);
-      state.went_back_at = kLongAgo;  // regretted once
+      state.went_back_at = kLongAgo;  // counts as premature only once
     }
   }
   if (state.frame - state.went_back_at == 2 * config.regret_frames)
@@ -116,8 +118,8 @@ double median_of(std::array<double, 3> values) {
 }  // namespace
 
 double nominal_ms(FramePart part, const FrameLoad& load) {
-  // Estimates for 640 x 480 and teapots: a fifth of the image moved costs 2 ms more than nothing; an object
-  // that moves 0.2 ms, one that rests 0.05; each drawn 0.1 ms.
+  // Estimates for 640 x 480 and teapots: a dynamic fifth of the image costs 2 ms, a moving object 0.2 ms, a
+  // resting one 0.05 ms, and drawing an object 0.1 ms.
   switch (part) {
     case FramePart::kLocate:
       return 6.0;
@@ -176,13 +178,13 @@ void learn(BudgetState& state, const BudgetConfig& config, const std::array<doub
     state.not_made_frames[part] = 0;
     took_ms += parts_ms[part];
     foreseen += state.foreseen_ms[part];
-    // What moved is meshed from the depth image that the frame began with.
+    // The mesh uses the depth image of the frame's first step, so its time is not that of this step.
     const bool is_mixed = part == index_of(FramePart::kMesh) && state.steps[part] != state.steps[0];
     if (is_mixed) continue;
     const double at_one_ms = state.foreseen_ms[part] / state.scales[part];
     std::array<double, 3>& lately = state.lately[part];
     lately = {parts_ms[part] / at_one_ms, lately[0], lately[1]};
-    const double scale = median_of(lately);  // one accident is none
+    const double scale = median_of(lately);  // ignores a single outlier
     state.scales[part] +=
         (scale > state.scales[part] ? config.attack : config.decay) * (scale - state.scales[part]);
   }

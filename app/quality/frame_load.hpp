@@ -1,4 +1,4 @@
-// frame_load.hpp: the parts of a frame that take time, and what is known of their work before they do it.
+// frame_load.hpp: the parts of a frame that take time, and the size of their work as known in advance.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -7,11 +7,11 @@
 namespace roomradar {
 
 enum class FramePart {
-  kLocate,   ///< where is the camera, what moved
-  kMesh,     ///< of what moved
-  kPhysics,  ///< the objects move
-  kCompose,  ///< the picture
-  kDone,     ///< no part: the frame is over
+  kLocate,   ///< localisation and foreground
+  kMesh,     ///< mesh of the dynamic foreground
+  kPhysics,  ///< motion of the objects
+  kCompose,  ///< picture
+  kDone,     ///< not a part: the frame is finished
 };
 inline constexpr std::size_t kFrameParts = 4;
 constexpr std::size_t index_of(FramePart part) { return static_cast<std::size_t>(part); }
@@ -33,8 +33,9 @@ constexpr std::string_view to_string(FramePart part) {
 }
 
 struct FrameLoad {
-  double dynamic_fraction = 0.0;  ///< of the depth image's pixels; before kMesh, of the frame before
-  int moving = 0;                 ///< virtual objects in the room that are not at rest
+  double dynamic_fraction = 0.0;  ///< fraction of dynamic pixels in the depth image; before kMesh, in the
+                                  ///< previous one
+  int moving = 0;                 ///< virtual objects in the room that are not asleep
   int resting = 0;
 };
 

@@ -1,4 +1,4 @@
-// presets.cpp: presets and front as JSON.
+// presets.cpp: reads and writes presets and front as JSON.
 #include "app/quality/presets.hpp"
 
 #include <cmath>
@@ -23,7 +23,7 @@ constexpr std::uintmax_t kMaxBytes = 1U << 20U;
 constexpr std::size_t kMaxFront = 1000;
 constexpr double kMostRatio = 1000.0;
 
-/// An object whose keys are all among those named.
+/// Throws Error unless this is an object with no keys except those given.
 void require_object(const Json& json, std::initializer_list<std::string_view> keys,
                     const std::string& where) {
   if (!json.is_object()) throw Error(where + ": is not a JSON object");
@@ -34,11 +34,12 @@ void require_object(const Json& json, std::initializer_list<std::string_view> ke
       is_known |= key == item.key();
       list.append(list.empty() ? "" : ", ").append(key);
     }
-    if (!is_known) throw Error(where + ": \"" + item.key() + "\" is not known; there may be " + list);
+    if (!is_known) throw Error(where + ": \"" + item.key() + "\" is not known; allowed are " + list);
   }
 }
 
-/// The member, or an empty object where there is none. Not a copy: that goes as deep as what it copies.
+/// Returns the member, or an empty object if absent. By reference, because a copy recurses as deep as the
+/// JSON.
 const Json& member(const Json& json, const char* key) {
   static const Json kEmpty = Json::object();
   const auto found = json.find(key);
@@ -101,7 +102,7 @@ Presets presets_of(std::string_view text, const std::string& where) {
   if (json.is_discarded() || !json.is_object() || !json.contains("format") || json["format"] != kFormat)
     throw Error(where + ": is not a file of presets, or is damaged");
   if (!json.contains("format_version") || json["format_version"] != kFormatVersion)
-    throw Error(where + ": is of another format version than " + std::to_string(kFormatVersion) +
+    throw Error(where + ": has another format version than " + std::to_string(kFormatVersion) +
                 ", which this program reads");
   require_object(json, {"format", "format_version", "made_by", "presets", "front"}, where);
   Presets presets;

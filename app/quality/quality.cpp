@@ -1,4 +1,4 @@
-// quality.cpp: the rules of qualities, and their fields as words.
+// quality.cpp: validates qualities, and converts their fields to and from words.
 #include "app/quality/quality.hpp"
 
 #include <array>
@@ -69,8 +69,7 @@ void set_field_of(Quality& quality, std::string_view name, std::string_view word
     if (!read(word, read_value) || !is_within(field, read_value)) fail(field, word);
     value = read_value;
   });
-  if (!is_known)
-    throw Error("there is nothing called \"" + std::string(name) + "\" to set; there are " + names);
+  if (!is_known) throw Error("there is no setting \"" + std::string(name) + "\"; the settings are " + names);
 }
 
 template <typename Quality>

@@ -1,5 +1,5 @@
-// quality.hpp: what a user can trade for time, in a scan and in a run: one struct each, one list of their
-// fields.
+// quality.hpp: settings that trade accuracy for time: one struct for scans and one for runs, each with a list
+// of its fields.
 #pragma once
 #include <string>
 #include <string_view>
@@ -11,7 +11,7 @@
 
 namespace roomradar {
 
-/// Of a prescan.
+/// Settings of a prescan.
 struct ScanQuality {
   double resolution_m = 0.01;
   double deviation_m = 0.002;
@@ -20,7 +20,7 @@ struct ScanQuality {
   friend bool operator==(const ScanQuality&, const ScanQuality&) = default;
 };
 
-/// Of a run, and of each of its frames.
+/// Settings of a run, and of each of its frames.
 struct RunQuality {
   int depth_stride = 1;
   int tracking_px = 160;
@@ -38,115 +38,116 @@ struct RunQuality {
   friend bool operator==(const RunQuality&, const RunQuality&) = default;
 };
 
-/// What there is to know of a field of them.
+/// Describes one field of a quality.
 struct QualityField {
   const char* name;
-  const char* option;  ///< of the command line
-  const char* unit;    ///< as its help has it; what is counted is "N"
+  const char* option;  ///< name on the command line
+  const char* unit;    ///< as printed in help; counts have "N"
   const char* help;
-  double low = 0.0, high = 0.0;  ///< of numbers
+  double low = 0.0, high = 0.0;  ///< range of numbers, inclusive
 };
 
-/// Calls visit(QualityField, field) for each field, in the order in which files and help have them.
+/// Calls visit(QualityField, field) for each field, in the order of files and help.
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, ScanQuality>
 void visit_fields(Quality& quality, Visit&& visit) {
-  visit(QualityField{"resolution_m", "--resolution", "M", "edge of the smallest cells, metres (0.01)", 0.001,
-                     1.0},
+  visit(QualityField{"resolution_m", "--resolution", "M",
+                     "edge of the smallest voxels, metres (default: 0.01)", 0.001, 1.0},
         quality.resolution_m);
-  visit(
-      QualityField{
-          "deviation_m", "--deviation", "M",
-          "how far the mesh with large triangles may lie from that with all, metres (0.002); 0 keeps all",
-          0.0, 1.0},
-      quality.deviation_m);
+  visit(QualityField{"deviation_m", "--deviation", "M",
+                     "max distance of the simplified mesh from the full mesh, metres; 0 keeps all triangles\n"
+                     "(default: 0.002)",
+                     0.0, 1.0},
+        quality.deviation_m);
   visit(QualityField{"tracking_px", "--tracking-px", "N",
-                     "most columns of the images by which frames are aligned (320)", 40, 640},
+                     "max width of the images that are aligned, pixels (default: 320)", 40, 640},
         quality.tracking_px);
-  visit(QualityField{"fuse_every", "--fuse-every", "N",
-                     "of the tracked frames every Nth goes into the map (1)", 1, 1000},
+  visit(QualityField{"fuse_every", "--fuse-every", "N", "fuse only every Nth tracked frame (default: 1)", 1,
+                     1000},
         quality.fuse_every);
 }
 template <typename Quality, typename Visit>
 requires std::is_same_v<std::remove_const_t<Quality>, RunQuality>
 void visit_fields(Quality& quality, Visit&& visit) {
   visit(QualityField{"depth_stride", "--depth-stride", "1|2|4",
-                     "the depth image is used at this part of its width and height (1)", 1, 4},
+                     "factor by which depth images are reduced in width and height (default: 1)", 1, 4},
         quality.depth_stride);
   visit(QualityField{"tracking_px", "--tracking-px", "N",
-                     "most columns of the images that locate the camera (160)", 40, 640},
+                     "max width of the images for localisation, pixels (default: 160)", 40, 640},
         quality.tracking_px);
   visit(
       QualityField{
           "mesh_sigmas", "--mesh-sigmas", "X",
-          "how far the mesh of what moved may lie from what was seen, in standard deviations of the\n"
-          "sensor's noise (0.8)",
+          "max deviation of the dynamic mesh from the measured depth, in standard deviations of the\n"
+          "sensor's noise (default: 0.8)",
           0.1, 100.0},
       quality.mesh_tolerance_sigmas);
   visit(
       QualityField{
           "fine_mesh", "--fine-mesh", "on|off",
-          "about virtual objects every pixel that moved is a vertex, which helps where depth has less noise\n"
-          "than a Kinect's (off)"},
+          "make every dynamic pixel near virtual objects a vertex, which helps if depth has less noise\n"
+          "than a Kinect's (default: off)"},
       quality.fine_mesh);
   visit(QualityField{"radar", "--radar", "exact|sampled",
-                     "how contacts are found: to the last digit, or between bounds a pixel apart (exact)"},
+                     "distance to contact: exact, or between bounds about a pixel apart (default: exact)"},
         quality.radar);
   visit(
       QualityField{"radar_px", "--radar-px", "N",
-                   "pixels along the longer side of the object's outline (64); the exact radar's answers do\n"
-                   "not depend on it",
+                   "pixels along the longer side of the object's outline; the exact radar's results do not\n"
+                   "depend on it (default: 64)",
                    1, 4096},
       quality.radar_px);
   visit(QualityField{"physics_step_s", "--physics-step", "S",
-                     "about the longest piece of time that an object is moved by at once, seconds (0.0167)",
-                     0.001, 0.5},
+                     "max substep of the physics, seconds; exceeded by up to 5 % (default: 0.0167)", 0.001,
+                     0.5},
         quality.physics_step_s);
   visit(QualityField{"object_turns", "--object-turns", "N",
-                     "an object is moved every Nth frame, then by all of the time since (1)", 1, 16},
+                     "move each object every Nth frame, by all of the time since its last move (default: 1)",
+                     1, 16},
         quality.move_every_n_frames);
   visit(QualityField{"object_error_px", "--object-error", "PX",
-                     "how far the mesh that is drawn of an object may lie from its file's, pixels (0.7)",
-                     0.01, 100.0},
+                     "max deviation of an object's drawn mesh from its file's, pixels (default: 0.7)", 0.01,
+                     100.0},
         quality.object_error_px);
-  visit(
-      QualityField{
-          "soft_edges", "--soft-edges", "on|off",
-          "what hides an object does so along the edges that the colours show (on), or that the depth\n"
-          "shows"},
-      quality.soft_edges);
-  visit(QualityField{"shadows", "--shadows", "on|off", "objects darken what is below them (on)"},
+  visit(QualityField{"soft_edges", "--soft-edges", "on|off",
+                     "occlude objects along edges of the colour image (on) or of the depth image (off)\n"
+                     "(default: on)"},
+        quality.soft_edges);
+  visit(QualityField{"shadows", "--shadows", "on|off",
+                     "draw shadows of objects on the surface below them (default: on)"},
         quality.shadows);
   visit(QualityField{"shadow_turns", "--shadow-turns", "N",
-                     "every Nth frame the shadow of one object that has come to rest is made in full (1)", 1,
-                     1000},
+                     "compute the full-resolution shadow of one resting object every Nth frame (default: 1)",
+                     1, 1000},
         quality.shadow_every_n_frames);
-  visit(QualityField{"picture_turns", "--picture-turns", "N",
-                     "a picture is made of every Nth frame, and objects move in the others (1: both in all)",
-                     1, 16},
-        quality.picture_every_n_frames);
+  visit(
+      QualityField{"picture_turns", "--picture-turns", "N",
+                   "make a picture every Nth frame, and move objects in the others; 1: both in every frame\n"
+                   "(default: 1)",
+                   1, 16},
+      quality.picture_every_n_frames);
 }
 
 /// Throws Error "depth_stride = 3: must be 1, 2 or 4" and the like.
 void require_valid(const ScanQuality& quality);
 void require_valid(const RunQuality& quality);
 
-/// Sets the field of that name from a word: "2", "0.5", "on", "sampled". Throws Error naming field, word and
-/// rule, or the name that is none, and changes nothing.
+/// Sets a field from a word: "2", "0.5", "on", "sampled". Throws Error naming field, word and rule, or the
+/// unknown name, and then changes nothing.
 void set_field(ScanQuality& quality, std::string_view name, std::string_view word);
 void set_field(RunQuality& quality, std::string_view name, std::string_view word);
 
-/// Names of fields, and words for them.
+/// Pairs of a field's name and its value as a word.
 using FieldWords = std::vector<std::pair<std::string, std::string>>;
 
-/// set_field() with each of them.
+/// Calls set_field() for each pair.
 template <typename Quality>
 void set_fields(Quality& quality, const FieldWords& words) {
   for (const auto& [name, word] : words) set_field(quality, name, word);
 }
 
-/// Names and words of the fields that are not as usual, in the order of visit_fields(). From the usual
-/// quality set_field() makes the very same quality of them, to the last bit of its numbers.
+/// Returns the fields that differ from `usual`, in the order of visit_fields(). set_fields() on `usual`
+/// restores the same quality from them, bit by bit.
 FieldWords words_of(const ScanQuality& quality, const ScanQuality& defaults = {});
 FieldWords words_of(const RunQuality& quality, const RunQuality& defaults = {});
 

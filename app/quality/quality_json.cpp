@@ -1,4 +1,4 @@
-// quality_json.cpp: one key a field.
+// quality_json.cpp: one key per field.
 #include "app/quality/quality_json.hpp"
 
 #include <string_view>
@@ -26,7 +26,7 @@ Json json_of_fields(const Quality& quality) {
   return json;
 }
 
-/// As set_field() reads it.
+/// Returns the value as a word for set_field().
 std::string word_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "on" : "off";

@@ -1,4 +1,4 @@
-// quality_json.hpp: qualities to and from JSON, which is not trusted.
+// quality_json.hpp: converts qualities to and from JSON; the input is not trusted.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace roomradar {
 
-/// Every field by its name.
+/// Returns all fields, by name.
 nlohmann::ordered_json to_json(const ScanQuality& quality);
 nlohmann::ordered_json to_json(const RunQuality& quality);
 
-/// What is not named is the default's. Throws Error "WHERE: ..." for what is not an object, a name that is
-/// none, a value that is of the wrong kind or out of its rule.
+/// Fields not named have their defaults. Throws Error "WHERE: ..." if this is not an object, a name is
+/// unknown, or a value has the wrong type or is out of range.
 ScanQuality scan_quality_of(const nlohmann::ordered_json& json, const std::string& where);
 RunQuality run_quality_of(const nlohmann::ordered_json& json, const std::string& where);
 

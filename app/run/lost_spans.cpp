@@ -1,4 +1,4 @@
-// lost_spans.cpp: from when to when a run did not know where the camera was, told as it happens.
+// lost_spans.cpp: starts and ends spans of lost frames.
 #include "app/run/lost_spans.hpp"
 
 namespace roomradar {
@@ -8,10 +8,10 @@ std::string LostSpans::add(std::int64_t frame_index, bool is_located) {
   if (is_located != was_lost) return {};
   if (!is_located) {
     spans.push_back({frame_index, -1});
-    return "frame " + std::to_string(frame_index) + ": where the camera is in the map is not known";
+    return "frame " + std::to_string(frame_index) + ": the camera is not localised";
   }
   spans.back().until = frame_index;
-  return "frame " + std::to_string(frame_index) + ": the camera is found again";
+  return "frame " + std::to_string(frame_index) + ": the camera is localised again";
 }
 
 }  // namespace roomradar

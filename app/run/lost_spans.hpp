@@ -1,4 +1,4 @@
-// lost_spans.hpp: from when to when a run did not know where the camera was, told as it happens.
+// lost_spans.hpp: records the frames in which the camera was not localised, with messages for the user.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -6,16 +6,16 @@
 
 namespace roomradar {
 
-/// Frames by their index in the recording.
+/// Frames are given by their index in the recording.
 struct LostSpan {
-  std::int64_t from = 0;   ///< the first frame that was not located
-  std::int64_t until = 0;  ///< the first that was again; -1: none was
+  std::int64_t from = 0;   ///< first frame not localised
+  std::int64_t until = 0;  ///< first frame localised again; -1: none so far
 };
 
 struct LostSpans {
   std::vector<LostSpan> spans;
 
-  /// To be called for each frame. A sentence to tell the user, or nothing where nothing has changed.
+  /// Call for each frame. Returns a message for the user if the state has changed, else an empty string.
   std::string add(std::int64_t frame_index, bool is_located);
 };
 

@@ -1,4 +1,4 @@
-// opened_run.cpp: opens what a run needs, in the order in which faults are to be told.
+// opened_run.cpp: opens what a run needs; the order of the steps decides which error is reported first.
 #include "app/run/opened_run.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ nlohmann::json settings_of(const RunCommand& command) {
   return settings;
 }
 
-/// Without a script, the object falls onto the best level surface that the camera sees.
+/// Returns the script used if none is given: the object falls onto the best level surface in view.
 Script drop_over_view(const std::string& object) {
   ScriptEvent add;
   add.frame = 0;
@@ -82,8 +82,8 @@ void require_one_quality(const RunCommand& command, const Script& script) {
   if (!has(script, Action::kQuality)) return;
   if (!command.preset.empty())
     throw Error(
-        "--preset: the script or the session has quality events, and what these do not name is as usual from "
-        "there on, not as in the preset; leave out one of them");
+        "--preset: the script or the session has quality events, which set everything that they do not name "
+        "to its default, not to the preset's value; leave out one of them");
   if (command.budget_ms)
     throw Error(
         "--budget-ms: the script or the session has quality events of its own, and each would undo the "
@@ -93,24 +93,24 @@ void require_one_quality(const RunCommand& command, const Script& script) {
 void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
   if (info.up_source != to_string(UpSource::kNone)) return;
   std::fprintf(stderr,
-               "roomradar: %s: which way is up was not known when the room was scanned; objects fall the way "
-               "that was down for its first camera\n",
+               "roomradar: %s: the up direction was not known when the room was scanned; objects fall "
+               "downwards in its first camera's view\n",
                folder.c_str());
 }
 
-/// The frames, as they come, and what was recorded of them if that is to be compared.
+/// Opens the source, and the recorded results if the source is a session.
 std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
   const RunCommand& command = run.command;
   if (command.poses == PoseOrigin::kRecorded)
     require_recorded_world(run.map.info, command.map, command.source);
   std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
-  run.is_live = !opened->rewind();  // a device has a count, too, where so many frames are asked for
+  run.is_live = !opened->rewind();  // frame_count() would not tell: with --frames a device has one too
   if (is_session_folder(command.source)) {
     run.check.emplace(command.source);
     if (const std::string fault = map_difference(command.source, run.map.info); !fault.empty())
       std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   }
-  // A session that was cut off has no event that ends it: it goes as far as there are results.
+  // A session that was cut off has no quit event: it is replayed as far as it has results.
   if (run.check && !has(run.script, Action::kQuit)) run.last_frame = run.check->last_frame();
   run.interrupt.emplace();
   return opened;
@@ -123,7 +123,7 @@ void open_budget(OpenedRun& run, bool has_picture) {
   std::vector<FrontStep> front = front_for(read_presets(path), command.quality, command.fixed);
   if (front.size() < 2)
     std::fprintf(stderr,
-                 "roomradar: %s has nothing faster than what is asked for: --budget-ms changes nothing\n",
+                 "roomradar: %s has no setting faster than the requested one, so --budget-ms has no effect\n",
                  path.c_str());
   run.budget = std::make_unique<RunBudget>(std::move(front), *command.budget_ms, has_picture);
 }
@@ -148,7 +148,7 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
     config.map_updates.emplace();
     config.map_updates->after_s = command.commit_after_s;
     config.map_updates->surface = surface_config_of(run.map.info);
-    // A device does not wait, unless it is to be repeated.
+    // A live run does not wait, unless it is recorded and must be reproducible.
     config.map_updates->wait = !run.is_live || !command.record_session.empty();
   }
   return config;
@@ -157,7 +157,7 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
 void make_unknown_solid(Session& session, StageTimes& times) {
   const auto start = std::chrono::steady_clock::now();
   session.make_unknown_solid(times);
-  std::fprintf(stderr, "unknown space: %zu triangles round it, made in %.1f s with %.0f MB\n",
+  std::fprintf(stderr, "unknown space: border of %zu triangles, extracted in %.1f s with %.0f MB\n",
                session.unknown().mesh_world.triangles.size(), ms_since(start) / 1e3,
                static_cast<double>(session.unknown().memory_bytes) / 1e6);
 }
@@ -167,7 +167,7 @@ void open_session(OpenedRun& run, bool has_picture) {
   run.report.renderer = run.session->renderer();
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
   if (run.command.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
-  // Objects are loaded now, so that a wrong mesh is said before the first frame and not when its turn comes.
+  // Objects are loaded now, so an unreadable mesh is reported before the first frame.
   for (const ScriptEvent& event : run.script.events)
     if (event.action == Action::kAdd) run.session->apply(event);
 }
@@ -178,16 +178,16 @@ void open_outputs(OpenedRun& run) {
   if (command.pictures.empty()) return;
   std::error_code failed;
   std::filesystem::create_directories(command.pictures, failed);
-  if (failed) throw Error(command.pictures + ": the folder cannot be made: " + failed.message());
+  if (failed) throw Error(command.pictures + ": the folder cannot be created: " + failed.message());
 }
 
-/// Recorded on their way from now on, if that is wanted.
+/// Wraps the frames so they are recorded, if requested.
 void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
   const RunCommand& command = run.command;
   if (command.record_session.empty()) return;
   run.recorder.emplace(command.record_session, command, run.map.info,
                        gives_calibrated_frames(command.source, command.calibration));
-  // As they were loaded: a user may ask for one before its turn.
+  // Recorded at the start, where they were loaded: the window's user may use one before its event.
   for (const ScriptEvent& event : run.script.events)
     if (event.action == Action::kAdd) run.recorder->write(run.recorder->with_mesh_kept(event), 0);
   frames = run.recorder->recorded(std::move(frames));
@@ -223,7 +223,8 @@ std::unique_ptr<OpenedRun> open_run(const RunCommand& command, UiChannel* link) 
   open_session(run, has_picture);
   open_outputs(run);
   if (!command.frames_csv.empty()) run.frames_csv.emplace(command.frames_csv);
-  record_frames(run, frames);  // last: a run that cannot be opened leaves no folder in the next one's way
+  record_frames(run, frames);  // last, so a run that fails to open leaves no folder that blocks the next
+                               // attempt
   play_frames(run, std::move(frames));
   if (link != nullptr)
     run.host.emplace(*link, *run.session, *run.playback, run.report.times, run.map.mesh, run.is_live);

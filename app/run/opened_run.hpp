@@ -1,4 +1,4 @@
-// opened_run.hpp: all that a run has open from its first frame to its last.
+// opened_run.hpp: everything that a run keeps open from its first frame to its last.
 #pragma once
 #include <memory>
 #include <optional>
@@ -26,24 +26,24 @@ struct OpenedRun {
   Script script;
   SavedMap map;
   bool is_live = false;
-  std::optional<SessionRecorder> recorder;  ///< --record-session
-  std::optional<ReplayCheck> check;         ///< the source is a session that was recorded
-  std::optional<std::int64_t> last_frame;   ///< none: to the end of the source, or until an event says quit
+  std::optional<SessionRecorder> recorder;  ///< for --record-session
+  std::optional<ReplayCheck> check;         ///< set if the source is a recorded session
+  std::optional<std::int64_t> last_frame;   ///< none: until the source ends or a quit event
   std::optional<Interrupt> interrupt;
-  std::unique_ptr<FrameSource> source;     ///< ends by Ctrl-C too
-  PlaybackSource* playback = nullptr;      ///< within it
-  std::unique_ptr<RunBudget> budget;       ///< --budget-ms
+  std::unique_ptr<FrameSource> source;     ///< also ends on Ctrl-C
+  PlaybackSource* playback = nullptr;      ///< part of source
+  std::unique_ptr<RunBudget> budget;       ///< for --budget-ms
   std::unique_ptr<Session> session;        ///< with the script's objects loaded
-  std::unique_ptr<VideoWriter> video;      ///< --video
-  std::optional<FrameUseFile> frames_csv;  ///< --frames-csv
-  std::optional<PlayHost> host;            ///< the window's
+  std::unique_ptr<VideoWriter> video;      ///< for --video
+  std::optional<FrameUseFile> frames_csv;  ///< for --frames-csv
+  std::optional<PlayHost> host;            ///< for the window
   RunTotals totals;
-  bool was_quit = false;  ///< by an event, before the source's end
+  bool was_quit = false;  ///< ended by an event
 };
 
-/// Opens what the command names, reads the map, makes the session. Throws Error where one of them cannot be,
-/// before anything of it is played.
-/// @param link  to the window; null: there is none
+/// Opens everything that the command names, reads the map and creates the session. Throws Error if any of
+/// this fails, before the first frame.
+/// @param link  to the window; null: no window
 std::unique_ptr<OpenedRun> open_run(const RunCommand& command, UiChannel* link);
 
 }  // namespace roomradar

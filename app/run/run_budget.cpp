@@ -1,4 +1,4 @@
-// run_budget.cpp: the controller's steps as qualities, events and sentences.
+// run_budget.cpp: converts the controller's steps to qualities, events and messages.
 #include "app/run/run_budget.hpp"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::vector<BudgetStep> steps_of(const std::vector<FrontStep>& front, bool has_p
   return steps;
 }
 
-/// Whether a part is made alike with both, in the frames that have it.
+/// Returns true if both qualities do this part's work in the same way.
 bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
   const auto of_mesh = [](const RunQuality& q) {
     return std::tie(q.depth_stride, q.mesh_tolerance_sigmas, q.fine_mesh);
@@ -41,7 +41,7 @@ bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
       return a.depth_stride == b.depth_stride && a.tracking_px == b.tracking_px;
     case FramePart::kMesh:
       return of_mesh(a) == of_mesh(b);
-    case FramePart::kPhysics:  // against what was meshed
+    case FramePart::kPhysics:  // its cost depends on the mesh
       return of_mesh(a) == of_mesh(b) && of_physics(a) == of_physics(b);
     case FramePart::kCompose:
       return of_compose(a) == of_compose(b);
@@ -51,8 +51,8 @@ bool is_alike(FramePart part, const RunQuality& a, const RunQuality& b) {
   return true;
 }
 
-/// A part that is made alike in two steps takes the same: what was measured otherwise is noise, or was
-/// measured with a field that is fixed now.
+/// Makes the time ratios of a part equal in adjacent steps that do it in the same way. Measured differences
+/// are noise there, or come from a setting that is fixed now.
 void give_alike_parts_one_ratio(std::vector<FrontStep>& front) {
   for (std::size_t step = 1; step < front.size(); ++step)
     for (std::size_t part = 0; part < kFrameParts; ++part)
@@ -60,7 +60,7 @@ void give_alike_parts_one_ratio(std::vector<FrontStep>& front) {
         front[step].part_ratios[part] = front[step - 1].part_ratios[part];
 }
 
-/// What a frame of some load takes of the default's, about.
+/// Returns the approximate time of a typical frame relative to the default quality.
 double part_of_usual(const FrontStep& step) {
   constexpr FrameLoad kSome{.dynamic_fraction = 0.1, .moving = 2, .resting = 2};
   double ms = 0.0, default_ms = 0.0;
@@ -81,13 +81,13 @@ std::vector<FrontStep> front_for(const Presets& presets, const RunQuality& most,
   for (FrontStep step : presets.front) {
     set_fields(step.run, fixed);
     if (step.run == most) {
-      if (!is_in_front) front = {std::move(step)};  // what is more accurate than this is not asked for
+      if (!is_in_front) front = {std::move(step)};  // drops steps more accurate than requested
       is_in_front = true;
     } else if (!(step.run == front.back().run)) {
       front.push_back(std::move(step));
     }
   }
-  if (!is_in_front)  // what is slower is not asked for either
+  if (!is_in_front)  // drops steps slower than requested, too
     front.erase(std::remove_if(front.begin() + 1, front.end(),
                                [](const FrontStep& step) { return !(part_of_usual(step) < 1.0); }),
                 front.end());
@@ -122,7 +122,7 @@ std::optional<RunQuality> RunBudget::before(FramePart part, const FrameLoad& loa
 }
 
 std::vector<ScriptEvent> RunBudget::end_frame() {
-  if (state_.begun == 0) return {};  // a frame that was passed over
+  if (state_.begun == 0) return {};  // frame not processed
   const double frame_ms = begun_ms_[index_of(FramePart::kDone)] - begun_ms_[0];
   begun_ms_[state_.begun] = begun_ms_[index_of(FramePart::kDone)];
   std::array<double, kFrameParts> parts_ms{};
@@ -156,7 +156,7 @@ std::string RunBudget::news() {
   said_step_ = state_.step;
   said_ms_ = now_ms;
   const std::string budget = "budget " + std::to_string(std::lround(config_.budget_ms)) + " ms: ";
-  return budget + (state_.step == 0 ? "all is as it was" : "with " + given_up());
+  return budget + (state_.step == 0 ? "with the requested quality" : "with " + given_up());
 }
 
 nlohmann::json RunBudget::report() const {

@@ -1,4 +1,4 @@
-// run_loop.cpp: before each frame what is due, then the frame, then what it came to.
+// run_loop.cpp: executes due events, processes the frame and stores its results.
 #include "app/run/run_loop.hpp"
 
 #include <cstdio>
@@ -34,7 +34,7 @@ void control(PlaybackSource& source, CameraPlay camera) {
   }
 }
 
-/// The composed picture, and what moved as the depth camera saw it.
+/// Writes the composed picture, and the depth camera's mask of dynamic pixels.
 void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& name) {
   if (!session.picture().empty()) write_png(session.picture(), name.string() + ".png");
   if (result.status == FrameStatus::kDone)
@@ -45,7 +45,7 @@ class RunLoop {
  public:
   explicit RunLoop(OpenedRun& run) : run_(run), progress_("running", run.source->frame_count()) {}
 
-  /// The next frame of the source into frame_, and whether there is one to be played.
+  /// Reads the source's next frame into frame_.
   enum class Next { kFrame, kSkipped, kEnd };
   Next read();
   void perform_due();
@@ -60,7 +60,8 @@ class RunLoop {
       perform_due();
       if (!run_.was_quit) step();
     }
-    if (run_.recorder && !run_.was_quit) run_.recorder->write(ScriptEvent{}, run_frame_);  // it says to quit
+    // a default event quits
+    if (run_.recorder && !run_.was_quit) run_.recorder->write(ScriptEvent{}, run_frame_);
   }
 
  private:
@@ -70,7 +71,7 @@ class RunLoop {
   std::size_t next_event_ = 0;
   std::int64_t run_frame_ = 0;
   double run_time_s_ = 0.0;
-  std::int64_t last_picture_ = -1;  ///< the farthest of the source's frames that has one
+  std::int64_t last_picture_ = -1;  ///< highest index of the source's frames that has a picture
 
   std::string picture_name();
   void perform(const ScriptEvent& event, bool is_from_script);
@@ -85,7 +86,7 @@ class RunLoop {
 RunLoop::Next RunLoop::read() {
   RunTotals& totals = run_.totals;
   ReadResult read;
-  do {  // what a live source waits for it says itself
+  do {  // a live source itself tells the user why it waits
     read = run_.report.times.timed("read", [&] { return run_.source->next(frame_); });
   } while (read.waiting && !(run_.host && run_.host->is_closed()));
   if (read.status == ReadStatus::kEnd || read.waiting) return Next::kEnd;
@@ -102,7 +103,7 @@ RunLoop::Next RunLoop::read() {
 
 void RunLoop::perform_due() {
   if (run_.host && !run_.host->wait_turn(frame_))
-    perform(ScriptEvent{}, /*is_from_script=*/false);  // it says to quit
+    perform(ScriptEvent{}, /*is_from_script=*/false);  // a default event quits
   const std::vector<ScriptEvent>& events = run_.script.events;
   for (;
        !run_.was_quit && next_event_ < events.size() && is_due(events[next_event_], run_frame_, run_time_s_);
@@ -113,11 +114,11 @@ void RunLoop::perform_due() {
 
 void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
   if (event.action == Action::kAdd && is_from_script)
-    return;  // it was added, and recorded, before the first frame
+    return;  // already added and recorded before the first frame
   record(apply(event));
 }
 
-/// As it is to be recorded.
+/// Applies an event and returns it in the form to be recorded.
 ScriptEvent RunLoop::apply(const ScriptEvent& event) {
   const ScriptEvent kept = run_.recorder ? run_.recorder->with_mesh_kept(event) : event;
   if (event.action == Action::kQuit) run_.was_quit = true;
@@ -146,7 +147,8 @@ void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {
       if (event.action == Action::kAdd) not_made.insert(event.name);
       continue;
     }
-    record(applied);  // one that cannot be ends the run: it would be replayed to something else
+    record(applied);  // outside the try block: an event that cannot be recorded ends the run, as replays
+                      // would differ
   }
 }
 
@@ -154,7 +156,7 @@ void RunLoop::step() {
   const FrameResult result = run_.session->step(frame_, run_.report.times);
   if (result.status == FrameStatus::kBadFrame) {
     count_skipped(run_.command.source + ": frame " + std::to_string(frame_.index) + ": " +
-                  std::string(result.fault) + "; it is passed over");
+                  std::string(result.fault) + "; it is skipped");
     return;
   }
   end_budget();
@@ -167,7 +169,7 @@ void RunLoop::step() {
   progress_.step(is_located ? "located" : "not located");
 }
 
-/// What the frame was made with is recorded, so that a replay makes it so without a clock.
+/// Records the qualities that the frame used, so a replay uses the same without a clock.
 void RunLoop::end_budget() {
   if (!run_.budget) return;
   for (const ScriptEvent& event : run_.budget->end_frame())
@@ -182,7 +184,7 @@ void RunLoop::count_skipped(const std::string& fault) {
   run_.totals.last_fault = fault;
 }
 
-/// The source's number of the frame; where it comes again, held or looped, with the run's beside it.
+/// Returns the source's frame number; if that frame is repeated (held or looped), the run's number follows.
 std::string RunLoop::picture_name() {
   const bool is_again = frame_.index <= last_picture_;
   last_picture_ = std::max(last_picture_, frame_.index);

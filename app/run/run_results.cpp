@@ -1,4 +1,4 @@
-// run_results.cpp: sums, lists and sentences about a run.
+// run_results.cpp: results of a run as JSON and as text.
 #include "app/run/run_results.hpp"
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 namespace roomradar {
 namespace {
 
-/// Where it was put: it is free to go where nobody has seen what is there, until it has come out.
+/// Returns a note on an object placed in unknown space, where it can move freely until it leaves.
 const char* note_on(const VirtualObject& object) {
   if (!object.began_in_unknown) return "";
-  return object.in_unknown ? "; was put into unknown space, and a part of it still is there"
-                           : "; was put into unknown space, and came out of it";
+  return object.in_unknown ? "; was placed in unknown space and is still partly inside"
+                           : "; was placed in unknown space and has left it";
 }
 
 }  // namespace
@@ -73,13 +73,13 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
 
 void print_summary(const RunTotals& totals, const Session& session) {
   std::printf(
-      "located in %lld of %lld frames; %.2f %% of pixels moved, %.0f triangles of them meshed a frame\n",
+      "localised in %lld of %lld frames; %.2f %% of pixels dynamic, meshed as %.0f triangles per frame\n",
       static_cast<long long>(totals.located), static_cast<long long>(totals.read),
       100.0 * totals.per_frame(totals.dynamic_fraction), totals.per_frame(totals.dynamic_triangles));
   print_use(totals.use);
   for (const CommittedChange& change : session.committed_changes()) {
     const Eigen::Vector3d p = change.box_world.center(), size = change.box_world.sizes();
-    std::printf("adopted at %.1f s: what %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
+    std::printf("adopted at %.1f s: an object that %s at %.2f %.2f %.2f m, %.2f x %.2f x %.2f m\n",
                 change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
                 p.x(), p.y(), p.z(), size.x(), size.y(), size.z());
   }
@@ -92,7 +92,7 @@ void print_summary(const RunTotals& totals, const Session& session) {
     if (!object->in_room)
       std::printf(
           "%s: not in the room%s\n", object->body.name.c_str(),
-          waits(object->body.name) ? "; its drop waits yet for a level surface in view that has space" : "");
+          waits(object->body.name) ? "; its drop waits for a level surface in view with enough space" : "");
     else
       std::printf(
           "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),

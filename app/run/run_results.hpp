@@ -1,4 +1,4 @@
-// run_results.hpp: what a run came to, for its report and for the user.
+// run_results.hpp: results of a run, for its report and for the user.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace roomradar {
 
-/// Sums over the frames of a run, as the report wants them.
+/// Sums over the frames of a run.
 struct RunTotals {
   std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
@@ -50,10 +50,10 @@ struct RunTotals {
   }
 };
 
-/// The run's own keys of the report.
+/// Returns the report's keys that are specific to runs.
 nlohmann::json results_of(const RunTotals& totals, const Session& session);
 
-/// A few lines on stdout.
+/// Prints a few lines to stdout.
 void print_summary(const RunTotals& totals, const Session& session);
 
 }  // namespace roomradar

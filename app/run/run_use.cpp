@@ -1,4 +1,4 @@
-// run_use.cpp: counts, shares and reasons.
+// run_use.cpp: sums up, prints and explains how much of the room and of the depth was needed.
 #include "app/run/run_use.hpp"
 
 #include <algorithm>
@@ -88,23 +88,24 @@ void print_use(const RunUse& use) {
   if (use.frames == 0) return;
   const double per_frame = 1.0 / static_cast<double>(use.frames);
   std::printf(
-      "of the room's %zu triangles %.1f %% were drawn a frame (95 %%: %.1f), none in %zu frames in which the "
-      "camera stood; the radar looked at %.0f\n",
+      "of the room's %zu triangles, %.1f %% were drawn per frame (p95: %.1f %%), none in %zu frames with a "
+      "stationary camera; the radar examined %.0f\n",
       use.room_triangles, 100.0 * use.drawn.mean(), 100.0 * use.drawn.percentile(0.95), use.frames_kept,
       use.room_asked * per_frame);
   std::printf(
-      "of the depth %.2f %% was meshed a frame (95 %%: %.2f), nothing in %zu frames; cells of 4 x 4 pixels: "
-      "%.0f flat, %.0f cut by outlines, %.0f in full",
+      "of the depth, %.2f %% was meshed per frame (p95: %.2f %%), nothing in %zu frames; cells of 4 x 4 "
+      "pixels: %.0f flat, %.0f cut by outlines, %.0f at full resolution",
       100.0 * use.meshed.mean(), 100.0 * use.meshed.percentile(0.95), use.frames_still, use.flat * per_frame,
       use.cut * per_frame, use.full * per_frame);
   for (const auto& [name, frames] : use.frames_fine)
-    std::printf("; fine near %s in %zu frames", name.c_str(), frames);
+    std::printf("; full resolution near %s in %zu frames", name.c_str(), frames);
   std::printf("\n");
 }
 
 std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<VirtualObject>> objects) {
-  std::string why = use.views_drawn > 0 ? "the camera moved" : "the camera stands, the last view is kept";
-  if (!use.knows_moved) return why + "; what moved is not known without a map's surfaces, and all is meshed";
+  std::string why =
+      use.views_drawn > 0 ? "the camera moved" : "the camera is stationary, the last view is reused";
+  if (!use.knows_moved) return why + "; without the map's surfaces everything is meshed";
   if (use.meshed_px == 0) return why + "; nothing moved";
   const double percent = 100.0 * share_of(use.meshed_px, use.valid_px);
   std::array<char, 64> share{};
@@ -112,7 +113,7 @@ std::string reasons_of(const FrameUse& use, std::span<const std::unique_ptr<Virt
   why += share.data();
   for (const auto& object : objects)
     if (object->fine_cells > 0)
-      why += "; as fine as the image near " + object->body.name + " (" + std::to_string(object->fine_cells) +
+      why += "; full resolution near " + object->body.name + " (" + std::to_string(object->fine_cells) +
              " cells)";
   return why;
 }
@@ -130,7 +131,7 @@ void FrameUseFile::write(std::int64_t frame, const FrameUse& use,
                          std::span<const std::unique_ptr<VirtualObject>> objects) {
   if (!file_.is_open()) open();
   std::string why = reasons_of(use, objects);
-  std::replace(why.begin(), why.end(), '"', '\'');  // an object may be called anything
+  std::replace(why.begin(), why.end(), '"', '\'');  // names of objects may contain quotes
   file_ << frame << ',' << use.room_triangles << ',' << use.views_drawn << ',' << use.room_drawn << ','
         << use.room_asked << ',' << use.valid_px << ',' << use.meshed_px << ',' << use.mesh_triangles << ','
         << use.cells.flat << ',' << use.cells.cut << ',' << use.cells.full << ",\"" << why << "\"\n";

@@ -1,4 +1,4 @@
-// apply_quality.cpp: run quality to session config.
+// apply_quality.cpp: maps the fields of a run quality to the session's config.
 #include "app/session/apply_quality.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace roomradar {
 void apply(const RunQuality& quality, SessionConfig& config) {
   config.depth_stride = quality.depth_stride;
   config.tracking_px = quality.tracking_px;
-  // What is said in pixels is said of whole depth images.
+  // Pixel limits are defined for unreduced depth images.
   const ForegroundConfig whole;
   ForegroundConfig& foreground = config.scene.foreground;
   foreground.hole_reach_px = whole.hole_reach_px / quality.depth_stride;

@@ -1,12 +1,11 @@
-// apply_quality.hpp: sets a session's configuration by a run quality.
+// apply_quality.hpp: applies a run quality to a session's configuration.
 #pragma once
 #include "app/quality/quality.hpp"
 #include "app/session/session.hpp"
 
 namespace roomradar {
 
-/// Sets the fields that the quality decides, and no others. A default quality leaves a default config
-/// unchanged.
+/// Sets only the fields that depend on the quality. A default quality leaves a default config unchanged.
 void apply(const RunQuality& quality, SessionConfig& config);
 
 }  // namespace roomradar

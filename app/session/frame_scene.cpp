@@ -1,4 +1,4 @@
-// frame_scene.cpp: expected depth, moved pixels and their mesh, frame by frame.
+// frame_scene.cpp: expected depth, dynamic pixels and their mesh, frame by frame.
 #include "app/session/frame_scene.hpp"
 
 #include <array>
@@ -7,8 +7,8 @@
 namespace roomradar {
 namespace {
 
-/// Whether seen from one pose and the other the same pixels show the same surfaces: at 585 px of focal length
-/// 0.2 mrad are a tenth of a pixel, and so are 0.2 mm at 1 m.
+/// Returns true if pixels show the same surfaces from both poses: at a focal length of 585 px, 0.2 mrad or
+/// 0.2 mm at 1 m is a tenth of a pixel.
 bool is_same_view(const Eigen::Isometry3d& T_world_a, const Eigen::Isometry3d& T_world_b) {
   const Eigen::Isometry3d T_a_b = T_world_a.inverse() * T_world_b;
   return T_a_b.translation().norm() < 2e-4 && Eigen::AngleAxisd(T_a_b.linear()).angle() < 2e-4;
@@ -38,7 +38,7 @@ std::size_t FrameScene::render_expected(const Intrinsics& camera, const Eigen::I
 
 void FrameScene::set_surfaces(SurfacePolicy surfaces) {
   config_.surfaces = surfaces;
-  dynamic_world_.inferred_world = {};  // backs are inferred with the map only
+  dynamic_world_.inferred_world = {};  // backs are inferred with kMap only
   inferred_.build_in_order(dynamic_world_.inferred_world);
 }
 

@@ -1,4 +1,5 @@
-// frame_scene.hpp: what a virtual object can touch in a frame: the saved room, and what has moved in it.
+// frame_scene.hpp: the surfaces that virtual objects can touch in a frame: the saved room and the dynamic
+// foreground.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -23,58 +24,58 @@ namespace roomradar {
 struct FrameSceneConfig {
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   ForegroundConfig foreground = {};
-  DynamicSurfaceConfig moved = {};  ///< of kMap
-  DepthMeshConfig mesh = {};        ///< of the others
+  DynamicSurfaceConfig moved = {};  ///< used with kMap
+  DepthMeshConfig mesh = {};        ///< used with the other policies
 };
 
-/// Made anew from each frame: render_expected, find_dynamic, mesh_dynamic, in this order. Not thread safe.
+/// Rebuilt from each frame by render_expected, find_dynamic and mesh_dynamic, in this order. Not thread safe.
 class FrameScene {
  public:
-  /// `room` is the static mesh in the world, `unknown` the surface round space that nobody has seen, which
-  /// can be touched but not seen; null: such space is free. They and the context must outlive this. Throws
-  /// Error if the config is out of its rules.
+  /// @param room     static mesh in the world
+  /// @param unknown  border of unknown space, which can be touched but is not drawn; null: unknown space is
+  /// free Context, room and unknown must outlive the scene. Throws Error if the config is invalid.
   FrameScene(GlContext& context, const Shape& room, const FrameSceneConfig& config,
              const TriangleTree* unknown = nullptr);
 
-  /// The depth that the room shows at a pose; it is kept while the view is the same to a fraction of a pixel.
-  /// Returns the triangles drawn for it.
+  /// Renders the room's depth at a pose. The rendering is reused while the view is the same within a fraction
+  /// of a pixel. Returns the number of triangles drawn for it.
   std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
-  /// All of it but what can be touched; from the next frame on. The rules must hold.
+  /// Replaces all of the config except `surfaces`, from the next frame on. The config must be valid (not
+  /// checked).
   void set_fineness(const FrameSceneConfig& config) {
     config_.foreground = config.foreground;
     config_.moved = config.moved;
     config_.mesh = config.mesh;
   }
-  /// From the next frame on something else can be touched.
+  /// Changes which surfaces can be touched, from the next frame on.
   void set_surfaces(SurfacePolicy surfaces);
-  /// Null: space that nobody has seen is free.
+  /// Null: unknown space is free.
   void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
-  /// The room's shape is another by now.
+  /// Discards the expected depth after the room's shape has changed.
   void room_changed() { expected_camera_ = {}; }
-  /// What moved in the frame before as an image of this camera has it: where its size is another, its nearest
-  /// pixels.
+  /// Resizes the previous frame's mask of dynamic pixels to this camera's image, by nearest pixel.
   void expect_size(const Intrinsics& camera);
-  /// Labels the frame's pixels against the expected depth, and by what the frame before showed.
+  /// Labels the frame's pixels by the expected depth and the previous frame's labels.
   ForegroundCounts find_dynamic(const Frame& frame);
-  /// kMap: meshes the pixels that moved, as fine as they are in the given regions, and infers their back;
-  /// kHoles, kSkirt: all pixels.
+  /// kMap: meshes the dynamic pixels, at full resolution in the given regions, and infers their back. Other
+  /// policies mesh all pixels.
   void mesh_dynamic(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                     std::span<const FineRegion> fine = {});
 
-  /// What can be touched: kMap: the room, what moved and its back, and the border of the unknown; kHoles,
-  /// kSkirt: the frame's own mesh.
+  /// Returns all surfaces that can be touched. kMap: the room, the dynamic surface, its inferred back, and
+  /// the border of unknown space. Other policies: the frame's own mesh.
   [[nodiscard]] std::vector<SceneTree> surfaces() const;
-  /// The depth of what can be seen of that, and not of the room alone, as any camera sees it: in `rect` of
-  /// its image, the rest of which stays as it is.
+  /// Renders the depth of the surfaces that can be both touched and seen, from any camera, inside `rect` of
+  /// its image. Pixels outside rect are unchanged.
   void render_surfaces(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                        const PixelRect& rect, DepthImage& depth_m);
 
-  /// Views of the room that render_expected() had to draw so far, and its triangles in them.
+  /// Number of views rendered by render_expected() so far, and the room's triangles drawn in them.
   struct RoomDrawn {
     std::size_t views = 0, triangles = 0;
   };
   [[nodiscard]] RoomDrawn room_drawn() const { return room_drawn_; }
-  /// Of the last frame's mesh of what moved, by kinds and by the regions it was given; kMap only.
+  /// Cells of the last dynamic mesh, by kind and by region; kMap only.
   [[nodiscard]] const DynamicCells& dynamic_cells() const { return dynamic_scratch_.cells; }
 
   [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
@@ -92,7 +93,7 @@ class FrameScene {
   DepthPass depth_pass_;
 
   DepthImage expected_depth_m_;  ///< for expected_camera_ at T_world_expected_
-  Intrinsics expected_camera_;   ///< of no size: nothing was rendered yet
+  Intrinsics expected_camera_;   ///< size 0: nothing rendered so far
   Eigen::Isometry3d T_world_expected_ = Eigen::Isometry3d::Identity();
   std::size_t expected_triangles_ = 0;
   RoomDrawn room_drawn_;
@@ -103,7 +104,7 @@ class FrameScene {
   DepthMeshScratch mesh_scratch_;
   DynamicSurfaceScratch dynamic_scratch_;
   DynamicSurface dynamic_world_;
-  TriangleTree inferred_;  ///< of the back; touched only
+  TriangleTree inferred_;  ///< inferred backs; touched, never drawn
 };
 
 }  // namespace roomradar

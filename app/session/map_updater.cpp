@@ -1,4 +1,4 @@
-// map_updater.cpp: from what settled to a changed room: found, measured, worked in, due.
+// map_updater.cpp: finds, measures and commits lasting changes.
 #include "app/session/map_updater.hpp"
 
 #include <algorithm>
@@ -14,8 +14,9 @@ namespace {
 
 constexpr double kLookEvery_s = 0.25;
 constexpr double kAskedFor_s = 1.0;
-constexpr double kRegionCell_m = 0.03;  // what is within one to two of a change's points is measured anew
-// A change that is hidden while it is measured waits for so many times the frames that it takes.
+constexpr double kRegionCell_m = 0.03;  // space within one to two cells of a change's points is measured
+                                        // again
+// A change that is hidden while it is measured is given up after this many times the frames needed.
 constexpr int kPatience = 10;
 
 bool holds_samples(const StaticMap& octree) {
@@ -53,7 +54,7 @@ MapUpdater::~MapUpdater() {
 bool MapUpdater::is_due(const Frame& frame) {
   stamp_s_ = frame.stamp_s;
   frame_ = frame.index;
-  // Whether or not there is something to look at: later, somebody else may stand there.
+  // The request's time runs even if nothing is in view: another object may stand there later.
   if (asked_until_s_ && *asked_until_s_ == kNow) asked_until_s_ = stamp_s_ + kAskedFor_s;
   if (asked_until_s_ && stamp_s_ > *asked_until_s_) asked_until_s_.reset();
   if (!working_.valid()) return false;
@@ -66,9 +67,9 @@ bool MapUpdater::is_due(const Frame& frame) {
 }
 
 void MapUpdater::finish() {
-  if (has_failed_) throw Error("adopt: a change could not be worked into the map, which is half changed");
+  if (has_failed_) throw Error("adopt: a change could not be committed to the map, which is half changed");
   if (!working_.valid()) return;
-  has_failed_ = true;  // unless get() returns
+  has_failed_ = true;  // reset below unless get() throws
   room_ = working_.get();
   has_failed_ = false;
   for (const LastingChange& change : pending_) {

@@ -1,5 +1,5 @@
-// map_updater.hpp: what came and stays, and what was taken away, worked into a session's own copy of the
-// room.
+// map_updater.hpp: commits lasting changes of the room (objects added or removed) to a session's copy of the
+// map.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -21,14 +21,14 @@
 namespace roomradar {
 
 struct MapUpdateConfig {
-  /// What has been as it is for so long while it was seen is adopted. None: only what is asked for.
+  /// Commits a change once it was observed unchanged for this long. None: only on request.
   std::optional<double> after_s;
-  double asked_after_s = 0.5;  ///< the same for what is asked for: at once, but for what is on its way
-  int views = 12;              ///< frames that a change is measured from, after it was found
-  /// The changed room is there so many frames after its last view, and not before.
+  double asked_after_s = 0.5;  ///< the same after ask(): short, but long enough to exclude objects in motion
+  int views = 12;              ///< frames that a change is measured from, after its detection
+  /// The changed room takes effect this many frames after its last view, never earlier.
   int apply_after_frames = 15;
-  /// A frame that is due waits for a room that is late, so that a recording gives the same answer each time.
-  /// false: the room is taken when it is ready, and no frame waits.
+  /// true: the frame in which the room is due waits for it, so results are reproducible for a recording.
+  /// false: no frame waits; the room takes effect in the first frame after it is ready.
   bool wait = true;
   ChangeTrackerConfig tracker;
   SurfaceConfig surface;
@@ -36,54 +36,55 @@ struct MapUpdateConfig {
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const MapUpdateConfig& config);
 
-/// A change that was worked into the room.
+/// A change that was committed to the room.
 struct CommittedChange {
   LastingKind kind = LastingKind::kCame;
-  double stamp_s = 0.0;           ///< of the frame that saw the changed room first
-  std::int64_t frame = 0;         ///< its index
-  Eigen::AlignedBox3d box_world;  ///< of its surface, as far as it was seen
+  double stamp_s = 0.0;           ///< time of the first frame that used the changed room
+  std::int64_t frame = 0;         ///< index of that frame
+  Eigen::AlignedBox3d box_world;  ///< bounds of the observed part of its surface
 };
 
-/// The room as it is by now, for the radar; its triangles are those of `mesh`.
+/// The room with all changes committed so far. The trees are for the radar; tree is built from `mesh`.
 struct ChangedRoom {
   Mesh mesh;
   TriangleTree tree;
-  UnknownSurface unknown;  ///< only if it is kept up
+  UnknownSurface unknown;  ///< empty unless keep_up_unknown() was called
   TriangleTree unknown_tree;
 };
 
-/// Watches what moved in the frames of a session. A change that has settled is measured from a few frames
-/// more and worked into the octree by a second thread, with the surface near it made anew; the frames
-/// meanwhile see the room as it was. One change, or several that settled together, at a time. Not thread
-/// safe: all calls from one thread.
+/// Watches the dynamic foreground of a session's frames for lasting changes. A settled change is measured
+/// from a few more frames. A worker thread then fuses it into the octree and extracts the surface near it
+/// again; frames see the old room until then. One change, or several that settled together, at a time. Not
+/// thread safe: make all calls from one thread.
 class MapUpdater {
  public:
-  /// @param octree  of the room; changed in place, by the second thread while is_working()
+  /// @param octree  the room's; modified in place, by the worker thread during a commit
   /// @param mesh    its surface, in the world
-  /// Throws Error if the octree holds no surface, or a config is out of its rules.
+  /// Throws Error if the octree holds no surface or a config is invalid.
   MapUpdater(StaticMap& octree, const Mesh& mesh, const MapUpdateConfig& config);
   ~MapUpdater();
   MapUpdater(const MapUpdater&) = delete;
   MapUpdater& operator=(const MapUpdater&) = delete;
 
-  /// Adopts what stands still now, or has gone, in view: within a second or not at all.
+  /// Requests that objects now in view that stand still, or are gone, are committed. The request expires
+  /// after 1 s of frame time.
   void ask() { asked_until_s_ = kNow; }
 
-  /// From now on the border of the unknown is made anew with the room.
+  /// From now on each commit also extracts the border of unknown space again.
   void keep_up_unknown() { keeps_up_unknown_ = true; }
 
-  /// Before a frame: whether the room has changed. Then the trees are to be taken from room().
+  /// Call before each frame. Returns true if the room has changed; callers then take the trees from room().
   bool is_due(const Frame& frame);
   [[nodiscard]] ChangedRoom& room() { return room_; }
-  /// After a frame's foreground is known. A frame that is shown again, by its index, tells nothing new: what
-  /// moves stands still in it.
+  /// Call after a frame's pixels are labelled. A frame repeated by index is ignored: in it, everything
+  /// dynamic seems to stand still.
   void watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
              const Eigen::Isometry3d& T_world_camera);
 
-  /// What was worked in so far, in the order of time.
+  /// Returns the changes committed so far, in order of time.
   [[nodiscard]] const std::vector<CommittedChange>& committed_changes() const { return committed_; }
-  /// Waits for a change that is being worked in, and takes it as if it were due: then the octree may be read.
-  /// Throws what went wrong while it was worked in, and Error from then on: the octree is half changed.
+  /// Waits for a running commit and applies it as if it were due; the octree may be read afterwards. Rethrows
+  /// what the commit threw. After such a failure every call throws Error, because the octree is half changed.
   void finish();
 
  private:
@@ -93,19 +94,20 @@ class MapUpdater {
   MapUpdateConfig config_;
   ChangeTracker tracker_;
   std::vector<CommittedChange> committed_;
-  std::optional<double> asked_until_s_;  ///< kNow: from the next frame on
+  std::optional<double> asked_until_s_;  ///< end of ask()'s request; kNow: its time starts with the next
+                                         ///< frame
   bool keeps_up_unknown_ = false;
-  double stamp_s_ = 0.0;  ///< of the frame now
+  double stamp_s_ = 0.0;  ///< time of the current frame
   std::int64_t frame_ = 0;
   std::optional<std::int64_t> watched_frame_;
   double next_look_s_ = 0.0;
-  std::vector<LastingChange> pending_;  ///< settled, being measured or worked in
-  std::vector<RegionView> views_;       ///< of them; filled up to view_count_, kept for the next ones
+  std::vector<LastingChange> pending_;  ///< settled changes that are being measured or committed
+  std::vector<RegionView> views_;  ///< the first view_count_ show pending_; the others are buffers to reuse
   int view_count_ = 0;
-  int frames_left_ = 0;  ///< to the end of measuring, or to when the room is due
+  int frames_left_ = 0;  ///< until measuring is given up, or until the room is due
   std::future<ChangedRoom> working_;
   bool has_failed_ = false;
-  ChangedRoom room_;  ///< of the frames now
+  ChangedRoom room_;  ///< current room
 
   void look_for_changes(double stamp_s);
   void measure(const Frame& frame, const DepthImage& expected_depth_m,

@@ -1,4 +1,4 @@
-// script.cpp: the events file of `roomradar run --script FILE`.
+// script.cpp: reads and writes the events file of `roomradar run --script FILE`.
 #include "app/session/script.hpp"
 
 #include <Eigen/Geometry>
@@ -16,8 +16,8 @@
 namespace roomradar {
 namespace {
 
-constexpr std::size_t kMaxBytes = 1U << 26U;  // a day of dragging things about, recorded
-constexpr double kMaxCoordinate_m = 1e8;      // of an object's origin, which may lie far from its mesh
+constexpr std::size_t kMaxBytes = 1U << 26U;  // a recorded day of dragging objects
+constexpr double kMaxCoordinate_m = 1e8;      // for an object's origin, which may be far from its mesh
 constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxAngular_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
@@ -60,7 +60,7 @@ constexpr std::array<Word<CameraPlay>, 6> kCameraPlays = {{{"hold", CameraPlay::
                                                            {"stay", CameraPlay::kStay},
                                                            {"resume", CameraPlay::kResume}}};
 
-/// "add, place or drop"
+/// Returns "add, place or drop" and the like.
 template <typename Value, std::size_t kCount>
 std::string listed(const std::array<Word<Value>, kCount>& words) {
   std::string list;
@@ -82,7 +82,7 @@ std::string in_quotes(std::string_view text) {
   return result;
 }
 
-/// The words of one line, taken one after the other; every complaint names the file and the line.
+/// Reads the words of one line in order; every error names the file and the line.
 class LineReader {
  public:
   LineReader(std::string_view text, std::string_view where, int line) : where_(where), line_(line) {
@@ -111,7 +111,7 @@ class LineReader {
   }
   void expect(std::string_view expected) {
     const std::string_view found = word(in_quotes(expected).c_str());
-    if (found != expected) fail(in_quotes(found) + " stands where " + in_quotes(expected) + " is wanted");
+    if (found != expected) fail(in_quotes(found) + " found where " + in_quotes(expected) + " is wanted");
   }
   double number(const char* wanted, double lowest, double highest) {
     const std::string_view text = word(wanted);
@@ -155,7 +155,7 @@ Eigen::Vector3d read_position(LineReader& line) {
   return line.vector("a position X Y Z (m)", kMaxCoordinate_m);
 }
 
-/// The rest of the line, if it says how the object stands.
+/// Reads the optional orientation at the end of a line.
 void read_turned(LineReader& line, ScriptEvent& event) {
   if (!line.take_if("turned")) return;
   event.turned_deg = line.vector("the angles YAW PITCH ROLL (degrees), -360..360", 360.0);
@@ -190,7 +190,7 @@ void read_when(LineReader& line, ScriptEvent& event) {
   }
 }
 
-/// Whether the action is of an object, whose name follows it.
+/// Returns true if the action is followed by an object's name.
 bool has_object(Action action) {
   switch (action) {
     case Action::kSurfaces:
@@ -271,7 +271,7 @@ void read_action(LineReader& line, ScriptEvent& event) {
 
 Script parse_script(std::string_view text, std::string_view where) {
   if (text.find('\0') != std::string_view::npos)
-    throw Error(std::string(where) + ": is not text; give a file with one event a line");
+    throw Error(std::string(where) + ": is not text; give a file with one event per line");
   Script script;
   std::map<std::string, int, std::less<>> added_in_line;
   int number = 0;
@@ -301,7 +301,7 @@ Script parse_script(std::string_view text, std::string_view where) {
 }
 
 Script read_script(const std::filesystem::path& path, LastLine last_line) {
-  std::string text = read_bytes(path, "a text file with one event a line", kMaxBytes);
+  std::string text = read_bytes(path, "a text file with one event per line", kMaxBytes);
   if (last_line == LastLine::kMayBeCut) text.resize(text.rfind('\n') + 1);  // npos + 1 is 0
 
   Script script = parse_script(text, path.string());

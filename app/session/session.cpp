@@ -1,5 +1,5 @@
-// session.cpp: the path of one frame, top to bottom, and the steps it is made of. What is asked of a session
-// is in session_events.cpp, what it shows in session_picture.cpp.
+// session.cpp: the steps of one frame, in order, and their implementation. Events are in session_events.cpp,
+// pictures in session_picture.cpp.
 #include "app/session/session.hpp"
 
 #include <algorithm>
@@ -15,21 +15,22 @@
 namespace roomradar {
 namespace {
 
-constexpr double kNearbyReach_m = 0.25;  // moving surfaces farther from all of an object do not push it
+constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
 
-/// What moves an object that a user's hand holds: no weight, and it slides along what it meets.
+/// Returns the physics of a carried object: without gravity, friction and restitution, so it slides along
+/// surfaces.
 PhysicsConfig in_hand(PhysicsConfig config) {
   config.gravity_world_mps2.setZero();
   config.friction = config.restitution = 0.0;
   return config;
 }
 
-/// An object that waited for its turn for longer than one call of advance() takes is moved by several.
+/// Returns the number of advance() calls for a time that may exceed the max of one call.
 int pieces_of(double waited_s, const PhysicsConfig& config) {
   return std::max(1, static_cast<int>(std::ceil(waited_s / config.max_advance_s - 1e-9)));
 }
 
-/// On its way to where it is wanted, to be there after this frame.
+/// Sets the velocity that takes a carried object to its target by the end of this frame.
 void set_in_hand(VirtualObject& object, double dt_s) {
   const Eigen::Vector3d way = *object.carried_to_world - object.body.T_world_object.translation();
   object.body.asleep = false;
@@ -54,13 +55,15 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   if (octree == nullptr) throw Error("adopt: the session was given no octree to change");
   if (config.scene.surfaces != SurfacePolicy::kMap)
     throw Error(std::string("adopt: with --surfaces ") + std::string(to_string(config.scene.surfaces)) +
-                " nothing is asked of the map, so there is nothing to adopt into; use --surfaces map");
+                " the map is not used, so no change can be adopted; use --surfaces map");
   map_updater_ = std::make_unique<MapUpdater>(*octree, map.mesh, *config.map_updates);
 }
 
 void Session::make_unknown_solid(StageTimes& times) {
   if (config_.scene.surfaces != SurfacePolicy::kMap)
-    throw Error("unknown space is solid only with the map's surfaces: the others do not know what was seen");
+    throw Error(
+        "unknown space can be solid only with the map's surfaces: the others do not know which space was "
+        "observed");
   times.timed("unknown", [&] {
     if (unknown_tree_.empty()) {
       if (map_updater_ && (has_last_stamp_ || !map_updater_->committed_changes().empty()))
@@ -89,7 +92,7 @@ void Session::set_surfaces(SurfacePolicy surfaces) {
                 ": changes are being adopted into the map, which needs its surfaces");
   if (surfaces != SurfacePolicy::kMap && unknown_is_solid_)
     throw Error("surfaces " + std::string(to_string(surfaces)) +
-                ": unknown space is solid, which only the map can say; make it free first");
+                ": unknown space is solid, which needs the map's surfaces; make it free first");
   config_.scene.surfaces = surfaces;
   scene_.set_surfaces(surfaces);
 }
@@ -118,7 +121,7 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
   }
   FrameResult result = times.timed("frame", [&] { return pass_through(frame, times); });
   if (config_.watch) static_cast<void>(config_.watch(FramePart::kDone, load()));
-  for (auto& due : due_quality_)  // of parts that were not come to
+  for (auto& due : due_quality_)  // for parts that the frame did not reach
     if (due) set_quality(*std::exchange(due, std::nullopt));
   if (config_.measure_penetration && result.status == FrameStatus::kDone)
     result.deepest_penetration_m = penetration_m();
@@ -138,7 +141,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   begin(FramePart::kLocate);
   const Frame& frame = times.timed("reduce", [&]() -> const Frame& { return with_depth_reduced(whole); });
   if (map_updater_ && map_updater_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
-  const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });  // where am I?
+  const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });
   result.tracking = tracking.status;
   if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
     if (config_.make_picture) show_camera_alone(whole);
@@ -149,8 +152,8 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
   result.static_triangles_drawn =
       times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
-  result.foreground = times.timed("foreground", [&] { return scene_.find_dynamic(frame); });  // what moved?
-  if (map_updater_ && tracking)  // what came to stay, what is gone? Not where the pose is partly a guess
+  result.foreground = times.timed("foreground", [&] { return scene_.find_dynamic(frame); });
+  if (map_updater_ && tracking)  // not with kDegenerate: the pose is partly predicted
     times.timed("changes", [&] {
       map_updater_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
     });
@@ -162,7 +165,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   count_fine_cells();
   if (!waiting_.empty()) times.timed("place", [&] { release_waiting(frame, T_world_camera); });
   begin(FramePart::kPhysics);
-  times.timed("physics", [&] { move_objects(dt_s, times, result); });  // R, M, L
+  times.timed("physics", [&] { move_objects(dt_s, times, result); });  // Cyber Radar: R, M, L
   times.add_ms("contact", ms_since(handed_over));
   begin(FramePart::kCompose);
   if (config_.make_picture) keep_colour(whole, T_world_camera, dt_s);
@@ -195,8 +198,8 @@ FrameLoad Session::load() const {
 bool Session::is_turn_to_move(std::size_t number) const {
   const std::int64_t pictures = config_.picture_every_n_frames;
   if (pictures == 1) return is_turn(number, config_.move_every_n_frames);
-  // Pictures are made in the others: no frame has both to do. Also where none are made, so that objects do
-  // the same with pictures and without.
+  // Frames with a picture do not move objects. The same frames are left out if no pictures are made, so
+  // objects move the same with and without pictures.
   const std::int64_t frame = frames_ % pictures;
   const std::int64_t of_these = frames_ / pictures * (pictures - 1) + frame - 1;
   return frame > 0 && (of_these + static_cast<std::int64_t>(number)) % config_.move_every_n_frames == 0;
@@ -236,7 +239,7 @@ Tracking Session::locate_camera(const Frame& frame) {
 void Session::renew_room() {
   ChangedRoom& room = map_updater_->room();
   room_.set(room.mesh, std::move(room.tree));
-  if (!unknown_tree_.empty()) {  // it was made once, and is kept up since
+  if (!unknown_tree_.empty()) {  // extracted at first use, and kept up to date since
     unknown_ = std::move(room.unknown);
     unknown_tree_ = std::move(room.unknown_tree);
   }
@@ -262,7 +265,7 @@ std::vector<SceneTree> Session::scene_without(const VirtualObject* object) const
 
 std::span<const SceneBody> Session::bodies_in(const std::vector<SceneTree>& scene,
                                               const VirtualObject& object) {
-  constexpr double kOfAHand = 1e6;  // what a hand holds goes where the hand goes
+  constexpr double kOfAHand = 1e6;  // mass ratio that makes a carried object immovable for others
   others_.clear();
   for (const auto& other : objects_) {
     if (other.get() == &object || !other->in_room) continue;
@@ -290,7 +293,7 @@ bool Session::is_in_unknown(const VirtualObject& object) const {
 }
 
 void Session::find_fine_regions() {
-  constexpr double kAbout_m = 0.02;  // an object's way in a frame, at 0.6 m/s
+  constexpr double kAbout_m = 0.02;  // an object's travel per frame at 0.6 m/s
   fine_regions_.clear();
   if (!config_.fine_mesh) return;
   for (const auto& object : objects_) {
@@ -303,7 +306,7 @@ void Session::find_fine_regions() {
 void Session::count_fine_cells() {
   const std::vector<std::uint32_t>& of_region = scene_.dynamic_cells().fine_of_region;
   const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
-  std::size_t region = 0;  // those in the room have one each, in this order
+  std::size_t region = 0;  // one region per object in the room, in this order
   for (const auto& object : objects_) {
     const bool has_region = has_map && object->in_room && region < of_region.size();
     object->fine_cells = has_region ? of_region[region++] : 0;
@@ -332,11 +335,12 @@ void Session::move_objects(double dt_s, StageTimes& times, FrameResult& result) 
   for (std::size_t number = 0; number < objects_.size(); ++number) {
     VirtualObject* const object = objects_[number].get();
     if (!object->in_room) continue;
-    object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // more: it stalled
+    object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // longer gaps are stalls
     if (!object->carried_to_world && !is_turn_to_move(number)) continue;
     const double waited_s = std::exchange(object->waited_s, 0.0);
     if (!object->body.asleep) object->in_unknown = object->in_unknown && is_in_unknown(*object);
-    PushDirections push;  // without a map all surfaces are the frame's, and none of them is known to move
+    // Without the map, all surfaces are the frame's, and none is known to be dynamic.
+    PushDirections push;
     if (config_.scene.surfaces == SurfacePolicy::kMap)
       push = depenetration_directions(
           {&scene_.dynamic_world().seen_world, &scene_.dynamic_world().inferred_world},
@@ -374,7 +378,7 @@ double Session::penetration_m() {
   for (const auto& object : objects_) {
     if (!object->in_room) continue;
     std::vector<SceneTree> still = scene_without(object.get());
-    // A hand that reaches into an object is the hand's doing; in the unknown there may be nothing.
+    // A real hand may enter an object, and unknown space may be empty; neither counts.
     if (config_.scene.surfaces == SurfacePolicy::kMap)
       std::erase_if(still, [](const SceneTree& surface) {
         return surface.kind != SurfaceKind::kStatic && surface.kind != SurfaceKind::kObject;
@@ -384,7 +388,8 @@ double Session::penetration_m() {
                                               0.01},
                                              {still, {}});
     if (below.status != ContactStatus::kOverlap) continue;
-    constexpr double kTouching_m = 1e-6;  // what crosses no part of it lies in a hollow, as in a handle
+    // An overlapping surface that crosses no part of the object is in a hollow, such as a handle.
+    constexpr double kTouching_m = 1e-6;
     const SurfaceKindMask crossed =
         proximity_.near({&object->model->shape.touched, object->body.T_world_object}, {still, {}},
                         kTouching_m, 0, closest_points_);

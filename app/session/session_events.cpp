@@ -1,4 +1,4 @@
-// session_events.cpp: what a script or a user asks of a session.
+// session_events.cpp: executes the events of scripts and users.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kTouching_m = 1e-6;
 
-/// The room's depth where nothing that moved is before it, and might stand on it; else 0.
+/// Returns the room's depth; 0 where something dynamic is in front of it and might stand on it.
 DepthImage seen_room_depth_m(const FrameScene& scene) {
   DepthImage depth_m = scene.expected_depth_m();
   const MaskImage& moved = scene.dynamic_mask();
@@ -40,20 +40,21 @@ bool overlap(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a, co
          has_inside(b, scene_a);
 }
 
-/// Whether two bodies have more space in common than a shift by shift_m takes away. What touches parts if it
-/// is shifted the one way or the other; of what stands exactly where the other does, no surface crosses
-/// another until it is.
+/// Returns true if two bodies overlap by more than a shift by shift_m resolves. Bodies that only touch are
+/// separated by one of the two shifts. Bodies at exactly the same place have no crossing surfaces until
+/// shifted.
 bool share_space(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a, const TreeInstance& b,
                  double shift_m) {
   const auto overlap_shifted = [&](double by_m) {
     TreeInstance shifted = a;
-    shifted.T_world_mesh.translation() += by_m * Eigen::Vector3d(0.31, 0.53, 0.79);  // along no edge
+    // unlikely to be parallel to an edge
+    shifted.T_world_mesh.translation() += by_m * Eigen::Vector3d(0.31, 0.53, 0.79);
     return overlap(radar, field, shifted, b);
   };
   return overlap_shifted(shift_m) && overlap_shifted(-shift_m);
 }
 
-/// Throws Error if there is no place in view that could be large enough for it.
+/// Throws Error if the object is too large for any place in view.
 void require_small_enough(const VirtualObject& object, const ScriptEvent& drop) {
   const double reach_m =
       footprint_radius_m(object, drop.R_world_object.value_or(object.body.T_world_object.linear()));
@@ -104,7 +105,7 @@ void Session::turn(VirtualObject& object, const Eigen::Vector3d& turn_world_deg)
   const Eigen::Vector3d origin_before = object.body.T_world_object.translation();
   object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
   make_orthonormal(object.body.T_world_object);
-  if (object.carried_to_world)  // its middle is wanted where it was
+  if (object.carried_to_world)  // the carry target follows, so the middle stays in place
     *object.carried_to_world += object.body.T_world_object.translation() - origin_before;
   object.body.asleep = false;
 }
@@ -116,7 +117,7 @@ void Session::raise_over_others(VirtualObject& object) {
   const Eigen::Isometry3d T_world_asked = object.body.T_world_object;
   Eigen::Isometry3d T_world_raised = T_world_asked;
   for (std::size_t round = 0; round < objects_.size(); ++round) {
-    std::vector<SceneTree> shared;  // others that have space in common with it
+    std::vector<SceneTree> shared;  // objects that overlap it
     double top_m = -std::numeric_limits<double>::infinity();
     for (const auto& other : objects_) {
       const TreeInstance its{&other->model->shape.touched, other->body.T_world_object};
@@ -167,7 +168,7 @@ void Session::apply(const ScriptEvent& event) {
       if (!map_updater_) throw Error("script: adopt: this session does not watch for changes");
       map_updater_->ask();
       break;
-    case Action::kCamera:  // the source's affair
+    case Action::kCamera:  // handled by the source
     case Action::kQuit:
       break;
     default:
@@ -194,7 +195,7 @@ void Session::change_objects(const ScriptEvent& event) {
   };
   if (event.action == Action::kTurn && !object.in_room) return;
   if (event.action == Action::kDrop && !event.position_world) require_small_enough(object, event);
-  // Whatever else is said of an object now takes the place of a drop that it waits for.
+  // Any later event of the object replaces its waiting drop.
   std::erase_if(waiting_, [&](const WaitingDrop& waiting) { return waiting.drop.name == event.name; });
   if (event.R_world_object && event.position_world)
     object.body.T_world_object.linear() = *event.R_world_object;
@@ -243,7 +244,7 @@ void Session::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_wor
     const std::optional<Eigen::Vector3d> support_world =
         find_support(seen_room_depth_m(scene_), frame.depth_camera, T_world_camera,
                      footprint_radius_m(object, R_world_object));
-    if (!support_world) {  // and those that wait do not all search in the same frame
+    if (!support_world) {  // staggered, so waiting drops do not all search in the same frame
       waiting.try_at_frame = frames_ + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());
       waiting_.push_back(std::move(waiting));
       continue;

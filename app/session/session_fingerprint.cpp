@@ -1,4 +1,4 @@
-// session_fingerprint.cpp: names, poses and pixels to two numbers.
+// session_fingerprint.cpp: hashes names, poses and pixels into two numbers.
 #include "app/session/session_fingerprint.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ class Fingerprint {
       std::uint64_t word = 0;
       std::memcpy(&word, bytes + at, std::min(sizeof word, size_bytes - at));
       value_ = (value_ ^ word) * 1099511628211ULL;
-      value_ ^= value_ >> 29U;  // words' high bits would never come down by the product alone
+      value_ ^= value_ >> 29U;  // the product alone never carries high bits down
     }
   }
   [[nodiscard]] std::uint64_t value() const { return value_; }
@@ -32,7 +32,7 @@ class Fingerprint {
 FrameFingerprint fingerprint_of(std::int64_t run_frame, const Session& session) {
   Fingerprint objects;
   for (const auto& object : session.objects()) {
-    if (!object->in_room) continue;  // a replay loads all at its start, whenever they were added
+    if (!object->in_room) continue;  // a replay loads all objects at its start
     objects.add(object->body.name.data(), object->body.name.size());
     const Eigen::Matrix<double, 3, 4> pose = object->body.T_world_object.matrix().topRows<3>();
     objects.add(pose.data(), sizeof(double) * 12);

@@ -1,4 +1,4 @@
-// session_fingerprint.hpp: what a frame of a session came to, in so few bytes that each frame's can be kept.
+// session_fingerprint.hpp: hashes of a frame's result, small enough to keep for every frame.
 #pragma once
 #include <cstdint>
 
@@ -6,11 +6,11 @@ namespace roomradar {
 
 class Session;
 
-/// What a frame came to.
+/// Hashes of a frame's result, to compare two runs.
 struct FrameFingerprint {
   std::int64_t run_frame = 0;
-  std::uint64_t objects = 0;  ///< names and poses, to the last bit, of those in the room
-  std::uint64_t picture = 0;  ///< 0: none was made
+  std::uint64_t objects = 0;  ///< names and poses of the objects in the room, bit by bit
+  std::uint64_t picture = 0;  ///< 0: no picture was made
 };
 FrameFingerprint fingerprint_of(std::int64_t run_frame, const Session& session);
 

@@ -1,4 +1,4 @@
-// session_picture.cpp: what a session shows: the camera's picture with the objects and their shadows in it.
+// session_picture.cpp: composes the camera's picture with the objects and their shadows.
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <vector>
@@ -8,9 +8,9 @@
 namespace roomradar {
 namespace {
 
-/// A camera's pose after_s after it was at T_world_now, moving on as it moved for dt_s until then; no farther
-/// than that motion, either way. Without a time to go by it stands, and so it does after a jump: the source
-/// went back, or the pose was found anew.
+/// Extrapolates a camera's pose to after_s after T_world_now from its motion over the last dt_s, by at most
+/// that motion in either direction. Returns T_world_now without a time difference, or after a jump: the
+/// source was rewound, or the camera relocalised.
 Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eigen::Isometry3d& T_world_now,
                               double dt_s, double after_s) {
   constexpr double kJump_m = 0.3, kJump_rad = 0.3;
@@ -52,7 +52,7 @@ void Session::show_camera_alone(const Frame& frame) {
   shown_view_.reset();
   if (!frame.colour.empty()) {
     picture_ = frame.colour;
-    colour_view_.reset();  // older, and from where nobody knows
+    colour_view_.reset();  // older, and of unknown pose
   } else if (colour_view_) {
     picture_ = background_;
   } else if (frames_without_colour_ > kColourLasts_frames || picture_.empty()) {
@@ -64,7 +64,7 @@ void Session::renew_a_shadow() {
   constexpr double kTurned_rad = 0.05;
   constexpr int kFine = 16, kCoarse = 8;  // 3 ms and 0.2 ms
   const bool may_be_fine = is_turn(0, config_.shadow_every_n_frames);
-  // In turn: one that turns on and on does not keep the others from theirs.
+  // Objects take turns, so one that keeps rotating does not block the others.
   for (std::size_t i = 1; i <= objects_.size(); ++i) {
     const std::size_t number = (last_shadow_ + i) % objects_.size();
     VirtualObject& object = *objects_[number];
@@ -94,7 +94,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
                      .is_closed = object->model->shape.touched.is_closed()});
     if (has_shadows) casters.push_back({&object->shadow, object->body.T_world_object});
   }
-  drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // goes on beside real depth and shadows
+  drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // runs in parallel with real depth and shadows
 
   if (has_shadows) renew_a_shadow();
   real_depth_m_.resize(camera.width_px, camera.height_px);

@@ -1,4 +1,4 @@
-// glfw_window.cpp
+// glfw_window.cpp: opens the window and stores its events.
 #include "app/window/glfw_window.hpp"
 
 #define GLFW_INCLUDE_NONE
@@ -21,7 +21,7 @@ std::string last_glfw_error() {
   return what != nullptr ? what : "no reason was given";
 }
 
-/// No narrower than what the bar at the top has to say, on a screen that is wide enough.
+/// Sets a min size at which the top bar's content fits, if the screen is large enough.
 void keep_wide_enough(GLFWwindow* window) {
   constexpr float kLeastWidth = 1240.0F, kLeastHeight = 600.0F;
   float scale_x = 1.0F, scale_y = 1.0F;
@@ -52,7 +52,7 @@ GlfwWindow::GlfwWindow(const std::string& title) {
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
-  // By EGL where that works, as the radar: one driver in the process; else by the window system's own way.
+  // EGL if it works, as for the radar, so the process loads one driver; else the window system's own API.
   for (const int way : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, way);
     window_ = glfwCreateWindow(kWidth_px, kHeight_px, title.c_str(), nullptr, nullptr);

@@ -1,4 +1,4 @@
-// glfw_window.hpp: a window of the desktop with an OpenGL context, and what the user does to it.
+// glfw_window.hpp: desktop window with an OpenGL context, and its keys and dropped files.
 #pragma once
 #include <string>
 #include <utility>
@@ -9,16 +9,16 @@ struct GLFWwindow;
 namespace roomradar {
 
 struct Key {
-  int key = 0;             ///< as key_meant() says
-  int modifiers = 0;       ///< as they were when it was pressed
-  bool is_repeat = false;  ///< it has been held down for a while
+  int key = 0;             ///< as returned by key_meant()
+  int modifiers = 0;       ///< when it was pressed; GLFW's bits
+  bool is_repeat = false;  ///< generated while it is held down
 };
 
-/// GLFW's window with a current context. Keys that are pressed in it, and files that are dropped onto it, are
-/// kept until they are taken. One at a time, on the main thread.
+/// GLFW window with a current context. Key presses and dropped files are stored until taken. One instance at
+/// a time, on the main thread.
 class GlfwWindow {
  public:
-  /// @throws Error saying what to do where there is no display, or it gives no OpenGL 3.3
+  /// @throws Error with advice if there is no display or it does not support OpenGL 3.3
   explicit GlfwWindow(const std::string& title);
   ~GlfwWindow();
   GlfwWindow(const GlfwWindow&) = delete;

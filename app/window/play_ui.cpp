@@ -1,4 +1,4 @@
-// play_ui.cpp
+// play_ui.cpp: draws the window's bar, panes and help, and executes keys.
 #include "app/window/play_ui.hpp"
 
 #define GLFW_INCLUDE_NONE
@@ -14,7 +14,7 @@ namespace roomradar {
 namespace {
 
 constexpr double kMessage_s = 5.0;
-constexpr double kStall_s = 1.0;  // without a new frame for so long, it is said
+constexpr double kStall_s = 1.0;  // time without a new frame after which the bar says so
 
 constexpr std::array<std::array<const char*, 2>, 21> kHelp = {
     {{"click on a surface", "drop the chosen object there"},
@@ -25,10 +25,10 @@ constexpr std::array<std::array<const char*, 2>, 21> kHelp = {
      {"D  P  T", "drop, place, throw at the mouse"},
      {"Tab", "choose the next object"},
      {"A  Del  R", "add one, remove it, reset all"},
-     {"a mesh file dropped here", "add what is in it"},
+     {"a mesh file dropped here", "add its object"},
      {"Space", "pause"},
-     {".", "one frame more"},
-     {"F", "hold the camera; objects go on"},
+     {".", "one more frame"},
+     {"F", "hold the camera; objects keep moving"},
      {"Home", "back to the first frame"},
      {"L", "loop, or stay at the end"},
      {"+  -", "speed"},
@@ -160,7 +160,7 @@ void PlayUi::draw_state(const Area& area) {
   else if (shown_.is_repeating)
     look::pill(look::kGood, shown_.is_held ? "camera held" : "at the end");
   else
-    look::pill(look::kGood, result.tracking == TrackStatus::kDegenerate ? "pose in part" : "tracked");
+    look::pill(look::kGood, result.tracking == TrackStatus::kDegenerate ? "partly tracked" : "tracked");
 }
 
 void PlayUi::draw_budget(const Area& area) {
@@ -173,7 +173,7 @@ void PlayUi::draw_budget(const Area& area) {
                   frames_per_s_, speed_);
   const float left = area.width - look::px(182.0F), top = area.y + look::px(10.0F), width = look::px(168.0F);
   draw->AddText(fonts_.small, fonts_.small->FontSize, {left, top}, look::kText, text.data());
-  // How much of the budget the frame takes, and how much of it the goal is.
+  // Frame time and goal as fractions of the budget.
   const float bar_y = top + look::px(19.0F), bar_height = look::px(6.0F), rounding = look::px(3.0F);
   const float budget_ms = static_cast<float>(timing_.budget_ms());
   const float goal_ms = static_cast<float>(timing_.goal_ms());
@@ -204,7 +204,7 @@ void PlayUi::draw_help(float width, float height) {
   ImDrawList* draw = ImGui::GetForegroundDrawList();
   draw->AddRectFilled({0.0F, 0.0F}, {width, height}, IM_COL32(8, 10, 13, 150));
   const float left = 0.5F * (width - wide), top = 0.5F * (height - tall);
-  // Over all panes, which stay behind: a click goes to nothing else.
+  // A transparent window over all panes, so a click reaches nothing else.
   ImGui::SetNextWindowPos({0.0F, 0.0F});
   ImGui::SetNextWindowSize({width, height});
   ImGui::Begin("help", nullptr,
@@ -290,7 +290,7 @@ void PlayUi::press(int key, int modifiers) {
       link_.ask(camera_command(CameraPlay::kRewind));
       if (std::exchange(shown_.is_held, false)) link_.ask(camera_command(CameraPlay::kGo));
       break;
-    case GLFW_KEY_F:  // the next key may come before the next frame does
+    case GLFW_KEY_F:  // shown at once: the next key may precede the next frame
       shown_.is_held = !shown_.is_held;
       link_.ask(camera_command(shown_.is_held ? CameraPlay::kHold : CameraPlay::kGo));
       break;
@@ -322,7 +322,7 @@ void PlayUi::press(int key, int modifiers) {
       command.kind = UserCommandKind::kReset;
       link_.ask(command);
       break;
-    // What is asked for is shown at once: the next key may come before the next frame does.
+    // These change shown_ at once, too, because the next key may precede the next frame.
     case GLFW_KEY_S: {
       constexpr std::array<SurfacePolicy, 4> kNext = {SurfacePolicy::kSkirt, SurfacePolicy::kBorder,
                                                       SurfacePolicy::kMap, SurfacePolicy::kHoles};
@@ -347,7 +347,7 @@ void PlayUi::press(int key, int modifiers) {
       models_.look_at_chosen(shown_);
       break;
     case '+':
-    case GLFW_KEY_EQUAL:  // which types + with Shift
+    case GLFW_KEY_EQUAL:  // types + with Shift
     case GLFW_KEY_KP_ADD:
       set_speed(2.0 * speed_);
       break;

@@ -1,4 +1,4 @@
-// play_ui.hpp: all that is seen in the window, and what its keys do.
+// play_ui.hpp: content of the window, and actions of its keys.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,23 +16,23 @@
 
 namespace roomradar {
 
-/// Within Dear ImGui's frames, on the window's thread.
+/// Call on the window's thread, within Dear ImGui's frames.
 class PlayUi {
  public:
-  /// @param meshes     files that can be added beside the built-in teapot
-  /// @param budget_ms  of a frame, where it is held to one
+  /// @param meshes     files that can be added besides the built-in teapot
+  /// @param budget_ms  the run's time limit per frame, if it has one
   PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<std::string>& meshes,
          std::optional<double> budget_ms);
 
-  /// Takes what is new; whether there was anything.
+  /// Takes the newest snapshot and message; returns true if there was one.
   bool take_news();
   void draw(float width, float height);
-  /// @param key        as key_meant() says
-  /// @param modifiers  as GLFW names them
+  /// @param key        as returned by key_meant()
+  /// @param modifiers  GLFW's bits
   void press(int key, int modifiers = 0);
-  /// Whether a key that is held down acts again and again.
+  /// Returns true if a key acts repeatedly while it is held down.
   static bool repeats(int key);
-  /// Adds what is in a mesh file, and offers it from now on.
+  /// Adds an object from a mesh file, and offers the file in the list from now on.
   void take_file(const std::string& path);
   [[nodiscard]] bool wants_to_quit() const { return quits_; }
 

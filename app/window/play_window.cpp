@@ -1,10 +1,10 @@
-// play_window.cpp: shows the window, and runs the session on a thread of its own.
+// play_window.cpp: shows the window, and runs the session on another thread.
 //
-// The window's OpenGL context is its own and shares nothing with the radar's. Contexts share objects only on
-// one EGL display; the radar's is that of a device, without a window system, so that it is the same with a
-// window and without, and the window's is X11's. Nothing is lost: the picture is composed in the processor's
-// memory for videos and reports alike, and goes to the window as a texture of 0.9 MB, some 0.2 ms. And with
-// two contexts the session can work on a thread of its own.
+// The window's OpenGL context shares nothing with the radar's. Contexts share objects only on one EGL
+// display; the radar's is a device display without a window system, to be the same with and without a window,
+// while the window's is X11's. Nothing is lost: the picture is composed in main memory for videos and reports
+// anyway, and is uploaded as a texture of 0.9 MB in some 0.2 ms. Two contexts also let the session run on
+// another thread.
 #include "app/window/play_window.hpp"
 
 #define GLFW_INCLUDE_NONE
@@ -37,7 +37,8 @@ struct ImGuiOfWindow {
     float scale = 1.0F;
     glfwGetWindowContentScale(window, &scale, nullptr);
     fonts = look::apply(std::clamp(scale, 1.0F, 3.0F));
-    ImGui_ImplGlfw_InitForOpenGL(window, /*install_callbacks=*/true);  // and calls those that were there
+    ImGui_ImplGlfw_InitForOpenGL(window, /*install_callbacks=*/true);  // calls the callbacks installed
+                                                                       // before, too
     ImGui_ImplOpenGL3_Init("#version 330 core");
   }
   ~ImGuiOfWindow() {
@@ -49,8 +50,7 @@ struct ImGuiOfWindow {
   ImGuiOfWindow& operator=(const ImGuiOfWindow&) = delete;
 };
 
-/// Draws when something has happened, and some frames more, since Dear ImGui answers a frame late; else
-/// seldom.
+/// Draws after every event, otherwise every kIdle_s.
 void show(GlfwWindow& window, UiChannel& link, const std::vector<std::string>& meshes,
           std::optional<double> budget_ms) {
   const ImGuiOfWindow imgui(window.get());
@@ -97,7 +97,7 @@ int run_in_window(const std::string& title, const std::vector<std::string>& mesh
       status = work(link);
     } catch (...) {
       fault = std::current_exception();
-      glfwSetWindowShouldClose(window.get(), GLFW_TRUE);  // may be called from any thread
+      glfwSetWindowShouldClose(window.get(), GLFW_TRUE);  // allowed on any thread
     }
     link.finish();
   });
@@ -109,7 +109,7 @@ int run_in_window(const std::string& title, const std::vector<std::string>& mesh
     throw;
   }
   link.close();
-  glfwHideWindow(window.get());  // what is under way may take a while to end
+  glfwHideWindow(window.get());  // the session may take a while to end
   session.join();
   if (fault) std::rethrow_exception(fault);
   return status;

@@ -1,4 +1,4 @@
-// play_window.hpp: the window of `roomradar run --window`.
+// play_window.hpp: window of `roomradar run --window`.
 #pragma once
 #include <functional>
 #include <optional>
@@ -9,15 +9,16 @@
 
 namespace roomradar {
 
-/// Opens a window, runs `work` on a thread of its own, and shows what it publishes until the user closes the
-/// window or the work is over and the window is closed. Must be called on the main thread.
+/// Opens a window, runs `work` on another thread, and shows its snapshots until the user closes the window.
+/// The window stays open after `work` has returned. Call on the main thread.
 ///
-/// @param title      of the window
-/// @param meshes     that can be added beside the built-in teapot: files that read_mesh reads
-/// @param budget_ms  of a frame, where it is held to one
-/// @return what `work` returned; what it throws is thrown here
-/// @throws Error saying what to do where this build has no window, there is no display, or the display gives
-///         no OpenGL 3.3
+/// @param title      title of the window
+/// @param meshes     files that can be added besides the built-in teapot, readable by read_mesh
+/// @param budget_ms  the run's time limit per frame, if it has one
+/// @return the value returned by `work`; rethrows what `work` throws
+/// @throws Error with advice if this build has no window, there is no display, or the display does not
+/// support
+///         OpenGL 3.3
 int run_in_window(const std::string& title, const std::vector<std::string>& meshes,
                   std::optional<double> budget_ms, const std::function<int(UiChannel&)>& work);
 

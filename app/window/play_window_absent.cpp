@@ -1,4 +1,4 @@
-// play_window_absent.cpp: in the place of the window where GLFW or Dear ImGui were not there to build it.
+// play_window_absent.cpp: replaces play_window.cpp in builds without GLFW or Dear ImGui.
 #include "app/window/play_window.hpp"
 #include "mapping/types/system/error.hpp"
 

@@ -28,14 +28,14 @@ SimOptions walk_of(const ScenarioRoom& room, const RoomScan& scan) {
   return walk;
 }
 
-/// Whether the folder holds the map that this walk gave an earlier run of this version. Throws Error if
-/// it holds another room's map, which is not to be lost.
+/// Returns true if the folder holds this walk's map, made by this version. Throws Error if it holds another
+/// source's map, which must not be overwritten.
 bool is_scan_of(const std::filesystem::path& folder, const SimOptions& walk, const RoomScan& scan) {
   if (!std::filesystem::exists(folder)) return false;
   const MapInfo info = load_map_info(folder);
   if (info.source != sim_spec(walk))
     throw Error(folder.string() + ": is the map of " + info.source +
-                ", where one of a walk round a simulated room would be kept; name another folder by --maps");
+                ", but the map of a simulated room would be stored there; name another folder with --maps");
   return info.frames_fused == walk.frames && info.resolution_m == scan.resolution_m &&
          info.tool_version == kVersion;
 }
@@ -81,7 +81,7 @@ ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std:
   } else {
     fuse_walk(walk, scan, progress, map);
     if (map.mesh.triangles.empty())
-      throw Error("room " + room.title + ": the walk round it shows no surface; take a finer resolution");
+      throw Error("room " + room.title + ": the walk round it shows no surface; use a finer resolution");
     if (!folder.empty()) save_map(folder, map);
   }
   room.unknown_world = unknown_surface(map.octree, map.mesh).mesh_world;

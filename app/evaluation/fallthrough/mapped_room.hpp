@@ -1,4 +1,4 @@
-// mapped_room.hpp: simulated rooms with the maps that a prescan made of them.
+// mapped_room.hpp: simulated rooms with maps made by a prescan of them.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,57 +13,58 @@
 
 namespace roomradar {
 
-/// Which room: `table`, `shelf`, `wall` with seed 1, or `random` with a seed of its own.
+/// Selects a room: `table`, `shelf`, `wall` with seed 1, or `random` with its own seed.
 struct RoomChoice {
   std::string name;
   std::uint64_t seed = 1;
 };
-/// The furnished rooms, and so many random ones.
+/// Returns the furnished rooms, followed by this many random ones.
 std::vector<RoomChoice> choose_rooms(int random_rooms);
 
 struct RoomScan {
   double resolution_m = 0.01;
-  int every = 3;       ///< of the 720 frames round the room only every so many-th is fused
-  int width_px = 640;  ///< of the depth images, 4:3
-  std::string maps;    ///< folder to keep the maps in and to take them from; empty: none
+  int every = 3;       ///< fuse only every this many of the walk's 720 frames
+  int width_px = 640;  ///< width of the depth images, 4:3
+  std::string maps;    ///< folder in which maps are stored and reused; empty: none
 };
 
-/// A room and the map made of it.
+/// A room and its map.
 struct ScannedRoom {
   std::string title;  ///< "table", "random 3"
   ScenarioRoom simulated;
   Mesh mesh_world;
-  Mesh unknown_world;  ///< the border of what nobody has seen
+  Mesh unknown_world;  ///< border of unknown space
 };
-/// Walks round the room with its noisy depth camera at known poses, fuses, and extracts the surface; or takes
-/// the map of an earlier run that did the same.
-/// @param progress  called after each frame, maybe from several threads at once
-/// Throws Error if the room has no surface, or if there is a map that is broken.
+/// Walks round the room with its noisy depth camera at known poses, fuses the frames and extracts the
+/// surface. Loads the map instead if an earlier run stored the same.
+/// @param progress  called after each frame, possibly from several threads at once
+/// Throws Error if the room shows no surface or a stored map is damaged.
 ScannedRoom scan_room(const RoomChoice& choice, const RoomScan& scan, const std::function<void()>& progress);
 
-/// The same on the renderer, with a scene for each policy.
+/// A scanned room on the renderer, with a scene per policy.
 struct MappedRoom {
   ScannedRoom scanned;
   Shape shape;
   TriangleTree unknown;
-  std::vector<std::unique_ptr<FrameScene>> scenes;  ///< one a policy
+  std::vector<std::unique_ptr<FrameScene>> scenes;  ///< one per policy
 
   MappedRoom(GlContext& context, ScannedRoom room);
 };
 
-/// Rooms take turns, and each counts its own scenarios: kinds of occluder, motions and shapes take turns by
-/// that count, and by the run's a room would meet some of them only.
+/// Assignment of a scenario to a room. Rooms alternate, and each numbers its own scenarios: kinds of
+/// occluder, motion and shape alternate by scenario number, so with the run's number a room would get only
+/// some of them.
 struct ScenarioTurn {
   std::size_t room = 0;     ///< index among the rooms
-  std::int64_t number = 0;  ///< of the scenario in that room
+  std::int64_t number = 0;  ///< number of the scenario in that room
 };
-/// Of the run's scenario `number`.
+/// Returns the room and number of the run's scenario `number`.
 inline ScenarioTurn turn_of(std::int64_t number, std::size_t rooms) {
   const auto count = static_cast<std::int64_t>(rooms);
   return {static_cast<std::size_t>(number % count), number / count};
 }
 
-/// Scans the rooms, `threads` at a time, and shows progress on stderr.
+/// Scans the rooms, up to `threads` at a time, and shows progress on stderr.
 std::vector<std::unique_ptr<MappedRoom>> map_rooms(GlContext& context, const std::vector<RoomChoice>& rooms,
                                                    const RoomScan& scan, int threads);
 

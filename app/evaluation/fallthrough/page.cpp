@@ -1,4 +1,4 @@
-// page.cpp: the page's text, its plots, and its pictures as base64.
+// page.cpp: the page's text, plots, and pictures as base64.
 #include "app/evaluation/fallthrough/page.hpp"
 
 #include <algorithm>
@@ -46,14 +46,15 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
   const auto totals = totals_of(rows);
   const double count = std::max<double>(1.0, static_cast<double>(rows.size()));
   std::string html =
-      "<table class=\"totals\"><tr><th>surfaces</th><th>passed through</th><th>stopped where nothing is</th>"
-      "<th>contact error, median</th><th>95 %</th><th>frame, median</th><th>of the first's</th></tr>\n";
+      "<table class=\"totals\"><tr><th>surfaces</th><th>passed through</th><th>stopped where nothing "
+      "is</th><th>contact error, median</th><th>p95</th><th>frame, median</th><th>relative to the "
+      "first</th></tr>\n";
   char line[400];
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     const PolicyTotals& t = totals[i];
     std::snprintf(line, sizeof line,
-                  "<tr><td>%s</td><td>%d (%.1f %%)</td><td>%d (%.1f %%)</td><td>%s</td><td>%s</td>"
-                  "<td>%.1f ms</td><td>× %.2f</td></tr>\n",
+                  "<tr><td>%s</td><td>%d (%.1f %%)</td><td>%d (%.1f %%)</td><td>%s</td><td>%s</td><td>%.1f "
+                  "ms</td><td>× %.2f</td></tr>\n",
                   std::string(kFallthroughPolicies[i].name).c_str(), t.passed, 100.0 * t.passed / count,
                   t.false_stops, 100.0 * t.false_stops / count, millimetres(t.contact_error_median_m).c_str(),
                   millimetres(t.contact_error_p95_m).c_str(), t.frame_median_ms, t.cost_ratio);
@@ -62,8 +63,8 @@ std::string totals_table(const std::vector<ScenarioRow>& rows) {
   return html + "</table>\n";
 }
 
-/// How many came to rest no farther from the truth than x; what nothing stopped is as far off as it was
-/// followed.
+/// Plots the share of scenarios that ended within x of the true contact. Objects that were not stopped count
+/// with the distance at which they were given up.
 std::string error_plot(const std::vector<ScenarioRow>& rows) {
   std::vector<PlotLine> lines;
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
@@ -78,11 +79,12 @@ std::string error_plot(const std::vector<ScenarioRow>& rows) {
     if (!errors_mm.empty()) line.points.emplace_back(errors_mm.back(), 100.0);
     lines.push_back(std::move(line));
   }
-  return percent_plot("How far from the truth the object came to rest: share of scenarios within",
-                      "distance from the true contact, mm", 0.1, 1000.0, lines);
+  return percent_plot(
+      "Share of scenarios in which the object stopped within this distance of the true contact",
+      "distance from the true contact, mm", 0.1, 1000.0, lines);
 }
 
-/// Shares of an outcome, policy by policy, split by what `key` says of a scenario.
+/// Returns a table of an outcome's share per policy, grouped by `key`.
 std::string outcome_cells(const std::vector<ScenarioRow>& rows, const std::string& title, Outcome outcome,
                           const std::function<std::string(const ScenarioRow&)>& key) {
   std::map<std::string, std::array<int, kPolicyCount + 1>> counts;
@@ -135,16 +137,15 @@ void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
        {std::pair{std::string("Passed through, by "), Outcome::kPassedThrough},
         {std::string("Stopped where nothing is, by "), Outcome::kStoppedFalse}}) {
     file << "<p>" << outcome_cells(rows, title + "shape", outcome, shape)
-         << outcome_cells(rows, title + "what hides the surface", outcome, hider)
+         << outcome_cells(rows, title + "occluder", outcome, hider)
          << outcome_cells(rows, title + "speed", outcome, speed_of) << "</p>\n";
   }
-  file
-      << "<h2>What went wrong</h2><p>Left: the camera's depth. Right: a section along the object's way; grey "
-         "the true room, orange what hides it, lines what the object could touch: black the map, blue this "
-         "frame's, violet inferred, red the border of the unknown. Object: blue at its start, green where it "
-         "ought to have stopped, red where it was in the end.</p>\n";
+  file << "<h2>Failures</h2><p>Left: the camera's depth. Right: a section along the object's path; grey the "
+          "true room, orange the occluder, lines the surfaces that the object could touch: black the map, "
+          "blue this frame's, violet inferred, red the border of unknown space. Object: blue at its start, "
+          "green at the true contact, red at its end.</p>\n";
   const std::size_t failures = failure_count(rows);
-  if (failures == 0) file << "<p>Nothing did.</p>";
+  if (failures == 0) file << "<p>None.</p>";
   if (failures > pictures.size())
     file << "<p>" << pictures.size() << " of " << failures << " are shown, the last policies' first.</p>\n";
   for (const FailurePicture& picture : pictures)

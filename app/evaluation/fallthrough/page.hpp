@@ -1,4 +1,4 @@
-// page.hpp: one HTML file of a run: table, plots, pictures of what went wrong.
+// page.hpp: writes a run's HTML file: table, plots, pictures of failures.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -14,8 +14,9 @@ struct FailurePicture {
   ColourImage picture;
 };
 
-/// Needs no network and no other file. Throws Error if it cannot be written.
-/// @param about  a line on what was run: scenarios, seed, rooms, machine
+/// Writes a self-contained file that needs no network. Does nothing if the path is empty. Throws Error if it
+/// cannot be written.
+/// @param about  a line on scenarios, seed, rooms and machine
 void write_page(const std::vector<ScenarioRow>& rows, const std::string& about,
                 const std::vector<FailurePicture>& pictures, const std::filesystem::path& path);
 

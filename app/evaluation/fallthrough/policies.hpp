@@ -1,4 +1,4 @@
-// policies.hpp: the ways to decide what an object can touch that the fall-through test compares.
+// policies.hpp: the surface policies that the fall-through test compares.
 #pragma once
 #include <array>
 #include <string_view>
@@ -8,12 +8,12 @@
 namespace roomradar {
 
 struct FallthroughPolicy {
-  std::string_view name;  ///< in tables and reports
+  std::string_view name;  ///< for tables and reports
   SurfacePolicy surfaces = SurfacePolicy::kMap;
-  bool unknown_solid = false;  ///< also the border of what nobody has seen
+  bool unknown_solid = false;  ///< also the border of unknown space
 };
 
-/// The first is what the others' cost is compared with.
+/// The first policy is the reference for the cost of the others.
 inline constexpr std::array kFallthroughPolicies{
     FallthroughPolicy{"holes", SurfacePolicy::kHoles}, FallthroughPolicy{"skirt", SurfacePolicy::kSkirt},
     FallthroughPolicy{"border", SurfacePolicy::kBorder}, FallthroughPolicy{"map", SurfacePolicy::kMap},

@@ -1,5 +1,4 @@
-// recording_grid.cpp: places to start from by the octree, truth by the reference's surface, balls by the
-// radar.
+// recording_grid.cpp: start positions from the octree, ground truth from the reference, drops by the radar.
 #include "app/evaluation/fallthrough/recording_grid.hpp"
 
 #include <algorithm>
@@ -26,9 +25,9 @@ Eigen::AlignedBox3d bounds_of(const Mesh& mesh_world) {
   return bounds;
 }
 
-/// Whether all of the ball lies in space that rays have crossed.
+/// Returns true if the whole ball is in space that rays have crossed.
 bool is_free(const StaticMap& octree, const Vector3d& middle_world, double radius_m) {
-  const int steps = static_cast<int>(std::ceil(radius_m / octree.resolution_m()));  // from the middle
+  const int steps = static_cast<int>(std::ceil(radius_m / octree.resolution_m()));  // from the centre
   const double step_m = radius_m / steps;
   for (int x = -steps; x <= steps; ++x)
     for (int y = -steps; y <= steps; ++y)
@@ -47,7 +46,7 @@ std::optional<Vector3d> place_to_start(const StaticMap& octree, double x, double
   return std::nullopt;
 }
 
-/// Whether the frame's depth at the point is the point's, and not that of something before it.
+/// Returns true if the frame sees the point: no measured surface is in front of it.
 bool is_seen(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const Vector3d& p_world) {
   constexpr double kSame_m = 0.05;
   const Vector3d p_camera = T_world_camera.inverse() * p_world;
@@ -103,7 +102,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
                                                   FrameSceneConfig{.surfaces = policy.surfaces},
                                                   policy.unknown_solid ? &unknown : nullptr));
     if (policy.surfaces == SurfacePolicy::kMap)
-      for (int twice = 0; twice < 2; ++twice) {  // the foreground remembers one frame
+      for (int twice = 0; twice < 2; ++twice) {  // the foreground's history is one frame
         scenes[i]->render_expected(frame.depth_camera, T_world_camera);
         scenes[i]->find_dynamic(frame);
       }
@@ -134,8 +133,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
       const double limit_m = start_world->z() - lowest_m;
       const RadarQuery query{{&ball, T_world_ball}, -Vector3d::UnitZ(), limit_m};
       if (const Contact contact = radar.query(query, {{&truth, 1}, {}})) {
-        cell.has_truth =
-            contact.contact_distance_m >= 0.0;  // else the reference stands where the ball starts
+        cell.has_truth = contact.contact_distance_m >= 0.0;  // < 0: the ball starts inside the reference
         cell.true_travel_m = contact.contact_distance_m;
         cell.is_hidden = !is_seen(frame, T_world_camera, contact.point_world);
       }

@@ -1,4 +1,4 @@
-// replay.cpp: panels of all policies, step by step, six pictures a step.
+// replay.cpp: draws a panel per policy, with several pictures per step.
 #include "app/evaluation/fallthrough/replay.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 constexpr int kPanel_px = 320, kColumns = 3, kRows = 2;
 static_assert(kPolicyCount + 1 <= static_cast<std::size_t>(kColumns * kRows));
 
-/// What a policy's panel shows in each of its frames.
+/// Content of a policy's panel, frame by frame.
 struct Panel {
   struct Step {
     ColourImage section;

@@ -1,4 +1,4 @@
-// totals.cpp: counts, medians, and their forms on stdout, in JSON and as CSV.
+// totals.cpp: counts and medians, as text, JSON and CSV.
 #include "app/evaluation/fallthrough/totals.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// totals.hpp: what came of all trials: a table, a report, a file of rows.
+// totals.hpp: results of all trials as a table, a report and a CSV file.
 #pragma once
 #include <array>
 #include <filesystem>
@@ -11,9 +11,9 @@
 
 namespace roomradar {
 
-/// One scenario under all policies; what of it the tables and plots need.
+/// One scenario under all policies, reduced to the data for tables and plots.
 struct ScenarioRow {
-  std::int64_t number = 0;  ///< of the run
+  std::int64_t number = 0;  ///< number in the run
   std::size_t room = 0;     ///< index among the run's rooms
   std::string room_title;
   Occluder occluder = Occluder::kFurniture;
@@ -30,24 +30,25 @@ ScenarioRow row_of(const Scenario& scenario, std::int64_t number, std::size_t ro
 struct PolicyTotals {
   int passed = 0;
   int false_stops = 0;
-  /// Of those that something stopped, how far from the truth; NaN where nothing was stopped.
+  /// |distance from the true contact| over stopped objects; NaN if none was stopped.
   double contact_error_median_m = 0.0;
   double contact_error_p95_m = 0.0;
   double frame_median_ms = 0.0;
-  double cost_ratio = 0.0;  ///< median, scenario by scenario, of the frame's time to the first policy's
+  double cost_ratio = 0.0;  ///< median over scenarios of the frame time relative to the first policy's
 };
 std::array<PolicyTotals, kPolicyCount> totals_of(const std::vector<ScenarioRow>& rows);
 
-/// Nearest rank, 0 <= part <= 1; NaN for no values.
+/// Returns the nearest-rank percentile, 0 <= part <= 1; NaN if there are no values.
 double percentile(std::vector<double> values, double part);
-/// "3.2 mm"; "-" for what is not known.
+/// Returns "3.2 mm" and the like; "-" if not finite.
 std::string millimetres(double metres);
 
 std::string table_of(const std::array<PolicyTotals, kPolicyCount>& totals, int scenarios);
-/// `policies` of the report, and `failures`: each trial that was not right.
+/// Return the report's `policies`, and its `failures`: all trials that did not stop at the right place.
 nlohmann::json to_json(const std::array<PolicyTotals, kPolicyCount>& totals);
 nlohmann::json failures_of(const std::vector<ScenarioRow>& rows);
-/// One line a scenario and policy, with a header. Throws Error if the file cannot be written.
+/// Writes a header and a line per scenario and policy. Does nothing if the path is empty. Throws Error if the
+/// file cannot be written.
 void write_csv(const std::vector<ScenarioRow>& rows, const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// trial.cpp: steps of a frame each, until the radar says stop.
+// trial.cpp: moves the object step by step until the radar stops it.
 #include "app/evaluation/fallthrough/trial.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace roomradar {
 
 namespace {
 
-/// The frame itself where nothing is to be reduced.
+/// Returns the frame itself if the stride is 1, otherwise `reduced`.
 const Frame& reduced_by(int stride, const Frame& frame, Frame& reduced) {
   stride = usable_stride(frame.depth_camera, stride);
   if (stride == 1) return frame;
@@ -45,7 +45,7 @@ double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& h
   Frame reduced;
   const Frame& frame = reduced_by(how.depth_stride, prepared.frames.at(number), reduced);
   const bool has_map = how.policy == SurfacePolicy::kMap;
-  if (has_map && number == 0) {  // the foreground remembers one frame; not that of another scenario
+  if (has_map && number == 0) {  // replaces the foreground's one-frame history, which is another scenario's
     scene.render_expected(frame.depth_camera, scenario.T_world_camera);
     scene.find_dynamic(frame);
   }
@@ -62,7 +62,7 @@ double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& h
 Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar,
                 const WatchTrial& watch) {
   using Clock = std::chrono::steady_clock;
-  constexpr double kAbout_m = 0.02;  // as a session has it
+  constexpr double kAbout_m = 0.02;  // as in Session
   const Scenario& scenario = prepared.scenario;
   const bool is_still = scenario.occluder_velocity_world.isZero();
   Trial trial;

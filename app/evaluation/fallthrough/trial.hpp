@@ -1,4 +1,4 @@
-// trial.hpp: one object on its way through one scenario under one policy.
+// trial.hpp: moves one object through one scenario under one policy.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace roomradar {
 
-/// The frames of a scenario, each rendered when it is first asked for; where nothing moves all are the first.
+/// Frames of a scenario, rendered on first use. If nothing moves, all frames are the first.
 class ScenarioFrames {
  public:
   ScenarioFrames(const Scenario& scenario, const Room& room) : scenario_(scenario), room_(room) {}
@@ -25,7 +25,7 @@ class ScenarioFrames {
   std::map<int, Frame> frames_;
 };
 
-/// A scenario made ready: its frames so far, and its object for the radar.
+/// A scenario with its frames so far and its object's tree.
 struct PreparedScenario {
   Scenario scenario;
   TriangleTree object;
@@ -40,36 +40,36 @@ struct Trial {
   double travelled_m = 0.0;
   Verdict verdict;
   SurfaceKind rested_on = SurfaceKind::kNothing;
-  double frame_ms = 0.0;  ///< surfaces of the first frame, and one question to the radar (mean of all)
+  double frame_ms = 0.0;  ///< time for the first frame's surfaces plus the mean time of a radar query
 };
 
-/// What happens in one frame of a trial.
+/// One frame of a trial.
 struct TrialStep {
   int frame = 0;
-  std::span<const SceneTree> surfaces;  ///< that can be touched
-  double from_m = 0.0, to_m = 0.0;      ///< how far the object has come when the frame begins and ends
+  std::span<const SceneTree> surfaces;  ///< all that can be touched
+  double from_m = 0.0, to_m = 0.0;      ///< distance travelled at the frame's begin and end
   bool is_last = false;
 };
 using WatchTrial = std::function<void(const TrialStep& step)>;
 
-/// How the surfaces of a trial are made.
+/// Settings for making the surfaces of a trial.
 struct TrialSurfaces {
-  SurfacePolicy policy = SurfacePolicy::kMap;  ///< of the scene
-  int depth_stride = 1;                        ///< 1, 2 or 4: depth images are reduced by this first
-  bool fine_mesh = false;                      ///< about the object every pixel that moved is a vertex
+  SurfacePolicy policy = SurfacePolicy::kMap;  ///< the scene's
+  int depth_stride = 1;                        ///< 1, 2 or 4: factor by which depth images are reduced first
+  bool fine_mesh = false;                      ///< near the object, every dynamic pixel is a vertex
 };
 
-/// Makes the scene's surfaces those of one frame of the scenario, as tracking believes that it was taken
-/// from; frame 0 as if the camera had stood so before. Gives what that took, ms.
+/// Sets the scene's surfaces to those of one frame of the scenario, at the tracked (inexact) pose. Frame 0
+/// follows an identical frame, so the foreground has a history. Returns the time taken, ms.
 double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& how,
                   std::span<const FineRegion> about_objects, FrameScene& scene);
 
-/// Frame by frame: the policy's surfaces from what the camera shows, and the object as far as the radar lets
-/// it, until something stops it or it has passed the scenario's limit. The camera's pose is what tracking
-/// believes.
+/// Runs the scenario frame by frame: makes the policy's surfaces from the camera's frame and moves the object
+/// as far as the radar allows. Ends when the object is stopped or passes the scenario's limit. The camera's
+/// pose is the tracked one.
 Trial run_trial(PreparedScenario& prepared, FrameScene& scene, const TrialSurfaces& surfaces,
                 CyberRadar& radar, const WatchTrial& watch = {});
-/// The same with the room's scene of one of kFallthroughPolicies.
+/// Runs the scenario in the room's scene of kFallthroughPolicies[policy].
 Trial run_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy, CyberRadar& radar,
                 const WatchTrial& watch = {});
 

@@ -1,4 +1,4 @@
-// trial_pictures.cpp: sections by signed distance and by triangles that cross a plane.
+// trial_pictures.cpp: sections from signed distances, and from triangles that cross the plane.
 #include "app/evaluation/fallthrough/trial_pictures.hpp"
 
 #include <algorithm>
@@ -33,7 +33,8 @@ SideView::SideView(const Scenario& scenario, const Room& room, int width_px, int
     : scenario_(scenario), room_(width_px, height_px, Rgb{250, 249, 246}), object_(width_px, height_px, 0) {
   const Vector3d& way = scenario.direction_world;
   const Vector3d to_camera = scenario.T_world_camera.translation() - scenario.contact_world;
-  // Upright pictures: up is up where the object falls, else the part of up that the section has.
+  // Up in the picture is the projection of world up onto the section, or if the section is level, the
+  // object's backward direction.
   Vector3d across = way.cross(to_camera);
   if (across.norm() < 1e-3 * to_camera.norm()) across = way.unitOrthogonal();
   across.normalize();

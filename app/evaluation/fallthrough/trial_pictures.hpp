@@ -1,4 +1,4 @@
-// trial_pictures.hpp: what the camera saw of a trial, and where the object went, cut open from the side.
+// trial_pictures.hpp: pictures of a trial: the camera's view, and a section along the object's path.
 #pragma once
 #include <memory>
 #include <span>
@@ -10,17 +10,17 @@ namespace roomradar {
 
 inline constexpr Rgb kStartColour{40, 110, 220}, kTruthColour{20, 150, 70}, kEndColour{214, 40, 40};
 
-/// A section through the true contact along the object's way and the line to the camera: the true room grey,
-/// the occluder orange.
+/// Section through the true contact, spanned by the object's path and the line to the camera. The true room
+/// is grey, the occluder orange.
 class SideView {
  public:
   SideView(const Scenario& scenario, const Room& room, int width_px, int height_px);
 
-  /// The room and the occluder as they are in a frame.
+  /// Draws room and occluder in a frame.
   [[nodiscard]] ColourImage room_at(int frame) const;
-  /// The surfaces' lines in the section: static black, moved blue, inferred back violet, unknown red.
+  /// Adds the surfaces' intersection lines: static black, dynamic blue, inferred back violet, unknown red.
   void add_surfaces(std::span<const SceneTree> surfaces, ColourImage& picture) const;
-  /// The object's section when it has come so far.
+  /// Adds the object's section after it has travelled this far, blended by `part`.
   void add_object(double travelled_m, Rgb colour, double part, ColourImage& picture) const;
 
  private:
@@ -31,14 +31,15 @@ class SideView {
   ColourImage room_;  ///< without the occluder
   Eigen::Vector3d middle_world_, right_world_, up_world_;
   double m_per_px_ = 0.01;
-  MaskImage object_;  ///< its section at the start, and that far round it
+  MaskImage object_;  ///< the object's section at its start position
 };
 
-/// The camera's depth, shaded, and over it the object's outline where it has come.
+/// Returns the camera's depth, shaded. add_outline() adds the object's outline after it has travelled this
+/// far.
 ColourImage camera_view(const Scenario& scenario, const Frame& frame, int width_px);
 void add_outline(const Scenario& scenario, double travelled_m, Rgb colour, double part, ColourImage& picture);
 
-/// Both side by side, with where the object started (blue), ought to have stopped (green) and ended (red).
+/// Returns both views side by side, with the object's start (blue), true contact (green) and end (red).
 ColourImage picture_of_trial(PreparedScenario& prepared, MappedRoom& room, std::size_t policy,
                              CyberRadar& radar);
 

@@ -1,4 +1,4 @@
-// choose_presets.cpp: one number for all errors, and the front of it.
+// choose_presets.cpp: combines all errors to a loss, and selects presets from its front.
 #include "app/evaluation/pareto/choose_presets.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// choose_presets.hpp: which of a sweep's settings are worth a name.
+// choose_presets.hpp: selects the settings of a sweep that become presets.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -9,37 +9,39 @@
 
 namespace roomradar {
 
-/// How much larger a setting's errors are than the default's: the geometric mean over the work's errors of
-/// (error + negligible) / (the default's + negligible). 1 for the default, NaN where nothing is known.
+/// Returns a setting's errors relative to the default's: the geometric mean over the work's errors of (error
+/// + negligible) / (default's error + negligible). 1 for the default; NaN if nothing was measured or the
+/// setting is not complete.
 double loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
-/// The largest of the same ratios.
+/// Returns the largest of these ratios.
 double worst_loss_of(const MeasuredWork& work, const SettingSummary& setting, const SettingSummary& defaults);
 
-/// Places among the summaries.
+/// Indices into the summaries.
 struct PresetChoice {
-  std::vector<std::size_t> front;  ///< nothing is both faster and has less loss; fastest first
+  std::vector<std::size_t> front;  ///< Pareto front of time and loss, fastest first
   std::optional<std::size_t> fast, balanced, accurate;
 };
 
-inline constexpr double kMostWorstLoss = 10.0;  ///< on the front no error is more times the default's
+inline constexpr double kMostWorstLoss = 10.0;  ///< max ratio of any error to the default's, on the front
 inline constexpr double kMostWorstLossOfPreset = 3.0;
 inline constexpr double kMostLossOfFast = 1.5, kMostLossOfBalanced = 1.1;
-inline constexpr double kMostTimeOfAccurate = 3.0;   ///< times the default's
-inline constexpr double kMostLossOfAccurate = 0.99;  ///< what is no better than this may be so by chance
+inline constexpr double kMostTimeOfAccurate = 3.0;   ///< relative to the default's
+inline constexpr double kMostLossOfAccurate = 0.99;  ///< a smaller gain may be chance
 
-/// The front of time ratio against loss, of complete settings of the usual load; and on the front of those
-/// where no error is more than kMostWorstLossOfPreset times the default's (what goes farther is for a budget
-/// that cannot be held otherwise),
-///  fast      the least time with a loss of at most kMostLossOfFast,
-///  balanced  the same with at most kMostLossOfBalanced: what is gained nearly for nothing,
-///  accurate  the least loss that takes at most kMostTimeOfAccurate times the default; the default itself
-///            where that is more than kMostLossOfAccurate.
-/// @param defaults  the default's place among the summaries
+/// Computes the Pareto front of time ratio and loss over complete settings with the default load. Presets
+/// come from the front of those settings with no error above kMostWorstLossOfPreset times the default's;
+/// worse settings are only for budgets that cannot be met otherwise.
+///   fast      least time with a loss of at most kMostLossOfFast
+///   balanced  least time with a loss of at most kMostLossOfBalanced: time saved at almost no loss
+///   accurate  least loss within kMostTimeOfAccurate times the default's time; the default itself if that
+///             loss is not below kMostLossOfAccurate
+/// @param defaults  index of the default among the summaries
 PresetChoice choose_presets(const MeasuredWork& work, const std::vector<SettingSummary>& summaries,
                             std::size_t defaults);
 
-/// "default", "fast", "balanced", "accurate": those that a setting is, `between` them; empty if it is none.
+/// Returns the names that apply to a setting ("default", "fast", "balanced", "accurate"), joined by
+/// `between`; empty if none does.
 std::string names_of(std::size_t setting, std::size_t defaults, const PresetChoice& choice,
                      const std::string& between);
 

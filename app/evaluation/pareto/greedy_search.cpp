@@ -1,4 +1,4 @@
-// ladder.cpp: single turns in the order of their price, one on top of the other.
+// ladder.cpp: applies single changes cumulatively, in order of their price.
 #include "app/evaluation/pareto/greedy_search.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ struct Turn {
   double price;
 };
 
-/// The knob by which a setting differs from the usual one, if it is one of quality and the only one.
+/// Returns the parameter in which a setting differs from the default, if it is the only one and not a load.
 std::optional<std::size_t> changed_parameter(const std::vector<Parameter>& parameters,
                                              const Setting& setting) {
   std::optional<std::size_t> turned;
@@ -27,7 +27,7 @@ std::optional<std::size_t> changed_parameter(const std::vector<Parameter>& param
   return turned;
 }
 
-/// From the usual setting on, turn after turn; what leads back is passed over.
+/// Applies the changes cumulatively to the default; skips those that would move a parameter back.
 std::vector<Setting> steps_of(std::vector<Turn> turns, const Setting& defaults) {
   std::stable_sort(turns.begin(), turns.end(),
                    [](const Turn& a, const Turn& b) { return a.price < b.price; });
@@ -49,7 +49,7 @@ std::vector<Setting> steps_of(std::vector<Turn> turns, const Setting& defaults) 
 
 std::vector<Setting> greedy_settings(const MeasuredWork& work, const std::vector<SettingSummary>& summaries,
                                      std::size_t defaults, std::size_t count) {
-  constexpr double kLeastSaved = 0.005, kLeastGained = 0.002;  // parts; less is noise
+  constexpr double kLeastSaved = 0.005, kLeastGained = 0.002;  // log ratios; less is noise
   std::vector<Turn> faster, better;
   for (const SettingSummary& summary : summaries) {
     const std::optional<std::size_t> parameter = changed_parameter(work.parameters, summary.setting);

@@ -1,4 +1,4 @@
-// ladder.hpp: several knobs turned at once, those first that give the most for the least.
+// ladder.hpp: greedy search for combinations of parameters, ordered by gain per cost.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -7,13 +7,13 @@
 
 namespace roomradar {
 
-/// Mixtures that are worth a measurement, after single turns were measured: one knob after the other turned
-/// to what is faster, in the order of the loss that each brought alone for the time that it saved; and
-/// likewise to what is better, in the order of the time that it took. Each step keeps the turns before it;
-/// a knob that was turned farther stays so. From what was measured once it cannot be told how turns go
-/// together: the steps are to be measured, too.
-/// @param defaults  the default's place among the summaries
-/// @return up to `count` settings, evenly chosen along both ways, without those among the summaries
+/// Returns combinations worth measuring, after changes of single parameters were measured. One sequence
+/// applies faster values in order of loss per time saved; the other applies more accurate values in order of
+/// time per loss avoided. Each step keeps the changes before it, and a parameter never moves back towards its
+/// default. The steps must be measured too: single changes do not tell how combined ones interact.
+/// @param defaults  index of the default among the summaries
+/// @return up to `count` settings, spread evenly along both sequences, without those already among the
+/// summaries
 std::vector<Setting> greedy_settings(const MeasuredWork& work, const std::vector<SettingSummary>& summaries,
                                      std::size_t defaults, std::size_t count);
 

@@ -1,5 +1,5 @@
-// trade_work.hpp: a kind of work whose time is traded for accuracy: what can be turned, what is measured, and
-// where.
+// trade_work.hpp: a kind of work with a trade-off of time and accuracy: its parameters, measurements and
+// scenes.
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -12,39 +12,39 @@
 namespace roomradar {
 
 enum class FigureKind {
-  kTime,    ///< noisy: the median of all measurements
-  kMemory,  ///< likewise
-  kError,   ///< the less the better; what fronts are made of
+  kTime,    ///< noisy: summarised by the median of all measurements
+  kMemory,  ///< noisy, as kTime
+  kError,   ///< smaller is better; Pareto fronts use these
   kFact,    ///< neither good nor bad, such as a number of triangles
 };
 
-/// One thing that is measured of a setting.
+/// Describes one measured quantity.
 struct FigureName {
-  std::string name;    ///< the column's head, with its unit: "surface_error_median_m"
-  std::string title;   ///< on the page, with the unit that it has there: "surface error, median, mm"
-  double shown = 1.0;  ///< times this on the page
+  std::string name;    ///< column name, with unit: "surface_error_median_m"
+  std::string title;   ///< title on the page, with the page's unit: "surface error, median, mm"
+  double shown = 1.0;  ///< factor from the measured to the page's unit
   FigureKind kind = FigureKind::kFact;
-  double negligible = 0.0;  ///< of an error, > 0: two that differ by less are as good as each other
+  double negligible = 0.0;  ///< kError, > 0: errors that differ by less count as equal
 };
 
-/// One number for each of the work's figures; kNotMeasured where there is none.
+/// One value per entry of MeasuredWork::figures; kNotMeasured if there is none.
 using Readings = std::vector<double>;
 inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
-/// Does the work once as the setting says. Throws Error where that cannot be.
+/// Does the work once with a setting. Throws Error if this is impossible.
 using Measure = std::function<Readings(const Setting& setting)>;
 
 struct MeasuredWork {
   std::string name;  ///< "prescan", "run"
   std::vector<Parameter> parameters = {};
   std::vector<FigureName> figures = {};
-  std::size_t time = 0;                  ///< which of them is the time that settings are compared by
-  std::vector<std::string> scenes = {};  ///< where it is done
-  /// Makes a scene ready; what it takes is held for as long as the answer. Throws Error.
+  std::size_t time = 0;                  ///< index of the figure used as time in comparisons
+  std::vector<std::string> scenes = {};  ///< names of the scenes in which the work is done
+  /// Prepares a scene; the returned function owns its data. Throws Error if that fails.
   std::function<Measure(std::size_t scene)> open = {};
 };
 
-/// Where a figure of that name is among the work's; throws Error if it is none.
+/// Returns the index of a figure among the work's; throws Error if there is none of that name.
 std::size_t place_of(const MeasuredWork& work, const std::string& figure);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// knob.cpp: settings in words.
+// knob.cpp: default settings, and settings as text.
 #include "app/evaluation/pareto/parameter.hpp"
 
 namespace roomradar {

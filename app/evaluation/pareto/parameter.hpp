@@ -1,4 +1,4 @@
-// knob.hpp: what a user can turn to trade time for accuracy, in steps.
+// knob.hpp: parameters that trade time for accuracy, with the values to try.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -7,24 +7,24 @@
 
 namespace roomradar {
 
-/// One field of a quality, and the words that it is tried with.
+/// One field of a quality, and the values to try, as words.
 struct Parameter {
-  std::string name;                ///< as in the quality, and the column's head
+  std::string name;                ///< field name, and column name
   std::vector<std::string> words;  ///< fastest first
-  std::size_t defaults = 0;        ///< the default's place among them
-  /// How much work there is, not how well it is done: turned alone, never mixed, and never on a front.
+  std::size_t defaults = 0;        ///< index of the default among the words
+  /// Amount of work, not its quality: changed only alone, and never on a front.
   bool is_load = false;
 };
 
-/// One word of each knob, by its place.
+/// Index of a word for each parameter.
 using Setting = std::vector<std::size_t>;
 
 Setting default_setting(const std::vector<Parameter>& parameters);
 
-/// Whether only knobs of quality are turned.
+/// Returns true if all load parameters have their defaults.
 bool has_default_load(const std::vector<Parameter>& parameters, const Setting& setting);
 
-/// What differs from the usual, "radar sampled, radar_px 32"; "default" if nothing does.
+/// Returns the differences from the default, "radar sampled, radar_px 32"; "default" if there are none.
 std::string describe(const std::vector<Parameter>& parameters, const Setting& setting);
 
 }  // namespace roomradar

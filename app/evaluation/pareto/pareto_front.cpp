@@ -1,4 +1,4 @@
-// front.cpp: sorted by cost, each point on the front has less error than all before it.
+// front.cpp: computes the front in one pass over the points sorted by cost.
 #include "app/evaluation/pareto/pareto_front.hpp"
 
 #include <algorithm>

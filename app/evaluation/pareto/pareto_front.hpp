@@ -1,4 +1,4 @@
-// front.hpp: of what was measured, what nothing else beats in both time and error.
+// front.hpp: Pareto front of cost and error.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -10,11 +10,11 @@ struct CostAndError {
   double error = 0.0;
 };
 
-/// Whether a is nowhere worse than b and somewhere better.
+/// Returns true if a is nowhere worse than b and somewhere better.
 bool dominates(const CostAndError& a, const CostAndError& b);
 
-/// Places of the points that no other one dominates, cheapest first; of points alike, the first. Points with
-/// a number that is not finite are never on a front.
+/// Returns the indices of the points that no other point dominates, cheapest first; the first of equal
+/// points. Points that are not finite are never on the front.
 std::vector<std::size_t> pareto_front_of(const std::vector<CostAndError>& points);
 
 }  // namespace roomradar

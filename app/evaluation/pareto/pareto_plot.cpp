@@ -1,4 +1,4 @@
-// pareto_plot.cpp: axes with round numbers, dots, steps.
+// pareto_plot.cpp: draws axes with round numbers, dots and the front's steps.
 #include "app/evaluation/pareto/pareto_plot.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::string format(const char* text, Numbers... numbers) {
   return line;
 }
 
-/// From numbers to places on the paper.
+/// Maps values to pixels.
 struct Axis {
   double least = 1.0, most = 10.0;
   bool is_logarithmic = true;
@@ -29,7 +29,8 @@ struct Axis {
     const auto scaled = [&](double v) { return is_logarithmic ? std::log(v) : v; };
     return from_px + (to_px - from_px) * (scaled(value) - scaled(least)) / (scaled(most) - scaled(least));
   }
-  /// 1, 2, 5 times powers of ten; of a short logarithmic axis finer ones, of a linear one five or so.
+  /// Returns 1, 2, 5 times powers of ten, with finer steps on a short logarithmic axis; about five on a
+  /// linear axis.
   [[nodiscard]] std::vector<double> ticks() const {
     std::vector<double> ticks;
     if (!is_logarithmic) {
@@ -50,7 +51,7 @@ struct Axis {
   }
 };
 
-/// A little more than the numbers need.
+/// Returns an axis over all values, with a margin.
 Axis axis_over(std::vector<double> values, double from_px, double to_px) {
   Axis axis{.from_px = from_px, .to_px = to_px};
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -143,7 +144,7 @@ std::string pareto_plot(const ParetoPlot& plot) {
   std::string svg = format("<svg viewBox=\"0 0 %.0f %.0f\" role=\"img\" aria-label=\"", kWidth, kHeight) +
                     escaped(plot.title) + "\">";
   svg += grid(plot, x, y) + steps(dots, x, y);
-  // What matters comes last, and so lies on top.
+  // Important dots last, so they are drawn on top.
   std::stable_sort(dots.begin(), dots.end(), [](const PlotDot& a, const PlotDot& b) {
     const auto rank = [](const PlotDot& d) {
       return d.is_preset || d.is_default ? 2 : d.is_on_front ? 1 : 0;

@@ -1,4 +1,4 @@
-// draw_settings.cpp: single turns, and mixtures by columns of ranks.
+// draw_settings.cpp: single changes, and combinations with correlated ranks.
 #include "app/evaluation/pareto/sample_settings.hpp"
 
 #include <algorithm>
@@ -33,11 +33,11 @@ std::vector<Setting> single_turns(const std::vector<Parameter>& parameters, Coun
   return mixed;
 }
 
-/// Mixture i of n is about as slow as i / n says: a knob's words are given out in the order of that,
-/// disturbed.
+/// Returns combinations, of which number i of n is about as slow as i / n. Each parameter's values are
+/// assigned in the order of i / n plus a random disturbance.
 std::vector<Setting> mixtures(const std::vector<Parameter>& parameters, std::size_t count,
                               CounterRandom& random) {
-  constexpr double kDisturbance = 0.35;  // of the whole scale, to each side
+  constexpr double kDisturbance = 0.35;  // max, as a fraction of the scale, in both directions
   std::vector<Setting> settings(count, default_setting(parameters));
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     if (parameters[k].is_load) continue;
@@ -57,7 +57,7 @@ std::vector<Setting> mixtures(const std::vector<Parameter>& parameters, std::siz
 
 std::vector<Setting> draw_settings(const std::vector<Parameter>& parameters, std::size_t count,
                                    std::uint64_t seed) {
-  constexpr int kRounds = 20;  // of mixtures, until enough of them are new
+  constexpr int kRounds = 20;  // attempts to draw enough new combinations
   CounterRandom random(seed, 0);
   std::vector<Setting> settings = single_turns(parameters, random);
   const Setting defaults = default_setting(parameters);

@@ -1,4 +1,4 @@
-// draw_settings.hpp: which settings a sweep tries, drawn by seed.
+// draw_settings.hpp: draws the settings of a sweep at random.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -7,14 +7,15 @@
 
 namespace roomradar {
 
-/// Up to `count` settings, no two alike and none the usual one, in random order. Up to two thirds of them
-/// turn one knob alone (as many as there are such settings; those towards what is faster come first, for
-/// fronts are made of them, and of these the next word of every knob before any farther one), which shows
-/// what each knob does; the others turn all of quality at once: each knob's words come about equally often,
-/// at random, but so that what is fast is mixed with what is fast rather than with what is slow, for only
-/// such mixtures can be on a front. Every word of every knob of quality occurs among the mixtures where these
-/// are as many as it has words; fewer come where there are not so many to be found. The same for the same
-/// seed.
+/// Returns up to `count` different settings without the default, in random order; the same for the same seed.
+///
+/// Up to two thirds, if there are that many, change a single parameter, to show its effect. If not all fit,
+/// faster values have priority because fronts consist of them; among these, values closest to the default.
+///
+/// The others change all quality parameters at once. Each parameter's values occur about equally often, in
+/// random combinations that tend to join fast with fast and slow with slow, as only such can be on a front.
+/// Every value of a quality parameter occurs if there are at least as many combinations as values. Fewer
+/// settings are returned if not enough different ones are found.
 std::vector<Setting> draw_settings(const std::vector<Parameter>& parameters, std::size_t count,
                                    std::uint64_t seed);
 

@@ -1,4 +1,4 @@
-// setting_summary.cpp: medians of what is noisy, means of what is not.
+// setting_summary.cpp: medians of noisy figures, means of the others.
 #include "app/evaluation/pareto/setting_summary.hpp"
 
 #include <algorithm>

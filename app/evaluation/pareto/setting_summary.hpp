@@ -1,4 +1,4 @@
-// setting_summary.hpp: what all measurements of a setting say together.
+// setting_summary.hpp: summarises all measurements of each setting.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -9,17 +9,17 @@ namespace roomradar {
 
 struct SettingSummary {
   Setting setting = {};
-  int rows = 0;                                ///< measurements that came to their end
-  double time_ratio = 0.0;                     ///< to the default measured beside it: median ...
-  double least_ratio = 0.0, most_ratio = 0.0;  ///< ... and spread
-  Readings ratios = {};                        ///< of each figure to the default's beside it: median
-  /// Times and memory: the median of all rows. The rest: the mean of the scenes' means, where they know it.
+  int rows = 0;                                ///< number of successful measurements
+  double time_ratio = 0.0;                     ///< median of time relative to the default measured beside it
+  double least_ratio = 0.0, most_ratio = 0.0;  ///< range of the time ratio
+  Readings ratios = {};                        ///< per figure, median ratio to the default measured beside it
+  /// Times and memory: median of all rows. Others: mean over scenes of the scene's mean, where measured.
   Readings figures = {};
-  /// It was done in every scene in which any setting was: only such ones can be compared.
+  /// Measured in every scene in which any setting was measured; only complete settings are comparable.
   bool is_complete = false;
 };
 
-/// One for each setting, in their order.
+/// Returns one summary per setting, in order.
 std::vector<SettingSummary> summarise(const MeasuredWork& work, const std::vector<Setting>& settings,
                                       const std::vector<SweepRow>& rows);
 

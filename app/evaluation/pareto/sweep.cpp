@@ -1,4 +1,4 @@
-// sweep.cpp: default, setting, default, setting, default.
+// sweep.cpp: measures default, setting, default, setting, default.
 #include "app/evaluation/pareto/sweep.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-/// At random, but the default before all others: what is stopped early can still be compared with it.
+/// Returns a random order with the default first, so an interrupted sweep can be compared with it.
 std::vector<std::size_t> order_of(const std::vector<Setting>& settings, const Setting& defaults,
                                   CounterRandom& random) {
   std::vector<std::size_t> order(settings.size());
@@ -24,8 +24,8 @@ std::vector<std::size_t> order_of(const std::vector<Setting>& settings, const Se
   return order;
 }
 
-/// What there is when the sweep is stopped in a scene: the scenes before it, all settings of which were
-/// measured; where there is none, what there is of this one.
+/// Returns the rows of a sweep that ended in a scene: those of the completed scenes before it, or if there
+/// are none, all rows.
 std::vector<SweepRow> stopped_in(std::size_t scene, std::vector<SweepRow> rows) {
   if (!rows.empty() && rows.front().scene < scene)
     std::erase_if(rows, [scene](const SweepRow& row) { return row.scene == scene; });
@@ -34,7 +34,7 @@ std::vector<SweepRow> stopped_in(std::size_t scene, std::vector<SweepRow> rows) 
 
 bool is_stopped(const SweepWatch& watch) { return watch.is_stopped && watch.is_stopped(); }
 
-/// False where the sweep was stopped meanwhile. Throws Error if the default cannot be measured.
+/// Returns false if the sweep was stopped. Throws Error if the default cannot be measured.
 bool measure_scene(const MeasuredWork& work, const SweepPlan& plan, const SweepWatch& watch,
                    std::size_t scene, std::vector<SweepRow>& rows) {
   const Setting defaults = default_setting(work.parameters);
@@ -75,7 +75,7 @@ SweptRows sweep(const MeasuredWork& work, const SweepPlan& plan, const SweepWatc
       if (!is_stopped(watch) && measure_scene(work, plan, watch, scene, rows)) continue;
       return {stopped_in(scene, std::move(rows)), {}};
     } catch (const Error& error) {
-      // Ctrl-C ends a measurement's process, too.
+      // If stopped by Ctrl-C, the error is that of the interrupted child process.
       return {stopped_in(scene, std::move(rows)), is_stopped(watch) ? std::string() : error.what()};
     }
   }

@@ -1,4 +1,4 @@
-// sweep.hpp: settings measured in random order, each between two measurements of the default.
+// sweep.hpp: measures settings in random order, each between two measurements of the default.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,40 +10,41 @@
 
 namespace roomradar {
 
-/// One setting, measured once.
+/// One measurement of a setting.
 struct SweepRow {
-  std::size_t setting = 0;  ///< among the sweep's
-  std::size_t scene = 0;    ///< among the work's
+  std::size_t setting = 0;  ///< index among the plan's settings
+  std::size_t scene = 0;    ///< index among the work's scenes
   int repeat = 0;           ///< from 0
   Readings figures = {};
-  Readings default_before = {}, default_after = {};  ///< the default's figures just before and just after
-  /// Of each figure the setting's over the mean of both.
+  Readings default_before = {}, default_after = {};  ///< the default's figures just before and after
+  /// Per figure, the setting's value over the mean of both.
   Readings ratios = {};
-  std::string fault = {};  ///< why it could not be done; the figures are then NaN
+  std::string fault = {};  ///< reason of a failure; the figures are then NaN
 };
 
 struct SweepPlan {
   std::vector<Setting> settings;
   int repeats = 1;
-  std::uint64_t seed = 1;  ///< of the order
+  std::uint64_t seed = 1;  ///< for the order
 };
 
 struct SweptRows {
   std::vector<SweepRow> rows;
-  std::string fault;  ///< why it ended before all was measured; empty if it did not, or was stopped
+  std::string fault;  ///< reason of an early end; empty if complete, or stopped on request
 };
 
 struct SweepWatch {
-  std::function<void(const SweepRow& row)> on_row;  ///< as soon as a row is there; may be empty
-  std::function<bool()> is_stopped;                 ///< asked before each measurement; may be empty
+  std::function<void(const SweepRow& row)> on_row;  ///< called after each measurement; may be empty
+  std::function<bool()> is_stopped;                 ///< called before each measurement; may be empty
 };
 
-/// Scene by scene, and in a scene repeat by repeat, all settings in an order of their own, the default's own
-/// row first. Between any two the default is measured, and each setting is compared with the one before and
-/// the one after it: a machine that becomes slower, or has other work for a while, slows all three. Where a
-/// setting cannot be done its row says why and the sweep goes on. Where it is stopped, or the default cannot
-/// be done, or a scene not opened, or on_row throws, the scenes that were done are given, or what is done of
-/// the first.
+/// Measures all settings per scene and repeat, in a new random order each time, the default's own row first.
+/// The default is measured between any two settings, and each setting is compared with the default before and
+/// after it. A machine that slows down or is busy for a while thus slows all three.
+///
+/// A failing setting's row has the fault, and the sweep goes on. The sweep ends early if it is stopped, the
+/// default fails, a scene cannot be opened, or on_row throws Error. It then returns the rows of completed
+/// scenes, or those of the first scene if none is complete.
 SweptRows sweep(const MeasuredWork& work, const SweepPlan& plan, const SweepWatch& watch = {});
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// moved_touch.cpp: drawn at pixels that show what moved, and flown along their rays.
+// moved_touch.cpp: draws balls at pixels that show dynamic objects, and moves them along the pixels' rays.
 #include "app/evaluation/trade/dynamic_touch.hpp"
 
 #include <cmath>
@@ -14,12 +14,12 @@ namespace {
 
 constexpr int kTouchesEach = 4, kDraws = 60;
 constexpr double kNearest_m = 0.8, kFarthest_m = 3.5;
-constexpr double kBefore_m = 0.25;  // the ball starts so far before the surface
-constexpr double kAlone_m = 0.05;   // the room is farther than what moved by this, at least
+constexpr double kBefore_m = 0.25;  // distance of the ball's start from the surface
+constexpr double kAlone_m = 0.05;   // the room must be at least this much farther than the occluder
 
 Solid ball() { return sphere(Eigen::Vector3d::Zero(), kTouchRadius_m); }
 
-/// How far the ball may fly until it meets one of the solids; infinite if it meets none.
+/// Returns the ball's distance to contact with the solids; infinite if it touches none.
 double travel_to(std::span<const Solid> solids, const DynamicTouch& touch) {
   const std::vector<Solid> parts{ball()};
   const Eigen::Isometry3d T_world_ball(Eigen::Translation3d(touch.start_world));
@@ -69,7 +69,7 @@ DynamicTouchFacts judge_dynamic_touches(const std::vector<DynamicTouch>& touches
                                         const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
                                         FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar) {
   if (touches.empty()) return {};
-  constexpr double kAbout_m = 0.02;  // as a session has it
+  constexpr double kAbout_m = 0.02;  // as in Session
   Mesh ball_mesh;
   append_mesh(ball(), {}, kMeshDeviation_m, ball_mesh);
   TriangleTree tree;
@@ -90,7 +90,7 @@ DynamicTouchFacts judge_dynamic_touches(const std::vector<DynamicTouch>& touches
       const Contact contact =
           radar.query({{&tree, T_world_ball}, touch.direction_world, kTouchLimit_m}, {surfaces, {}});
       const double past_m = contact.contact_distance_m - touch.true_travel_m;
-      if (contact && past_m <= kTooFar_m)  // else it went through, to what is behind
+      if (contact && past_m <= kTooFar_m)  // otherwise it passed through
         errors_m.push_back(std::abs(past_m));
       else
         ++missed;

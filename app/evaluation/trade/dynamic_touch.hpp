@@ -1,4 +1,4 @@
-// moved_touch.hpp: balls that fly at what moved, where the camera sees it, against its exact solids.
+// moved_touch.hpp: measures contact errors of balls thrown at visible dynamic objects, against exact solids.
 #pragma once
 #include <cstddef>
 #include <limits>
@@ -11,30 +11,31 @@
 
 namespace roomradar {
 
-/// One ball before the thing that hides a scenario's surface: what was not there in the prescan.
+/// One ball in front of a scenario's occluder, which was absent from the prescan.
 struct DynamicTouch {
-  std::size_t scenario = 0;                                    ///< among those given
-  Eigen::Vector3d start_world = Eigen::Vector3d::Zero();       ///< the ball's middle
+  std::size_t scenario = 0;                                    ///< index among the given scenarios
+  Eigen::Vector3d start_world = Eigen::Vector3d::Zero();       ///< centre of the ball
   Eigen::Vector3d direction_world = Eigen::Vector3d::UnitX();  ///< unit, away from the camera
   double true_travel_m = 0.0;
 };
 
 inline constexpr double kTouchRadius_m = 0.04;
-inline constexpr double kTouchLimit_m = 0.5;  ///< how far a ball flies if nothing stops it
+inline constexpr double kTouchLimit_m = 0.5;  ///< max distance that a ball flies
 
-/// Up to a few for each scenario with such a thing, where that is 0.8 to 3.5 m away and the ball meets it
-/// well before the room.
+/// Draws up to 4 balls for each scenario with an occluder that was absent from the prescan. The
+/// occluder is 0.8 to 3.5 m away at that pixel, and the ball touches it well before the room.
 std::vector<DynamicTouch> draw_dynamic_touches(
     const std::vector<std::unique_ptr<PreparedScenario>>& scenarios, const Room& room);
 
-/// What the radar says of them; NaN where there are none.
+/// The radar's errors; NaN if there are no touches.
 struct DynamicTouchFacts {
-  double error_median_m = std::numeric_limits<double>::quiet_NaN();  ///< of those that something stopped
+  double error_median_m = std::numeric_limits<double>::quiet_NaN();  ///< over balls that were stopped
   double error_p95_m = error_median_m;
-  double missed = error_median_m;  ///< part that nothing stopped
+  double missed = error_median_m;  ///< fraction of balls that were not stopped
 };
+/// Measures the touches with the radar.
 /// @param touches  in the order of their scenarios
-/// @param how      of kMap; with fine_mesh about where the balls touch
+/// @param how      with kMap; fine_mesh applies around the true contacts
 DynamicTouchFacts judge_dynamic_touches(const std::vector<DynamicTouch>& touches,
                                         const std::vector<std::unique_ptr<PreparedScenario>>& scenarios,
                                         FrameScene& scene, const TrialSurfaces& how, CyberRadar& radar);

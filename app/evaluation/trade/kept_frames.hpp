@@ -1,4 +1,4 @@
-// kept_frames.hpp: frames in memory as a source, so that what is measured does not wait for their making.
+// kept_frames.hpp: source of frames in memory, so measurements exclude the time of making them.
 #pragma once
 #include <chrono>
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace roomradar {
 
 class KeptFrames final : public FrameSource {
  public:
-  /// The frames must stay.
+  /// The frames must outlive this.
   KeptFrames(const std::vector<Frame>& frames, std::string name) : frames_(frames), name_(std::move(name)) {}
 
   ReadResult next(Frame& frame) override {
@@ -33,7 +33,7 @@ class KeptFrames final : public FrameSource {
   }
   [[nodiscard]] std::optional<std::int64_t> frame_count() const override { return std::ssize(frames_); }
   [[nodiscard]] std::string name() const override { return name_; }
-  /// With copying frames.
+  /// Returns the time spent copying frames.
   [[nodiscard]] double spent_ms() const { return spent_ms_; }
 
  private:

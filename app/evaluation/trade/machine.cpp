@@ -1,4 +1,4 @@
-// machine.cpp: what /proc and the driver say.
+// machine.cpp: reads /proc and queries the driver.
 #include "app/evaluation/trade/machine.hpp"
 
 #include <sys/utsname.h>

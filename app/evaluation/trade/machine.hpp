@@ -1,18 +1,18 @@
-// machine.hpp: what a measurement was made on.
+// machine.hpp: describes the machine on which a measurement is made.
 #pragma once
 #include <string>
 
 namespace roomradar {
 
 struct Machine {
-  std::string processor;  ///< "unknown processor" where the system does not say
+  std::string processor;  ///< "unknown processor" if the system does not tell
   unsigned threads = 0;
   std::string system;    ///< "Linux 6.1"
-  std::string renderer;  ///< of OpenGL
+  std::string renderer;  ///< OpenGL's
 };
 
-/// Asks for the renderer in a process of its own, so that this one stays without a GL context. Throws Error
-/// if there is none.
+/// Describes this machine. Queries the renderer in a child process, so this process stays without a GL
+/// context. Throws Error if there is no renderer.
 Machine this_machine();
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// measured_sandboxed.cpp: figures through the pipe as they lie in memory.
+// measured_sandboxed.cpp: sends the figures' bytes through the pipe.
 #include "app/evaluation/trade/measured_sandboxed.hpp"
 
 #include <algorithm>
@@ -12,15 +12,15 @@
 namespace roomradar {
 
 Readings measured_sandboxed(const std::string& what, const std::function<Readings()>& work) {
-  constexpr unsigned kMost_s = 3600;  // of processor time: hours are not a measurement
-  constexpr std::size_t kMost_bytes = std::size_t{1} << 38U;  // addresses, of which GL drivers take many
+  constexpr unsigned kMost_s = 3600;                          // CPU time; hours would not be a measurement
+  constexpr std::size_t kMost_bytes = std::size_t{1} << 38U;  // address space, of which GL drivers take a lot
   const auto bytes_of_figures = [&] {
     const Readings figures = work();
     std::string bytes(figures.size() * sizeof(double), '\0');
     std::memcpy(bytes.data(), figures.data(), bytes.size());
     return bytes;
   };
-  release_unused_memory();  // what this process holds is where the other's peak begins
+  release_unused_memory();  // the child's peak starts at this process's memory
   const std::string bytes =
       run_sandboxed(bytes_of_figures, what + ": could not be measured", kMost_s, kMost_bytes);
   Readings figures(bytes.size() / sizeof(double));

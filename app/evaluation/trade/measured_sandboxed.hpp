@@ -1,4 +1,4 @@
-// measured_sandboxed.hpp: a measurement in a process of its own, so that none finds the memory of another.
+// measured_sandboxed.hpp: measures in a child process, so measurements do not share memory.
 #pragma once
 #include <functional>
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace roomradar {
 
-/// What `work` returns, computed in a child of this process, which must not have a GL context (nor threads
-/// that the work needs): the child makes its own. What it throws as Error is thrown here; if it crashes that
-/// is an Error, too.
+/// Runs `work` in a child process and returns its result. This process must have no GL context (the child
+/// creates its own), and no threads that the work needs. Rethrows Error from the work; throws Error if the
+/// child crashes.
 /// @param what  for messages: "run in table"
 Readings measured_sandboxed(const std::string& what, const std::function<Readings()>& work);
 
-/// How much more memory (10^6 bytes) this process has held at its peak than it held at `start_bytes`.
+/// Returns the process's peak resident memory minus start_bytes, in 10^6 bytes, at least 0.
 double peak_growth_mb(std::size_t start_bytes);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// picture_judge.cpp: the right picture, and what another one has different.
+// picture_judge.cpp: composes the true picture and sums the differences.
 #include "app/evaluation/trade/picture_judge.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ double difference(Rgb a, Rgb b) {
   return (std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b)) / (3.0 * 255.0);
 }
 
-/// Whether some object is there in the layer, hidden or not.
+/// Returns true if the layer has an object at the pixel, hidden or not.
 bool is_covered(const ObjectLayer& layer, int x, int y) {
   if (x < layer.rect.x || x >= layer.rect.x + layer.rect.width) return false;
   if (y < layer.rect.y || y >= layer.rect.y + layer.rect.height) return false;
@@ -24,7 +24,7 @@ bool is_covered(const ObjectLayer& layer, int x, int y) {
   return false;
 }
 
-/// Marks what lies within the band about the places where objects go from shown to hidden.
+/// Marks the pixels within kEdgeBand_px of an edge between shown and hidden parts of an object.
 void mark_edges(const ObjectLayer& layer, const Occlusion& occlusion, MaskImage& edges) {
   const PixelRect& rect = occlusion.rect;
   edges.resize(rect.width, rect.height);
@@ -71,7 +71,7 @@ PictureErrors PictureJudge::errors_of(const JudgedPicture& judged, const Frame& 
   }
   drawer_.draw(drawn, frame.colour_camera, T_world_camera, {}, layer_);
   ComposeConfig config;
-  config.occlusion.edge_reach_px = 0;  // the depth has no edge in the wrong place
+  config.occlusion.edge_reach_px = 0;  // exact depth needs no correction of edges
   cast_shadows(frame.colour, frame.colour_camera, T_world_camera, true_depth_m, casters,
                config.shadow_strength, right_);
   lay_objects(layer_, true_depth_m, config.occlusion, occlusion_, right_);

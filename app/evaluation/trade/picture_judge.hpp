@@ -1,4 +1,4 @@
-// picture_judge.hpp: how far a composed picture is from the one that the truth would give.
+// picture_judge.hpp: compares a composed picture with the picture made from ground truth.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -12,37 +12,36 @@
 
 namespace roomradar {
 
-/// Where an object was when a picture was made of it.
+/// Pose of an object when a picture of it was made.
 struct JudgedObject {
-  std::size_t object = 0;  ///< among the judge's
+  std::size_t object = 0;  ///< index among the judge's objects
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
 };
 
-/// A picture and what it ought to show.
+/// A picture and the objects that it should show.
 struct JudgedPicture {
   ColourImage picture;
   std::vector<JudgedObject> objects;
 };
 
-/// How far pictures are from the right ones: the colours' differences (0 to 1, mean of the channels), summed
-/// over all of them before they are divided: where an object is all but hidden, one picture alone says
-/// little.
+/// Sums of colour differences from the true pictures (0 to 1, mean over channels) over all pictures. They are
+/// divided only at the end, because a picture with a mostly hidden object alone says little.
 struct PictureErrors {
-  double difference = 0.0;        ///< of all pixels
-  std::size_t object_pixels = 0;  ///< in which the right picture is not the camera's own
-  double edge_difference = 0.0;   ///< of the pixels near an edge
-  std::size_t edge_pixels = 0;    ///< within kEdgeBand_px of where the right picture begins to hide an object
+  double difference = 0.0;        ///< sum over all pixels
+  std::size_t object_pixels = 0;  ///< pixels that objects change in the true picture
+  double edge_difference = 0.0;   ///< sum over the pixels near an edge
+  std::size_t edge_pixels = 0;    ///< pixels within kEdgeBand_px of an occlusion edge in the true picture
 
   PictureErrors& operator+=(const PictureErrors& other);
-  /// For each pixel of the objects; not finite where the right pictures show none.
+  /// Mean per object pixel; not finite if there are none.
   [[nodiscard]] double whole() const { return difference / static_cast<double>(object_pixels); }
-  /// For each pixel near an edge; not finite where there is none.
+  /// Mean per pixel near an edge; not finite if there are none.
   [[nodiscard]] double at_edges() const { return edge_difference / static_cast<double>(edge_pixels); }
 };
 inline constexpr int kEdgeBand_px = 4;
 
-/// Composes pictures from exact depth, exact poses, objects' full meshes and fresh shadows. GL on the thread
-/// that made it.
+/// Composes true pictures from exact depth, exact poses, full meshes and new shadows. GL calls are made on
+/// the constructing thread.
 class PictureJudge {
  public:
   /// Throws Error as ObjectModel does.
@@ -50,7 +49,7 @@ class PictureJudge {
 
   /// The colour camera must be the depth camera.
   /// @param frame           with colour
-  /// @param true_depth_m    of its size
+  /// @param true_depth_m    same size
   /// @param T_world_camera  true, in the objects' world
   PictureErrors errors_of(const JudgedPicture& judged, const Frame& frame, const DepthImage& true_depth_m,
                           const Eigen::Isometry3d& T_world_camera);

@@ -1,4 +1,4 @@
-// prescan_work.cpp: one scan in a process of its own: its time, its memory, its errors.
+// prescan_work.cpp: measures one scan in a child process: time, memory, errors.
 #include "app/evaluation/trade/prescan_work.hpp"
 
 #include <cmath>
@@ -21,29 +21,29 @@
 namespace roomradar {
 namespace {
 
-constexpr std::int64_t kHoldOut = 7;  // has no factor in common with any fuse_every
-constexpr double kSpacing_m = 0.01;   // of the points on the mesh
+constexpr std::int64_t kHoldOut = 7;  // coprime with every value of fuse_every
+constexpr double kSpacing_m = 0.01;   // between sample points on the mesh
 
 struct ScanScene {
   std::string name;
   std::vector<Frame> frames;
-  std::unique_ptr<Room> room;         // null: a recording
-  std::vector<Eigen::Vector3d> seen;  // of the room's surface
+  std::unique_ptr<Room> room;         // null for recordings
+  std::vector<Eigen::Vector3d> seen;  // observed points of the room's surface
 };
 
 std::vector<FigureName> scan_figures() {
   using Kind = FigureKind;
-  return {{"scan_ms_per_frame", "whole scan, ms a frame", 1.0, Kind::kTime},
-          {"cpu_ms", "processor, all threads, ms a frame", 1.0, Kind::kTime},
+  return {{"scan_ms_per_frame", "whole scan, ms per frame", 1.0, Kind::kTime},
+          {"cpu_ms", "CPU time, all threads, ms per frame", 1.0, Kind::kTime},
           {"track_ms", "track, ms", 1.0, Kind::kTime},
           {"fuse_ms", "fuse, ms", 1.0, Kind::kTime},
           {"surface_ms", "surface, ms", 1.0, Kind::kTime},
-          {"memory_mb", "memory of the process at its peak, MB", 1.0, Kind::kMemory},
+          {"memory_mb", "peak memory of the process, MB", 1.0, Kind::kMemory},
           {"octree_mb", "octree, MB", 1.0, Kind::kFact},
           {"triangles", "triangles", 1.0, Kind::kFact},
           {"surface_error_median_m", "surface error, median, mm", 1e3, Kind::kError, 0.0002},
-          {"surface_error_p95_m", "surface error, 95 %, mm", 1e3, Kind::kError, 0.001},
-          {"surface_missing", "surface that was seen and is not in the mesh, %", 1e2, Kind::kError, 0.005},
+          {"surface_error_p95_m", "surface error, p95, mm", 1e3, Kind::kError, 0.001},
+          {"surface_missing", "observed surface missing from the mesh, %", 1e2, Kind::kError, 0.005},
           {"trajectory_error_m", "trajectory error (ATE), mm", 1e3, Kind::kError, 0.001},
           {"frames_lost", "frames lost, %", 1e2, Kind::kError, 0.01}};
 }
@@ -53,8 +53,8 @@ double median_of(const std::map<std::string, StageSummary>& stages, const char* 
   return found == stages.end() ? kNotMeasured : found->second.median_ms;
 }
 
-/// From the map's world to the room's: the mean over all poses of what turns and shifts a pose onto the true
-/// one. (Positions alone would leave a turn about a straight way open.)
+/// Returns the transform from the map's world to the room's: mean rotation and translation over all poses.
+/// Positions alone would leave the rotation about a straight path undetermined.
 Eigen::Isometry3d T_room_map_of(const std::vector<TimedPose>& trajectory, const std::vector<Frame>& frames) {
   Eigen::Matrix3d turns = Eigen::Matrix3d::Zero();
   for (const TimedPose& pose : trajectory) {
@@ -72,7 +72,7 @@ Eigen::Isometry3d T_room_map_of(const std::vector<TimedPose>& trajectory, const 
   return T_room_map;
 }
 
-/// Median and 95 % of the error, and what is missing.
+/// Returns median and p95 of the error, and the missing fraction.
 std::array<double, 3> surface_errors(const ScanScene& scene, const PrescanResult& scanned,
                                      FrameSource& source) {
   if (!scene.room) {

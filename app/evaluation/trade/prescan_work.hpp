@@ -1,4 +1,4 @@
-// prescan_work.hpp: what a prescan trades: scans of simulated rooms and of recordings, judged by the truth.
+// prescan_work.hpp: MeasuredWork of a prescan: scans of simulated rooms and of recordings, with ground truth.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,14 +9,13 @@
 
 namespace roomradar {
 
-/// The knobs of ScanQuality, and the quality that a setting of them stands for.
+/// Returns the parameters of ScanQuality, and the quality for a setting of them.
 std::vector<Parameter> scan_parameters();
 ScanQuality scan_quality_of(const Setting& setting);
 
-/// Scenes: the rooms (as `sim:` has them: "table", "random?seed=3"), then the recordings (folders with
-/// poses). In a room the mesh is measured against the exact solids; of a recording every seventh frame is
-/// held out and measured against the mesh. The trajectory, tracked, is measured against the room's or the
-/// recording's.
+/// Scenes: the rooms (as in `sim:`, "table", "random?seed=3"), then the recordings (folders with poses). In
+/// rooms, the mesh is compared with the exact solids; in recordings, with every seventh frame, which is held
+/// out. The tracked trajectory is compared with the room's or the recording's poses.
 MeasuredWork prescan_work(const std::vector<std::string>& rooms, const std::vector<std::string>& recordings,
                           const TradeScale& scale);
 

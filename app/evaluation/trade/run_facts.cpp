@@ -1,4 +1,4 @@
-// run_facts.cpp: frames handed to a session as a run would, with what is true of them beside.
+// run_facts.cpp: steps a session as a run does, and compares with ground truth.
 #include "app/evaluation/trade/run_facts.hpp"
 
 #include <algorithm>
@@ -53,8 +53,7 @@ double newest_ms(const StageTimes& times, std::string_view wanted) {
   return newest;
 }
 
-/// How old what the picture shows of the objects is, frame by frame: they wait for their turn to be moved,
-/// and the picture for its own.
+/// Mean age of the object poses shown, over frames: objects wait for their turn, and so does the picture.
 class ShownAge {
  public:
   void note(const Session& session, const FrameResult& result, double stamp_s, bool counts) {
@@ -71,7 +70,7 @@ class ShownAge {
   [[nodiscard]] double mean_ms() const { return 1e3 * sum_s_ / static_cast<double>(count_); }
 
  private:
-  std::vector<double> waited_s_;  ///< of the objects in the picture, when it was made
+  std::vector<double> waited_s_;  ///< per object in the picture, when it was made
   double made_s_ = 0.0, sum_s_ = 0.0;
   std::size_t count_ = 0;
 };

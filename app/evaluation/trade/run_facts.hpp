@@ -1,4 +1,4 @@
-// run_facts.hpp: a session through the frames of a scene, and objects that are dropped on what it hides.
+// run_facts.hpp: runs a session on a scene's frames, and drops objects onto the scene's hidden surfaces.
 #pragma once
 #include <limits>
 #include <string>
@@ -17,32 +17,32 @@ struct RunSetting {
   int objects = 1;
 };
 
-/// What a session's frames came to. The first few are not counted: caches and drivers settle in them.
+/// Measurements of a session. The first 10 frames are not counted: caches and drivers warm up in them.
 struct RunFacts {
   std::string renderer;
   StageTimes times;
-  double frame_ms = 0.0;   ///< mean of all frames: where they take turns, no one of them is usual
-  double cpu_ms = 0.0;     ///< of all threads, a frame
-  double moved_ms = 0.0;   ///< physics, mean of the frames in which some object had its turn; NaN: none
-  double memory_mb = 0.0;  ///< that the process held more at its peak
-  double located = 0.0;    ///< part of the frames
-  /// Means over the located frames; NaN where there are none.
+  double frame_ms = 0.0;   ///< mean over frames; with alternating work no single frame is typical
+  double cpu_ms = 0.0;     ///< CPU time of all threads per frame
+  double moved_ms = 0.0;   ///< mean of physics over frames that move objects; NaN: none
+  double memory_mb = 0.0;  ///< peak growth of the process's memory
+  double located = 0.0;    ///< fraction of the frames
+  /// Means over the localised frames; NaN if there are none.
   double dynamic_triangles = 0.0, static_triangles = 0.0;
-  double pose_error_m = 0.0;            ///< RMS, of the camera's position
-  double object_age_ms = 0.0;           ///< how long ago what is shown of the objects was so, after a frame
-  std::vector<JudgedPicture> pictures;  ///< one a true view of the scene
+  double pose_error_m = 0.0;            ///< RMS of the camera's position
+  double object_age_ms = 0.0;           ///< mean age of the shown object poses at the frame's time
+  std::vector<JudgedPicture> pictures;  ///< one per true view of the scene
 };
 
-/// Objects of this mesh are dropped every 25 frames, one after the other, at the scene's places or on
-/// whatever surface is in view.
+/// Runs a session with objects of this mesh. Each is dropped every 25 frames, staggered, at the scene's
+/// places or over a surface in view.
 RunFacts run_session(const RunScene& scene, const RunSetting& setting, const Mesh& object);
 
-/// What became of the scene's scenarios, and of balls before what moved in them; NaN where it has none.
+/// Results of the scene's scenarios and of its touches; NaN if it has none.
 struct ContactFacts {
-  double error_median_m = std::numeric_limits<double>::quiet_NaN();  ///< of those that something stopped
+  double error_median_m = std::numeric_limits<double>::quiet_NaN();  ///< over objects that were stopped
   double error_p95_m = error_median_m;
-  double passed = error_median_m;       ///< part that fell through
-  double false_stops = error_median_m;  ///< part that stopped where nothing is
+  double passed = error_median_m;       ///< fraction that fell through
+  double false_stops = error_median_m;  ///< fraction stopped where there is no surface
   DynamicTouchFacts moved;
 };
 ContactFacts touch_true_surfaces(const RunScene& scene, const RunQuality& quality);

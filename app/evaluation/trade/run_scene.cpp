@@ -1,4 +1,4 @@
-// run_scene.cpp: everything that takes long, done once for all settings.
+// run_scene.cpp: slow preparations, done once for all settings.
 #include "app/evaluation/trade/run_scene.hpp"
 
 #include <cmath>
@@ -12,8 +12,8 @@
 namespace roomradar {
 namespace {
 
-constexpr std::int64_t kJudgeEvery =
-    7;  // of the run's frames, its picture; no multiple of picture_every_n_frames
+constexpr std::int64_t kJudgeEvery = 7;  // pictures are compared every this many frames; no multiple of
+                                         // picture_every_n_frames
 constexpr std::int64_t kFirstJudged = 15;
 
 SavedMap mapped(FrameSource& source) {
@@ -41,7 +41,7 @@ void add_run_frames(const SimOptions& options, RunScene& scene) {
   }
 }
 
-/// About what a visitor looks at: in a ring, each where the first surface below is.
+/// Returns places in a ring around the room's focus, on the first surface below each.
 std::vector<Eigen::Vector3d> drop_places(const Room& room, const Eigen::Isometry3d& T_world_room) {
   constexpr int kPlaces = 8;
   constexpr double kRing_m = 0.25, kAbove_m = 0.3;
@@ -56,7 +56,7 @@ std::vector<Eigen::Vector3d> drop_places(const Room& room, const Eigen::Isometry
   return places;
 }
 
-/// All frames that a trial can ask for.
+/// Renders all frames that a trial can need.
 void render_ahead(PreparedScenario& prepared) {
   const Scenario& scenario = prepared.scenario;
   if (scenario.occluder_velocity_world.isZero()) return;
@@ -76,7 +76,7 @@ std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const Trade
   scene->name = sim_spec(run);
   scene->room = std::make_unique<ScenarioRoom>(make_scenario_room(run.room, run.seed));
 
-  SimOptions scan = scene->room->prescan;  // the walk that the scenarios know of, in fewer frames
+  SimOptions scan = scene->room->prescan;  // the path that the scenarios assume, in fewer frames
   scan.rate_hz *= static_cast<double>(scale.map_frames) / static_cast<double>(scan.frames);
   scan.frames = scale.map_frames;
   scan.depth_camera = run.depth_camera;

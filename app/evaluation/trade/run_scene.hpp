@@ -1,4 +1,4 @@
-// run_scene.hpp: a mapped room, or half a recording, with the frames of a run in it and what is true of them.
+// run_scene.hpp: scene of a run: a mapped room or recording, with frames and their ground truth.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -13,28 +13,28 @@
 
 namespace roomradar {
 
-/// What a picture of a frame is judged by.
+/// Ground truth for the picture of a frame.
 struct TrueView {
-  std::size_t frame = 0;  ///< among the scene's
+  std::size_t frame = 0;  ///< index among the scene's frames
   DepthImage depth_m;     ///< exact
 };
 
 struct RunScene {
   std::string name;
   SavedMap map;
-  std::vector<Frame> frames;           ///< their poses are true, in the recording's world
-  std::vector<TrueView> true_views;    ///< of some frames; none of a recording
-  std::unique_ptr<ScenarioRoom> room;  ///< null: a recording
-  Mesh mesh_room;                      ///< the map's, in the room's own frame
+  std::vector<Frame> frames;                                 ///< with true poses, in the recording's world
+  std::vector<TrueView> true_views;                          ///< for some frames; empty for recordings
+  std::unique_ptr<ScenarioRoom> room;                        ///< null for recordings
+  Mesh mesh_room;                                            ///< the map's mesh in the room's frame
   std::vector<std::unique_ptr<PreparedScenario>> scenarios;  ///< with all their frames; they refer to `room`
   std::vector<DynamicTouch> touches;
-  std::vector<Eigen::Vector3d> drop_at_world;  ///< above what is looked at; empty: over what is in view
+  std::vector<Eigen::Vector3d> drop_at_world;  ///< places to drop objects over; empty: over surfaces in view
 };
 
 /// @param spec  of a room: "table", "random?seed=3"
 std::unique_ptr<RunScene> run_scene_of_room(const std::string& spec, const TradeScale& scale);
-/// Maps the first half of the frames that are taken of it; the others are the run's. Throws Error likewise
-/// as frames_of_recording().
+/// Maps the first frames of the recording and uses the rest, at most half, for the run. Throws Error as
+/// frames_of_recording() does.
 std::unique_ptr<RunScene> run_scene_of_recording(const std::string& folder, const TradeScale& scale);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// run_work.cpp: one run in a process of its own: its times, its memory, its errors.
+// run_work.cpp: measures one run in a child process: times, memory, errors.
 #include "app/evaluation/trade/run_work.hpp"
 
 #include <algorithm>
@@ -21,35 +21,35 @@ std::vector<FigureName> run_figures() {
   using Kind = FigureKind;
   std::vector<FigureName> names = {{"frame_mean_ms", "frame, mean, ms", 1.0, Kind::kTime},
                                    {"frame_ms", "frame, median, ms", 1.0, Kind::kTime},
-                                   {"frame_p95_ms", "frame, 95 %, ms", 1.0, Kind::kTime},
+                                   {"frame_p95_ms", "frame, p95, ms", 1.0, Kind::kTime},
                                    {"contact_ms", "depth to contact, median, ms", 1.0, Kind::kTime},
-                                   {"cpu_ms", "processor, all threads, ms a frame", 1.0, Kind::kTime}};
+                                   {"cpu_ms", "CPU time, all threads, ms per frame", 1.0, Kind::kTime}};
   for (const char* stage : kStages)
     names.push_back({std::string(stage) + "_ms", std::string(stage) + ", ms", 1.0, Kind::kTime});
   for (FigureName& name : std::vector<FigureName>{
            {"moved_ms", "physics, mean of frames in which objects are moved, ms", 1.0, Kind::kTime},
-           {"memory_mb", "memory of the process at its peak, MB", 1.0, Kind::kMemory},
-           {"dynamic_triangles", "triangles of what moved", 1.0, Kind::kFact},
+           {"memory_mb", "peak memory of the process, MB", 1.0, Kind::kMemory},
+           {"dynamic_triangles", "dynamic triangles", 1.0, Kind::kFact},
            {"static_triangles", "triangles of the room, drawn", 1.0, Kind::kFact},
-           {"pose_error_m", "camera's place, RMS error, mm", 1e3, Kind::kError, 0.001},
+           {"pose_error_m", "camera position, RMS error, mm", 1e3, Kind::kError, 0.001},
            {"not_located", "frames not located, %", 1e2, Kind::kError, 0.01},
            {"contact_error_median_m", "contact error on hidden surfaces, median, mm", 1e3, Kind::kError,
             0.0005},
-           {"contact_error_p95_m", "the same, 95 %, mm", 1e3, Kind::kError, 0.002},
+           {"contact_error_p95_m", "contact error on hidden surfaces, p95, mm", 1e3, Kind::kError, 0.002},
            {"passed_through", "fell through, %", 1e2, Kind::kError, 0.005},
            {"false_stops", "stopped where nothing is, %", 1e2, Kind::kError, 0.02},
-           {"moved_error_median_m", "contact error on what moved, median, mm", 1e3, Kind::kError, 0.0005},
-           {"moved_error_p95_m", "contact error on what moved, 95 %, mm", 1e3, Kind::kError, 0.002},
-           {"moved_missed", "flew through what moved, %", 1e2, Kind::kError, 0.005},
+           {"moved_error_median_m", "contact error on dynamic objects, median, mm", 1e3, Kind::kError,
+            0.0005},
+           {"moved_error_p95_m", "contact error on dynamic objects, p95, mm", 1e3, Kind::kError, 0.002},
+           {"moved_missed", "passed through dynamic objects, %", 1e2, Kind::kError, 0.005},
            {"picture_error", "picture error, % of an object's pixels", 1e2, Kind::kError, 0.002},
-           {"picture_edge_error", "picture error where an object begins to be hidden, %", 1e2, Kind::kError,
-            0.002},
-           {"object_age_ms", "age of what is shown of an object, ms", 1.0, Kind::kError, 20.0}})
+           {"picture_edge_error", "picture error at occlusion edges, %", 1e2, Kind::kError, 0.002},
+           {"object_age_ms", "age of an object's pose in the picture, ms", 1.0, Kind::kError, 20.0}})
     names.push_back(std::move(name));
   return names;
 }
 
-/// Of all true views together.
+/// Sums the errors over all true views.
 PictureErrors picture_errors(const RunScene& scene, const RunSetting& setting, const Mesh& object,
                              const RunFacts& facts) {
   PictureJudge judge(std::vector<Mesh>(static_cast<std::size_t>(setting.objects), object));

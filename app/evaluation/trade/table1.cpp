@@ -1,4 +1,4 @@
-// table1.cpp: what was published, and the same measured here.
+// table1.cpp: the published numbers, and the same measurements here.
 #include "app/evaluation/trade/table1.hpp"
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace roomradar {
 namespace {
 
-/// Polygons of the object, frames a second. Each of its frames is meshed whole: 37,842 triangles.
+/// Polygons of the object, frames per second. The published method meshes each whole frame: 37,842 triangles.
 struct PublishedRow {
   int polygons;
   double fps;
@@ -30,7 +30,7 @@ Table1 measure_table1(const std::string& room, const TradeScale& scale) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const RunFacts facts = run_session(*scene, {}, objects[i]);
     table.renderer = facts.renderer;
-    if (!(facts.located > 0.0)) throw Error("trade --table1: " + room + ": no frame could be located");
+    if (!(facts.located > 0.0)) throw Error("trade --table1: " + room + ": no frame could be localised");
     const auto stages = facts.times.summaries();
     table.rows.push_back({.published_polygons = kPublished[i].polygons,
                           .published_ms = 1e3 / kPublished[i].fps,

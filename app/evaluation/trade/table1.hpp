@@ -1,4 +1,4 @@
-// table1.hpp: the published radar's table of frame rates beside what this machine does.
+// table1.hpp: the published radar's table of frame rates, compared with this machine.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace roomradar {
 
-/// One size of virtual object ("sensor object").
+/// Results for one size of virtual object ("sensor object").
 struct Table1Row {
   int published_polygons = 0;
-  double published_ms = 0.0;  ///< a frame of the published application, on its own GPU
-  std::size_t triangles = 0;  ///< ours
+  double published_ms = 0.0;  ///< frame time of the published application on its GPU
+  std::size_t triangles = 0;  ///< of our object
   double frame_median_ms = 0.0, frame_p95_ms = 0.0;
-  double radar_median_ms = 0.0;    ///< all questions to the radar of a frame
-  double static_triangles = 0.0;   ///< of the room, drawn in a frame
-  double dynamic_triangles = 0.0;  ///< of what moved, meshed in a frame
+  double radar_median_ms = 0.0;    ///< all radar queries of a frame
+  double static_triangles = 0.0;   ///< of the room, drawn per frame
+  double dynamic_triangles = 0.0;  ///< of the dynamic foreground, meshed per frame
 };
 
 struct Table1 {
@@ -25,11 +25,11 @@ struct Table1 {
   std::vector<Table1Row> rows;
   double contact_error_median_m = 0.0, contact_error_p95_m = 0.0;
   int contacts = 0;
-  double passed = 0.0;  ///< part that fell through
+  double passed = 0.0;  ///< fraction that fell through
 };
 
-/// Maps a simulated room, runs in it with each of published_objects(), and drops and pushes other objects
-/// onto its hidden surfaces. Throws Error as a session does.
+/// Maps a simulated room, runs a session in it with each of published_objects(), then drops and pushes other
+/// objects onto its hidden surfaces. Throws Error as a session does.
 Table1 measure_table1(const std::string& room, const TradeScale& scale);
 
 std::string text_of(const Table1& table);

@@ -1,4 +1,4 @@
-// trade_csv.cpp: rows of measurements, then rows of settings.
+// trade_csv.cpp: writes rows of measurements, then rows of settings.
 #include "app/evaluation/trade/trade_csv.hpp"
 
 #include <algorithm>

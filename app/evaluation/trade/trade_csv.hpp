@@ -1,4 +1,4 @@
-// trade_csv.hpp: everything that a sweep measured, as it is measured.
+// trade_csv.hpp: writes a sweep's measurements to a CSV file as they are made.
 #pragma once
 #include <filesystem>
 #include <fstream>
@@ -9,19 +9,20 @@
 
 namespace roomradar {
 
-/// A field as RFC 4180 has it: in quotes where it holds a comma, a quote or a line's end.
+/// Returns a field as in RFC 4180: quoted if it contains a comma, a quote or a line break.
 std::string csv_field(const std::string& text);
 
-/// One header for all kinds of work; what a row has nothing to say of is empty.
+/// CSV file with one header for all kinds of work; fields that do not apply are empty.
 class TradeCsv {
  public:
-  /// Nothing is written for an empty path, nor before the first line: what was there may be hours of work.
+  /// Writes nothing if the path is empty. An existing file is overwritten only with the first line, as it may
+  /// be hours of work.
   TradeCsv(const std::filesystem::path& path, const std::vector<MeasuredWork>& works);
 
-  /// A measurement; it is on the disk afterwards. Throws Error if the file cannot be written.
+  /// Writes and flushes one measurement. Throws Error if the file cannot be written.
   void write(const MeasuredWork& work, const std::vector<Setting>& settings, const SweepRow& row);
-  /// All measurements of each setting together, their loss, and what the setting is: front, default, a
-  /// preset.
+  /// Writes a line per setting: the summary of its measurements, its loss, and whether it is the default, a
+  /// preset or on the front.
   void write(const MeasuredWork& work, const std::vector<SettingSummary>& summaries, std::size_t defaults,
              const PresetChoice& choice);
 
@@ -32,7 +33,7 @@ class TradeCsv {
 
   std::filesystem::path path_;
   std::ofstream file_;
-  std::vector<std::string> parameters_, figures_;  ///< of all works, each once
+  std::vector<std::string> parameters_, figures_;  ///< of all works, without duplicates
 };
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// trade_frames.cpp: what is read is checked, so that a sweep does not fail in its middle.
+// trade_frames.cpp: reads and checks the frames, so a sweep does not fail midway.
 #include "app/evaluation/trade/trade_frames.hpp"
 
 #include <algorithm>
@@ -18,8 +18,8 @@ std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t c
     if (read.status == ReadStatus::kFrame) frames.push_back(frame);
   }
   if (frames.size() < kFewestTradeFrames)
-    throw Error(folder + ": of its first " + std::to_string(count) + " frames " +
-                std::to_string(frames.size()) + " are there and readable; at least " +
+    throw Error(folder + ": of the first " + std::to_string(count) + " frames " +
+                std::to_string(frames.size()) + " are readable; at least " +
                 std::to_string(kFewestTradeFrames) + " are needed");
   if (!std::all_of(frames.begin(), frames.end(), [](const Frame& f) { return f.T_world_camera.has_value(); }))
     throw Error(folder + ": not all frames have poses, so there is no truth to measure errors by");

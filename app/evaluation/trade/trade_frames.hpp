@@ -1,4 +1,4 @@
-// trade_frames.hpp: the frames on which settings are measured.
+// trade_frames.hpp: reads the frames on which settings are measured.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,8 +11,8 @@ namespace roomradar {
 
 inline constexpr std::size_t kFewestTradeFrames = 30;
 
-/// The first frames of a folder, up to `count` of them. Throws Error if it cannot be read, fewer than
-/// kFewestTradeFrames are readable, or they come without poses: nothing could be said of errors then.
+/// Returns the readable ones of a recording's first `count` frames. Throws Error if it cannot be read, has
+/// fewer than kFewestTradeFrames readable frames, or a frame has no pose, as errors need ground truth.
 std::vector<Frame> frames_of_recording(const std::string& folder, std::int64_t count);
 
 }  // namespace roomradar

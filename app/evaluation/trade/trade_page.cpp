@@ -49,12 +49,12 @@ std::string ratio(const SettingSummary& summary) {
          page_number(summary.most_ratio, "%.2f") + ")";
 }
 
-/// What a dot or a table's row is called: presets and the default by name.
+/// Returns the label of a dot or a table's row; empty unless default or preset.
 std::string name_of(const TradeResult& result, std::size_t setting) {
   return names_of(setting, result.defaults, result.choice, " = ");
 }
 
-/// All figures of one setting, for the mouse.
+/// Returns all figures of one setting, for the tooltip.
 std::string details(const TradeResult& result, std::size_t setting) {
   const SettingSummary& summary = result.summaries[setting];
   std::string text = "setting " + std::to_string(setting) + ": " +
@@ -68,21 +68,21 @@ std::string details(const TradeResult& result, std::size_t setting) {
   return text;
 }
 
-/// Settings of the usual load that were measured everywhere.
+/// Returns true for settings with the default load that were measured in all scenes.
 bool is_shown(const TradeResult& result, std::size_t setting) {
   const SettingSummary& summary = result.summaries[setting];
   return summary.is_complete && has_default_load(result.work.parameters, summary.setting);
 }
 
-/// @param negligible  of the error
-/// @param error_of    of a setting; both in the plot's unit
-/// @param given_front settings, where the front is not this plot's own
+/// @param negligible  the error's
+/// @param error_of    returns a setting's error; both in the plot's unit
+/// @param given_front settings on the front, if it is not this plot's own
 template <typename ErrorOf>
 std::string plot_of(const TradeResult& result, const std::string& title, const std::string& y_name,
                     double negligible, const ErrorOf& error_of,
                     const std::optional<std::vector<std::size_t>>& given_front = {}) {
-  constexpr double kOffThePlot =
-      10.0;  // times the default's error: it broke down, and would squeeze the rest
+  // Relative to the default's error; larger errors are failures and would compress the plot.
+  constexpr double kOffThePlot = 10.0;
   std::vector<std::size_t> shown;
   std::vector<CostAndError> points;
   int beyond = 0;
@@ -100,7 +100,7 @@ std::string plot_of(const TradeResult& result, const std::string& title, const s
   if (!given_front)
     for (const std::size_t k : pareto_front_of(points)) front.push_back(shown[k]);
   const std::vector<std::size_t>& settings_on_front = given_front ? *given_front : front;
-  ParetoPlot plot{.title = title, .x_name = "time of the default beside it, times", .y_name = y_name};
+  ParetoPlot plot{.title = title, .x_name = "time relative to the default's", .y_name = y_name};
   for (std::size_t k = 0; k < shown.size(); ++k) {
     const std::size_t i = shown[k];
     const SettingSummary& summary = result.summaries[i];
@@ -127,7 +127,8 @@ std::string plot_of(const TradeResult& result, const std::string& title, const s
 std::string plots_of(const TradeResult& result) {
   std::string html = "<div class=\"plots\">\n";
   html += plot_of(
-      result, result.work.name + ": all errors together", "loss: mean of errors, times the default's", 0.0,
+      result, result.work.name + ": all errors together", "loss: mean of errors relative to the default's",
+      0.0,
       [&](std::size_t i) {
         return loss_of(result.work, result.summaries[i], result.summaries[result.defaults]);
       },
@@ -145,7 +146,7 @@ std::string plots_of(const TradeResult& result) {
 std::string table_of(const TradeResult& result, const std::vector<std::size_t>& settings) {
   std::string html =
       "<div class=\"wide\"><table><thead><tr><th>setting</th><th>what differs from the default</th>"
-      "<th>time, times the default's (spread)</th><th>loss</th>";
+      "<th>time relative to the default's (spread)</th><th>loss</th>";
   for (const FigureName& figure : result.work.figures) html += "<th>" + escaped(figure.title) + "</th>";
   html += "</tr></thead>\n";
   for (const std::size_t i : settings) {
@@ -163,7 +164,7 @@ std::string table_of(const TradeResult& result, const std::vector<std::size_t>& 
   return html + "</table></div>\n";
 }
 
-/// Settings that turn one knob alone, knob by knob, the default in its place.
+/// Returns the settings that change a single parameter, sorted by parameter, after the default.
 std::vector<std::size_t> single_turns_of(const TradeResult& result) {
   std::vector<std::pair<std::pair<std::size_t, std::size_t>, std::size_t>> turns;
   const Setting defaults = default_setting(result.work.parameters);
@@ -183,7 +184,7 @@ std::vector<std::size_t> single_turns_of(const TradeResult& result) {
   return settings;
 }
 
-/// In which scenes, how much, and what of it is missing.
+/// Returns the scenes, the number of measurements, and the failures.
 std::string about(const TradeResult& result) {
   int shown = 0;
   for (std::size_t i = 0; i < result.summaries.size(); ++i) shown += is_shown(result, i) ? 1 : 0;
@@ -194,7 +195,7 @@ std::string about(const TradeResult& result) {
   std::string text = std::to_string(shown) + " settings on the plots, " + std::to_string(result.rows.size()) +
                      " measurements in: " + escaped(scenes) +
                      "<br>Time compared: " + escaped(result.work.figures[result.work.time].title);
-  if (result.was_cut_short) text += "<br><b>Cut short:</b> not everything that was asked for was measured";
+  if (result.was_cut_short) text += "<br><b>Stopped early:</b> not all settings were measured";
   for (const std::string& fault : faults_of(result)) text += "<br><b>Not measured:</b> " + escaped(fault);
   return text;
 }
@@ -208,7 +209,7 @@ std::string section_of(const TradeResult& result) {
   return "<h2>" + escaped(result.work.name) + "</h2><p class=\"about\">" + about(result) +
          "</p>\n<h3>Presets</h3>" + table_of(result, presets) + "<h3>Fronts</h3>" + plots_of(result) +
          "<h3>The front of all errors together</h3>" + table_of(result, choice.front) +
-         "<h3>One knob at a time</h3>" + table_of(result, single_turns_of(result));
+         "<h3>Single parameters</h3>" + table_of(result, single_turns_of(result));
 }
 
 }  // namespace
@@ -230,7 +231,7 @@ void write_trade_page(const std::vector<TradeResult>& results, const std::vector
   std::ostream& file = whole.stream();
   file << "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" "
           "content=\"width=device-width\"><title>roomradar: time against accuracy</title><style>"
-       << kStyle << "</style>\n<h1>What accuracy costs</h1>\n<p class=\"about\">";
+       << kStyle << "</style>\n<h1>Time against accuracy</h1>\n<p class=\"about\">";
   for (const std::string& line : about) file << escaped(line) << "<br>";
   file
       << "</p>\n<h2>How to read this</h2>\n"

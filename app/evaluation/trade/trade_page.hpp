@@ -1,4 +1,4 @@
-// trade_page.hpp: one HTML file of a sweep: fronts as plots, presets as a table, and how to read them.
+// trade_page.hpp: writes a sweep's HTML file: plots of fronts, tables of presets, and how to read them.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -8,23 +8,23 @@
 
 namespace roomradar {
 
-/// A work with all that was measured of it.
+/// A work and all its measurements.
 struct TradeResult {
   MeasuredWork work = {};
   std::vector<Setting> settings = {};
   std::vector<SweepRow> rows = {};
   std::vector<SettingSummary> summaries = {};
-  std::size_t defaults = 0;  ///< the default's place among the settings
+  std::size_t defaults = 0;  ///< index of the default among the settings
   PresetChoice choice = {};
-  bool was_cut_short = false;  ///< before all settings had been measured in all scenes
-  std::string fault = {};      ///< why it was, if not because the user wanted it so
+  bool was_cut_short = false;  ///< not all settings were measured in all scenes
+  std::string fault = {};      ///< reason, unless the user stopped the sweep
 };
 
-/// A line for each setting that could not be measured somewhere: which, where and why.
+/// Returns a line for each setting that failed: setting, scene and reason.
 std::vector<std::string> faults_of(const TradeResult& result);
 
-/// Needs no network and no other file; light or dark as the reader's system is. Throws Error if it cannot be
-/// written. Nothing is written for an empty path.
+/// Writes a self-contained file that needs no network, light or dark as the reader's system. Does nothing if
+/// the path is empty. Throws Error if it cannot be written.
 /// @param about  lines on machine, renderer, seed and scenes
 void write_trade_page(const std::vector<TradeResult>& results, const std::vector<std::string>& about,
                       const std::filesystem::path& path);

@@ -1,4 +1,4 @@
-// trade_presets.cpp: settings of sweeps to qualities.
+// trade_presets.cpp: converts settings of sweeps to qualities.
 #include "app/evaluation/trade/trade_presets.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ const TradeResult* result_of(const std::vector<TradeResult>& results, const std:
   return found == results.end() ? nullptr : &*found;
 }
 
-/// What is not known is left out.
+/// Adds the figures that were measured.
 void add_figures(const TradeResult& result, std::size_t setting, const std::string& before,
                  Figures& figures) {
   const SettingSummary& summary = result.summaries[setting];
@@ -31,7 +31,7 @@ void add_figures(const TradeResult& result, std::size_t setting, const std::stri
     add(result.work.figures[i].name, summary.figures[i]);
 }
 
-/// The part's stages, each weighed by what it takes of the default's frame.
+/// Returns the part's time ratio: the mean of its stages' ratios, weighted by their times in the default.
 double part_ratio(const TradeResult& result, std::size_t setting, const std::vector<std::string>& stages) {
   constexpr double kLeast = 0.01;
   double sum = 0.0, whole = 0.0;
@@ -56,13 +56,14 @@ FrontStep step_of(const TradeResult& run, std::size_t setting) {
   };
   set(FramePart::kLocate, {"reduce", "locate", "expected", "foreground"});
   set(FramePart::kMesh, {"mesh"});
-  set(FramePart::kPhysics, {"moved"});  // the others took no turn, and are not foreseen by it
+  set(FramePart::kPhysics, {"moved"});  // only frames that move objects, because predictions are for those
   set(FramePart::kCompose, {"compose"});
   add_figures(run, setting, "", step.figures);
   return step;
 }
 
-/// From slow to fast; a budget goes on from whatever preset is asked for, so each is a step.
+/// Returns the front and the presets, from slow to fast. A budget starts at any requested preset, so each
+/// must be a step.
 std::vector<std::size_t> front_with_presets(const TradeResult& run) {
   std::vector<std::size_t> settings = run.choice.front;
   for (const auto& preset : {run.choice.accurate, run.choice.balanced, run.choice.fast})

@@ -1,4 +1,4 @@
-// trade_presets.hpp: what a sweep chose, as the presets that `--preset` and `--budget-ms` read.
+// trade_presets.hpp: converts a sweep's choice to the presets read by `--preset` and `--budget-ms`.
 #pragma once
 #include <map>
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace roomradar {
 
-/// fast, balanced and accurate of the prescan's and the run's sweep, each with its figures, and the run's
-/// front from accurate to fast. Where a kind of work was not swept, or has no such preset, the default
-/// stands.
+/// Returns the presets fast, balanced and accurate with their figures, from the sweeps of prescan and run,
+/// and the run's front from accurate to fast. Work that was not swept, or has no such preset, gets the
+/// default.
 Presets chosen_presets(const std::vector<TradeResult>& results,
                        const std::map<std::string, std::string>& made_by);
 

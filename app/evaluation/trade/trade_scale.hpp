@@ -1,19 +1,19 @@
-// trade_scale.hpp: how much is done to measure one setting once.
+// trade_scale.hpp: amount of work for one measurement of a setting.
 #pragma once
 
 namespace roomradar {
 
 struct TradeScale {
-  int scan_px = 640;  ///< width of the simulated depth images that are scanned, 4:3
+  int scan_px = 640;  ///< width of the simulated depth images of scans, 4:3
   int scan_frames = 75;
-  double scan_rate_hz = 15.0;  ///< a hand moves the camera as far as ever in fewer frames
-  int map_frames = 240;        ///< of the walk round a room that a run's map is made of
-  int run_px = 640;            ///< width of the images of that walk and of a run
+  double scan_rate_hz = 15.0;  ///< half a Kinect's: fewer frames over the usual path of a hand-held camera
+  int map_frames = 240;        ///< frames of the walk round a room from which a run's map is made
+  int run_px = 640;            ///< width of the images of that walk and of the run
   int run_frames = 120;
   int scenarios = 24;  ///< drops and pushes onto hidden surfaces
 };
 
-/// A few minutes for all, on small images: to see that it works, not to choose by.
+/// A few minutes in all, on small images: a functional test, not a basis for choosing presets.
 inline constexpr TradeScale kQuickScale{.scan_px = 320,
                                         .scan_frames = 30,
                                         .scan_rate_hz = 15.0,

@@ -1,4 +1,4 @@
-// play_host.cpp: between two frames, and after each.
+// play_host.cpp: handles commands between frames and publishes a snapshot after each.
 #include "app/window/link/play_host.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-constexpr int kSaidAfterFrames = 30;  // that an object is still awaited
+constexpr int kSaidAfterFrames = 30;  // before the user is told that an object is being read
 
 /// Throws Error naming the mesh file and the fault.
 ObjectParts parts_of(const ScriptEvent& add) {
@@ -49,7 +49,7 @@ void PlayHost::ready_new_objects(std::vector<UserCommand>& commands) {
       parts_ = readying_.get();
       commands.push_back(new_objects_.front());
     } catch (const std::bad_alloc&) {
-      link_.say(new_objects_.front().event.mesh + ": there is not memory enough for it");
+      link_.say(new_objects_.front().event.mesh + ": not enough memory");
     } catch (const Error& fault) {
       link_.say(fault.what());
     }

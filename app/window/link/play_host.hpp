@@ -1,4 +1,5 @@
-// play_host.hpp: the session's side of a window: waits for the user's turn, gives events, shows results.
+// play_host.hpp: the session's side of the window: waits for frames to be due, delivers the user's events and
+// publishes results.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -16,25 +17,26 @@
 
 namespace roomradar {
 
-/// All of a run that only a window needs. Session, source and times must outlive it.
+/// The parts of a run that are needed only with a window. Session, source and times must outlive it.
 class PlayHost {
  public:
-  /// @param is_live  frames come when they come, and nothing waits for their stamps but where they come again
+  /// @param is_live  frames are shown as they arrive; only repeated frames wait for their time stamps
   PlayHost(UiChannel& link, const Session& session, const PlaybackSource& source, const StageTimes& times,
            const Mesh& room, bool is_live)
       : link_(link), session_(session), source_(source), times_(times), is_live_(is_live), maker_(room) {}
 
-  /// Waits until the frame is due, or the user steps to it; false once the window was closed.
+  /// Waits until the frame is due or the user steps to it; returns false once the window is closed.
   bool wait_turn(const Frame& frame);
   [[nodiscard]] bool is_closed() const { return link_.is_closed(); }
-  /// What the user did since the last frame. A new object comes once its mesh was read and made ready, which
-  /// happens beside the frames; one whose mesh cannot be an object is complained of. At most one add a frame.
+  /// Returns the user's events since the last frame, with at most one kAdd. New meshes are read on another
+  /// thread; their kAdd follows when they are ready. A mesh that cannot become an object is only reported in
+  /// the window.
   std::vector<ScriptEvent> take_events();
-  /// Of the object that the add among the events taken last is of.
+  /// Returns the parts of the object of the last kAdd returned by take_events().
   ObjectParts take_parts() { return std::move(parts_); }
-  /// What the budget gives up now; empty: nothing.
+  /// Sets the settings that the budget has reduced; empty: none.
   void say_given_up(std::string given_up) { given_up_ = std::move(given_up); }
-  /// An event of the user's could not be applied.
+  /// Tells the user that an event could not be applied.
   void complain(const std::string& fault) { link_.say(fault); }
   void show(std::int64_t run_frame, double run_time_s, const Frame& frame, const FrameResult& result);
 
@@ -45,20 +47,20 @@ class PlayHost {
   const StageTimes& times_;
   bool is_live_;
   Player player_;
-  std::deque<UserCommand> new_objects_;  ///< to come; the first is being made ready
+  std::deque<UserCommand> new_objects_;  ///< objects to add; the first is being prepared
   std::future<ObjectParts> readying_;
-  int frames_waited_ = 0;  ///< for it
+  int frames_waited_ = 0;  ///< frames since its preparation began
   ObjectParts parts_;
   SnapshotMaker maker_;
   Snapshot filled_;
-  std::int64_t run_frame_ = -1;  ///< of the newest that was shown
+  std::int64_t run_frame_ = -1;  ///< newest frame shown
   std::int64_t source_frame_ = 0;
   double run_time_s_ = 0.0;
   FrameResult result_;
   std::string given_up_;
-  std::string said_to_wait_;  ///< object whose drop waits, since that was said
+  std::string said_to_wait_;  ///< object whose waiting drop the user was told about
 
-  /// Moves what adds an object out of the wishes, and those whose object is ready back in.
+  /// Moves requests for new objects from `wishes` to new_objects_, and back once the object is ready.
   void ready_new_objects(std::vector<UserCommand>& commands);
   void say_if_a_drop_waits();
   void publish();

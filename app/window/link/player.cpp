@@ -1,4 +1,4 @@
-// player.cpp: from pixels to places.
+// player.cpp: casts rays through pixels and makes events of commands.
 #include "app/window/link/player.hpp"
 
 #include <algorithm>
@@ -10,9 +10,9 @@ namespace roomradar {
 namespace {
 
 constexpr double kReach_m = 50.0;
-constexpr double kOverSurface_m = 0.002;  // a placed object is let down so far: touching would be overlap
-constexpr double kThrownFrom_m = 0.35;    // before the camera
-constexpr double kNearest_m = 0.25;       // what is carried does not come nearer
+constexpr double kOverSurface_m = 0.002;  // initial gap of a placed object: touching would count as overlap
+constexpr double kThrownFrom_m = 0.35;    // in front of the camera
+constexpr double kNearest_m = 0.25;       // min distance of carried objects
 constexpr double kFastest_mps = 15.0;
 
 const VirtualObject* find_object(const Session& session, const std::string& name) {
@@ -28,8 +28,8 @@ ScriptEvent event_of(Action action, const std::string& name) {
   return event;
 }
 
-/// What is carried and let go between two frames is carried in the one, or it would stay where it is, and let
-/// go in the next: that, and what is said of the object after it, is taken out of the events.
+/// Removes and returns the release of an object carried in the same events, and its later events. They are
+/// applied one frame later: a carry that is released at once would not move the object.
 std::vector<ScriptEvent> take_held_back(std::vector<ScriptEvent>& events) {
   std::set<std::string> carried, let_go;
   std::vector<ScriptEvent> now, later;
@@ -51,7 +51,8 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel) {
       ray_through(session.shown_view()->camera, session.shown_view()->T_world_view, pixel.x(), pixel.y());
   double reach_m = kReach_m;
   for (const SceneTree& surface : session.scene_without(nullptr)) {
-    if (surface.kind != SurfaceKind::kStatic && surface.kind != SurfaceKind::kDynamic) continue;  // not seen
+    if (surface.kind != SurfaceKind::kStatic && surface.kind != SurfaceKind::kDynamic)
+      continue;  // not visible
     const auto hit = hit_mesh(surface.instance, ray, reach_m);
     if (!hit) continue;
     pointed.surface = hit;
@@ -70,12 +71,13 @@ Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel) {
 
 Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, const Eigen::Vector2d& way_px) {
   constexpr double kTurn_deg_per_px = 0.5;
-  // A camera that looks straight down sees nothing go to the side that turns about the vertical.
+  // If the camera looks straight down, a rotation about the vertical moves nothing sideways in the picture.
   constexpr double kLeastUpright = 0.3;
   const Eigen::Vector3d right = R_world_view.col(0), up = -R_world_view.col(1);
   const Eigen::Vector3d upright =
       std::abs(up.z()) > kLeastUpright ? Eigen::Vector3d(0.0, 0.0, std::copysign(1.0, up.z())) : up;
-  // What is near lies along -z of the camera's axes: about x it goes along y, down; about -y along x, right.
+  // The object's front is at -z of the camera's axes: a rotation about x moves it along y, down; one about -y
+  // moves it along x, right.
   return kTurn_deg_per_px * (way_px.x() * upright + way_px.y() * right);
 }
 
@@ -123,7 +125,8 @@ std::vector<ScriptEvent> Player::events_of(std::span<const UserCommand> commands
         if (grabbed_ && grabbed_->name == chosen_) grabbed_.reset();
         break;
       case UserCommandKind::kReset:
-        for (const auto& object : session.objects())  // a drop that one outside of the room waits for, too
+        for (const auto& object : session.objects())  // also objects outside the room, to cancel waiting
+                                                      // drops
           events.push_back(event_of(Action::kRemove, object->body.name));
         if (!chosen_.empty()) events.push_back(event_of(Action::kDrop, chosen_));
         grabbed_.reset();
@@ -141,7 +144,7 @@ void Player::choose_if_none(const Session& session) {
 
 void Player::add(const UserCommand& command, const Session& session, std::vector<ScriptEvent>& events) {
   const std::string& mesh = command.event.mesh;
-  // A word of a script, and no other object's.
+  // The name must be one word in a script, and unique.
   std::string stem = mesh.substr(mesh.find_last_of('/') + 1);
   stem = stem.substr(0, stem.find('.'));
   for (char& letter : stem)
@@ -161,7 +164,7 @@ void Player::drop_or_place(const UserCommand& command, const Session& session,
                            std::vector<ScriptEvent>& events) {
   const VirtualObject* object = find_object(session, chosen_);
   const Pointed pointed = pointed_at(session, command.pixel);
-  // On top of another object, if that is what was pointed at.
+  // On top of another object if the pixel shows one.
   const auto& hit = pointed.object && pointed.name != chosen_ ? pointed.object : pointed.surface;
   if (object == nullptr || !hit) {
     complaint_ = object == nullptr       ? "there is no object to drop: choose one"
@@ -227,7 +230,7 @@ void Player::let_go(const UserCommand& command, const Session& session, std::vec
   if (!grabbed.is_carried) return;
   ScriptEvent event = event_of(Action::kRelease, grabbed.name);
   if (session.shown_view()) {
-    // As fast as the mouse was, at the distance at which it was held.
+    // The mouse's speed, at the distance of the grabbed point.
     constexpr double kLately_s = 0.05;
     const auto& [camera, T_world_view] = *session.shown_view();
     const Eigen::Vector2d before = command.pixel - kLately_s * command.pixel_velocity_s;

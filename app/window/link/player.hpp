@@ -1,4 +1,4 @@
-// player.hpp: turns what a user wants into events of a script, by what the session shows now.
+// player.hpp: converts user commands into script events, based on the picture shown.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -13,39 +13,40 @@
 
 namespace roomradar {
 
-/// What is at a pixel of the session's picture.
+/// Surfaces at a pixel of the session's picture.
 struct Pointed {
-  std::optional<MeshHit> surface;  ///< nearest of the room and of what moved
-  std::optional<MeshHit> object;   ///< nearest of the virtual objects, if it is before that surface
-  std::string name;                ///< of that object
+  std::optional<MeshHit> surface;  ///< nearest of room and dynamic foreground
+  std::optional<MeshHit> object;   ///< nearest virtual object, if in front of that surface
+  std::string name;                ///< the object's
 };
-/// Nothing where the camera was not located.
+/// Empty if the camera was not localised.
 Pointed pointed_at(const Session& session, const Eigen::Vector2d& pixel);
 
-/// How far to turn what a mouse is drawn over, so that the side of it that faces the camera goes with the
-/// mouse. To the side it turns about the vertical, where the picture's up is anywhere near that; else, and up
-/// and down, about the picture's own axes.
+/// Returns the rotation for a mouse drag, such that the object's front follows the mouse. Sideways drags
+/// rotate about the vertical, or about the picture's up axis if the vertical is far from it. Drags up and
+/// down rotate about the picture's right axis.
 /// @param R_world_view  camera axes: x right, y down, z forward
-/// @param way_px        of the mouse, x right, y down
+/// @param way_px        path of the mouse, x right, y down
 Eigen::Vector3d turn_of_drag_world_deg(const Eigen::Matrix3d& R_world_view, const Eigen::Vector2d& way_px);
 
 class Player {
  public:
-  /// The events, without their frame, in the order in which they are to be applied before the next frame.
-  /// Some may be of earlier wishes: of a carry and a release together, the release is held back for one
-  /// frame.
+  /// Returns the events, without frame numbers, in the order to apply them before the next frame. If a carry
+  /// and its release arrive together, the release is delayed by one frame, so the result may include earlier
+  /// commands.
   std::vector<ScriptEvent> events_of(std::span<const UserCommand> commands, const Session& session);
 
   [[nodiscard]] const std::string& chosen() const { return chosen_; }
   [[nodiscard]] bool is_grabbed() const { return grabbed_.has_value(); }
-  /// Why the last wishes led to nothing; empty if they did.
+  /// Returns the reason why the last commands had no effect; empty if they had one.
   [[nodiscard]] const std::string& complaint() const { return complaint_; }
 
  private:
   struct Grabbed {
     std::string name;
-    double distance_m = 0.0;                                      ///< of the grabbed point along its ray
-    Eigen::Vector3d middle_from_point = Eigen::Vector3d::Zero();  ///< world axes
+    double distance_m = 0.0;  ///< distance of the grabbed point along its ray
+    Eigen::Vector3d middle_from_point = Eigen::Vector3d::Zero();  ///< object's middle minus grabbed point,
+                                                                  ///< world axes
     bool is_carried = false;
   };
   std::string chosen_;

@@ -1,4 +1,4 @@
-// snapshot.cpp: what the window shows of a session.
+// snapshot.cpp: copies the session's state, and queries the radar for the chosen object.
 #include "app/window/link/snapshot.hpp"
 
 #include <algorithm>
@@ -7,10 +7,10 @@ namespace roomradar {
 namespace {
 
 constexpr double kLooksAhead_m = 0.3;
-constexpr int kMostShown_px = 256;   // a pane has no more
-constexpr double kMoves_mps = 0.15;  // slower than this an object is asked about along gravity
+constexpr int kMostShown_px = 256;   // a pane has no more pixels
+constexpr double kMoves_mps = 0.15;  // below this speed the query is along gravity
 
-/// The mesh as the radar and the renderer hold it, without normals and colours.
+/// Returns the tree's triangles as a mesh without normals and colours.
 Mesh mesh_of(const TriangleTree& tree) {
   Mesh mesh;
   mesh.origin = tree.origin();
@@ -48,7 +48,7 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
 
   const TriangleTree& room = session.room().touched;
   if (room_revision_ != 0 && room_revision_ != room.revision())
-    room_ = std::make_shared<const Mesh>(mesh_of(room));  // something was adopted
+    room_ = std::make_shared<const Mesh>(mesh_of(room));  // changed by a commit
   room_revision_ = room.revision();
   shown.room = room_;
   shown.seen_world = wanted.models ? session.scene().dynamic_world().seen_world : Mesh{};
@@ -71,7 +71,7 @@ void SnapshotMaker::fill_radar(const Session& session, const std::string& chosen
       {&object.model->shape.touched, object.body.T_world_object}, shown.direction_world, kLooksAhead_m};
   const std::vector<SceneTree> scene = session.scene_without(&object);
   shown.contact = radar_.query(query, {scene, {}});
-  // Of a fine mesh they take longer than the frame: a tenth of the time is theirs.
+  // For a fine mesh the pictures take longer than a frame, so they get at most a tenth of the time.
   const auto begun = std::chrono::steady_clock::now();
   if (begun >= pictures_due_ || pictures_of_ != chosen) {
     const int resolution_px = std::min(session.config().radar.resolution_px, kMostShown_px);

@@ -1,4 +1,4 @@
-// snapshot.hpp: copies of what a session holds after a frame, for the window.
+// snapshot.hpp: copies a session's state after a frame for the window.
 #pragma once
 #include <chrono>
 #include <cstddef>
@@ -16,21 +16,22 @@ namespace roomradar {
 
 class SnapshotMaker {
  public:
-  /// @param room  the saved room's mesh, copied once
+  /// @param room  mesh of the saved room, copied once
   explicit SnapshotMaker(const Mesh& room) : room_(std::make_shared<const Mesh>(room)) {}
 
-  /// Fills what `shown` has of the session, for the object `shown.chosen`; its allocations are used again.
+  /// Sets the parts of `shown` that come from the session, for the object `shown.chosen`. Reuses its
+  /// allocations.
   void fill(const Session& session, const FrameResult& result, const StageTimes& times,
             const ViewsWanted& wanted, Snapshot& shown);
 
  private:
   std::shared_ptr<const Mesh> room_;
-  std::uint64_t room_revision_ = 0;  ///< of the session's room when room_ was made; 0: of none yet
+  std::uint64_t room_revision_ = 0;  ///< revision of the session's room that room_ shows; 0: none so far
   std::map<std::shared_ptr<const ObjectModel>, std::shared_ptr<const Mesh>> object_meshes_;
-  std::map<std::string, std::size_t, std::less<>> counted_;  ///< stages' samples before this frame
+  std::map<std::string, std::size_t, std::less<>> counted_;  ///< samples per stage before this frame
   CyberRadar radar_;
   RadarPictures pictures_;
-  std::string pictures_of_;  ///< the object's name
+  std::string pictures_of_;  ///< name of the object they show
   std::chrono::steady_clock::time_point pictures_due_{};
 
   void fill_radar(const Session& session, const std::string& chosen, ShownRadar& shown);

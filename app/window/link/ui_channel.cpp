@@ -1,4 +1,4 @@
-// ui_channel.cpp: one mutex, one condition.
+// ui_channel.cpp: one mutex and one condition variable for all state.
 #include "app/window/link/ui_channel.hpp"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 namespace roomradar {
 namespace {
 
-/// Of a mouse that moves faster than frames come, only the newest place counts, and turns add up to one.
-/// False: the next is a wish of its own.
+/// Merges mouse events that arrive faster than frames: the newest drag position replaces the last, rotations
+/// are added. Returns false if `next` must stay separate.
 bool merge(UserCommand& last, const UserCommand& next) {
   if (last.kind != next.kind) return false;
   if (next.kind == UserCommandKind::kDrag) {
@@ -29,7 +29,7 @@ bool merge(UserCommand& last, const UserCommand& next) {
 void UiChannel::ask(UserCommand command) {
   const std::lock_guard lock(mutex_);
   if (is_paused_ && command.kind != UserCommandKind::kGrab)
-    message_ = "paused: it happens with the next frame";
+    message_ = "paused: takes effect in the next frame";
   if (commands_.empty() || !merge(commands_.back(), command)) commands_.push_back(std::move(command));
 }
 
@@ -92,7 +92,7 @@ bool UiChannel::is_over() const {
 }
 
 bool UiChannel::wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh) {
-  constexpr double kCatchUp_s = 0.2;  // what was missed by more is not made up for
+  constexpr double kCatchUp_s = 0.2;  // longer delays are not caught up
   constexpr std::chrono::milliseconds kLookUp{200};
   std::unique_lock lock(mutex_);
   while (!is_closed_) {
@@ -106,7 +106,7 @@ bool UiChannel::wait_turn(double stamp_s, bool in_time, const std::function<void
     if (is_paused_ && steps_ == 0) {
       last_turn_.reset();
       changed_.wait_for(lock, kLookUp);
-      if (Interrupt::is_asked()) break;  // nobody reads the source, which would say so
+      if (Interrupt::is_asked()) break;  // while paused, no thread reads the source, which handles Ctrl-C
       continue;
     }
     const Clock::time_point now = Clock::now();

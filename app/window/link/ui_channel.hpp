@@ -1,9 +1,8 @@
-// ui_channel.hpp: what the thread that draws the window and the thread that runs the session say to each
-// other.
+// ui_channel.hpp: thread-safe channel between the window's thread and the session's thread.
 //
-// The session runs on a thread of its own, so that the window answers while a camera stalls or a frame takes
-// long. Nothing of the session is touched by the window: it gets copies (Snapshot), and says what the user
-// wants (UserCommand), which the session's thread turns into events between two frames.
+// The session runs on another thread, so the window stays responsive while a camera stalls or a frame takes
+// long. The window never touches the session. It receives copies (Snapshot) and sends user commands
+// (UserCommand), which the session's thread turns into events between two frames.
 #pragma once
 #include <Eigen/Geometry>
 #include <chrono>
@@ -25,42 +24,42 @@
 namespace roomradar {
 
 enum class UserCommandKind {
-  kEvent,   ///< `event`, as it is
-  kDrop,    ///< the chosen object, over what is at the pixel
-  kPlace,   ///< the chosen object, onto what is at the pixel
-  kThrow,   ///< the chosen object, from the camera towards the pixel
-  kGrab,    ///< whatever object is at the pixel; it is chosen
-  kDrag,    ///< what was grabbed, to the pixel
-  kLetGo,   ///< what was grabbed; nothing grabbed and not dragged: drop the chosen object there
-  kTurn,    ///< what was grabbed or else the chosen object, by `event.turn_world_deg`
-  kChoose,  ///< object `event.name`
-  kNew,     ///< add an object of mesh `event.mesh` and size `event.size_m`, choose it and drop it in view
-  kRemove,  ///< the chosen object
-  kReset,   ///< all objects out of the room, the chosen one over a surface in view
+  kEvent,   ///< apply `event` as it is
+  kDrop,    ///< drop the chosen object over the surface at the pixel
+  kPlace,   ///< place the chosen object on the surface at the pixel
+  kThrow,   ///< throw the chosen object from the camera towards the pixel
+  kGrab,    ///< grab and choose the object at the pixel
+  kDrag,    ///< carry the grabbed object to the pixel
+  kLetGo,   ///< release the grabbed object; if none, and not dragged: drop the chosen one here
+  kTurn,    ///< rotate the grabbed or else the chosen object by `event.turn_world_deg`
+  kChoose,  ///< choose the object `event.name`
+  kNew,     ///< add an object from `event.mesh` of size `event.size_m`, choose it and drop it in view
+  kRemove,  ///< remove the chosen object
+  kReset,   ///< remove all objects and drop the chosen one over a surface in view
 };
 
 struct UserCommand {
   UserCommandKind kind = UserCommandKind::kEvent;
-  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();             ///< of the picture
-  Eigen::Vector2d pixel_velocity_s = Eigen::Vector2d::Zero();  ///< of the mouse, pixels a second
-  bool was_dragged = false;                                    ///< kLetGo
-  double nearer_m = 0.0;                                       ///< kDrag: towards the camera, added up
-  double speed_mps = 3.0;                                      ///< kThrow
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();             ///< in the picture
+  Eigen::Vector2d pixel_velocity_s = Eigen::Vector2d::Zero();  ///< velocity of the mouse, pixels per second
+  bool was_dragged = false;                                    ///< for kLetGo
+  double nearer_m = 0.0;   ///< kDrag, kLetGo: total motion towards the camera
+  double speed_mps = 3.0;  ///< for kThrow
   ScriptEvent event;
 };
 
-/// Views that cost time, and are made only while they are seen.
+/// Costly views, made only while they are visible.
 struct ViewsWanted {
   bool radar = false;   ///< R, M and L
-  bool models = false;  ///< meshes of what moved
+  bool models = false;  ///< dynamic meshes
   friend bool operator==(const ViewsWanted&, const ViewsWanted&) = default;
 };
 
 struct ShownObject {
   std::string name;
-  std::shared_ptr<const Mesh> mesh;  ///< the same pointer while it is the same mesh
+  std::shared_ptr<const Mesh> mesh;  ///< same pointer as long as the mesh is the same
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  Eigen::AlignedBox3d box;  ///< in its own frame
+  Eigen::AlignedBox3d box;  ///< in the object's frame
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();
   bool in_room = false;
   bool asleep = false;
@@ -68,14 +67,14 @@ struct ShownObject {
   SurfaceKind rests_on = SurfaceKind::kNothing;
 };
 
-/// One query of the radar for the chosen object: along its motion, or along gravity while it stands.
+/// A radar query for the chosen object, along its motion, or along gravity if it is slow.
 struct ShownRadar {
-  RadarPictures pictures;  ///< empty: no object is chosen and in the room, or they are not wanted
-  Contact contact;         ///< the exact radar's answer to the same question
+  RadarPictures pictures;  ///< empty: no chosen object in the room, or not wanted
+  Contact contact;         ///< the exact radar's result for the same query
   Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();
 };
 
-/// The session after a frame.
+/// State of the session after a frame.
 struct Snapshot {
   std::int64_t run_frame = -1;
   std::int64_t source_frame = 0;
@@ -83,53 +82,53 @@ struct Snapshot {
   FrameResult result;
   std::optional<Session::ShownView> view;
   ColourImage picture;
-  std::vector<std::pair<std::string, float>> stages_ms;  ///< of this frame: read, then the session's
+  std::vector<std::pair<std::string, float>> stages_ms;  ///< of this frame: read, then the session's stages
   std::vector<ShownObject> objects;
   std::string chosen;
   SurfacePolicy surfaces = SurfacePolicy::kMap;
   bool unknown_is_solid = false;
   RadarConfig radar;
-  std::string given_up;  ///< for --budget-ms; empty: nothing
+  std::string given_up;  ///< settings reduced by --budget-ms; empty: none
   bool is_held = false;
-  bool is_repeating = false;  ///< the source is held or at its end
+  bool is_repeating = false;  ///< source held, or at its end
   AtEnd at_end = AtEnd::kEnd;
   std::shared_ptr<const Mesh> room;
-  Mesh seen_world, inferred_world;  ///< what moved
+  Mesh seen_world, inferred_world;  ///< dynamic foreground
   ShownRadar shown_radar;
 };
 
-/// Thread safe; one window, one session.
+/// Connects one window and one session. Thread safe.
 class UiChannel {
  public:
   /// @param wake  called on the session's thread when there is something new to show
   explicit UiChannel(std::function<void()> wake = [] {}) : wake_(std::move(wake)) {}
 
-  // The window's side.
+  // For the window's thread.
   void ask(UserCommand command);
   void set_paused(bool is_paused);
   [[nodiscard]] bool is_paused() const;
-  /// One frame more while it is paused.
+  /// Lets one frame through while paused.
   void step();
-  /// Times the source's own, > 0.
+  /// Sets the speed relative to the source's, > 0.
   void set_speed(double speed);
   void want(const ViewsWanted& views);
-  /// Swaps the newest snapshot into `shown`; false if there is no newer one than that taken last.
+  /// Swaps the newest snapshot into `shown`; returns false if none is newer than the last one taken.
   bool take(Snapshot& shown);
-  /// The newest sentence for the user since the last call, or nothing.
+  /// Returns the newest message for the user since the last call, or an empty string.
   std::string take_message();
   void close();
   [[nodiscard]] bool is_over() const;
 
-  // The session's side.
-  /// Waits until the frame of that stamp is due: while paused, and in time with the stamps. Meanwhile
-  /// `refresh` is called when other views are wanted. Returns false once the window was closed.
+  // For the session's thread.
+  /// Waits until the frame with this stamp is due: not while paused and, if in_time, not before its stamp.
+  /// While waiting, calls `refresh` when the wanted views change. Returns false once the window is closed.
   bool wait_turn(double stamp_s, bool in_time, const std::function<void()>& refresh);
   [[nodiscard]] bool is_closed() const;
-  /// Whether it was paused since the last call.
+  /// Returns true if the window was paused since the last call.
   bool take_pause();
   std::vector<UserCommand> take_commands();
   [[nodiscard]] ViewsWanted wanted() const;
-  /// Swaps `filled` with a snapshot whose allocations can be used again.
+  /// Swaps `filled` with a snapshot whose allocations can be reused.
   void publish(Snapshot& filled);
   void say(std::string message);
   void finish();
@@ -137,7 +136,7 @@ class UiChannel {
  private:
   using Clock = std::chrono::steady_clock;
   std::function<void()> wake_;
-  mutable std::mutex mutex_;  ///< of all below
+  mutable std::mutex mutex_;  ///< guards everything below
   std::condition_variable changed_;
   std::vector<UserCommand> commands_;
   Snapshot newest_;
@@ -149,7 +148,8 @@ class UiChannel {
   ViewsWanted wanted_;
   bool wants_changed_ = false;
   std::string message_;
-  std::optional<std::pair<double, Clock::time_point>> last_turn_;  ///< stamp and when it was
+  std::optional<std::pair<double, Clock::time_point>> last_turn_;  ///< stamp of the last frame, and the time
+                                                                   ///< when it was due
 };
 
 }  // namespace roomradar

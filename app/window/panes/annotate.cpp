@@ -1,4 +1,4 @@
-// annotate.cpp: marks over pictures.
+// annotate.cpp: projects and draws the marks.
 #include "app/window/panes/annotate.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// annotate.hpp: lines and letters over a picture of the room.
+// annotate.hpp: draws lines and labels over a picture of the room.
 #pragma once
 #include <imgui.h>
 
@@ -13,25 +13,25 @@
 
 namespace roomradar {
 
-/// From a point of the world to the window; nothing for what is behind the eye.
+/// Projects a world point to the window; returns nothing for points behind the eye.
 using ToWindow = std::function<std::optional<ImVec2>(const Eigen::Vector3d& p_world)>;
 
-/// Corners about the chosen object, and what it does.
+/// Marks the corners around the chosen object and writes its state.
 void mark_chosen(ImDrawList& draw, const Snapshot& shown, const Area& image, double scale,
                  const look::Fonts& fonts);
 
-/// The twelve edges of a box, of which `corner(i)` is the corner at x by bit 0, y by bit 1, z by bit 2 of i.
+/// Draws the twelve edges of a box; `corner(i)` is the corner with bits 0, 1, 2 of i selecting x, y, z.
 void draw_box(ImDrawList& draw, const std::function<Eigen::Vector3d(int)>& corner, const ToWindow& to_window,
               ImU32 colour, float thickness);
 
-/// The radar's target volume: rear plane, far plane, direction, and where it touches first.
+/// Draws the radar's target volume: rear plane, far plane, direction, and first contact.
 void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindow& to_window,
                         const look::Fonts& fonts);
 
-/// The camera's pyramid of view down to a depth.
+/// Draws the camera's view frustum down to a depth.
 void draw_camera(ImDrawList& draw, const Session::ShownView& view, double depth_m, const ToWindow& to_window);
 
-/// "at rest on seen static", "moves at 1.2 m/s", "carried".
+/// Returns "at rest on seen static", "moves at 1.2 m/s" or "carried" and the like.
 std::string what_it_does(const ShownObject& object);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// colour_map.hpp: numbers as colours.
+// colour_map.hpp: maps numbers to colours.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -7,7 +7,8 @@
 
 namespace roomradar {
 
-/// Viridis by a polynomial of degree six (fitted by Matt Zucker); 0: dark violet, 1: yellow.
+/// Returns the Viridis colour map's value, by a polynomial of degree six (fitted by Matt Zucker). 0: dark
+/// violet, 1: yellow.
 inline Rgb viridis(float t) {
   constexpr std::array<std::array<double, 7>, 3> kFit = {
       {{0.27772733, 0.10509304, -0.33086183, -4.63423050, 6.22826994, 4.77638500, -5.43545586},

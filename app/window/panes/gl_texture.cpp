@@ -1,4 +1,4 @@
-// gl_texture.cpp: pictures to the window's renderer.
+// gl_texture.cpp: uploads pictures to the window's renderer.
 #include "app/window/panes/gl_texture.hpp"
 
 #define GL_GLEXT_PROTOTYPES

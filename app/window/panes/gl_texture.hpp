@@ -1,20 +1,20 @@
-// gl_texture.hpp: a picture in the window's own OpenGL context.
+// gl_texture.hpp: texture in the window's own OpenGL context.
 #pragma once
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
 
-/// The window's context must be current wherever this is used.
+/// The window's context must be current for all calls.
 class GlTexture {
  public:
-  /// @param smooth  between pixels, when it is shown larger than it is
+  /// @param smooth  interpolate between pixels when magnified
   explicit GlTexture(bool smooth) : smooth_(smooth) {}
   ~GlTexture();
   GlTexture(const GlTexture&) = delete;
   GlTexture& operator=(const GlTexture&) = delete;
 
   void upload(const ColourImage& picture);
-  /// As Dear ImGui wants it.
+  /// Returns the texture in the form that Dear ImGui expects.
   [[nodiscard]] void* id() const;
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }

@@ -1,4 +1,4 @@
-// model_view.cpp: meshes under an orbiting eye.
+// model_view.cpp: renders meshes seen by an orbiting eye.
 #include "app/window/panes/model_view.hpp"
 
 #define GL_GLEXT_PROTOTYPES
@@ -17,14 +17,14 @@ namespace {
 
 constexpr double kNear_m = 0.05, kFar_m = 100.0;
 constexpr double kFieldOfView_rad = 0.85;
-constexpr double kLookedAt_m = 1.0;  // before the camera: where things to play with are
+constexpr double kLookedAt_m = 1.0;  // in front of the camera, where users place objects
 
 constexpr const char* kVertexShader = R"(#version 330 core
 layout(location = 0) in vec3 p_local;
 layout(location = 1) in vec3 colour_srgb;
 uniform mat4 clip_from_local;
 uniform mat4 eye_from_local;
-uniform vec4 plain;  // w: how much of it instead of the vertices' colours
+uniform vec4 plain;  // w: its weight against the vertices' colours
 out vec3 p_eye;
 out vec3 albedo;
 void main() {
@@ -34,7 +34,7 @@ void main() {
 }
 )";
 
-// Flat shading from the eye and from above: the shape of a mesh is what is to be seen.
+// Flat shading, lit from the eye and from above, to show the mesh's shape.
 constexpr const char* kFragmentShader = R"(#version 330 core
 in vec3 p_eye;
 in vec3 albedo;
@@ -48,7 +48,7 @@ void main() {
 }
 )";
 
-/// A mesh in the window's renderer.
+/// A mesh in the window's GL context.
 struct DrawnMesh {
   unsigned vertex_array = 0;
   std::array<unsigned, 3> buffers{};  // positions, colours, indices
@@ -130,7 +130,7 @@ struct ModelView::State {
   int width_px = 0, height_px = 0;
   bool is_stale = true;
   Orbit orbit;
-  bool is_placed = false;  ///< the orbit has been set to the room
+  bool is_placed = false;  ///< the orbit was set to show the room
   std::shared_ptr<const Mesh> room;
   DrawnMesh drawn_room, drawn_seen, drawn_inferred;
   std::map<std::shared_ptr<const Mesh>, std::unique_ptr<DrawnMesh>> drawn_objects;
@@ -178,7 +178,7 @@ void ModelView::upload(const Snapshot& shown) {
       state.is_placed = true;
       state.orbit.target_world = box.center();
       state.orbit.distance_m = std::clamp(1.1 * box.diagonal().norm(), 1.0, 30.0);
-      // Over the camera's shoulder, at what it looks at, so that left and right are as in its picture.
+      // From behind the camera and beside it, to its target, so left and right match the picture.
       if (shown.view) {
         const Eigen::Vector3d back = -shown.view->T_world_view.linear().col(2);
         state.orbit.azimuth_rad = std::atan2(back.y(), back.x()) + 0.45;
@@ -265,7 +265,7 @@ void ModelView::render(int width_px, int height_px, const Snapshot& shown) {
     glDrawElements(GL_TRIANGLES, mesh.index_count, GL_UNSIGNED_INT, nullptr);
   };
   const Eigen::Isometry3d at_home = Eigen::Isometry3d::Identity();
-  glEnable(GL_CULL_FACE);  // walls are looked through from outside
+  glEnable(GL_CULL_FACE);  // walls are transparent from outside
   draw(state.drawn_room, at_home, {0.62F, 0.66F, 0.72F}, 0.25F);
   glDisable(GL_CULL_FACE);
   draw(state.drawn_inferred, at_home, {0.55F, 0.36F, 0.62F}, 1.0F);
@@ -309,8 +309,8 @@ void ModelView::draw(const Area& area, const Snapshot& shown, const look::Fonts&
     ImU32 colour;
     const char* what;
   } legend[] = {{IM_COL32(158, 168, 184, 255), "room"},
-                {IM_COL32(237, 115, 102, 255), "moved"},
-                {IM_COL32(140, 92, 158, 255), "its inferred back"},
+                {IM_COL32(237, 115, 102, 255), "dynamic"},
+                {IM_COL32(140, 92, 158, 255), "inferred back"},
                 {IM_COL32(64, 196, 172, 255), "chosen object"}};
   float x = area.x + look::px(12.0F);
   const float y = area.y + area.height - look::px(22.0F);

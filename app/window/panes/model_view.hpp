@@ -1,4 +1,4 @@
-// model_view.hpp: the models in three dimensions: room, what moved, objects, camera and target volume.
+// model_view.hpp: 3D view of room, dynamic foreground, objects, camera and target volume.
 #pragma once
 #include <Eigen/Geometry>
 #include <map>
@@ -10,18 +10,18 @@
 
 namespace roomradar {
 
-/// An eye that goes round a point. Angles in radians; azimuth about +z, elevation above level.
+/// Orbiting eye. Azimuth is about +z, elevation is above the horizontal plane.
 struct Orbit {
   Eigen::Vector3d target_world = Eigen::Vector3d::Zero();
   double azimuth_rad = 0.8;
   double elevation_rad = 0.7;
   double distance_m = 4.0;
 };
-/// The eye's pose: x right, y up, it looks along -z (OpenGL's).
+/// Returns the eye's pose: x right, y up, looking along -z (OpenGL).
 Eigen::Isometry3d eye_of(const Orbit& orbit);
 
-/// Draws into a texture of its own, and only when something has changed: on a machine without a GPU a room of
-/// half a million triangles takes some ten milliseconds. The window's context must be current.
+/// Draws into a texture, only when something has changed: without a GPU, a room of half a million triangles
+/// takes some 10 ms. The window's context must be current.
 class ModelView {
  public:
   ModelView();
@@ -31,7 +31,7 @@ class ModelView {
 
   void upload(const Snapshot& shown);
   void draw(const Area& area, const Snapshot& shown, const look::Fonts& fonts);
-  /// Looks at the chosen object.
+  /// Turns the view to the chosen object.
   void look_at_chosen(const Snapshot& shown);
 
  private:

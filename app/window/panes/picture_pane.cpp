@@ -1,4 +1,4 @@
-// picture_pane.cpp: shows the picture, marks the chosen object, and turns mouse into wishes.
+// picture_pane.cpp: shows the picture, marks the chosen object, and turns mouse actions into commands.
 #include "app/window/panes/picture_pane.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace roomradar {
 namespace {
 
-constexpr double kDragFrom_px = 4.0;  // of the window; less is a click
+constexpr double kDragFrom_px = 4.0;  // pixels of the window; a shorter drag is a click
 constexpr double kWheel_m = 0.04;
 
 }  // namespace
@@ -32,7 +32,9 @@ void PicturePane::draw(const Area& area, const Snapshot& shown, const look::Font
     const Eigen::Vector2d pixel((mouse.x - image.x) / scale - 0.5, (mouse.y - image.y) / scale - 0.5);
     const bool is_here = ImGui::IsItemHovered() || ImGui::IsItemActive();
     if (is_here) pixel_ = pixel;
-    if (is_here || is_down_) press_and_drag(pixel, drop_height_m);  // what is held may be let go elsewhere
+    if (is_here || is_down_)
+      press_and_drag(pixel, drop_height_m);  // a grabbed object may be released
+                                             // elsewhere
     if (is_here) turn(shown);
     mark_chosen(*draw, shown, image, scale, fonts);
     std::array<char, 96> text{};
@@ -67,7 +69,7 @@ void PicturePane::press_and_drag(const Eigen::Vector2d& pixel, double drop_heigh
   command.event.height_m = drop_height_m;
   if (ImGui::IsItemActive() && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
     is_down_ = true;
-    was_dragged_ = ImGui::GetIO().KeyShift;  // a click with Shift places at once
+    was_dragged_ = ImGui::GetIO().KeyShift;  // Shift + click places at once
     pressed_at_ = at;
     nearer_m_ = 0.0;
     lately_.fill({now_s, pixel});
@@ -105,7 +107,7 @@ Eigen::Vector2d PicturePane::velocity_px_s() const {
   for (const Sample& sample : lately_) {
     if (now_s - sample.time_s > kLately_s) continue;
     const double dt_s = lately_.back().time_s - sample.time_s;
-    // A mouse that has rested before it was let go does not throw.
+    // A mouse that rested before the release does not throw.
     if (dt_s < 0.015 || now_s - lately_.back().time_s > 0.06) break;
     return (lately_.back().pixel - sample.pixel) / dt_s;
   }

@@ -1,4 +1,4 @@
-// picture_pane.hpp: the camera's picture with the virtual objects, and the mouse in it.
+// picture_pane.hpp: shows the camera's picture with the virtual objects, and handles the mouse in it.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -16,13 +16,13 @@ class PicturePane {
  public:
   explicit PicturePane(UiChannel& link) : link_(link) {}
 
-  /// A new snapshot has come.
+  /// Call when there is a new snapshot.
   void upload(const Snapshot& shown) { texture_.upload(shown.picture); }
   void draw(const Area& area, const Snapshot& shown, const look::Fonts& fonts, double drop_height_m);
-  /// It is not drawn now: what the mouse held is let go.
+  /// Call if the pane is not drawn: releases a grabbed object.
   void leave();
 
-  /// Where the mouse is in the picture, pixels; nothing if it is elsewhere.
+  /// Returns the mouse's position in the picture, pixels; empty if it is elsewhere.
   [[nodiscard]] const std::optional<Eigen::Vector2d>& pixel() const { return pixel_; }
 
  private:
@@ -30,13 +30,13 @@ class PicturePane {
   GlTexture texture_{/*smooth=*/true};
   std::optional<Eigen::Vector2d> pixel_;
   bool is_down_ = false, was_dragged_ = false;
-  Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();  ///< of the window
+  Eigen::Vector2d pressed_at_ = Eigen::Vector2d::Zero();  ///< in the window
   double nearer_m_ = 0.0;
   struct Sample {
     double time_s = 0.0;
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
   };
-  std::array<Sample, 8> lately_{};  ///< where the mouse was, oldest first
+  std::array<Sample, 8> lately_{};  ///< recent mouse positions, oldest first
 
   void press_and_drag(const Eigen::Vector2d& pixel, double drop_height_m);
   void turn(const Snapshot& shown);

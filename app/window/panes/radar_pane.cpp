@@ -1,4 +1,4 @@
-// radar_pane.cpp: colour-mapped scopes, and the numbers under the mouse.
+// radar_pane.cpp: colours the pictures, and shows the values under the mouse.
 #include "app/window/panes/radar_pane.hpp"
 
 #include <array>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr Rgb kNothing{30, 35, 43};
 
-/// Near is bright; what is not there is dark.
+/// Colours an image: near is bright, pixels without a value are dark.
 template <typename IsThere>
 void colour(const Image<float>& image, float low_m, float high_m, const IsThere& is_there,
             ColourImage& coloured) {
@@ -84,7 +84,7 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
 
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
-  const float gap = look::px(12.0F), above = look::px(18.0F), below = look::px(20.0F);  // two rows of letters
+  const float gap = look::px(12.0F), above = look::px(18.0F), below = look::px(20.0F);  // two rows of text
   const Area cell{0.0F, 0.0F, (room.x - 2.0F * gap) / 3.0F, room.y - above - below};
   int x = -1, y = -1;
   const struct {

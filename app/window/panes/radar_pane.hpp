@@ -1,4 +1,4 @@
-// radar_pane.hpp: R, M and L of the chosen object as pictures.
+// radar_pane.hpp: shows R, M and L of the chosen object as pictures.
 #pragma once
 #include "app/window/link/ui_channel.hpp"
 #include "app/window/panes/gl_texture.hpp"
@@ -15,7 +15,7 @@ class RadarPane {
  private:
   GlTexture range_{false}, mask_{false}, lookat_{false};
   ColourImage coloured_;
-  int least_x_ = -1, least_y_ = -1;  ///< the pixel of min L
+  int least_x_ = -1, least_y_ = -1;  ///< pixel of min L; -1: none
   float least_m_ = 0.0F;
 };
 

@@ -1,4 +1,4 @@
-// side_panel.cpp: the panel at the right.
+// side_panel.cpp: draws the panel at the right.
 #include "app/window/panes/side_panel.hpp"
 
 #include <algorithm>
@@ -52,7 +52,8 @@ void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings
   ImGui::SetNextItemWidth(half);
   const auto short_name = [](const std::string& mesh) { return mesh.substr(mesh.find_last_of('/') + 1); };
   if (ImGui::BeginCombo("##mesh", short_name(settings.meshes[settings.mesh]).c_str())) {
-    for (std::size_t i = 0; i < settings.meshes.size(); ++i) {  // two files may share a name
+    for (std::size_t i = 0; i < settings.meshes.size(); ++i) {  // by index, as two files may have the same
+                                                                // name
       ImGui::PushID(static_cast<int>(i));
       if (ImGui::Selectable("##file", i == settings.mesh)) settings.mesh = i;
       ImGui::PopID();
@@ -65,8 +66,8 @@ void draw_objects(const Snapshot& shown, UiChannel& link, PlaySettings& settings
   if (look::button("Add", "A", false, {half, 0.0F})) link.ask(new_object_command(settings));
   ImGui::PushItemWidth(-1.0F);
   ImGui::SliderFloat("##size", &settings.new_size_m, 0.0F, 0.6F,
-                     settings.new_size_m < 0.001F ? "new: its own size" : "new: %.2f m long",
-                     ImGuiSliderFlags_AlwaysClamp);  // typed numbers too
+                     settings.new_size_m < 0.001F ? "new: original size" : "new: %.2f m long",
+                     ImGuiSliderFlags_AlwaysClamp);  // clamps typed numbers, too
   ImGui::SliderFloat("##height", &settings.drop_height_m, 0.0F, 1.0F, "drop from %.2f m",
                      ImGuiSliderFlags_AlwaysClamp);
   ImGui::SliderFloat("##speed", &settings.throw_speed_mps, 0.5F, 10.0F, "throw at %.1f m/s",
@@ -83,7 +84,7 @@ void draw_policies(const Snapshot& shown, UiChannel& link, PlaySettings& setting
   const int surfaces = look::segments("surfaces", kWords.data(), 4, static_cast<int>(lit));
   if (surfaces >= 0) link.ask(surfaces_command(kPolicies[static_cast<std::size_t>(surfaces)]));
 
-  look::heading("SPACE THAT NOBODY HAS SEEN IS", fonts);
+  look::heading("UNKNOWN SPACE", fonts);
   constexpr std::array<const char*, 2> kUnknown = {"free", "solid"};
   const int unknown = look::segments("unknown", kUnknown.data(), 2, shown.unknown_is_solid ? 1 : 0);
   if (unknown >= 0) link.ask(unknown_command(unknown == 1));
@@ -119,8 +120,8 @@ void draw_frame_facts(const Snapshot& shown, const look::Fonts& fonts) {
     ImGui::SameLine(look::px(130.0F));
     ImGui::TextUnformatted(text.data());
   };
-  row("moved pixels", "%.1f %%", moved);
-  row("triangles of it", "%zu + %zu behind", result.dynamic_triangles, result.inferred_triangles);
+  row("dynamic pixels", "%.1f %%", moved);
+  row("dynamic triangles", "%zu + %zu behind", result.dynamic_triangles, result.inferred_triangles);
   row("room triangles", "%zu drawn", result.static_triangles_drawn);
   row("contacts", "%d", result.contacts);
   if (!shown.given_up.empty()) ImGui::TextWrapped("to keep the budget: %s", shown.given_up.c_str());

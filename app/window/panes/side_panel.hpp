@@ -1,4 +1,4 @@
-// side_panel.hpp: objects, policies, radar: what a user chooses.
+// side_panel.hpp: panel with the user's choices: objects, policies, radar.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,22 +9,22 @@
 
 namespace roomradar {
 
-/// How the user plays; none of it is the session's.
+/// The user's settings for new commands; not part of the session.
 struct PlaySettings {
   float drop_height_m = 0.3F;
   float throw_speed_mps = 3.0F;
-  float new_size_m = 0.0F;          ///< of an added object; 0: as its mesh is
-  std::vector<std::string> meshes;  ///< that can be added: `teapot`, and files
+  float new_size_m = 0.0F;          ///< size of an added object; 0: that of its mesh
+  std::vector<std::string> meshes;  ///< meshes that can be added: `teapot`, and files
   std::size_t mesh = 0;
-  int radar_px = 64;  ///< while it is being dragged
+  int radar_px = 64;  ///< value of the slider while it is dragged
 };
 
 void draw_side_panel(const Area& area, const Snapshot& shown, UiChannel& link, PlaySettings& settings,
                      const look::Fonts& fonts);
 
-/// One more of the mesh and size that the settings say.
+/// Returns the command that adds an object with the mesh and size of the settings.
 UserCommand new_object_command(const PlaySettings& settings);
-/// The events that change a policy, for keys and panels alike.
+/// Return commands that change a policy, for keys and panels alike.
 UserCommand surfaces_command(SurfacePolicy surfaces);
 UserCommand unknown_command(bool is_solid);
 UserCommand radar_command(const RadarConfig& radar);

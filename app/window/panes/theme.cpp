@@ -1,4 +1,4 @@
-// look.cpp: the style of the window.
+// look.cpp: sets the style and draws the widgets.
 #include "app/window/panes/theme.hpp"
 
 #include <filesystem>
@@ -57,7 +57,7 @@ Fonts apply(float scale) {
     fonts.small = io.Fonts->AddFontFromFileTTF(plain, px(11.5F), nullptr, kLetters);
     fonts.large = io.Fonts->AddFontFromFileTTF(bold, px(16.0F), nullptr, kLetters);
   } else {
-    ImFontConfig config;  // as of AddFontDefault(), but for the size
+    ImFontConfig config;  // as in AddFontDefault(), except the size
     config.SizePixels = px(13.0F);
     config.OversampleH = config.OversampleV = 1;
     config.PixelSnapH = true;

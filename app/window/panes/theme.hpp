@@ -1,4 +1,4 @@
-// look.hpp: the window's colours, letters and small parts.
+// look.hpp: colours, fonts and small widgets of the window.
 #pragma once
 #include <imgui.h>
 
@@ -25,26 +25,26 @@ struct Fonts {
   ImFont* large = nullptr;
 };
 
-/// Sets Dear ImGui's style and loads letters: DejaVu where it is installed, else its own.
+/// Sets Dear ImGui's style and loads the fonts: DejaVu if installed, else Dear ImGui's own.
 Fonts apply(float scale);
 
-/// Pixels of a length that was thought for a screen of 96 dpi, with the scale of apply().
+/// Converts a length at 96 dpi to pixels, with the scale given to apply().
 float px(float length);
 
-/// A pane that fills an area, without a title or a border of its own. Always to be followed by end_pane().
+/// Begins a pane that fills an area, without title and border. Always call end_pane() afterwards.
 bool begin_pane(const char* name, const Area& area, ImU32 ground = kPanel, bool scrolls = false);
 void end_pane();
 
-/// A small heading of a group.
+/// Draws the small heading of a group.
 void heading(const char* text, const Fonts& fonts);
 
-/// A button that may be lit; `key` is shown dim behind the text.
+/// Draws a button, highlighted if is_lit; `key` is shown dim after the label. Returns true if clicked.
 bool button(const char* label, const char* key, bool is_lit, ImVec2 size = {0, 0}, bool enabled = true);
 
-/// One of several words; returns the index that was clicked, or -1.
+/// Draws a row of buttons of which one is highlighted; returns the index clicked, or -1.
 int segments(const char* id, const char* const* words, int count, int lit);
 
-/// A dot and a word.
+/// Draws a coloured dot and a text.
 void pill(ImU32 colour, const std::string& text);
 
 }  // namespace roomradar::look

@@ -1,4 +1,4 @@
-// timing_pane.cpp: a column a frame, a colour a stage.
+// timing_pane.cpp: draws a column per frame, with a colour per stage.
 #include "app/window/panes/timing_pane.hpp"
 
 #include <algorithm>
@@ -34,8 +34,7 @@ void TimingPane::add(const Snapshot& shown) {
   float sum_ms = 0.0F;
   for (std::size_t i = 0; i + 1 < kStages.size(); ++i) {
     times.stages_ms[i] = ms_of(kStages[i]);
-    if (std::string_view(kStages[i]) == "physics")
-      times.stages_ms[i] -= ms_of("radar");  // which is part of it
+    if (std::string_view(kStages[i]) == "physics") times.stages_ms[i] -= ms_of("radar");  // a part of physics
     times.stages_ms[i] = std::max(times.stages_ms[i], 0.0F);
     sum_ms += times.stages_ms[i];
   }
@@ -49,7 +48,7 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
   ImDrawList* draw = ImGui::GetWindowDrawList();
   ImGui::PushFont(fonts.small);
   ImGui::PushStyleColor(ImGuiCol_Text, look::kDim);
-  ImGui::TextUnformatted("A FRAME'S TIME");
+  ImGui::TextUnformatted("TIME PER FRAME");
   ImGui::PopStyleColor();
   const ImVec2 from = ImGui::GetCursorScreenPos();
   const ImVec2 room = ImGui::GetContentRegionAvail();
@@ -104,12 +103,12 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
   for (std::size_t i = 0; i < kStages.size(); ++i) {
     values.clear();
     for (const Times& times : frames_) values.push_back(times.stages_ms[i]);
-    row(kStages.size() - 1 - i, kColours[i], kStages[i], median(values), true);  // as they are stacked
+    row(kStages.size() - 1 - i, kColours[i], kStages[i], median(values), true);  // in stacking order
   }
   row(kStages.size(), 0, "frame, median", median_ms, false);
   values.clear();
   for (const Times& times : frames_) values.push_back(times.read_ms);
-  row(kStages.size() + 1, 0, "read, beside it", median(values), false);
+  row(kStages.size() + 1, 0, "read, separate", median(values), false);
   ImGui::PopFont();
   look::end_pane();
 }

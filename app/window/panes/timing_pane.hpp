@@ -1,4 +1,4 @@
-// timing_pane.hpp: how long each stage of the last frames took, against the budget.
+// timing_pane.hpp: shows the time of each stage over the last frames, against the budget.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,23 +13,23 @@
 
 namespace roomradar {
 
-inline constexpr double kGoal_ms = 16.6;  ///< of a frame at 60 Hz
+inline constexpr double kGoal_ms = 16.6;  ///< period of frames at 60 Hz
 
 class TimingPane {
  public:
-  /// @param budget_ms  what is held to; none: of a frame at the Kinect's rate
+  /// @param budget_ms  the run's time limit per frame; none: the period of a Kinect's frames
   explicit TimingPane(std::optional<double> budget_ms) : budget_ms_(budget_ms.value_or(33.3)) {}
 
   void add(const Snapshot& shown);
   void draw(const Area& area, const look::Fonts& fonts) const;
 
   [[nodiscard]] double budget_ms() const { return budget_ms_; }
-  /// No more than the budget.
+  /// Returns the goal, at most the budget.
   [[nodiscard]] double goal_ms() const { return std::min(kGoal_ms, budget_ms_); }
-  /// Of the last frame, all but reading it.
+  /// Returns the time of the last frame, without reading it.
   [[nodiscard]] float frame_ms() const { return frames_.empty() ? 0.0F : frames_.back().whole_ms; }
 
-  /// In the order in which they are stacked; the last is what is in none of them.
+  /// In stacking order; "rest" is the time outside all other stages.
   static constexpr std::array<const char*, 9> kStages = {
       "locate", "expected", "foreground", "changes", "mesh", "physics", "radar", "compose", "rest"};
 

@@ -1,10 +1,10 @@
-// window_layout.hpp: which part of the window shows what.
+// window_layout.hpp: divides the window into panes.
 #pragma once
 #include <algorithm>
 
 namespace roomradar {
 
-/// Pixels of the window, from its top left.
+/// Pixels of the window, from its top left corner.
 struct Area {
   float x = 0.0F, y = 0.0F, width = 0.0F, height = 0.0F;
   [[nodiscard]] bool empty() const { return width < 8.0F || height < 8.0F; }
@@ -16,7 +16,7 @@ struct WindowLayout {
   Area bar, camera, models, side, timing, radar;
 };
 
-/// `scale`: that of the screen; 1 at 96 dpi.
+/// @param scale  the screen's; 1 at 96 dpi
 constexpr WindowLayout window_layout(float width, float height, MainView view, float scale = 1.0F) {
   const float bar = scale * 48.0F, side = scale * 292.0F;
   const float strip = std::clamp(0.27F * height, scale * 120.0F, scale * 250.0F);
@@ -37,7 +37,7 @@ constexpr WindowLayout window_layout(float width, float height, MainView view, f
   return layout;
 }
 
-/// The largest area of an image's shape in the middle of another.
+/// Returns the largest area with an image's aspect ratio, centred in `area`.
 constexpr Area fitted(const Area& area, int image_width_px, int image_height_px) {
   if (image_width_px <= 0 || image_height_px <= 0) return {};
   const float scale = std::min(area.width / static_cast<float>(image_width_px),

@@ -160,8 +160,7 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   EXPECT_NE(unseen.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos) << unseen.out;
 
   // What it was recorded with is in it, and is not to be done twice.
-  expect_fault(roomradar("run " + session.string() + " --calibration c.json"), 2,
-               "with the frames that it has");
+  expect_fault(roomradar("run " + session.string() + " --calibration c.json"), 2, "with its recorded frames");
   expect_fault(roomradar("run " + session.string() + " --frames 3:9"), 2, "from its first frame");
   expect_fault(roomradar("run " + session.string() + " --object teapot"), 2, "has its own objects");
 
@@ -415,7 +414,7 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   expect_fault(roomradar("trade --table1 --csv " + path("t.csv")), 2, "--csv");
   expect_fault(roomradar("trade --table1 --rooms table,wall"), 2, "--table1");
   expect_fault(roomradar("trade --repeats x"), 2, "--repeats");
-  expect_fault(roomradar("trade --seed 010"), 2, "without a zero before it, not 010");
+  expect_fault(roomradar("trade --seed 010"), 2, "without leading zeros, not 010");
   expect_fault(roomradar("trade --seed -1"), 2, "must be a whole number");
   expect_fault(roomradar("trade --only prescan --objects 5"), 2, "--objects");
   expect_fault(roomradar("trade --only both"), 2, "prescan");
@@ -443,11 +442,11 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar(run + " --radar roughly"), 2, "exact|sampled");
   expect_fault(roomradar(run + " --object teapot --script s.txt"), 2, "--script says which objects");
   expect_fault(roomradar(run + " --radar-px 0"), 2, "4096");
-  expect_fault(roomradar("fallthrough --map " + map()), 2, "--map: is about a SOURCE");
+  expect_fault(roomradar("fallthrough --map " + map()), 2, "--map: used only with a SOURCE");
   expect_fault(roomradar("fallthrough sim:table --map " + map() + " --csv " + (folder_ / "f.csv").string()),
-               2, "--csv: is about simulated rooms");
+               2, "--csv: used only for simulated rooms");
   expect_fault(roomradar("fallthrough --scenario 1 --video v.avi --html " + (folder_ / "f.html").string()), 2,
-               "--html: is not made of one --scenario");
+               "--html: not available with --scenario");
   expect_fault(roomradar("fallthrough sim:table"), 2, "--map");
   expect_fault(roomradar(prescan + " --presets p.json"), 2, "--preset NAME");
   expect_fault(roomradar(run + " --presets p.json"), 2, "--budget-ms");

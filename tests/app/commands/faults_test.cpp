@@ -187,7 +187,7 @@ TEST_F(DeferredErrors, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
   ASSERT_EQ(run(words(at("reference"))), 0) << said();
   mount_disk(6000);  // for a checkpoint, but not for the map beside it
   EXPECT_EQ(run(words(disk() / "map")), 1);
-  EXPECT_NE(said().find("with --resume goes on from there"), std::string::npos) << said();
+  EXPECT_NE(said().find("with --resume continues from there"), std::string::npos) << said();
   EXPECT_FALSE(fs::exists(disk() / "map"));
   make_room(32768);
   std::vector<std::string> again = words(disk() / "map");
@@ -259,14 +259,14 @@ TEST_F(DeferredErrors, ARecordingWhoseClockGoesBackIsSaidAndMapped) {
 TEST_F(DeferredErrors, ARunInAMapThatDoesNotKnowUpSaysWhichWayThingsFall) {
   ASSERT_EQ(scan(at("map")), 0) << said();
   EXPECT_EQ(run({"run", kSource, "--map", at("map")}), 0) << said();
-  EXPECT_EQ(said().find("which way is up"), std::string::npos) << said();
+  EXPECT_EQ(said().find("the up direction"), std::string::npos) << said();
   std::string info = text_of(at("map") / "map.json");
   const std::string known = "\"accelerometer\"";
   ASSERT_NE(info.find(known), std::string::npos);
   info.replace(info.find(known), known.size(), "\"none\"");
   std::ofstream(at("map") / "map.json") << info;
   EXPECT_EQ(run({"run", kSource, "--map", at("map")}), 0) << said();
-  EXPECT_NE(said().find("which way is up was not known"), std::string::npos) << said();
+  EXPECT_NE(said().find("the up direction was not known"), std::string::npos) << said();
 }
 
 TEST_F(DeferredErrors, AMapIsReadWholeWhileAnotherProcessSavesItAnew) {

@@ -236,7 +236,7 @@ TEST_F(ResumeTest, CtrlCEndsItInWordsAndItGoesOnFromThere) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   kill(child, SIGINT);
   EXPECT_EQ(status_of(child), 1);
-  EXPECT_NE(said().find("--resume goes on"), std::string::npos) << said();
+  EXPECT_NE(said().find("--resume continues"), std::string::npos) << said();
   EXPECT_NE(said().find("stops before the next frame"), std::string::npos) << said();
   EXPECT_FALSE(fs::exists(map()));
   EXPECT_GT(newest(), 0);
@@ -349,7 +349,7 @@ TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
   const SavedMap before = load_map(map());
   const std::string json = text_of(map() / "map.json");
   EXPECT_EQ(run(scan_table("sim:shelf?frames=30&width=160", true)), 1);
-  EXPECT_NE(said().find("cannot be placed"), std::string::npos) << said();
+  EXPECT_NE(said().find("cannot be registered"), std::string::npos) << said();
   EXPECT_EQ(text_of(map() / "map.json"), json);
   fs::remove_all(unfinished());  // a machine so slow that there was a checkpoint keeps it
 

@@ -57,10 +57,9 @@ TEST(Presets, WhatIsWrongIsNamed) {
   EXPECT_EQ(fault_of_text("{"), "p.json: is not a file of presets, or is damaged");
   EXPECT_EQ(fault_of_text("[]"), "p.json: is not a file of presets, or is damaged");
   EXPECT_EQ(fault_of_text(R"({"format": "roomradar presets", "format_version": 2})"),
-            "p.json: is of another format version than 1, which this program reads");
-  EXPECT_EQ(
-      fault_of_text(begin + R"(, "presents": {}})"),
-      "p.json: \"presents\" is not known; there may be format, format_version, made_by, presets, front");
+            "p.json: has another format version than 1, which this program reads");
+  EXPECT_EQ(fault_of_text(begin + R"(, "presents": {}})"),
+            "p.json: \"presents\" is not known; allowed are format, format_version, made_by, presets, front");
   EXPECT_EQ(fault_of_text(begin + R"(, "presets": {"fast": {"run": {"depth_stride": 3}}}})"),
             "p.json: fast: run: depth_stride = 3: must be 1|2|4");
   EXPECT_EQ(fault_of_text(begin + R"(, "presets": {"fast": {"figures": {"a": "b"}}}})"),

@@ -94,7 +94,7 @@ TEST_F(FrameUseInASession, AStandingCameraDrawsOnceAndAMovingOneEachTime) {
   const FrameUse second = step();
   EXPECT_EQ(second.views_drawn, 0U);
   EXPECT_EQ(second.room_drawn, 0U);
-  EXPECT_EQ(reasons(second), "the camera stands, the last view is kept; nothing moved");
+  EXPECT_EQ(reasons(second), "the camera is stationary, the last view is reused; nothing moved");
   frame_.T_world_camera->translation().x() += 0.01;
   EXPECT_EQ(step().views_drawn, 1U);
 }
@@ -109,20 +109,20 @@ TEST_F(FrameUseInASession, WhatMovedIsCountedByPixelsAndCellsAndWhyItIsFine) {
   EXPECT_GT(hand.mesh_triangles, 0U);
   EXPECT_GT(hand.cells.flat + hand.cells.cut, 100U);
   EXPECT_LT(hand.cells.full, 10U);
-  EXPECT_EQ(reasons(hand), "the camera stands, the last view is kept; 12 % of the depth moved");
+  EXPECT_EQ(reasons(hand), "the camera is stationary, the last view is reused; 12 % of the depth moved");
   FrameUse use = hand;
   use.meshed_px = use.valid_px;
-  EXPECT_EQ(reasons(use), "the camera stands, the last view is kept; 100 % of the depth moved");
+  EXPECT_EQ(reasons(use), "the camera is stationary, the last view is reused; 100 % of the depth moved");
   use.meshed_px = 1;
-  EXPECT_EQ(reasons(use), "the camera stands, the last view is kept; 0.01 % of the depth moved");
+  EXPECT_EQ(reasons(use), "the camera is stationary, the last view is reused; 0.01 % of the depth moved");
   use.knows_moved = false;
-  EXPECT_NE(reasons(use).find("what moved is not known"), std::string::npos);
+  EXPECT_NE(reasons(use).find("without the map's surfaces"), std::string::npos);
 
   put_a_pot(0.8, 0.0);
   const FrameUse fine = step();
   EXPECT_GT(fine.cells.full, 50U);
   EXPECT_EQ(session_.objects().front()->fine_cells, fine.cells.full);
-  EXPECT_NE(reasons(fine).find("as fine as the image near pot ("), std::string::npos) << reasons(fine);
+  EXPECT_NE(reasons(fine).find("full resolution near pot ("), std::string::npos) << reasons(fine);
   RunUse run;
   run.add(fine, session_.objects());
   run.add(FrameUse{}, {});

@@ -184,7 +184,7 @@ TEST(Script, NamesFileLineAndFault) {
       {"frame 1 radar exact 1.5", "whole number"},
       {"frame 1 quality depth_stride 3", "depth_stride = 3: must be 1|2|4"},
       {"frame 1 quality depth_stride", "the line ends"},
-      {"frame 1 quality speed 3", "there is nothing called \"speed\" to set"},
+      {"frame 1 quality speed 3", "there is no setting \"speed\""},
       {"frame 1 quality from nowhere", "unknown word 'nowhere'"},
       {"frame 1 camera jump", "hold, go, rewind, loop, stay or resume"},
   };

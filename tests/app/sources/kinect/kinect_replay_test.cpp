@@ -146,7 +146,7 @@ TEST_F(KinectReplay, AScanOfADeviceThatIsStoppedForMemoryTakesInTheRestLater) {
   const Outcome stopped = shell(scan + " --max-memory " + cap);
   EXPECT_EQ(stopped.status, 1) << stopped.rest;
   EXPECT_TRUE(contains(stopped.rest, "stopped by --max-memory")) << stopped.rest;
-  EXPECT_TRUE(contains(stopped.rest, "--resume scans them anew")) << stopped.rest;
+  EXPECT_TRUE(contains(stopped.rest, "--resume scans them again")) << stopped.rest;
   EXPECT_TRUE(fs::exists(map / "octree.ot"));
   EXPECT_TRUE(fs::exists(unfinished / "spool" / "list.bin"));
   const Outcome rest = shell(scan + " --resume");
@@ -172,7 +172,7 @@ TEST_F(KinectReplay, AScanWhoseDeviceIsGoneForGoodBecomesAMap) {
   EXPECT_EQ(shell(scan).status, 1) << "without --resume what was scanned would be lost";
   const Outcome without = shell(scan + " --resume");
   EXPECT_EQ(without.status, 0) << without.rest;
-  EXPECT_TRUE(contains(without.rest, "The map is made of what was scanned before")) << without.rest;
+  EXPECT_TRUE(contains(without.rest, "The map is made from the frames scanned before")) << without.rest;
   EXPECT_TRUE(contains(without.rest, "5 of 5 frames tracked")) << without.rest;
   EXPECT_FALSE(fs::exists(unfinished));
 }
