@@ -1,4 +1,5 @@
-// faults.hpp: collects errors while results are saved, so one failure does not prevent saving the others.
+// deferred_errors.hpp: collects errors while results are saved, so one failure does not prevent saving the
+// others.
 #pragma once
 #include <cstdio>
 #include <exception>

@@ -1,4 +1,4 @@
-# `docs`: the public comments as pages in docs/ of the build folder. A comment that Doxygen doubts is an error.
+# Target `docs`: the documentation comments as HTML in docs/ of the build folder. Doxygen warnings are errors.
 find_package(Doxygen 1.9)
 if(NOT DOXYGEN_FOUND)
   return()

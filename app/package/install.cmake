@@ -1,4 +1,4 @@
-# What is installed, and how Debian packages are made of it: the program, and the libraries for other programs.
+# Installation and Debian packages of the program, and of the libraries for other programs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

@@ -1,12 +1,12 @@
-# A fifth of a build was the same headers parsed again for each source. Sources name what they include all the same: the
-# Debian packages are built without, and tell who forgot.
+# Parsing the same headers again for each source took a fifth of the build time. Sources must still include what they
+# use: the Debian packages are built without precompiled headers, which reveals missing includes.
 set(usual_headers
   <Eigen/Geometry> <nlohmann/json.hpp>
   <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <fstream> <functional> <limits> <map> <memory> <optional>
   <random> <span> <string> <utility> <vector>)
 
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/generated/precompiled.cpp CONTENT "")
-# The same options and warnings as everywhere: the compiler passes over headers that were precompiled with others.
+# Same options and warnings as all targets: the compiler ignores headers that were precompiled with different options.
 function(roomradar_precompiled name)
   add_library(${name} OBJECT ${PROJECT_BINARY_DIR}/generated/precompiled.cpp)
   target_link_libraries(${name} PRIVATE Eigen3::Eigen roomradar::options roomradar::warnings ${ARGN})
@@ -23,7 +23,7 @@ function(roomradar_use_precompiled directory)
   get_property(targets DIRECTORY ${directory} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target ${targets})
     get_target_property(type ${target} TYPE)
-    if(type MATCHES "STATIC|EXECUTABLE")  # a plugin is position independent, which these headers are not
+    if(type MATCHES "STATIC|EXECUTABLE")  # not plugins: they are position independent, these headers are not
       get_target_property(linked ${target} LINK_LIBRARIES)
       if("GTest::gtest" IN_LIST linked)
         target_precompile_headers(${target} REUSE_FROM precompiled_tests)

@@ -1,4 +1,5 @@
-# How a room of the house becomes a target: roomradar::NAME, installed and exported. Links state which rooms it may include.
+# Functions that turn a folder into a target roomradar::NAME, installed and exported. Its links state which folders it
+# may include.
 set_property(GLOBAL PROPERTY roomradar_libraries "")
 
 # roomradar_library(NAME [SOURCES FILE...] [PUBLIC TARGET...] [PRIVATE TARGET...])
@@ -11,7 +12,7 @@ function(roomradar_library name)
   set_property(GLOBAL APPEND PROPERTY roomradar_libraries roomradar_${name})
 endfunction()
 
-# roomradar_group(NAME LIBRARY...): one name for several rooms.
+# roomradar_group(NAME LIBRARY...): one target name for several libraries.
 function(roomradar_group name)
   add_library(roomradar_${name} INTERFACE)
   add_library(roomradar::${name} ALIAS roomradar_${name})

@@ -1,4 +1,4 @@
-// depth_regions.cpp: connected components by runs and union-find.
+// connected_components.cpp: connected components by runs and union-find.
 #include "dynamic/foreground/connected_components.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// depth_regions.hpp: connected components of pixels on one surface, as runs of rows joined by union-find.
+// connected_components.hpp: connected components of pixels on one surface, as runs of rows joined by
+// union-find.
 #pragma once
 #include <cstddef>
 #include <cstdint>

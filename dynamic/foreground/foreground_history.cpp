@@ -1,4 +1,4 @@
-// moved_memory.cpp: carries the marked blocks of one frame over to the next.
+// foreground_history.cpp: carries the marked blocks of one frame over to the next.
 #include "dynamic/foreground/foreground_history.hpp"
 
 #include <algorithm>

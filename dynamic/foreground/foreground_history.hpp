@@ -1,4 +1,4 @@
-// moved_memory.hpp: history of where the previous frame differed from the static model.
+// foreground_history.hpp: history of where the previous frame differed from the static model.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// model_fit.cpp: spread of live minus expected inverse depth.
+// static_residual.cpp: spread of live minus expected inverse depth.
 #include "dynamic/foreground/static_residual.hpp"
 
 #include <algorithm>

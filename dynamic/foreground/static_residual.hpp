@@ -1,4 +1,4 @@
-// model_fit.hpp: residual between the static model and the live depth where nothing moved.
+// static_residual.hpp: residual between the static model and the live depth where nothing moved.
 #pragma once
 #include <array>
 

@@ -1,4 +1,5 @@
-// jump_rule.hpp: decides whether two neighbouring pixels are on one surface or at a depth discontinuity.
+// depth_discontinuity.hpp: decides whether two neighbouring pixels are on one surface or at a depth
+// discontinuity.
 #pragma once
 #include <algorithm>
 #include <cmath>

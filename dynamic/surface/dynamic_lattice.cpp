@@ -1,4 +1,4 @@
-// moved_lattice.cpp: planes through windows of 5 x 5 pixels, and means over opposite pixels.
+// dynamic_lattice.cpp: planes through windows of 5 x 5 pixels, and means over opposite pixels.
 #include "dynamic/surface/dynamic_lattice.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// moved_lattice.hpp: the dynamic surface at every fourth pixel, with its noise averaged away.
+// dynamic_lattice.hpp: the dynamic surface at every fourth pixel, with its noise averaged away.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// moved_pixels.cpp: converts mask and depth to bits, 64 pixels at a time.
+// dynamic_pixels.cpp: converts mask and depth to bits, 64 pixels at a time.
 #include "dynamic/surface/dynamic_pixels.hpp"
 
 #include <algorithm>

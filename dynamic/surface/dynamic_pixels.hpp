@@ -1,4 +1,4 @@
-// moved_pixels.hpp: dynamic pixels as bits and inverse depths, with a smoothed outline.
+// dynamic_pixels.hpp: dynamic pixels as bits and inverse depths, with a smoothed outline.
 #pragma once
 #include <vector>
 

@@ -1,4 +1,4 @@
-// moved_surface.cpp: assembles the two dynamic meshes from cells and squares.
+// dynamic_surface.cpp: assembles the two dynamic meshes from cells and squares.
 #include "dynamic/surface/dynamic_surface.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// moved_surface.hpp: dynamic surfaces as few triangles, the visible front and an assumed back.
+// dynamic_surface.hpp: dynamic surfaces as few triangles, the visible front and an assumed back.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>

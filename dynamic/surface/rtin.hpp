@@ -1,4 +1,4 @@
-// bisected_grid.hpp: right-triangulated irregular network (RTIN), an adaptive crack-free mesh of a lattice.
+// rtin.hpp: right-triangulated irregular network (RTIN), an adaptive crack-free mesh of a lattice.
 #pragma once
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// warm_keyframes.cpp: least-recently-used cache of keyframes prepared for alignment.
+// keyframe_cache.cpp: least-recently-used cache of keyframes prepared for alignment.
 #include "mapping/alignment/keyframe_cache.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// warm_keyframes.hpp: least-recently-used cache of keyframes prepared for alignment.
+// keyframe_cache.hpp: least-recently-used cache of keyframes prepared for alignment.
 #pragma once
 #include <cstddef>
 #include <memory>

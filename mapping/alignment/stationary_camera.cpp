@@ -1,4 +1,4 @@
-// stillness.cpp: detects that the camera did not move between two images.
+// stationary_camera.cpp: detects that the camera did not move between two images.
 #include "mapping/alignment/stationary_camera.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// stillness.hpp: detects that the camera did not move between two images.
+// stationary_camera.hpp: detects that the camera did not move between two images.
 #pragma once
 #include "mapping/types/image.hpp"
 

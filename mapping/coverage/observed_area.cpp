@@ -1,4 +1,4 @@
-// seen_area.cpp: inserts a frame's points into a set of coarse cells.
+// observed_area.cpp: inserts a frame's points into a set of coarse cells.
 #include "mapping/coverage/observed_area.hpp"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// seen_area.hpp: estimates how much surface a running scan has observed.
+// observed_area.hpp: estimates how much surface a running scan has observed.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>

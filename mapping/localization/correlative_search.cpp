@@ -1,4 +1,4 @@
-// shape_search.cpp: scores a depth image's points on a grid of the room at every position and heading.
+// correlative_search.cpp: scores a depth image's points on a grid of the room at every position and heading.
 #include "mapping/localization/correlative_search.hpp"
 
 #include <algorithm>

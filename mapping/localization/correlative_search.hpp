@@ -1,4 +1,4 @@
-// shape_search.hpp: camera pose hypotheses from depth alone, by correlative search.
+// correlative_search.hpp: camera pose hypotheses from depth alone, by correlative search.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

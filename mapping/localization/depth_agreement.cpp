@@ -1,4 +1,4 @@
-// evidence.cpp: agreement of a depth image with the depth expected at a pose.
+// depth_agreement.cpp: agreement of a depth image with the depth expected at a pose.
 #include "mapping/localization/depth_agreement.hpp"
 
 #include <cmath>

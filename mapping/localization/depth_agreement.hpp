@@ -1,4 +1,4 @@
-// evidence.hpp: agreement of a depth image with the depth expected at a pose.
+// depth_agreement.hpp: agreement of a depth image with the depth expected at a pose.
 #pragma once
 #include "mapping/types/image.hpp"
 

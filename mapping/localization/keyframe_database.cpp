@@ -1,4 +1,4 @@
-// places.cpp: keyframe database for relocalisation in a known room.
+// keyframe_database.cpp: keyframe database for relocalisation in a known room.
 #include "mapping/localization/keyframe_database.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// places.hpp: keyframe database for relocalisation in a known room.
+// keyframe_database.hpp: keyframe database for relocalisation in a known room.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>

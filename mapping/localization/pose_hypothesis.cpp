@@ -1,4 +1,4 @@
-// tried_pose.cpp: thresholds on the agreement in depth and appearance that accept a pose.
+// pose_hypothesis.cpp: thresholds on the agreement in depth and appearance that accept a pose.
 #include "mapping/localization/pose_hypothesis.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// tried_pose.hpp: pose hypotheses of a map search, and the tests that accept them.
+// pose_hypothesis.hpp: pose hypotheses of a map search, and the tests that accept them.
 #pragma once
 #include <Eigen/Geometry>
 #include <vector>

@@ -1,4 +1,4 @@
-// mesh_pieces.cpp: union-find over shared vertices.
+// components.cpp: union-find over shared vertices.
 #include "mapping/mesh/components.hpp"
 
 #include <Eigen/Geometry>

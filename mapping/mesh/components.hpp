@@ -1,4 +1,4 @@
-// mesh_pieces.hpp: connected components of a mesh, and removal of small ones.
+// components.hpp: connected components of a mesh, and removal of small ones.
 #pragma once
 #include "mapping/types/mesh.hpp"
 

@@ -1,4 +1,4 @@
-// fusion_leaves.hpp: updates the eight voxels of a leaf block with a frame. Private to the fusion.
+// leaf_update.hpp: updates the eight voxels of a leaf block with a frame. Private to the fusion.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
-// fusion_view.hpp: visibility of eight sibling nodes in a depth image. Private to the fusion; the template
-// parameter Float8 selects a version from float8.hpp.
+// node_visibility.hpp: visibility of eight sibling nodes in a depth image. Private to the fusion; the
+// template parameter Float8 selects a version from float8.hpp.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

@@ -1,4 +1,4 @@
-// room_octree.cpp: serialization of nodes, and registration of the tree type with OctoMap.
+// octomap_tree.cpp: serialization of nodes, and registration of the tree type with OctoMap.
 #include "mapping/octree/octomap_tree.hpp"
 
 #include <istream>

@@ -1,4 +1,4 @@
-// room_octree.hpp: node type of roomradar's .ot files, and an OctoMap octree that reads and writes them.
+// octomap_tree.hpp: node type of roomradar's .ot files, and an OctoMap octree that reads and writes them.
 // StaticMap writes this format node by node. The tree class is for programs that open the file with OctoMap's
 // AbstractOcTree::read(). Only static_map_file.cpp includes this header and OctoMap.
 #pragma once

@@ -1,4 +1,4 @@
-// fusion_hits.cpp: collects a frame's ray endpoints per leaf block.
+// ray_endpoints.cpp: collects a frame's ray endpoints per leaf block.
 #include <algorithm>
 #include <array>
 #include <bit>

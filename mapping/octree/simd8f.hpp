@@ -1,4 +1,4 @@
-// float8.hpp: eight floats at a time, one per sibling voxel, in AVX2 and portable versions with equal
+// simd8f.hpp: eight floats at a time, one per sibling voxel, in AVX2 and portable versions with equal
 // results. Neither version fuses multiply and add, so maps are bit-identical on every machine; files that use
 // them are compiled with -ffp-contract=off.
 #pragma once

@@ -1,4 +1,4 @@
-// sample_bricks.cpp: sorts an octree's samples into bricks.
+// tsdf_bricks.cpp: sorts an octree's samples into bricks.
 #include "mapping/octree/tsdf_bricks.hpp"
 
 #include <optional>

@@ -1,4 +1,4 @@
-// sample_bricks.hpp: a static map's signed distances (TSDF) in small dense bricks, for fast neighbour access.
+// tsdf_bricks.hpp: a static map's signed distances (TSDF) in small dense bricks, for fast neighbour access.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

@@ -1,4 +1,4 @@
-// region_renewal.cpp: masks the frames, erases what they contradict, fuses them.
+// refuse_region.cpp: masks the frames, erases what they contradict, fuses them.
 #include "mapping/revision/refuse_region.hpp"
 
 #include <algorithm>

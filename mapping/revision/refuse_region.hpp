@@ -1,4 +1,4 @@
-// region_renewal.hpp: erases part of the static map and fuses it again from frames of its current state.
+// refuse_region.hpp: erases part of the static map and fuses it again from frames of its current state.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -1,4 +1,5 @@
-// absence.cpp: votes from colour and missing depth, and groups of voxels that are gone by these votes.
+// unmeasured_evidence.cpp: votes from colour and missing depth, and groups of voxels that are gone by these
+// votes.
 #include "mapping/revision/unmeasured_evidence.hpp"
 
 #include <algorithm>

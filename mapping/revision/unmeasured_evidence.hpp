@@ -1,5 +1,5 @@
-// absence.hpp: finds map surface of departed objects where no depth is measured behind them, such as in front
-// of glass or beyond the sensor's range.
+// unmeasured_evidence.hpp: finds map surface of departed objects where no depth is measured behind them, such
+// as in front of glass or beyond the sensor's range.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// folder_swap.cpp: writes beside the target, syncs and renames. Uses Linux calls, because the standard
+// atomic_folder.cpp: writes beside the target, syncs and renames. Uses Linux calls, because the standard
 // library can only rename.
 #include "mapping/storage/atomic_folder.hpp"
 

@@ -1,4 +1,4 @@
-// folder_swap.hpp: atomic replacement of a folder.
+// atomic_folder.hpp: atomic replacement of a folder.
 #pragma once
 #include <exception>
 #include <filesystem>

@@ -1,4 +1,4 @@
-// voxel_bits.cpp: set operations, shifts, flood fill and opening, a word at a time.
+// bit_grid.cpp: set operations, shifts, flood fill and opening, a word at a time.
 #include "mapping/surface/bit_grid.hpp"
 
 #include <algorithm>

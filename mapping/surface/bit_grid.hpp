@@ -1,4 +1,4 @@
-// voxel_bits.hpp: a 3D bit grid, 64 voxels of a row per word, with set and morphological operations.
+// bit_grid.hpp: a 3D bit grid, 64 voxels of a row per word, with set and morphological operations.
 #pragma once
 #include <Eigen/Core>
 #include <array>

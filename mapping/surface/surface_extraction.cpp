@@ -1,4 +1,5 @@
-// surface.cpp: smooths the signed distances, extracts the surface, drops small components, simplifies.
+// surface_extraction.cpp: smooths the signed distances, extracts the surface, drops small components,
+// simplifies.
 #include "mapping/surface/surface_extraction.hpp"
 
 #include <algorithm>

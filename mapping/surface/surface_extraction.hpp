@@ -1,4 +1,4 @@
-// surface.hpp: extracts the static map's surface as a mesh from its signed distances.
+// surface_extraction.hpp: extracts the static map's surface as a mesh from its signed distances.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// surface_patch.cpp: cuts a box out of a mesh, re-extracts the surface in it, and joins both.
+// surface_update.cpp: cuts a box out of a mesh, re-extracts the surface in it, and joins both.
 #include "mapping/surface/surface_update.hpp"
 
 #include <algorithm>

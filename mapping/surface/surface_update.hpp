@@ -1,4 +1,4 @@
-// surface_patch.hpp: replaces part of the map's surface mesh by a newly extracted one.
+// surface_update.hpp: replaces part of the map's surface mesh by a newly extracted one.
 #pragma once
 #include <Eigen/Geometry>
 

@@ -1,4 +1,4 @@
-// sample_guess.cpp: extrapolates two layers around the measured samples.
+// tsdf_extrapolation.cpp: extrapolates two layers around the measured samples.
 #include "mapping/surface/tsdf_extrapolation.hpp"
 
 #include <array>

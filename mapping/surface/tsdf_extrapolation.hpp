@@ -1,4 +1,4 @@
-// sample_guess.hpp: extrapolates signed distances to voxels next to measured ones.
+// tsdf_extrapolation.hpp: extrapolates signed distances to voxels next to measured ones.
 #pragma once
 #include "mapping/octree/tsdf_bricks.hpp"
 

@@ -1,4 +1,4 @@
-// sample_smoothing.cpp: Gauss-Seidel sweeps over bricks of samples.
+// tsdf_smoothing.cpp: Gauss-Seidel sweeps over bricks of samples.
 #include "mapping/surface/tsdf_smoothing.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-// sample_smoothing.hpp: smooths signed distances that have few or poor measurements.
+// tsdf_smoothing.hpp: smooths signed distances that have few or poor measurements.
 #pragma once
 #include "mapping/octree/tsdf_bricks.hpp"
 

@@ -1,4 +1,4 @@
-// cell_faces.cpp: merges faces into rectangles, one plane at a time.
+// voxel_face_mesh.cpp: merges faces into rectangles, one plane at a time.
 #include "mapping/surface/voxel_face_mesh.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// cell_faces.hpp: meshes faces of grid cells with few triangles.
+// voxel_face_mesh.hpp: meshes faces of grid cells with few triangles.
 #pragma once
 #include "mapping/surface/bit_grid.hpp"
 #include "mapping/types/mesh.hpp"

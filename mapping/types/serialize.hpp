@@ -1,4 +1,4 @@
-// byte_archive.hpp: binary serialization; serialize() lists each type's fields once, for writing and reading.
+// serialize.hpp: binary serialization; serialize() lists each type's fields once, for writing and reading.
 #pragma once
 #include <Eigen/Geometry>
 #include <bit>

@@ -1,4 +1,4 @@
-// front_map.cpp: enters boxes and planes from front to back, then builds the max pyramid.
+// object_height_map.cpp: enters boxes and planes from front to back, then builds the max pyramid.
 #include "radar/exact/object_height_map.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// front_map.hpp: M, a conservative height map of the object's leading surface.
+// object_height_map.hpp: M, a conservative height map of the object's leading surface.
 #pragma once
 #include <cstddef>
 #include <vector>

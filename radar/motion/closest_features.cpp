@@ -1,4 +1,4 @@
-// near_places.cpp: corners over faces, edges across edges, and selection of the outermost.
+// closest_features.cpp: corners over faces, edges across edges, and selection of the outermost.
 #include "radar/motion/closest_features.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// near_places.hpp: closest features of two triangles, and selection of those that support an object most.
+// closest_features.hpp: closest features of two triangles, and selection of those that support an object
+// most.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>

@@ -1,4 +1,4 @@
-// sweep.cpp: steps that an inflated object proves free, and poses that prove the contact.
+// time_of_impact.cpp: steps that an inflated object proves free, and poses that prove the contact.
 #include "radar/motion/time_of_impact.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// sweep.hpp: time of impact of a moving and rotating object, by conservative advancement.
+// time_of_impact.hpp: time of impact of a moving and rotating object, by conservative advancement.
 #pragma once
 #include <Eigen/Geometry>
 #include <limits>

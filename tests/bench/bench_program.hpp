@@ -1,4 +1,4 @@
-// bench_program.hpp: what benchmarks share: where they run, their rows, and what went wrong.
+// bench_program.hpp: shared by the benchmarks: processor name, JSON output, error exit.
 #pragma once
 #include <algorithm>
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace roomradar::test {
 
-/// The name of this machine's processor.
+/// Returns the name of this machine's processor.
 inline std::string processor() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
@@ -18,7 +18,7 @@ inline std::string processor() {
   return "unknown processor";
 }
 
-/// The file of --json; an empty path: none was asked for. Throws Error if it cannot be written.
+/// Writes the file of --json; does nothing if the path is empty. Throws Error if the file cannot be written.
 template <typename Json>
 void write_rows(const std::string& path, const Json& rows) {
   if (path.empty()) return;
@@ -27,7 +27,7 @@ void write_rows(const std::string& path, const Json& rows) {
   if (!file.flush()) throw Error(path + ": cannot be written");
 }
 
-/// The exit status of `run`, or 1 with a sentence where it throws.
+/// Returns the exit status of `run`; if `run` throws, prints the error and returns 1.
 template <typename Run>
 int run_or_say(const char* program, const Run& run) {
   try {

@@ -1,4 +1,4 @@
-// bench_times.hpp: times that a thread spent computing, and quantiles of what was measured.
+// bench_times.hpp: CPU time of a thread, and quantiles of measurements.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,14 @@
 
 namespace roomradar::test {
 
-/// What the wall clock would show on a machine that does nothing else.
+/// CPU time of the calling thread; equals wall-clock time on an otherwise idle machine.
 inline double thread_ms() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// Of nearest rank, part in 0..1; 0 of no values.
+/// Quantile by nearest rank, `part` in 0..1; 0 for no values.
 inline double quantile(std::vector<double> values, double part) {
   if (values.empty()) return 0.0;
   const auto at = std::lround(part * static_cast<double>(values.size() - 1));
@@ -27,7 +27,7 @@ inline double quantile(std::vector<double> values, double part) {
 struct Times {
   std::vector<double> samples_ms;
   [[nodiscard]] double percentile(double part) const { return quantile(samples_ms, part); }
-  /// 0 of none.
+  /// 0 for no samples.
   [[nodiscard]] double mean() const {
     const double sum = std::accumulate(samples_ms.begin(), samples_ms.end(), 0.0);
     return samples_ms.empty() ? 0.0 : sum / static_cast<double>(samples_ms.size());

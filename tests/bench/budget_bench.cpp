@@ -1,18 +1,17 @@
-// budget_bench.cpp: is the time of a frame held when a person fills the view and 50 objects appear at once,
-// and what does that cost in accuracy?
+// budget_bench.cpp: checks whether the frame budget is kept when a person fills the view and 50 objects
+// appear at once, and measures the cost in accuracy.
 //
-// usage: budget_bench [--budget MS]... [--presets FILE] [--map DIR] [--frames N] [--objects N] [--clock
-// thread|wall]
-//                     [--unknown free|solid] [--each-step 1] [--json FILE]
-// A simulated dining room, the camera held by a hand. Of N frames (1,000) the first quarter shows the room as
-// it was scanned; in the next half a person stands and walks close before the camera, and 50 teapots fall at
-// once; in the last quarter both are gone. The scan has left a hole in the floor, the shadow of a chair, over
-// which some of them fall: objects under the floor are told apart by whether it is mapped where they went.
-// A row each: without a budget, and for each budget (33, 16). With
-// --each-step 1 rows for each step of the presets' front, without a budget, in turn with the default, and the
-// ratios to it that the presets hold. Clock: what this thread computed, with OpenGL on this thread too
-// (thread, for machines that do other things), or the wall's. Scene, seeds and frames are fixed: changing
-// them breaks comparison with old numbers. The map is made once and kept in DIR (budget-bench-map).
+// usage: budget_bench [--budget MS]... [--presets FILE] [--map DIR] [--frames N] [--objects N]
+//                     [--clock thread|wall] [--unknown free|solid] [--each-step 1] [--json FILE]
+// Scene: a simulated dining room, hand-held camera, N frames (1,000). The first quarter shows the room as
+// scanned. In the next half a person stands and walks close in front of the camera, and 50 teapots fall at
+// once. In the last quarter both are gone. The scan has a hole in the floor, the shadow of a chair, and some
+// teapots fall over it. Objects below the floor are therefore counted by whether the floor is mapped where
+// they fell. Rows: one without a budget, and one per budget (33, 16). With --each-step 1 also rows for each
+// step of the presets' Pareto front, without a budget and alternating with the default, with the ratios to
+// the default that the presets store. --clock thread: CPU time of this thread, which then also runs OpenGL
+// (for busy machines); wall: wall-clock time. Scene, seeds and frames are fixed: changing them breaks the
+// comparison with earlier results. The map is made once and kept in DIR (budget-bench-map).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -40,7 +39,7 @@
 namespace roomradar {
 namespace {
 
-constexpr int kScene = 15;  // frames of each part, shown to and fro
+constexpr int kScene = 15;  // frames of each part, shown forwards and backwards
 constexpr int kWarmUp = 10;
 
 struct Settings {
@@ -91,12 +90,12 @@ SavedMap map_of(const std::filesystem::path& folder) {
   return load_map(folder);
 }
 
-/// Frames without and with the person, from the same places.
+/// Frames without and with the person, from the same poses.
 struct Views {
   std::vector<Frame> calm, crowded;
 };
 
-/// The frame in which most of a view is the person, of the first minute.
+/// Returns the frame, within the first minute, in which the person covers most of the view.
 std::int64_t most_crowded(const Eigen::Isometry3d& T_world_camera) {
   constexpr std::int64_t kEvery = 10, kFrames = 1800;
   SimulatedSource source(parse_sim_spec(
@@ -115,7 +114,7 @@ std::int64_t most_crowded(const Eigen::Isometry3d& T_world_camera) {
 }
 
 Views make_views() {
-  // The person's way is along x at y = 1.75; from 0.9 m beside it a body is a third of the image.
+  // The person's path is along x at y = 1.75; from 0.9 m beside it a body covers a third of the image.
   const auto pose = [](double sway) {
     return test::looking_at({-0.9 + 0.02 * sway, 0.9, 1.4 + 0.01 * sway}, {0.4, 1.6, 0.7});
   };
@@ -135,11 +134,11 @@ enum Phase { kBefore, kDuring, kAfter };
 
 struct Outcome {
   std::array<test::Times, 3> frame_ms;
-  std::array<test::Times, kFrameParts> part_ms;  ///< during the load
+  std::array<test::Times, kFrameParts> part_ms;  ///< under load
   test::Times pose_error_m;
-  std::vector<Eigen::Vector3d> at_m;  ///< objects at the end of the load
+  std::vector<Eigen::Vector3d> at_m;  ///< positions of the objects at the end of the load
   double deepest_m = 0.0, dynamic_fraction = 0.0;
-  int through_floor = 0, through_holes = 0;  ///< objects that are under the floor at the end of the load
+  int through_floor = 0, through_holes = 0;  ///< objects below the floor at the end of the load
   int located = 0;
   nlohmann::json budget;
 };
@@ -149,7 +148,7 @@ void drop_objects(Session& session, const Eigen::Isometry3d& T_map_room, int cou
     ScriptEvent drop;
     drop.action = Action::kDrop;
     drop.name = "pot" + std::to_string(i);
-    // On the floor where the person walks, ten in a row.
+    // On the floor where the person walks, ten per row.
     drop.position_world =
         T_map_room * Eigen::Vector3d(-0.5 + 0.19 * (i % 10), 1.5 + 0.12 * (i / 10 % 5), 0.2 * (i / 50));
     drop.height_m = 0.3 + 0.02 * (i % 7);
@@ -166,7 +165,7 @@ void remove_objects(Session& session) {
   }
 }
 
-/// Whether an object's middle is over, or under, a floor that is mapped.
+/// Returns true if the floor above or below an object's centre is mapped.
 bool is_by_mapped_floor(const Session& session, const Eigen::Vector3d& middle_world, double floor_world_m) {
   constexpr double kAbout_m = 0.05;
   const Eigen::Vector3d above(middle_world.x(), middle_world.y(), floor_world_m + kAbout_m);
@@ -175,7 +174,7 @@ bool is_by_mapped_floor(const Session& session, const Eigen::Vector3d& middle_wo
       .has_value();
 }
 
-/// Counts objects that are below the floor by whether it is mapped where they were over it last.
+/// Counts objects below the floor by whether the floor is mapped where they last were above it.
 class FloorJudge {
  public:
   explicit FloorJudge(const Eigen::Isometry3d& T_map_room)
@@ -198,7 +197,7 @@ class FloorJudge {
     return object.body.T_world_object * object.model->middle;
   }
   [[nodiscard]] bool is_below(const VirtualObject& object) const {
-    constexpr double kFallen_m = 0.05;  // solid unknown space begins some cells under the floor about it
+    constexpr double kFallen_m = 0.05;  // solid unknown space begins some cells below the surrounding floor
     return (T_room_map_ * middle_world(object)).z() < -kFallen_m;
   }
 
@@ -207,13 +206,14 @@ class FloorJudge {
   std::vector<Eigen::Vector3d> last_above_world_;
 };
 
-/// Where pictures are made in turns, objects are moved in the other frames.
+/// Returns true if the frame includes this part. If pictures are not made in every frame, objects move only
+/// in frames without a new picture.
 bool is_made(FramePart part, const RunQuality& quality, const FrameResult& result) {
   if (part == FramePart::kCompose) return result.picture_is_new;
   return part != FramePart::kPhysics || quality.picture_every_n_frames == 1 || !result.picture_is_new;
 }
 
-/// @param budget  null: none
+/// @param budget  null: no budget
 Outcome play(const Settings& settings, const SavedMap& map, const Views& views, const RunQuality& quality,
              RunBudget* budget, const std::function<double()>& now_ms) {
   SessionConfig config;
@@ -303,7 +303,7 @@ nlohmann::json row_of(const std::string& name, Outcome& outcome, const Outcome* 
   return row;
 }
 
-// Of the frames under load, and of their parts, to those of another play.
+// Ratios of the frame and part times under load to those of another run.
 nlohmann::json ratios_of(Outcome& outcome, Outcome& other) {
   const auto ratio = [](test::Times& times, test::Times& to, double fraction) {
     return std::round(1e3 * times.percentile(fraction) / to.percentile(fraction)) / 1e3;
@@ -351,7 +351,7 @@ int run(int argc, char** argv) {
     return 2;
   }
   const Settings& settings = *asked;
-  if (!settings.is_wall) setenv("LP_NUM_THREADS", "0", 1);  // llvmpipe's work is then this thread's
+  if (!settings.is_wall) setenv("LP_NUM_THREADS", "0", 1);  // llvmpipe then works on this thread
   const std::function<double()> now_ms = settings.is_wall ? steady_ms : test::thread_ms;
   const Presets presets =
       read_presets(settings.presets.empty() ? std::filesystem::path(ROOMRADAR_PRESETS) : settings.presets);

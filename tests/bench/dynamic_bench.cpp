@@ -1,6 +1,6 @@
-// dynamic_bench.cpp: what finding and meshing the moved pixels costs, and how right it is.
-// Scenes, seeds and frames are fixed: changing them breaks comparison with old numbers. Times are of one
-// thread's computing.
+// dynamic_bench.cpp: time and accuracy of finding and meshing the dynamic foreground. Scenes, seeds and
+// frames are fixed: changing them breaks the comparison with earlier results. Times are CPU times of one
+// thread.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -23,7 +23,7 @@
 namespace roomradar::test {
 namespace {
 
-// Puts a ball-shaped thing that covers a fifth of the image in front of the room.
+// Puts a ball that covers a fifth of the image in front of the room.
 void put_in_front(Frame& frame) {
   DepthImage& depth_m = frame.depth_m;
   const double radius_px = std::sqrt(0.2 * depth_m.width * depth_m.height / M_PI);
@@ -70,9 +70,9 @@ void measure_times(Rows& rows) {
                   {"p99_ms", segmentation.percentile(0.99)}});
 }
 
-// Watching for what came to stay: a plate before a wall that covers a part of the image, with the sensor's
-// noise and a camera that sways, for 20 s; and looking for what has settled, which a session does four times
-// a second.
+// Measures change tracking: a plate in front of a wall covers a part of the image, with the sensor's noise
+// and a swaying camera, for 20 s. Includes the search for completed changes, which a session runs four times
+// per second.
 void measure_watching(Rows& rows) {
   constexpr int kFrames = 600, kWarmUp = 60, kImages = 30;
   constexpr float kWall_m = 4.0F;

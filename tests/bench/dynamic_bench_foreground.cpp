@@ -1,4 +1,5 @@
-// dynamic_bench_foreground.cpp: how right the foreground is, on simulated movers and where nothing moves.
+// dynamic_bench_foreground.cpp: accuracy of the foreground on simulated movers, and in recordings without
+// motion.
 #include "tests/bench/dynamic_bench_foreground.hpp"
 
 #include <algorithm>
@@ -22,7 +23,7 @@
 namespace roomradar::test {
 namespace {
 
-// The room's mesh from 100 noisy frames of a walk round it, 1 cm.
+// Mesh of the room from 100 noisy frames of a walk around it, 1 cm voxels.
 Mesh prescanned(const std::string& room) {
   SimOptions options;
   options.room = room;
@@ -37,7 +38,7 @@ Mesh prescanned(const std::string& room) {
   return extract_surface(map);
 }
 
-// A static model, its pose's error, and how the masks against it score.
+// A static model, the error of its pose, and the score of the masks computed with it.
 struct Opponent {
   const char* model;
   double shift_m, turn_deg;
@@ -45,7 +46,7 @@ struct Opponent {
   MaskScore score = {};
 };
 
-// Four frames in a row, eight times: a new burst finds the foreground without memory, as after a start.
+// Eight bursts of four consecutive frames; each burst starts without foreground history.
 void judge_mover(const std::string& room, MoverKind mover, GlContext& context, const GpuMesh& mesh,
                  Rows& rows) {
   constexpr int kBursts = 8, kInARow = 4;
@@ -54,7 +55,7 @@ void judge_mover(const std::string& room, MoverKind mover, GlContext& context, c
   options.frames = 160;
   options.path = CameraPathKind::kView;
   options.movers = {mover};
-  if (mover == MoverKind::kBall) {  // on the floor, which a viewer may not see
+  if (mover == MoverKind::kBall) {  // it is on the floor, which may be out of view
     options.path = CameraPathKind::kScan;
     options.frames = 1200;
   }
@@ -121,7 +122,7 @@ void measure_masks(Rows& rows) {
   }
 }
 
-// A hand over a table that is seen from above it and from the side.
+// A hand above a table, seen from above the table and from the side.
 void measure_hand_over_table(Rows& rows) {
   for (const double below_deg : {35.0, 60.0, 89.0}) {
     MaskImage truth;
@@ -140,11 +141,11 @@ void measure_hand_over_table(Rows& rows) {
   }
 }
 
-// A recording in which nothing moves: what makes the map, and what is run in it.
+// A recording without motion: the frames that make the map, and the frames that are run in it.
 struct StillPart {
   const char* recording;
   FrameRange mapped, run;
-  std::int64_t hold_out = 0;  ///< of the mapped frames; then only these are judged
+  std::int64_t hold_out = 0;  ///< N > 0: held-out frames among the mapped ones; only these are scored
 };
 
 void measure_still(const StillPart& part, Rows& rows) {

@@ -1,13 +1,14 @@
-// dynamic_bench_foreground.hpp: how right the foreground is, on simulated movers and where nothing moves.
+// dynamic_bench_foreground.hpp: accuracy of the foreground, on simulated movers and in recordings without
+// motion.
 #pragma once
 #include <nlohmann/json.hpp>
 
 namespace roomradar::test {
 
-using Rows = nlohmann::json;  ///< an array of objects, one a measured cell
+using Rows = nlohmann::json;  ///< an array of objects, one per measured cell
 
-/// Appends masks of hand, ball and person against the truth; a hand at 1 to 20 cm over a table; what is
-/// marked in recordings where nothing moves. A recording that is absent is said on stdout and has no row.
+/// Appends rows: masks of hand, ball and person against the truth; a hand 1 to 20 cm above a table; pixels
+/// marked in recordings without motion. For an absent recording, prints a message and appends no row.
 void measure_foreground(Rows& rows);
 
 }  // namespace roomradar::test

@@ -1,5 +1,6 @@
-// dynamic_bench_mesh.cpp: the mesh of what moved beside the mesh of every pixel and that of the whole frame.
-// Scenes, seeds and frames are fixed: changing them breaks comparison with old numbers.
+// dynamic_bench_mesh.cpp: the mesh of the dynamic foreground compared with the mesh of every pixel and that
+// of the whole frame. Scenes, seeds and frames are fixed: changing them breaks the comparison with earlier
+// results.
 #include "tests/bench/dynamic_bench_mesh.hpp"
 
 #include <cmath>
@@ -68,20 +69,20 @@ double rms(const std::vector<float>& values) {
   return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
 }
 
-/// What is summed up over the frames of a kind of scene.
+/// Totals over the frames of one kind of scene.
 struct Quality {
   std::size_t frames = 0, full = 0, seen = 0, inferred = 0;
-  double largest_share = 0.0;  // of the triangles, in one frame
+  double largest_share = 0.0;  // largest fraction of the triangles, in one frame
   std::vector<float> from_full_sigmas, from_truth_sigmas, full_from_truth_sigmas;
   std::size_t full_px = 0, only_full_px = 0, only_seen_px = 0, lost_px = 0;
 };
 
-/// The tangent of the surface's angle to the image, from the exact depth.
+/// Tangent of the angle between surface and image plane, from the exact depth.
 float tangent_at(const DepthImage& exact_m, int x, int y, float focal_px) {
   const auto step = [&](int dx, int dy) {
     const float here = exact_m.at(x, y);
     const float before = std::abs(exact_m.at(x - dx, y - dy) - here);
-    return std::min(before, std::abs(exact_m.at(x + dx, y + dy) - here));  // not across an outline
+    return std::min(before, std::abs(exact_m.at(x + dx, y + dy) - here));  // not across a depth discontinuity
   };
   return std::hypot(step(1, 0), step(0, 1)) * focal_px / exact_m.at(x, y);
 }
@@ -191,7 +192,7 @@ void measure_mesh_quality(nlohmann::json& rows) {
         options.noise_scale = noise;
         options.movers = {mover};
         options.path = mover == MoverKind::kBall ? CameraPathKind::kScan : CameraPathKind::kView;
-        options.frames = mover == MoverKind::kBall ? 1200 : 150;  // a viewer may not see the floor
+        options.frames = mover == MoverKind::kBall ? 1200 : 150;  // the floor may be out of view
         const std::int64_t step = mover == MoverKind::kBall ? 300 : 50;
         SimulatedSource source(options);
         ViewCaster caster;

@@ -1,15 +1,15 @@
-// frame_bench.cpp: whole frames of a session in a saved room: what each stage costs, how soon a contact is
-// known, and how right the frames are.
+// frame_bench.cpp: whole frames of a session in a saved room: time per stage, latency until a contact is
+// known, and accuracy.
 //
 // usage: frame_bench [--scene NAME]... [--object TRIANGLES]... [--maps FOLDER] [--json FILE] [--slow MS]
-// --slow: says of each frame that takes longer where its time went. It links little, to run on another
-// machine: copy it with the maps and the libraries that ldd names; the scenes room and walk need no more
-// there. Scenes: kitchen (frames 400-499 of the recording, in the map of 0-399; left out, with a word, where
-// the recording is not here), room (a simulated dining room with a hand, the camera held still by a hand),
-// walk (the same, walked round). Maps are made once and kept in FOLDER (frame-bench-maps). An object is
-// dropped over what is in view every 25 frames. The first 10 frames are not counted. Reference: drawing the
+// --slow: prints the stage times of each frame that takes longer. The program links few libraries, so it can
+// run on another machine: copy it with the maps and the libraries that ldd lists. The scenes room and walk
+// need nothing else there. Scenes: kitchen (frames 400-499 of the recording, in the map of 0-399; omitted
+// with a message if the recording is absent), room (a simulated dining room with a hand, hand-held camera),
+// walk (the same room, camera walking around it). Maps are made once and kept in FOLDER (frame-bench-maps).
+// An object is dropped into view every 25 frames. The first 10 frames are not counted. Reference: drawing the
 // whole map's depth with OpenGL at the frames' poses, before and after each row. Scenes, seeds and frames are
-// fixed: changing them breaks comparison with old numbers.
+// fixed: changing them breaks the comparison with earlier results.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -80,10 +80,10 @@ struct Settings {
   std::vector<std::size_t> objects;
   std::filesystem::path maps = "frame-bench-maps";
   std::string json;
-  double slow_ms = 0.0;  ///< 0: no frame is slow
+  double slow_ms = 0.0;  ///< 0: report no frame
 };
 
-/// The stages of a frame that took longer than slow_ms, those from 0.5 ms on.
+/// Prints the stages of a frame that took longer than slow_ms; omits stages below 0.5 ms.
 void say_if_slow(double slow_ms, std::int64_t frame, const StageTimes& times,
                  std::map<std::string, std::size_t>& counts) {
   std::string text;
@@ -104,8 +104,8 @@ std::string range_text(const FrameRange& frames) {
   return std::to_string(frames.first) + ":" + std::to_string(frames.last);
 }
 
-/// What reads recordings and scans rooms is a program beside this one, which therefore runs on a machine
-/// without the libraries that it takes.
+/// Reading recordings and scanning rooms is done by a program beside this one, so this program also runs on
+/// machines without the libraries that they need.
 std::string reader_command(const std::vector<std::string>& arguments) {
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
@@ -114,7 +114,7 @@ std::string reader_command(const std::vector<std::string>& arguments) {
   return command;
 }
 
-/// Rooms scanned from one source share a map.
+/// Scenes scanned from the same source share a map.
 SavedMap map_of(const Scene& scene, const std::filesystem::path& maps) {
   const std::filesystem::path folder = maps / (scene.name == "walk" ? "room" : scene.name);
   if (!std::filesystem::exists(folder)) {
@@ -146,7 +146,8 @@ std::vector<Frame> frames_of(const Scene& scene) {
   return frames;
 }
 
-/// Wall-clock microseconds that OpenGL takes for 1,000 triangles of the whole map, as the frames see it.
+/// Measures the wall-clock time, us, that OpenGL needs per 1,000 triangles of the whole map, from the frames'
+/// poses.
 void measure_reference(const SavedMap& map, const std::vector<Frame>& frames, test::Times& us_per_1000) {
   GlContext context;
   GpuMesh mesh(context);
@@ -192,7 +193,7 @@ nlohmann::json bench(const Scene& scene, const SavedMap& map, const std::vector<
   test::Times apart_m, turned_deg, cpu_ms;
   double moved = 0.0, valid = 0.0, deepest_m = 0.0, static_triangles = 0.0;
   int located = 0, contacts = 0;
-  std::vector<std::pair<Eigen::Isometry3d, Eigen::Isometry3d>> poses;  // the source's, and the one found
+  std::vector<std::pair<Eigen::Isometry3d, Eigen::Isometry3d>> poses;  // from the source, and estimated
   std::string renderer;
   {
     SessionConfig config;
@@ -274,8 +275,8 @@ void print_row(const nlohmann::json& row) {
   std::fflush(stdout);
 }
 
-/// The finest object's frame over the coarsest's. Two sessions take the frames in turn, so that a machine
-/// that is slower for some seconds is so for both.
+/// Ratio of frame times with the finest and the coarsest object. Two sessions alternate frame by frame, so
+/// temporary slowdowns of the machine affect both.
 nlohmann::json ratio_row(const Scene& scene, const SavedMap& map, const std::vector<Frame>& frames,
                          const Mesh& few, const Mesh& many) {
   struct Player {

@@ -1,5 +1,5 @@
-// frame_bench_pipe.hpp: frames from frame_bench_reader to frame_bench, through a pipe between two programs of
-// one build.
+// frame_bench_pipe.hpp: frames from frame_bench_reader to frame_bench through a pipe. Both programs must come
+// from the same build.
 #pragma once
 #include <cstdio>
 #include <type_traits>
@@ -8,8 +8,8 @@
 
 namespace roomradar::bench {
 
-/// Calls move(pointer, bytes) for each part of the frame that has a fixed size, then for the images once
-/// their sizes are known. What of a frame a session does not look at (gravity) is left out.
+/// Calls move(pointer, bytes) for each fixed-size part of the frame, then for the images once their sizes are
+/// known. Leaves out fields that a session does not use (gravity).
 template <typename Move>
 bool move_frame(Frame& frame, const Move& move) {
   const auto move_value = [&](auto& value) {
@@ -34,7 +34,7 @@ inline bool write_frame(Frame frame, std::FILE* to) {
   return move_frame(
       frame, [&](const void* from, std::size_t bytes) { return std::fwrite(from, 1, bytes, to) == bytes; });
 }
-/// false at the end.
+/// Returns false at the end.
 inline bool read_frame(std::FILE* from, Frame& frame) {
   frame = {};
   return move_frame(frame,

@@ -1,8 +1,9 @@
-// frame_bench_reader.cpp: the part of frame_bench that reads recordings and scans rooms, as a program beside
-// it: frame_bench itself runs without the libraries that this takes.
+// frame_bench_reader.cpp: the part of frame_bench that reads recordings and scans rooms. A separate program,
+// so frame_bench runs without the libraries that this one needs.
 //
 // usage: frame_bench_reader scan SOURCE [A:B] FOLDER     saves the map of the source's frames A to B
-//        frame_bench_reader frames SOURCE A:B            writes them to stdout, as frame_bench_pipe.hpp says
+//        frame_bench_reader frames SOURCE A:B            writes them to stdout, in frame_bench_pipe.hpp's
+//        format
 #include <cstdio>
 #include <optional>
 #include <string>

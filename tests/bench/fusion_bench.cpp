@@ -1,13 +1,13 @@
-// fusion_bench.cpp: time of fusing a frame, and agreement with OctoMap's insertPointCloud in the same run.
+// fusion_bench.cpp: time to fuse a frame, and agreement with OctoMap's insertPointCloud in the same run.
 //
-// usage: fusion_bench [RECORDING] [--frames N] [--judged N] [--resolutions M,M,...] [--json FILE]
-// RECORDING has poses (default: the kitchen beside the project). Ours fuses the first N frames (300) at each
-// resolution (0.05,0.02,0.01,0.005), colour included; OctoMap inserts all pixels of `judged` of them (10),
-// evenly spread, and a map of ours with just these is compared with its, voxel by voxel along three million
-// random points. At half a centimetre OctoMap would need minutes, and is left out. Times are of the thread's
-// own processor time, so that other programs count only by the caches they take; reading is not timed. The
-// first line names processor, compiler and flags; then one JSON row for each cell. Settings are the defaults
-// of FusionConfig; changing them breaks comparison with old numbers.
+// usage: fusion_bench [RECORDING] [--frames N] [--judged N] [--resolutions M,M,...] [--json FILE] RECORDING
+// has poses (default: the kitchen beside the project). Our map fuses the first N frames (300) at each
+// resolution (0.05,0.02,0.01,0.005), including colour. OctoMap inserts all pixels of `judged` of them (10),
+// evenly spaced; a map of ours from just these frames is compared with OctoMap's, voxel by voxel along three
+// million random points. OctoMap is omitted at 0.005 m, where it would need minutes. Times are the thread's
+// CPU time, so other programs affect them only through shared caches; reading is not timed. The first line
+// names processor, compiler and flags; then follows one JSON row per cell. Settings are the defaults of
+// FusionConfig: changing them breaks the comparison with earlier results.
 #include <octomap/OcTree.h>
 #include <time.h>
 
@@ -71,10 +71,10 @@ void insert_rays(octomap::OcTree& tree, const Frame& frame, float max_range_m) {
 }
 
 struct Agreement {
-  double agree = 0.0;  // of voxels known to both, the part with the same answer
-  // Of OctoMap's occupied voxels known to both, the part that is occupied in ours.
+  double agree = 0.0;  // fraction of the voxels known to both that have the same occupancy
+  // Fraction of OctoMap's occupied voxels known to both that are occupied in ours.
   double occupied_kept = 0.0;
-  double made_free = 0.0;  // of OctoMap's unknown voxels, the part that is free in ours
+  double made_free = 0.0;  // fraction of OctoMap's unknown voxels that are free in ours
 };
 
 Agreement compare(const StaticMap& ours, const octomap::OcTree& reference) {
@@ -134,7 +134,7 @@ void bench(const Settings& settings, double resolution_m, nlohmann::json& rows) 
   };
   if (resolution_m < kFinestJudged_m) return show(ours);
 
-  std::vector<double> reference_ms, same_ms;  // of the same frames
+  std::vector<double> reference_ms, same_ms;  // times of the same frames
   StaticMap judged(resolution_m);
   octomap::OcTree reference(resolution_m);
   const std::int64_t step =

@@ -1,15 +1,14 @@
-// ghost_bench.cpp: what is left of people and hands in the map after a simulated prescan.
+// ghost_bench.cpp: remains of people and hands in the map after a simulated prescan.
 //
 // usage: ghost_bench [--resolution M] [--poses recorded|tracked] [--frames N] [--width PX] [--seed N]
-//                    [--keep-ghosts] [--json FILE] [CASE...]    CASE: one of those below, all of them if
-//                    none is named
-// Each case is scanned twice, with the one who moves and without, camera and noise alike. An occupied leaf is
-// hers if the scan without her has none in it or beside it, it lies farther from the room's true surface than
-// the noise explains (half a leaf's diagonal and four standard deviations of the depth at the range from
-// which she was seen there), and in or beside (two leaves) the space that she moved through while the camera
-// looked. What of the room is lost: leaves of the scan without her, on the true surface, that the scan with
-// her has none within two leaves of. Settings are the defaults of PrescanConfig; changing them breaks
-// comparison with old numbers.
+//                    [--keep-ghosts] [--json FILE] [CASE...]    CASE: one of those below; default: all
+// Each case is scanned twice, with and without the moving person; camera and noise are the same. An occupied
+// leaf is counted as hers under three conditions. The scan without her has no occupied leaf in it or beside
+// it. It is farther from the room's true surface than noise explains (half a leaf's diagonal plus four
+// standard deviations of the depth at the range from which she was seen there). It is within two leaves of
+// the space that she moved through while the camera looked. Lost parts of the room: leaves of the scan
+// without her, on the true surface, without a leaf of the scan with her within two leaves. Settings are the
+// defaults of PrescanConfig: changing them breaks the comparison with earlier results.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,7 +36,7 @@ struct Settings {
   PoseOrigin poses = PoseOrigin::kRecorded;
   std::int64_t frames = 300;
   int width_px = 320;
-  int seed = 1;  // of the camera's path, her walk and the noise
+  int seed = 1;  // seed of the camera path, her walk and the noise
   bool keep_ghosts = false;
   std::string json;
   std::vector<std::string> cases;
@@ -45,7 +44,7 @@ struct Settings {
 
 struct Case {
   const char* name;
-  const char* options;  // of the simulation
+  const char* options;  // options of the simulation
   bool glass;           // the wall behind her gives no depth
 };
 constexpr std::array<Case, 7> kCases = {{
@@ -58,7 +57,7 @@ constexpr std::array<Case, 7> kCases = {{
     {"hand", "sim:table?moving=hand&path=view", false},
 }};
 
-/// The frames of a simulated Kinect, rendered once; the wall behind the person may be a pane of glass.
+/// Frames of a simulated Kinect, rendered once; the wall behind the person may be a pane of glass.
 class RenderedFrames final : public FrameSource {
  public:
   RenderedFrames(const SimOptions& options, bool glass) : source_(options) {
@@ -108,11 +107,11 @@ struct Leaf {
 
 struct Scan {
   std::vector<Leaf> occupied;
-  std::unordered_set<std::uint64_t> codes;  // of their places in the room's own grid
+  std::unordered_set<std::uint64_t> codes;  // voxel keys in the room's own grid
   PrescanCounts counts;
   double ghosts_s = 0.0;
 
-  // Whether a leaf is occupied within `reach` leaves.
+  // Returns true if a leaf within `reach` leaves is occupied.
   [[nodiscard]] bool has_near(const VoxelIndex& voxel, int reach) const {
     for (int z = -reach; z <= reach; ++z)
       for (int y = -reach; y <= reach; ++y)
@@ -151,7 +150,7 @@ Scan scan(const SimOptions& options, bool glass, const Settings& settings) {
   return scan;
 }
 
-/// The space that she moved through, as the camera saw it.
+/// The space that she moved through, as seen by the camera.
 class Passage {
  public:
   explicit Passage(const SimOptions& options) : camera_(options.depth_camera) {
@@ -178,7 +177,7 @@ class Passage {
     }
   }
 
-  /// The least depth at which she was seen within margin_m of a point; infinite if she never was.
+  /// Returns the least depth at which she was seen within margin_m of a point; infinite if never.
   [[nodiscard]] double seen_from_m(const Eigen::Vector3d& p_room, double margin_m) const {
     double nearest_m = std::numeric_limits<double>::infinity();
     for (const Moment& moment : moments_) {
@@ -219,7 +218,7 @@ nlohmann::json bench(const Case& chosen, const Settings& settings) {
   const Scan without = scan(options, chosen.glass, settings);
 
   const double leaf_m = settings.resolution_m;
-  std::array<std::int64_t, 3> hers{};  // all, more than 6 and 10 cm off
+  std::array<std::int64_t, 3> hers{};  // all, more than 6 cm off, more than 10 cm off
   for (const Leaf& leaf : with_her.occupied) {
     const double off_m = std::abs(signed_distance_m(room, leaf.centre_room));
     if (off_m < 0.87 * leaf_m || without.has_near(leaf.voxel, 1)) continue;

@@ -1,14 +1,16 @@
-// map_bench.cpp: how true a prescan's map is, on simulated rooms whose surface is known exactly.
+// map_bench.cpp: accuracy of a prescan's map, on simulated rooms whose surface is known exactly.
 //
 // usage: map_bench [--resolution M] [--json FILE] [poses SOURCE]...
 //        poses: recorded (the true ones) or tracked; SOURCE: sim:ROOM?...
-// Without cells: recorded and tracked on sim:table, 700 frames, once round the room and back.
+// Default: recorded and tracked on sim:table, 700 frames, once around the room and back.
 //
-// distance   of points spread evenly over the mesh to the room's surface
-// cover      part of the room's surface that at least 3 frames measured, within 5 m, that has mesh within 2
-// cm precision  part of the mesh within 2 cm of the surface; F-score: its harmonic mean with cover gap error
-// of the last pose relative to the first Settings are the defaults of PrescanConfig; changing them breaks
-// comparison with old numbers.
+//   distance   from points evenly distributed over the mesh to the room's surface
+//   cover      fraction of the room's surface measured by at least 3 frames, within 5 m, that has mesh
+//              within 2 cm
+//   precision  fraction of the mesh within 2 cm of the surface; F-score: its harmonic mean with cover
+//   gap        error of the last pose relative to the first
+//
+// Settings are the defaults of PrescanConfig: changing them breaks the comparison with earlier results.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -25,7 +27,7 @@
 namespace roomradar {
 namespace {
 
-constexpr double kSpacing_m = 0.005;  // of the points spread over the mesh
+constexpr double kSpacing_m = 0.005;  // spacing of the points on the mesh
 
 struct Cell {
   std::string poses;
@@ -39,7 +41,7 @@ std::vector<Eigen::Vector3d> seen_surface(SimulatedSource& source) {
   return seen.points();
 }
 
-/// Where the camera truly was in the frames of the trajectory's first and last pose.
+/// Returns the true camera poses at the frames of the trajectory's first and last pose.
 std::vector<TimedPose> true_ends(const std::vector<TimedPose>& trajectory, SimulatedSource& source) {
   if (trajectory.empty()) return {};
   std::vector<TimedPose> ends{trajectory.front(), trajectory.back()};

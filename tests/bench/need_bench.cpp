@@ -1,5 +1,5 @@
-// need_bench.cpp: only what a scene requires: half of what matters of a room costs half as much.
-// Scenes are fixed: changing them breaks comparison with old numbers. Times are of what all threads computed.
+// need_bench.cpp: cost follows need: half as much relevant scene takes half the time. Scenes are fixed:
+// changing them breaks the comparison with earlier results. Times are CPU times of all threads.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -25,14 +25,14 @@ using Rows = nlohmann::json;
 
 constexpr Intrinsics kCamera{640, 480, 585.0, 585.0, 319.5, 239.5};
 
-/// Of all threads of this process.
+/// CPU time of all threads of this process.
 double process_ms() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// Times of work at several sizes, taken in turns, so that a noisy machine is as noisy for all of them.
+/// Measures work at several sizes, alternating between them, so noise of the machine affects all alike.
 template <typename Work>
 std::vector<double> medians_ms(std::size_t sizes, int repeats, const Work& work) {
   constexpr int kWarmUp = 5;
@@ -49,7 +49,7 @@ std::vector<double> medians_ms(std::size_t sizes, int repeats, const Work& work)
   return medians;
 }
 
-/// A wavy wall over x, y in -half_m .. half_m, z metres before the camera, of 2 n^2 triangles.
+/// A wavy wall over x, y in -half_m .. half_m, at depth z in front of the camera, of 2 n^2 triangles.
 Mesh wall(int n, float half_m, float z) {
   Mesh mesh;
   for (int j = 0; j <= n; ++j) {
@@ -69,7 +69,7 @@ Mesh wall(int n, float half_m, float z) {
   return mesh;
 }
 
-/// The same without the triangles of which no corner is in.
+/// The same mesh without triangles that have no vertex for which is_in() returns true.
 template <typename IsIn>
 Mesh cut(const Mesh& whole, const IsIn& is_in) {
   Mesh part = whole;
@@ -79,7 +79,7 @@ Mesh cut(const Mesh& whole, const IsIn& is_in) {
   return part;
 }
 
-/// Appends a row a size; the first is what the others are compared with.
+/// Appends one row per size; the others are compared with the first.
 template <typename Describe>
 void add_rows(const std::string& work, const std::vector<double>& medians, const std::vector<double>& parts,
               const Describe& describe, Rows& rows) {
@@ -93,8 +93,8 @@ void add_rows(const std::string& work, const std::vector<double>& medians, const
   }
 }
 
-// A camera before a wall of 720,000 triangles sees all of its image covered, then half of it, a quarter: it
-// looks past the wall's edge.
+// A camera in front of a wall of 720,000 triangles that covers all of its image, then half of it, then a
+// quarter, as the camera moves past the wall's edge.
 void measure_expected_depth(Rows& rows) {
   GlContext context;
   DepthPass pass(context);
@@ -116,7 +116,7 @@ void measure_expected_depth(Rows& rows) {
   add_rows(
       "expected depth", medians, parts,
       [&](std::size_t i) {
-        // Nothing of what was left out was needed: what is in view alone gives the same image.
+        // The triangles in view alone give the same image: none of the rest was needed.
         const auto least_x = static_cast<float>(poses[i].translation().x() - 1.1 * half_view_m);
         only_part.upload(cut(whole_mesh, [&](const Eigen::Vector3f& p) { return p.x() > least_x; }),
                          MeshUsage::kStatic);
@@ -138,15 +138,15 @@ void measure_expected_depth(Rows& rows) {
       rows);
 }
 
-/// A plate of n x n squares, edge_m wide, that looks along +z.
+/// A plate of n x n squares, edge_m wide, facing +z.
 Mesh plate(int n, float edge_m) {
   Mesh mesh = wall(n, 0.5F * edge_m, 0.0F);
   for (Eigen::Vector3f& p : mesh.vertices) p.z() = 0.0F;
   return mesh;
 }
 
-// A plate that moves at a wall: half as much wall in its way, by a plate of half the area; and all of the
-// wall in a room of twice as many triangles.
+// A plate that moves towards a wall: a plate of half the area, with half as much wall in its way; and the
+// whole plate in a room of twice as many triangles.
 void measure_radar(Rows& rows) {
   const auto tree_of = [](const Mesh& mesh) {
     TriangleTree tree;
@@ -186,7 +186,7 @@ void measure_radar(Rows& rows) {
   add_rows(
       "radar", medians, parts,
       [&](std::size_t i) {
-        // What is in the plate's way alone gives the same answer.
+        // The triangles in the plate's way alone give the same result.
         Case& of = cases[i];
         const auto reach = static_cast<float>(of.edge_m);
         const Mesh part = cut(*of.mesh, [&](const Eigen::Vector3f& p) { return p.head<2>().norm() < reach; });
@@ -201,7 +201,8 @@ void measure_radar(Rows& rows) {
       rows);
 }
 
-// Eight balls before a wall, each over 5 % of the image; four, two, one; with the sensor's noise.
+// Eight balls in front of a wall, each covering 5 % of the image; then four, two, one; with the sensor's
+// noise.
 void measure_mesh(Rows& rows) {
   constexpr double kRadius_px = 70.0;
   std::vector<DepthImage> depths;

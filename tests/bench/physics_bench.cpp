@@ -1,18 +1,18 @@
-// physics_bench.cpp: virtual objects at rest on noisy depth, thrown about in simulated rooms, and what it
-// costs.
+// physics_bench.cpp: virtual objects at rest on noisy depth, thrown about in simulated rooms, and their cost.
 //
 // usage: physics_bench [--throws N] [--only rest|throws|time] [--json FILE]
-//   rest    a cube, a teapot, a ball and a plate on a level surface in view of a simulated Kinect with its
-//   noise,
-//           in three rooms; once all surfaces are each frame's depth (`depth`), once they are the room's mesh
-//           and what is found to move (`map`): how far they go in 300 frames once they lie
-//   throws  N throws (10,000) at up to 10 m/s and 20 rad/s in thirteen rooms. Judged by the rooms' exact
-//   solids:
-//           every piece of a path is followed by steps that the solids' distance allows; the thrown solids
-//           are taken 0.9 mm smaller all round, since meshes lie up to 0.5 mm inside of round solids
-//   time    of a frame with one body of some 6,300 triangles (12 for the cube), from the throw to rest; and
-//           of a board that falls flat on another, 12 triangles each and 10,800
-// Rooms, things, seeds and configs are fixed; changing them breaks comparison with old numbers.
+//
+//   rest    A cube, a teapot, a ball and a plate on a level surface in view of a simulated Kinect with its
+//           noise, in three rooms. All surfaces are each frame's depth (`depth`), or the room's mesh plus the
+//           detected foreground (`map`). Measures how far the objects move in 300 frames once asleep.
+//   throws  N throws (10,000) at up to 10 m/s and 20 rad/s in thirteen rooms. Checked against the rooms'
+//           exact solids: every substep of a path is sampled in steps no longer than the solids' clearance.
+//           The thrown solids are reduced by 0.9 mm on all sides, since meshes are up to 0.5 mm inside round
+//           solids.
+//   time    Time per frame with one body of some 6,300 triangles (12 for the cube), from the throw to rest;
+//           and of a board that falls flat on another, of 12 and of 10,800 triangles each.
+//
+// Rooms, objects, seeds and configs are fixed: changing them breaks the comparison with earlier results.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,7 +79,7 @@ struct Lying {
   int at_rest_from = -1;  // frame
   int wakes = 0;
   Eigen::Isometry3d lay = Eigen::Isometry3d::Identity();
-  double moved_m = 0.0, turned_deg = 0.0;  // the most since
+  double moved_m = 0.0, turned_deg = 0.0;  // greatest since then
 };
 
 void measure_rest(nlohmann::json& rows) {
@@ -162,7 +162,7 @@ void measure_rest(nlohmann::json& rows) {
 
 struct Thrown {
   Thing thing;
-  Solid solid;  ///< the same, 0.9 mm smaller all round
+  Solid solid;  ///< the same shape, reduced by 0.9 mm on all sides
 };
 
 std::vector<Thrown> thrown_things() {
@@ -180,9 +180,8 @@ std::vector<Thrown> thrown_things() {
   return things;
 }
 
-/// Whether the solid is in one of the obstacles. Where it seems to be, it has to be so a hair's breadth
-/// beside and turned by as little too: the distance of two solids that stand just so to each other may be
-/// told as 0.
+/// Returns true if the solid overlaps an obstacle. An overlap counts only if it persists when the solid is
+/// shifted and rotated slightly: in some exactly aligned poses the distance of two solids is computed as 0.
 bool is_in_any(const std::vector<Solid>& obstacles, const Solid& solid,
                const Eigen::Isometry3d& T_world_object) {
   constexpr double kHair = 2e-5;
@@ -195,8 +194,7 @@ bool is_in_any(const std::vector<Solid>& obstacles, const Solid& solid,
   return true;
 }
 
-/// Whether it is on its way; asked at places as far apart as its distance
-/// allows.
+/// Returns true if the solid hits an obstacle on its path; tests poses as far apart as its clearance allows.
 bool meets_any(const std::vector<Solid>& obstacles, const Solid& solid,
                const Eigen::Isometry3d& T_world_object, const RigidMotion& motion, double duration_s,
                double radius_m) {
@@ -266,7 +264,7 @@ void measure_throws(int throws, nlohmann::json& rows) {
       if (tunnelled) met_world = T_world_object.translation();
       T_followed = pose_after(T_world_object, motion, duration_s);
     };
-    // What is shifted between two pieces of a path, out of an overlap, goes straight there.
+    // A depenetration shift between two substeps is a straight translation.
     const auto follow_to = [&](const Eigen::Isometry3d& T_world_object) {
       RigidMotion shift;
       shift.linear_m_s = T_world_object.translation() - T_followed.translation();

@@ -1,4 +1,4 @@
-// physics_bench_scenes.cpp: makes meshes and moves bodies among them.
+// physics_bench_scenes.cpp: builds meshes and moves bodies among them.
 #include "physics_bench_scenes.hpp"
 
 #include <array>

@@ -1,4 +1,4 @@
-// physics_bench_scenes.hpp: bodies and surfaces for the physics bench, and one body's world of meshes.
+// physics_bench_scenes.hpp: bodies and surfaces for physics_bench, and a world of meshes for one body.
 #pragma once
 #include <list>
 #include <string>
@@ -12,12 +12,13 @@
 
 namespace roomradar::bench {
 
-/// A box about the origin, outward.
+/// Axis-aligned box about the origin, facing outwards.
 Mesh box_mesh(const Eigen::Vector3d& size_m);
-/// A ball about the origin: a cube's grid of 6 n^2 squares blown up to a sphere, outward; 12 n^2 triangles.
+/// Ball about the origin, facing outwards: the 6 n^2 squares of a cube's grid projected onto a sphere, 12 n^2
+/// triangles.
 Mesh ball_mesh(double radius_m, int n);
 
-/// What is thrown, dropped and set down.
+/// An object that is thrown, dropped or set down.
 struct Thing {
   std::string name;
   Mesh mesh;
@@ -27,12 +28,12 @@ struct Thing {
   Thing(std::string name, Mesh mesh);
 };
 
-/// Meshes that stand still, and the radar that looks at them.
+/// Static meshes, and the radar that queries them.
 class World {
  public:
   void add(const Mesh& mesh, SurfaceKind kind = SurfaceKind::kStatic);
   void replace(std::size_t which, const Mesh& mesh) { trees_[which].build_in_order(mesh); }
-  /// Also these bodies, as objects.
+  /// `others` are further bodies, treated as objects.
   StepReport step(Body& body, const Thing& thing, double dt_s, const PhysicsConfig& config,
                   std::span<const SceneTree> others = {});
 
@@ -44,7 +45,7 @@ class World {
   ProximityQuery field_;
 };
 
-/// J/kg against the world's zero height: of motion and of place.
+/// Kinetic plus potential energy, J/kg, relative to the world's zero height.
 double energy_of(const Body& body, const PhysicsConfig& config);
 
 }  // namespace roomradar::bench

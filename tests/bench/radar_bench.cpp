@@ -1,8 +1,9 @@
-// radar_bench.cpp: time and error of Cyber Radar on a scene that is new every frame, beside FCL and Embree.
+// radar_bench.cpp: time and error of Cyber Radar on a scene that is new in every frame, beside FCL and
+// Embree.
 //
-// Fixed: the depth frame, the poses, the seeds. Changing any of them breaks comparison with old numbers.
-// Needs roomradar's radar and types; runs without OpenGL's rows where there is no EGL device, and without a
-// peer's rows where its module does not lie beside the program.
+// The depth frame, the poses and the seeds are fixed: changing them breaks the comparison with earlier
+// results. Needs only roomradar's radar and types. Omits OpenGL's rows without an EGL device, and a peer's
+// rows if its module is not beside the program.
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace roomradar::bench {
 namespace {
 
 constexpr double kDistance_m = 0.5;  // d is this plus the sensor's length
-constexpr double kClear_m = 0.15;  // no sensor of the frame's table reaches farther from its middle than 0.13
+constexpr double kClear_m = 0.15;  // no sensor of the frame's table reaches farther than 0.13 from its centre
 constexpr const char* kUsage =
     "usage: radar_bench [--json FILE] [--poses N] [--concave N] [--bounds N] [--objects N] [--only TABLE]\n"
     "  --poses N    free poses of the tables `frame` and `steady` (24)\n"
@@ -96,7 +97,7 @@ void print(const Row& r, double fcl_ms, double embree_ms) {
   std::fflush(stdout);
 }
 
-/// A scene that is new and a sensor that has turned in every pose: every method side by side.
+/// All methods side by side; the scene is new and the sensor rotated in every pose.
 void frame_table(const FrameScene& frame, const std::vector<Pose>& poses, GlContext* context,
                  const std::vector<std::unique_ptr<Peer>>& peers, std::vector<Row>& rows) {
   for (const Sensor& sensor : sensors()) {
@@ -129,9 +130,10 @@ void frame_table(const FrameScene& frame, const std::vector<Pose>& poses, GlCont
   }
 }
 
-/// A scene that is new and an object that has moved but not turned: does its polygon count still show?
+/// The scene is new, and the object has moved but not rotated: shows whether its triangle count still
+/// matters.
 void steady_table(const FrameScene& frame, const std::vector<Pose>& poses, std::vector<Row>& rows) {
-  constexpr int kUntilSteady = 200;  // queries, until M is as fine as it becomes
+  constexpr int kUntilSteady = 200;  // queries until M reaches its final resolution
   std::vector<Sensor> all = sensors();
   all.insert(all.begin() + 1, torus_sized_box());
   for (const int px : {64, 128, 256}) {
@@ -158,11 +160,10 @@ void steady_table(const FrameScene& frame, const std::vector<Pose>& poses, std::
   }
 }
 
-/// Both modes of the radar on the processor, and the one in GL, on poses of one object before one scene.
-/// Untimed.
+/// Checks both modes of the CPU radar, and the GL radar, on poses of one object in one scene. Not timed.
 void judge_modes(const std::string& table, const Sensor& sensor, const std::vector<Pose>& poses,
                  const Mesh& scene, GlContext* context, std::vector<Row>& rows) {
-  FrameScene as_frame;  // only its mesh is looked at
+  FrameScene as_frame;  // only its mesh is used
   as_frame.mesh = scene;
   std::vector<Method> methods = {radar_on_mesh(as_frame, sensor.mesh, RadarMode::kExact, 64, kDistance_m),
                                  radar_on_mesh(as_frame, sensor.mesh, RadarMode::kSampled, 64, kDistance_m),
@@ -186,7 +187,7 @@ void judge_modes(const std::string& table, const Sensor& sensor, const std::vect
   }
 }
 
-/// Free poses of concave objects with scene in the hollow: whatever is reported before the truth is false.
+/// Free poses of concave objects with scene in the hollow: any contact reported before the true one is false.
 void concave_table(int count, GlContext* context, std::vector<Row>& rows) {
   std::vector<Eigen::Vector3d> tips_m;
   const Mesh sticks = sticks_mesh(60, 3, tips_m);
@@ -198,7 +199,7 @@ void concave_table(int count, GlContext* context, std::vector<Row>& rows) {
   }
 }
 
-/// Do lower_m <= truth <= upper_m hold, and is the exact answer exact?
+/// Checks that lower_m <= truth <= upper_m, and that the exact result is exact.
 void bounds_table(int count, const FrameScene& coarse, const FrameScene& fine, std::vector<Row>& rows) {
   const int share = (count + 5) / 6;
   const std::vector<Pose> poses = free_poses(coarse, fine, kClear_m, share);
@@ -248,7 +249,7 @@ int run(int argc, char** argv) {
     for (const FrameScene* frame : {&coarse, &fine}) frame_table(*frame, poses, context.get(), peers, rows);
   }
   if (is_wanted("steady")) {
-    constexpr double kBoxClear_m = 0.2;  // the box's corners reach 0.18
+    constexpr double kBoxClear_m = 0.2;  // the box's corners are 0.18 from its centre
     const std::vector<Pose> poses = steady_poses(coarse, fine, kBoxClear_m, options.poses);
     for (const FrameScene* frame : {&coarse, &fine}) steady_table(*frame, poses, rows);
   }

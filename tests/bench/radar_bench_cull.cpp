@@ -1,5 +1,5 @@
-// radar_bench_cull.cpp: the image rectangle of the swept volume, then a test of each triangle against its
-// sides.
+// radar_bench_cull.cpp: finds the image rectangle of the swept volume, then tests each triangle against the
+// volume's sides.
 #include "radar_bench_cull.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace roomradar::bench {
 namespace {
 
 struct CellRange {
-  int first = 0, last = -1;  // vertices, both included
+  int first = 0, last = -1;  // vertex indices, both inclusive
 };
 
 std::array<CellRange, 2> vertices_of(const FrameScene& frame, const SweptVolume& volume) {

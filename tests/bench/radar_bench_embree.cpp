@@ -1,8 +1,8 @@
-// radar_bench_embree.cpp: Embree as a peer: rays from all vertices, ahead from the object's and back from the
-// scene's.
+// radar_bench_embree.cpp: Embree as a peer: casts rays from all vertices, forward from the object's and
+// backward from the scene's.
 //
-// An edge that meets an edge is seen by no ray: that is its error. The scene's tree is built anew at low
-// quality (Morton order, the fastest in sum), the object's once at high quality.
+// Rays miss contacts between two edges; this is the method's error. The scene's tree is rebuilt at low
+// quality (Morton order, the fastest in total), the object's tree is built once at high quality.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace roomradar::bench {
 namespace {
 
-/// One Embree scene of one mesh, whose buffers belong to the caller.
+/// An Embree scene of one mesh, whose buffers the caller owns.
 class RayMesh {
  public:
   RayMesh(RTCDevice device, RTCBuildQuality quality, RTCSceneFlags flags)
@@ -52,7 +52,7 @@ class RayMesh {
 
 enum class Rays {
   kSingleFullLength,   ///< as in the published comparison
-  kShortenedPackets16  ///< no longer than the shortest way so far, 16 side by side: the fastest found
+  kShortenedPackets16  ///< limited to the least distance so far, 16 at a time: the fastest found
 };
 
 class EmbreePeer final : public Peer {

@@ -1,10 +1,10 @@
 // radar_bench_fcl.cpp: FCL as a peer: conservative advancement on its exact mesh distance.
 //
-// FCL 0.7's own continuousCollide is no fair rival: its bounds of moving boxes are missing for translations,
-// so it was off by up to 212 mm on these poses, and slow (9 to 2,500 ms). The distance query is sound;
-// advancing by it until the gap is below a tolerance finds the contact from below. Tried on the same poses:
-// RSS, OBBRSS and kIOS, float and double, all split rules: RSS in float, split at the mean, is the fastest
-// that is right; it is given the culled triangles in the volume's frame.
+// FCL 0.7's own continuousCollide would be no fair comparison. It lacks the bounds of moving boxes for
+// translations; it was off by up to 212 mm on these poses, and slow (9 to 2,500 ms). The distance query is
+// sound: advancing by it until the gap is below a tolerance finds the contact from below. RSS, OBBRSS and
+// kIOS, float and double, and all split rules were tried on the same poses. RSS in float, split at the mean,
+// is the fastest correct one. It receives the culled triangles in the volume's frame.
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/math/bv/RSS.h>
 #include <fcl/narrowphase/distance.h>
@@ -61,7 +61,7 @@ class FclPeer final : public Peer {
   std::vector<int> index_of_;
   CulledScene culled_;
 
-  /// The culled triangles with only the vertices that they use.
+  /// Collects the culled triangles with only the vertices that they use.
   void gather() {
     points_.clear();
     triangles_.clear();
@@ -78,7 +78,7 @@ class FclPeer final : public Peer {
       triangles_.emplace_back(index(t[0]), index(t[1]), index(t[2]));
   }
 
-  /// A model anew: this version's cannot be built a second time.
+  /// Creates a new model: this FCL version cannot rebuild a model.
   void build(std::optional<Model>& model) const {
     model.emplace();
     model->beginModel(static_cast<int>(triangles_.size()), static_cast<int>(points_.size()));

@@ -1,4 +1,4 @@
-// radar_bench_methods.cpp: our modes and the peers behind one call.
+// radar_bench_methods.cpp: our modes and the peers behind one interface.
 #include "radar_bench_methods.hpp"
 
 #include "radar/batch/gl_radar.hpp"
@@ -7,7 +7,7 @@
 namespace roomradar::bench {
 namespace {
 
-/// A radar with its object, at rest until asked.
+/// A radar with the trees of its object and scene.
 struct ProcessorRadar {
   CyberRadar radar;
   TriangleTree sensor;
@@ -36,7 +36,7 @@ Method radar_on_depth(const FrameScene& frame, const Mesh& sensor, RadarMode mod
   depth.depth_m = &frame.depth_m;
   depth.camera = frame.camera;
   depth.stride_px = frame.stride_px;
-  depth.max_jump_m = 1e6F;  // all cells
+  depth.max_jump_m = 1e6F;  // keeps all cells
   return {name_of(mode), radar_px, true, [=](const Pose& pose) {
             return radar->query(pose, distance_m, {.trees = {}, .depths = {&depth, 1}});
           }};

@@ -1,4 +1,4 @@
-// radar_bench_methods.hpp: everything that is measured, as one question: how far may the object go?
+// radar_bench_methods.hpp: all measured methods behind one interface: distance to contact.
 #pragma once
 #include <functional>
 #include <memory>
@@ -14,25 +14,25 @@
 
 namespace roomradar::bench {
 
-/// One way to answer, with the scene new in each call: from a depth image, or a mesh, that it has not seen
-/// before.
+/// A method to compute the distance to contact. Each call receives a depth image or a mesh that the method
+/// has not seen before.
 struct Method {
   std::string name;
-  int radar_px = 0;  ///< 0: has no pixels
+  int radar_px = 0;  ///< 0: the method has no pixels
   bool gives_bounds = true;
   std::function<Contact(const Pose&)> query;
 };
 
-/// From the depth image to the answer.
+/// Includes all work from the depth image to the result.
 Method radar_on_depth(const FrameScene& frame, const Mesh& sensor, RadarMode mode, int radar_px,
                       double distance_m);
-/// From triangles that live one frame to the answer: their tree, the question.
+/// Includes all work from triangles that exist for one frame to the result: building their tree, the query.
 Method radar_on_mesh(const FrameScene& frame, const Mesh& sensor, RadarMode mode, int radar_px,
                      double distance_m);
-/// From triangles in memory to the answer: upload, two passes, reading back.
+/// Includes all work from triangles in memory to the result: upload, two passes, readback.
 Method gl_radar_on_mesh(GlContext& context, const FrameScene& frame, const Mesh& sensor, int radar_px,
                         double distance_m);
-/// `peer` must stay while the method is used and has this sensor from now on.
+/// Sets the sensor of `peer`, which must outlive the method.
 Method peer_on_depth(Peer& peer, const FrameScene& frame, const Mesh& sensor, double distance_m);
 
 }  // namespace roomradar::bench

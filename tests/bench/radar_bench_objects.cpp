@@ -1,4 +1,4 @@
-// radar_bench_objects.cpp: a crowd that drifts through the room of the depth frame.
+// radar_bench_objects.cpp: many objects that drift through the scene of the depth frame.
 #include "radar_bench_objects.hpp"
 
 #include <algorithm>
@@ -47,7 +47,7 @@ Crowd crowd(int count, std::size_t shapes) {
 using Meshes = std::array<Mesh, 3>;
 Meshes shapes() { return {box_mesh({0.15F, 0.15F, 0.15F}), bumpy_torus(68, 46), cup_mesh()}; }
 
-/// The truth about object i, which is free; nothing if it meets nothing.
+/// True distance to contact of object i, which is free; nullopt if it touches nothing.
 std::optional<double> exact_of(const FrameScene& frame, const Meshes& meshes, const Crowd& objects,
                                std::size_t i) {
   const auto travel_to = [&](const Mesh& mesh, const Eigen::Isometry3d& T_world_mesh) {
@@ -59,13 +59,13 @@ std::optional<double> exact_of(const FrameScene& frame, const Meshes& meshes, co
   for (std::size_t k = 0; k < objects.shape.size(); ++k) {
     const double apart_m =
         (objects.T_world_object[k].translation() - objects.T_world_object[i].translation()).norm();
-    if (k == i || apart_m > 0.26 + kAhead_m) continue;  // two tori reach 0.25 m
+    if (k == i || apart_m > 0.26 + kAhead_m) continue;  // two tori touch up to 0.25 m apart
     least_m = std::min(least_m, travel_to(meshes[objects.shape[k]], objects.T_world_object[k]));
   }
   return least_m <= kAhead_m ? std::optional(least_m) : std::nullopt;
 }
 
-/// answer(objects, contacts) is timed on every frame.
+/// Times answer(objects, contacts) in every frame.
 template <typename Answer>
 Row measure_frames(const FrameScene& frame, const Meshes& meshes, int count, const Answer& answer) {
   Crowd objects = crowd(count, meshes.size());
@@ -85,7 +85,9 @@ Row measure_frames(const FrameScene& frame, const Meshes& meshes, int count, con
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     for (int j = 0; j < kJudgedPerFrame; ++j) {
       const std::size_t i = static_cast<std::size_t>(f * kJudgedPerFrame + j) * 17 % contacts.size();
-      if (contacts[i].status == ContactStatus::kOverlap) continue;  // the crowd's own doing
+      if (contacts[i].status == ContactStatus::kOverlap)
+        continue;  // the benchmark does not stop objects at
+                   // contacts
       if (const auto error = judge(contacts[i], exact_of(frame, meshes, objects, i), row)) {
         error_m.push_back(*error);
       }

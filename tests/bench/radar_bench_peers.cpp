@@ -1,4 +1,4 @@
-// radar_bench_peers.cpp: loads the peers' modules from the folder that the program lies in.
+// radar_bench_peers.cpp: loads the peers' modules from the program's folder.
 #include "radar_bench_peers.hpp"
 
 #include <dlfcn.h>
@@ -19,7 +19,7 @@ std::vector<std::unique_ptr<Peer>> load_peers(std::vector<std::string>& missing)
   std::error_code error;
   const std::filesystem::path folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
   for (const Module& module : kModules) {
-    void* const handle = dlopen((folder / module.file).c_str(), RTLD_NOW | RTLD_LOCAL);  // stays for good
+    void* const handle = dlopen((folder / module.file).c_str(), RTLD_NOW | RTLD_LOCAL);  // never unloaded
     void* const make = handle != nullptr ? dlsym(handle, "make_peers") : nullptr;
     if (make == nullptr) {
       missing.push_back(std::string(module.library) + " is left out: Debian's package " + module.package +

@@ -1,4 +1,4 @@
-// radar_bench_peers.hpp: other libraries that can say how far an object may go, for comparison only.
+// radar_bench_peers.hpp: other libraries that can compute the distance to contact, for comparison only.
 #pragma once
 #include <memory>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace roomradar::bench {
 
-/// One collision library, on one thread. What it keeps of the object is made once; of the scene, nothing
+/// One collision library, on one thread. Its data for the object is built once; nothing built for the scene
 /// outlives a call.
 class Peer {
  public:
@@ -21,15 +21,15 @@ class Peer {
 
   [[nodiscard]] virtual std::string name() const = 0;
   virtual void set_sensor(const Mesh& sensor) = 0;
-  /// From the depth image to the answer: the triangles in the way, their tree, the question.
-  /// @return nothing if there is no contact within distance_m
+  /// Includes all work from the depth image to the result: culling of triangles, their tree, the query.
+  /// @return nullopt if there is no contact within distance_m
   virtual std::optional<double> contact_distance_m(const FrameScene& frame, const Pose& pose,
                                                    double distance_m) = 0;
 };
 
-/// The libraries whose modules lie beside the program and load. Of each other one a line of `missing` says
-/// which package brings it. The modules keep their own code from the program, so that it runs where they
-/// cannot.
+/// Loads the libraries whose modules are beside the program. For each of the others, `missing` receives a
+/// line that names its package. Modules keep the libraries' code out of the program, which therefore also
+/// runs without them.
 std::vector<std::unique_ptr<Peer>> load_peers(std::vector<std::string>& missing);
 
 }  // namespace roomradar::bench

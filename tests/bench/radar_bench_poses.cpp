@@ -1,4 +1,4 @@
-// radar_bench_poses.cpp: seeded poses that are proved free.
+// radar_bench_poses.cpp: seeded poses that are verified to be free.
 #include "radar_bench_poses.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace roomradar::bench {
 namespace {
 
-/// Squared distance of p to the triangle. Source: Ericson, Real-Time Collision Detection, 5.1.5.
+/// Squared distance from p to the triangle. Source: Ericson, Real-Time Collision Detection, 5.1.5.
 double squared_distance_m2(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                            const Eigen::Vector3d& c) {
   const Eigen::Vector3d n = (b - a).cross(c - a);
@@ -28,8 +28,8 @@ double squared_distance_m2(const Eigen::Vector3d& p, const Eigen::Vector3d& a, c
   return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
 }
 
-/// Whether no triangle of the frame comes within radius_m of the centre. Only cells that the ball can project
-/// into are looked at; it must lie before the camera.
+/// Returns true if no triangle of the frame is within radius_m of the centre. The ball must be in front of
+/// the camera; only cells that it can project into are tested.
 bool is_ball_free(const FrameScene& frame, const Eigen::Vector3d& centre, double radius_m) {
   if (centre.z() <= radius_m) return false;
   const int columns = (frame.camera.width_px - 1) / frame.stride_px + 1;
@@ -111,7 +111,7 @@ std::vector<Pose> hollow_poses(const Mesh& object, const Mesh& sticks,
     pose.T_world_sensor = Eigen::Isometry3d(random_rotation(random));
     pose.T_world_sensor.translation() = tip - pose.T_world_sensor.linear() * tip_object;
     pose.direction_world = random_rotation(random) * Eigen::Vector3d::UnitZ();
-    // Surfaces that cross meet at once whichever way they go.
+    // Surfaces that cross are in contact at once, whatever the direction.
     const std::optional<double> contact_distance_m = exact_travel(
         object, pose.T_world_sensor, pose.direction_world, 0.01, sticks, Eigen::Isometry3d::Identity());
     if (!contact_distance_m || *contact_distance_m > 1e-5) poses.push_back(pose);

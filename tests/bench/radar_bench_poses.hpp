@@ -1,4 +1,4 @@
-// radar_bench_poses.hpp: where the moving objects stand and which way they go.
+// radar_bench_poses.hpp: poses and directions of the moving objects.
 #pragma once
 #include <Eigen/Geometry>
 #include <optional>
@@ -13,15 +13,15 @@ struct Pose {
   Eigen::Vector3d direction_world;  ///< unit
 };
 
-/// Poses about 15 to 40 cm before a surface, moving roughly away from the camera, with no triangle of either
-/// frame within clear_m of the object's middle.
+/// Poses about 15 to 40 cm in front of a surface, moving roughly away from the camera. No triangle of either
+/// frame is within clear_m of the object's centre.
 std::vector<Pose> free_poses(const FrameScene& coarse, const FrameScene& fine, double clear_m, int count);
 
-/// The same places with one orientation and one direction for all.
+/// The same positions with the same orientation and direction for all.
 std::vector<Pose> steady_poses(const FrameScene& coarse, const FrameScene& fine, double clear_m, int count);
 
-/// Poses whose bounding box holds the tip of a stick while no surface of the object touches the sticks: what
-/// is in the box stands in a hollow. Directions are random.
+/// Poses whose bounding box contains the tip of a stick although the object touches no stick: the tip is in a
+/// hollow of the object. Directions are random.
 std::vector<Pose> hollow_poses(const Mesh& object, const Mesh& sticks,
                                const std::vector<Eigen::Vector3d>& tips_m, int count, unsigned seed);
 

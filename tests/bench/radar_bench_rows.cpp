@@ -1,4 +1,4 @@
-// radar_bench_rows.cpp: times of a call by two clocks, and its answer against the truth.
+// radar_bench_rows.cpp: times a call by two clocks and compares its result with the truth.
 #include "radar_bench_rows.hpp"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ std::vector<Row> measure(const std::vector<Method>& methods, const std::vector<P
         const Contact contact = methods[m].query(poses[i]);
         samples[m].cpu_ms.push_back(test::thread_ms() - start_cpu_ms);
         samples[m].wall_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-        if (round > 0) continue;  // the answers repeat
+        if (round > 0) continue;  // the results repeat
         if (const auto error_m = judge(contact, exact_m[i], rows[m])) samples[m].error_m.push_back(*error_m);
       }
     }

@@ -1,4 +1,5 @@
-// radar_bench_shapes.cpp: fixed shapes from fixed seeds; changing any breaks comparison with old numbers.
+// radar_bench_shapes.cpp: fixed shapes from fixed seeds; changing any breaks the comparison with earlier
+// results.
 #include "radar_bench_shapes.hpp"
 
 #include <Eigen/Geometry>
@@ -26,7 +27,7 @@ DepthImage table_depth() {
                                    {{0.4, 0.15, 1.6}, 0.2},
                                    {{-0.1, 0.1, 1.9}, 0.25},
                                    {{-0.6, 0.2, 1.8}, 0.15}};
-  const double tilt = 0.6;  // the camera looks down on the table by this much
+  const double tilt = 0.6;  // angle by which the camera looks down on the table, rad
   const Eigen::Vector3d up(0, -std::cos(tilt), -std::sin(tilt));
   for (int v = 0; v < kCamera.height_px; ++v) {
     for (int u = 0; u < kCamera.width_px; ++u) {
@@ -53,8 +54,9 @@ void append(Mesh& mesh, const Mesh& part, const Eigen::Isometry3f& T_mesh_part) 
   }
 }
 
-/// Turns a profile of (radius, height) about z; its first and last point lie on the axis. Run
-/// counter-clockwise in the r-z half-plane (from below the axis outwards and up) it winds outwards.
+/// Revolves a profile of (radius, height) about z; its first and last point are on the axis. A profile that
+/// runs counter-clockwise in the r-z half-plane (from the lower axis point outwards and up) gives outward
+/// triangles.
 Mesh turned(const std::vector<Eigen::Vector2f>& profile_m, int around) {
   Mesh mesh;
   const auto count = static_cast<int>(profile_m.size());

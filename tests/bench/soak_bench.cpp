@@ -1,12 +1,12 @@
-// soak_bench.cpp: hours of play at the Kinect's rate, as fast as they go: does memory grow, do frames become
-// slower, does anything drift?
+// soak_bench.cpp: hours of simulated play at the Kinect's frame rate, run as fast as possible. Shows growth
+// of memory, slowdown and drift.
 //
-// usage: soak_bench [--hours H] [--width PIXELS] [--map FOLDER] [--json FILE]
-// H (8) hours of 30 frames a second of a simulated dining room with a hand, a handheld camera and the
-// sensor's noise: the same 4 s to and fro, so that the camera never jumps. Three objects: one is dropped over
-// what is in view every 10 s, one thrown every 15 s, one lies where it fell. A row for each tenth of the
-// time: processor time a frame (of all threads), resident memory, and how right the frames still are. Scene,
-// seeds and events are fixed; changing them breaks comparison with old numbers.
+// usage: soak_bench [--hours H] [--width PIXELS] [--map FOLDER] [--json FILE] H (8) hours at 30 frames per
+// second of a simulated dining room with a hand, a hand-held camera and the sensor's noise: the same 4 s
+// forwards and backwards, so the camera never jumps. Three objects: one is dropped into view every 10 s, one
+// is thrown every 15 s, one stays where it fell. One row per tenth of the time: CPU time per frame (all
+// threads), resident memory and accuracy. Scene, seeds and events are fixed: changing them breaks the
+// comparison with earlier results.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -65,7 +65,7 @@ std::vector<Frame> frames_to_and_fro(int width_px) {
 
 void play(Session& session, std::int64_t number) {
   ScriptEvent event;
-  if (number % (10 * kRate_hz) == 60) {  // when the one that lies has come to rest
+  if (number % (10 * kRate_hz) == 60) {  // after the lying object has come to rest
     event.action = Action::kDrop;
     event.name = "dropped";
     session.apply(event);
@@ -80,7 +80,7 @@ void play(Session& session, std::int64_t number) {
   }
 }
 
-/// What a stretch of time was like.
+/// Results of one stretch of time.
 struct Part {
   std::int64_t frames = 0, located = 0;
   double worst_pose_m = 0.0, deepest_m = 0.0;

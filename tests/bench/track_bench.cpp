@@ -1,11 +1,11 @@
-// track_bench.cpp: error and time of tracking, and of finding a frame again, on recordings with known poses.
+// track_bench.cpp: error and time of tracking and of relocalisation, on recordings with known poses.
 //
 // usage: track_bench [--frames N] [--places N] [--json FILE] SOURCE...      SOURCE: a folder or sim:ROOM?...
-// One row a source: ATE RMSE over all frames, median RPE over 1 and 30 frames, the gap at the last frame once
-// the first is laid on its true pose, time a frame (wall clock, and the tracking thread's own), loops, and
-// the bytes kept of the keyframes. With --places N the first N frames, at their recorded poses, become
-// places, and the later frames are looked for in them. Settings are the defaults of OdometryConfig; changing
-// them breaks comparison with old numbers.
+// One row per source: ATE RMSE over all frames, median RPE over 1 and 30 frames, the error of the last pose
+// after aligning the first with its true pose, time per frame (wall clock, and CPU time of the tracking
+// thread), loops, and the memory used by keyframes. With --places N the first N frames, at their recorded
+// poses, become map keyframes, and the later frames are localised among them. Settings are the defaults of
+// OdometryConfig: changing them breaks the comparison with earlier results.
 #include <sys/resource.h>
 #include <time.h>
 
@@ -53,7 +53,7 @@ double peak_rss_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// All images and features that the odometry keeps between frames.
+/// Memory of all images and features that the odometry keeps between frames.
 double kept_mb(const OdometrySnapshot& kept) {
   std::size_t bytes = 0;
   for (const Keyframe& keyframe : kept.graph.keyframes) {
@@ -67,7 +67,7 @@ double kept_mb(const OdometrySnapshot& kept) {
   return static_cast<double>(bytes) / 1e6;
 }
 
-/// Median length (m) of the difference between both trajectories' motions over `step` frames.
+/// Median length, m, of the difference between the motions of both trajectories over `step` frames.
 double relative_error_m(const std::vector<TimedPose>& estimate, const std::vector<TimedPose>& truth,
                         std::size_t step) {
   std::vector<double> errors_m;

@@ -1,17 +1,20 @@
-// where_bench.cpp: how well a camera is found in a saved map, and followed in it.
+// where_bench.cpp: how well a camera is localised in a saved map, and tracked in it.
 //
 // usage: where_bench --maps FOLDER [--views N] [--view-seed N] [--random FROM,TO] [--only WORD]
 //                    [--pictures FOLDER] [--json FILE]
-//        maps are scanned once and kept in FOLDER; WORD: part of a row's name; --random: the random rooms of
-//        these seeds instead of the four rooms, --view-seed: other views, for what was chosen on the usual
-//        ones
+//        Maps are scanned once and kept in FOLDER. WORD: part of a row's name. --random: random rooms of
+//        these seeds instead of the four rooms. --view-seed: other views, to check choices that were made on
+//        the default ones.
 //
-// found      frames for which a pose is given; right: within 5 cm and 5 degrees of the truth; wrong: the
-//            other found ones; failed: why the others were not, and the poses tried
-// ms         of a frame that is looked for anew; thread: the time the processor worked for it
-// Kitchen: frames 400 to 499 in the map of 0 to 399, its recorded poses taken for the truth. Rooms: random
-// views in simulated rooms, see where_bench_rooms.hpp. Settings are those of `run`; changing them breaks
-// comparison with old numbers.
+//   found   frames for which a pose is returned
+//   right   found within 5 cm and 5 degrees of the truth
+//   wrong   the other found frames
+//   failed  reasons why frames were not found, and the poses tried
+//   ms      time per frame localised without a previous pose; thread: CPU time of the thread
+//
+// Kitchen: frames 400 to 499 in the map of 0 to 399; recorded poses are the truth. Rooms: random views in
+// simulated rooms, see where_bench_rooms.hpp. Settings are those of `run`: changing them breaks the
+// comparison with earlier results.
 #include <algorithm>
 #include <chrono>
 #include <cinttypes>
@@ -53,7 +56,7 @@ struct Settings {
   std::string only, json, pictures;
 };
 
-/// The poses that a search went through, how far off they are, and what spoke for each.
+/// Lists the pose hypotheses of a search, their errors, and the evidence for each.
 nlohmann::json tried(const Locator& locator, const Eigen::Isometry3d& truth) {
   nlohmann::json poses = nlohmann::json::array();
   for (const PoseHypothesis& hypothesis : locator.hypotheses) {
@@ -72,7 +75,7 @@ nlohmann::json tried(const Locator& locator, const Eigen::Isometry3d& truth) {
   return poses;
 }
 
-/// Looks for each frame of the source anew.
+/// Localises each frame of the source without a previous pose.
 nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRoom& mapped,
                         const Settings& settings) {
   Frame frame;
@@ -84,7 +87,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
   nlohmann::json failed = nlohmann::json::array();
   for (ReadResult read; (read = source.next(frame)).status != ReadStatus::kEnd;) {
     ++asked;
-    if (read.status == ReadStatus::kSkipped) continue;  // one that is asked for and not found
+    if (read.status == ReadStatus::kSkipped) continue;  // a requested frame that is not found
     Locator locator = fresh;
     const auto start = std::chrono::steady_clock::now();
     const double thread_start_ms = test::thread_ms();
@@ -127,7 +130,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
           {"failed", failed}};
 }
 
-/// Random views of a simulated room, as a recording that is kept beside the maps.
+/// Random views of a simulated room, as a recording that is saved beside the maps.
 std::unique_ptr<FrameSource> free_views(const SimOptions& scan, const SavedMap& map,
                                         const std::vector<MoverKind>& movers, bool bare,
                                         const std::string& name, const Settings& settings) {
@@ -154,7 +157,7 @@ std::unique_ptr<FrameSource> free_views(const SimOptions& scan, const SavedMap& 
   return open_folder(folder);
 }
 
-/// Of "4,7" the random rooms of seeds 4 to 7.
+/// Parses "4,7" as the random rooms with seeds 4 to 7.
 std::vector<RoomSeed> random_rooms(const std::string& from_to) {
   std::uint64_t from = 0, to = 0;
   if (std::sscanf(from_to.c_str(), "%" SCNu64 ",%" SCNu64, &from, &to) != 2 || from > to)

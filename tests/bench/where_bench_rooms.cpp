@@ -1,4 +1,4 @@
-// where_bench_rooms.cpp: scans once, and draws views that see enough of what was scanned.
+// where_bench_rooms.cpp: scans once, and draws views that show enough of the scanned surface.
 #include "where_bench_rooms.hpp"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ bool is_shell(const Room& room, const Vector3d& p_room) {
          ((room.interior_max_world - p_room).array() < kThin_m).any();
 }
 
-/// Of a coarse grid of pixels, the part whose surface is in range and in the map, and of these the part that
-/// shows things.
+/// Fractions of a coarse grid of pixels: `mapped`, surface in range and in the map; `things`, mapped surface
+/// that is not floor, wall or ceiling.
 struct Parts {
   double mapped = 0.0, things = 0.0;
 };

@@ -1,4 +1,4 @@
-// where_bench_rooms.hpp: maps to be found in, and views of them from where the scan never was.
+// where_bench_rooms.hpp: maps to localise in, and views of them from poses that the scan did not visit.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -14,46 +14,47 @@
 
 namespace roomradar {
 
-/// A room as `run` has it.
+/// A room with its map, as the command `run` loads it.
 struct SearchedRoom {
   explicit SearchedRoom(SavedMap saved) : map(std::move(saved)), room(context), scene(context, room, {}) {
     room.set(map.mesh, MeshUsage::kStatic);
   }
-  /// Looks for the frame with what the locator remembers, what moved in the frame before left out.
+  /// Localises the frame from the locator's state; pixels of `dynamic_mask` (foreground of the previous
+  /// frame) are ignored.
   Tracking find(Locator& locator, const Frame& frame, const MaskImage& dynamic_mask = {});
 
   SavedMap map;
   GlContext context;
   Shape room;
   FrameScene scene;
-  double drawing_ms = 0.0;  ///< of the thread's time, what drawing the expected depth took so far
+  double drawing_ms = 0.0;  ///< time of this thread spent on rendering expected depth so far
 };
 
-/// The map of a source, from `folder` where it lies there already, else scanned and kept there.
+/// Returns the map of a source: loaded from `folder` if present there, else scanned and saved to it.
 SavedMap map_of(FrameSource& source, PoseOrigin poses, const std::filesystem::path& folder);
 
-/// What a room's scan was: a walk once round it.
+/// Options of a room's scan: a walk once around it.
 SimOptions scan_of(const std::string& room, std::uint64_t seed);
 
 struct FreeViews {
-  double clear_m = 0.35;    ///< of all solids
-  double off_path_m = 0.5;  ///< of every camera of the scan
-  double min_mapped = 0.6;  ///< of the image, the part that sees what the map has, within max_depth_m
+  double clear_m = 0.35;    ///< min distance from all solids
+  double off_path_m = 0.5;  ///< min distance from every camera of the scan
+  double min_mapped = 0.6;  ///< min fraction of the image that shows mapped surface within max_depth_m
   double max_depth_m = 5.0;
-  /// And the part that shows more than the bare floor, walls and ceiling, at least or, of bare views, at
-  /// most.
+  /// Fraction of the image that shows more than bare floor, walls and ceiling: a min, or a max if `bare` is
+  /// set.
   double things = 0.1;
   bool bare = false;
 };
 
-/// Random poses in the free space of a room, at eye height and above and below it, turned any way but
-/// roughly upright, that look at what the map has. Room frame. Deterministic.
+/// Returns random poses in the free space of a room, at, above and below eye height, in any heading but
+/// roughly upright, that look at mapped surface. Room frame. Deterministic.
 std::vector<Eigen::Isometry3d> draw_free_views(const Room& room, const SavedMap& map,
                                                const std::vector<Eigen::Isometry3d>& T_room_scan,
                                                std::size_t count, std::uint64_t seed,
                                                const FreeViews& which = {});
 
-/// The poses of a scan, in the room's frame.
+/// Returns the camera poses of a scan, in the room's frame.
 std::vector<Eigen::Isometry3d> poses_of(const SimOptions& scan);
 
 }  // namespace roomradar

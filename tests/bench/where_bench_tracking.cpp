@@ -1,4 +1,4 @@
-// where_bench_tracking.cpp: a hand-held camera, a still one, and one that is carried away.
+// where_bench_tracking.cpp: a hand-held camera, a stationary one, and one that is carried away.
 #include "where_bench_tracking.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Puts a ball into the frame, as the sensor would measure it; returns how many pixels it covers.
+/// Puts a ball into the frame, as the sensor would measure it; returns the number of pixels it covers.
 int put_ball(const Vector3d& centre_camera, double radius_m, Frame& frame) {
   int covered = 0;
   for (int y = 0; y < frame.depth_m.height; ++y) {
@@ -40,7 +40,7 @@ int put_ball(const Vector3d& centre_camera, double radius_m, Frame& frame) {
   return covered;
 }
 
-/// One frame as `run` takes it: located, then what moved is marked for the next.
+/// Processes one frame like the command `run`: localises it, then marks its foreground for the next frame.
 Tracking step(SearchedRoom& mapped, Locator& locator, const Frame& frame, test::Times& locate_ms) {
   const double start_ms = test::thread_ms(), drawn_ms = mapped.drawing_ms;
   const Tracking tracking = mapped.find(locator, frame, mapped.scene.dynamic_mask());
@@ -71,7 +71,7 @@ nlohmann::json follow_behind_ball(const std::string& name, const SimOptions& sca
   while (source.next(frame).status == ReadStatus::kFrame) {
     const double swing = std::sin(2.0 * std::numbers::pi * 0.4 * frame.stamp_s);
     if (frame.index > 0) put_ball({0.2 * swing, 0.05 - 0.05 * swing, 0.85 + 0.1 * swing}, 0.27, frame);
-    int nearer = 0;  // than the room
+    int nearer = 0;  // pixels nearer than the room
     for (std::size_t i = 0; i < frame.depth_m.pixels.size(); ++i)
       nearer += source.truth().moved.pixels[i] != 0 ||
                 (frame.depth_m.pixels[i] > 0.0F &&
@@ -109,7 +109,7 @@ nlohmann::json stand_still(const std::string& name, const SimOptions& scan, Sear
   const Eigen::Isometry3d T_room_camera = *frame.T_world_camera;
   const Eigen::Isometry3d T_world_true = mapped.map.info.T_world_recorded * T_room_camera;
   std::int64_t located = 0;
-  std::vector<Eigen::Matrix<double, 6, 1>> errors;  // of those past the first four frames
+  std::vector<Eigen::Matrix<double, 6, 1>> errors;  // errors after the first four frames
   for (std::int64_t i = 0; i < frames; ++i) {
     source.look(i, T_room_camera, frame);
     const Tracking tracking = step(mapped, locator, frame, locate_ms);

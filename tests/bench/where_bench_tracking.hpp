@@ -1,4 +1,5 @@
-// where_bench_tracking.hpp: how well a camera is followed in a saved map, and mended when it is carried away.
+// where_bench_tracking.hpp: accuracy of tracking in a saved map, and recovery after the camera is carried
+// away.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -7,17 +8,18 @@
 
 namespace roomradar {
 
-/// A camera in a hand while a large ball swings before it, and a person and a hand move about: position error
-/// in the map and after the best rigid alignment (ATE), frames lost, and the part of the view that moves.
+/// Tracks a hand-held camera while a large ball swings in front of it and a person and a hand move about.
+/// Measures position error in the map and after the best rigid alignment (ATE), frames lost, and the fraction
+/// of the view that moves.
 nlohmann::json follow_behind_ball(const std::string& name, const SimOptions& scan, SearchedRoom& mapped,
                                   std::int64_t frames);
 
-/// A camera that stands still: how much its pose shakes.
+/// Tracks a stationary camera; measures the jitter of its pose.
 nlohmann::json stand_still(const std::string& name, const SimOptions& scan, SearchedRoom& mapped,
                            std::int64_t frames);
 
-/// A camera that is somewhere else every 15 frames, after two black frames every other time: how many frames
-/// pass until it is right again, and in how many of them a wrong pose was given.
+/// Moves the camera elsewhere every 15 frames, every other time after two black frames. Counts the frames
+/// until the pose is correct again, and how many of those had a wrong pose.
 nlohmann::json carry_away(const std::string& name, const SimOptions& scan, SearchedRoom& mapped,
                           std::int64_t jumps);
 

@@ -1,5 +1,5 @@
-// main.cpp: how far may a plate fall onto a floor? And, given a saved map, onto what is below a point in it.
-// point.
+// main.cpp: computes how far a plate can fall onto a floor and, given a saved map, onto the surface below a
+// point in it.
 #include <cstdio>
 #include <exception>
 #include <vector>

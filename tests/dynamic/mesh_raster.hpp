@@ -1,4 +1,4 @@
-// mesh_raster.hpp: the depth image of a mesh, made without GL, for judging meshes of depth images.
+// mesh_raster.hpp: depth image of a mesh, rendered without GL, to check meshes made from depth images.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace roomradar::test {
 
-/// Nearest depth at each pixel's centre, 0 where no triangle is; triangles' sides count as covered. All
+/// Renders the nearest depth at each pixel's centre, 0 without a triangle; triangles cover their edges. All
 /// vertices must be in front of the camera.
 inline DepthImage rasterise(const Mesh& mesh, const Intrinsics& camera,
                             const Eigen::Isometry3d& T_world_camera) {
@@ -29,7 +29,7 @@ inline DepthImage rasterise(const Mesh& mesh, const Intrinsics& camera,
     };
     const double area = cross(p[1] - p[0], p[2] - p[0]);
     if (std::abs(area) < 1e-9) continue;
-    constexpr double kSlack = 1e-3;  // vertices are float: pixels on a side would fall out by rounding
+    constexpr double kSlack = 1e-3;  // vertices are float: rounding could drop pixels on an edge
     const auto [x0, x1] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
     const auto [y0, y1] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
     for (int y = std::max(0, static_cast<int>(std::ceil(y0 - kSlack)));

@@ -1,7 +1,6 @@
-// corpus_main.cpp: runs a fuzz target over its corpus, and over inputs made of it by chance, where libFuzzer
-// is not there.
+// corpus_main.cpp: runs a fuzz target over its corpus and over random mutations of it, without libFuzzer.
 //
-// usage: TARGET FOLDER|FILE... [-runs=N]      N more inputs, the same each time
+// usage: TARGET FOLDER|FILE... [-runs=N]      N mutated inputs, the same in each run
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -28,7 +27,7 @@ Bytes read_bytes(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Bytes turned, cut out, doubled, put in; a piece of another input.
+/// Mutates an input: changes, removes, duplicates or inserts bytes, or inserts a piece of another input.
 Bytes changed(Bytes bytes, const Bytes& other, std::mt19937& random) {
   const auto below = [&](std::size_t n) { return n == 0 ? 0 : random() % n; };
   const std::size_t changes = 1 + below(4);
@@ -69,9 +68,9 @@ Bytes changed(Bytes bytes, const Bytes& other, std::mt19937& random) {
   return bytes;
 }
 
-Bytes input;  // a signal's handler writes it, too
+Bytes input;  // global: the signal handler saves it
 
-/// Calls only what a signal handler may call.
+/// Saves the current input; calls only async-signal-safe functions.
 void keep_input() {
   const int file = open("crash-input", O_WRONLY | O_CREAT | O_TRUNC, 0644);
   if (file < 0 || write(file, input.data(), input.size()) < 0) return;

@@ -1,4 +1,4 @@
-// fuzz_input.hpp: a fuzzer's bytes as files, and what a reader may do with them.
+// fuzz_input.hpp: a fuzzer's bytes as files, and the permitted outcomes of a reader.
 #pragma once
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +13,7 @@
 
 namespace roomradar::test {
 
-/// Of this process; in $TMPDIR, which should lie in memory.
+/// Temporary folder of this process, in $TMPDIR, which should be in memory.
 inline const std::filesystem::path& fuzz_folder() {
   static const TemporaryFolder folder;
   return folder.path();
@@ -27,15 +27,16 @@ inline void write_bytes(const std::filesystem::path& path, std::string_view byte
     throw std::runtime_error(path.string() + ": cannot be written");
 }
 
-/// A file with these bytes; the same name again is the same file.
+/// Writes a file with these bytes; replaces a file of the same name.
 inline std::filesystem::path file_with(std::string_view bytes, const std::string& name) {
   std::filesystem::path path = fuzz_folder() / name;
   write_bytes(path, bytes);
   return path;
 }
 
-/// A folder of files out of one text: a line "%% NAME" begins each. Names with anything but letters, digits,
-/// dots, lines and one slash are left out.
+/// Makes a folder of files from one text, in which each file begins with a line "%% NAME". Skips files whose
+/// name is 64 or more characters long or has characters other than letters, digits, ".", "-", "_" and one
+/// "/".
 inline std::filesystem::path folder_with(std::string_view text) {
   constexpr std::size_t kMostFiles = 24;
   constexpr std::string_view kMark = "%% ";
@@ -66,7 +67,7 @@ inline std::filesystem::path folder_with(std::string_view text) {
   return folder;
 }
 
-/// The one way in which a reader may refuse what it is given. Anything else that it throws ends the process.
+/// Runs `read`, which may reject its input only by throwing Error. Anything else it throws ends the process.
 template <typename Read>
 void read_or_refuse(const Read& read) {
   try {
@@ -82,5 +83,5 @@ inline std::string_view as_text(const std::uint8_t* data, std::size_t size) {
 
 }  // namespace roomradar::test
 
-/// libFuzzer's entry; one a target.
+/// libFuzzer's entry point; one per target.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -1,4 +1,4 @@
-// map_fuzz.cpp: the parts of a map folder, by the first byte, as they are read after their checksums matched.
+// map_fuzz.cpp: the files of a map folder, by the first byte, as they are read once their checksums match.
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/static_map.hpp"
@@ -7,7 +7,7 @@
 
 namespace {
 
-/// With the FNV-1a hash at its end that binary files have, so that what is before it is read.
+/// Replaces the last 8 bytes by the FNV-1a hash that ends binary files, so the reader accepts the rest.
 std::string sealed(std::string_view bytes) {
   std::string file(bytes.substr(0, bytes.size() - std::min<std::size_t>(bytes.size(), 8)));
   std::uint64_t hash = 14695981039346656037ULL;

@@ -1,4 +1,4 @@
-// mesh_fuzz.cpp: meshes of virtual objects, in the format that the first byte stands for.
+// mesh_fuzz.cpp: meshes of virtual objects, in the format that the first byte selects.
 #include "mapping/mesh/mesh_file.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 

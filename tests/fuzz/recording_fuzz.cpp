@@ -1,4 +1,4 @@
-// recording_fuzz.cpp: folders with recordings of every kind, their lists and their images.
+// recording_fuzz.cpp: folders with recordings of every kind, with their lists and images.
 #include "app/sources/kinect/fakenect_replay.hpp"
 #include "app/sources/recordings/folder_source.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

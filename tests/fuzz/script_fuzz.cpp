@@ -1,4 +1,4 @@
-// script_fuzz.cpp: events files, simulated rooms' names and frame ranges: what a user writes.
+// script_fuzz.cpp: user input: event files, names of simulated rooms, frame ranges.
 #include "app/session/script.hpp"
 #include "app/sim/sensor/sim_options.hpp"
 #include "app/sources/formats/frame_range.hpp"
@@ -8,7 +8,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace roomradar;
   const std::string_view text = test::as_text(data, size);
   test::read_or_refuse([&] { (void)parse_script(text, "script"); });
-  const std::string_view argument = text.substr(0, text.find('\0'));  // of the command line: it ends there
+  const std::string_view argument = text.substr(0, text.find('\0'));  // arguments end at the first null
   test::read_or_refuse([&] { (void)parse_sim_spec(argument); });
   test::read_or_refuse([&] { (void)parse_frame_range(argument); });
   return 0;

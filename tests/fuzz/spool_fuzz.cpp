@@ -1,4 +1,4 @@
-// spool_fuzz.cpp: the list of a live scan that was cut off.
+// spool_fuzz.cpp: the frame list of an interrupted live scan.
 #include "app/sources/recordings/spooled_source.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 

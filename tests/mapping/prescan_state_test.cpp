@@ -1,4 +1,4 @@
-// prescan_state_test.cpp: a prescan's state on disk comes back the same, and broken files are refused.
+// prescan_state_test.cpp: a prescan's state on disk is restored unchanged, and damaged files are rejected.
 #include "mapping/prescan_state.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ Frame seen_from(const Eigen::Isometry3d& T_world_camera) {
 
 Eigen::Isometry3d pose(int i) { return test::looking_at({0.05 * i, -0.3, 1.2}, {0.05 * i + 0.2, 1.8, 0.3}); }
 
-/// Half of a second pass.
+/// A half-finished second pass.
 FusionPass fusing_pass(int frames) {
   FusionPass pass;
   pass.octree = StaticMap(0.05);
@@ -128,7 +128,7 @@ TEST(PrescanState, BrokenBytesAreRefusedOrHarmless) {
       ++refused;
     }
   }
-  EXPECT_GE(refused, 100);  // all that are cut short
+  EXPECT_GE(refused, 100);  // all truncated files
 }
 
 }  // namespace

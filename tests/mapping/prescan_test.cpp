@@ -1,4 +1,4 @@
-// prescan_test.cpp: what a prescan makes of poses and images that no camera has.
+// prescan_test.cpp: prescan with poses and images that no real camera produces.
 #include "mapping/prescan.hpp"
 
 #include <gtest/gtest.h>

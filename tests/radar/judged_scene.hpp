@@ -1,4 +1,4 @@
-// judged_scene.hpp: a scene that the radar sees as trees and depth images and the judge sees as meshes.
+// judged_scene.hpp: a scene for the radar (trees and depth images) and for the exact reference (meshes).
 #pragma once
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@
 
 namespace roomradar {
 
-/// The triangles that a SceneDepth stands for, one by one, by what its comment says.
+/// Returns the triangles that a SceneDepth represents, as its documentation defines them.
 inline Mesh mesh_of(const SceneDepth& depth) {
   Mesh mesh;
   const DepthImage& image = *depth.depth_m;
@@ -55,7 +55,7 @@ inline Mesh mesh_of(const SceneDepth& depth) {
   return mesh;
 }
 
-/// A mesh where it stands, with its tree.
+/// A mesh with its pose and its tree.
 struct JudgedMesh {
   Mesh mesh;
   Eigen::Isometry3d T_world_mesh = Eigen::Isometry3d::Identity();
@@ -82,7 +82,7 @@ class JudgedScene {
     kinds_.push_back(depth.kind);
     has_tree_.push_back(false);
   }
-  /// Everything moved by T, for the radar and the judge alike.
+  /// Moves everything by T, for the radar and the reference.
   void move(const Eigen::Isometry3d& T) {
     for (JudgedMesh& mesh : meshes_) mesh.T_world_mesh = T * mesh.T_world_mesh;
     for (SceneDepth& depth : depths_) depth.T_world_camera = T * depth.T_world_camera;
@@ -119,7 +119,7 @@ class JudgedScene {
   std::vector<bool> has_tree_;
 };
 
-/// All that is needed to ask again.
+/// Describes a query and its result completely enough to repeat it.
 inline std::string describe(const JudgedMesh& object, const Eigen::Vector3d& direction, double distance_m,
                             const Contact& got, const std::optional<double>& truth_m) {
   std::ostringstream text;
@@ -137,13 +137,13 @@ inline std::string describe(const JudgedMesh& object, const Eigen::Vector3d& dir
 }
 
 constexpr double kExactError_m = 1e-6;
-constexpr double kBoundRounding_m = 1e-9;  ///< what may be lost when double results are compared
+constexpr double kBoundRounding_m = 1e-9;  ///< rounding error when double results are compared
 
-/// A free pose in the exact mode: lower = upper = truth.
+/// For a free pose in exact mode: lower = upper = truth.
 inline testing::AssertionResult is_exact(const Contact& got, const std::optional<double>& truth_m,
                                          double distance_m) {
   if (truth_m) {
-    // Whether it is reached at all is open where it lies at the very end of the distance.
+    // At the very end of the distance, both contact and none are accepted.
     if (distance_m - *truth_m < kExactError_m) return testing::AssertionSuccess();
     if (got.status != ContactStatus::kContact) return testing::AssertionFailure() << "no contact";
     if (!(std::abs(got.contact_distance_m - *truth_m) <= kExactError_m)) {
@@ -157,7 +157,7 @@ inline testing::AssertionResult is_exact(const Contact& got, const std::optional
   return testing::AssertionSuccess();
 }
 
-/// A free pose in any mode: lower <= truth <= upper and travel between them.
+/// For a free pose in any mode: lower <= truth <= upper, and travel between them.
 inline testing::AssertionResult holds(const Contact& got, const std::optional<double>& truth_m,
                                       double distance_m) {
   if (got.status != ContactStatus::kContact && got.status != ContactStatus::kNoTarget) {

@@ -41,7 +41,7 @@ inline Mesh box(const Eigen::Vector3f& size_m) {
   return mesh;
 }
 
-/// The same, each side of cells x cells quads.
+/// The same box, each side made of cells x cells quads.
 inline Mesh box_of_cells(const Eigen::Vector3f& size_m, int cells) {
   Mesh mesh;
   const Eigen::Vector3f h = 0.5F * size_m;
@@ -98,7 +98,7 @@ inline Mesh torus(int around, int across, float ring_m, float tube_m, float bump
   return mesh;
 }
 
-/// The parts as one mesh (about the first's origin, which must be all others'), each moved.
+/// Merges the parts, each translated by its vector. All parts must have the same origin.
 inline Mesh together(std::span<const std::pair<Mesh, Eigen::Vector3f>> parts) {
   Mesh mesh;
   for (const auto& [part, at_m] : parts) {
@@ -111,8 +111,9 @@ inline Mesh together(std::span<const std::pair<Mesh, Eigen::Vector3f>> parts) {
   return mesh;
 }
 
-/// Turns the outline of points (radius, height) about the z axis; closed where it begins and ends at radius 0
-/// or where it comes back to its first point. Outward for an outline that runs upwards on the outside.
+/// Revolves an outline of points (radius, height) about the z axis. The result is closed if the outline
+/// begins and ends at radius 0 or returns to its first point. It faces outwards if the outline runs upwards
+/// on the outside.
 inline Mesh turned(const std::vector<Eigen::Vector2f>& outline, int around) {
   Mesh mesh;
   constexpr float kTurn = 2.0F * std::numbers::pi_v<float>;
@@ -145,7 +146,7 @@ inline Mesh ball(float radius_m, int rows, int around) {
   return turned(outline, around);
 }
 
-/// Closed, open to +z: walls and bottom of the given thickness; its foot is at z = 0.
+/// Closed surface of a cup open to +z, with walls and bottom of the given thickness; its foot is at z = 0.
 inline Mesh cup(float radius_m, float height_m, float thickness_m, int around) {
   const float inner_m = radius_m - thickness_m;
   return turned({{0.0F, 0.0F},
@@ -157,7 +158,7 @@ inline Mesh cup(float radius_m, float height_m, float thickness_m, int around) {
                 around);
 }
 
-/// Seat, back and four legs, each a closed box that runs into its neighbours; the legs stand on z = 0.
+/// Seat, back and four legs, each a closed box that overlaps its neighbours; the legs stand on z = 0.
 inline Mesh chair() {
   std::vector<std::pair<Mesh, Eigen::Vector3f>> parts = {{box({0.40F, 0.40F, 0.04F}), {0.0F, 0.0F, 0.43F}},
                                                          {box({0.40F, 0.04F, 0.42F}), {0.0F, 0.18F, 0.65F}}};
@@ -167,7 +168,8 @@ inline Mesh chair() {
   return together(parts);
 }
 
-/// Ground with bumps of both scales of a cluttered table, 2 m across, facing +z; heights within 0.065 m of 0.
+/// Ground with bumps of two scales, as on a cluttered table, 2 m wide, facing +z; heights within 0.065 m of
+/// 0.
 inline Mesh bumpy_ground(int cells) {
   Mesh mesh;
   const auto height_m = [](double x, double y) {
@@ -192,7 +194,7 @@ inline Mesh bumpy_ground(int cells) {
 
 constexpr double kThorn_m = 0.03125;
 
-/// Flat ground at height 0, 2 m across, 2 * cells^2 triangles; of its middle vertex a thorn stands out.
+/// Flat ground at height 0, 2 m wide, 2 * cells^2 triangles; its middle vertex is raised to form a thorn.
 inline Mesh thorny_grid(int cells) {
   Mesh mesh;
   const float cell_m = 2.0F / static_cast<float>(cells);
@@ -231,7 +233,8 @@ inline Eigen::Quaterniond random_rotation(std::mt19937& random) {
   return Eigen::Quaterniond(w, x, y, z).normalized();
 }
 
-/// The same surface with triangles twice, without area, of vertices that are not there or not finite.
+/// The same surface plus duplicate, degenerate and invalid triangles: vertex indices out of range, vertices
+/// not finite.
 inline Mesh spoilt(Mesh mesh) {
   const std::size_t count = mesh.triangles.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -239,7 +242,7 @@ inline Mesh spoilt(Mesh mesh) {
     mesh.triangles.push_back(t);                          // duplicate
     mesh.triangles.push_back({t[0], t[0], t[1]});         // a line
     mesh.triangles.push_back({t[2], t[2], t[2]});         // a point
-    mesh.triangles.push_back({t[0], t[1], 4000000000U});  // no such vertex
+    mesh.triangles.push_back({t[0], t[1], 4000000000U});  // vertex out of range
   }
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   const float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();

@@ -1,4 +1,4 @@
-// allocation_count.hpp: counts what is taken from the heap. Include in one file of an executable only.
+// allocation_count.hpp: counts heap allocations. Include in one file per executable only.
 #pragma once
 #include <atomic>
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace roomradar::test {
 
 inline std::atomic<std::size_t> allocations{0};
 
-/// Null where there is no memory.
+/// Returns null if memory is exhausted.
 inline void* counted_or_null(std::size_t size, std::size_t alignment) noexcept {
   ++allocations;
   const std::size_t rounded = (size + alignment - 1) / alignment * alignment;
@@ -21,7 +21,7 @@ inline void* counted_allocation(std::size_t size, std::size_t alignment) {
   throw std::bad_alloc();
 }
 
-/// Not inlined: where delete is and new is not, gcc takes one for the other's mismatch.
+/// Not inlined: if gcc inlines delete but not new, it warns of mismatched allocation functions.
 [[gnu::noinline]] inline void give_back(void* memory) noexcept { std::free(memory); }
 
 }  // namespace roomradar::test
@@ -38,7 +38,7 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
 void* operator new[](std::size_t size, std::align_val_t alignment) {
   return roomradar::test::counted_allocation(size, static_cast<std::size_t>(alignment));
 }
-// Those that do not throw, too: a sanitizer's own would be given back by the wrong delete.
+// The nothrow versions too: memory from a sanitizer's own operator new would be freed by the wrong delete.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   return roomradar::test::counted_or_null(size, alignof(std::max_align_t));
 }

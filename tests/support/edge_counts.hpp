@@ -1,4 +1,4 @@
-// edge_counts.hpp: how many triangles each edge of a mesh has, in either direction.
+// edge_counts.hpp: number of triangles on each edge of a mesh, per direction.
 #pragma once
 #include <algorithm>
 #include <map>
@@ -9,7 +9,7 @@
 namespace roomradar::test {
 
 struct EdgeUse {
-  int forward = 0;  // from the lower vertex to the higher
+  int forward = 0;  // from the lower vertex index to the higher
   int backward = 0;
 };
 

@@ -1,4 +1,4 @@
-// error_of.hpp: the message of the Error that some work is expected to throw.
+// error_of.hpp: message of the Error that a piece of work is expected to throw.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 namespace roomradar::test {
 
-/// The test fails if none is thrown.
+/// Runs `work` and returns the message of the Error it throws. The test fails if it throws none.
 template <typename Work>
 std::string error_of(const Work& work) {
   try {

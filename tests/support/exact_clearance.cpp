@@ -1,4 +1,4 @@
-// exact_clearance.cpp: corners against faces, edges against edges, and solid angles, all pairs.
+// exact_clearance.cpp: vertices against faces, edges against edges, and solid angles, over all pairs.
 #include "tests/support/exact_clearance.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 using Point = Eigen::Vector3d;
 using Corners = std::array<Point, 3>;
 
-/// In the object's own frame, near which all sums are made.
+/// Returns the triangles relative to the object's origin, which keeps the rounding of sums small.
 std::vector<Corners> triangles_near(const Mesh& mesh, const Eigen::Isometry3d& T_world_mesh,
                                     const Point& origin_world) {
   const Point shift_world = T_world_mesh.linear() * mesh.origin + (T_world_mesh.translation() - origin_world);
@@ -41,8 +41,8 @@ Eigen::AlignedBox3d box_of(const Corners& t) {
   return box;
 }
 
-/// Squared distance between the segments a b and c d: least of the line pair's, where that is inside both,
-/// and of the four ends'.
+/// Squared distance between the segments a b and c d: the distance of the two lines if its feet are inside
+/// both segments, and the distances of the four ends, whichever is least.
 double squared_distance_of_edges(const Point& a, const Point& b, const Point& c, const Point& d) {
   const auto to_segment = [](const Point& p, const Point& from, const Point& to) {
     const Point e = to - from;
@@ -63,7 +63,8 @@ double squared_distance_of_edges(const Point& a, const Point& b, const Point& c,
   return least;
 }
 
-/// Squared distance of p from the face where p's foot lies inside it, else infinity (the edges speak then).
+/// Squared distance of p from the face if p's foot is inside the face, else infinity (the edges then
+/// determine the distance).
 double squared_distance_to_face(const Point& p, const Corners& t) {
   const Point n = (t[1] - t[0]).cross(t[2] - t[0]);
   const double n2 = n.squaredNorm();
@@ -75,7 +76,7 @@ double squared_distance_to_face(const Point& p, const Corners& t) {
   return height * height / n2;
 }
 
-/// Whether the segment passes through the face.
+/// Returns true if the segment passes through the face.
 bool pierces(const Point& a, const Point& b, const Corners& t) {
   const auto volume = [](const Point& p, const Point& q, const Point& r, const Point& s) {
     return (q - p).cross(r - p).dot(s - p);
@@ -98,7 +99,7 @@ double squared_distance(const Corners& a, const Corners& b) {
   return least;
 }
 
-/// Number of times that the surface goes round the origin.
+/// Winding number of the surface around the point.
 double winding(const std::vector<Corners>& triangles, const Point& point) {
   double angle = 0.0;
   for (const Corners& t : triangles) {

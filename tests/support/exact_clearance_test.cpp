@@ -1,5 +1,4 @@
-// exact_clearance_test.cpp: the judge of poses on distances worked out by hand, and against the judge of
-// travel.
+// exact_clearance_test.cpp: exact_clearance against distances computed by hand, and against exact_travel.
 #include "tests/support/exact_clearance.hpp"
 
 #include <gtest/gtest.h>
@@ -108,7 +107,7 @@ TEST(ExactEncloses, AgreesWithTheShapesOwnFormulas) {
     const Eigen::Vector3d p = 0.8 * shapes::random_point(random);
     const double r = p.head<2>().norm();
     const auto check = [&](const Mesh& mesh, double depth_m) {  // > 0: inside
-      if (std::abs(depth_m) < 3e-3) return;                     // flat faces cut a round shape
+      if (std::abs(depth_m) < 3e-3) return;  // error of flat faces that approximate a round shape
       EXPECT_EQ(exact_encloses(mesh, T, T * p), depth_m > 0.0) << p.transpose();
       inside += depth_m > 0.0 ? 1 : 0;
     };

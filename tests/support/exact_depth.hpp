@@ -1,4 +1,4 @@
-// exact_depth.hpp: noise-free depth images of simple scenes, by casting a ray through each pixel's centre.
+// exact_depth.hpp: noise-free depth images of simple scenes, from a ray through each pixel's centre.
 #pragma once
 #include <Eigen/Geometry>
 #include <cmath>
@@ -9,13 +9,13 @@
 
 namespace roomradar::test {
 
-/// Distance along a ray (from, direction; any length) to the first hit in units of the direction, or
-/// infinity.
+/// Distance along a ray (from, direction; any length) to the first hit, in units of the direction's length;
+/// infinity if nothing is hit.
 using Scene = std::function<double(const Eigen::Vector3d& from, const Eigen::Vector3d& direction)>;
 
 inline constexpr double kNoHit = std::numeric_limits<double>::infinity();
 
-/// Points with normal . p = offset, seen from both sides.
+/// Plane of the points with normal . p = offset, visible from both sides.
 inline Scene plane(const Eigen::Vector3d& normal, double offset_m) {
   return [=](const Eigen::Vector3d& from, const Eigen::Vector3d& direction) {
     const double t = (offset_m - normal.dot(from)) / normal.dot(direction);
@@ -51,13 +51,14 @@ inline Scene nearest_of(Scene a, Scene b) {
   };
 }
 
-/// The corner of a room with a ball in it: floor at z = 0, walls at y = 2.5 and x = -1.8.
+/// Corner of a room with a ball in it: floor at z = 0, walls at y = 2.5 and x = -1.8.
 inline Scene corner_with_ball() {
   return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), plane({0, 1, 0}, 2.5)),
                     nearest_of(plane({1, 0, 0}, -1.8), sphere({0.5, 1.8, 0.4}, 0.4)));
 }
 
-/// A camera at `eye_world` that looks at `target_world`, image's down roughly along -up_world.
+/// Returns the pose of a camera at `eye_world` that looks at `target_world`. The image's down axis points
+/// roughly along -up_world.
 inline Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye_world, const Eigen::Vector3d& target_world,
                                     const Eigen::Vector3d& up_world = Eigen::Vector3d::UnitZ()) {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
@@ -70,7 +71,8 @@ inline Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye_world, const Eige
   return T_world_camera;
 }
 
-/// Depth and pose are exact; one colour where anything is seen, none if `colour` is absent.
+/// Renders a frame with exact depth and pose. If `colour` is given, the whole image has that colour;
+/// otherwise the frame has no colour image.
 inline Frame exact_frame(const Scene& scene, const Intrinsics& camera,
                          const Eigen::Isometry3d& T_world_camera, std::optional<Rgb> colour = std::nullopt) {
   Frame frame;
@@ -87,7 +89,7 @@ inline Frame exact_frame(const Scene& scene, const Intrinsics& camera,
   return frame;
 }
 
-/// Walls of 4 x 5 m, a ball and two boxes, without floor and ceiling.
+/// Walls of a room of 4 x 5 m, a ball and two boxes, without floor and ceiling.
 inline Scene walls_and_things() {
   const Scene walls = nearest_of(nearest_of(plane({0, 1, 0}, 2.5), plane({0, 1, 0}, -2.5)),
                                  nearest_of(plane({1, 0, 0}, 2.0), plane({1, 0, 0}, -2.0)));

@@ -1,4 +1,4 @@
-// exact_gap.cpp: the corners of the patch that two projected triangles share, one kind after the other.
+// exact_gap.cpp: corners of the patch that two projected triangles share, one kind after the other.
 #include "tests/support/exact_gap.hpp"
 
 #include <algorithm>
@@ -8,12 +8,12 @@
 namespace roomradar {
 namespace {
 
-constexpr Exact kOnOutline = 1e-12L;  // of the size, by which a point may lie outside and yet be on it
-constexpr Exact kNoArea = 1e-15L;     // of its size squared: an outline with less is a line
+constexpr Exact kOnOutline = 1e-12L;  // relative to the size: this far outside is still on the outline
+constexpr Exact kNoArea = 1e-15L;     // relative to the size squared: an outline with less area is a line
 
 Exact cross2(const ExactPoint& a, const ExactPoint& b) { return a.x() * b.y() - a.y() * b.x(); }
 
-/// Height of the triangle where p projects into it, its outline included.
+/// Height of the triangle at p's projection, nullopt outside the outline; points on the outline are inside.
 std::optional<Exact> height_at(const ExactTriangle& t, const ExactPoint& p) {
   const ExactPoint a = t[1] - t[0], b = t[2] - t[0], c = p - t[0];
   const Exact area = cross2(a, b);
@@ -39,7 +39,7 @@ class Gaps {
   Exact most_ = -std::numeric_limits<Exact>::infinity();
 };
 
-/// Calls put(height of the edge) where p projects onto the edge a b; twice where the edge stands upright.
+/// Calls put(height of the edge) if p projects onto the edge a b; twice if the edge is parallel to z.
 template <typename Put>
 void heights_on_edge(const ExactPoint& a, const ExactPoint& b, const ExactPoint& p, const Put& put) {
   const ExactPoint d = b - a, c = p - a;
@@ -68,7 +68,7 @@ void gap_of_edges(const ExactPoint& a0, const ExactPoint& a1, const ExactPoint& 
     gaps.put(c.z() + t * e.z() - s * d.z());
     return;
   }
-  // Parallel: the patch is a piece of line whose ends are ends of the edges.
+  // Parallel: the patch is a line segment whose ends are ends of the edges.
   for (const ExactPoint& a : {a0, a1}) heights_on_edge(b0, b1, a, [&](Exact z) { gaps.put(z - a.z()); });
   for (const ExactPoint& b : {b0, b1}) heights_on_edge(a0, a1, b, [&](Exact z) { gaps.put(b.z() - z); });
 }

@@ -1,4 +1,4 @@
-// exact_gap.hpp: at which travels along z do two triangles have a point in common?
+// exact_gap.hpp: the distances along z over which two triangles touch or cross.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -6,22 +6,22 @@
 
 namespace roomradar {
 
-/// Wide enough that nothing a double says of a triangle is lost in the judge's own sums.
+/// Wide enough that the reference loses no bits of a double in its own sums.
 using Exact = long double;
-using ExactPoint = Eigen::Matrix<Exact, 3, 1>;  ///< x, y across the direction, z along it
+using ExactPoint = Eigen::Matrix<Exact, 3, 1>;  ///< x and y across the direction, z along it
 using ExactTriangle = std::array<ExactPoint, 3>;
 
-/// Closed: at both ends they touch.
+/// Closed interval: the triangles touch at both ends.
 struct TravelSpan {
   double from_m = 0.0;
   double to_m = 0.0;
 };
 
-/// The travels t at which `object`, moved by t along z, has a point in common with `scene`; nothing if their
-/// outlines across z do not meet. The gap between the two is affine over the convex patch that their outlines
-/// share (linear in x and y), so it is least and greatest at the patch's corners: a corner of one over or
-/// under the other's face, or two edges that cross. An edge-on triangle is its edges. Outlines that meet by
-/// less than 1e-12 of their size count as meeting.
+/// Returns the distances t at which `object`, moved by t along z, has a point in common with `scene`; nullopt
+/// if their outlines across z do not overlap. The gap between the two is linear in x and y over the convex
+/// patch where the outlines overlap. It is therefore least and greatest at the patch's corners: a vertex of
+/// one above or below the other's face, or two crossing edges. An edge-on triangle counts as its edges.
+/// Outlines that overlap by less than 1e-12 of their size count as overlapping.
 std::optional<TravelSpan> exact_gap(const ExactTriangle& object, const ExactTriangle& scene);
 
 }  // namespace roomradar

@@ -1,5 +1,4 @@
-// exact_gap_test.cpp: the judge of a pair of triangles against hand figures and against a hull of
-// differences.
+// exact_gap_test.cpp: exact_gap against results computed by hand and against a convex hull of differences.
 #include "tests/support/exact_gap.hpp"
 
 #include <gtest/gtest.h>
@@ -13,8 +12,9 @@
 namespace roomradar::exact_gap_test {
 namespace {
 
-/// The same question put another way: object + t z and scene meet where t z is a convex mix of the nine
-/// differences scene corner - object corner. Its least and greatest t are mixes of at most three of them.
+/// The same result by another method: object + t z and scene touch if t z is a convex combination of the nine
+/// differences scene vertex - object vertex. The least and the greatest t are combinations of at most three
+/// of them.
 std::optional<TravelSpan> gap_by_differences(const ExactTriangle& object, const ExactTriangle& scene) {
   std::vector<ExactPoint> q;
   for (const ExactPoint& o : object) {
@@ -105,18 +105,18 @@ TEST(ExactGap, SameOutlineMeetsThoughAllItsCornersCoincide) {
 TEST(ExactGap, UprightTriangleIsItsEdges) {
   const ExactTriangle upright = {{{0.2L, 0.2L, 1}, {0.4L, 0.2L, 1}, {0.3L, 0.2L, 4}}};
   const ExactTriangle flat = {{{0, 0, 5}, {1, 0, 5}, {0, 1, 5}}};
-  const auto span = exact_gap(upright, flat);  // its tip first, its foot last
+  const auto span = exact_gap(upright, flat);  // its tip touches first, its foot last
   ASSERT_TRUE(span);
   EXPECT_NEAR(span->from_m, 1.0, 1e-15);
   EXPECT_NEAR(span->to_m, 4.0, 1e-15);
 }
 
 TEST(ExactGap, TwoUprightTrianglesInOnePlane) {
-  const ExactTriangle low = {{{0, 0, 0}, {3, 4, 0}, {1.5L, 2, 1}}};    // tip up in the middle of 5 m
-  const ExactTriangle high = {{{0, 0, 5}, {3, 4, 5}, {0.75L, 1, 2}}};  // tip down at a quarter
+  const ExactTriangle low = {{{0, 0, 0}, {3, 4, 0}, {1.5L, 2, 1}}};    // tip up, at the middle of 5 m
+  const ExactTriangle high = {{{0, 0, 5}, {3, 4, 5}, {0.75L, 1, 2}}};  // tip down, at a quarter
   const auto span = exact_gap(low, high);
   ASSERT_TRUE(span);
-  EXPECT_NEAR(span->from_m, 1.5, 1e-12);  // at the lower tip's quarter: 2 - 0.5
+  EXPECT_NEAR(span->from_m, 1.5, 1e-12);  // at a quarter of the lower triangle: 2 - 0.5
   EXPECT_NEAR(span->to_m, 5.0, 1e-12);
 }
 

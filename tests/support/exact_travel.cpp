@@ -1,4 +1,4 @@
-// exact_travel.cpp: gaps between projected triangles, which are least where corners or edges cross.
+// exact_travel.cpp: least gap between projected triangles, found at vertices or crossings of edges.
 #include "tests/support/exact_travel.hpp"
 
 #include <algorithm>
@@ -17,14 +17,14 @@ namespace {
 struct OutlinedCorners {
   ExactTriangle p;
   Eigen::AlignedBox2d outline;
-  double min_z = 0.0, max_z = 0.0;  // rounded outwards, as the outline is
+  double min_z = 0.0, max_z = 0.0;  // rounded outwards, like the outline
 };
 
 OutlinedCorners corners_of(const ExactTriangle& p) {
   OutlinedCorners corners{p, {}, 0.0, 0.0};
   const ExactPoint low = p[0].cwiseMin(p[1]).cwiseMin(p[2]);
   const ExactPoint high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
-  const Exact beyond = 1e-11L * (high - low).maxCoeff();  // more than exact_gap takes for touching
+  const Exact beyond = 1e-11L * (high - low).maxCoeff();  // more than exact_gap's tolerance for touching
   const Eigen::Vector3d low_m = (low.array() - beyond).matrix().cast<double>();
   const Eigen::Vector3d high_m = (high.array() + beyond).matrix().cast<double>();
   corners.outline = Eigen::AlignedBox2d(low_m.head<2>(), high_m.head<2>());
@@ -33,7 +33,7 @@ OutlinedCorners corners_of(const ExactTriangle& p) {
   return corners;
 }
 
-/// Least travel >= -slack_m at which the two touch, or infinity.
+/// Returns the least distance >= -slack_m at which the two triangles touch, or infinity.
 double travel_of_pair(const OutlinedCorners& object, const OutlinedCorners& scene, double slack_m) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   if (!object.outline.intersects(scene.outline)) return kNever;
@@ -61,7 +61,7 @@ Frame frame_of(const Eigen::Isometry3d& T_world_object, const Mesh& object,
   return frame;
 }
 
-/// Those whose outline meets the area.
+/// Returns the triangles whose outline overlaps the area.
 std::vector<OutlinedCorners> triangles_in_frame(const Mesh& mesh, const Eigen::Isometry3d& T_world_mesh,
                                                 const Frame& frame, const Eigen::AlignedBox2d& area) {
   const Eigen::Matrix<Exact, 3, 3> R_world_mesh = T_world_mesh.linear().cast<Exact>();
@@ -112,7 +112,7 @@ class Grid {
       const double size = std::max(area_.sizes()[axis], 1e-12) / side_;
       return static_cast<int>(std::clamp((v - area_.min()[axis]) / size, 0.0, side_ - 1.0));
     };
-    constexpr double kMargin_m = 1e-9;  // rounding must not part neighbours
+    constexpr double kMargin_m = 1e-9;  // rounding must not separate neighbours
     for (int y = cell_of(outline.min().y() - kMargin_m, 1); y <= cell_of(outline.max().y() + kMargin_m, 1);
          ++y) {
       for (int x = cell_of(outline.min().x() - kMargin_m, 0); x <= cell_of(outline.max().x() + kMargin_m, 0);
@@ -129,7 +129,7 @@ class Grid {
   std::vector<std::vector<std::size_t>> cells_;
 };
 
-/// Ascending; spans that touch, but for rounding, made one.
+/// Returns the union of the spans, ascending; spans that touch up to rounding are merged.
 std::vector<TravelSpan> joined(std::vector<TravelSpan> spans) {
   constexpr double kRounding_m = 1e-12;
   std::sort(spans.begin(), spans.end(),
@@ -168,7 +168,7 @@ std::optional<double> exact_travel(const Mesh& object, const Eigen::Isometry3d& 
     }
   } else {
     Grid grid(area, scene_triangles);
-    // Foremost triangles first: the bound found early rules out most of the rest.
+    // Foremost triangles first: an early, small bound rules out most of the rest.
     std::sort(object_triangles.begin(), object_triangles.end(),
               [](const OutlinedCorners& a, const OutlinedCorners& b) { return a.max_z > b.max_z; });
     for (const OutlinedCorners& o : object_triangles) {

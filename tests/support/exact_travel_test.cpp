@@ -1,4 +1,4 @@
-// exact_travel_test.cpp: the judge itself, on contacts that can be worked out by hand.
+// exact_travel_test.cpp: exact_travel on contacts that can be computed by hand.
 #include "tests/support/exact_travel.hpp"
 
 #include <gtest/gtest.h>
@@ -23,11 +23,11 @@ TEST(ExactTravel, BoxAboveFloorTravelsItsClearance) {
   const auto contact_distance_m = exact_travel(shapes::box({0.2F, 0.2F, 0.2F}), at(0.3, 0.1, 1.0), kDown, 2.0,
                                                shapes::floor(2.0F, 0.0F), at(0, 0, 0));
   ASSERT_TRUE(contact_distance_m);
-  EXPECT_NEAR(*contact_distance_m, 0.9, 1e-8);  // float vertices of 0.1 are off by 1.5e-9
+  EXPECT_NEAR(*contact_distance_m, 0.9, 1e-8);  // rounding of 0.1 to float moves the vertices by 1.5e-9
 }
 
 TEST(ExactTravel, EdgeMeetsEdge) {
-  // Two boxes on their edges, crossed: only edge against edge touches.
+  // Two boxes on their edges, crossed: only edges touch edges.
   const Mesh box = shapes::box({1.0F, 0.2F, 0.2F});
   Eigen::Isometry3d upper(Eigen::AngleAxisd(M_PI / 4, Eigen::Vector3d::UnitX()));
   upper.pretranslate(Eigen::Vector3d(0, 0, 1));
@@ -56,7 +56,7 @@ TEST(ExactTravel, MissesAndReachesAreTold) {
   const Mesh floor = shapes::floor(1.0F, 0.0F);
   EXPECT_FALSE(exact_travel(box, at(3, 0, 1), kDown, 5.0, floor, at(0, 0, 0)));   // beside it
   EXPECT_FALSE(exact_travel(box, at(0, 0, 1), -kDown, 5.0, floor, at(0, 0, 0)));  // away from it
-  EXPECT_FALSE(exact_travel(box, at(0, 0, 1), kDown, 0.8, floor, at(0, 0, 0)));   // not that far
+  EXPECT_FALSE(exact_travel(box, at(0, 0, 1), kDown, 0.8, floor, at(0, 0, 0)));   // not far enough
   EXPECT_FALSE(exact_travel(box, at(0, 0, 1), kDown, 5.0, {}, at(0, 0, 0)));
 }
 
@@ -84,19 +84,18 @@ TEST(ExactTravel, EdgesMeetAtAnyAngleAndFarFromTheOrigin) {
 }
 
 TEST(ExactTravel, BallOnASlopeTravelsByItsSlant) {
-  // 1 m over a plane that leans by 30 degrees; straight down: (distance to the plane - radius) / cos 30.
+  // 1 m above a plane inclined by 30 degrees. Straight down: (distance to the plane - radius) / cos 30.
   const Mesh ball = shapes::ball(0.25F, 200, 300);
   Eigen::Isometry3d slope(Eigen::AngleAxisd(M_PI / 6, Eigen::Vector3d::UnitY()));
   const auto contact_distance_m =
       exact_travel(ball, at(0, 0, 1), kDown, 2.0, shapes::floor(4.0F, 0.0F), slope);
   ASSERT_TRUE(contact_distance_m);
-  EXPECT_NEAR(*contact_distance_m, 1.0 - 0.25 / std::cos(M_PI / 6),
-              4e-5);  // the ball is flat between its corners
+  EXPECT_NEAR(*contact_distance_m, 1.0 - 0.25 / std::cos(M_PI / 6), 4e-5);  // the ball's triangles are flat
 }
 
 TEST(ExactTravel, BoxesWithTheSameOutlineMeetFaceToFace) {
   const Mesh box = shapes::box({0.25F, 0.5F, 0.125F});
-  for (const double turn : {0.0, 0.3}) {  // all corners and edges coincide across the direction
+  for (const double turn : {0.0, 0.3}) {  // at 0, all vertices and edges coincide across the direction
     Eigen::Isometry3d lower(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
     Eigen::Isometry3d upper = lower;
     upper.pretranslate(Eigen::Vector3d(0, 0, 1));
@@ -116,7 +115,7 @@ TEST(ExactCrossings, BoxThroughASlabCrossesItsTwoSkins) {
 
   const auto flat = exact_crossings(shapes::box({0.25F, 0.25F, 0.125F}), at(0, 0, 1), kDown,
                                     shapes::box({2.0F, 2.0F, 0.5F}), at(0, 0, 0));
-  ASSERT_EQ(flat.size(), 2U);  // between the skins it is wholly inside and nothing crosses
+  ASSERT_EQ(flat.size(), 2U);  // between the shells it is wholly inside and nothing crosses
   EXPECT_NEAR(flat[0].to_m, 1.0 - 0.25 + 0.0625, 1e-12);
   EXPECT_NEAR(flat[1].from_m, 1.0 + 0.25 - 0.0625, 1e-12);
 }

@@ -1,4 +1,4 @@
-// kept_source.hpp: frames that lie in memory, as a source.
+// kept_source.hpp: a frame source that delivers frames from memory.
 #pragma once
 #include <utility>
 #include <vector>

@@ -1,4 +1,4 @@
-// noisy_room.hpp: a small room with painted walls and a Kinect's noise, and a camera's way through it.
+// noisy_room.hpp: a small room with painted walls and a Kinect's noise, and a camera path through it.
 #pragma once
 #include <numbers>
 #include <vector>
@@ -21,7 +21,7 @@ inline Scene room() {
   return nearest_of(walls, things);
 }
 
-/// Camera i of a path that sways aside and comes back to its start at i = `frames`.
+/// Camera i of a path that sways sideways and returns to its start at i = `frames`.
 inline Eigen::Isometry3d on_path(int i, int frames) {
   const double a = 2.0 * std::numbers::pi * i / frames;
   return looking_at({0.3 * std::sin(a), -0.3 + 0.1 * (1 - std::cos(a)), 1.2},

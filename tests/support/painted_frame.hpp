@@ -1,4 +1,4 @@
-// painted_frame.hpp: colour and sensor noise for exact frames, so that tracking has something to see.
+// painted_frame.hpp: colour and sensor noise for exact frames, as tracking needs them.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace roomradar::test {
 
-/// Grey level of a world point: the world is made of cubes of 6 cm, each of its own grey. The cubes' faces
-/// are off the round coordinates that test scenes have their planes at.
+/// Returns the grey level of a world point: the world consists of cubes of 6 cm, each with its own grey. The
+/// cubes' faces are offset from the round coordinates at which test scenes have their planes.
 inline std::uint8_t cube_grey(const Eigen::Vector3d& p_world) {
   constexpr double kCube_m = 0.06;
   const Eigen::Array3d cube = ((p_world.array() + 0.0217) / kCube_m).floor();
@@ -21,8 +21,8 @@ inline std::uint8_t cube_grey(const Eigen::Vector3d& p_world) {
   return static_cast<std::uint8_t>(40 + (hash >> 40) % 170);
 }
 
-/// Paints what the frame's depth shows as seen at T_world_camera; colour is aligned with depth. Four samples
-/// a pixel soften the cubes' edges. `grey_of` gives a world point's grey level.
+/// Paints the surfaces in the frame's depth image as seen from T_world_camera; colour is aligned with depth.
+/// Four samples per pixel soften the cubes' edges. `grey_of` returns a world point's grey level.
 template <typename Grey>
 void paint_with(const Grey& grey_of, Frame& frame, const Eigen::Isometry3d& T_world_camera, double gain = 1.0,
                 double offset = 0.0) {
@@ -49,7 +49,7 @@ inline void paint(Frame& frame, const Eigen::Isometry3d& T_world_camera, double 
   paint_with(cube_grey, frame, T_world_camera, gain, offset);
 }
 
-/// A Kinect's axial noise, independent from pixel to pixel.
+/// Adds a Kinect's axial noise, independent from pixel to pixel.
 inline void add_depth_noise(Frame& frame, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;

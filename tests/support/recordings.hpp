@@ -1,4 +1,4 @@
-// recordings.hpp: where tests find the real recordings, which are not part of the repository.
+// recordings.hpp: locates the real recordings, which are not part of the repository.
 #pragma once
 #include <cstdlib>
 #include <filesystem>
@@ -7,8 +7,8 @@
 
 namespace roomradar::test {
 
-/// Folder of one recording: $ROOMRADAR_DATA/NAME, else ../shared/data/NAME beside the project; nothing if it
-/// is absent.
+/// Returns the folder of a recording: $ROOMRADAR_DATA/NAME, else ../shared/data/NAME beside the project;
+/// nullopt if it is absent.
 inline std::optional<std::filesystem::path> recording(const std::string& name) {
   const char* chosen = std::getenv("ROOMRADAR_DATA");
   const std::filesystem::path folder = std::filesystem::path(chosen ? chosen : ROOMRADAR_DATA_DEFAULT) / name;
@@ -18,7 +18,7 @@ inline std::optional<std::filesystem::path> recording(const std::string& name) {
 
 }  // namespace roomradar::test
 
-/// Declares `variable` (a path), or skips the running test with a sentence where the recording is absent.
+/// Declares `variable` (a path), or skips the running test with a message if the recording is absent.
 #define ROOMRADAR_RECORDING_OR_SKIP(variable, name)                                               \
   const auto variable##_found = ::roomradar::test::recording(name);                               \
   if (!variable##_found)                                                                          \

@@ -1,4 +1,4 @@
-// temporary_folder.hpp: a fresh folder for one test, removed with all that is in it.
+// temporary_folder.hpp: a new folder for one test, removed with its contents.
 #pragma once
 #include <stdlib.h>
 

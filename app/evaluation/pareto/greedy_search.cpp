@@ -1,4 +1,4 @@
-// ladder.cpp: applies single changes cumulatively, in order of their price.
+// greedy_search.cpp: applies single changes cumulatively, in order of their price.
 #include "app/evaluation/pareto/greedy_search.hpp"
 
 #include <algorithm>

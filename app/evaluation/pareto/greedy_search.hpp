@@ -1,4 +1,4 @@
-// ladder.hpp: greedy search for combinations of parameters, ordered by gain per cost.
+// greedy_search.hpp: greedy search for combinations of parameters, ordered by gain per cost.
 #pragma once
 #include <cstddef>
 #include <vector>

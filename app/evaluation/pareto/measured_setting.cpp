@@ -1,4 +1,4 @@
-// trade_work.cpp: looks up figures by name.
+// measured_setting.cpp: looks up figures by name.
 #include "app/evaluation/pareto/measured_setting.hpp"
 
 #include "mapping/types/system/error.hpp"

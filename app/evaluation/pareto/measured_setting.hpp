@@ -1,5 +1,5 @@
-// trade_work.hpp: a kind of work with a trade-off of time and accuracy: its parameters, measurements and
-// scenes.
+// measured_setting.hpp: a kind of work with a trade-off of time and accuracy: its parameters, measurements
+// and scenes.
 #pragma once
 #include <cstddef>
 #include <functional>

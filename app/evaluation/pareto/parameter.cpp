@@ -1,4 +1,4 @@
-// knob.cpp: default settings, and settings as text.
+// parameter.cpp: default settings, and settings as text.
 #include "app/evaluation/pareto/parameter.hpp"
 
 namespace roomradar {

@@ -1,4 +1,4 @@
-// knob.hpp: parameters that trade time for accuracy, with the values to try.
+// parameter.hpp: parameters that trade time for accuracy, with the values to try.
 #pragma once
 #include <cstddef>
 #include <string>

@@ -1,4 +1,4 @@
-// front.cpp: computes the front in one pass over the points sorted by cost.
+// pareto_front.cpp: computes the front in one pass over the points sorted by cost.
 #include "app/evaluation/pareto/pareto_front.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// front.hpp: Pareto front of cost and error.
+// pareto_front.hpp: Pareto front of cost and error.
 #pragma once
 #include <cstddef>
 #include <vector>

@@ -1,4 +1,4 @@
-// draw_settings.cpp: single changes, and combinations with correlated ranks.
+// sample_settings.cpp: single changes, and combinations with correlated ranks.
 #include "app/evaluation/pareto/sample_settings.hpp"
 
 #include <algorithm>

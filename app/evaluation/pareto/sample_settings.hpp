@@ -1,4 +1,4 @@
-// draw_settings.hpp: draws the settings of a sweep at random.
+// sample_settings.hpp: draws the settings of a sweep at random.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// moved_touch.cpp: draws balls at pixels that show dynamic objects, and moves them along the pixels' rays.
+// dynamic_touch.cpp: draws balls at pixels that show dynamic objects, and moves them along the pixels' rays.
 #include "app/evaluation/trade/dynamic_touch.hpp"
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// moved_touch.hpp: measures contact errors of balls thrown at visible dynamic objects, against exact solids.
+// dynamic_touch.hpp: measures contact errors of balls thrown at visible dynamic objects, against exact
+// solids.
 #pragma once
 #include <cstddef>
 #include <limits>

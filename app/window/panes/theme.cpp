@@ -1,4 +1,4 @@
-// look.cpp: sets the style and draws the widgets.
+// theme.cpp: sets the style and draws the widgets.
 #include "app/window/panes/theme.hpp"
 
 #include <filesystem>

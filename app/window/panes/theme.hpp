@@ -1,4 +1,4 @@
-// look.hpp: colours, fonts and small widgets of the window.
+// theme.hpp: colours, fonts and small widgets of the window.
 #pragma once
 #include <imgui.h>
 

@@ -1,4 +1,4 @@
-// whole_file.cpp: writes a partial file, syncs, renames.
+// atomic_file.cpp: writes a partial file, syncs, renames.
 #include "mapping/types/system/atomic_file.hpp"
 
 #include <fcntl.h>

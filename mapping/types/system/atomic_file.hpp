@@ -1,4 +1,4 @@
-// whole_file.hpp: atomic file writing.
+// atomic_file.hpp: atomic file writing.
 #pragma once
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-// setting_rules.hpp: range checks of settings, with one form of error message.
+// config_check.hpp: range checks of settings, with one form of error message.
 #pragma once
 #include <string>
 

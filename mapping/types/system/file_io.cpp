@@ -1,4 +1,4 @@
-// file_bytes.cpp: checks a file's kind and size before reading it.
+// file_io.cpp: checks a file's kind and size before reading it.
 #include "mapping/types/system/file_io.hpp"
 
 #include <fstream>

@@ -1,4 +1,4 @@
-// file_bytes.hpp: reads and writes whole files as bytes.
+// file_io.hpp: reads and writes whole files as bytes.
 #pragma once
 #include <cstdint>
 #include <filesystem>

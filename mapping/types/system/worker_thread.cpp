@@ -1,4 +1,4 @@
-// second_thread.cpp: hands work to the worker thread and waits for it.
+// worker_thread.cpp: hands work to the worker thread and waits for it.
 #include "mapping/types/system/worker_thread.hpp"
 
 namespace roomradar {

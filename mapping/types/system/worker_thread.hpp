@@ -1,4 +1,4 @@
-// second_thread.hpp: a worker thread that runs one piece of work beside the caller's.
+// worker_thread.hpp: a worker thread that runs one piece of work beside the caller's.
 #pragma once
 #include <atomic>
 #include <exception>

@@ -1,4 +1,5 @@
-// Calibration: lenses there and back, the file, frames freed of known faults, and known cameras found again.
+// calibration_test.cpp: lens models and their inverses, the calibration file, corrected frames, and recovery
+// of known cameras.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -28,14 +29,14 @@ using Eigen::Vector3d;
 const Lens kBarrel{-0.21, 0.07, 0.0011, -0.0007, 0.01};
 const Board kBoard{.columns = 8, .rows = 6, .square_m = 0.06};
 
-/// Where frames say that the colour camera is.
+/// Pose of the colour camera as stated in the frames.
 Isometry3d beside() {
   Isometry3d T_colour_depth = Isometry3d::Identity();
   T_colour_depth.translation().x() = -0.025;
   return T_colour_depth;
 }
 
-/// One Kinect with all the faults that the simulated one has.
+/// A Kinect with all faults that the simulated one has.
 Calibration faulty_kinect() {
   const Intrinsics said = kKinectDepthCamera;
   const SensorFaults faults = sensor_faults(said, said, beside());
@@ -51,7 +52,7 @@ Calibration faulty_kinect() {
   return truth;
 }
 
-/// What a Kinect sees of a board: corners with 0.1 px of noise, depth with the sensor's.
+/// A Kinect's view of a board: corners with 0.1 px of noise, depth with the sensor's noise.
 BoardView view_of_board(const Calibration& truth, const Isometry3d& T_colour_board, std::mt19937& random) {
   std::normal_distribution<double> gaussian;
   const Intrinsics& colour = *truth.rig.colour_camera;
@@ -83,7 +84,7 @@ BoardView view_of_board(const Calibration& truth, const Isometry3d& T_colour_boa
   return view;
 }
 
-/// @param tilt_rad  of the board, at most
+/// @param tilt_rad  max tilt of the board
 BoardViews views_of_board(const Calibration& truth, int count, double tilt_rad) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -124,14 +125,14 @@ TEST(Lens, UndistortsToWhereItCameFrom) {
       const PlanePoint<double> back = undistorted(distorted({x, y}, kBarrel), kBarrel);
       EXPECT_NEAR(back.x, x, 1e-12);
       EXPECT_NEAR(back.y, y, 1e-12);
-      // Each moves a corner by a tenth of its distance from the middle.
+      // Each lens moves a corner by a tenth of its distance from the centre.
       for (const Lens& lens : {Lens{.k1 = 0.2}, Lens{.k2 = 0.4}, Lens{.k3 = 0.9}, Lens{.k1 = -0.2}}) {
         const PlanePoint<double> of_bent = undistorted(distorted({x, y}, lens), lens);
         EXPECT_NEAR(of_bent.x, x, 1e-12);
         EXPECT_NEAR(of_bent.y, y, 1e-12);
       }
     }
-  // One that folds the image has no way back; there is an end to it all the same, and a number.
+  // A lens that folds the image has no inverse; the iteration still ends, with a finite result.
   const PlanePoint<double> folded = undistorted({0.5, 0.4}, Lens{.k1 = -3.0});
   EXPECT_TRUE(std::isfinite(folded.x) && std::isfinite(folded.y));
   const PlanePoint<double> same = distorted({0.3, -0.2}, Lens{});
@@ -179,7 +180,7 @@ TEST(Calibration, AFileThatIsBrokenIsNamedWithItsFault) {
   EXPECT_NE(error_of([&] { read_calibration(path); }).find("cut short"), std::string::npos);
 }
 
-/// Frames that were made beforehand.
+/// A source that delivers a prepared frame.
 class GivenFrame final : public FrameSource {
  public:
   explicit GivenFrame(Frame frame) : frame_(std::move(frame)) {}
@@ -214,14 +215,14 @@ TEST(CalibratedSource, APlaneThroughABentLensAndWithWrongDepthIsThePlaneAgain) {
   const auto source = calibrated(std::make_unique<GivenFrame>(real), truth);
   Frame frame;
   ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
-  ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);  // the second says the same
+  ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);  // the second read gives the same
   EXPECT_EQ(frame.depth_camera, camera);
   int seen = 0;
   for (int y = 0; y < 480; ++y)
     for (int x = 0; x < 640; ++x) {
       if (frame.depth_m.at(x, y) == 0.0F) continue;
       ++seen;
-      // The nearest pixel is up to 0.7 px off, and the plane is tilted by 0.36 m a metre: 1.2 mm.
+      // The nearest pixel is up to 0.7 px off, and the plane's slope is 0.36 m per metre: 1.2 mm.
       const Vector3d ray = back_project(camera, x, y, 1.0);
       ASSERT_NEAR(frame.depth_m.at(x, y), plane_m(ray.x(), ray.y()), 0.0016) << x << ", " << y;
     }
@@ -232,7 +233,7 @@ TEST(CalibratedSource, APlaneThroughABentLensAndWithWrongDepthIsThePlaneAgain) {
 TEST(CalibratedSource, AColourSeenThroughABentLensIsWhereThePinholeHasIt) {
   const Calibration truth = faulty_kinect();
   const Intrinsics& camera = *truth.rig.colour_camera;
-  const auto colour_of = [](const PlanePoint<double>& p) {  // of the direction that a pixel looks in
+  const auto colour_of = [](const PlanePoint<double>& p) {  // colour in a pixel's direction
     const auto byte = [](double wave) { return static_cast<std::uint8_t>(128.5 + 100.0 * std::sin(wave)); };
     return Rgb{byte(10.0 * p.x), byte(10.0 * p.y), byte(7.0 * (p.x - p.y))};
   };
@@ -255,8 +256,8 @@ TEST(CalibratedSource, AColourSeenThroughABentLensIsWhereThePinholeHasIt) {
     for (int x = 0; x < 640; ++x) {
       const Rgb pixel = frame.colour.at(x, y), ideal = colour_of(plane_at(x, y)),
                 before = real.colour.at(x, y);
-      if (pixel.r == 0 && pixel.g == 0 && pixel.b == 0) continue;  // outside of the real image
-      if (x < 8 || y < 8 || x >= 632 || y >= 472) continue;        // half outside
+      if (pixel.r == 0 && pixel.g == 0 && pixel.b == 0) continue;  // outside the real image
+      if (x < 8 || y < 8 || x >= 632 || y >= 472) continue;        // partly outside
       ++seen;
       ASSERT_NEAR(pixel.r, ideal.r, 2) << x << ", " << y;
       ASSERT_NEAR(pixel.g, ideal.g, 2) << x << ", " << y;
@@ -278,7 +279,7 @@ TEST(CalibratedSource, AFrameWithoutItsColourHasTheSameCamerasAsTheOthers) {
   EXPECT_TRUE(frame.colour.empty());
   EXPECT_EQ(frame.colour_camera, *truth.rig.colour_camera);
   EXPECT_TRUE(frame.T_colour_depth.isApprox(truth.rig.T_colour_depth));
-  // A device that has no colour camera does not get one.
+  // A device without a colour camera does not get one.
   depth_only.colour_camera = {};
   ASSERT_EQ(calibrated(std::make_unique<GivenFrame>(depth_only), truth)->next(frame).status,
             ReadStatus::kFrame);
@@ -317,7 +318,7 @@ TEST(BoardViews, AreOfTheWholeStillBoardWithItsDepthOnIt) {
     EXPECT_LT(residual.colour_rms_px, 1.0) << "the bent lens";
     EXPECT_LT(std::abs(residual.depth_bias_m), 0.05 * residual.distance_m) << "the faults";
   }
-  // Squares said to be half as large: nothing is where they are, and it is told what would be.
+  // With squares stated as half as large, no view fits, and the error suggests the size that would.
   ASSERT_TRUE(source.rewind());
   BoardViews wrong = find_board_views(source, Board{8, 6, 0.03}, 100, [](std::size_t) {});
   EXPECT_TRUE(wrong.views.empty());

@@ -1,4 +1,4 @@
-// manual_page_test.cpp: what the manual page says of scripts is what is read.
+// manual_page_test.cpp: the parser accepts the script syntax that the manual page documents.
 #include "app/cli/manual_page.hpp"
 
 #include <gtest/gtest.h>

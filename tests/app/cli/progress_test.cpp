@@ -1,4 +1,4 @@
-// progress_test.cpp: a line of progress says how far, how fast, and for how long yet.
+// progress_test.cpp: a progress line states the fraction done, the speed and the remaining time.
 #include "app/cli/progress.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// command_line_test.cpp: the program as a user runs it: exit status, messages, and nothing lost.
+// command_line_test.cpp: the program as users run it: exit status, messages, no lost data.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 struct Outcome {
   int status = -1;
-  std::string out;  ///< stdout and stderr together
+  std::string out;  ///< stdout and stderr combined
 };
 
 Outcome shell(const std::string& line) {
@@ -45,7 +45,7 @@ void expect_fault(const Outcome& outcome, int status, const std::string& word) {
   EXPECT_NE(outcome.out.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.out;
 }
 
-/// A small simulated room is scanned once for all tests here.
+/// Scans a small simulated room once for all tests here.
 class CommandLine : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -56,7 +56,7 @@ class CommandLine : public ::testing::Test {
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
   static std::string map() { return (folder_ / "map").string(); }
-  /// A copy of the map that a test may break.
+  /// Returns a copy of the map that a test may damage.
   static fs::path broken_copy() {
     const fs::path copy = folder_ / "broken";
     fs::remove_all(copy);
@@ -104,7 +104,7 @@ TEST_F(CommandLine, MapInfoAndEveryExportWork) {
   expect_fault(roomradar("map export " + map() + " " + map() + "/unknown.ply --unknown"), 1, "map");
 }
 
-/// Everything that a user can do, one after the other.
+/// Every action available to a user, in sequence.
 constexpr const char* kPlayed = R"(frame 0 add pot teapot
 time 0 drop pot view height 0.2
 frame 5 carry pot 0.2 0.1 1.2
@@ -142,7 +142,8 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   EXPECT_EQ(report["settings"]["unknown"], "free");
   EXPECT_EQ(read_text(folder_ / "played" / "000010.png"), read_text(folder_ / "replayed" / "000010.png"));
 
-  // Also where a clock had a say: a budget that cannot be held takes all that the front has.
+  // The same with decisions that depend on a clock: a budget that cannot be met takes the last step of the
+  // Pareto front.
   const fs::path hurried = folder_ / "hurried", hurried_report = folder_ / "hurried.json";
   const Outcome in_hurry = roomradar("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
                                      " --poses recorded --budget-ms 1 --record-session " + hurried.string() +
@@ -155,22 +156,22 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   const Outcome again = roomradar("run " + hurried.string() + pictures("again"));
   EXPECT_NE(again.out.find("replay: 15 of 15 frames the same as recorded"), std::string::npos) << again.out;
   expect_fault(roomradar("run " + hurried.string() + " --budget-ms 33"), 1, "quality events of its own");
-  // Objects move in the same frames where no pictures are made.
+  // Without pictures, objects move in the same frames.
   const Outcome unseen = roomradar("run " + session.string());
   EXPECT_NE(unseen.out.find("replay: 44 of 44 frames the same as recorded"), std::string::npos) << unseen.out;
 
-  // What it was recorded with is in it, and is not to be done twice.
+  // Recorded frames already include calibration and range; neither may be applied twice.
   expect_fault(roomradar("run " + session.string() + " --calibration c.json"), 2, "with its recorded frames");
   expect_fault(roomradar("run " + session.string() + " --frames 3:9"), 2, "from its first frame");
   expect_fault(roomradar("run " + session.string() + " --object teapot"), 2, "has its own objects");
 
-  // It can fail: dropped from higher up the pot is elsewhere, and that is told.
+  // Differences are reported: dropped from higher up, the pot ends elsewhere.
   std::ofstream(script) << "frame 0 add pot teapot\nframe 0 drop pot view height 0.4\nframe 44 quit\n";
   const Outcome other = roomradar("run " + session.string() + " --script " + script.string());
   EXPECT_EQ(other.status, 0) << other.out;
   EXPECT_EQ(other.out.find("replay: 44 of 44"), std::string::npos) << other.out;
   EXPECT_NE(other.out.find("the first that is not"), std::string::npos) << other.out;
-  // A session is a folder of its own, and its frames are a source like others.
+  // A session needs an empty folder, and its frames are a source like others.
   expect_fault(roomradar("run 'sim:table?frames=3&width=160' --map " + map() + " --record-session " +
                          session.string()),
                1, "not empty");
@@ -195,21 +196,21 @@ TEST_F(CommandLine, ASessionThatWasCutOffReplaysToWhereItCame) {
       roomradar("run 'sim:table?frames=12&width=160&path=view&seed=2' --poses recorded --map " + map() +
                 " --record-session " + session.string());
   ASSERT_EQ(played.status, 0) << played.out;
-  // As if it had been killed: the last frame's entry and the last result are not whole.
+  // As if killed: the last frame's entry and the last result are incomplete.
   fs::resize_file(session / "frames" / "list.bin", fs::file_size(session / "frames" / "list.bin") - 9);
   fs::resize_file(session / "results.txt", fs::file_size(session / "results.txt") - 20);
   const Outcome replayed = roomradar("run " + session.string());
   EXPECT_EQ(replayed.status, 0) << replayed.out;
   EXPECT_NE(replayed.out.find("replay: 11 of 11 frames the same"), std::string::npos) << replayed.out;
 
-  // As if the disk had been full: the last result that is left, and the last event, are cut within a number.
+  // As if the disk had been full: the last remaining result and the last event are cut within a number.
   fs::resize_file(session / "results.txt", fs::file_size(session / "results.txt") - 21);
   std::ofstream(session / "events.txt", std::ios::app) << "frame 12 tur";
   const Outcome cut_again = roomradar("run " + session.string());
   EXPECT_EQ(cut_again.status, 0) << cut_again.out;
   EXPECT_NE(cut_again.out.find("replay: 10 of 10 frames the same"), std::string::npos) << cut_again.out;
 
-  // Killed while the camera was held, and a frame past the end: it ends where the results do.
+  // Killed while the camera was held, with an event after the end: the replay ends with the results.
   const fs::path held = folder_ / "cut-held", script = folder_ / "held.txt";
   std::ofstream(script) << "frame 0 add pot teapot\nframe 5 quality radar_px 32\nframe 8 camera hold\n"
                            "frame 40 quit\n";
@@ -336,7 +337,7 @@ TEST_F(CommandLine, TheSampledRadarHoldsTheTeapotTooBySafeBounds) {
   const nlohmann::json report = nlohmann::json::parse(read_text(report_path));
   EXPECT_EQ(report["settings"]["radar"], "sampled");
   EXPECT_TRUE(report["objects"][0]["at_rest"]) << report.dump(2);
-  EXPECT_LE(report["deepest_penetration_m"], 1e-6);  // moved by bounds that hold
+  EXPECT_LE(report["deepest_penetration_m"], 1e-6);  // bounds are valid
 }
 
 TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
@@ -366,7 +367,7 @@ TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
   EXPECT_NE(diff.out.find("appeared"), std::string::npos) << diff.out;
   EXPECT_EQ(diff.out.find("vanished"), std::string::npos) << diff.out;
 
-  // It may be the room's own map, if it is named.
+  // It may overwrite the room's own map if the user names it.
   const fs::path own = broken_copy();
   const Outcome again = roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " +
                                   own.string() + " --poses recorded --adopt 0.8 --save-map " + own.string());
@@ -478,7 +479,7 @@ TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
 
 TEST_F(CommandLine, WhatCannotBeWrittenOrLoadedIsSaidBeforeTheWork) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
-  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  const std::string source = "'sim:table?frames=100000&width=160'";  // would take hours if it started
   expect_fault(roomradar("prescan " + source + " --map " + (folder_ / "unused").string() +
                          " --report /no/such/r.json"),
                1, "/no/such/r.json");
@@ -492,7 +493,7 @@ TEST_F(CommandLine, WhatCannotBeWrittenOrLoadedIsSaidBeforeTheWork) {
 
 TEST_F(CommandLine, NothingElseIsPutIntoAMapsFolder) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
-  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  const std::string source = "'sim:table?frames=100000&width=160'";  // would take hours if it started
   const std::string json = map() + "/map.json", rule = "lies in the folder of a map";
   expect_fault(roomradar("prescan " + source + " --map " + map() + "/below"), 1, rule);
   expect_fault(
@@ -515,7 +516,7 @@ TEST_F(CommandLine, NothingElseIsPutIntoAMapsFolder) {
 
 TEST_F(CommandLine, NothingElseIsPutIntoAFolderThatIsToBecomeAMap) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
-  const std::string source = "'sim:table?frames=100000&width=160'";  // hours, if it began
+  const std::string source = "'sim:table?frames=100000&width=160'";  // would take hours if it started
   const std::string soon = (folder_ / "soon").string(), rule = "which is to be a map";
   fs::create_directory(soon);
   expect_fault(roomradar("prescan " + source + " --map " + soon + "/ --report " + soon + "/r.json"), 1, rule);
@@ -645,7 +646,7 @@ TEST_F(CommandLine, ARecordingWithoutAnyDepthIsRefusedInWords) {
   ASSERT_EQ(
       roomradar("record 'sim:table?frames=5&width=160' " + recording.string() + " --format 7scenes").status,
       0);
-  // Every depth image becomes one without a measurement: the same size, all 0.
+  // Replaces every depth image by one of the same size without measurements, all 0.
   for (const auto& entry : fs::directory_iterator(recording)) {
     if (entry.path().string().ends_with(".depth.png"))
       fs::copy_file(fs::path(ROOMRADAR_SOURCE_DIR) / "tests/data/no_depth_160x120.png", entry.path(),

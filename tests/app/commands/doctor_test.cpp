@@ -1,4 +1,4 @@
-// The doctor: Kinects made of files, and what is said of each way in which one can be out of order.
+// doctor_test.cpp: Kinects simulated by files, and the diagnosis of each possible fault.
 #include "app/commands/doctor.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A USB bus as Linux shows it.
+/// A USB bus as Linux presents it.
 struct Bus {
   TemporaryFolder folder;
   fs::path sys = folder.path() / "sys", dev = folder.path() / "dev";

@@ -1,8 +1,8 @@
-// faults_test.cpp: the program on disks that are full or cannot be written, and with clocks that go
-// backwards: a sentence each time, and what was saved before is what it was.
+// faults_test.cpp: the program with full or read-only disks, and with clocks that go backwards: an error
+// message each time, and saved data stays unchanged.
 //
-// Disks of a few kilobytes are mounted in a namespace of this process's own; where that is not allowed, the
-// tests are skipped.
+// Disks of a few kilobytes are mounted in this process's own namespace; if that is not allowed, the tests are
+// skipped.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -34,7 +34,7 @@ std::string text_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// All files below a folder, with what is in them.
+/// Returns all files below a folder with their contents.
 std::map<std::string, std::string> contents(const fs::path& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -43,7 +43,7 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
   return files;
 }
 
-/// Whether this process may mount disks that nobody else sees.
+/// Returns true if this process may mount disks that only it sees.
 bool has_own_mounts() {
   static const bool has = [] {
     if (unshare(CLONE_NEWNS) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return false;
@@ -78,14 +78,15 @@ class DeferredErrors : public ::testing::Test {
     const std::string size = "size=" + std::to_string(kilobytes) + "k";
     ASSERT_EQ(mount(nullptr, disk().c_str(), nullptr, MS_REMOUNT, size.c_str()), 0);
   }
-  /// Leaves so much room on the disk.
+  /// Fills the disk up to this much free space.
   void fill_disk(std::size_t left_kilobytes) const {
     const std::uintmax_t available = fs::space(disk()).available;
     const std::uintmax_t left = left_kilobytes << 10U;
     if (available > left) std::ofstream(disk() / "filler") << std::string(available - left, 'x');
   }
 
-  /// Runs the program to its end; what it says goes to said(). -1 if it was ended by a signal.
+  /// Runs the program to its end and returns its exit status; said() returns its output. -1 if a signal ended
+  /// it.
   [[nodiscard]] int run(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), ROOMRADAR_PROGRAM);
     const pid_t child = fork();
@@ -107,7 +108,7 @@ class DeferredErrors : public ::testing::Test {
     return run({"prescan", kSource, "--map", map, "--resolution", resolution});
   }
 
-  /// All that writes to the disk, each in words of the command line. `made` is a sound map elsewhere.
+  /// Command lines of all commands that write to the disk. `made` is a valid map elsewhere.
   [[nodiscard]] std::vector<std::vector<std::string>> writers(const fs::path& made) const {
     const std::string d = disk();
     return {{"prescan", kSource, "--map", d + "/new", "--resolution", "0.05"},
@@ -164,7 +165,7 @@ TEST_F(DeferredErrors, AFullDiskIsSaidAndWhatWasSavedIsWhatItWas) {
     const auto before = contents(disk());
     fill_disk(/*left_kilobytes=*/4);
     const int status = run(words);
-    if (status != 0) {  // a short report finds its room
+    if (status != 0) {  // a short report may fit
       EXPECT_EQ(status, 1) << line_of(words) << said();
       EXPECT_NE(said().find("roomradar: " + disk().string()), std::string::npos) << line_of(words) << said();
       const auto after = contents(disk());
@@ -178,14 +179,14 @@ TEST_F(DeferredErrors, AFullDiskIsSaidAndWhatWasSavedIsWhatItWas) {
 }
 
 TEST_F(DeferredErrors, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
-  // With recorded poses a scan that goes on comes to the very same map.
+  // With recorded poses, a resumed scan produces exactly the same map.
   const auto words = [](const fs::path& map) {
     return std::vector<std::string>{
         "prescan", kSource, "--map", map, "--poses", "recorded", "--resolution", "0.02", "--checkpoint-every",
         "0.01"};
   };
   ASSERT_EQ(run(words(at("reference"))), 0) << said();
-  mount_disk(6000);  // for a checkpoint, but not for the map beside it
+  mount_disk(6000);  // enough for a checkpoint, not for the map beside it
   EXPECT_EQ(run(words(disk() / "map")), 1);
   EXPECT_NE(said().find("with --resume continues from there"), std::string::npos) << said();
   EXPECT_FALSE(fs::exists(disk() / "map"));
@@ -231,7 +232,7 @@ TEST_F(DeferredErrors, ARecordingThatFilledTheDiskIsReadToWhereItCame) {
   EXPECT_NE(said().find("frames written"), std::string::npos) << said();
 }
 
-/// Every second stamp of a list lies 100 s before the one before it.
+/// Moves every second time stamp of a list to 100 s before the previous one.
 void turn_back_clock(const fs::path& list) {
   std::ifstream in(list);
   std::string text, line;
@@ -289,7 +290,7 @@ TEST_F(DeferredErrors, AMapIsReadWholeWhileAnotherProcessSavesItAnew) {
       const bool is_other = read.info.source == "another";
       EXPECT_EQ(read.trajectory.size(), (is_other ? b : a).trajectory.size());
       others += is_other ? 1 : 0;
-    } catch (const Error& fault) {  // where reading takes longer than saving
+    } catch (const Error& fault) {  // when reading takes longer than saving
       EXPECT_NE(std::string(fault.what()).find("replaced by another process again and again"),
                 std::string::npos)
           << fault.what();

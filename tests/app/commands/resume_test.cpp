@@ -1,4 +1,4 @@
-// resume_test.cpp: the program, killed at any moment, goes on to the map that it would have made.
+// resume_test.cpp: the program, killed at any moment, resumes and produces the map it would have made.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -41,7 +41,7 @@ class ResumeTest : public ::testing::Test {
   [[nodiscard]] fs::path unfinished() const { return temporary_.path() / "map.unfinished"; }
   [[nodiscard]] std::string said() const { return text_of(temporary_.path() / "said"); }
 
-  /// Starts the program; what it says goes to said().
+  /// Starts the program; said() returns its output.
   [[nodiscard]] pid_t start(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), ROOMRADAR_PROGRAM);
     const pid_t child = fork();
@@ -64,7 +64,7 @@ class ResumeTest : public ::testing::Test {
     return status_of(start(arguments));
   }
 
-  // Poses as recorded where the test is not about finding them: that takes a third of the time.
+  // Uses recorded poses in tests that are not about tracking, which takes three times as long.
   [[nodiscard]] std::vector<std::string> scan(const fs::path& to, bool resume,
                                               const std::string& poses = "recorded") const {
     std::vector<std::string> arguments = {
@@ -73,7 +73,7 @@ class ResumeTest : public ::testing::Test {
     if (resume) arguments.emplace_back("--resume");
     return arguments;
   }
-  /// Starts a scan and kills it as soon as `moment` has come. False if the scan was done before.
+  /// Starts a scan and kills it as soon as moment() returns true. Returns false if the scan ended before.
   [[nodiscard]] bool cut_off(bool resume, const std::function<bool()>& moment,
                              const std::string& poses = "recorded") const {
     const pid_t child = start(scan(map(), resume, poses));
@@ -94,7 +94,7 @@ class ResumeTest : public ::testing::Test {
     }
     return number;
   }
-  /// Whether the newest checkpoint is of the second pass.
+  /// Returns true if the newest checkpoint is of the second pass.
   [[nodiscard]] bool is_fusing() const {
     const std::string manifest =
         text_of(unfinished() / ("checkpoint-" + std::to_string(newest())) / "manifest.json");
@@ -105,7 +105,7 @@ class ResumeTest : public ::testing::Test {
          {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"})
       EXPECT_TRUE(text_of(a / file) == text_of(b / file)) << file;
   }
-  /// Keyframes are kept rounded, so that poses found after a resumption are off by what noise does.
+  /// Keyframes are stored rounded, so poses computed after resuming deviate as if by noise.
   static void expect_same_map_up_to_noise(const fs::path& a, const fs::path& b) {
     const std::vector<TimedPose> poses_a = read_trajectory(a / "trajectory.txt");
     const std::vector<TimedPose> poses_b = read_trajectory(b / "trajectory.txt");
@@ -130,7 +130,8 @@ TEST_F(ResumeTest, KilledAgainAndAgainTheMapIsTheSame) {
   std::mt19937 random(1);
   int killed = 0;
   for (bool resume = false; killed < 12; resume = true, ++killed) {
-    // Until there is a checkpoint more, and then for a random while, mostly into the next one's writing.
+    // Waits for a new checkpoint, then for a random time, so the kill mostly hits the writing of the next
+    // one.
     const int before = newest();
     std::optional<std::chrono::steady_clock::time_point> end;
     const auto moment = [&] {
@@ -351,9 +352,9 @@ TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
   EXPECT_EQ(run(scan_table("sim:shelf?frames=30&width=160", true)), 1);
   EXPECT_NE(said().find("cannot be registered"), std::string::npos) << said();
   EXPECT_EQ(text_of(map() / "map.json"), json);
-  fs::remove_all(unfinished());  // a machine so slow that there was a checkpoint keeps it
+  fs::remove_all(unfinished());  // a slow machine may have written a checkpoint
 
-  // The same walk once more with less noise, and a crate that was not there.
+  // The same walk again with less noise, and with a new crate.
   ASSERT_EQ(run(scan_table("sim:table?frames=60&width=160&noise=0.7&crate=1", true)), 0) << said();
   const SavedMap after = load_map(map());
   const std::string extended = text_of(map() / "map.json");

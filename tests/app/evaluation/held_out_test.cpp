@@ -1,4 +1,4 @@
-// held_out_test.cpp: a flat wall measured at known distances before and behind its mesh.
+// held_out_test.cpp: a flat wall measured at known distances in front of and behind its mesh.
 #include "app/evaluation/held_out.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Intrinsics kCamera{64, 48, 58.5, 58.5, 31.5, 23.5};
 
-/// Frames of constant depth, one after the other.
+/// Frames of constant depth.
 class FlatSource final : public FrameSource {
  public:
   explicit FlatSource(std::vector<float> depths_m) : depths_m_(std::move(depths_m)) {}
@@ -61,7 +61,8 @@ TEST(HeldOut, EveryNthFromTheMiddleOfTheFirstN) {
 }
 
 TEST(HeldOut, OnlyTheHeldOutFramesAreCompared) {
-  // Frames 1 and 3 of N = 2 measure the wall 10 mm too far; the mesh is before it. The others lie wildly.
+  // Frames 1 and 3 (N = 2) measure the wall 10 mm too far; the mesh is in front of it. The others are far
+  // off.
   FlatSource source({0.5F, 2.01F, 0.5F, 2.01F});
   const HeldOutScore score = score_held_out(source, wall(-9.0F), asleep(4), 2);
   EXPECT_EQ(score.frames, 2);
@@ -73,7 +74,7 @@ TEST(HeldOut, OnlyTheHeldOutFramesAreCompared) {
 }
 
 TEST(HeldOut, HalfAWallCoversHalfOfThePixels) {
-  FlatSource source({1.7F, 1.7F});  // 0.3 m before the mesh: covered, and outliers
+  FlatSource source({1.7F, 1.7F});  // 0.3 m in front of the mesh: covered, and outliers
   const HeldOutScore score = score_held_out(source, wall(0.0F), asleep(2), 2);
   EXPECT_DOUBLE_EQ(score.cover, 0.5);
   EXPECT_NEAR(score.bias_m, 0.3, 5e-5);
@@ -81,7 +82,7 @@ TEST(HeldOut, HalfAWallCoversHalfOfThePixels) {
 }
 
 TEST(HeldOut, NothingIsClaimedWhereNothingCanBeCompared) {
-  FlatSource far({4.5F, 4.5F});  // beyond what is compared
+  FlatSource far({4.5F, 4.5F});  // beyond the range compared
   EXPECT_EQ(score_held_out(far, wall(-9.0F), asleep(2), 2).pixels, 0);
   FlatSource one({2.0F});
   const HeldOutScore without_pose = score_held_out(one, wall(-9.0F), {}, 2);

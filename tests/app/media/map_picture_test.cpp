@@ -1,4 +1,4 @@
-// map_picture_test.cpp: the whole of a map is in its picture, and every change.
+// map_picture_test.cpp: the picture of a map shows all of the map, and every change.
 #include "app/media/map_picture.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ long count(const ColourImage& picture, Rgb colour) {
 constexpr Rgb kGreen{20, 160, 60}, kRed{210, 40, 40};
 
 TEST(MapPicture, HasAllOfANarrowMapAndWhatChangedBesideIt) {
-  const Eigen::Vector3f ahead(-0.5646F, 0.8253F, 0.0F);  // the way that the picture looks
+  const Eigen::Vector3f ahead(-0.5646F, 0.8253F, 0.0F);  // viewing direction of the picture
   for (const float length_m : {0.1F, 1.0F, 8.0F, 100.0F}) {
     const Mesh map = strip({0.0F, 0.0F, 0.0F}, length_m * ahead);
     const std::vector<Change> changes{at({0.0, 0.0, 0.0}, ChangeKind::kVanished),

@@ -1,4 +1,4 @@
-// video_test.cpp: videos and pictures come back as they were written; a full disk is noticed.
+// video_test.cpp: videos and pictures are read back as written; a full disk is detected.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -33,7 +33,7 @@ class InFolder : public ::testing::Test {
 using Video = InFolder;
 using Picture = InFolder;
 
-/// A bright square on a blue ground that moves right by two pixels a frame.
+/// A bright square on a blue background that moves right by two pixels per frame.
 ColourImage square_at(int frame, int width_px, int height_px) {
   ColourImage picture(width_px, height_px, Rgb{20, 40, 160});
   for (int y = 20; y < 40; ++y)
@@ -46,7 +46,8 @@ TEST_F(Video, EachKindComesBackWithItsFramesAndColours) {
   for (const char* name : {"v.mp4", "v.avi", "v.mkv"}) {
     const std::string path = (folder_ / name).string();
     VideoWriter writer(path, 25.0);
-    for (int frame = 0; frame < 30; ++frame) writer.write(square_at(frame, 161, 121));  // odd sizes lose one
+    // odd sizes lose one pixel
+    for (int frame = 0; frame < 30; ++frame) writer.write(square_at(frame, 161, 121));
     EXPECT_EQ(writer.frames_written(), 30);
     writer.close();
     writer.close();
@@ -101,7 +102,7 @@ TEST_F(Video, WhatWasThereStaysUntilTheNewOneIsWhole) {
     VideoWriter writer(path, 30.0);
     for (int frame = 0; frame < 3; ++frame) writer.write(square_at(frame, 160, 120));
     EXPECT_EQ(std::filesystem::file_size(path), 22U);
-  }  // ended by a fault elsewhere: what there is of the new one is whole as well
+  }  // destroyed without close(): the frames written so far are a complete video
   EXPECT_EQ(cv::VideoCapture(path.string()).get(cv::CAP_PROP_FRAME_COUNT), 3.0);
   const std::filesystem::directory_iterator files(folder_);
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
@@ -144,7 +145,8 @@ TEST_F(Video, NothingWrittenMakesNoFile) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "v.mp4"));
 }
 
-/// Runs `work` in a child whose files may not grow past a limit, as on a full disk; whether it threw Error.
+/// Runs `work` in a child process whose files may not exceed a limit, as on a full disk. Returns true if it
+/// throws Error.
 template <typename Work>
 bool throws_on_a_full_disk(Work&& work, rlim_t limit_bytes) {
   const pid_t child = ::fork();

@@ -1,4 +1,4 @@
-// fit_normals_test.cpp: normals come as near to the fine mesh's as a mean over each triangle can.
+// fit_normals_test.cpp: fitted normals are as close to the fine mesh's as a mean over each triangle allows.
 #include "app/objects/fit_normals.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// A square of 1 x 1 m at height z_m, n x n cells, lit as `normal_at(x, y)` says.
+/// A square of 1 x 1 m at height z_m, n x n cells, with normals from normal_at(x, y).
 template <typename NormalAt>
 Mesh square(int n, float z_m, const NormalAt& normal_at, bool is_facing_up = true) {
   Mesh mesh;
@@ -41,8 +41,8 @@ float degrees_between(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 57.29578F;
 }
 
-/// By how much the normals of a square of coarse_n cells are off, at most, when fitted to those of one of
-/// fine_n whose slopes change evenly, by no more than 0.1 over it.
+/// Max error of the normals of a square of coarse_n cells, fitted to those of a square of fine_n cells whose
+/// slopes change linearly, by at most 0.1 over the square.
 float farthest_off_deg(int fine_n, int coarse_n, float spacing_m) {
   const auto bent = [](float x, float y) { return Eigen::Vector3f(0.1F * x, -0.1F * y, 1.0F); };
   Mesh coarse = square(coarse_n, 0.01F, upright);
@@ -64,8 +64,8 @@ TEST(FitNormals, AFewLargeTrianglesOfTheFineMeshTellAsMuchAsManySmallOnes) {
 }
 
 TEST(FitNormals, OfAWaveAreSteeperThanTheMeanAboutAVertex) {
-  // A period of a cosine over 4 cells: means weighted by how near a point is to the vertex keep 8 / pi^2 =
-  // 0.81 of the crests. The least squares of straight pieces reach past them, to 0.81 / (2 / 3) = 1.22.
+  // One period of a cosine over 4 cells. Means weighted by a point's distance to the vertex keep 8 / pi^2 =
+  // 0.81 of the crests. The least-squares fit of linear pieces exceeds them, up to 0.81 / (2 / 3) = 1.22.
   const auto wave = [](float x, float) {
     return Eigen::Vector3f(0.2F * std::cos(6.2831853F * x), 0.0F, 1.0F);
   };
@@ -115,7 +115,7 @@ TEST(FitNormals, WhatNoPointTellsOfStays) {
   fit_normals({}, 0.02F, 0.1F, coarse);
   EXPECT_EQ(coarse.normals, before.normals);
 
-  // One half is told of: the corners of the other stay.
+  // Only one half has points: normals in the other half stay.
   fine = square(10, 0.0F, upright);
   std::erase_if(fine.triangles, [&](const Triangle& t) { return fine.vertices[t[1]].x() > 0.45F; });
   fit_normals(fine, 0.02F, 0.1F, coarse);

@@ -1,5 +1,5 @@
-// object_levels_test.cpp: coarser meshes lie where they say, are lit as the full one, and are drawn where no
-// pixel tells.
+// object_lod_test.cpp: coarser meshes are within their stated deviation, have the full mesh's shading, and
+// are drawn only if the difference stays below a pixel.
 #include "app/objects/object_lod.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@
 namespace roomradar::object_lod_test {
 namespace {
 
-/// The farthest that some of one mesh's vertices and triangle centres lie from the other's triangles.
+/// Max distance of some of one mesh's vertices and triangle centres from the other's triangles.
 float farthest_m(const Mesh& from, const Mesh& to, std::size_t every) {
   float farthest2 = 0.0F;
   for (std::size_t i = 0; i < from.triangles.size(); i += every) {
@@ -39,7 +39,7 @@ float farthest_m(const Mesh& from, const Mesh& to, std::size_t every) {
   return std::sqrt(farthest2);
 }
 
-/// A cube of 2 x 2 x 2 dm whose faces have n x n cells each; corners of faces are shared.
+/// A cube of 2 x 2 x 2 dm with n x n cells per face; faces share corners.
 Mesh fine_cube(int n) {
   Mesh mesh;
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,8 +87,8 @@ TEST(ObjectLevels, EachHasFewerTrianglesAndLiesWhereItSays) {
   EXPECT_LT(triangles, 300U);
 }
 
-/// By how much the coarse mesh's interpolated normals are off the fine one's triangles, at the middles of
-/// some: root of the mean square.
+/// RMS angle between the coarse mesh's interpolated normals and those of the fine one's triangles, at some
+/// triangles' centres.
 double lit_off_deg(const Mesh& fine, const Mesh& coarse, std::size_t every) {
   double squares_deg2 = 0.0;
   int points = 0;
@@ -104,7 +104,7 @@ double lit_off_deg(const Mesh& fine, const Mesh& coarse, std::size_t every) {
       if (distance2 < nearest2) nearest2 = distance2, nearest = &other;
     }
     Eigen::Vector3f shown = Eigen::Vector3f::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {  // each corner by the part of the area that lies across from it
+    for (std::size_t k = 0; k < 3; ++k) {  // each vertex weighted by the part of the area opposite it
       const Eigen::Vector3f& across = coarse.vertices[(*nearest)[(k + 1) % 3]];
       const Eigen::Vector3f part = (across - p).cross(coarse.vertices[(*nearest)[(k + 2) % 3]] - p);
       shown += std::max(0.0F, part.dot(normal)) * coarse.normals[(*nearest)[k]];
@@ -116,7 +116,7 @@ double lit_off_deg(const Mesh& fine, const Mesh& coarse, std::size_t every) {
 }
 
 TEST(ObjectLevels, EachIsLitAsTheFullMeshIs) {
-  // With the means of what was merged for normals: 8 degrees, and 14 to 17 from 4,000 triangles on.
+  // With means of the merged vertices' normals: 8 degrees, and 14 to 17 from 4,000 triangles on.
   const Mesh full = shapes::torus(240, 100, 0.08F, 0.035F, 0.01F);
   int judged = 0;
   for (const LevelOfDetail& level : levels_of_detail(full)) {
@@ -173,7 +173,7 @@ TEST(ObjectLevels, TheDrawnMeshIsCoarserTheFartherTheObjectAndNeverOffByMoreThan
 
 constexpr Intrinsics kCamera{640, 480, 585.0, 585.0, 319.5, 239.5};
 
-/// Red, green, blue and what is covered, of each pixel of kCamera, as a camera `finer` times as fine sees it.
+/// Red, green, blue and coverage of each pixel of kCamera, from a camera with `finer` times the resolution.
 std::vector<Eigen::Vector4f> pixels_of(ObjectDrawer& drawer, const GpuMesh& mesh,
                                        const Eigen::Isometry3d& T_camera_mesh, int finer) {
   ObjectLayer layer;
@@ -195,8 +195,8 @@ std::vector<Eigen::Vector4f> pixels_of(ObjectDrawer& drawer, const GpuMesh& mesh
 }
 
 TEST(ObjectLevels, ThePictureOfTheUsualOneIsNearlyThatOfTheFullMesh) {
-  // Root mean square over the pixels that either covers; the full meshes themselves, drawn as the levels are,
-  // are 2.8 and 2.3 off. The means of what was merged for normals: 7.6 and 6.4.
+  // RMS over the pixels that either covers. The full meshes themselves, drawn like the levels, differ by 2.8
+  // and 2.3. With means of the merged vertices' normals: 7.6 and 6.4.
   GlContext context;
   ObjectDrawer drawer(context);
   const double usual_px = RunQuality{}.object_error_px, away_m = 1.5;

@@ -1,4 +1,4 @@
-// teapot_test.cpp: the built-in teapot is the published one, whole, outward and standing.
+// teapot_test.cpp: the built-in teapot is the published one, complete, facing outwards and upright.
 #include "app/objects/teapot.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ Eigen::AlignedBox3f bounds(const Mesh& mesh) {
   return box;
 }
 
-/// How many triangles run along each edge from a to b and from b to a.
+/// Number of triangles on each edge, per direction.
 std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed_edges(const Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> count;
   for (const Triangle& t : mesh.triangles) {
@@ -38,7 +38,7 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed_edges(const Mesh
   return count;
 }
 
-/// Component of each vertex, by shared triangles.
+/// Connected component of each vertex, by shared triangles.
 std::vector<std::uint32_t> components(const Mesh& mesh) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -68,8 +68,8 @@ TEST(Teapot, StandsOnZeroWithThePublishedProportions) {
 TEST(Teapot, HasTheTrianglesThatItSays) {
   for (const int n : {2, 5, 10, 32}) {
     const Mesh mesh = utah_teapot(n, 0.2);
-    // 32 patches of 2 n^2, less n for each of the 8 patches that end in a pole. One segment a patch folds the
-    // knob flat.
+    // 32 patches of 2 n^2, minus n for each of the 8 patches that end in a pole. With one segment per patch
+    // the knob would be flat.
     EXPECT_EQ(mesh.triangles.size(), static_cast<std::size_t>(64 * n * n - 8 * n)) << n;
     EXPECT_EQ(mesh.normals.size(), mesh.vertices.size());
   }
@@ -89,15 +89,15 @@ TEST(Teapot, EveryEdgeIsSharedExceptTheOpenRims) {
 }
 
 TEST(Teapot, NeighbouringPatchesMeet) {
-  // Were a border torn by more than the weld, the pieces would fall apart into more than these.
+  // If a seam had a gap larger than the welding distance, there would be more components.
   const std::vector<std::uint32_t> parts = components(utah_teapot(6, 0.2));
   EXPECT_EQ(std::set<std::uint32_t>(parts.begin(), parts.end()).size(), 4U)
       << "body with rim and bottom, lid with knob, handle, spout";
 }
 
 TEST(Teapot, IsAsSmoothAsPublishedAcrossPatches) {
-  // Across an edge the facets turn by little at a fine tessellation, but for the creases that the teapot has:
-  // the lip of the rim and the spout, the foot, and where the knob is pinched.
+  // With a fine tessellation, adjacent facets differ little, except at the teapot's creases: the lip of the
+  // rim and the spout, the foot, and the pinch of the knob.
   const Mesh mesh = utah_teapot(32, 1.0);
   std::map<std::pair<std::uint32_t, std::uint32_t>, Eigen::Vector3f> facet;
   for (const Triangle& t : mesh.triangles) {
@@ -123,7 +123,7 @@ TEST(Teapot, TrianglesAndNormalsPointOutward) {
     const Eigen::Vector3f facet = (b - a).cross(c - a).normalized();
     const Eigen::Vector3f smooth = mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]];
     along += facet.dot(smooth) > 0.0F ? 1 : 0;
-    // The body below the rim is star-shaped about its middle.
+    // The body below the rim is star-shaped about its centre.
     const Eigen::Vector3f centre = (a + b + c) / 3.0F;
     if (centre.z() < 0.235F && centre.head<2>().norm() < 0.199F && std::abs(centre.x()) < 0.15F) {
       ++on_body;
@@ -137,9 +137,9 @@ TEST(Teapot, TrianglesAndNormalsPointOutward) {
 }
 
 TEST(Teapot, VolumeByTheDivergenceTheoremIsThatOfEachPart) {
-  // Handle and spout are open tubes; closed by the plane of their rims they must have positive volume: a part
-  // that is inside out has a negative one. Rims of a part are nearly flat, so the sum about the part's own
-  // centre tells the sign.
+  // Handle and spout are open tubes; closed by the plane of their rims they must have positive volume, since
+  // an inside-out part has a negative one. The rims of a part are nearly flat, so the sum about the part's
+  // own centre gives the sign.
   const Mesh mesh = utah_teapot(12, 0.315);
   const std::vector<std::uint32_t> parts = components(mesh);
   std::map<std::uint32_t, std::pair<Eigen::Vector3d, int>> centres;
@@ -162,7 +162,7 @@ TEST(Teapot, MatchesTheOneThatOthersTessellated) {
   ROOMRADAR_RECORDING_OR_SKIP(folder, "meshes");
   std::ifstream file(folder / "teapot.obj");
   ASSERT_TRUE(file);
-  // That one has y up and the published units.
+  // The file has y up and the published units.
   std::vector<Eigen::Vector3f> theirs;
   for (std::string line; std::getline(file, line);) {
     std::istringstream words(line);

@@ -1,4 +1,4 @@
-// bodies_together_test.cpp: bodies that meet give each other what they lose.
+// bodies_together_test.cpp: colliding bodies conserve momentum.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -27,7 +27,7 @@ PhysicsConfig weightless(double restitution) {
   return config;
 }
 
-/// Two bodies, and perhaps a floor at height 0, advanced in turn.
+/// Two bodies, and optionally a floor at height 0, advanced alternately.
 class Pair {
  public:
   Pair(const Mesh& first, const Mesh& second) {
@@ -138,7 +138,7 @@ TEST(BodiesTogether, KeepMomentumAndTheirTurningWhenTheyMeetOffCentre) {
     EXPECT_LT((pair.momentum() - before).norm(), 1e-6);
     EXPECT_GT(pair.bodies[1].velocity_world_mps.x(), 0.3);
     EXPECT_GT(std::abs(pair.bodies[1].angular_velocity_world_rad_s.z()), 0.3);
-    // The contact lies a margin off the one or the other.
+    // The contact point is off by a margin on one of the bodies.
     EXPECT_LT((pair.angular_momentum() - turning_before).norm(), 0.02 * turning_before.norm());
     EXPECT_EQ(pair.deepest_m, 0.0);
   }
@@ -178,7 +178,7 @@ TEST(BodiesTogether, OneThatIsSetDownOnAnotherLetsItRest) {
   EXPECT_EQ(pair.bodies[0].rests_on, SurfaceKind::kObject);
 }
 
-/// A body of 10 cm in the middle of a board of 30 cm that a hand holds at 1 m.
+/// Puts a body of 10 cm on a board of 30 cm that a hand holds at 1 m.
 void put_on_a_held_board(Pair& pair, const Vec3& at) {
   pair.mass_ratio = {0.0, 1e6};
   pair.put(at, {0, 0, 1});
@@ -203,7 +203,7 @@ TEST(BodiesTogether, OneThatRestsIsCarriedAlongByWhatItRestsOn) {
 }
 
 TEST(BodiesTogether, OneTipsWhoseSupportIsDrawnAwayFromUnderHalfOfIt) {
-  for (const double beyond_m : {-0.015, 0.02}) {  // how far the board's edge is from under the middle
+  for (const double beyond_m : {-0.015, 0.02}) {  // the board ends this far short of the body's centre
     Pair pair(box(0.1, 0.1, 0.1), box(0.3, 0.3, 0.1));
     pair.hold_second();
     put_on_a_held_board(pair, {0.1, 0, 1.102});
@@ -252,7 +252,7 @@ TEST(BodiesTogether, AHandThatReachesIntoOneDoesNotPushItIntoAnotherThatLiesInIt
   TriangleTree teapot_tree, fist_tree;
   teapot_tree.build_by_place(teapot);
   fist_tree.build_by_place(fist);
-  // The one leans upside down on the other; they touch, and cross nowhere.
+  // One leans upside down on the other; they touch, but do not overlap.
   const Eigen::Isometry3d T_world_lies =
       pose({0.1470, -0.3587, 0.7609}, {0.98952, 0.00948, 0.13997, -0.03411});
   const Eigen::Isometry3d T_world_leans =

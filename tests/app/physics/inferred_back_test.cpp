@@ -1,5 +1,5 @@
-// inferred_back_test.cpp: a hand that has a back, among virtual objects: it holds, it pushes, it does not
-// throw.
+// inferred_back_test.cpp: a hand with an assumed back among virtual objects: it supports and pushes them, but
+// does not throw them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ Mesh table(double height_m) {
   return mesh;
 }
 
-/// A camera at the world's origin that looks along +y, and a fist before it.
+/// A camera at the world's origin that looks along +y, and a fist in front of it.
 class InferredBack : public ::testing::Test {
  protected:
   InferredBack() {
@@ -108,7 +108,7 @@ TEST_F(InferredBack, WhatComesFromBehindStopsAtTheBack) {
   EXPECT_EQ(contact.touched, SurfaceKind::kInferredBack);
   EXPECT_NEAR(contact.contact_distance_m, 1.3 - kCube_m - 0.8 - kHand_m, 0.02);
   EXPECT_GT(contact.normal_world.y(), 0.7) << "faces the object";
-  // Without its back the object went into the hand.
+  // Without its back the object enters the hand.
   const Contact open = ask({0.0, 1.3, 0.0}, -Vec3::UnitY(), 1.0, {seen()});
   EXPECT_GT(open.contact_distance_m, contact.contact_distance_m + 0.9 * kHand_m);
 }
@@ -118,7 +118,7 @@ TEST_F(InferredBack, EachSideSaysWhatItIs) {
   const Contact front = ask({0.0, 0.5, 0.0}, Vec3::UnitY(), 1.0, {seen(), inferred()});
   EXPECT_EQ(front.touched, SurfaceKind::kDynamic);
   EXPECT_NEAR(front.contact_distance_m, 0.3 - kCube_m - kHand_m, 0.003);
-  for (const double behind_m : {0.0, 0.02}) {  // beside the outline, where only the back is
+  for (const double behind_m : {0.0, 0.02}) {  // beside the outline, where there is only the back
     const Contact side =
         ask({0.3, 0.8 + kCube_m + 0.005 + behind_m, 0.0}, -Vec3::UnitX(), 1.0, {seen(), inferred()});
     ASSERT_EQ(side.status, ContactStatus::kContact) << behind_m;
@@ -127,12 +127,12 @@ TEST_F(InferredBack, EachSideSaysWhatItIs) {
 }
 
 TEST_F(InferredBack, WhatIsInsideLeavesAnyWayButThroughTheFront) {
-  see_hand({0.0, 1.0, 0.0}, 0.2);  // a hull that appears about the cube
+  see_hand({0.0, 1.0, 0.0}, 0.2);  // a hull that appears around the cube
   const Vec3 at(0.0, 0.95, 0.0);
   for (const Vec3& direction : {Vec3(0, 1, 0), Vec3(0, 1, 0.3), Vec3(0.3, 1, 0)}) {
     EXPECT_EQ(ask(at, direction, 1.0, {seen(), inferred()}).status, ContactStatus::kNoTarget);
   }
-  // Half out of it, too.
+  // Also halfway out of it.
   EXPECT_EQ(ask({0.0, 1.15, 0.0}, Vec3::UnitY(), 1.0, {seen(), inferred()}).status, ContactStatus::kNoTarget);
 }
 
@@ -143,7 +143,7 @@ TEST_F(InferredBack, AHandPushesFromAnySide) {
     body_.T_world_object.translation() = start;
     body_.asleep = true;
     double fastest_mps = 0.0;
-    for (int frame = 0; frame < 18; ++frame) {  // 0.5 m/s, from 17 cm away to 13 cm past where the cube was
+    for (int frame = 0; frame < 18; ++frame) {  // 0.5 m/s, from 17 cm before to 13 cm past the cube
       see_hand(start + direction * (-0.17 + 0.5 * kFrame_s * frame));
       const Vec3 before = body_.T_world_object.translation();
       EXPECT_EQ(step().status, StepStatus::kMoved);
@@ -163,13 +163,13 @@ TEST_F(InferredBack, ABodyThatTheBackComesAboutStaysWhereItIs) {
     body_ = Body{};
     body_.T_world_object.translation() = start;
     body_.asleep = true;
-    for (int frame = 0; frame < 20; ++frame) {  // of a sudden before it; the back reaches 7 cm into it
+    for (int frame = 0; frame < 20; ++frame) {  // appears suddenly; the back extends 7 cm into the cube
       see_hand(start - Vec3(0.0, radius_m + kCube_m - 0.07, 0.0), radius_m);
       EXPECT_EQ(step().status, StepStatus::kMoved);
     }
     EXPECT_LT((body_.T_world_object.translation() - start).norm(), 0.001) << radius_m;
   }
-  // And it falls out of a hull that it is wholly in.
+  // A body wholly inside a hull falls out of it.
   body_ = Body{};
   body_.T_world_object.translation() = start + Vec3(0.0, 0.0, 0.06);
   see_hand(start + Vec3(0.0, 0.1, 0.15), 0.3);

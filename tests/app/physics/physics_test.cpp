@@ -1,4 +1,4 @@
-// physics_test.cpp: bodies among planes and boxes whose contacts are known exactly.
+// physics_test.cpp: bodies among planes and boxes with exactly known contacts.
 #include "app/physics/physics.hpp"
 
 #include <gtest/gtest.h>
@@ -29,11 +29,11 @@ struct Box {
   SurfaceKind kind = SurfaceKind::kStatic;
 };
 
-/// Planes and boxes for the radar, made anew each time it is asked.
+/// Planes and boxes for the radar, meshed again for each step.
 struct Room {
   std::vector<Plane> planes;
   std::vector<Box> boxes;
-  double noise_m = 0.0;  // uniform, of how far surfaces are off along their normal in a step
+  double noise_m = 0.0;  // uniform error of the surfaces along their normal, drawn per step
   mutable std::mt19937 random{7};
 };
 
@@ -53,7 +53,7 @@ Mesh mesh_of(const Box& box) {
   return mesh;
 }
 
-/// The room's meshes under the radar, and a cube's probe of them.
+/// The room's meshes for the radar, and a cube's collision queries on them.
 class Surfaces {
  public:
   explicit Surfaces(const Room& room) : trees_(room.planes.size() + room.boxes.size()) {
@@ -147,7 +147,7 @@ TEST(Physics, SticksOnAGentleSlopeAndSlidesDownASteepOne) {
   Body steep = body_at({0, 0, 0.3});
   (void)run(steep, slope(35.0), 1.0, config);
   EXPECT_FALSE(steep.asleep);
-  // After the fall it gains g (sin - mu cos) along the slope each second.
+  // After the fall it gains g (sin - mu cos) along the slope per second.
   const double before_mps = steep.velocity_world_mps.norm();
   (void)run(steep, slope(35.0), 0.5 - 1e-9, config);
   const double tilt = 35.0 * M_PI / 180.0;
@@ -192,7 +192,7 @@ TEST(Physics, SettlesInACornerOfThreeWalls) {
 }
 
 TEST(Physics, RestsInAValleyOfTwoSteepSlopes) {
-  const double tilt = 50.0 * M_PI / 180.0;  // far past the angle of friction
+  const double tilt = 50.0 * M_PI / 180.0;  // far beyond the angle of friction
   const Room valley{.planes = {{Vec3(std::sin(tilt), 0, std::cos(tilt)), 0.0},
                                {Vec3(-std::sin(tilt), 0, std::cos(tilt)), 0.0}},
                     .boxes = {}};
@@ -303,7 +303,7 @@ TEST(Physics, IsPushedAsideByAHandFromTheSide) {
   body.asleep = true;
   const Vec3 towards_hand = -Vec3::UnitX();
   bool was_touched = false;
-  for (int i = 0; i < 60; ++i) {  // 0.3 m/s towards +x, from 0.3 m away to 0.3 m past the body's side
+  for (int i = 0; i < 60; ++i) {  // 0.3 m/s towards +x, from 0.3 m in front of to 0.3 m past the body's side
     room.boxes[0].low.x() += 0.01;
     room.boxes[0].high.x() += 0.01;
     const StepReport report = step(body, kFrame_s, room, {}, {&towards_hand, 1});
@@ -331,7 +331,7 @@ TEST(Physics, APushedBodyStopsAtTheWallBehindIt) {
 TEST(Physics, LeavesAnOverlapNoFasterThanAllowed) {
   Body body = body_at({0, 0, kHalf_m - 0.02});  // placed 2 cm into the floor
   PhysicsConfig config;
-  config.max_depenetration_mps = 0.15;  // 5 mm a frame
+  config.max_depenetration_mps = 0.15;  // 5 mm per frame
   const StepReport first = step(body, kFrame_s, kFloor, config);
   EXPECT_NEAR(first.deepest_static_overlap_m, 0.02, 1e-7);
   EXPECT_NEAR(height(body), -0.015, 1e-6);
@@ -340,8 +340,7 @@ TEST(Physics, LeavesAnOverlapNoFasterThanAllowed) {
 }
 
 TEST(Physics, AWallThatGrazesTheSideDoesNotThrowTheBodyUp) {
-  // 2 mm into a kerb that is 2 cm lower than the body is deep: seen along gravity the overlap is ten times
-  // deeper.
+  // 2 mm into a kerb of 2 cm height: along gravity the overlap is ten times deeper.
   const Room kerb{.planes = {Plane{}}, .boxes = {{{0.098, -1, 0}, {1, 1, 0.02}}}};
   Body body = body_at({0, 0, kHalf_m + 0.001});
   const StepReport report = step(body, kFrame_s, kerb, {});

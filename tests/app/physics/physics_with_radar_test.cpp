@@ -1,4 +1,5 @@
-// physics_with_radar_test.cpp: the teapot among meshes, moved by the real radar, judged by the exact travel.
+// physics_with_radar_test.cpp: the teapot among meshes, moved with the real radar, checked against
+// exact_travel.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -40,7 +41,7 @@ Mesh sheet(double half_m, double height_m, double noise_m = 0.0) {
   return mesh;
 }
 
-/// An upright sheet at x_m that faces +x, as a camera would mesh the side of a hand that it sees.
+/// An upright sheet at x_m that faces +x, like the camera's mesh of a hand's visible side.
 Mesh palm(double x_m) {
   Mesh mesh = sheet(0.06, 0.0);
   for (Eigen::Vector3f& v : mesh.vertices) v = {static_cast<float>(x_m) + v.z(), v.x(), v.y() + 0.78F};
@@ -71,7 +72,7 @@ class PhysicsWithRadar : public ::testing::Test {
     hand_mesh_ = mesh;
     hand_.build_in_order(mesh);
   }
-  /// Gap between the teapot and the table along gravity; negative: it stands in it by that much.
+  /// Gap between the teapot and the table along gravity; negative: depth of the overlap.
   [[nodiscard]] double exact_gap_m() const {
     Eigen::Isometry3d raised = body_.T_world_object;
     raised.translation().z() += 0.05;

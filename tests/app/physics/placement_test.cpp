@@ -1,4 +1,4 @@
-// placement_test.cpp: places found in views of a table and a floor, cast ray by ray.
+// placement_test.cpp: placement on a table and a floor, in depth images cast ray by ray.
 #include "app/physics/placement.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ Eigen::Isometry3d looking(const Vec3& from, const Vec3& at) {
   return T_world_camera;
 }
 
-/// Exact depth of boxes, with a Kinect's noise if asked for.
+/// Exact depth of boxes, optionally with a Kinect's noise.
 DepthImage view_of(const std::vector<Box>& boxes, const Eigen::Isometry3d& T_world_camera,
                    bool is_noisy = false) {
   DepthImage depth_m(kCamera.width_px, kCamera.height_px);
@@ -74,7 +74,7 @@ TEST(Placement, FindsTheMiddleOfATable) {
 }
 
 TEST(Placement, PrefersTheTableToMoreFloor) {
-  // The floor is in the middle.
+  // The floor is at the image's centre.
   const Eigen::Isometry3d T_world_camera = looking({0, -2.0, 1.5}, {0.3, 0.3, 0.3});
   const auto support_world =
       find_support(view_of({kFloor, kTable}, T_world_camera), kCamera, T_world_camera, 0.1);
@@ -115,7 +115,7 @@ TEST(Placement, AWallASlopeOrASmallStoolIsNoPlace) {
   EXPECT_FALSE(find_support(view_of({stool}, from_above), kCamera, from_above, 0.15));
   EXPECT_TRUE(find_support(view_of({stool}, from_above), kCamera, from_above, 0.05));
 
-  // The floor, seen by a camera that takes the world to be tilted by 25 degrees.
+  // The floor, seen by a camera whose pose has the world tilted by 25 degrees.
   const Eigen::Isometry3d tilt(Eigen::AngleAxisd(25.0 * M_PI / 180.0, Vec3::UnitX()));
   const DepthImage floor_m = view_of({kFloor}, from_above);
   EXPECT_TRUE(find_support(floor_m, kCamera, from_above, 0.1));

@@ -1,4 +1,4 @@
-// surface_hit_test.cpp: rays into meshes.
+// ray_hit_test.cpp: rays against meshes.
 #include "app/physics/ray_hit.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using Vec3 = Eigen::Vector3d;
 
-/// A cloud of small triangles about the origin, 2 m wide.
+/// Small triangles scattered about the origin, 2 m wide.
 Mesh scattered_triangles(std::mt19937& random, int count) {
   std::uniform_real_distribution<float> place(-1.0F, 1.0F), corner(-0.1F, 0.1F);
   Mesh mesh;
@@ -27,7 +27,7 @@ Mesh scattered_triangles(std::mt19937& random, int count) {
   return mesh;
 }
 
-/// Where the ray meets the triangle's plane, if that is inside by the signs of three determinants.
+/// Distance to the triangle's plane, if the signs of three determinants say that the hit is inside.
 double distance_by_volumes(const Ray& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 o = ray.origin_world, d = ray.direction_world;
   const double u = d.dot((b - o).cross(c - o)), v = d.dot((c - o).cross(a - o)),
@@ -93,7 +93,7 @@ TEST(MeshHit, NoRaySlipsThroughBetweenTwoTriangles) {
   TriangleTree tree;
   tree.build_by_place(mesh);
   for (int i = -99; i < 100; ++i) {
-    const double at = 0.02 * i;  // on the diagonal that both share
+    const double at = 0.02 * i;  // on the diagonal that both triangles share
     const Vec3 from(0.3, -1.2, 1.7);
     EXPECT_TRUE(hit_mesh({&tree, Eigen::Isometry3d::Identity()},
                          {from, (Vec3(at, at, 0.0) - from).normalized()}, 10.0));

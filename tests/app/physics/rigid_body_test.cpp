@@ -1,5 +1,4 @@
-// rigid_body_test.cpp: laws of mechanics, for a ball that is asked about exactly and for meshes under the
-// radar.
+// rigid_body_test.cpp: laws of mechanics, for a ball with exact contacts and for meshes with the radar.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -20,7 +19,7 @@ using Vec3 = Eigen::Vector3d;
 constexpr double kFrame_s = 1.0 / 30.0;
 constexpr double kG = 9.81;
 
-/// A round ball over a plane through the origin, exactly.
+/// A round ball above a plane through the origin, with exact contacts.
 struct BallOverPlane {
   double radius_m = 0.05;
   Vec3 normal = Vec3::UnitZ();
@@ -70,7 +69,7 @@ Body ball_at(const Vec3& centre, double radius_m = 0.05) {
   return body;
 }
 
-/// Meshes that stay, and one that moves among them.
+/// Static meshes, and one that moves among them.
 class Stage {
  public:
   explicit Stage(const Mesh& object) {
@@ -120,7 +119,7 @@ Mesh moved(Mesh mesh, const Vec3& by) {
   return mesh;
 }
 Mesh box(double x, double y, double z) { return shapes::box(Vec3(x, y, z).cast<float>()); }
-/// Which way is up for the body: the cosine of the angle to its nearest axis is 1 on a face.
+/// Cosine of the angle between the vertical and the body's nearest axis; 1 if the body lies on a face.
 double on_a_face(const Body& body) {
   return (body.T_world_object.linear().transpose() * Vec3::UnitZ()).cwiseAbs().maxCoeff();
 }
@@ -176,7 +175,7 @@ TEST(RigidBody, BouncesToTheSquareOfItsRestitution) {
       has_bounced |= body.velocity_world_mps.z() > 0.5;
       if (has_bounced) highest_m = std::max(highest_m, body.T_world_object.translation().z() - 0.05);
     }
-    EXPECT_NEAR(highest_m, 0.49, 0.006) << dt_s;  // of which a frame may miss the highest point by 1.4 mm
+    EXPECT_NEAR(highest_m, 0.49, 0.006) << dt_s;  // frames miss the highest point by up to 1.4 mm
     EXPECT_LE(highest_m, 0.4905) << dt_s;
   }
 }
@@ -203,7 +202,7 @@ TEST(RigidBody, WhatHasRestedSlidesAsFarAsAnyOther) {
   stage.run(body, 2.0, config);
   ASSERT_TRUE(body.asleep);
   const double from_m = body.T_world_object.translation().x();
-  body.asleep = false;  // as a throw leaves it
+  body.asleep = false;  // as after a throw
   body.velocity_world_mps = {0.6, 0, 0};
   stage.run(body, 2.0, config);
   EXPECT_NEAR(body.T_world_object.translation().x() - from_m, 0.6 * 0.6 / (2.0 * 0.3 * kG), 0.004);
@@ -221,7 +220,7 @@ TEST(RigidBody, ABallRollsDownASlopeAtFiveSevenths) {
   EXPECT_NEAR(body.velocity_world_mps.norm(), acceleration * t, 0.002 * acceleration * t);
   EXPECT_NEAR((body.T_world_object.translation() - 0.0510 * slope.normal).norm(), 0.5 * acceleration * t * t,
               0.005 * acceleration);
-  // It rolls: the place of contact stands still.
+  // It rolls: the velocity at the contact point is zero.
   EXPECT_NEAR(body.angular_velocity_world_rad_s.norm() * 0.0510, body.velocity_world_mps.norm(),
               0.03 * acceleration);
 }
@@ -247,7 +246,7 @@ TEST(RigidBody, AMeshBallRollsDownASlopeAndComesToRestOnTheFloor) {
   }
   Stage stage(ball);
   ASSERT_TRUE(stage.object().is_closed());
-  Mesh ramp;  // down from x = -1 at 12 degrees to the floor at x = 0
+  Mesh ramp;  // descends from x = -1 at 12 degrees to the floor at x = 0
   const float rise = std::tan(12.0F * std::numbers::pi_v<float> / 180.0F);
   shapes::add_quad(ramp, {-1, -1, rise}, {0, -1, 0}, {0, 1, 0}, {-1, 1, rise});
   stage.add(ramp);
@@ -375,7 +374,7 @@ TEST(RigidBody, PushedHighATallBoxTipsPushedLowItSlides) {
     Body body = stage.body_at({0, 0, 0.201});
     const Vec3 towards_hand = -Vec3::UnitX();
     for (int i = 0; i < 120; ++i) {
-      const double x_m = -0.1 + std::min(0.005 * i, 0.25);  // 0.15 m/s, then it stands still
+      const double x_m = -0.1 + std::min(0.005 * i, 0.25);  // 0.15 m/s, then it stops
       stage.replace(1, hand(x_m, z_m));
       (void)stage.step(body, kFrame_s, {}, {&towards_hand, 1});
     }
@@ -436,7 +435,7 @@ TEST(RigidBody, ExtremeSizesAndStepsStayFinite) {
 }
 
 TEST(RigidBody, AThinSheetIsNotPassedByTurning) {
-  // A rod whirls by its middle beside a sheet of no thickness: it stays on its side whatever the step is.
+  // A rod rotates about its centre beside a sheet without thickness: for any time step it stays on its side.
   Mesh sheet;
   shapes::add_quad(sheet, {0.3F, -2, -2}, {0.3F, 2, -2}, {0.3F, 2, 2}, {0.3F, -2, 2});
   PhysicsConfig config;

@@ -1,4 +1,4 @@
-// budget_test.cpp: the controller on machines whose times are made up: loads, noise, accidents.
+// budget_test.cpp: the frame-time controller on simulated machines: loads, noise, outliers.
 #include "app/quality/budget.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace roomradar::budget_test {
 namespace {
 
-/// Each step takes 0.8 times what the one before it took; parts gain by them differently.
+/// Each step takes 0.8 times as long as the previous one; parts of the frame gain differently.
 std::vector<BudgetStep> steps(std::size_t count) {
   std::vector<BudgetStep> front(count);
   double ratio = 1.0;
@@ -25,18 +25,18 @@ std::vector<BudgetStep> steps(std::size_t count) {
 constexpr FrameLoad kCalm{};
 constexpr FrameLoad kCrowd{.dynamic_fraction = 0.5, .moving = 50, .resting = 0};
 
-/// A machine on which frames take what they take.
+/// A simulated machine that determines frame times.
 struct Machine {
-  double speed = 1.0;  ///< of all parts, times nominal_ms()
-  double noise = 0.0;  ///< a frame takes longer or shorter by up to this part
-  double wrong = 0.0;  ///< by so much more than their ratios say the steps take
+  double speed = 1.0;  ///< factor on nominal_ms() for all parts
+  double noise = 0.0;  ///< relative variation of frame times, +-
+  double wrong = 0.0;  ///< fraction of each step's predicted gain that is not achieved
   std::mt19937 random{1};
   BudgetConfig config;
   BudgetState state;
 
   explicit Machine(std::size_t count = 8) : state(start_budget(steps(count), {})) {}
 
-  /// One frame; what it took. The load before kMesh is that of the frame before.
+  /// Runs one frame and returns its time. Before kMesh, the known load is that of the previous frame.
   double frame(const FrameLoad& load, double longer = 1.0) {
     std::uniform_real_distribution<double> part(-noise, noise);
     const double factor = speed * longer * (1.0 + part(random));
@@ -98,7 +98,7 @@ TEST(Budget, ThePersonIsSeenBeforeSheIsMeshed) {
   Machine machine;
   machine.config.budget_ms = 12.0;
   machine.run(50, kCalm);
-  // The same frame in which half of the image moves, and no frame later.
+  // Reacts in the very frame in which half of the image moves.
   const double ms = machine.frame({.dynamic_fraction = 0.5});
   EXPECT_LE(ms, machine.config.budget_ms);
   EXPECT_GT(machine.state.step, 0U);
@@ -118,7 +118,8 @@ TEST(Budget, NoMoreIsGivenUpThanNeeded) {
   machine.run(300, kCrowd);
   const std::size_t step = machine.state.step;
   ASSERT_GT(step, 0U);
-  // Of the steps before, the next would leave no room for the noise, and the one before it would be over.
+  // Of the previous steps, the next one would leave no room for noise, and the one before it would exceed the
+  // budget.
   std::vector<double> more_accurate_ms;
   Machine other;
   other.config.budget_ms = 1e6;
@@ -129,7 +130,7 @@ TEST(Budget, NoMoreIsGivenUpThanNeeded) {
 }
 
 TEST(Budget, BetweenTwoSettingsItDoesNotSwing) {
-  // The ratios promise that the more accurate setting fits, and it does not.
+  // The ratios predict that the more accurate setting fits, but it does not.
   Machine machine;
   machine.wrong = 0.6;
   machine.noise = 0.1;
@@ -179,7 +180,7 @@ TEST(Budget, AStepThatIsDearerThanTheOneBeforeItDoesNotBarTheWayBack) {
   EXPECT_EQ(machine.state.step, 0U);
 }
 
-TEST(Budget, TheFirstFrameMayTakeLong) {  // the camera is looked for in all of the map
+TEST(Budget, TheFirstFrameMayTakeLong) {  // searches for the camera in the whole map
   Machine machine;
   machine.config.budget_ms = 16.0;
   machine.frame(kCalm, /*longer=*/15.0);
@@ -225,7 +226,7 @@ TEST(Budget, APartThatIsNotMadeIsNotForeseen) {
 }
 
 TEST(Budget, WhatTurnsSaveDependsOnHowManyObjectsTakeThem) {
-  // Physics alone, in turns of 4 frames.
+  // Physics alone, where each object moves in every fourth frame.
   const auto physics_ms = [](int measured_objects, double ratio, int objects) {
     std::vector<BudgetStep> front(1);
     front.front().ratios = {0.0, 0.0, ratio, 0.0};
@@ -287,7 +288,7 @@ TEST(RunBudget, APartThatIsMadeAlikeTakesTheSameWhateverWasMeasured) {
   const auto front = front_for(presets, {}, {});
   EXPECT_EQ(front[1].part_ratios, (std::array{1.0, 1.0, 1.0, 0.6}));
   EXPECT_EQ(front[2].part_ratios, (std::array{0.6, 0.3, 0.7, 0.6}));
-  // With the stride fixed, the last two are one.
+  // With a fixed stride, the last two steps are equal and merged.
   const auto fixed = front_for(presets, RunQuality{.depth_stride = 2}, {{"depth_stride", "2"}});
   ASSERT_EQ(fixed.size(), 2U);
   EXPECT_EQ(fixed[1].part_ratios[index_of(FramePart::kLocate)],

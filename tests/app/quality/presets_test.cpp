@@ -1,4 +1,4 @@
-// presets_test.cpp: the file of presets: round trip, and every way in which it can be wrong.
+// presets_test.cpp: the presets file: round trip, and every kind of error in it.
 #include "app/quality/presets.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(Presets, WhatIsWrongIsNamed) {
   EXPECT_EQ(fault_of_text(begin + R"(, "made_by": {"machine": 2}})"),
             "p.json: made_by: machine: is not text");
   const std::string deep =
-      std::string(400'000, '[') + std::string(400'000, ']');  // not to be copied, nor said
+      std::string(400'000, '[') + std::string(400'000, ']');  // must be neither copied nor printed
   EXPECT_EQ(fault_of_text(begin + R"(, "made_by": {"machine": )" + deep + "}}"),
             "p.json: made_by: machine: is not text");
   EXPECT_EQ(fault_of_text(begin + R"(, "presets": {"fast": {"figures": {"a": )" + deep + "}}}}"),

@@ -1,4 +1,4 @@
-// quality_test.cpp: what can be traded for time: its rules, its words, its JSON, and what it sets.
+// quality_test.cpp: quality settings: validation, command-line form, JSON, and the configs they set.
 #include "app/quality/quality.hpp"
 #include "app/cli/apply_scan_quality.hpp"
 
@@ -29,7 +29,7 @@ RunQuality coarse() {
 }
 
 TEST(Quality, EveryFieldIsInTheListOnce) {
-  // A field that visit_fields() forgets would be neither read nor written, and be the default's here.
+  // A field missing from visit_fields() would be neither read nor written, and have its default value here.
   RunQuality made;
   set_fields(made, words_of(coarse()));
   EXPECT_EQ(made, coarse());
@@ -81,13 +81,14 @@ TEST(Quality, LengthsInPixelsAreOfWholeDepthImages) {
     apply(RunQuality{.depth_stride = stride}, config);
     const SessionConfig defaults;
     EXPECT_EQ(config.scene.mesh.skirt_gap_px * stride, defaults.scene.mesh.skirt_gap_px);
-    EXPECT_EQ(config.scene.mesh.stride_px, 1);  // of 2 whole pixels; 4 are as fine as it can be
+    EXPECT_EQ(config.scene.mesh.stride_px, 1);  // 2 pixels of the full image; 1 is the minimum
     EXPECT_EQ(config.scene.foreground.hole_reach_px * stride, defaults.scene.foreground.hole_reach_px);
   }
 }
 
 TEST(Quality, DefaultsChangeNothing) {
-  // Each field's default is that of the config it sets: otherwise a run would not be what it was.
+  // Each field's default must equal that of the config it sets; otherwise applying defaults would change a
+  // run.
   SessionConfig config;
   apply(RunQuality{}, config);
   const SessionConfig defaults;

@@ -1,4 +1,4 @@
-// compose_test.cpp: occlusion, edges and shadows on scenes whose picture is known.
+// compose_test.cpp: occlusion, edges and shadows on scenes with known pictures.
 #include "app/render/compose.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ ColourImage composed(const DepthImage& real_depth_m, const ObjectLayer& layer,
   return picture;
 }
 
-/// A square plate of side 2 * half_m at height z_m, facing down and up.
+/// A square plate of side 2 * half_m at height z_m, facing up and down.
 Mesh plate(float half_m, float z_m) {
   Mesh mesh;
   mesh.vertices = {
@@ -45,7 +45,7 @@ Mesh plate(float half_m, float z_m) {
   return mesh;
 }
 
-/// A camera that looks straight down from 1 m above a table at z = 0.
+/// Pose of a camera that looks straight down from 1 m above a table at z = 0.
 Eigen::Isometry3d over_the_table() {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
@@ -63,14 +63,14 @@ ContactShadow shadow_of(const Mesh& mesh,
 TEST(Compose, ShowsTheObjectInFrontOfTheRoomAndHidesItBehind) {
   DepthImage real_depth_m(64, 48, 2.0F);
   for (int y = 0; y < 48; ++y)
-    for (int x = 0; x < 32; ++x) real_depth_m.at(x, y) = 0.5F;  // a hand over the left half
+    for (int x = 0; x < 32; ++x) real_depth_m.at(x, y) = 0.5F;  // a hand in the left half
   const ColourImage picture = composed(real_depth_m, flat_layer({10, 10, 40, 20}, 1.0F));
   EXPECT_EQ(picture.at(5, 5), kGrey);
   EXPECT_EQ(picture.at(15, 15), kGrey);  // behind the hand
   EXPECT_EQ(picture.at(40, 15), kRed);   // in front of the wall
   EXPECT_EQ(picture.at(49, 29), kRed);   // the rectangle's last pixel
   EXPECT_EQ(picture.at(50, 29), kGrey);
-  // The hand's edge is soft over one pixel to each side, and falls off steadily.
+  // The hand's edge is soft over one pixel to each side, and decreases monotonically.
   EXPECT_LT(picture.at(31, 15).r, picture.at(32, 15).r);
   EXPECT_EQ(picture.at(30, 15), kGrey);
   EXPECT_EQ(picture.at(33, 15), kRed);
@@ -80,7 +80,7 @@ TEST(Compose, AHiddenObjectLeavesNoOutlineWhereAnotherIsNearer) {
   ObjectLayer layer = flat_layer({5, 10, 40, 20}, 0.0F, 1);
   for (int y = 0; y < 20; ++y) {
     std::fill_n(layer.depth_m.row(y), 10, 1.0F);
-    if (y > 3) std::fill_n(layer.depth_m.row(y) + 25, 15, 3.0F);  // its top rim is within rows of the other
+    if (y > 3) std::fill_n(layer.depth_m.row(y) + 25, 15, 3.0F);  // its top rim is just below the other's
   }
   const ColourImage picture = composed(DepthImage(64, 48, 2.0F), layer);
   for (int y = 10; y < 30; ++y) {
@@ -144,7 +144,7 @@ TEST(ContactShadow, AgreesWithTheFormFactorOfASquarePlate) {
   const float half_m = 0.1F;
   const ContactShadow shadow = shadow_of(plate(half_m, 0.0F));
   // A point under a corner of a rectangle: 1/(2 pi) (A/sqrt(1+A^2) atan(B/sqrt(1+A^2)) + B/... ), four times
-  // under the middle. Howell's catalogue of configuration factors, B-3.
+  // that under the centre. Source: Howell's catalogue of configuration factors, B-3.
   for (const double below_m : {0.02, 0.05, 0.1, 0.14}) {
     const double a = half_m / below_m;
     const double root = std::sqrt(1.0 + a * a);
@@ -173,9 +173,10 @@ TEST(ContactShadow, IsDarkestInContactAndFadesSidewaysAndDownwards) {
   }
   EXPECT_EQ(before, 0.0F);
   const float in_contact = ambient_occlusion(shadow, {0, 0, 0.05F});
-  // A noisy surface reaches above the bottom ...
+  // A noisy surface may reach slightly above the bottom.
   EXPECT_NEAR(ambient_occlusion(shadow, {0, 0, 0.06F}), in_contact, 1e-3F);
-  EXPECT_NEAR(ambient_occlusion(shadow, {0, 0, 0.08F}), in_contact / 2, 1e-3F);  // ... not by so much, though
+  EXPECT_NEAR(ambient_occlusion(shadow, {0, 0, 0.08F}), in_contact / 2,
+              1e-3F);  // farther above, the shadow fades
   EXPECT_EQ(ambient_occlusion(shadow, {0, 0, 0.10F}), 0.0F);
   EXPECT_EQ(ambient_occlusion(shadow, {0, 0, -5.0F}), 0.0F);
 }
@@ -263,7 +264,7 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
   ColourImage picture;
   cast_shadows(grey, kCamera, T_world_camera, table_m, {&caster, 1}, kStrength, picture);
   const int x = static_cast<int>(std::lround(60.0 * 0.2 + 31.5));
-  const int y = static_cast<int>(std::lround(60.0 * -0.1 + 23.5));  // world y is up in the picture
+  const int y = static_cast<int>(std::lround(60.0 * -0.1 + 23.5));  // world y points up in the picture
   EXPECT_LT(picture.at(x, y).r, 60);
   EXPECT_EQ(picture.at(3, 24), kGrey);
   const PixelRect rect = pixels_to_compose({&caster, 1}, kCamera, T_world_camera, {}, {});
@@ -287,8 +288,7 @@ TEST(Compose, TheShadowFallsOnTheSurfaceBelowTheObject) {
 TEST(ShadeDepth, IsBrighterWhereTheSurfaceFacesTheCamera) {
   DepthImage depth_m(64, 48, 1.0F);
   for (int y = 0; y < 48; ++y)
-    for (int x = 32; x < 64; ++x)
-      depth_m.at(x, y) = 1.0F + 0.02F * static_cast<float>(x - 32);  // turned away
+    for (int x = 32; x < 64; ++x) depth_m.at(x, y) = 1.0F + 0.02F * static_cast<float>(x - 32);  // faces away
   depth_m.at(5, 5) = 0.0F;
   ColourImage picture;
   shade_depth(depth_m, kCamera, picture);
@@ -334,8 +334,7 @@ TEST_F(Drawer, UpperSidesAreBrighterThanLowerOnes) {
   Mesh mesh = plate(0.3F, 0.0F);
   mesh_.upload(mesh, MeshUsage::kStatic);
   Lighting lighting;
-  lighting.to_key_light_world =
-      Eigen::Vector3d::UnitX();  // grazes both sides: what is left is the room's light
+  lighting.to_key_light_world = Eigen::Vector3d::UnitX();  // grazes both sides: only ambient light is left
   const auto green_seen_from = [&](double height_m) {
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     if (height_m > 0) T_world_camera.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;  // looks down

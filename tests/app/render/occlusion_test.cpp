@@ -1,4 +1,4 @@
-// occlusion_test.cpp: edges that depth has wrong and colour right, and those that are depth's alone.
+// occlusion_test.cpp: occlusion edges where depth is wrong and colour right, and edges in depth only.
 #include "app/render/occlusion.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 constexpr int kWidth = 96, kHeight = 64, kTrueEdge = 48;
 constexpr Rgb kSkin{205, 150, 125}, kWall{90, 100, 120};
 
-/// A wall with a hand over its left half; texture by a fixed pattern of +-12.
+/// A wall with a hand in front of its left half; texture by a fixed pattern of +-12.
 ColourImage hand_before_wall(Rgb hand = kSkin) {
   ColourImage picture(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y) {
@@ -29,7 +29,7 @@ ColourImage hand_before_wall(Rgb hand = kSkin) {
   return picture;
 }
 
-/// The hand's depth ends up to 3 px beside its true edge, row by row.
+/// The hand's depth ends up to 3 px beside its true edge, varying by row.
 DepthImage ragged_depth(float hand_m = 1.0F, float wall_m = 2.5F) {
   DepthImage depth_m(kWidth, kHeight, wall_m);
   for (int y = 0; y < kHeight; ++y)
@@ -37,7 +37,7 @@ DepthImage ragged_depth(float hand_m = 1.0F, float wall_m = 2.5F) {
   return depth_m;
 }
 
-/// An object that covers all but a frame of the picture, at one depth.
+/// An object that covers all but a margin of the picture, at one depth.
 ObjectLayer object_at(float depth_m) {
   ObjectLayer layer;
   layer.rect = {8, 8, kWidth - 16, kHeight - 16};
@@ -47,7 +47,7 @@ ObjectLayer object_at(float depth_m) {
   return layer;
 }
 
-/// Mean difference from what is truly hidden, over the layer.
+/// Mean difference from the true occlusion, over the layer.
 double mean_error(const Occlusion& occlusion, const ObjectLayer& layer) {
   double sum = 0.0;
   for (int y = layer.rect.y; y < layer.rect.y + layer.rect.height; ++y)
@@ -89,7 +89,7 @@ TEST(Occlusion, AnObjectThatDipsIntoASurfaceEndsWhereItDoesWhateverTheColours) {
   DepthImage slope_m(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) slope_m.at(x, y) = 1.5F + 0.006F * static_cast<float>(x - 30);
-  // The slope passes the object's depth near column 27, less the tolerance; the colours change at 48.
+  // The slope passes the object's depth, minus the tolerance, near column 27; the colours change at 48.
   const Occlusion occlusion = found(hand_before_wall(), slope_m, object_at(1.5F));
   EXPECT_EQ(occlusion.hidden.at(20 - occlusion.rect.x, 30 - occlusion.rect.y), 1.0F);
   EXPECT_EQ(occlusion.hidden.at(35 - occlusion.rect.x, 30 - occlusion.rect.y), 0.0F);
@@ -97,14 +97,14 @@ TEST(Occlusion, AnObjectThatDipsIntoASurfaceEndsWhereItDoesWhateverTheColours) {
 }
 
 TEST(Occlusion, WhatHidesHasItsOwnColourToTheEdge) {
-  // One row of pixels on the edge is half wall in the picture.
+  // One column of pixels on the edge is half wall in the picture.
   ColourImage picture = hand_before_wall();
   for (int y = 0; y < kHeight; ++y) picture.at(kTrueEdge, y) = {148, 125, 122};
   const Occlusion occlusion = found(picture, ragged_depth(), object_at(1.5F));
   double red = 0.0;
   for (int y = 16; y < kHeight - 16; ++y)
     red += occlusion.front.at(kTrueEdge - occlusion.rect.x, y - occlusion.rect.y).r;
-  EXPECT_GT(red / (kHeight - 32), 160.0);  // of 148 in the picture and 205 in the hand
+  EXPECT_GT(red / (kHeight - 32), 160.0);  // 148 in the picture, 205 in the hand
 }
 
 TEST(Occlusion, NothingMeasuredAndNothingInFrontHideNothing) {

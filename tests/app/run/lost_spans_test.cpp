@@ -1,4 +1,4 @@
-// lost_spans_test.cpp: each loss is told once, and so is its end.
+// lost_spans_test.cpp: the start and the end of each tracking loss are reported once.
 #include "app/run/lost_spans.hpp"
 
 #include <gtest/gtest.h>

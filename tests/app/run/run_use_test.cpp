@@ -1,4 +1,4 @@
-// run_use_test.cpp: shares, sums and reasons of what frames needed.
+// run_use_test.cpp: fractions, sums and reasons of the work done per frame.
 #include "app/run/run_use.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(Shares, PercentilesAreTheirsWithinOnePercent) {
   EXPECT_NEAR(small.percentile(1.0), 5e-5, 1e-4);
 }
 
-/// A wall of 2 x 200 triangles, 2 m before the camera, and as much behind it.
+/// A wall of 2 x 200 triangles 2 m in front of the camera, and the same behind it.
 SavedMap two_walls() {
   SavedMap map;
   for (const float z : {2.0F, -2.0F}) {
@@ -134,7 +134,7 @@ TEST_F(FrameUseInASession, WhatMovedIsCountedByPixelsAndCellsAndWhyItIsFine) {
 
 TEST_F(FrameUseInASession, TheRadarAsksOnlyWhatIsInAnObjectsWay) {
   EXPECT_EQ(step().room_asked, 0U);
-  put_a_pot(-1.8, 0.0);  // the wall behind the camera is a floor to it
+  put_a_pot(-1.8, 0.0);  // for the pot, the wall behind the camera is a floor
   std::size_t asked = 0;
   for (int i = 0; i < 30; ++i) asked = std::max(asked, step().room_asked);
   EXPECT_GT(asked, 0U);
@@ -149,7 +149,7 @@ TEST_F(FrameUseInASession, WithoutTheMapsSurfacesAllOfTheDepthIsMeshed) {
 TEST(FrameUseFile, HasALineAFrameAndAFolderThatIsNotThereIsSaid) {
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "frames.csv") << "yesterday's\n";
-  FrameUseFile(folder.path() / "frames.csv").close();  // of a run without a frame
+  FrameUseFile(folder.path() / "frames.csv").close();  // for a run without a frame
   std::string kept;
   std::getline(std::ifstream(folder.path() / "frames.csv"), kept);
   EXPECT_EQ(kept, "yesterday's");

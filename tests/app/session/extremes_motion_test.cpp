@@ -1,4 +1,4 @@
-// extremes_motion_test.cpp: poses and objects over very many steps, and where time itself is odd.
+// extremes_motion_test.cpp: poses and objects over very many steps, and irregular time stamps.
 //
 // ROOMRADAR_LONG_TESTS=1 tracks 10^6 frames instead of 10^4.
 #include <gtest/gtest.h>
@@ -27,14 +27,14 @@ using Vec3 = Eigen::Vector3d;
 
 constexpr double kOrthonormal = 1e-12;
 
-/// How far a matrix is from a rotation: the largest entry of R^T R - I, or 1 if it mirrors.
+/// Deviation of a matrix from a rotation: the largest entry of R^T R - I, or 1 if it mirrors.
 double off_rotation(const Eigen::Isometry3d& T) {
   const Eigen::Matrix3d R = T.linear();
   if (!(R.determinant() > 0.0)) return 1.0;
   return (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
 }
 
-/// A box of these half sizes about the origin, closed, facing out.
+/// Closed box with these half sizes about the origin, facing outwards.
 Mesh box_mesh(const Eigen::Vector3f& half) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i)
@@ -117,7 +117,7 @@ TEST(Extremes, ManyTurnsByAUserKeepARotation) {
   ScriptEvent place = add;
   place.action = Action::kPlace;
   place.position_world = Vec3(0, 0, 2.0);
-  place.R_world_object = (1.0 + 1e-9) * Eigen::Matrix3d::Identity();  // not quite one to begin with
+  place.R_world_object = (1.0 + 1e-9) * Eigen::Matrix3d::Identity();  // not quite a rotation at the start
   session.apply(place);
   ScriptEvent turn = add;
   turn.action = Action::kTurn;
@@ -131,8 +131,8 @@ TEST(Extremes, ManyTurnsByAUserKeepARotation) {
   print_row(text("%.0e turns of an object by the user", turns), "a rotation to 1e-12", text("%.0e", worst));
 }
 
-/// Frame after frame, each aligned with the one before it where that was found to be: nothing but the
-/// alignment itself keeps the product of a million motions a rotation.
+/// Aligns each frame with the previous one at its estimated pose. Only the alignment itself keeps the product
+/// of a million motions a rotation.
 TEST(Extremes, ChainedPosesStayRotations) {
   const int frames = test::is_long_test() ? 1'000'000 : 10'000;
   constexpr int kViews = 24;
@@ -198,7 +198,7 @@ TEST(Extremes, AMicrosecondAtATimeABodyFallsAndComesToRest) {
                 text("%.2f mm over the floor", 1e3 * gap_m));
 }
 
-/// What a camera without colour, whose pose is known, sees of an empty sky.
+/// Frame without colour and depth, from a camera with a known pose that looks at the sky.
 Frame sky(std::int64_t index, double stamp_s) {
   Frame frame;
   frame.index = index;
@@ -209,7 +209,7 @@ Frame sky(std::int64_t index, double stamp_s) {
   return frame;
 }
 
-/// A pot thrown down from 3 m at 20 m/s, on frames with these stamps.
+/// A pot thrown down from 3 m at 20 m/s, in frames with given time stamps.
 class Thrown {
  public:
   Thrown() : session_(map_, config()) {

@@ -1,4 +1,4 @@
-// extremes_room_test.cpp: rooms, cells and ranges of extreme size, mapped and played in by exact geometry.
+// extremes_room_test.cpp: rooms, voxels and ranges of extreme size, mapped and used, against exact geometry.
 //
 // ROOMRADAR_LONG_TESTS=1 maps the room of 200 m at 2 cm instead of 5 cm.
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ using Vec3 = Eigen::Vector3d;
 
 constexpr Intrinsics kCamera{160, 120, 146.0, 146.0, 79.5, 59.5};
 
-/// From a point to the nearest surface of a scene, m.
+/// Distance from a point to the nearest surface of a scene, m.
 using Distance = std::function<double(const Vec3& p_world)>;
 
 double to_box(const Eigen::AlignedBox3d& box, const Vec3& p) {
@@ -46,7 +46,7 @@ Quantiles quantiles(std::vector<double> values) {
   return {values[values.size() / 2], values[values.size() * 95 / 100]};
 }
 
-/// Of the mesh's vertices and triangles' middles that `counts` names.
+/// Errors of the mesh's vertices and triangle centres for which counts() returns true.
 Quantiles errors_m(
     const Mesh& mesh, const Eigen::Isometry3d& T_room_map, const Distance& distance_m,
     const std::function<bool(const Vec3&)>& counts = [](const Vec3&) { return true; }) {
@@ -61,7 +61,7 @@ Quantiles errors_m(
   return quantiles(std::move(errors));
 }
 
-/// A pot dropped from 0.3 m over a point, after some seconds of frames that see nothing; where it ended.
+/// Final state of a pot dropped from 0.3 m above a point, after some seconds of frames without depth.
 struct Dropped {
   bool asleep = false;
   double bottom_m = 0.0;
@@ -121,7 +121,7 @@ TEST(Extremes, ARoomOfTwoMetres) {
         test::looking_at(eye, eye + Vec3(-std::cos(a), -std::sin(a), -0.5 + 0.3 * std::sin(3.0 * a)));
     Frame frame = test::exact_frame(scene, kCamera, T_world_camera);
     for (float& depth_m : frame.depth_m.pixels)
-      if (depth_m < 0.4F) depth_m = 0.0F;  // nearer than a Kinect sees
+      if (depth_m < 0.4F) depth_m = 0.0F;  // nearer than a Kinect measures
     test::paint(frame, T_world_camera);
     test::add_depth_noise(frame, static_cast<unsigned>(i));
     frame.down_camera = T_world_camera.linear().transpose() * -Vec3::UnitZ();
@@ -153,7 +153,7 @@ TEST(Extremes, ARoomOfTwoMetres) {
                 text("the pot rests %.1f mm off the true floor", 1e3 * std::abs(pot.bottom_m - onto.z())));
 }
 
-/// A hall 200 m long, 4 m wide, 3 m high, with pillars of 40 cm on both sides, one each 4 m.
+/// A hall 200 m long, 4 m wide, 3 m high, with pillars of 40 cm on both sides, one every 4 m.
 constexpr double kHall_m = 200.0;
 Eigen::AlignedBox3d pillar(int i) {
   const Vec3 middle(4.0 * (i / 2) + 2.0, i % 2 == 0 ? -1.4 : 1.4, 1.5);
@@ -208,7 +208,7 @@ TEST(Extremes, ARoomOfTwoHundredMetres) {
   const Quantiles far = errors_m(scan.map.mesh, T_room_map, distance_m, at_end);
   const MapCounts counts = scan.map.octree.counts();
   EXPECT_LT(far.median, 0.2 * config.resolution_m);
-  EXPECT_LT(far.median, near.median + 0.001);  // numbers are as good 200 m from the origin
+  EXPECT_LT(far.median, near.median + 0.001);  // numbers are as precise 200 m from the origin
   const test::TemporaryFolder folder;
   save_map(folder.path() / "hall", scan.map);
   const SavedMap loaded = load_map(folder.path() / "hall");
@@ -240,7 +240,7 @@ TEST(Extremes, CellsFromTwoMillimetresToTwentyCentimetres) {
       const Vec3 eye =
           Vec3(0.5, 1.8, 0.4) + (cell_m > 0.1 ? 2.0 : 0.9) * Vec3(std::sin(a), -std::cos(a), 0.5);
       Frame frame = test::exact_frame(scene, kFine, test::looking_at(eye, {0.5, 1.8, 0.4}));
-      if (cell_m < 0.005)  // what pixels see finer than this
+      if (cell_m < 0.005)  // keeps only depth with pixels finer than the voxels
         for (float& depth_m : frame.depth_m.pixels) depth_m = depth_m < 1.1F ? depth_m : 0.0F;
       map.fuse(frame, *frame.T_world_camera);
     }
@@ -258,7 +258,7 @@ TEST(Extremes, CellsFromTwoMillimetresToTwentyCentimetres) {
   }
 }
 
-/// Twelve looks at a wall from `away_m`, each from a little aside, with the noise that is there.
+/// Twelve views of a wall from `away_m`, each slightly to the side, with the sensor's noise at that distance.
 StaticMap wall_at(double away_m, Mesh& mesh) {
   StaticMap map(0.01);
   const test::Scene wall = test::plane({0, 1, 0}, 0.0);

@@ -1,4 +1,4 @@
-// extremes_row.hpp: a line of the table of extremes, as the README has it.
+// extremes_row.hpp: a row of the table of extremes in the README.
 #pragma once
 #include <cstdio>
 #include <cstdlib>
@@ -6,7 +6,7 @@
 
 namespace roomradar::test {
 
-/// What one case came to, beside what it had to.
+/// Prints the result of one case beside the expected one.
 inline void print_row(const std::string& what, const std::string& expected, const std::string& measured) {
   std::printf("| %s | %s | %s |\n", what.c_str(), expected.c_str(), measured.c_str());
   std::fflush(stdout);
@@ -18,7 +18,7 @@ inline std::string text(const char* format, double value) {
   return line;
 }
 
-/// Whether there is time for what takes minutes (ROOMRADAR_LONG_TESTS).
+/// Returns true if tests that take minutes are enabled (ROOMRADAR_LONG_TESTS).
 inline bool is_long_test() { return std::getenv("ROOMRADAR_LONG_TESTS") != nullptr; }
 
 }  // namespace roomradar::test

@@ -1,5 +1,5 @@
-// extremes_sensor_test.cpp: a simulated dining room scanned and played in by a sensor that is much worse, or
-// held on its head, or does not know which way is down.
+// extremes_sensor_test.cpp: a simulated dining room scanned and used with a sensor that is much worse, held
+// upside down, or without gravity.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,17 +27,17 @@ constexpr const char* kSource = "sim:table?path=view&width=160&frames=60";
 
 using Alter = std::function<void(Frame&)>;
 
-/// What a scan of the room came to, and a run in its map, the same way backwards with other noise, with a pot
-/// that is dropped onto the table.
+/// Results of a scan of the room, and of a run in its map: the same path backwards with other noise, and a
+/// pot that is dropped onto the table.
 struct Outcome {
   std::int64_t tracked = 0;
-  double worst_m = 0.0;    ///< of the trajectory
+  double worst_m = 0.0;    ///< max error of the trajectory
   double surface_m = 0.0;  ///< median distance of the mesh from the room
-  double tilt_deg = 0.0;   ///< between the map's +z and the room's
+  double tilt_deg = 0.0;   ///< angle between the map's +z and the room's
   std::string up_source;
-  std::int64_t located = 0;  ///< of kLive
-  double pose_m = 0.0;       ///< worst of the located
-  double moved = 0.0;        ///< part of the pixels that is taken for moved, mean; nothing does
+  std::int64_t located = 0;  ///< of kLive frames
+  double pose_m = 0.0;       ///< max error of the located frames
+  double moved = 0.0;        ///< mean fraction of pixels marked as moved, although nothing moves
   bool asleep = false;
   double fell_m = 0.0;  ///< towards the room's floor
   double gap_m = 0.0;   ///< from the pot's lowest point to the true surface
@@ -68,7 +68,7 @@ Outcome scan_and_run(const SimOptions& options, const Alter& alter) {
   test::KeptSource source(std::move(frames));
   StageTimes times;
   const PrescanResult scan = prescan(source, {}, times);
-  // By the first pose: so short a way would not tell how the whole is turned.
+  // Aligned by the first pose: so short a path would not determine the rotation.
   const Eigen::Isometry3d T_room_map =
       truth.front().T_world_camera * scan.map.trajectory.front().T_world_camera.inverse();
   for (const TimedPose& pose : scan.map.trajectory) {
@@ -115,7 +115,7 @@ Outcome scan_and_run(const SimOptions& options, const Alter& alter) {
         static_cast<double>(std::max<std::size_t>(static_cast<std::size_t>(result.foreground.valid), 1)) /
         kLive;
   }
-  // On a rough surface it may rock for another second or two.
+  // On a rough surface the pot may rock for another second or two.
   Frame& last = live.back();
   for (int i = 0; i < 60 && !pot.body.asleep; ++i) {
     last.stamp_s += 1.0 / 30.0;
@@ -145,7 +145,7 @@ std::string described(const Outcome& o) {
 
 void leave(Frame&) {}
 
-/// Every pixel of every frame is lost with this probability, by a hash of its own.
+/// Invalidates every pixel of every frame with this probability, by its own hash.
 Alter with_holes(double part) {
   return [part](Frame& frame) {
     auto state = static_cast<std::uint64_t>(frame.index + 1) * 0x9e3779b97f4a7c15ULL;
@@ -156,7 +156,7 @@ Alter with_holes(double part) {
   };
 }
 
-/// The same camera, turned by half a turn about where it looks.
+/// Rotates the camera by half a turn about its viewing direction.
 void upside_down(Frame& frame) {
   std::reverse(frame.depth_m.pixels.begin(), frame.depth_m.pixels.end());
   std::reverse(frame.colour.pixels.begin(), frame.colour.pixels.end());

@@ -1,4 +1,5 @@
-// adopt_test.cpp: a crate that comes and stays, or is taken away, in a simulated session; and what stays out.
+// map_updater_test.cpp: a crate that is added and stays, or is removed, in a simulated session; and changes
+// that must not be committed.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -19,7 +20,7 @@ SimOptions view(const std::string& rest) {
   return parse_sim_spec("sim:table?path=view&rate=10&width=160&" + rest);
 }
 
-/// What a viewer sees of a room, fused by true poses.
+/// Map of a room fused from a viewer's frames at their true poses.
 SavedMap map_of(const std::string& crate) {
   SavedMap map;
   map.octree = StaticMap(0.02);
@@ -30,7 +31,7 @@ SavedMap map_of(const std::string& crate) {
   return map;
 }
 
-/// @param after_s  none: only what is asked for
+/// @param after_s  nullopt: commit only on request
 SessionConfig updating(std::optional<double> after_s) {
   SessionConfig config;
   config.poses = PoseOrigin::kRecorded;
@@ -42,13 +43,13 @@ SessionConfig updating(std::optional<double> after_s) {
   return config;
 }
 
-/// A session over a simulated source, and a pot in it.
+/// A session on a simulated source, with a pot in it.
 class UpdatingSession {
  public:
   UpdatingSession(SavedMap& map, const SimOptions& options, const SessionConfig& config)
       : source_(options), session(map, config, &map.octree) {}
 
-  /// Runs so many frames; `hidden`: a hand right before the lens covers the middle of the image.
+  /// Runs this many frames; `hidden`: a hand close to the lens covers the middle of the image.
   FrameResult run(int frames, bool hidden = false) {
     FrameResult result;
     for (int i = 0; i < frames && source_.next(frame_).status == ReadStatus::kFrame; ++i) {
@@ -60,14 +61,14 @@ class UpdatingSession {
     }
     return result;
   }
-  /// So many frames of which nobody knows where they were taken.
+  /// Runs this many frames without a pose.
   void run_lost(int frames) {
     for (int i = 0; i < frames && source_.next(frame_).status == ReadStatus::kFrame; ++i) {
       frame_.T_world_camera.reset();
       static_cast<void>(session.step(frame_, times_));
     }
   }
-  /// Shows the last frame so many times again, as a source does that is held.
+  /// Repeats the last frame this many times, like a held source.
   void hold(int times) {
     for (int i = 0; i < times; ++i) {
       frame_.stamp_s += 1.0 / 30.0;
@@ -87,7 +88,7 @@ class UpdatingSession {
     event.height_m = 0.03;
     session.apply(event);
   }
-  /// The height of its lowest point.
+  /// Height of the pot's lowest point.
   [[nodiscard]] double pot_m() const {
     const VirtualObject& pot = *session.objects().front();
     return pot.body.T_world_object.translation().z() + lowest_m(pot);
@@ -121,7 +122,7 @@ TEST(Adopt, ACrateThatCameHoldsAPotAlsoWhenAHandHidesIt) {
   EXPECT_EQ(committed_changes.kind, LastingKind::kCame);
   EXPECT_GE(committed_changes.frame, 45 + 15 + 6 + 5);
   EXPECT_LT((committed_changes.box_world.center() - kCrateTop + Vector3d(0, 0, 0.11)).norm(), 0.06);
-  // It is no longer foreground, and holds what is dropped on it behind a hand.
+  // The crate is no longer foreground, and supports a pot dropped on it behind a hand.
   const FrameResult now = run.run(1);
   EXPECT_LT(now.foreground.moved, 20U);
   run.drop_pot(kCrateTop);

@@ -1,5 +1,5 @@
-// recalibration_test.cpp: a sensor that bends its depth from one frame to the next moves neither camera nor
-// room.
+// recalibration_test.cpp: a sensor that distorts its depth from one frame to the next moves neither camera
+// nor room.
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace roomradar::recalibration_test {
 namespace {
 
 // Between frames 9 and 10 of this recording the raw depth jumps by up to 5 units in vertical bands, 22 cm on
-// the walls, while the camera stands still.
+// the walls, while the camera is stationary.
 TEST(Recalibration, MovesNeitherCameraNorRoom) {
   ROOMRADAR_RECORDING_OR_SKIP(folder, "fakenect-planes/planes");
   StageTimes times;

@@ -1,4 +1,4 @@
-// script_test.cpp: events files, right and wrong.
+// script_test.cpp: event files, valid and invalid.
 #include "app/session/script.hpp"
 
 #include <gtest/gtest.h>
@@ -96,7 +96,7 @@ TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
                        "frame 301 throw pot 0 0 1 velocity 1 0 0 spin 0 6.1 0 turned 10 20.3 -30\n"
                        "frame 302 drop pot view height 0.1 turned 1 2 3\n",
                    "events.txt");
-  // Numbers that no short decimal fraction holds.
+  // Numbers without a short decimal representation.
   script.events[3].position_world = Eigen::Vector3d(1.0 / 3.0, -1e-17, 0.1 + 0.2);
   script.events[4].velocity_world_mps = Eigen::Vector3d(std::sqrt(2.0), -0.0, 1e-9);
   script.events[2].time_s = 1.0 / 30.0;

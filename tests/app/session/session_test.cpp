@@ -1,4 +1,4 @@
-// session_test.cpp: virtual objects, and frames in which they cannot be put, on a floor that is known.
+// session_test.cpp: virtual objects on a known floor, and frames in which they cannot be placed.
 #include "app/session/session.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ SavedMap floor_map() {
   return map;
 }
 
-/// What a camera without colour sees of it.
+/// Frame of the floor from a camera without colour.
 Frame depth_only(std::int64_t index, const std::optional<Eigen::Isometry3d>& T_world_camera) {
   Frame frame;
   frame.index = index;
@@ -49,26 +49,26 @@ ScriptEvent event(Action action) {
   return event;
 }
 
-/// A pot that is to be dropped, and no level surface in view yet.
+/// Requests the drop of a pot while no level surface is in view.
 void let_a_drop_wait(Session& session, StageTimes& times) {
   session.apply(event(Action::kAdd));
   session.apply(event(Action::kDrop));
   static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
 }
 
-/// Frames of the floor until the pot is in the room: a drop that waits is not tried in each.
+/// Shows the floor until the pot is in the room: a waiting drop is not tried in every frame.
 void see_the_floor(Session& session, StageTimes& times) {
   for (std::int64_t i = 1; i <= 12 && !session.objects().front()->in_room; ++i)
     static_cast<void>(session.step(depth_only(i, kAtTheFloor), times));
 }
 
-/// A green picture, twice as fine as the depth.
+/// Adds a green colour image with twice the resolution of the depth.
 void give_colour(Frame& frame) {
   frame.colour_camera = {320, 240, 292.0, 292.0, 159.5, 119.5};
   frame.colour.resize(320, 240, {10, 200, 30});
 }
 
-/// What a camera with colour sees of it.
+/// Frame of the floor from a camera with colour.
 Frame in_colour(std::int64_t index, const std::optional<Eigen::Isometry3d>& T_world_camera) {
   Frame frame = depth_only(index, T_world_camera);
   give_colour(frame);
@@ -179,7 +179,7 @@ TEST(Session, ObjectsAreDrawnFromWhereTheCameraWasWhenTheColourWasTaken) {
   T_before_after.linear() = Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY()).toRotationMatrix();
   T_before_after.translation() = Eigen::Vector3d(0.03, 0.0, 0.0);
   after.T_world_camera = kAtTheFloor * T_before_after;
-  after.colour_after_depth_s = -0.5 / 30.0;  // half a frame sooner
+  after.colour_after_depth_s = -0.5 / 30.0;  // half a frame earlier
   for (Frame* frame : {&before, &after}) {
     frame->colour_camera = kCamera;
     frame->colour.resize(kCamera.width_px, kCamera.height_px);
@@ -189,11 +189,11 @@ TEST(Session, ObjectsAreDrawnFromWhereTheCameraWasWhenTheColourWasTaken) {
   const Eigen::Isometry3d T_before_shown = kAtTheFloor.inverse() * session.shown_view()->T_world_view;
   EXPECT_NEAR(T_before_shown.translation().x(), 0.015, 1e-3);
   EXPECT_NEAR(Eigen::AngleAxisd(T_before_shown.linear()).angle(), 0.01, 1e-6);
-  // A picture that is shown on stays where it was taken.
+  // A picture that stays on display keeps the pose at which it was taken.
   Frame without = depth_only(2, *after.T_world_camera * T_before_after);
   static_cast<void>(session.step(without, times));
   EXPECT_NEAR((kAtTheFloor.inverse() * session.shown_view()->T_world_view).translation().x(), 0.015, 1e-3);
-  // After a jump, as at the end of a recording that is repeated, the way there is no motion to go by.
+  // After a jump, such as the restart of a looped recording, there is no motion to interpolate.
   Frame far = after;
   far.index = 3;
   far.stamp_s = 3.0 / 30.0;
@@ -277,7 +277,7 @@ TEST(Session, NothingIsDroppedOntoASurfaceThatSomethingStandsBefore) {
   StageTimes times;
   session.apply(event(Action::kAdd));
   session.apply(event(Action::kDrop));
-  Frame full = depth_only(0, kAtTheFloor);  // of somebody, over all of the floor
+  Frame full = depth_only(0, kAtTheFloor);  // a person in front of all of the floor
   for (float& depth_m : full.depth_m.pixels) depth_m *= 0.6F;
   static_cast<void>(session.step(full, times));
   EXPECT_FALSE(session.objects().front()->in_room);
@@ -285,7 +285,7 @@ TEST(Session, NothingIsDroppedOntoASurfaceThatSomethingStandsBefore) {
   EXPECT_TRUE(session.objects().front()->in_room);
 }
 
-/// A box whose origin is at a corner of its floor.
+/// A box whose origin is at a corner of its base.
 Mesh box_about_its_corner(float size_m) {
   Mesh box = shapes::box(Eigen::Vector3f::Constant(size_m));
   for (Eigen::Vector3f& p : box.vertices) p += Eigen::Vector3f::Constant(0.5F * size_m);
@@ -310,7 +310,7 @@ TEST(Session, WhereAMeshHasItsOriginDoesNotMatterForADropInView) {
     }
     middle = now;
   }
-  // Its corner is 1.13 m from its origin, and 0.57 m from its middle.
+  // Its farthest corner is 1.13 m sideways from its origin, and 0.57 m from its centre.
   Session session(map, by_recorded_poses());
   session.add_object("pot", box_about_its_corner(0.8F));
   EXPECT_NO_THROW(session.apply(event(Action::kDrop)));
@@ -352,7 +352,7 @@ TEST(Session, OneThatSpinsOnAndOnDoesNotKeepTheOthersFromTheirShadows) {
   session.apply(put);
   put = event(Action::kThrow);
   put.name = "spins";
-  put.position_world = Eigen::Vector3d(0.5, 0.0, -5.0);  // it falls on and on, below the floor
+  put.position_world = Eigen::Vector3d(0.5, 0.0, -5.0);  // below the floor, where it falls without end
   put.angular_velocity_world_rad_s = Eigen::Vector3d(0.0, 0.0, 10.0);
   session.apply(put);
   for (std::int64_t i = 0; i < 40; ++i) static_cast<void>(session.step(in_colour(i, kAtTheFloor), times));
@@ -363,7 +363,7 @@ TEST(Session, OneThatSpinsOnAndOnDoesNotKeepTheOthersFromTheirShadows) {
   EXPECT_TRUE(rests.shadow.R_world_object.isApprox(rests.body.T_world_object.linear(), 0.05));
 }
 
-/// Free space above z = 0, 3.8 m wide, with a floor where x < 0; nobody has seen what is below elsewhere.
+/// Free space above z = 0, 3.8 m wide, with a floor where x < 0; the space below is unknown elsewhere.
 SavedMap half_floor_map() {
   SavedMap map;
   map.mesh.vertices = {{-2, -2, 0}, {0, -2, 0}, {0, 2, 0}, {-2, 2, 0}};
@@ -377,7 +377,7 @@ SavedMap half_floor_map() {
   return map;
 }
 
-/// A pot falls on each of the places.
+/// Drops a pot on each of the positions.
 void drop_pots(Session& session, const std::vector<Eigen::Vector3d>& over_world) {
   for (std::size_t i = 0; i < over_world.size(); ++i) {
     ScriptEvent drop = event(Action::kAdd);
@@ -399,7 +399,7 @@ TEST(Session, ManyPotsThatFallTogetherStayOnAMappedFloorAndOnlyAHoleLetsThemThro
     if (is_solid) session.make_unknown_solid(times);
     std::vector<Eigen::Vector3d> places;
     for (int i = 0; i < 12; ++i) places.emplace_back(-0.6 + 0.1 * (i % 6), 0.1 * (i / 6), 0.0);
-    for (int i = 0; i < 3; ++i) places.emplace_back(0.3 + 0.2 * i, 0.0, 0.0);  // where no floor is mapped
+    for (int i = 0; i < 3; ++i) places.emplace_back(0.3 + 0.2 * i, 0.0, 0.0);  // without a mapped floor
     drop_pots(session, places);
     for (std::int64_t i = 0; i < 30; ++i) {
       Frame frame = depth_only(i, kAtTheSky);
@@ -415,7 +415,7 @@ TEST(Session, ManyPotsThatFallTogetherStayOnAMappedFloorAndOnlyAHoleLetsThemThro
   }
 }
 
-/// Some frames in which nothing is seen.
+/// Runs some frames without any depth.
 void go_on(Session& session, std::int64_t first, std::int64_t frames) {
   StageTimes times;
   for (std::int64_t i = first; i < first + frames; ++i) {
@@ -425,7 +425,7 @@ void go_on(Session& session, std::int64_t first, std::int64_t frames) {
   }
 }
 
-/// A pot that fell where there is no floor, for 33 frames.
+/// State of a pot after falling for 33 frames where there is no floor.
 Body fallen(const SessionConfig& config) {
   const SavedMap map = half_floor_map();
   Session session(map, config);
@@ -514,8 +514,8 @@ TEST(Session, PotsDroppedIntoOnePlaceBeginOnTopOfOneAnotherAndComeToLieApart) {
     EXPECT_GT((pot->body.T_world_object * pot->model->middle).z(), 0.0) << pot->body.name;
 }
 
-/// How far the bottom of the second of two bodies is above the floor where it begins, in a room with a shelf
-/// at shelf_z_m, if that is given.
+/// Returns the initial height above the floor of the bottom of the second of two bodies, in a room with an
+/// optional shelf at shelf_z_m.
 struct Put {
   Action how = Action::kPlace;
   Eigen::Vector3d at_world{-1.0, 0.0, 0.3};
@@ -582,7 +582,7 @@ TEST(Session, WhatIsTooLargeForAnyPlaceInViewIsRefusedInWords) {
   const std::string fault = test::error_of([&] { session.apply(event(Action::kDrop)); });
   EXPECT_NE(fault.find("pot: reaches 61.9 m sideways"), std::string::npos) << fault;
   EXPECT_NE(fault.find("Meshes are in metres"), std::string::npos) << fault;
-  // What is refused changes nothing.
+  // A rejected drop changes nothing.
   ScriptEvent carry = event(Action::kCarry);
   carry.position_world = Eigen::Vector3d(0, 0, 100);
   session.apply(carry);
@@ -612,7 +612,7 @@ struct Thrown {
   int unknown_contacts = 0;
 };
 
-/// A pot that is thrown from a place, and what has become of it a second and a half later; no depth is seen.
+/// Throws a pot from a position and returns its state after one and a half seconds without any depth.
 Thrown thrown(Session& session, const Eigen::Vector3d& from_world, double up_mps) {
   StageTimes times;
   session.apply(event(Action::kAdd));
@@ -678,7 +678,7 @@ TEST(Session, WhatIsPutOnTheBorderOfUnknownSpaceComesOutAndStaysOnIt) {
   Session session(map, by_recorded_poses());
   StageTimes times;
   session.make_unknown_solid(times);
-  const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.04}, 0.0).pot;  // sunk in by 4 of its 15 cm
+  const VirtualObject& pot = thrown(session, {1.0, 0.0, -0.04}, 0.0).pot;  // 4 of its 15 cm are in the floor
   EXPECT_TRUE(pot.began_in_unknown);
   EXPECT_FALSE(pot.in_unknown);
   EXPECT_TRUE(pot.body.asleep);

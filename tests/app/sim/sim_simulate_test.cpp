@@ -1,4 +1,4 @@
-// A simulated recording on disk: what is read back is what was simulated, and the truth lies beside it.
+// sim_simulate_test.cpp: a simulated recording on disk is read back as simulated, with the truth beside it.
 #include <gtest/gtest.h>
 #include <unistd.h>
 

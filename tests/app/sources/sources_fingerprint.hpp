@@ -1,4 +1,4 @@
-// sources_fingerprint.hpp: a frame in one line of text, equal only for frames that are equal to the bit.
+// sources_fingerprint.hpp: a frame as one line of text, equal only for bit-identical frames.
 #pragma once
 #include <array>
 #include <cstdio>
@@ -9,7 +9,7 @@
 
 namespace roomradar::test {
 
-/// FNV-1a of the pixels' bytes.
+/// FNV-1a hash of the pixels' bytes.
 template <typename Pixel>
 std::uint64_t hash_of(const Image<Pixel>& image) {
   std::uint64_t hash = 14695981039346656037ULL;

@@ -1,4 +1,4 @@
-// sources_support.hpp: tiny frames, broken files, and reading a whole source.
+// sources_support.hpp: tiny frames, damaged files, and reading of a whole source.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ inline Eigen::Isometry3d some_pose(int i) {
   return T;
 }
 
-/// Frame `i` of a made-up recording: a ramp of depth with holes, a colour pattern, a pose, gravity.
+/// Frame `i` of a synthetic recording: a depth ramp with invalid pixels, a colour pattern, a pose, gravity.
 inline Frame some_frame(int i, int width_px = 16, int height_px = 12) {
   Frame frame;
   frame.index = i;
@@ -78,7 +78,7 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// A source of `count` frames; those whose number is in `bad` are skipped.
+/// A source of `count` frames; frames whose index is in `bad` are skipped.
 class MadeSource final : public FrameSource {
  public:
   MadeSource(int count, bool knows_its_length, std::vector<int> bad = {})

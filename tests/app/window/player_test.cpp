@@ -1,4 +1,4 @@
-// player_test.cpp: what a user does with the mouse, as events of a script, on a floor that is known.
+// player_test.cpp: a user's mouse actions become script events, on a known floor.
 #include "app/window/link/player.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ SavedMap floor_map() {
   return map;
 }
 
-/// A session over that floor with one pot, and a camera that looks down at it.
+/// A session on that floor with one pot, and a camera that looks down at it.
 class Playing : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -53,7 +53,7 @@ class Playing : public ::testing::Test {
     frame_.T_world_camera = kAtTheFloor;
     result_ = session_.step(frame_, times_);
   }
-  /// Does what one wish leads to, and goes one frame on.
+  /// Applies the events of one user command, and advances one frame.
   std::vector<ScriptEvent> play(const UserCommand& command) {
     std::vector<ScriptEvent> events = player_.events_of({&command, 1}, session_);
     for (const ScriptEvent& event : events) session_.apply(event);
@@ -74,7 +74,7 @@ class Playing : public ::testing::Test {
   }
   [[nodiscard]] const VirtualObject& pot() const { return *session_.objects().front(); }
   [[nodiscard]] Vec3 position() const { return pot().body.T_world_object.translation(); }
-  /// Where the pot is seen.
+  /// Centre of the pot, where it appears in the picture.
   [[nodiscard]] Vec3 middle() const { return pot().body.T_world_object * pot().model->middle; }
 
   static SessionConfig config() {
@@ -93,7 +93,7 @@ class Playing : public ::testing::Test {
 
 TEST_F(Playing, AnObjectIsDroppedWhereOneClicks) {
   const Vec3 there(0.3, 0.2, 0.0);
-  EXPECT_TRUE(play(command(UserCommandKind::kGrab, there)).empty());  // nothing is there to be grabbed
+  EXPECT_TRUE(play(command(UserCommandKind::kGrab, there)).empty());  // there is nothing to grab
   UserCommand click = command(UserCommandKind::kLetGo, there);
   click.event.height_m = 0.25;
   const auto events = play(click);
@@ -135,7 +135,7 @@ TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
   for (int i = 0; i < 30; ++i) step();
   ASSERT_TRUE(play(command(UserCommandKind::kGrab, middle())).empty());
   EXPECT_TRUE(player_.is_grabbed());
-  // Half a metre to the right and up, at the distance at which it was taken.
+  // Half a metre to the right and up, at the distance at which it was grabbed.
   const Vec3 before = position();
   const double distance_m = (middle() - kAtTheFloor.translation()).norm();
   for (int i = 1; i <= 10; ++i) play(command(UserCommandKind::kDrag, middle() + Vec3(0.05, 0.0, 0.04)));
@@ -146,7 +146,7 @@ TEST_F(Playing, WhatIsDraggedFollowsTheMouseAndStopsAtTheFloor) {
   const Vec3 held = position();
   for (int i = 0; i < 20; ++i) step();
   EXPECT_LT((position() - held).norm(), 1e-6) << "it hangs in the air while it is held";
-  // Through the floor, if nothing stopped it.
+  // This would carry it through the floor if nothing stopped it.
   for (int i = 0; i < 10; ++i) play(command(UserCommandKind::kDrag, {0.3, -0.4, 0.0}));
   EXPECT_GT(position().z() + lowest_m(pot()), -1e-6);
   const auto events = play(command(UserCommandKind::kLetGo, {0.3, -0.4, 0.0}));
@@ -196,7 +196,7 @@ TEST_F(Playing, WhatIsLetGoInMotionFliesOnAsFastAsTheMouseWas) {
   play(command(UserCommandKind::kGrab, middle()));
   play(command(UserCommandKind::kDrag, middle() + Vec3(0.0, 0.0, 0.2)));
   UserCommand let_go = command(UserCommandKind::kLetGo, middle() + Vec3(0.02, 0.0, 0.2));
-  let_go.pixel_velocity_s = {146.0, 0.0};  // one metre a second, a metre away
+  let_go.pixel_velocity_s = {146.0, 0.0};  // one metre per second, at a distance of one metre
   const auto events = play(let_go);
   ASSERT_EQ(events.size(), 1U);
   const double distance_m = (middle() - kAtTheFloor.translation()).norm();
@@ -283,7 +283,7 @@ TEST(TurnOfDrag, TheSideThatFacesTheCameraGoesWithTheMouse) {
             << "from " << place.transpose() << " rolled " << roll_deg << " by " << way_px.transpose();
       }
     }
-  // An upright object stays upright where the mouse goes to the side.
+  // An upright object stays upright when the mouse moves sideways.
   const Vec3 aside_deg = turn_of_drag_world_deg(kAtTheFloor.linear(), {1.0, 0.0});
   EXPECT_TRUE(aside_deg.isApprox(0.5 * Vec3::UnitZ()));
 }
@@ -300,7 +300,7 @@ TEST(KeyMeant, IsWhatTheKeyTypesWhereThatIsOneLetterOrSign) {
   EXPECT_EQ(key_meant(kOfKeypadPlus, "+"), kOfKeypadPlus);
 }
 
-/// A device that never has a frame.
+/// A device that never delivers a frame.
 class NoFrames : public FrameSource {
  public:
   ReadResult next(Frame& /*frame*/) override { return {}; }
@@ -311,7 +311,7 @@ class NoFrames : public FrameSource {
 
 class Hosted : public Playing {
  protected:
-  /// The next events that come of what was asked for, or nothing within half a minute.
+  /// Returns the next events from a pending command, or none after half a minute.
   std::vector<ScriptEvent> awaited_events() {
     for (int tries = 0; tries < 3000; ++tries) {
       std::vector<ScriptEvent> events = host_.take_events();
@@ -329,7 +329,7 @@ class Hosted : public Playing {
 
 TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
   UserCommand command = new_teapot();
-  command.event.size_m = 0.25;  // no model of that size is there yet
+  command.event.size_m = 0.25;  // no model of that size exists yet
   link_.ask(command);
   EXPECT_TRUE(host_.take_events().empty());  // it takes longer than this
   const std::vector<ScriptEvent> events = awaited_events();
@@ -341,7 +341,7 @@ TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
   ScriptEvent waited_for = events[0];
   waited_for.name = "another";
   session_.apply(waited_for);
-  EXPECT_EQ(session_.objects().back()->model.get(), &model);  // of the same mesh, so it shares its model
+  EXPECT_EQ(session_.objects().back()->model.get(), &model);  // same mesh, so it shares the model
   const ObjectParts parts = object_parts("pot", object_mesh("teapot", 0.25));
   ASSERT_EQ(model.levels.size(), parts.levels.size());
   EXPECT_GT(parts.levels.size(), 0U);
@@ -386,7 +386,7 @@ TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
   drop.action = Action::kDrop;
   drop.name = "pot";
   session_.apply(drop);
-  frame_.T_world_camera.reset();  // nobody knows what is in view
+  frame_.T_world_camera.reset();  // the pose is unknown
   result_ = session_.step(frame_, times_);
   host_.show(0, 0.0, frame_, result_);
   EXPECT_NE(link_.take_message().find("pot waits for a level surface"), std::string::npos);
@@ -394,7 +394,8 @@ TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
   EXPECT_EQ(link_.take_message(), "");
 }
 
-/// While it is read a user adds what is in a mesh file, and turns it, until something was said.
+/// A source during whose reading a user adds an object from a mesh file and turns it, until an error is
+/// reported.
 class AskedMeanwhile : public NoFrames {
  public:
   AskedMeanwhile(UiChannel& link, const std::string& mesh, std::string& said) : link_(link), said_(said) {

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Plays in the window by real keys and mouse events on a screen of its own, looks at what it did through the recorded
-# events, screenshots and the report, and replays the session without a window to the same results; then with a Kinect's
-# driver, fakenect in the place of the device.
+# Operates the window by real key and mouse events on a virtual screen. Checks the recorded events, screenshots and the
+# report, then replays the session without a window and expects the same results. Repeats this in short with a Kinect's
+# driver, with fakenect instead of the device.
 #
 # usage: window_test.sh ROOMRADAR [FOLDER]     FOLDER keeps the screenshots; exit status 77: something is not installed
 set -euo pipefail
@@ -15,7 +15,7 @@ mkdir -p "$shots"
 trap 'kill $(jobs -p) 2> /dev/null || true; wait; rm -rf "$work"' EXIT
 
 fail() { echo "FAILED: $*" >&2; tail -n 20 "$work/log" "$work/session/events.txt" >&2 || true; exit 1; }
-# until WORDS... : tries a command for as long as a slow machine may need.
+# until_true COMMAND...: repeats a command until it succeeds, for as long as a slow machine may need.
 until_true() {
   for _ in $(seq 1800); do
     "$@" && return
@@ -26,7 +26,7 @@ until_true() {
 }
 has_event() { grep -qE "$1" "$work/session/events.txt" 2> /dev/null; }
 has_frames() { [[ $(grep -cv '^#' "$work/session/results.txt" 2> /dev/null) -ge $1 ]]; }
-# Some frames later, so that the window shows what has happened.
+# Waits a few frames until the window shows the latest change.
 settle() { until_true has_frames $(($(grep -cv '^#' "$work/session/results.txt") + 4)); }
 shot() { import -window root "$shots/$1.png"; [[ $(identify -format %k "$shots/$1.png") -gt 500 ]] || fail "$1.png is empty"; }
 
@@ -40,7 +40,7 @@ export DISPLAY
 "$program" run 'sim:table?frames=30&width=320&path=view&seed=2' --poses recorded --map "$work/map" --window --at-end loop \
   --record-session "$work/session" --report "$work/report.json" > "$work/log" 2>&1 &
 player=$!
-# A window that is there but not yet shown cannot have the focus.
+# A window that exists but is not shown yet cannot have the focus.
 has_focus() { xdotool windowfocus "$(xdotool search --onlyvisible --name '^roomradar - ' | head -n 1)" 2> /dev/null; }
 until_true has_focus
 until_true has_frames 3
@@ -93,7 +93,7 @@ xdotool key p
 until_true has_event ' place object '
 settle
 has_turned() {
-  # The mouse button grabs what is under the mouse; it is asked again until the object is there.
+  # The mouse button grabs what is under the mouse; repeated until the object is there.
   xdotool mousemove 494 322 mousedown 3 mousemove_relative 40 0 mouseup 3
   has_event ' turn object '
 }
@@ -129,7 +129,7 @@ has_let_go_outside() {  # over the side panel
   [[ $(releases) -gt $before ]]
 }
 until_true has_let_go_outside
-has_thrown() {  # keys act where the mouse was in the last picture
+has_thrown() {  # keys act at the mouse position of the last picture
   xdotool mousemove 494 330
   sleep 0.3
   xdotool key t
@@ -170,7 +170,7 @@ xdotool mousemove 494 330 click 1
 sleep 1
 settle
 [[ $(wc -l < "$work/session/events.txt") == "$before" ]] || fail "a click went through the help"
-has_dropped() {  # keys act at the mouse again
+has_dropped() {  # keys act at the mouse position again
   xdotool key d
   sleep 0.3
   tail -n "+$((before + 1))" "$work/session/events.txt" | grep -q ' drop object at '
@@ -186,7 +186,7 @@ wait "$player" || status=$?
 has_event '^frame [0-9]+ quit$' || fail "the session does not say where it ended"
 grep -q '"object"' "$work/report.json" || fail "no object in the report"
 
-# The session that was played, without a window: every frame comes out as it did.
+# Replays the recorded session without a window: every frame must give the same result.
 play_again() {
   DISPLAY='' "$program" run "$work/session" --video "$work/again.avi" > "$work/log" 2>&1 || fail replay
   grep -E '^replay: ' "$work/log"

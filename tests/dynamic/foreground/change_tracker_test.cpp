@@ -1,4 +1,5 @@
-// change_tracker_test.cpp: what stays is found after its time, what sways, passes or hides is not, and edges.
+// change_tracker_test.cpp: lasting changes are found in time; swaying, passing or occluding objects are not;
+// edge cases.
 #include "dynamic/foreground/change_tracker.hpp"
 
 #include <gtest/gtest.h>
@@ -23,19 +24,19 @@ using test::Scene;
 constexpr Intrinsics kCamera{160, 120, 146.0, 146.0, 79.5, 59.5};
 constexpr double kStep_s = 0.1;
 
-// A table top, and a wall behind it.
+// A table top with a wall behind it.
 Scene room() { return test::nearest_of(test::plane({0, 0, 1}, 0.0), test::plane({0, 1, 0}, 1.5)); }
 Scene crate_at(const Vector3d& foot) {
   return test::box(Eigen::AlignedBox3d(foot - Vector3d(0.12, 0.09, 0.0), foot + Vector3d(0.12, 0.09, 0.22)));
 }
-// A camera that sways by 10 cm and turns with it.
+// A camera that sways by 10 cm and rotates accordingly.
 Eigen::Isometry3d pose_at(double t_s) {
   const double a = 2.0 * t_s;
   return test::looking_at({0.1 * std::sin(a), -1.1 + 0.05 * std::cos(a), 0.8},
                           {0.05 * std::sin(1.3 * a), 0.0, 0.1});
 }
 
-// The labels of a foreground that makes no mistakes.
+// Labels of an error-free foreground.
 LabelImage labels_of(const DepthImage& depth_m, const DepthImage& expected_m) {
   LabelImage labels(depth_m.width, depth_m.height, PixelLabel::kNotKnown);
   for (std::size_t i = 0; i < depth_m.pixels.size(); ++i) {
@@ -88,7 +89,7 @@ TEST(ChangeTracker, WhatStaysIsFoundAfterItsTimeAndNotBefore) {
   ASSERT_EQ(changes.size(), 1U);
   EXPECT_EQ(changes[0].kind, LastingKind::kCame);
   const Eigen::AlignedBox3d box = changes[0].box_world();
-  // Front, top and a side are seen from the sway; noise and the points' spacing add 2 cm.
+  // The swaying camera sees front, top and one side; noise and the points' spacing add 2 cm.
   EXPECT_LT((box.max() - Vector3d(0.12, 0.09, 0.22)).cwiseAbs().maxCoeff(), 0.03) << box.max().transpose();
   EXPECT_LT((box.min() - Vector3d(-0.12, -0.09, 0.0)).cwiseAbs().maxCoeff(), 0.03) << box.min().transpose();
   EXPECT_GT(watched.tracker.still_true(changes[0]), 0.99);
@@ -229,7 +230,7 @@ TEST(ChangeTracker, NothingMeasuredAndALensThatIsCoveredAreNoChange) {
   for (int i = 0; i < 40; ++i)
     tracker.update(nothing, expected_m, labels_of(nothing, expected_m), kCamera, pose_at(0.0), 0.1 * i);
   EXPECT_EQ(tracker.point_count(), 0U);
-  // Held over the lens of a camera that moves, a hand moves with it.
+  // A hand over the lens of a moving camera moves with the camera.
   for (int i = 0; i < 40; ++i)
     tracker.update(covered, expected_m, labels_of(covered, expected_m), kCamera, pose_at(0.1 * i), 0.1 * i);
   EXPECT_TRUE(tracker.settled(2.0).empty());

@@ -1,4 +1,4 @@
-// depth_regions_test.cpp: runs and union-find against a flood fill; spreading against the window itself.
+// connected_components_test.cpp: runs and union-find against a flood fill; dilation against a direct window.
 #include "dynamic/foreground/connected_components.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ bool hang_together(const DepthImage& depth_m, const std::vector<std::uint8_t>& e
   return std::abs(depth_m.pixels[a] - depth_m.pixels[b]) <= 4.0F * depth_sigma_m(z) + slope * z;
 }
 
-// Region number of each pixel, 0 for none.
+// Component number of each pixel, 0 for none.
 std::vector<int> flood(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
                        double focal_px) {
   std::vector<int> number(evidence.size(), 0);

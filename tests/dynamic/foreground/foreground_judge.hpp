@@ -1,4 +1,4 @@
-// foreground_judge.hpp: the foreground's verdict on simulated movers, against their true masks.
+// foreground_judge.hpp: scores the foreground mask of simulated movers against their true masks.
 #pragma once
 #include <Eigen/Geometry>
 #include <cmath>
@@ -13,11 +13,11 @@
 
 namespace roomradar::test {
 
-/// Pixel counts over frames, of pixels with live depth only: a mask says nothing where nothing was measured.
+/// Pixel counts over frames. Only pixels with live depth count, since the mask is undefined elsewhere.
 struct MaskScore {
   std::size_t frames = 0;
   std::size_t valid = 0;
-  std::size_t both = 0;    ///< marked and truly moved
+  std::size_t both = 0;    ///< marked, and truly moved
   std::size_t missed = 0;  ///< truly moved, not marked
   std::size_t false_ = 0;  ///< marked, not truly moved
 
@@ -44,7 +44,7 @@ inline void add_frame(const DepthImage& depth_m, const MaskImage& marked, const 
   }
 }
 
-/// What a perfect mesh of the room shows from a pose: exact depth, 0 where no surface is.
+/// Renders the depth of a perfect mesh of the room from a pose: exact, 0 without a surface.
 inline void cast_room(const Room& room, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
                       ViewCaster& caster, DepthImage& depth_m) {
   caster.prepare(room.solids, camera, T_world_camera);
@@ -55,7 +55,7 @@ inline void cast_room(const Room& room, const Intrinsics& camera, const Eigen::I
   }
 }
 
-/// A pose that is `shift_m` and `turn_deg` off, the direction of both by `turn` (any number).
+/// Returns a pose error of `shift_m` and `turn_deg`; `turn` (any number) selects the direction of both.
 inline Eigen::Isometry3d pose_error(double shift_m, double turn_deg, int turn) {
   const Eigen::Vector3d axis =
       Eigen::Vector3d(std::sin(1.0 + turn), std::cos(2.3 * turn), std::sin(4.1 * turn)).normalized();
@@ -65,8 +65,8 @@ inline Eigen::Isometry3d pose_error(double shift_m, double turn_deg, int turn) {
   return error;
 }
 
-/// Runs every `step`-th frame of the simulated recording against the exact room, seen from a pose that is off
-/// by shift_m and turn_deg.
+/// Compares every `step`-th frame of the simulated recording with the exact room, rendered from a pose with
+/// an error of shift_m and turn_deg.
 inline MaskScore judge_foreground(const SimOptions& options, std::int64_t step, double shift_m,
                                   double turn_deg, const ForegroundConfig& config = {}) {
   SimulatedSource source(options);

@@ -1,4 +1,4 @@
-// foreground_sim_test.cpp: movers in the simulated rooms are found, and nothing else is.
+// foreground_sim_test.cpp: movers in the simulated rooms are marked, and nothing else is.
 #include <gtest/gtest.h>
 
 #include <iostream>
@@ -23,7 +23,7 @@ TEST(ForegroundInSimulatedRooms, MoversAreFound) {
       SimOptions with_mover = options(room);
       with_mover.movers = {mover};
       std::int64_t step = 40;
-      if (mover == MoverKind::kBall) {  // on the floor, which a viewer may not see
+      if (mover == MoverKind::kBall) {  // it is on the floor, which may be out of view
         with_mover.path = CameraPathKind::kScan;
         with_mover.frames = 1200;
         step = 150;

@@ -1,4 +1,4 @@
-// foreground_test.cpp: what counts as moved, as revealed, and as not known.
+// foreground_test.cpp: pixels labelled as moved, as revealed, and as not known.
 #include "dynamic/foreground/foreground.hpp"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ TEST(Foreground, WhatWasTakenAwayIsRevealedNotMoved) {
 }
 
 TEST(Foreground, WhatIsTakenAwayIsWiderThanWhatAMisplacedEdgeUncovers) {
-  // A chair's back before a niche in a wall. In the model it stands higher than it does, and hides the niche.
+  // The back of a chair in front of a niche in a wall. In the model it is too high and hides the niche.
   for (const float z : {1.0F, 1.7F, 2.5F}) {
     const auto px = [&](float metres) { return static_cast<int>(std::lround(metres * 585.0F / z)); };
     const ForegroundConfig config;
@@ -145,7 +145,7 @@ TEST(Foreground, WithoutAModelNothingIsKnown) {
 }
 
 TEST(Foreground, ArmOverTheModelsHolesIsMovedAsAWhole) {
-  // Half of what is behind the arm was not mapped, in stripes: pixels there can be no more than weak.
+  // Half of the surface behind the arm is unmapped, in stripes: pixels there can at most be weak.
   DepthImage expected_m = flat(2.0F);
   for (int y = 0; y < 480; y += 24) fill_rectangle(expected_m, 0, y, 640, y + 12, 0.0F);
   DepthImage live_m = flat(2.0F);
@@ -158,11 +158,11 @@ TEST(Foreground, HoleOfTheModelIsMovedOnlyNearerThanAllAroundIt) {
   DepthImage expected_m = flat(2.0F);
   fill_rectangle(expected_m, 300, 200, 320, 220, 0.0F);
   DepthImage live_m = flat(2.0F);
-  fill_rectangle(live_m, 290, 190, 330, 230, 1.5F);  // in front of the hole and of what is around it
+  fill_rectangle(live_m, 290, 190, 330, 230, 1.5F);  // in front of the hole and its surroundings
   EXPECT_EQ(mark(live_m, expected_m).labels.at(310, 210), PixelLabel::kMoved);
 
   live_m = flat(2.0F);
-  fill_rectangle(live_m, 300, 200, 320, 220, 2.6F);  // one sees into the hole
+  fill_rectangle(live_m, 300, 200, 320, 220, 2.6F);  // the camera sees into the hole
   EXPECT_EQ(mark(live_m, expected_m).labels.at(310, 210), PixelLabel::kNotKnown);
   EXPECT_EQ(mark(live_m, expected_m).counts.revealed, 0U);
 }
@@ -200,7 +200,7 @@ TEST(Foreground, PersonLeavingThroughTheBorderIsFoundUpToTheLastPixel) {
 }
 
 TEST(Foreground, HandBesideANearEdgeKeepsItsRim) {
-  // The static box's edge is nearer than the hand behind it; the window around the edge must not eat the
+  // The static box's edge is nearer than the hand behind it; the window around the edge must not remove the
   // hand.
   DepthImage expected_m = flat(2.0F);
   fill_rectangle(expected_m, 0, 0, 300, 480, 1.0F);
@@ -212,8 +212,8 @@ TEST(Foreground, HandBesideANearEdgeKeepsItsRim) {
 }
 
 TEST(Foreground, BallHalfBehindABoxIsFound) {
-  // All of the ball that shows is within an edge error's reach of the box, but neither at its depth nor the
-  // table's.
+  // The visible part of the ball is within the box's edge tolerance, but neither at the box's depth nor at
+  // the table's.
   DepthImage expected_m = flat(1.7F);
   fill_rectangle(expected_m, 200, 240, 400, 480, 1.0F);
   DepthImage live_m = expected_m;
@@ -224,13 +224,12 @@ TEST(Foreground, BallHalfBehindABoxIsFound) {
 }
 
 TEST(Foreground, HandOnAMisplacedSurfaceIsFoundAndTheSurfaceIsNot) {
-  // The left half of the wall stands 2 cm nearer than the map says: weak everywhere, far larger than the
-  // hand.
+  // The left half of the wall is 2 cm nearer than in the map: weak everywhere, and far larger than the hand.
   DepthImage live_m = flat(1.0F);
   fill_rectangle(live_m, 0, 0, 320, 480, 0.98F);
   const MaskImage without_hand = mark(live_m, flat(1.0F)).dynamic_mask;
   EXPECT_EQ(std::count(without_hand.pixels.begin(), without_hand.pixels.end(), 255), 0);
-  fill_rectangle(live_m, 80, 100, 240, 260, 0.966F);  // too low a step to stop the region from growing
+  fill_rectangle(live_m, 80, 100, 240, 260, 0.966F);  // too small a step to stop region growing
   const MaskImage mask = mark(live_m, flat(1.0F)).dynamic_mask;
   EXPECT_EQ(mask.at(160, 180), 255);
   EXPECT_EQ(mask.at(60, 400), 0);
@@ -253,7 +252,7 @@ TEST(Foreground, WorksAtAnySizeOfImage) {
 TEST(Foreground, ImpossibleSettingsAreNamed) {
   ForegroundConfig config;
   EXPECT_NO_THROW(require_valid(config));
-  config.strong_sigmas = 1.0F;  // under weak_sigmas
+  config.strong_sigmas = 1.0F;  // below weak_sigmas
   try {
     require_valid(config);
     FAIL() << "accepted";

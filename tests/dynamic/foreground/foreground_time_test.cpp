@@ -1,4 +1,4 @@
-// foreground_time_test.cpp: what the foreground carries from frame to frame.
+// foreground_time_test.cpp: the foreground history that carries over from frame to frame.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-// Frames in a row.
+// Consecutive frames.
 struct Watch {
   ForegroundState state;
   Marked marked;
@@ -23,7 +23,7 @@ struct Watch {
   }
 };
 
-// A wall at 2 m, and before it a square thing, as a camera sees them that has moved `right_m` to the right.
+// A wall at 2 m and a square object in front of it, seen by a camera that has moved `right_m` to the right.
 DepthImage wall_with(float square_m, int half_px, double right_m = 0.0) {
   DepthImage depth_m = flat(2.0F);
   const int x = 320 - static_cast<int>(std::lround(kKinect.fx_px * right_m / square_m));
@@ -53,18 +53,18 @@ TEST(ForegroundInTime, SmallThingIsFoundAgainWhereTheCameraMovedOn) {
   Watch run;
   run.see(wall_with(1.5F, 5), flat(2.0F));
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  T_world_camera.translation().x() = 0.15;  // 58 px at the thing's depth: none of its pixels stays
+  T_world_camera.translation().x() = 0.15;  // 58 px at the object's depth: no pixel of it stays in place
   run.see(wall_with(1.5F, 5, 0.15), flat(2.0F), T_world_camera);
   EXPECT_EQ(run.marked.counts.moved, 100U);
 
-  Watch elsewhere;  // a thing that is as new at its place as the one before
+  Watch elsewhere;  // an object as new at its position as the previous one
   elsewhere.see(wall_with(1.5F, 5), flat(2.0F));
   elsewhere.see(wall_with(1.5F, 5, 0.15), flat(2.0F));
   EXPECT_EQ(elsewhere.marked.counts.moved, 0U);
 }
 
 TEST(ForegroundInTime, WhatWasMarkedStaysWhileItComesNearerToTheWall) {
-  // A palm that sinks towards a wall 1 m away. Seen alone it is lost earlier than watched.
+  // A palm that moves towards a wall 1 m away. Without history it is lost earlier than with it.
   const DepthImage wall_m = flat(1.0F);
   float lost_watched_m = 0.0F, lost_alone_m = 0.0F;
   Watch watched;
@@ -122,8 +122,7 @@ TEST(ForegroundInTime, NothingIsAllocatedAfterTheFirstFrame) {
   run.see(live_m, expected_m);
   DepthImage all_m = flat(0.45F), noise_m = flat(1.2F);
   add_noise(noise_m, 30);
-  for (std::size_t i = 0; i < noise_m.pixels.size(); i += 2)
-    noise_m.pixels[i] *= 0.7F;  // as many runs as can be
+  for (std::size_t i = 0; i < noise_m.pixels.size(); i += 2) noise_m.pixels[i] *= 0.7F;  // max number of runs
   const std::size_t before = allocations;
   run.see(live_m, expected_m);
   run.see(all_m, expected_m);

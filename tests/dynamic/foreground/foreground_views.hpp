@@ -1,4 +1,4 @@
-// foreground_views.hpp: depth images made by hand, and what the foreground says of them.
+// foreground_views.hpp: synthetic depth images, and the foreground marked in them.
 #pragma once
 #include <cmath>
 #include <functional>
@@ -22,7 +22,7 @@ inline void fill_rectangle(DepthImage& image, int x0, int y0, int x1, int y1, fl
   }
 }
 
-// Adds the Kinect's axial noise to what was measured.
+// Adds the Kinect's axial noise to the valid pixels.
 inline void add_noise(DepthImage& depth_m, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal;
@@ -31,7 +31,7 @@ inline void add_noise(DepthImage& depth_m, unsigned seed) {
   }
 }
 
-// A table seen from 1.2 m above it at 35 degrees below the horizon, with a box on it and a wall 3.5 m away.
+// A table seen from 1.2 m above it, 35 degrees below the horizon, with a box on it and a wall 3.5 m away.
 inline DepthImage table_view(double shift_m, double turn_deg) {
   DepthImage depth_m = flat(0.0F);
   const double turn = turn_deg * M_PI / 180.0;
@@ -40,7 +40,7 @@ inline DepthImage table_view(double shift_m, double turn_deg) {
       const Eigen::Vector3d straight = back_project(kKinect, x, y, 1.0);
       const Eigen::Vector3d ray(straight.x() * std::cos(turn) + std::sin(turn), straight.y(),
                                 -straight.x() * std::sin(turn) + std::cos(turn));
-      // Axes turned to level: forward and down.
+      // Rotates the axes to level: forward and down.
       const double down = ray.y() * std::cos(0.61) + ray.z() * std::sin(0.61);
       const double forward = ray.z() * std::cos(0.61) - ray.y() * std::sin(0.61);
       double t = (3.5 - shift_m) / std::max(forward, 1e-6);            // wall
@@ -54,8 +54,8 @@ inline DepthImage table_view(double shift_m, double turn_deg) {
   return depth_m;
 }
 
-// A table 0.9 m below a camera that looks down at `below_deg` under the horizon, and a hand as large as a
-// hand, so far above it; 0: no hand. Truth: where the hand is.
+// A table 0.9 m below a camera that looks `below_deg` below the horizon, and a rectangle the size of a hand,
+// `above_m` above the table; 0: no hand. `truth` receives the hand's mask.
 inline DepthImage hand_over_table(double below_deg, double above_m, MaskImage& truth) {
   const double down = below_deg * M_PI / 180.0;
   DepthImage depth_m = flat(0.0F);
@@ -76,7 +76,7 @@ inline DepthImage hand_over_table(double below_deg, double above_m, MaskImage& t
   return depth_m;
 }
 
-// What is marked after so many frames that show the same.
+// Result after `frames` identical frames.
 struct Marked {
   LabelImage labels;
   MaskImage dynamic_mask;

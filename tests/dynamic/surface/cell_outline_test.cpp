@@ -1,4 +1,4 @@
-// cell_outline_test.cpp: polygons of cut cells, and triangles of halved squares.
+// cell_outline_test.cpp: polygons of cut cells, and triangles of bisected squares.
 #include "dynamic/surface/cell_outline.hpp"
 
 #include <gtest/gtest.h>
@@ -100,7 +100,7 @@ TEST(PixelBits, MajorityAndFarAreWhatCountingSays) {
   }
 }
 
-// Every triangle stays within the tolerance of every point on it, and no vertex lies inside another
+// Every triangle is within the tolerance of every grid point on it, and no vertex is inside another
 // triangle's side.
 TEST(Rtin, FollowsTheValuesWithoutCracks) {
   constexpr int kPoints = 33;
@@ -118,7 +118,7 @@ TEST(Rtin, FollowsTheValuesWithoutCracks) {
     needed[17 * kPoints + 11] = 1;
     const Rtin grid{kPoints, kPoints, cells};
     find_needed(grid, values, tolerances, needed);
-    std::map<std::pair<int, int>, int> edges;  // directed, as points
+    std::map<std::pair<int, int>, int> edges;  // directed, as point indices
     long area = 0;
     for (int row = 0; row + 1 < kPoints; row += 8) {
       for (int column = 0; column + 1 < kPoints; column += 8) {

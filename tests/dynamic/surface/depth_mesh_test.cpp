@@ -1,4 +1,4 @@
-// depth_mesh_test.cpp: triangles through depth pixels: where they lie, which way they face, where they stop.
+// depth_mesh_test.cpp: triangles through depth pixels: position, orientation, gaps at discontinuities.
 #include "dynamic/surface/depth_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ Mesh whole(const DepthImage& depth_m, SurfacePolicy policy, const DepthMeshConfi
   return mesh;
 }
 
-// What holds for every mesh made here.
+// Checks that hold for every mesh made here.
 void expect_sound(const Mesh& mesh) {
   ASSERT_EQ(mesh.normals.size(), mesh.vertices.size());
   std::vector<bool> used(mesh.vertices.size(), false);
@@ -75,7 +75,7 @@ double area_m2(const Mesh& mesh) {
   return area;
 }
 
-// Depths of the vertices, seen from a camera at the mesh's origin without rotation.
+// Least and greatest depth of the vertices, for an unrotated camera at the mesh's origin.
 std::pair<float, float> depth_extent(const Mesh& mesh) {
   float nearest = 1e9F, farthest = 0.0F;
   for (const Eigen::Vector3f& p : mesh.vertices) {
@@ -113,7 +113,7 @@ TEST(DepthMesh, VerticesLieWhereThePixelsBackProjectTo) {
   MaskImage mask(640, 480, 0);
   fill_rectangle<std::uint8_t>(mask, 10, 20, 13, 23, 255);
   DepthMeshConfig config;
-  config.stride_px = 2;  // the corners (10, 20) to (12, 22)
+  config.stride_px = 2;  // pixels (10, 20) to (12, 22)
   const Mesh mesh = masked(flat(2.5F), mask, config, T_world_camera);
   ASSERT_EQ(mesh.vertices.size(), 4U);
   const Eigen::Vector3d expected = T_world_camera * back_project(kKinect, 10, 20, 2.5);
@@ -121,7 +121,7 @@ TEST(DepthMesh, VerticesLieWhereThePixelsBackProjectTo) {
   for (const Eigen::Vector3f& p : mesh.vertices) {
     nearest_m = std::min(nearest_m, (mesh.origin + p.cast<double>() - expected).norm());
   }
-  EXPECT_LT(nearest_m, 1e-6);  // float near its origin, although the camera stands 100 m from the world's
+  EXPECT_LT(nearest_m, 1e-6);  // float at its own origin; the camera is 100 m from the world's
   EXPECT_EQ(mesh.origin, T_world_camera.translation());
   for (const Eigen::Vector3f& normal : mesh.normals) {
     EXPECT_NEAR(normal.dot(-T_world_camera.linear().col(2).cast<float>()), 1.0F, 1e-5F);  // faces the camera
@@ -240,7 +240,7 @@ TEST(DepthMesh, HoleInTheMiddleOfAHandStaysOpen) {
   const Mesh mesh = masked(depth_m, mask);
   expect_sound(mesh);
   const Mesh closed = masked(flat(0.7F), mask);
-  // Hole and its rim, less the corners.
+  // The hole and its rim, minus the corners.
   EXPECT_NEAR(area_m2(closed) - area_m2(mesh), (22.0 * 22.0 - 8.0) * 0.49 / (585.0 * 585.0), 1e-6);
 }
 
@@ -272,8 +272,8 @@ TEST(DepthMesh, ReachesTheBorderOfTheImage) {
 }
 
 TEST(DepthMesh, CoarserGridsStayWithinNoiseOfTheSurface) {
-  // A ball of 10 cm radius at 0.8 m: the coarse mesh's vertices are on it, its triangles dip by the sagitta
-  // at most.
+  // A ball of 10 cm radius at 0.8 m: the coarse mesh's vertices are on it, its triangles at most a sagitta
+  // inside.
   DepthImage depth_m = flat(0.0F);
   for (int y = 0; y < 480; ++y) {
     for (int x = 0; x < 640; ++x) {

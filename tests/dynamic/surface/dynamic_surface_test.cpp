@@ -1,4 +1,5 @@
-// moved_surface_test.cpp: few triangles, near what was seen, closed by a back that stays before the room.
+// dynamic_surface_test.cpp: few triangles, close to the measured depth, closed by a back that stays in front
+// of the room.
 #include "dynamic/surface/dynamic_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,7 @@ Eigen::Isometry3d somewhere() {
   return T_world_camera;
 }
 
-/// What a camera sees, which of it moved, and what the room behind it is.
+/// Depth image, mask of the pixels that moved, and depth of the room behind them.
 struct Scene {
   DepthImage depth_m{640, 480, kWall_m};
   MaskImage mask{640, 480, 0};
@@ -84,13 +85,13 @@ DepthImage seen_depth(const DynamicSurface& surface, const Scene& scene) {
   return rasterise(surface.seen_world, kKinect, scene.T_world_camera);
 }
 
-/// The back faces away from the camera; walls run along its rays and have no area in the image.
+/// Depth of the back, which faces away from the camera; side walls run along its rays and cover no pixels.
 DepthImage back_depth(const DynamicSurface& surface, const Scene& scene) {
   return rasterise(surface.inferred_world, kKinect, scene.T_world_camera);
 }
 
-/// Edges of both meshes, vertices at the same place being one, that have not as many triangles on one side as
-/// on the other.
+/// Counts edges of both meshes that do not have equally many triangles on either side; vertices at the same
+/// position are one vertex.
 std::size_t open_edges(const DynamicSurface& surface) {
   using Place = std::tuple<float, float, float>;
   std::map<std::pair<Place, Place>, int> edges;
@@ -144,7 +145,7 @@ void expect_sound(const DynamicSurface& surface, const Scene& scene) {
   EXPECT_EQ(open_edges(surface), 0U);
 }
 
-/// Mask pixels that have no surface within a pixel of them.
+/// Counts mask pixels without surface within one pixel.
 std::size_t pixels_lost(const DynamicSurface& surface, const Scene& scene) {
   const DepthImage seen = seen_depth(surface, scene);
   std::size_t lost = 0;
@@ -173,7 +174,7 @@ TEST(DynamicSurface, AHandOverTheLensIsAFewTriangles) {
   scene.put_rectangle(0, 0, 640, 480, 0.4F);
   const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
-  EXPECT_LT(surface.seen_world.triangles.size(), 4000U);  // 612,162 in full
+  EXPECT_LT(surface.seen_world.triangles.size(), 4000U);  // 612,162 with a vertex per pixel
   const DepthImage seen = seen_depth(surface, scene);
   std::size_t covered = 0;
   for (const float z : seen.pixels) {
@@ -265,14 +266,14 @@ TEST(DynamicSurface, WhereEveryPixelIsAVertexTheNoiseIsAveragedAway) {
     ++count;
   }
   EXPECT_GT(count, 4000);
-  EXPECT_LT(std::sqrt(squares_m2 / count), 0.4 * sigma_m);  // a pixel alone: 0.9, along the normal
-  EXPECT_LT(std::abs(off_m / count), 0.05 * sigma_m);       // and the ball is as large as it was
+  EXPECT_LT(std::sqrt(squares_m2 / count), 0.4 * sigma_m);  // a single pixel: 0.9, along the normal
+  EXPECT_LT(std::abs(off_m / count), 0.05 * sigma_m);       // and the ball keeps its size
 }
 
 TEST(DynamicSurface, NothingSpansAHugeJumpInTheMask) {
   Scene scene;
   scene.put_rectangle(150, 100, 450, 400, 1.6F);   // a body
-  scene.put_rectangle(251, 183, 343, 262, 0.61F);  // a hand before it
+  scene.put_rectangle(251, 183, 343, 262, 0.61F);  // a hand in front of it
   const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   EXPECT_EQ(pixels_lost(surface, scene), 0U);
@@ -291,7 +292,7 @@ TEST(DynamicSurface, NothingSpansAHugeJumpInTheMask) {
 }
 
 TEST(DynamicSurface, ThePixelsOfTheRimAreThere) {
-  Scene scene;  // a slanted strip: no side of it lies on the grid
+  Scene scene;  // a slanted strip: no side of it is on the grid
   for (int y = 60; y < 420; ++y)
     for (int x = 0; x < 640; ++x)
       if (std::abs(0.8 * (x - 320) - 0.6 * (y - 240)) < 25.3) scene.put(x, y, 0.7F);
@@ -326,7 +327,7 @@ TEST(DynamicSurface, AHoleInAHandStaysOpenAndSpecksAreClosed) {
 
 TEST(DynamicSurface, WhatTheImageCutsOffIsThickThere) {
   Scene scene;
-  scene.put_rectangle(0, 200, 120, 280, 0.7F);  // an arm that comes in from the left
+  scene.put_rectangle(0, 200, 120, 280, 0.7F);  // an arm that enters from the left
   const DynamicSurface surface = meshed(scene);
   expect_sound(surface, scene);
   const DepthImage back = back_depth(surface, scene);
@@ -422,7 +423,7 @@ TEST(DynamicSurface, RegionsAreAsFineAsTheImage) {
   EXPECT_EQ(meshed(scene, {}, nowhere).seen_world.triangles, meshed(scene).seen_world.triangles);
 }
 
-// Whatever the mask and the depths are: closed, facing the camera, and no pixel of the mask far from it.
+// For any mask and depth the mesh is closed, faces the camera, and is close to every pixel of the mask.
 TEST(DynamicSurface, IsClosedAndLosesNothingWhateverMoved) {
   std::mt19937 random(5);
   std::uniform_int_distribution<int> across(0, 639), down(0, 479), size(1, 120);

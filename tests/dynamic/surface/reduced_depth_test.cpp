@@ -1,4 +1,4 @@
-// reduced_depth_test.cpp: fewer pixels, each of one surface.
+// reduced_depth_test.cpp: fewer pixels, each from a single surface.
 #include "dynamic/surface/reduced_depth.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ double plane_depth_m(const Intrinsics& camera, const Eigen::Vector3d& n_per_m, i
 }
 
 TEST(ReducedDepth, OfAPlaneIsWhatTheSmallerCameraSees) {
-  // Steep: 60 degrees from the view, and a step of several centimetres from pixel to pixel.
+  // Steep: 60 degrees from the viewing direction, and several centimetres from pixel to pixel.
   const Eigen::Vector3d n_per_m(0.35, -0.2, 0.5);
   Frame frame = frame_of(0.0F);
   for (int y = 0; y < kCamera.height_px; ++y)
@@ -46,7 +46,7 @@ TEST(ReducedDepth, OfAPlaneIsWhatTheSmallerCameraSees) {
 
 TEST(ReducedDepth, NothingLiesBetweenAnEdgeAndWhatIsBehindIt) {
   Frame frame = frame_of(2.0F);
-  for (int y = 0; y < kCamera.height_px; ++y)  // its edge runs through blocks at every offset
+  for (int y = 0; y < kCamera.height_px; ++y)  // its edge cuts blocks at every offset
     for (int x = 0; x < 40 + y / 3; ++x) frame.depth_m.at(x, y) = 1.0F;
   for (const int stride : {2, 4}) {
     Frame reduced;

@@ -1,4 +1,4 @@
-// align_test.cpp: the pose of an image relative to views whose poses are known.
+// align_test.cpp: pose of a frame relative to views with known poses.
 #include "mapping/alignment/align.hpp"
 
 #include <gtest/gtest.h>
@@ -51,8 +51,8 @@ double rotation_error_rad(const Tracking& tracking, const Eigen::Isometry3d& tru
   return Eigen::AngleAxisd(truth.linear().transpose() * tracking.T_world_camera.linear()).angle();
 }
 
-// A reference's planes are fitted across the creases between surfaces as far as the noise allows, so even
-// exact depth leaves this much.
+// A target view's planes are fitted across creases between surfaces as far as the noise allows. Even exact
+// depth therefore leaves an error of this size.
 constexpr double kFit_m = 0.003, kFit_rad = 0.0015;
 
 const Eigen::Isometry3d kStep = moved(0.03, -0.02, 0.025, 0.02, -0.03, 0.015);
@@ -74,7 +74,7 @@ TEST(MakeReference, PlanesLieOnTheSurface) {
       if (pixel.inverse_sigma_per_m <= 0.0F) continue;
       ++planes;
       ASSERT_GT(pixel.normal.cast<double>().dot(up_camera), 0.9999);  // 0.8 degrees
-      ASSERT_NEAR(pixel.offset_m, -1.3, 0.003);                       // the eye is 1.3 m above the floor
+      ASSERT_NEAR(pixel.offset_m, -1.3, 0.003);                       // the camera is 1.3 m above the floor
     }
     EXPECT_GT(planes, level.camera.width_px * level.camera.height_px / 3);
   }
@@ -144,16 +144,17 @@ TEST(Align, IgnoredPixelsAreLeftOut) {
 TEST(Align, OneWallFixesDistanceAndTiltAndHoldsTheRest) {
   const test::Scene wall = test::plane({0, 1, 0}, 2.0);
   const Eigen::Isometry3d T = test::looking_at({0, 0, 1}, {0, 2, 1});
-  // 2 cm nearer and tilted, and 3 cm along the wall, which nobody can see.
+  // 2 cm nearer and tilted, and 3 cm along the wall, which is unobservable.
   const Eigen::Isometry3d truth = T * moved(0.03, 0, 0.02, 0.01, 0.02, 0);
   const TargetView reference = reference_of(test::exact_frame(wall, kCamera, T), T);
   const Tracking tracking = align(live_of(test::exact_frame(wall, kCamera, truth)), reference, T);
   EXPECT_EQ(tracking.status, TrackStatus::kDegenerate);
-  EXPECT_EQ(tracking.unconstrained_dofs, 3);  // two shifts along the wall, one turn in it
+  EXPECT_EQ(tracking.unconstrained_dofs,
+            3);  // two translations along the wall, the rotation about its normal
   EXPECT_FALSE(tracking);
   const Eigen::Vector3d position = tracking.T_world_camera.translation();
   EXPECT_NEAR(position.y(), truth.translation().y(), 0.001);
-  // Held, up to the turn about the wall's mean distance.
+  // Kept from the guess, up to the effect of the rotation about the wall's mean distance.
   EXPECT_NEAR(position.x(), T.translation().x(), 0.004);
   EXPECT_NEAR(tracking.T_world_camera.linear().col(2).dot(truth.linear().col(2)), 1.0, 1e-6);
 }
@@ -164,7 +165,7 @@ TEST(Align, ColourFixesWhatOneWallDoesNot) {
   const Eigen::Isometry3d truth = T * moved(0.02, -0.01, 0.01, 0.005, 0.005, 0.01);
   Frame before = test::exact_frame(wall, kCamera, T), now = test::exact_frame(wall, kCamera, truth);
   test::paint(before, T);
-  test::paint(now, truth, 0.8, 15.0);  // and the exposure has changed
+  test::paint(now, truth, 0.8, 15.0);  // the exposure has changed, too
   const Tracking tracking = align(live_of(now), reference_of(before, T), T);
   EXPECT_EQ(tracking.status, TrackStatus::kTracked);
   EXPECT_LT(translation_error_m(tracking, truth), 0.003);
@@ -205,7 +206,7 @@ TEST(Align, A300MetreOffsetChangesNothing) {
   EXPECT_TRUE((far_away.inverse() * there.T_world_camera).isApprox(here.T_world_camera, 1e-6));
 }
 
-/// What must come out of images that say nothing, or next to nothing.
+/// Expects the initial guess back for images with no or too little information.
 void expect_guess_kept(const DepthImage& depth_m, TrackStatus expected) {
   const Eigen::Isometry3d T = eye();
   Frame now = test::exact_frame(corner_with_ball(), kCamera, T);

@@ -1,4 +1,4 @@
-// coverage_test.cpp: the picture marks what was not seen, and holes of the surface are listed beside those of
+// coverage_test.cpp: the picture marks unobserved space, and holes in the surface are listed with holes in
 // space.
 #include "mapping/coverage/coverage.hpp"
 
@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr Intrinsics kCamera{160, 120, 100.0, 100.0, 79.5, 59.5};
 
-// A wall seen from before it by a camera that moves aside; `count` times.
+// A wall seen `count` times by a camera in front of it that moves sideways.
 SavedMap wall_seen(int count) {
   SavedMap map;
   map.octree = StaticMap(0.02);
@@ -74,7 +74,7 @@ TEST(CoveragePicture, AMapWithoutSurfaceIsDrawnAllTheSame) {
 }
 
 TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {
-  // The wall's mesh without the triangles within 15 cm of a point; space is as it was.
+  // The wall's mesh without the triangles within 15 cm of a point; space is unchanged.
   SavedMap map = wall_seen(30);
   map.mesh = extract_surface(map.octree, {.max_deviation_m = 0.0F});
   const Vector3d middle(0.2, 2.0, 1.1);
@@ -87,7 +87,7 @@ TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {
   EXPECT_EQ(holes[0].kind, HoleKind::kSurfaceBorder);
   EXPECT_LT((holes[0].position_world - middle).norm(), 0.03);
   EXPECT_NEAR(holes[0].size_m, 0.3, 0.06);
-  EXPECT_NEAR(holes[0].area_m2, 0.0707, 0.02);  // of the disc
+  EXPECT_NEAR(holes[0].area_m2, 0.0707, 0.02);  // area of the disc
   EXPECT_GT(holes[0].look_direction_world.y(), 0.95);
   ASSERT_TRUE(holes[0].viewpoint_world);
   EXPECT_NEAR(holes[0].viewpoint_world->y(), 0.8, 0.1);
@@ -100,7 +100,7 @@ TEST(Coverage, AHoleInTheSurfaceWithSpaceSeenOnBothSidesIsASurfaceBorder) {
 TEST(Coverage, ASurveyHasTheFrontiersHolesAndAPicture) {
   const SavedMap scan = wall_seen(30);
   const Coverage coverage = survey_coverage(scan.octree, scan.mesh, scan.trajectory);
-  ASSERT_FALSE(coverage.holes.empty());  // a view of one wall has an outer border
+  ASSERT_FALSE(coverage.holes.empty());  // the view of a single wall has an outer border
   EXPECT_TRUE(std::all_of(coverage.holes.begin(), coverage.holes.end(),
                           [](const Hole& hole) { return hole.kind == HoleKind::kOuterBorder; }));
   EXPECT_GT(coverage.picture_png.size(), 10'000U);

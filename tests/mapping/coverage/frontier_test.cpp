@@ -1,4 +1,4 @@
-// frontier_test.cpp: the corner that was not scanned is listed, at its place; a room seen whole has no holes.
+// frontier_test.cpp: an unscanned corner is listed at its position; a completely observed room has no holes.
 #include "mapping/coverage/frontier.hpp"
 
 #include <gtest/gtest.h>
@@ -15,11 +15,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr Intrinsics kWide{160, 160, 80.0, 80.0, 79.5, 79.5};  // 90 degrees: six views see everything
+constexpr Intrinsics kWide{160, 160, 80.0, 80.0, 79.5, 79.5};  // 90 degrees: six views cover all directions
 constexpr double kResolution_m = 0.04;
 const Eigen::AlignedBox3d kRoom(Vector3d(-2.0, -1.6, 0.0), Vector3d(2.0, 1.6, 2.4));
 
-// The room from inside: where a ray leaves the box.
+// The room from inside: a ray hits the point where it leaves the box.
 test::Scene inside_of(const Eigen::AlignedBox3d& box) {
   return [box](const Vector3d& from, const Vector3d& direction) {
     const Eigen::Array3d low = (box.min() - from).array() / direction.array();
@@ -28,7 +28,7 @@ test::Scene inside_of(const Eigen::AlignedBox3d& box) {
   };
 }
 
-// Six views from each of some places in the room; what `is_hidden` names gives no depth.
+// Six views from each of three positions in the room; points with is_hidden() give no depth.
 StaticMap scan(const test::Scene& scene, const std::function<bool(const Vector3d&)>& is_hidden) {
   StaticMap map(kResolution_m);
   for (const Vector3d& eye : {Vector3d(0.1, 0.05, 1.2), Vector3d(-1.1, 0.4, 1.3), Vector3d(1.2, -0.5, 1.1)})
@@ -56,8 +56,8 @@ TEST(Frontier, ARoomThatWasSeenWholeHasNoHoles) {
 }
 
 TEST(Frontier, ACornerThatWasNotScannedIsTheOneHole) {
-  // The corner of +x, +y and the ceiling, 80 cm along each wall. Rays that would end there say nothing, so
-  // what stays unknown is more than that pyramid: whatever lies on those rays from all three places.
+  // The corner of +x, +y and the ceiling, 80 cm along each wall. Rays that would end there have no depth, so
+  // more than that pyramid stays unknown: all space on those rays from all three positions.
   const Vector3d corner = kRoom.max();
   const auto map = scan(inside_of(kRoom), [&](const Vector3d& p) { return (corner - p).sum() < 0.8; });
   const std::vector<Hole> holes = find_frontier(map).holes;
@@ -76,7 +76,7 @@ TEST(Frontier, ACornerThatWasNotScannedIsTheOneHole) {
 }
 
 TEST(Frontier, TheShadowBehindABoxIsUnknownSpaceInside) {
-  // A cupboard 30 cm before the wall, as high as the room: nobody looks behind it.
+  // A cupboard 30 cm in front of the wall, as high as the room; no view shows the space behind it.
   const Eigen::AlignedBox3d cupboard(Vector3d(-0.5, 1.1, -0.1), Vector3d(0.5, 1.3, 2.5));
   const auto map = scan(test::nearest_of(inside_of(kRoom), test::box(cupboard)), nothing_hidden);
   const std::vector<Hole> holes = find_frontier(map).holes;
@@ -98,7 +98,7 @@ TEST(Frontier, ARoomWithoutItsCeilingEndsInAnOuterBorder) {
     EXPECT_GT(hole.position_world.z(), 0.8) << describe(hole);
     area_m2 += hole.area_m2;
   }
-  EXPECT_GT(area_m2, 5.0);  // of 4 x 3.2 m, less what the rays to the walls clear
+  EXPECT_GT(area_m2, 5.0);  // of 4 x 3.2 m, minus the part cleared by rays to the walls
 }
 
 TEST(Frontier, AnEmptyMapHasNone) { EXPECT_TRUE(find_frontier(StaticMap(kResolution_m)).holes.empty()); }

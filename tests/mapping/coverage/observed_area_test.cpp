@@ -1,4 +1,4 @@
-// seen_area_test.cpp: the area of a wall, counted once however often it is seen.
+// observed_area_test.cpp: the area of a wall is counted once, however often it is observed.
 #include "mapping/coverage/observed_area.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// shape_search_test.cpp: a view's shape says where in a room it was taken, as far as shape can.
+// correlative_search_test.cpp: position of a view in a room from its depth alone, as far as the shape
+// determines it.
 #include "mapping/localization/correlative_search.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr Intrinsics kCamera{160, 120, 146.25, 146.25, 79.5, 59.5};
 
-/// 2.5 m high.
+/// Room 2.5 m high.
 test::Scene room() {
   using namespace test;
   return nearest_of(nearest_of(plane({0, 0, 1}, 0.0), plane({0, 0, 1}, 2.5)), walls_and_things());
@@ -27,7 +28,7 @@ Frame seen_from(const Eigen::Isometry3d& T_world_camera) {
   return frame;
 }
 
-/// A camera turned in the room's middle, looking ahead and down.
+/// Keyframes of a camera that rotates in the room's centre, looking forward and down.
 KeyframeDatabase scanned() {
   KeyframeDatabase keyframe_database;
   for (int i = 0; i < 20; ++i) {

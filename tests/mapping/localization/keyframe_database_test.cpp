@@ -1,4 +1,4 @@
-// places_test.cpp: places on disk, and the camera found among them.
+// keyframe_database_test.cpp: map keyframes on disk, and relocalisation among them.
 #include "mapping/localization/keyframe_database.hpp"
 
 #include <gtest/gtest.h>
@@ -162,7 +162,7 @@ TEST(PlacesFile, AViewOfMoreThanAnySearchComparesIsRefused) {
 }
 
 TEST(PlacesFile, SizesThatLieAreRefusedBeforeMemoryIsTaken) {
-  // A file whose checksum is right and whose counts are not: 4 billion views, none of them there.
+  // A file with a correct checksum and wrong counts: 4 billion views, none of them present.
   const test::TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "places.bin";
   std::string bytes("RRPLACES\x02\0\0\0\xff\xff\xff\xff", 16);
@@ -208,14 +208,14 @@ TEST(Relocalise, AnotherRoomIsNotFound) {
 }
 
 TEST(Relocalise, SameLooksWithOtherDepthAreUnproven) {
-  // A photograph of the room: every feature is there, on one flat board.
+  // A photograph of the room: every feature is present, on one flat board.
   Frame photograph = painted(eye(0.0));
   std::fill(photograph.depth_m.pixels.begin(), photograph.depth_m.pixels.end(), 1.0F);
   EXPECT_FALSE(relocalise(photograph, three_places()));
 }
 
 TEST(Relocalise, FeaturesWithoutTheDepthAreUnproven) {
-  // The upper part of the image is the room's, features and all; the lower part is something else, nearer.
+  // The upper part of the image shows the room with its features; the lower part shows something nearer.
   Frame frame = painted(eye(0.0));
   for (int y = 2 * frame.depth_m.height / 5; y < frame.depth_m.height; ++y) {
     std::fill_n(frame.depth_m.row(y), frame.depth_m.width, 0.7F);
@@ -235,7 +235,7 @@ TEST(Relocalise, WithoutColourTheDepthDecides) {
 }
 
 TEST(Relocalise, WithoutColourItIsFoundAmongMoreViewsThanAreTried) {
-  // The only one that helps is the last of 130; the others look elsewhere.
+  // Only the last of 130 views helps; the others show something else.
   KeyframeDatabase keyframe_database;
   MapKeyframe elsewhere = make_map_keyframe(painted(eye(0.0)), eye(0.0));
   for (std::uint16_t& mm : elsewhere.preview_depth_mm.pixels) mm = static_cast<std::uint16_t>(mm + 1000);
@@ -277,7 +277,7 @@ TEST(RelocaliseOnARecording, KitchenFramesAreFoundAgain) {
     const Eigen::Isometry3d error = frame.T_world_camera->inverse() * found.T_world_camera;
     const bool near = error.translation().norm() < 0.05 && Eigen::AngleAxisd(error.linear()).angle() < 0.0873;
     right += near ? 1 : 0;
-    // The recorded poses are off by some centimetres themselves.
+    // The recorded poses have errors of some centimetres.
     wrong += error.translation().norm() > 0.15 ? 1 : 0;
   }
   EXPECT_EQ(asked, 10);

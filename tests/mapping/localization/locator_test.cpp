@@ -1,4 +1,5 @@
-// locator_test.cpp: found from anywhere, followed, lost when it is lost, and never sure of a wrong place.
+// locator_test.cpp: the camera is localised from anywhere, tracked, and reported lost when lost; a wrong pose
+// is never certain.
 #include "mapping/localization/locator.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ constexpr Intrinsics kCamera{320, 240, 292.5, 292.5, 159.5, 119.5};
 
 test::Scene room() { return test::nearest_of(test::plane({0, 0, 1}, 0.0), test::walls_and_things()); }
 
-/// The same turned by half a circle about the z axis fits onto itself, walls, things and paint.
+/// A room that is identical after half a turn about the z axis, including walls, objects and paint.
 test::Scene twin_room() {
   const test::Scene half = test::box({Eigen::Vector3d(-1.9, 1.2, 0.0), Eigen::Vector3d(-1.0, 2.4, 0.8)});
   const test::Scene other = test::box({Eigen::Vector3d(1.0, -2.4, 0.0), Eigen::Vector3d(1.9, -1.2, 0.8)});
@@ -29,7 +30,7 @@ std::uint8_t twin_grey(const Eigen::Vector3d& p) {
 
 using Grey = std::function<std::uint8_t(const Eigen::Vector3d&)>;
 
-/// A room that was scanned by a camera turning in its middle, and a locator that looks for itself in it.
+/// A room scanned by a camera rotating in its centre, and a locator in it.
 struct Mapped {
   explicit Mapped(test::Scene its_scene, Grey its_grey = test::cube_grey)
       : scene(std::move(its_scene)), grey(std::move(its_grey)) {
@@ -117,7 +118,7 @@ TEST(Locator, ACoveredLensIsNoticedWithinFiveFramesThoughItsMotionSeemsKnown) {
   Mapped mapped(room());
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(has_pose(mapped.find(mapped.seen_from(walk(i)))));
   Frame covered = mapped.seen_from(walk(4));
-  for (int y = 0; y < kCamera.height_px; ++y)  // a hand's shape, close, and a rim of the room
+  for (int y = 0; y < kCamera.height_px; ++y)  // a hand, close to the lens, and a margin that shows the room
     for (int x = 20; x < kCamera.width_px; ++x) {
       covered.depth_m.at(x, y) = 0.45F + 0.0001F * static_cast<float>(x);
       covered.colour.at(x, y) = {90, 60, 50};
@@ -131,7 +132,7 @@ TEST(Locator, DoesNotChooseBetweenTwoPlacesThatLookTheSame) {
   Mapped twins(twin_room(), twin_grey);
   const Eigen::Isometry3d truth = test::looking_at({0.8, -0.2, 1.2}, {-1.2, 2.0, 0.5});
   EXPECT_FALSE(has_pose(twins.find(twins.seen_from(truth))));
-  // One poster that the other wall has not tells them apart.
+  // A poster on only one of the walls resolves the ambiguity.
   Mapped told(twin_room(), [](const Eigen::Vector3d& p) {
     return p.y() > 1.0 ? test::cube_grey(p) : twin_grey(p + Eigen::Vector3d(7.0, 3.0, 0.0));
   });
@@ -159,7 +160,7 @@ test::Scene bare_walls() {
   return nearest_of(plane({0, 0, 1}, 0.0), walls);
 }
 
-/// A wall with a painted square on it; of one of 24 cm a view has some thirty patches.
+/// A wall with a painted square on it; a view of a square of 24 cm has some thirty patches.
 Grey poster_of(double width_m) {
   return [half_m = 0.5 * width_m](const Eigen::Vector3d& p) {
     const bool is_on_it = p.y() > 2.4 && std::abs(p.x() - 0.4) < half_m && std::abs(p.z() - 0.8) < half_m;
@@ -220,7 +221,7 @@ TEST(Locator, DoesNotSlideOnAlongAWallWithoutMarks) {
   const auto before_wall = [](double x) { return test::looking_at({x, 0.4, 1.2}, {x, 2.5, 0.4}); };
   Mapped bare(bare_walls(), [](const Eigen::Vector3d&) { return 120; });
   bare.locator.T_world_camera = before_wall(0.3);
-  bare.locator.T_last_now.translation().x() = 0.01;  // as it was moved last, and is no more
+  bare.locator.T_last_now.translation().x() = 0.01;  // last motion; the camera has stopped since
   Tracking found;
   for (int i = 0; i < 60; ++i) {
     found = bare.find(bare.seen_from(before_wall(0.3)));

@@ -1,4 +1,4 @@
-// patches_test.cpp: patches look alike from elsewhere, and say where the camera stands.
+// patches_test.cpp: patches match from other viewpoints, and yield the camera's pose.
 #include "mapping/localization/patches.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ KeyframeDatabase place_at(const Eigen::Isometry3d& T_world_camera) {
 }
 
 const Eigen::Isometry3d kEye = test::looking_at({-0.2, -0.3, 1.2}, {0.0, 2.0, 0.6});
-/// 0.9 m aside and nearer, and rolled over.
+/// 0.9 m to the side and nearer, and rolled.
 const Eigen::Isometry3d kAside =
     test::looking_at({0.6, 0.2, 1.0}, {-0.2, 2.2, 0.5}, Eigen::Vector3d(0.5, 0.0, 0.8));
 

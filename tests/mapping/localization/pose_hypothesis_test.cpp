@@ -1,4 +1,5 @@
-// tried_pose_test.cpp: which poses that a search tried are taken, and which are not however well they look.
+// pose_hypothesis_test.cpp: which pose hypotheses of a search are accepted, and which are rejected however
+// good they look.
 #include "mapping/localization/pose_hypothesis.hpp"
 
 #include <gtest/gtest.h>
@@ -9,10 +10,10 @@
 namespace roomradar::pose_hypothesis_test {
 namespace {
 
-/// @param status      kDegenerate: the depth leaves a direction open
-/// @param alike       patches, of 100 that were compared
-/// @param depth_alike part of 1,000 pixels whose depth the model explains
-/// @param farther     part of them where the camera looks through the model
+/// @param status      kDegenerate: the depth leaves a direction unconstrained
+/// @param alike       matching patches, of 100 compared
+/// @param depth_alike fraction of 1,000 pixels whose depth agrees with the model
+/// @param farther     fraction of them at which the camera sees through the model
 PoseHypothesis hypothesis(TrackStatus status, std::size_t alike, double depth_alike, double farther = 0.0) {
   PoseHypothesis tried;
   tried.tracking.status = status;
@@ -47,12 +48,13 @@ TEST(PoseHypothesis, DepthAloneMustBeClear) {
 }
 
 TEST(PoseHypothesis, WithADirectionOpenTheDepthOrBothTogetherAreClear) {
-  // Half of a floor's boards are alike a board's width aside, where the depth says much the same.
+  // Half of a floor's boards match after a shift by one board, and the depth is almost the same there.
   EXPECT_FALSE(is_certain(hypothesis(kOpen, 50, 0.93)));
   EXPECT_TRUE(is_certain(hypothesis(kFixed, 50, 0.93)));
   EXPECT_TRUE(is_certain(hypothesis(kOpen, 65, 0.93)));
   EXPECT_TRUE(is_certain(hypothesis(kOpen, 50, 0.96)));
-  // Two thirds of a rug's flowers are alike some flowers aside; a person before the view takes as much depth.
+  // Two thirds of a rug's flowers match after a shift by some flowers; a person in the view costs as much
+  // depth agreement.
   EXPECT_FALSE(is_certain(hypothesis(kOpen, 70, 0.79)));
   EXPECT_TRUE(is_certain(hypothesis(kOpen, 71, 0.84)));
   EXPECT_FALSE(is_certain(hypothesis(kOpen, 65, 0.90, 0.06))) << "edges stand where none is seen";

@@ -1,4 +1,4 @@
-// map_folder_test.cpp: a map comes back as it was saved, and every way to break it is named.
+// map_folder_test.cpp: a loaded map equals the saved one, and every damage is reported.
 #include "mapping/map/map_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ void put_text(const fs::path& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-/// The number of a process that has ended.
+/// Returns the id of a process that has ended.
 pid_t gone_process() {
   const pid_t gone = fork();
   if (gone == 0) std::_Exit(0);
@@ -85,7 +85,7 @@ class MapFolder : public ::testing::Test {
  protected:
   MapFolder() { save_map(map_, room_); }
 
-  // load_map throws and verify_map lists a sentence with the file and the fault.
+  // Expects load_map to throw and verify_map to list a message that names the file and the fault.
   void expect_fault(const std::string& file, const std::string& fault) {
     const std::string message = error_of([&] { static_cast<void>(load_map(map_)); });
     EXPECT_NE(message.find((map_ / file).string()), std::string::npos) << message;
@@ -170,7 +170,7 @@ TEST_F(MapFolder, FoldersThatAreNoMapsAreNeverOverwritten) {
   put_text(own / "holiday.jpg", "beach");
   EXPECT_NE(error_of([&] { save_map(own, room_); }).find("holiday.jpg"), std::string::npos);
   EXPECT_EQ(text_of(own / "holiday.jpg"), "beach");
-  put_text(map_ / "notes.txt", "mine");  // a map with something of the user's in it
+  put_text(map_ / "notes.txt", "mine");  // a map folder with a file of the user's
   EXPECT_NE(error_of([&] { save_map(map_, room_); }).find("notes.txt"), std::string::npos);
   EXPECT_EQ(text_of(map_ / "notes.txt"), "mine");
   put_text(folder_.path() / "file", "text");
@@ -190,7 +190,7 @@ TEST_F(MapFolder, NothingElseBelongsIntoIt) {
   for (const fs::path& path : {map_, map_ / "", map_ / "below", map_ / "below" / ""})
     EXPECT_NE(error_of([&] { require_contents_outside_maps(path); }).find(rule), std::string::npos) << path;
   EXPECT_NO_THROW(require_contents_outside_maps(folder_.path() / "beside"));
-  // No path is no file in the folder that the program runs in.
+  // An empty path does not count as a file in the working directory.
   const fs::path before = fs::current_path();
   fs::current_path(map_);
   EXPECT_NO_THROW(require_outside_maps({}));
@@ -271,7 +271,7 @@ TEST_F(MapFolder, OneChangedByteAnywhereIsNoticed) {
 }
 
 TEST_F(MapFolder, AFileThatNoMemoryHoldsIsNotReadThrough) {
-  // A hole of 8.8 TB takes nothing on the disk; to read it through would take hours.
+  // A sparse file of 8.8 TB uses no disk space; reading all of it would take hours.
   constexpr std::uintmax_t kVast_bytes = std::uintmax_t{1} << 43U;
   std::error_code fault;
   const std::uintmax_t bytes = fs::file_size(map_ / "octree.ot");
@@ -341,8 +341,8 @@ TEST_F(MapFolder, FoldersThatAreNotThereAreNamed) {
 }
 
 TEST_F(MapFolder, AFullDiskLeavesTheOldMapAndNothingElse) {
-  // A limit on file sizes refuses writes as a full disk does, without needing one. In a child: the limit
-  // stays.
+  // A limit on file sizes rejects writes as a full disk does. Set in a child process, because the limit
+  // cannot be lifted.
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -380,12 +380,13 @@ TEST_F(MapFolder, WhatASaveKilledBetweenTwoRenamesSetAsideIsNamedAndBroughtBack)
   { const AtomicFolder never_put_in_place(map_); }
   EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
 
-  fs::create_directory(aside);  // killed after the second rename: the new one is there, and the old one goes
+  fs::create_directory(aside);  // killed after the second rename: the old map is still to be deleted
   save_map(map_, room_);
   EXPECT_EQ(verify_map(map_), std::vector<std::string>{});
   EXPECT_EQ(entries(), 1U);
 
-  const fs::path living = map_.string() + ".before-" + std::to_string(getppid());  // at it now
+  // belongs to a running process
+  const fs::path living = map_.string() + ".before-" + std::to_string(getppid());
   fs::rename(map_, living);
   EXPECT_NE(error_of([&] { load_map(map_); }).find("no such map"), std::string::npos);
 }
@@ -436,7 +437,7 @@ TEST_F(MapFolder, TwoProcessesThatSaveAtOnceLeaveOneWholeMap) {
       try {
         save_map(map_, mine);
       } catch (const Error& error) {
-        if (std::string(error.what()).empty()) _exit(2);  // it may be refused, in words
+        if (std::string(error.what()).empty()) _exit(2);  // saving may fail, with a message
       }
     }
     _exit(0);

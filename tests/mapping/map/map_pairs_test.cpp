@@ -1,4 +1,4 @@
-// map_pairs_test.cpp: two maps of painted rooms: how they stand to each other, joined, and compared.
+// map_pairs_test.cpp: registration, merging and comparison of two maps of painted rooms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ Scene with(const Scene& scene, const Eigen::AlignedBox3d& thing) {
 }
 const Eigen::AlignedBox3d kThing(Vector3d(0.2, 1.0, 0.0), Vector3d(0.5, 1.25, 0.3));
 
-/// A map as a prescan leaves it, in a world of its own.
+/// A map as a prescan makes it, in its own world frame.
 SavedMap scan(const Scene& scene, double from_m, double to_m, const Isometry3d& T_own_world, unsigned seed,
               double voxel_m = kVoxel_m) {
   SavedMap map;
@@ -78,7 +78,7 @@ class MapPairs : public ::testing::Test {
     static const SavedMap map = scan(room(), 0.2, 1.2, kT_b_world, 1000);
     return map;
   }
-  /// As far as a point within 2 m of the origin can be off.
+  /// Greatest distance between the two transforms' images of a point within 2 m of the origin.
   static double gap_m(const Isometry3d& T, const Isometry3d& U) {
     double worst_m = 0.0;
     for (const Vector3d& p : {Vector3d(2, 2, 0), Vector3d(-1, 2, 1), Vector3d(1, 0, 1.4)})
@@ -104,7 +104,7 @@ TEST_F(MapPairs, ASmallPartOfALargeMapIsRegistered) {
   for (const Eigen::Vector3f& corner :
        {Eigen::Vector3f(0, 30, 0), Eigen::Vector3f(60, 30, 0), Eigen::Vector3f(0, 90, 0)})
     hall.mesh.vertices.push_back(corner);
-  hall.mesh.triangles.push_back({first, first + 1, first + 2});  // where b saw nothing
+  hall.mesh.triangles.push_back({first, first + 1, first + 2});  // where b observed nothing
   const Registration found = register_maps(hall, b());
   ASSERT_TRUE(found) << describe(found);
   EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
@@ -116,14 +116,14 @@ TEST_F(MapPairs, ALargeMapIsRegisteredInASmallPartOfIt) {
   for (const Eigen::Vector3f& corner :
        {Eigen::Vector3f(0, 30, 0), Eigen::Vector3f(60, 30, 0), Eigen::Vector3f(0, 90, 0)})
     hall.mesh.vertices.push_back(corner);
-  hall.mesh.triangles.push_back({first, first + 1, first + 2});  // where a saw nothing
+  hall.mesh.triangles.push_back({first, first + 1, first + 2});  // where a observed nothing
   const Registration found = register_maps(a(), hall);
   ASSERT_TRUE(found) << describe(found);
   EXPECT_LT(gap_m(found.T_a_b * kT_b_world, Isometry3d::Identity()), 0.2 * kVoxel_m) << describe(found);
 }
 
 TEST_F(MapPairs, AnotherRoomIsRefused) {
-  // The same camera path, other walls, painted by other places.
+  // The same camera path, but other walls with other paint.
   const Scene other = test::nearest_of(test::plane(Vector3d(0.3, 1.0, 0.0).normalized(), 1.6),
                                        test::plane(Vector3d::UnitZ(), -0.3));
   const Registration found = register_maps(a(), scan(other, -0.6, 0.8, Isometry3d::Identity(), 7));
@@ -131,8 +131,8 @@ TEST_F(MapPairs, AnotherRoomIsRefused) {
 }
 
 TEST_F(MapPairs, ALookAlikeIsRefused) {
-  // The wall with its paint and the floor are the same; the room round them is another: its side wall stands
-  // a metre further in, and boxes stand where a knows free space.
+  // The painted wall and the floor are the same, but the room differs: its side wall is a metre further in,
+  // and boxes occupy space that is free in a.
   const Scene look_alike =
       with(with(test::nearest_of(test::plane(Vector3d::UnitY(), 2.0), test::plane(Vector3d::UnitX(), 1.0)),
                 {Vector3d(-0.8, 0.6, -0.5), Vector3d(-0.1, 1.4, 0.7)}),
@@ -211,7 +211,7 @@ TEST_F(MapPairs, MergedKnowWhatEitherKnewAndTheSurfaceFits) {
     if (std::min(to_walls_m, to_chest_m) > kVoxel_m) ++off;
   }
   EXPECT_LT(off, merged.mesh.vertices.size() / 50);
-  // Every point on either surface is on that of both.
+  // Every point of either surface is on the merged surface.
   for (const Vector3d& p_b : sample_surface(b().mesh, 2000)) {
     const Vector3d p = kT_a_b * p_b;
     const auto at = distance_at(merged.octree, p);
@@ -236,7 +236,8 @@ TEST_F(MapPairs, InOneWorldAddingIsExact) {
 }
 
 TEST_F(MapPairs, AFinerGridTakesEachVoxelOnce) {
-  // One free cube and one occupied voxel, turned, into half the voxel size: what the centres say.
+  // A free cube and an occupied voxel, rotated, resampled at half the voxel size: each voxel has the state at
+  // its centre.
   StaticMap from(0.04), into(0.02);
   from.add_evidence(MapLeaf{{8, 8, 8}, 8, -1.0F});
   from.add_evidence(MapLeaf{{20, 8, 8}, 1, 2.0F});
@@ -256,7 +257,7 @@ TEST_F(MapPairs, AFinerGridTakesEachVoxelOnce) {
 }
 
 TEST_F(MapPairs, AFinerGridTakesTheWholeOfEachSample) {
-  // A tilted plane, and what it is in cells of an half, a third and a quarter of the edge: no holes.
+  // A tilted plane resampled into voxels of a half, a third and a quarter of the edge: no holes.
   constexpr double kCoarse_m = 0.04;
   const Vector3d normal = Vector3d(0.2, 0.3, 1.0).normalized();
   StaticMap from(kCoarse_m);
@@ -310,7 +311,7 @@ TEST_F(MapPairs, AThingThatAppearsIsMeasuredAndVanishesTheOtherWayRound) {
   const std::vector<Change> appeared = diff_maps(a().octree, after.octree, kT_a_b);
   ASSERT_EQ(appeared.size(), 1U);
   EXPECT_EQ(appeared[0].kind, ChangeKind::kAppeared);
-  // Its front and top are seen; what lies behind them is no longer free.
+  // Its front and top are observed; the space behind them is no longer free.
   EXPECT_LT((appeared[0].box_world.center() - kThing.center()).norm(), 0.05);
   EXPECT_LT((appeared[0].box_world.sizes() - kThing.sizes()).cwiseAbs().maxCoeff(), 0.08);
   EXPECT_NEAR(appeared[0].volume_m3, kThing.volume(), 0.4 * kThing.volume());
@@ -321,7 +322,7 @@ TEST_F(MapPairs, AThingThatAppearsIsMeasuredAndVanishesTheOtherWayRound) {
 }
 
 TEST_F(MapPairs, WhatOneMapHasNotSeenHasNotChanged) {
-  // The thing stands where a never looked.
+  // The object is where a has no observations.
   const Eigen::AlignedBox3d far_off(Vector3d(0.2, -1.6, 0.0), Vector3d(0.6, -1.2, 0.4));
   const SavedMap after = scan(with(room(), far_off), -0.6, 0.8, Isometry3d::Identity(), 60);
   EXPECT_TRUE(diff_maps(a().octree, after.octree, Isometry3d::Identity()).empty());

@@ -1,4 +1,4 @@
-// mesh_blocks_test.cpp: every triangle is in one block, and what blocks share is their seam.
+// mesh_blocks_test.cpp: every triangle is in exactly one block, and blocks share only their seams.
 #include "mapping/mesh/mesh_blocks.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace roomradar::mesh_blocks_test {
 namespace {
 
-// A strip of so many squares along x, two triangles each.
+// A strip of `squares` squares along x, two triangles each.
 Mesh strip(std::uint32_t squares) {
   Mesh mesh;
   for (std::uint32_t x = 0; x <= squares; ++x)

@@ -1,4 +1,4 @@
-// mesh_borders_test.cpp: where the border of a mesh runs, how large it is and which side is meant.
+// mesh_borders_test.cpp: position, size and side of a mesh's borders.
 #include "mapping/mesh/mesh_borders.hpp"
 
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 namespace roomradar::mesh_borders_test {
 namespace {
 
-// A sheet of 10 x 10 squares of 0.1 m in the plane z = 0, seen from +z, without the squares that `missing`
-// names.
+// A sheet of 10 x 10 squares of 0.1 m in the plane z = 0, facing +z, without the squares for which missing()
+// returns true.
 Mesh sheet(const std::function<bool(int x, int y)>& missing) {
   Mesh mesh;
   mesh.origin = {5.0, -3.0, 2.0};

@@ -1,4 +1,4 @@
-// mesh_distance_test.cpp: the fast distance to a mesh against the slow one.
+// mesh_distance_test.cpp: the fast distance to a mesh against a brute-force one.
 #include "mapping/mesh/mesh_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ Eigen::Vector3f point_in(std::mt19937& random, float edge_m) {
   return {x, y, z};
 }
 
-// Small triangles, and now and then one across the room.
+// Small triangles, and some that span the room.
 Mesh random_triangles(std::mt19937& random) {
   Mesh mesh;
   for (std::uint32_t t = 0; t < 300; ++t) {
@@ -44,7 +44,7 @@ TEST(TriangleDistance, AgreesWithADenseLatticeOfPoints) {
     ASSERT_LE(distance, nearest + 1e-5F);
     ASSERT_GE(distance, nearest - 0.01F);
   }
-  // Without area: a segment, a point.
+  // Degenerate triangles: a segment, a point.
   EXPECT_FLOAT_EQ(squared_distance_to_triangle({0.5F, 2, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}), 4.0F);
   EXPECT_FLOAT_EQ(squared_distance_to_triangle({0, 2, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}), 4.0F);
 }
@@ -87,8 +87,8 @@ TEST(MeshDistanceQuery, FindsWhatAskingEveryTriangleFinds) {
   EXPECT_GT(within, 100);
 }
 
-// A reach of a millionth of the triangles, and of less than a float tells apart: neither countless cubes nor
-// endless halving.
+// A reach of a millionth of the triangles' size, or below float resolution, leads neither to countless cubes
+// nor to endless halving.
 TEST(MeshDistanceQuery, AnswersWithinAReachThatIsNextToNothing) {
   std::mt19937 random(3);
   Mesh mesh = random_triangles(random);

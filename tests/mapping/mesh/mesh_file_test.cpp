@@ -1,4 +1,4 @@
-// mesh_file_test.cpp: round trips through each format, and files that are no meshes.
+// mesh_file_test.cpp: round trips through each format, and files that are not meshes.
 #include "mapping/mesh/mesh_file.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@
 namespace roomradar::mesh_file_test {
 namespace {
 
-// A wavy sheet with more vertices than 16 bits can name, and every colour level in it.
+// A wavy sheet with more vertices than a 16-bit index allows, and every colour level in it.
 Mesh wavy_sheet(int side) {
   Mesh mesh;
   for (int y = 0; y < side; ++y)
@@ -70,7 +70,8 @@ TEST_F(MeshFile, EachFormatKeepsVerticesAndTrianglesAndWhatElseItCan) {
     const std::filesystem::path path = folder_.path() / (std::string("sheet") + extension);
     write_mesh(mesh, path);
     const Mesh read = read_mesh(path);
-    // An .obj comes back with its vertices in the order of their use: triangle by triangle they are the same.
+    // An .obj is read with its vertices in the order of their use, so vertices are compared triangle by
+    // triangle.
     ASSERT_EQ(read.vertices.size(), mesh.vertices.size()) << extension;
     ASSERT_EQ(read.triangles.size(), mesh.triangles.size()) << extension;
     ASSERT_EQ(read.colours.size(), mesh.colours.size()) << extension;
@@ -79,14 +80,14 @@ TEST_F(MeshFile, EachFormatKeepsVerticesAndTrianglesAndWhatElseItCan) {
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t before = mesh.triangles[i][k], after = read.triangles[i][k];
         ASSERT_LT((read.vertices[after] - mesh.vertices[before]).norm(), 1e-7F)
-            << extension;  // axes as they were
+            << extension;  // axes unchanged
         ASSERT_LT((read.normals[after] - mesh.normals[before]).norm(), 1e-6F) << extension;
         ASSERT_EQ(read.colours[after], mesh.colours[before]) << extension;
       }
   }
 }
 
-/// What a .glb's first mesh has of an attribute: of the first vertex, as numbers.
+/// Returns the first vertex's value of an attribute of a .glb's first mesh.
 std::vector<float> first_of_glb(const std::filesystem::path& path, const char* attribute) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(file), {}};
@@ -158,8 +159,8 @@ TEST_F(MeshFile, DegenerateTrianglesGoAndPolygonsAreCut) {
   const Mesh mesh = read_mesh(file("m.obj",
                                    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\n"
                                    "f 1 2 3 4\n"   // a square
-                                   "f 1 2 2\n"     // two corners in one place
-                                   "f 1 2 5\n"));  // three on a line
+                                   "f 1 2 2\n"     // two coincident vertices
+                                   "f 1 2 5\n"));  // three collinear vertices
   EXPECT_EQ(mesh.triangles.size(), 2U);
 }
 
@@ -230,7 +231,7 @@ TEST_F(MeshFile, CutAndDamagedFilesNeverCrash) {
   }
 }
 
-// assimp crashes over the first two and never comes to an end with the last.
+// assimp crashes on the first two and never terminates on the last.
 TEST_F(MeshFile, FilesThatEndTheirReaderAreRefusedByThisProcess) {
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"

@@ -1,4 +1,4 @@
-// mesh_simplify_test.cpp: few triangles where it is flat, never farther than the bound, and never torn.
+// mesh_simplify_test.cpp: few triangles on flat parts, deviation within the bound, no cracks.
 #include "mapping/mesh/mesh_simplify.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace roomradar::mesh_simplify_test {
 namespace {
 
-// 1 cm squares over height(x, y), x and y in 0..size - 1 cm, without those that `missing` names.
+// 1 cm squares over height(x, y), x and y in 0..size - 1 cm, without those for which missing() returns true.
 template <typename Height, typename Missing>
 Mesh sheet(int size, const Height& height_m, const Missing& missing) {
   Mesh mesh;
@@ -96,7 +96,7 @@ TEST(MeshSimplify, NoPointOfEitherSurfaceIsFartherThanTheBound) {
     before = coarse.mesh.triangles.size();
     expect_whole(coarse.mesh);
     const double measured_m = std::max(farthest_m(fine, coarse.mesh), farthest_m(coarse.mesh, fine));
-    // Between the points that the bound was kept at it may be a little more.
+    // The bound was checked at sample points; between them the deviation may be slightly larger.
     EXPECT_LE(measured_m, 1.2 * bound_m);
     EXPECT_LE(coarse.deviation_m, bound_m);
     EXPECT_GE(1.4 * coarse.deviation_m, measured_m);
@@ -189,7 +189,7 @@ TEST(MeshSimplify, AlmostNothingIsLeftAsItIs) {
   one.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   one.triangles = {{0, 1, 2}};
   EXPECT_EQ(simplified(one, 0.5F, 0.1F).mesh.triangles.size(), 1U);
-  one.triangles.push_back({0, 1, 2});  // not a surface: an edge of two triangles in one direction
+  one.triangles.push_back({0, 1, 2});  // not a manifold: two triangles use an edge in the same direction
   EXPECT_EQ(simplified(one, 0.5F, 0.1F).mesh.triangles.size(), 2U);
 }
 

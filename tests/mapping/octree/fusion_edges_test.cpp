@@ -1,5 +1,4 @@
-// fusion_edges_test.cpp: fusing at the edges of numbers: ranges, whole-number averages, pools, two
-// arithmetics.
+// fusion_edges_test.cpp: numerical limits of fusion: ranges, integer averages, pools, float against double.
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
 
@@ -54,7 +53,7 @@ TEST(FusionEdges, DepthAtTheNearAndFarEndOfTheSensor) {
   EXPECT_EQ(near.occupancy_at({0.405, 0.003, 0.003}), Occupancy::kOccupied);
   EXPECT_EQ(near.occupancy_at({0.2, 0, 0}), Occupancy::kFree);
 
-  StaticMap far(0.05);  // past max_range_m: nothing is occupied, and what is nearer than that is free
+  StaticMap far(0.05);  // beyond max_range_m: nothing is occupied; space up to max_range_m is free
   ASSERT_EQ(far.fuse(wall_at(8.0), kAtOrigin), FuseStatus::kFused);
   EXPECT_EQ(far.counts().occupied_leaves, 0U);
   EXPECT_EQ(far.counts().sampled_leaves, 0U);
@@ -67,7 +66,8 @@ TEST(FusionEdges, DepthAtTheNearAndFarEndOfTheSensor) {
   const auto sample = reaching.sample_at({8.02, 0.02, 0.02});
   ASSERT_TRUE(sample);
   EXPECT_NEAR(sample->distance_m, 8.02 - 8.025, 1e-4);
-  EXPECT_GT(sample->weight, 0.0F);  // it weighs 4e-4: less than a step of the weights, and still counts
+  // Its weight is 4e-4, less than one step of the stored weights, but it still counts.
+  EXPECT_GT(sample->weight, 0.0F);
 }
 
 TEST(FusionEdges, LogOddsAndWeightsOfTenThousandFramesAreWithinTheirBounds) {
@@ -90,7 +90,7 @@ TEST(FusionEdges, LogOddsAndWeightsOfTenThousandFramesAreWithinTheirBounds) {
 TEST(FusionEdges, AveragesInWholeStepsStayWithinATenthOfAMillimetreOfTrueOnes) {
   StaticMap map(0.02);
   std::mt19937 random(4);
-  std::normal_distribution<double> noise_m(0.0, 0.006);  // the Kinect's at 2 m
+  std::normal_distribution<double> noise_m(0.0, 0.006);  // the Kinect's noise at 2 m
   double sum = 0.0, weights = 0.0;
   const Eigen::Vector3d p(2.01, 0.01, 0.01);  // a voxel's centre
   for (int i = 0; i < 500; ++i) {
@@ -132,12 +132,12 @@ TEST(FusionEdges, ASettledColourStandsAgainstOneFrameAndFollowsMany) {
   Frame white = wall_at(1.01, {250, 250, 250});
   white.index = 40;
   map.fuse(white, kAtOrigin);
-  EXPECT_LE(map.sample_at(on_wall)->colour.r, 120);  // an eighth of the way, at most
+  EXPECT_LE(map.sample_at(on_wall)->colour.r, 120);  // at most an eighth of the way
   for (white.index = 41; white.index < 700; ++white.index) map.fuse(white, kAtOrigin);
   EXPECT_GE(map.sample_at(on_wall)->colour.r, 240);
 }
 
-// What a tree says of itself, to compare with another.
+// Lists a tree's content, for comparison with another tree's.
 std::vector<std::array<int, 9>> content(const BlockOctree& tree) {
   std::vector<std::array<int, 9>> all;
   for_each_leaf(tree, [&](const NodePlace& place, LogOdds log_odds) {
@@ -194,11 +194,11 @@ TEST(BlockPool, WithoutNumbersLeftSaysSoAndGoesOnWithThoseGivenBack) {
   pool.give_back(2);
   EXPECT_EQ(pool.in_use(), 2U);
   EXPECT_EQ(pool.take(), 2U);
-  EXPECT_EQ(pool[2].colours[5], Rgb{});  // as new
+  EXPECT_EQ(pool[2].colours[5], Rgb{});  // reset
 }
 
 TEST(BlockOctree, OnePlaceLeavesNothingBehindWhenItIsFreedAgain) {
-  // What a ball in mid-air opened closes when it is gone: cubes merge, and blocks are used again.
+  // Nodes that a ball in mid-air created are pruned once it is gone, and their blocks are reused.
   StaticMap map(0.02);
   const Frame without = wall_at(2.5);
   for (int i = 0; i < 10; ++i) map.fuse(without, kAtOrigin);
@@ -241,7 +241,7 @@ TEST(OctoMapTree, OctoMapReadsLogOddsDistancesAndColoursFromOurFile) {
   EXPECT_GT(samples, 10'000);
   float greatest = -10.0F;
   map.visit_leaves([&](const MapLeaf& leaf) { greatest = std::max(greatest, leaf.log_odds); });
-  EXPECT_EQ(tree->getRoot()->getLogOdds(), greatest);  // inner nodes hold their children's greatest
+  EXPECT_EQ(tree->getRoot()->getLogOdds(), greatest);  // inner nodes store their children's maximum
 }
 
 TEST(OctoMapTree, AWorldOfOneCubeIsWrittenInBothForms) {

@@ -1,4 +1,5 @@
-// fusion_test.cpp: the descent against OctoMap's own ray casting, and the pyramid and codes it stands on.
+// fusion_test.cpp: fusion by octree descent against OctoMap's ray casting, and the depth pyramid and voxel
+// keys it uses.
 #include "mapping/octree/fusion.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ namespace {
 using test::exact_frame;
 using test::looking_at;
 
-// As OctoMap does it: every ray of every pixel.
+// As in OctoMap: every ray of every pixel.
 void insert_rays(octomap::OcTree& tree, const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   octomap::Pointcloud cloud;
   for (int y = 0; y < frame.depth_m.height; ++y)
@@ -32,8 +33,8 @@ void insert_rays(octomap::OcTree& tree, const Frame& frame, const Eigen::Isometr
 }
 
 TEST(Fusion, AgreesWithOctoMapsInsertPointCloud) {
-  // A box and a ball on a floor before a wall, from three sides. Each voxel is several pixels wide, else
-  // OctoMap's rays leave gaps between them that an image does not have.
+  // A box and a ball on a floor in front of a wall, from three sides. Each voxel is several pixels wide;
+  // otherwise OctoMap's rays leave gaps that an image does not have.
   const test::Scene room = test::nearest_of(
       test::nearest_of(
           test::box({Eigen::Vector3d(-0.404, 1.307, -0.1), Eigen::Vector3d(0.013, 1.707, 0.494)}),
@@ -131,7 +132,7 @@ TEST(DepthPyramid, BoundsHoldForEveryRectangle) {
   for (float& z : depth_m.pixels)
     z = random() % 4 == 0 ? 0.0F : 0.5F + static_cast<float>(random() % 4000) * 1e-3F;
   for (int y = 8; y < 16; ++y)
-    for (int x = 8; x < 24; ++x) depth_m.at(x, y) = 0.0F;  // larger than what neighbours speak for
+    for (int x = 8; x < 24; ++x) depth_m.at(x, y) = 0.0F;  // too wide for neighbours to fill
   const FusionConfig config;
   DepthPyramid pyramid;
   build_pyramid(depth_m, 0.01, config, pyramid);
@@ -155,7 +156,7 @@ TEST(DepthPyramid, BoundsHoldForEveryRectangle) {
         ASSERT_LE(static_cast<float>(bounds.nearest), (z - half_m) * pyramid.steps_per_m);
         ASSERT_GE(static_cast<float>(-bounds.behind), (z + half_m) * pyramid.steps_per_m);
       }
-    // Within the hole alone nothing is ever proven free: either nothing lies behind, or it blocks.
+    // Space seen only through the hole is never free: either no depth is behind it, or the hole blocks.
     if (left >= 8 && right < 24 && top >= 8 && bottom < 16) {
       ASSERT_LE(std::min<int>(bounds.front, -bounds.behind), 1);
     }

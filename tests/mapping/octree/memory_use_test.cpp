@@ -1,4 +1,4 @@
-// memory_use_test.cpp: what is freed goes back to the system.
+// memory_use_test.cpp: freed memory is returned to the system.
 #include "mapping/octree/memory_use.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ TEST(MemoryUse, LargeBlocksGoBackAtOnceThoughSmallOnesBetweenThemStay) {
 #endif
   constexpr std::size_t kBlock = 3 << 20, kBlocks = 20, kSmall = 1000;
   mmap_large_allocations();
-  { const std::vector<char> once(2 * kBlock, 1); }  // after this glibc would keep such blocks in its heap
+  { const std::vector<char> once(2 * kBlock, 1); }  // from now on glibc would keep such blocks in its heap
   std::vector<std::vector<char>> large, small;
   for (std::size_t i = 0; i < kBlocks; ++i) {
     large.emplace_back(kBlock, 1);

@@ -1,4 +1,4 @@
-// static_map_test.cpp: what the octree says after fusing, its edges, and its files.
+// static_map_test.cpp: state of the octree after fusing, its limits, and its files.
 #include "mapping/octree/static_map.hpp"
 
 #include <gtest/gtest.h>
@@ -78,7 +78,7 @@ TEST(StaticMap, SignedDistanceIsTheDistanceToTheWall) {
     }
     ++checked;
   });
-  // 320 x 240 pixels at 1.503 m are 166 x 124 voxels; 4 of them deep; a row may be beside the view.
+  // 320 x 240 pixels at 1.503 m cover 166 x 124 voxels, 4 of them deep; one row may be outside the view.
   EXPECT_NEAR(checked, 166 * 124 * 4, 166 * 4);
 }
 
@@ -176,7 +176,8 @@ TEST(StaticMap, FramesThatCannotBeFusedChangeNothingAndSayWhy) {
   StaticMap map(0.01);
   Frame frame = wall_at(2.0);
   EXPECT_EQ(map.fuse(frame, looking_at({400, 0, 0}, {401, 0, 0})), FuseStatus::kOutOfBounds);
-  EXPECT_EQ(map.fuse(frame, looking_at({327, 0, 0}, {328, 0, 0})), FuseStatus::kOutOfBounds);  // its wall is
+  // only its wall is
+  EXPECT_EQ(map.fuse(frame, looking_at({327, 0, 0}, {328, 0, 0})), FuseStatus::kOutOfBounds);
   EXPECT_EQ(map.fuse(frame, looking_at({1e30, 0, 0}, {2e30, 0, 0})), FuseStatus::kOutOfBounds);
   Eigen::Isometry3d bad = kAtOrigin;
   bad.translation().x() = std::numeric_limits<double>::quiet_NaN();
@@ -220,7 +221,7 @@ TEST(StaticMap, FarFromTheOriginTheMapIsTheSame) {
   far_away.translation() += shift;
   ASSERT_EQ(far.fuse(frame, far_away), FuseStatus::kFused);
   const std::vector<SurfaceSample> a = samples_of(near), b = samples_of(far);
-  // A centre that falls between two pixels may take either.
+  // A centre that projects between two pixels may use either.
   EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()),
               0.001 * static_cast<double>(a.size()));
   int compared = 0;
@@ -247,7 +248,7 @@ TEST(StaticMap, EachResolutionWithinTheRulesWorksAndOthersAreNamed) {
   EXPECT_NE(error_of([] { StaticMap(0.01, {.max_range_m = -1.0F}); }).find("max_range_m"), std::string::npos);
 }
 
-// The map that a map's leaves and samples say it is.
+// Rebuilds a map from another map's leaves and samples.
 StaticMap rebuilt(const StaticMap& from) {
   StaticMap to(from.resolution_m());
   from.visit_leaves([&](const MapLeaf& leaf) { to.add_evidence(leaf); });
@@ -410,7 +411,7 @@ TEST_F(StaticMapFile, WhatIsBrokenIsNamedAndNeverCrashes) {
   other = good;
   other.replace(other.find("res 0"), 5, "res 9");
   EXPECT_NE(message_for(other).find("resolution"), std::string::npos);
-  // A file of child masks alone: deeper than any octree, and endless for a reader that trusts it.
+  // A file of child masks only: deeper than any octree, and endless for a reader that trusts it.
   std::string deep = good.substr(0, good.find("data\n") + 5);
   for (int i = 0; i < 100'000; ++i) deep += std::string("\x00\x00\x80\x3f\x00\xff", 6);
   EXPECT_NE(message_for(deep).find("damaged"), std::string::npos);

@@ -1,5 +1,5 @@
-// keyframe_graph_test.cpp: keyframes kept and restored, loops closed where drift explains them, and refused
-// where it does not.
+// keyframe_graph_test.cpp: keyframes are saved and restored; loops are closed if drift explains them, and
+// rejected otherwise.
 #include "mapping/odometry/keyframe_graph.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 using test::frame_at, test::on_path;
 
-/// One keyframe of a frame, thought to be at T_world_camera.
+/// Makes a keyframe of a frame, with the estimated pose T_world_camera.
 Keyframe keyframe_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double path_length_m) {
   ViewPyramid pyramid;
   make_pyramid(frame, {}, pyramid);
@@ -23,8 +23,8 @@ Keyframe keyframe_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera
           path_length_m};
 }
 
-/// A camera goes away and comes back to where it was at its first keyframe. Drift puts the last keyframe
-/// `drift` off.
+/// A camera goes away and returns to the pose of its first keyframe. Drift displaces the last keyframe by
+/// `drift`.
 struct RoundTrip {
   Eigen::Isometry3d T_first = on_path(0, 1);
   Eigen::Isometry3d T_last = on_path(0, 1) * Eigen::Translation3d(0.03, 0.0, 0.02);
@@ -34,7 +34,7 @@ struct RoundTrip {
 
   RoundTrip(const Eigen::Isometry3d& drift, double path_length_m) {
     graph.keyframes = {keyframe_of(first, T_first, 0.0), keyframe_of(last, T_last * drift, path_length_m)};
-    // In between, away from both: three keyframes that see nothing of this.
+    // In between, away from both: three keyframes that observe none of this.
     for (int i = 1; i <= 3; ++i) {
       Keyframe blind = graph.keyframes[0];
       blind.view = std::make_shared<const StoredView>([&] {
@@ -92,13 +92,13 @@ TEST(KeyframeCache, ForgetsTheOneThatWasNotAskedForTheLongest) {
   EXPECT_EQ(prepare_keyframe.find(1), one);
   EXPECT_EQ(prepare_keyframe.find(2), nullptr);
   EXPECT_NE(prepare_keyframe.find(3), nullptr);
-  prepare_keyframe.put(3, one);  // in place of what was held
+  prepare_keyframe.put(3, one);  // replaces the entry
   EXPECT_EQ(prepare_keyframe.find(3), one);
   EXPECT_EQ(prepare_keyframe.find(1), one);
 }
 
 TEST(KeyframeGraph, ALoopIsFoundByItsLooksThoughDriftHasParted) {
-  // 1 m and 17 degrees off after 30 m: too far for the poses to suggest it.
+  // 1 m and 17 degrees off after 30 m: too far for the poses to suggest a loop.
   const Eigen::Isometry3d drift =
       Eigen::Translation3d(0.9, 0.1, 0.4) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitY());
   const RoundTrip trip(drift, 30.0);
@@ -113,7 +113,7 @@ TEST(KeyframeGraph, ALoopIsFoundByItsLooksThoughDriftHasParted) {
 }
 
 TEST(KeyframeGraph, ALookAlikePlaceFurtherOffThanDriftIsAnotherPlace) {
-  // The same looks and the same depth, 6 m away after a way of 7 m: the room next door has the same kitchen.
+  // The same appearance and depth, 6 m away after a path of 7 m: the room next door has the same kitchen.
   const RoundTrip trip(Eigen::Isometry3d(Eigen::Translation3d(6.0, 0.0, 0.0)), 7.0);
   const KeyframeJobResult result = trip.run_job();
   EXPECT_EQ(result.graph.loops_found, 0);
@@ -123,7 +123,7 @@ TEST(KeyframeGraph, ALookAlikePlaceFurtherOffThanDriftIsAnotherPlace) {
 }
 
 TEST(KeyframeGraph, AJoinMustAgreeBothWays) {
-  // Another room's view where the first one's should be: nothing is joined.
+  // A view of another room at the first keyframe's pose: no edge is added.
   RoundTrip trip(Eigen::Isometry3d::Identity(), 3.0);
   const test::Scene other = test::nearest_of(test::plane({0, 1, 0}, 1.4), test::sphere({0.3, 1.0, 0.9}, 0.4));
   trip.graph.keyframes.back() = keyframe_of(frame_at(trip.T_last, 9, other), trip.T_last, 3.0);
@@ -155,8 +155,8 @@ TEST(KeyframeGraph, JoiningAllAnewDoesNotDependOnThreads) {
   EXPECT_TRUE(one.constraints.empty());
 }
 
-/// Keyframes along a way that turns as it goes, each joined with the next `reach` exactly, and put off from
-/// where they stand.
+/// Keyframes along a curved path, each with exact edges to the next `reach` keyframes, and with disturbed
+/// poses.
 struct Way {
   std::vector<Eigen::Isometry3d> truth;
   KeyframeGraph graph;
@@ -177,7 +177,7 @@ struct Way {
             {a, b, truth[a].inverse() * truth[b], 1e6 * Matrix6d::Identity(), b - a > 2});
     }
   }
-  /// The RMS of all keyframes', laid on the true ones as well as can be.
+  /// RMS position error of all keyframes after the best rigid alignment with the true poses.
   [[nodiscard]] double position_error_m() const {
     std::vector<TimedPose> found, true_poses;
     for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -198,7 +198,8 @@ TEST(PositionsThenTurns, ExactMotionsGiveTheExactPosesAndTheFirstStays) {
 }
 
 TEST(PositionsThenTurns, MotionsBetweenLikeViewsOverruleThoseBetweenUnlikeOnes) {
-  // What a fixed distortion does: the less alike two keyframes look, the further off is the motion between.
+  // Effect of a fixed distortion: the more two keyframes' views differ, the larger the error of the motion
+  // between them.
   Way way(8);
   for (PoseConstraint& c : way.graph.constraints) {
     if (view_distance(c.T_a_b) > 1.0) c.T_a_b = c.T_a_b * Eigen::Translation3d(0.03, 0.0, 0.0);
@@ -208,7 +209,7 @@ TEST(PositionsThenTurns, MotionsBetweenLikeViewsOverruleThoseBetweenUnlikeOnes) 
 }
 
 TEST(PositionsThenTurns, ADirectionThatAMotionDoesNotFixIsTakenFromOthers) {
-  // Each keyframe and the one after the next see one wall: along it their alignment is only a guess.
+  // Each keyframe and the second one after it see one wall: along the wall their alignment is only a guess.
   Way way(2);
   for (PoseConstraint& c : way.graph.constraints) {
     if (c.b != c.a + 2) continue;
@@ -222,7 +223,7 @@ TEST(PositionsThenTurns, ADirectionThatAMotionDoesNotFixIsTakenFromOthers) {
 
 TEST(PositionsThenTurns, AWrongLoopIsOverruled) {
   Way way(4);
-  // It says that the last keyframe, 1.2 m further on, stands where the first one does.
+  // A wrong edge: it places the last keyframe, 1.2 m away, at the first.
   way.graph.constraints.push_back({0, 15, Eigen::Isometry3d::Identity(), 1e6 * Matrix6d::Identity(), true});
   solve_positions_then_turns(way.graph);
   EXPECT_LT(way.position_error_m(), 0.015);

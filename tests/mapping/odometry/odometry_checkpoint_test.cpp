@@ -1,4 +1,4 @@
-// odometry_checkpoint_test.cpp: an odometry that is put on disk and taken up again, and one that knows a map.
+// odometry_checkpoint_test.cpp: odometry that is saved and resumed, and odometry with a prior map.
 #include "mapping/odometry/odometry_checkpoint.hpp"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST(OdometryCheckpoint, GoesOnAsIfItHadNeverEnded) {
     EXPECT_EQ(found[i].stamp_s, expected[i].stamp_s);
     EXPECT_TRUE(found[i].trusted);
     const Eigen::Isometry3d gap = expected[i].T_world_camera.inverse() * found[i].T_world_camera;
-    EXPECT_LT(gap.translation().norm(), 0.001) << i;  // depth is kept in steps
+    EXPECT_LT(gap.translation().norm(), 0.001) << i;  // depth is stored in discrete steps
   }
   EXPECT_EQ(resumed.counts().keyframes, whole.counts().keyframes);
   EXPECT_EQ(resumed.take_keyframe_database().keyframes.size(),
@@ -93,7 +93,7 @@ TEST(OdometryCheckpoint, OnlyWhatIsNewIsWrittenAgain) {
     ++(entry.hard_link_count() > 1 ? linked : fresh);
   }
   EXPECT_GT(linked, 3);
-  EXPECT_GT(fresh, 2);  // the state, a new keyframe and its place
+  EXPECT_GT(fresh, 2);  // the state, a new keyframe and its map keyframe
   fs::remove_all(first);
   EXPECT_EQ(load_odometry(second, {}).counts().frames, 22);
 }

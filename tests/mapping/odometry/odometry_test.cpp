@@ -1,4 +1,4 @@
-// odometry_test.cpp: a camera tracked through rooms that are exact, noisy, dark for a while, or real.
+// odometry_test.cpp: a camera tracked through rooms: exact, noisy, temporarily dark, real.
 #include "mapping/odometry/odometry.hpp"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST(Odometry, ComesBackAfterALossByKnowingThePlace) {
   Odometry odometry;
   for (int i = 0; i < kSeen; ++i) EXPECT_TRUE(odometry.track(frame_at(on_path(i, kFrames), i)));
   for (int i = kSeen; i < kSeen + kDark; ++i) EXPECT_FALSE(odometry.track(dark_frame(i)));
-  // Taken up again 15 frames back, 40 cm from where sight was lost: too far for the motion model.
+  // Resumed 15 frames back, 40 cm from the last tracked pose: too far for the motion model.
   const Eigen::Isometry3d truth = on_path(0, kFrames).inverse() * on_path(7, kFrames);
   const Tracking back = odometry.track(frame_at(on_path(7, kFrames), kSeen + kDark));
   ASSERT_TRUE(back) << to_string(back.status);
@@ -67,8 +67,8 @@ TEST(Odometry, ComesBackAfterALossByKnowingThePlace) {
 }
 
 TEST(Odometry, AJumpThatNoHandMakesIsNotTrusted) {
-  // Depth says that the camera moved by 20 cm in a thirtieth of a second, and the frame has no colour to know
-  // the place by. A Kinect that recalibrates itself looks like this.
+  // The depth shows a camera motion of 20 cm in a thirtieth of a second, and the frame has no colour to
+  // relocalise by. A Kinect that recalibrates itself causes such frames.
   Odometry odometry;
   const Eigen::Isometry3d T = on_path(0, 1);
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(odometry.track(frame_at(T, i)));
@@ -81,8 +81,8 @@ TEST(Odometry, AJumpThatNoHandMakesIsNotTrusted) {
 }
 
 TEST(Odometry, BeforeOneBareWallItSaysSoAndHoldsWhatItCannotSee) {
-  // The camera backs off from a wall without a mark on it: the distance and two tilts are seen, the rest is
-  // the motion model's, and no such frame may be fused.
+  // The camera retreats from a wall without texture: distance and two tilts are observable, the rest comes
+  // from the motion model, and no such frame may be fused.
   const test::Scene wall = test::plane({0, 1, 0}, 2.5);
   const Eigen::Isometry3d start = test::looking_at({0, 0.5, 1.2}, {0, 2.5, 1.2});
   Odometry odometry;
@@ -152,7 +152,7 @@ TEST(Stillness, SeesAShiftOfHalfAPixelAndNotAHand) {
   EXPECT_TRUE(is_camera_stationary(before, before));
   EXPECT_TRUE(is_camera_stationary(before, with_hand));
   EXPECT_FALSE(is_camera_stationary(before, shifted));
-  // No edges to tell by.
+  // No edges to compare.
   EXPECT_FALSE(is_camera_stationary(Image<float>(160, 120, 9.0F), Image<float>(160, 120, 9.0F)));
   EXPECT_FALSE(is_camera_stationary(before, Image<float>()));
 }
@@ -169,7 +169,7 @@ TEST(OdometryOnARecording, KitchenIsFollowedWithoutALoss) {
     ASSERT_TRUE(frame.T_world_camera);
     recorded.push_back({frame.index, frame.stamp_s, *frame.T_world_camera});
   }
-  // The recorded poses are KinectFusion's, themselves off by some centimetres.
+  // The recorded poses are KinectFusion's, with errors of some centimetres.
   EXPECT_LT(absolute_trajectory_error(timed(odometry.optimise()), recorded).rmse_m, 0.035);
 }
 

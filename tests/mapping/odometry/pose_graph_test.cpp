@@ -1,4 +1,4 @@
-// pose_graph_test.cpp: poses from relative measurements, and the residual's derivative.
+// pose_graph_test.cpp: poses from relative measurements, and the residual's derivatives.
 #include "mapping/odometry/pose_graph.hpp"
 
 #include <ceres/autodiff_cost_function.h>
@@ -18,7 +18,7 @@ Eigen::Isometry3d pose(double x, double y, double z, double yaw_rad, double roll
          Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitX());
 }
 
-/// Ten cameras round a circle, each measured from the one before, and the first from the last.
+/// Ten cameras on a circle, each measured relative to the previous one, and the first relative to the last.
 struct Circle {
   std::vector<Eigen::Isometry3d> truth;
   std::vector<PoseConstraint> constraints;
@@ -39,7 +39,7 @@ Circle circle() {
   return c;
 }
 
-/// The truth with all poses but the first pushed off.
+/// Returns the true poses, all but the first disturbed.
 std::vector<Eigen::Isometry3d> disturbed(const std::vector<Eigen::Isometry3d>& truth) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> off(-0.1, 0.1);
@@ -104,7 +104,7 @@ TEST(PoseGraph, ExactMeasurementsGiveTheExactPoses) {
   EXPECT_LT(worst_error_m(poses, c.truth), 1e-6);
   EXPECT_GT(result.cost_before, 1.0);
   EXPECT_LT(result.cost_after, 1e-6);
-  EXPECT_TRUE(poses[0].isApprox(c.truth[0]));  // the first is held
+  EXPECT_TRUE(poses[0].isApprox(c.truth[0]));  // the first is fixed
 }
 
 TEST(PoseGraph, AWrongLoopIsRefused) {
@@ -118,7 +118,7 @@ TEST(PoseGraph, AWrongLoopIsRefused) {
 }
 
 TEST(PoseGraph, WhatNothingMeasuresStaysFinite) {
-  // No constraint knows the heights: information without the z row is rank deficient.
+  // No constraint measures the heights: information without the z row is rank deficient.
   Circle c = circle();
   for (PoseConstraint& constraint : c.constraints) {
     constraint.information.row(2).setZero();
@@ -134,7 +134,8 @@ TEST(PoseGraph, WhatNothingMeasuresStaysFinite) {
 }
 
 TEST(PoseGraph, ParallelConstraintsThatMissADirectionLeaveItFree) {
-  // Two cameras, three measurements between them, and none knows the way along x (a corridor).
+  // Two cameras, three measurements between them, none of which measures the translation along x (a
+  // corridor).
   Matrix6d corridor = 1e4 * Matrix6d::Identity();
   corridor(0, 0) = 0.0;
   const Eigen::Isometry3d T = pose(1, 0.2, 0.1, 0.0);
@@ -145,7 +146,7 @@ TEST(PoseGraph, ParallelConstraintsThatMissADirectionLeaveItFree) {
   EXPECT_EQ(result.free_directions, 1U);
   EXPECT_NEAR(poses[1].translation().y(), 0.2, 1e-6);
   EXPECT_NEAR(poses[1].translation().z(), 0.1, 1e-6);
-  EXPECT_NEAR(poses[1].translation().x(), 1.5, 0.05);  // kept near where it was
+  EXPECT_NEAR(poses[1].translation().x(), 1.5, 0.05);  // stays near its initial value
 }
 
 TEST(PoseGraph, NothingHeldAndNothingAnchoredStays) {
@@ -165,8 +166,8 @@ TEST(PoseGraph, AnchorsSayWhereInTheWorldItIs) {
   std::vector<PoseAnchor> anchors;
   for (const std::size_t i : {std::size_t{2}, std::size_t{6}})
     anchors.push_back({i, T_map_world * c.truth[i], 1e4 * Matrix6d::Identity()});
-  anchors.push_back({4, pose(9, 9, 9, 0), 1e4 * Matrix6d::Identity()});  // taken for another place
-  anchors.push_back({99, pose(0, 0, 0, 0), Matrix6d::Identity()});       // not there
+  anchors.push_back({4, pose(9, 9, 9, 0), 1e4 * Matrix6d::Identity()});  // wrong: mistaken for another place
+  anchors.push_back({99, pose(0, 0, 0, 0), Matrix6d::Identity()});       // no such pose
   std::vector<Eigen::Isometry3d> poses = c.truth, truth = c.truth;
   for (Eigen::Isometry3d& T : poses) T = T_map_world * pose(0.1, 0.1, 0, 0.05) * T;
   for (Eigen::Isometry3d& T : truth) T = T_map_world * T;

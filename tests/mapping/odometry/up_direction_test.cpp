@@ -1,4 +1,4 @@
-// up_direction_test.cpp: gravity, dominant planes, and what comes out when there is neither.
+// up_direction_test.cpp: up direction from gravity, from dominant planes, and without either.
 #include "mapping/odometry/up_direction.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)) * 180.0 / std::numbers::pi;
 }
 
-/// What a camera at height 1.5 m, pitched down, sees of an endless floor and a wall 3 m in front.
+/// View of a camera at height 1.5 m, pitched down: an infinite floor and a wall 3 m ahead.
 Frame room_frame(double pitch_down_deg) {
   Frame frame;
   frame.depth_camera = kCamera;

@@ -1,4 +1,4 @@
-// ghosts_test.cpp: what moved on goes from the map, what stayed stays.
+// ghosts_test.cpp: objects that moved away are removed from the map, static ones stay.
 #include "mapping/revision/ghosts.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ struct Scan {
   std::int64_t ghosts = 0;
 };
 
-// Fuses all frames at their own poses, moved by up to pose_noise_m, and removes ghosts.
+// Fuses all frames at their own poses, disturbed by up to pose_noise_m, and removes ghosts.
 Scan scan(FrameList source, double pose_noise_m = 0.0) {
   Scan scan;
   std::vector<FusedFrame> fused;
@@ -93,7 +93,7 @@ std::vector<FusedFrame> fuse_all(const std::vector<Frame>& frames, StaticMap& ma
   return fused;
 }
 
-// `count` frames from a camera that sways a little before the wall; scene_at(i) is what stands there.
+// `count` frames from a camera that sways slightly in front of the wall; scene_at(i) is the scene of frame i.
 template <typename SceneAt>
 std::vector<Frame> record(int count, const SceneAt& scene_at, unsigned noise_seed = 1) {
   std::vector<Frame> frames;
@@ -112,7 +112,7 @@ Scene before_wall(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   return test::nearest_of(wall(), test::box({low, high}));
 }
 
-// Vertices of the surface, in the world.
+// Returns the vertices of the surface, in the world frame.
 std::vector<Eigen::Vector3d> surface_of(const StaticMap& map) {
   const Mesh mesh = extract_surface(map, {.min_component_area_m2 = 0.0F, .max_deviation_m = 0.0F});
   std::vector<Eigen::Vector3d> vertices;
@@ -135,8 +135,8 @@ std::int64_t occupied_before_wall(const StaticMap& map, double margin_m) {
 }
 
 TEST(Ghosts, ABoxThatWasThereForHalfOfTheFramesVanishesAndTheWallBehindIsThere) {
-  // 20 cm wide, its face 9 cm before the wall, at 2 m: more than the margin, and too near for the voxels at
-  // its back to be clear of the wall.
+  // 20 cm wide, its face 9 cm in front of the wall, at 2 m: beyond the margin, but its rear voxels touch the
+  // wall's.
   const auto frames = record(40, [](int i) {
     return i < 20 ? before_wall({-0.1, 1.91, -0.1}, {0.1, 2.1, 0.1}) : wall();
   });
@@ -144,7 +144,7 @@ TEST(Ghosts, ABoxThatWasThereForHalfOfTheFramesVanishesAndTheWallBehindIsThere) 
   const auto vertices = surface_of(scanned.map);
   EXPECT_EQ(count_before_wall(vertices, 0.02), 0);
   EXPECT_EQ(occupied_before_wall(scanned.map, 0.03), 0);
-  // The wall where the box hid it: a vertex for each voxel, 1 cm off at most.
+  // The wall that the box hid: one vertex per voxel, at most 1 cm off.
   const auto behind = std::count_if(vertices.begin(), vertices.end(), [](const auto& v) {
     return std::abs(v.x()) < 0.08 && std::abs(v.z()) < 0.08 && std::abs(v.y() - 2.0) < 0.01;
   });
@@ -160,8 +160,8 @@ TEST(Ghosts, WhatCameLaterAndStayedForHalfOfTheFramesVanishesToo) {
   EXPECT_EQ(scanned.map.occupancy_at({0.0, 1.61, 0.0}), Occupancy::kFree);
 }
 
-// A box in the last frames. Before it came, something nearer hid from most frames what is behind its left
-// part.
+// A box in the last frames. In most earlier frames something nearer hides the space of the box's left part
+// and behind it.
 std::vector<Frame> record_box_half_hidden_before(int frames_with_box, std::initializer_list<int> unhidden) {
   const Scene box = before_wall({-0.08, 1.6, -0.4}, {0.5, 1.8, 0.4});
   const Scene hider = test::nearest_of(
@@ -180,7 +180,7 @@ std::int64_t occupied_of_its_left_face(const StaticMap& map) {
 }
 
 TEST(Ghosts, WhatHangsTogetherWithAGhostGoesOnLessEvidence) {
-  // Two frames see through the left part: too few by themselves.
+  // Two frames see through the left part: too few on their own.
   const Scan scanned = scan(FrameList(record_box_half_hidden_before(10, {10, 20})));
   EXPECT_EQ(occupied_of_its_left_face(scanned.map), 0);
 }
@@ -207,14 +207,16 @@ TEST(Ghosts, OccupiedVoxelsWithoutASampleGoWithWhatTheyTouch) {
     return zone.fate_of(sample);
   };
   EXPECT_EQ(fate_at({1, 1, 0}, 0.0F), SampleAction::kUnknown);
-  EXPECT_EQ(fate_at({1, 1, 0}, 1.0F), SampleAction::kEraseSample);  // to be measured anew
-  EXPECT_EQ(fate_at({3, 0, 0}, 0.0F), SampleAction::kEraseSample);  // near what is still there
-  EXPECT_EQ(fate_at({0, 3, 0}, 0.0F), SampleAction::kKeep);  // near what no frame of this scan tells of
+  EXPECT_EQ(fate_at({1, 1, 0}, 1.0F), SampleAction::kEraseSample);  // cleared, to be measured again
+  EXPECT_EQ(fate_at({3, 0, 0}, 0.0F), SampleAction::kEraseSample);  // near static surface
+  EXPECT_EQ(fate_at({0, 3, 0}, 0.0F),
+            SampleAction::kKeep);  // near surface that no frame of this scan observed
   EXPECT_EQ(fate_at({0, 5, 0}, 1.0F), SampleAction::kKeep);
   EXPECT_EQ(fate_at({40, 0, 0}, 0.0F), SampleAction::kKeep);
 }
 
-// The map holds an earlier scan; the frames of this one end beside what it sees through.
+// The map contains an earlier scan; the image border of this scan's frames cuts the surface that they see
+// through.
 TEST(Ghosts, SurfaceOfAnEarlierScanThatNoFrameMeasuresAnewStays) {
   Scan scanned;
   const Scene with_box = before_wall({-0.25, 1.85, -0.3}, {0.25, 2.0, 0.3});
@@ -266,7 +268,7 @@ TEST(Ghosts, AThinPoleStaysThoughThePosesAreACentimetreOff) {
   EXPECT_GE(occupied, 50);  // 1.2 m of it are in view: 60 voxels
 }
 
-// The middle of a coarse cell lies farther before the wall than noise, or a pose, would explain.
+// The centre of a coarse voxel is farther in front of the wall than noise or pose error explains.
 TEST(Ghosts, AWallIsNoneHoweverCoarseTheCells) {
   const auto frames = record(20, [](int) { return wall(); });
   FrameList source(frames);
@@ -295,8 +297,8 @@ TEST(Ghosts, WhatIsNeverSeenThroughIsLeftAsItIs) {
   }
 }
 
-// A shelf below, and a slab of 40 cm above it with nothing measured behind. Frame i has depth of the slab
-// where is_measured(i, eye), and its colour where is_there(i); behind it is another.
+// A shelf below, and a slab of 40 cm above it without any depth behind. Frame i has depth of the slab if
+// is_measured(i, eye), and its colour if is_there(i); the background has another colour.
 template <typename IsThere, typename IsMeasured>
 std::vector<Frame> record_slab(const IsThere& is_there, const IsMeasured& is_measured) {
   constexpr Rgb kSlab{180, 60, 50}, kBehind{90, 90, 100};
@@ -323,7 +325,7 @@ const Eigen::Vector3d kInSlabsFace(0.01, 1.61, 0.01), kInShelf(0.01, 1.81, -0.51
 TEST(Ghosts, WhatWasThereForAThirdOfTheFramesIsUnknownThoughNothingIsMeasuredBehind) {
   const auto is_there = [](int i, const auto&...) { return i >= 15 && i < 30; };
   const Scan scanned = scan(FrameList(record_slab(is_there, is_there)));
-  EXPECT_GE(scanned.ghosts, 400);  // its face alone is 20 x 20 voxels
+  EXPECT_GE(scanned.ghosts, 400);  // its face alone has 20 x 20 voxels
   std::int64_t left = 0;
   scanned.map.visit_samples([&](const SurfaceSample& sample) {
     left += sample.occupancy == Occupancy::kOccupied && sample.voxel.z() * kResolution_m > -0.4;
@@ -342,8 +344,9 @@ TEST(Ghosts, ADarkPanelThatIsMeasuredFromSomeSidesOnlyStays) {
 }
 
 TEST(Ghosts, WhatIsHiddenBySomethingTooNearToBeMeasuredStays) {
-  // A slab, and before its left half a post, which has depth from afar only. Later the camera sways close
-  // behind the post, so that the slab's left half is now measured, now hidden by a colour without depth.
+  // A slab, and in front of its left half a post that has depth only from a distance. Later the camera sways
+  // close behind the post. The slab's left half is then sometimes measured, sometimes hidden by colour
+  // without depth.
   const Scene slab = test::box({Eigen::Vector3d(-0.4, 1.6, -0.2), Eigen::Vector3d(0.6, 1.8, 0.2)});
   const Scene post = test::box({Eigen::Vector3d(-0.5, 0.35, -1.0), Eigen::Vector3d(0.0, 0.4, 1.0)});
   std::vector<Frame> frames;
@@ -376,7 +379,7 @@ TEST(Ghosts, WhatStandsThereForMoreThanHalfOfTheFramesBeforeNothingMeasuredStays
 TEST(Ghosts, FramesWithoutDepthBehindAGhostAreNoEvidenceWithoutColour) {
   const Scene with_box = before_wall({-0.1, 1.6, -0.1}, {0.1, 1.8, 0.1});
   auto frames = record(40, [&](int i) { return i < 20 ? with_box : wall(); });
-  // Where the box was, and round it, the later frames have no depth.
+  // At the box's former position and around it, the later frames have no depth.
   for (int i = 20; i < 40; ++i)
     for (int y = 30; y < 90; ++y)
       for (int x = 40; x < 120; ++x) frames[static_cast<std::size_t>(i)].depth_m.at(x, y) = 0.0F;
@@ -489,7 +492,7 @@ TEST(DepthWindows, AgreeWithLookingAtEachPixel) {
       if (inside) {
         EXPECT_EQ(window.nearest_m, nearest);
       }
-      EXPECT_LE(window.nearest_m, nearest);  // at the border more may count as in it, never less
+      EXPECT_LE(window.nearest_m, nearest);  // at the border the window may include more pixels, never fewer
       const auto pixels = static_cast<float>((2 * radius + 1) * (2 * radius + 1));
       EXPECT_FLOAT_EQ(window.measured_share, static_cast<float>(measured) / pixels);
     }

@@ -1,4 +1,5 @@
-// region_renewal_test.cpp: a thing put into a map, or carved out of it, by frames of it, and nothing else.
+// refuse_region_test.cpp: an object is added to a map, or removed from it, by frames that show it; nothing
+// else changes.
 #include "mapping/revision/refuse_region.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +32,7 @@ Frame seen(const test::Scene& scene, const Eigen::Isometry3d& T_world_camera, un
     if (z > 0.0F) z += noise(random) * depth_sigma_m(z);
   return frame;
 }
-// From the crate's front and its two sides.
+// Fuses views of the crate's front and of its two sides.
 StaticMap map_of(const test::Scene& scene) {
   StaticMap map(0.02);
   for (unsigned i = 0; i < 24; ++i) {
@@ -50,7 +51,7 @@ std::vector<RegionView> views_of(const test::Scene& live, const test::Scene& mod
   }
   return views;
 }
-// Points on what a camera sees of the crate.
+// Points on the visible surface of the crate.
 WorldRegion crate_region() {
   std::vector<Vector3d> points;
   for (double u = 0.0; u <= 1.0; u += 0.05)
@@ -72,7 +73,7 @@ Samples samples_beyond(const StaticMap& map, const AlignedBox3d& box) {
   return samples;
 }
 
-// Vertices of the surface within 1.5 cm of the crate's top or front.
+// Counts the surface's vertices within 1.5 cm of the crate's top or front.
 int on_crate(const StaticMap& map) {
   const Mesh mesh = extract_surface(map, {.max_deviation_m = 0.0F});
   int count = 0;
@@ -107,7 +108,7 @@ TEST(RenewRegion, CarvesWhatWentWithItsFarSide) {
     EXPECT_TRUE(on_table) << p.transpose() << ": something still stands there";
   }
   EXPECT_EQ(map.occupancy_at({0.0, 0.0, 0.1}), Occupancy::kFree) << "its inside was unknown";
-  // What it stood on has come into view and is there.
+  // The surface it stood on has come into view and is mapped.
   EXPECT_EQ(map.occupancy_at({0.0, 0.0, -0.001}), Occupancy::kOccupied);
 }
 
@@ -132,7 +133,8 @@ TEST(RenewRegion, ChangesNothingElsewhere) {
   const AlignedBox3d around(Vector3d(-1.5, -0.4, -0.12), Vector3d(1.5, 2.0, 0.6));
   const AlignedBox3d near_crate(kCrate.min() - Vector3d::Constant(0.12),
                                 kCrate.max() + Vector3d::Constant(0.12));
-  // The views' pixels that show past the crate reach the table and the wall behind it; the rest stays.
+  // Pixels beside the crate reach the table and the wall behind it; the map outside the region stays
+  // unchanged.
   const Samples before = samples_beyond(map, around);
   const AlignedBox3d box = refuse_region(map, crate_region(), views_of(room(), room_with_crate()));
   EXPECT_EQ(samples_beyond(map, around), before);

@@ -1,4 +1,5 @@
-// checkpoints_test.cpp: states on disk: whole or not at all, the newest sound one, and only of the same work.
+// checkpoints_test.cpp: states on disk are complete or absent; the newest intact one of the same scan is
+// resumed.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -25,7 +26,7 @@ std::string text_of(const fs::path& path) {
 class CheckpointsTest : public ::testing::Test {
  protected:
   [[nodiscard]] fs::path folder() const { return temporary_.path() / "map.unfinished"; }
-  /// Checkpoints 1 .. count, each with its number in `state`, and a `same` that is carried over.
+  /// Writes checkpoints 1 .. count, each with its number in `state`, and a `same` that is carried over.
   void write(int count) const {
     Checkpoints checkpoints(folder(), kScan, 0.0);
     for (int i = 1; i <= count; ++i) {
@@ -101,7 +102,7 @@ TEST_F(CheckpointsTest, TheStateIsThatOfTheMomentWhateverTheWorkDoesMeanwhile) {
     Checkpoints checkpoints(folder(), kScan, 0.0);
     checkpoints.write("fuse", [&](const fs::path& into, const fs::path&) {
       std::ofstream(into / "state") << state;
-      state = 100;  // in the writer's memory only
+      state = 100;  // in the writer process's memory only
     });
     EXPECT_EQ(state, 7);
     state = 8;
@@ -122,7 +123,7 @@ TEST_F(CheckpointsTest, AWriterThatFailsLeavesTheOneBefore) {
     });
     EXPECT_TRUE(checkpoints.is_due_at_end());
     EXPECT_EQ(checkpoints.failures(), failures);
-    ASSERT_EQ(told.size(), 1U);  // at once, and once
+    ASSERT_EQ(told.size(), 1U);  // reported immediately, and only once
   }
   EXPECT_NE(told[0].find("the previous checkpoint"), std::string::npos) << told[0];
   const auto newest = checkpoints.resume();
@@ -135,7 +136,7 @@ TEST_F(CheckpointsTest, ADamagedOneIsPassedOverAndNamed) {
     for (const int how : {0, 1, 2}) {
       fs::remove_all(folder());
       write(3);
-      // `same` is one file in both, so that only a new one can be damaged alone.
+      // `same` is one hard-linked file in both, so a copy replaces it before it is damaged in one.
       const fs::path path = folder() / "checkpoint-3" / file;
       std::string bytes = text_of(path);
       fs::remove(path);

@@ -1,4 +1,4 @@
-// voxel_bits_test.cpp: boxes of bits against one voxel after the other, in rows of more than one word.
+// bit_grid_test.cpp: boxes of bits against voxel-by-voxel operations, in rows of more than one word.
 #include "mapping/surface/bit_grid.hpp"
 
 #include <gtest/gtest.h>
@@ -86,7 +86,7 @@ TEST(BitGrid, OpeningKeepsWhatLiesInAWholeCube) {
   }
 }
 
-// Steps as they are defined, from voxel to voxel.
+// Steps by their definition, voxel by voxel.
 BitGrid slowly_spread(const BitGrid& from, const BitGrid& where, const std::array<BitGrid, 3>& blocked) {
   BitGrid to = from;
   for_each_voxel(kSize, [&](const Vector3i& p) {
@@ -125,7 +125,7 @@ TEST(BitGrid, SpreadingAndFloodingTakeTheStepsThatAreNotBarred) {
   EXPECT_NE(bits, seed);
 }
 
-// Every face is in one rectangle, and nothing else is.
+// Every face is in exactly one rectangle, and rectangles contain nothing else.
 TEST(VoxelFaces, RectanglesCoverEachFaceOnce) {
   std::mt19937 random(4);
   const CellGrid grid{{-3, 5, 100}, kSize, 0.5};
@@ -217,7 +217,7 @@ TEST(BarredSteps, OnlyStepsThatMeetTheSurfaceAreBarred) {
   const auto blocked = blocked_neighbours(mesh, grid);
   std::set<std::tuple<int, int, int>> cells;
   blocked[2].for_each_set([&](const Vector3i& p) { cells.insert({p.x(), p.y(), p.z()}); });
-  // Middles of cells at 0.075, 0.125, ...: those with x + y <= 0.4 are over it.
+  // Cell centres are at 0.075, 0.125, ...; those with x + y <= 0.4 are above it.
   std::set<std::tuple<int, int, int>> expected;
   for (int y = 0; y < 8; ++y)
     for (int x = 0; x < 8; ++x)
@@ -228,7 +228,7 @@ TEST(BarredSteps, OnlyStepsThatMeetTheSurfaceAreBarred) {
   }
   mesh.vertices[1].x() = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(blocked_neighbours(mesh, grid)[2], BitGrid(grid.size, false));
-  mesh.vertices[1].x() = 1e30F;  // far past the grid
+  mesh.vertices[1].x() = 1e30F;  // far beyond the grid
   mesh.vertices[2].y() = -1e30F;
   EXPECT_NO_THROW(static_cast<void>(blocked_neighbours(mesh, grid)));
 }

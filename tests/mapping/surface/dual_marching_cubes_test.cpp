@@ -1,4 +1,4 @@
-// surface_net_test.cpp: the net over any signed distances is a surface: no cracks, no edges of three
+// dual_marching_cubes_test.cpp: the mesh of any signed distances is a surface: no cracks, no edges of three
 // triangles.
 #include "mapping/surface/dual_marching_cubes.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 constexpr double kResolution_m = 0.01;
 constexpr int kEdge = 20;  // voxels, over several bricks
 
-// A cube of samples from voxel (-kEdge / 2, ...) on.
+// A cube of samples, starting at voxel (-kEdge / 2, ...).
 template <typename Distance>
 StaticMap cube_map(const Distance& distance_m, float weight = 1.0F) {
   StaticMap map(kResolution_m);
@@ -30,7 +30,7 @@ StaticMap cube_map(const Distance& distance_m, float weight = 1.0F) {
   return map;
 }
 
-// How far inside the cube of samples a vertex lies, in voxels; its outermost samples are at 0.
+// Returns the depth of a vertex inside the cube of samples, in voxels; the cube's outermost samples are at 0.
 double depth_voxels(const Mesh& mesh, std::uint32_t vertex) {
   const Eigen::Array3d voxels =
       (mesh.origin + mesh.vertices[vertex].cast<double>()).array() / kResolution_m - 0.5 + kEdge / 2;
@@ -63,13 +63,13 @@ TEST(SurfaceNet, APlaneIsWhereTheDistancesSay) {
     return static_cast<float>(normal.dot(kResolution_m * (voxel.cast<double>().array() + 0.5).matrix()) -
                               0.0123);
   });
-  for (const float strength : {0.0F, 50.0F}) {  // what is linear is not moved by smoothing
+  for (const float strength : {0.0F, 50.0F}) {  // smoothing does not change linear distances
     TsdfBricks bricks(map, 0.0F);
     if (strength > 0.0F) smooth(bricks, strength, 5);
     const Mesh mesh = dual_marching_cubes(bricks, kResolution_m);
     ASSERT_GT(mesh.triangles.size(), 500U);
     for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
-      // Distances are kept in steps of 5 micrometres.
+      // Distances are stored in steps of 5 micrometres.
       ASSERT_NEAR(normal.dot(mesh.origin + mesh.vertices[v].cast<double>()), 0.0123, 2e-5);
       ASSERT_GT(normal.dot(mesh.normals[v].cast<double>()), 0.999);
     }
@@ -84,7 +84,7 @@ TEST(SurfaceNet, SamplesOfOneSignOrNoneMakeNone) {
 }
 
 TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
-  // A tilted plane, measured for 12 columns a side within one brick's reach of others.
+  // A tilted plane, measured in 12 x 12 columns within one brick's reach of other bricks.
   constexpr int kFirst = -6, kLast = 5;
   const auto distance_m = [](const VoxelIndex& voxel) {
     return 0.01F * (static_cast<float>(voxel.z()) + 0.3F * static_cast<float>(voxel.x()) + 0.2F);
@@ -103,7 +103,7 @@ TEST(SampleGuess, TheNetReachesTheOutermostMeasuredCrossings) {
       for (const std::uint32_t v : t) {
         box.extend(mesh.vertices[v]);
         const Eigen::Vector3d place = mesh.origin + mesh.vertices[v].cast<double>();
-        // Centres of voxels stand half a voxel above their index.
+        // Voxel centres are half a voxel above their index.
         EXPECT_NEAR(place.z() - 0.005 + 0.3 * (place.x() - 0.005) + 0.002, 0.0, 1e-4);
         EXPECT_LT((mesh.normals[v] - Eigen::Vector3f(0.3F, 0.0F, 1.0F).normalized()).norm(), 0.02F);
       }

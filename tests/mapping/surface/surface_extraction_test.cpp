@@ -1,4 +1,4 @@
-// surface_test.cpp: where the extracted surface stands, which way it looks, and what is left out.
+// surface_extraction_test.cpp: position and orientation of the extracted surface, and parts it leaves out.
 #include "mapping/surface/surface_extraction.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ void expect_consistent(const Mesh& mesh) {
     for (const std::uint32_t vertex : triangle) ASSERT_LT(vertex, mesh.vertices.size());
 }
 
-// A ball seen from eight corners and six sides, on a frame where nothing else is seen.
+// A ball seen from eight corners and six sides, without any background.
 StaticMap ball_map(const Eigen::Vector3d& centre, double radius_m, double resolution_m) {
   StaticMap map(resolution_m);
   for (int i = 0; i < 27; ++i) {
@@ -69,8 +69,8 @@ TEST(Surface, ABallIsRoundClosedAndLooksOutward) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (std::uint32_t v = 0; v < mesh.vertices.size(); ++v) {
     const Eigen::Vector3d outward = place(mesh, v) - centre;
-    // Distance along the viewing axis is longer than to the surface where it is seen obliquely: up to 3 mm
-    // here.
+    // On surfaces seen at a slant, the distance along the viewing axis exceeds the distance to the surface,
+    // here by up to 3 mm.
     ASSERT_NEAR(outward.norm(), 0.3, 0.004);
     ASSERT_GT(outward.normalized().dot(mesh.normals[v].cast<double>()), 0.85);
     ASSERT_EQ(mesh.colours[v], (Rgb{10, 200, 60}));
@@ -107,7 +107,7 @@ TEST(Surface, AWallIsAFewTrianglesAndABallStaysRound) {
 }
 
 TEST(Surface, NoiseOfAFarWallIsAveragedAndThatOfANearOneIsNot) {
-  // Samples round the plane z = 0, all of a column off by the same.
+  // Samples around the plane z = 0; all samples of a column have the same error.
   const auto roughness_m = [](float weight) {
     std::mt19937 random(11);
     std::normal_distribution<float> noise_m(0.0F, 0.005F);

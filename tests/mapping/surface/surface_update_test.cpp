@@ -1,5 +1,5 @@
-// surface_patch_test.cpp: a box cut out of a mesh and made anew: nothing is lost outside, no gap at its
-// sides.
+// surface_update_test.cpp: a box is cut out of a mesh and extracted again: nothing is lost outside, no gap at
+// its sides.
 #include "mapping/surface/surface_update.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ double area_m2(const Mesh& mesh) {
   return area;
 }
 
-// A floor with a box on it, seen from above by a camera that goes round.
+// A floor with a box on it, seen from above by a camera that circles it.
 test::Scene floor_with_box() {
   return test::nearest_of(test::plane({0, 0, 1}, 0.0),
                           test::box(AlignedBox3d(Vector3d(-0.15, -0.1, 0.0), Vector3d(0.15, 0.1, 0.2))));
@@ -87,12 +87,12 @@ TEST(OutsideOf, LeavesAMeshThatTheBoxMissesAndTakesOneThatItHolds) {
 TEST(RenewSurface, OfAMapThatDidNotChangeIsTheSameSurface) {
   const StaticMap map = map_of(floor_with_box());
   const Mesh before = extract_surface(map);
-  // Sides through flat parts, through the box and along the floor.
+  // Boxes whose sides cut flat parts, the box, or run along the floor.
   for (const AlignedBox3d& box : {AlignedBox3d(Vector3d(-0.3, -0.25, -0.1), Vector3d(0.25, 0.3, 0.4)),
                                   AlignedBox3d(Vector3d(-0.05, -0.5, 0.0), Vector3d(0.5, 0.02, 0.11))}) {
     Mesh after = before;
     update_surface(map, box, {}, after);
-    // Each within 2 mm of the full surface.
+    // Each is within 2 mm of the full surface.
     EXPECT_LE(farthest_m(after, before), 0.0041F);
     EXPECT_LE(farthest_m(before, after), 0.0041F);
     EXPECT_EQ(after.normals.size(), after.vertices.size());

@@ -1,5 +1,5 @@
-// unknown_surface_test.cpp: what of the unknown counts, where its surface stands, and that no way leads past
-// it.
+// unknown_surface_test.cpp: which unknown space counts, the position of its surface, and that no path leads
+// past the surface.
 #include "mapping/surface/unknown_surface.hpp"
 
 #include <gtest/gtest.h>
@@ -27,14 +27,14 @@ constexpr double kVoxel_m = 0.02;
 constexpr float kFree = -1.0F, kOccupied = 1.0F;
 const Mesh kNoSurface;
 
-// Leaves of one voxel; the octree joins them to larger ones where it can.
+// Adds leaves of one voxel; the octree merges them into larger ones if possible.
 void fill(StaticMap& map, const Vector3i& low, const Vector3i& high, float log_odds) {
   for (int z = low.z(); z < high.z(); ++z)
     for (int y = low.y(); y < high.y(); ++y)
       for (int x = low.x(); x < high.x(); ++x) map.add_evidence(MapLeaf{{x, y, z}, 1, log_odds});
 }
 
-// Free from low to before high, but for what is unknown from hole_low to before hole_high.
+// Free in [low, high), except for an unknown hole in [hole_low, hole_high).
 StaticMap free_with_hole(const Vector3i& low, const Vector3i& high, const Vector3i& hole_low,
                          const Vector3i& hole_high) {
   StaticMap map(kVoxel_m);
@@ -63,7 +63,7 @@ double area_of(const Mesh& mesh) {
   return sum_m2;
 }
 
-// The volume that a closed mesh encloses, negative where its triangles look inward.
+// Volume enclosed by a closed mesh, negative if its triangles face inwards.
 double volume_of(const Mesh& mesh) {
   double sum_m3 = 0.0;
   for (const Triangle& triangle : mesh.triangles)
@@ -102,12 +102,12 @@ TEST(UnknownSurface, OneFreeVoxelIsNoPlaceToComeFrom) {
 
 TEST(UnknownSurface, AFreeBoxIsClosedByItsSixSides) {
   StaticMap map(kVoxel_m);
-  fill(map, {-4, 2, 0}, {8, 10, 6}, kFree);  // on the lattice of cubes
+  fill(map, {-4, 2, 0}, {8, 10, 6}, kFree);  // aligned with the lattice of cubes
   const UnknownSurface surface = unknown_surface(map, kNoSurface);
   EXPECT_EQ(surface.mesh_world.triangles.size(), 12U);
   EXPECT_EQ(surface.mesh_world.vertices.size(), 8U);
   EXPECT_NEAR(area_of(surface.mesh_world), 2.0 * (12 * 8 + 12 * 6 + 8 * 6) * kVoxel_m * kVoxel_m, 1e-6);
-  EXPECT_NEAR(volume_of(surface.mesh_world), -12 * 8 * 6 * std::pow(kVoxel_m, 3), 1e-7);  // looks inward
+  EXPECT_NEAR(volume_of(surface.mesh_world), -12 * 8 * 6 * std::pow(kVoxel_m, 3), 1e-7);  // faces inwards
   EXPECT_FALSE(is_unknown(surface, Vector3d(-4, 2, 0) * kVoxel_m + Vector3d::Constant(0.001)));
   EXPECT_TRUE(is_unknown(surface, Vector3d(-4, 2, 0) * kVoxel_m - Vector3d::Constant(0.001)));
   EXPECT_TRUE(is_unknown(surface, Vector3d(100.0, 0.0, 0.0)));
@@ -155,10 +155,11 @@ TEST(UnknownSurface, APocketThatHangsInFreeSpaceCountsFromSoManyVoxelsOn) {
   const auto hole_area_m2 = [&](const StaticMap& map) {
     return area_of(unknown_surface(map, kNoSurface).mesh_world) - shell_m2;
   };
-  EXPECT_NEAR(hole_area_m2(free_with_hole(low, high, at, at + Vector3i::Constant(8))), 0.0, 1e-6);  // 512
-  StaticMap large = free_with_hole(low, high, at, at + Vector3i::Constant(10));                     // 1000
+  // 512 voxels
+  EXPECT_NEAR(hole_area_m2(free_with_hole(low, high, at, at + Vector3i::Constant(8))), 0.0, 1e-6);
+  StaticMap large = free_with_hole(low, high, at, at + Vector3i::Constant(10));  // 1000 voxels
   EXPECT_NEAR(hole_area_m2(large), 6 * 10 * 10 * face_m2, 1e-6);
-  // What is occupied within two steps holds a small one, and nothing that is farther does.
+  // Occupied space within two steps makes a small pocket count; occupied space farther away does not.
   StaticMap held = free_with_hole(low, high, at, at + Vector3i::Constant(4));
   held.add_evidence(MapLeaf{{13, 8, 8}, 1, 3.0F});
   EXPECT_NEAR(hole_area_m2(held), 0.0, 1e-6);
@@ -169,13 +170,13 @@ TEST(UnknownSurface, APocketThatHangsInFreeSpaceCountsFromSoManyVoxelsOn) {
 TEST(UnknownSurface, AThinSlitInTheUnknownIsLinedToItsEnd) {
   StaticMap map(kVoxel_m);
   fill(map, {0, 0, 0}, {16, 16, 16}, kFree);
-  fill(map, {16, 6, 6}, {36, 8, 8}, kFree);  // two voxels wide: too thin to come from
+  fill(map, {16, 6, 6}, {36, 8, 8}, kFree);  // two voxels wide: too thin for paths to start in it
   const double face_m2 = kVoxel_m * kVoxel_m;
   EXPECT_NEAR(area_of(unknown_surface(map, kNoSurface).mesh_world), (6 * 16 * 16 + 4 * 2 * 20) * face_m2,
               1e-6);
 }
 
-// A sheet across the plane z = height_m, from low to high along x and y.
+// A sheet in the plane z = height_m, from low to high along x and y.
 Mesh sheet(double low_m, double high_m, double height_m) {
   const auto at = [&](double x, double y) { return Vector3d(x, y, height_m).cast<float>().eval(); };
   Mesh mesh;
@@ -191,7 +192,7 @@ TEST(UnknownSurface, WhatTheStaticSurfaceHidesNeedsNone) {
   const double all_m2 = area_of(unknown_surface(map, kNoSurface).mesh_world);
   const Mesh floor = sheet(-0.5, 1.0, 0.0);
   EXPECT_NEAR(area_of(unknown_surface(map, floor).mesh_world), all_m2 - floor_m2, 1e-6);
-  // With occupied voxels below it, likewise.
+  // The same with occupied voxels below it.
   fill(map, {0, 0, -2}, {16, 16, 0}, kOccupied);
   EXPECT_NEAR(area_of(unknown_surface(map, floor).mesh_world), all_m2 - floor_m2, 1e-6);
 }
@@ -200,7 +201,7 @@ TEST(UnknownSurface, BehindAHoleInTheStaticSurfaceItGoesOnPastTheRim) {
   StaticMap map(kVoxel_m);
   fill(map, {0, 0, 0}, {16, 16, 8}, kFree);
   fill(map, {0, 0, -2}, {16, 16, 0}, kOccupied);
-  const Mesh half_floor = sheet(-0.5, 8 * kVoxel_m, 0.0);  // its rim at voxel 8 along x and y
+  const Mesh half_floor = sheet(-0.5, 8 * kVoxel_m, 0.0);  // its rim is at voxel 8 along x and y
   const UnknownSurface surface = unknown_surface(map, half_floor);
   Eigen::AlignedBox3d below;
   for (const Triangle& triangle : surface.mesh_world.triangles)
@@ -214,7 +215,7 @@ TEST(UnknownSurface, BehindAHoleInTheStaticSurfaceItGoesOnPastTheRim) {
   EXPECT_TRUE(crosses(surface.mesh_world, open + up, open + down));
   EXPECT_FALSE(crosses(surface.mesh_world, Vector3d(covered - Vector3d(4, 4, 0) * kVoxel_m) + up,
                        Vector3d(covered - Vector3d(4, 4, 0) * kVoxel_m) + down));
-  // Slanting in under the rim: two voxels behind it there is a surface still.
+  // A path that slants in under the rim: two voxels behind the rim the surface still blocks it.
   const Vector3d slanted_from(9.5 * kVoxel_m, 9.5 * kVoxel_m, up.z());
   EXPECT_TRUE(
       crosses(surface.mesh_world, slanted_from, slanted_from + Vector3d(-0.6, -0.6, -1.0) * 6.0 * kVoxel_m));
@@ -270,7 +271,7 @@ TEST(UnknownSurface, AgreesWithItsDefinitionOnRandomLeaves) {
       ASSERT_EQ(is_unknown(surface, (p.cast<double>() + Vector3d::Constant(0.5)) * kVoxel_m), counts(p))
           << p.transpose() << " in round " << round;
     }
-    // Each triangle has unknown that counts behind it, and before it what is not.
+    // Each triangle has unknown space that counts behind it, and none in front of it.
     for (const Triangle& triangle : surface.mesh_world.triangles) {
       const Vector3d middle =
           (corner_of(surface.mesh_world, triangle, 0) + corner_of(surface.mesh_world, triangle, 1) +
@@ -305,8 +306,9 @@ StaticMap scan(const test::Scene& scene, const std::vector<Eigen::Isometry3d>& v
 }
 
 TEST(UnknownSurface, OfOneViewIsThePyramidThatItSaw) {
-  // Straight at the wall x = 2 m, 3 m away: 3.429 x 2.571 m of it are in view, or were, if the room did not
-  // end. The camera stands in the middle between floor and ceiling, and all four sides are cut by the room.
+  // A view straight at the wall x = 2 m, 3 m away. The view covers 3.429 x 2.571 m of the wall's plane; the
+  // room ends within that. The camera is midway between floor and ceiling, and the room cuts all four sides
+  // of the view's pyramid.
   const Vector3d eye(-1.0, 0.0, 1.2);
   const Eigen::AlignedBox3d far_room(Vector3d(-9, -9, -9), Vector3d(2, 9, 9));
   const auto wall = [&](const Vector3d& from, const Vector3d& direction) {
@@ -314,8 +316,8 @@ TEST(UnknownSurface, OfOneViewIsThePyramidThatItSaw) {
   };
   const auto map = scan(wall, {test::looking_at(eye, Vector3d(2.0, 0.0, 1.2))});
   const UnknownSurface surface = unknown_surface(map, extract_surface(map));
-  // Stairs in the place of slanted sides have the sides' areas along each axis: 3 m deep, half as wide as at
-  // the wall in the mean; without what the wall's own rim adds.
+  // Stairs instead of slanted sides have the sides' areas along each axis: 3 m deep, on average half as wide
+  // as at the wall; without the contribution of the wall's own rim.
   const double width_m = 3.0 * 160 / 140, height_m = 3.0 * 120 / 140;
   Vector3d along_m2 = Vector3d::Zero();
   for (const Triangle& triangle : surface.mesh_world.triangles)
@@ -351,7 +353,7 @@ TEST(UnknownSurface, NoStraightWayLeadsFromFreeToUnknownSpacePastBothSurfaces) {
   int ways = 0, by_unknown = 0;
   for (int i = 0; i < 1500; ++i) {
     const Vector3d from = point();
-    // Short ways as well as long ones: most short ones cross near a rim.
+    // Half of the paths are short: most short ones cross near a rim.
     const Vector3d to = i % 2 == 0 ? point() : Vector3d(from + 0.15 * (point() - kRoom.center()));
     if (!is_place_to_come_from(from) || !is_unknown(surface, to)) continue;
     ++ways;
@@ -368,7 +370,7 @@ TEST(UnknownSurface, OfTheKitchenLeavesFreeWhatACameraSawThrough) {
   const auto source = open_folder(folder);
   StaticMap map(kVoxel_m);
   Frame frame;
-  std::vector<std::pair<Vector3d, Vector3d>> rays;  // from the camera to 8 cm before what was measured
+  std::vector<std::pair<Vector3d, Vector3d>> rays;  // from the camera to 8 cm in front of the measured point
   for (std::int64_t i = 0; i < 400; i += 10) {
     ASSERT_TRUE(source->seek(i));
     ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
@@ -389,7 +391,8 @@ TEST(UnknownSurface, OfTheKitchenLeavesFreeWhatACameraSawThrough) {
   for (const auto& [from, to] : rays)
     for (double part = 0.1; part <= 1.0; part += 0.05, ++asked)
       unknown += is_unknown(surface, from + part * (to - from)) ? 1 : 0;
-  // A voxel is free where its middle is seen through; rays that graze a depth edge cross some that are not.
+  // A voxel is free if the camera sees through its centre; rays that graze a depth discontinuity cross some
+  // that are not.
   EXPECT_LT(unknown, asked / 1000) << "of " << asked;
   EXPECT_TRUE(is_unknown(surface, rays.front().second + 3.0 * (rays.front().second - rays.front().first)));
 }
@@ -399,7 +402,7 @@ TEST(UnknownSurface, ConfigsOutOfTheirRulesAreRefused) {
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.cube_voxels = 17}), Error);
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.rim_voxels = -1}), Error);
   EXPECT_THROW(require_valid(UnknownSurfaceConfig{.pocket_voxels = -1}), Error);
-  EXPECT_THROW(require_valid(UnknownSurfaceConfig{.cube_voxels = 3}), Error);  // some out of the rim's reach
+  EXPECT_THROW(require_valid(UnknownSurfaceConfig{.cube_voxels = 3}), Error);  // cubes beyond rim_voxels
   EXPECT_NO_THROW(require_valid(UnknownSurfaceConfig{}));
 }
 

@@ -1,4 +1,4 @@
-// trajectory_test.cpp: the TUM file form, and the absolute trajectory error.
+// trajectory_test.cpp: the TUM file format, and the absolute trajectory error.
 #include "mapping/types/trajectory.hpp"
 
 #include <gtest/gtest.h>
@@ -75,8 +75,8 @@ TEST(TrajectoryError, IsZeroForAMovedCopyAndKnownForAKnownOffset) {
   EXPECT_LT(exact.rmse_m, 1e-9);
   EXPECT_TRUE((exact.T_reference_estimate * T_moved).isApprox(Eigen::Isometry3d::Identity(), 1e-9));
 
-  // Every other pose 2 cm along +x, the rest 2 cm along -x of a line: the best alignment keeps nearly all of
-  // it.
+  // A zigzag: poses alternate between +2 cm and -2 cm in x. The best alignment leaves nearly all of this
+  // error.
   std::vector<TimedPose> line(100);
   for (int i = 0; i < 100; ++i)
     line[i] = {i, i / 30.0, Eigen::Isometry3d(Eigen::Translation3d(0, 0.1 * i, 0.01 * i * i))};
@@ -97,7 +97,7 @@ TEST(TrajectoryError, MatchesByFrameAndNeedsThree) {
 TEST(PoseAlignment, KnowsTheTurnOfACameraThatHardlyMoved) {
   const Eigen::Isometry3d T_moved =
       Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 1, 0).normalized());
-  // 5 mm back and forth, and wrong by 2 mm and 2 mrad: to positions alone any turn is as good as another.
+  // 5 mm back and forth, with errors of 2 mm and 2 mrad: positions alone would not determine the rotation.
   std::vector<TimedPose> reference(20), estimate(20);
   const Eigen::Matrix3d wrong = Eigen::AngleAxisd(0.002, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   for (int i = 0; i < 20; ++i) {
@@ -130,8 +130,7 @@ TEST(TrajectoryError, GapAtTheEndIsSeenFromTheFirstPose) {
   const std::vector<TimedPose> reference = random_walk(20, 4);
   const Eigen::Isometry3d T_moved =
       Eigen::Translation3d(3, -2, 1) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 1, 0).normalized());
-  std::vector<TimedPose> estimate = {reference.front(),
-                                     reference.back()};  // what lies between counts nothing
+  std::vector<TimedPose> estimate = {reference.front(), reference.back()};  // poses in between do not matter
   for (TimedPose& pose : estimate) pose.T_world_camera = T_moved * pose.T_world_camera;
   EXPECT_LT(end_gap_m(estimate, reference), 1e-9);
   estimate.back().T_world_camera.translate(Eigen::Vector3d(0, 0.03, 0.04));

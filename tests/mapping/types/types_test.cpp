@@ -1,4 +1,4 @@
-// types_test.cpp: the vocabulary: cameras, noise, stage times.
+// types_test.cpp: cameras, depth noise, stage times.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ TEST(Intrinsics, ProjectIsTheInverseOfBackProject) {
 }
 
 TEST(Intrinsics, HalvingKeepsTheImageBordersInPlace) {
-  // The left border of the image is at u = -0.5 in both; it must be the same ray.
+  // The left border of the image is at u = -0.5 in both; its ray must be the same.
   const Intrinsics half = scaled(kKinect, 0.5);
   EXPECT_EQ(half.width_px, 320);
   EXPECT_NEAR(back_project(kKinect, -0.5, -0.5, 2.0).x(), back_project(half, -0.5, -0.5, 2.0).x(), 1e-12);
@@ -75,7 +75,7 @@ TEST(Frame, ImagesThatDoNotFitTheirCamerasAreNamed) {
   EXPECT_NE(fault_of(frame), "");
   frame.depth_camera = kKinect;
   frame.depth_m.resize(640, 480, 1.0F);
-  EXPECT_EQ(fault_of(frame), "");  // no colour is no fault
+  EXPECT_EQ(fault_of(frame), "");  // a frame without colour is valid
   frame.depth_m.resize(320, 240, 1.0F);
   EXPECT_EQ(fault_of(frame), "its depth image and its depth camera differ in size");
   frame.depth_m.resize(640, 480, 1.0F);

@@ -1,4 +1,4 @@
-// gl_bounds_test.cpp: the GL radar's bounds and verdicts against the exact judge on random poses.
+// gl_bounds_test.cpp: the GL radar's bounds and contacts against the exact reference on random poses.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,8 +22,8 @@ struct Throw {
   double distance_m = 0.0;
 };
 
-/// One call for all throws of an object at a scene, each judged for itself. Throws that begin in an overlap
-/// (as the processor's radar in the exact mode has it) are passed over. Returns how many were judged.
+/// Queries all throws of an object at a scene in one call and checks each result. Skips throws that begin in
+/// an overlap, according to the CPU radar's exact mode. Returns the number of throws checked.
 int expect_bounds(const std::string& name, const Mesh& object, const Mesh& scene,
                   const std::vector<Throw>& throws, int resolution_px) {
   GlContext context;
@@ -52,7 +52,7 @@ int expect_bounds(const std::string& name, const Mesh& object, const Mesh& scene
     EXPECT_TRUE(holds(contacts[i], truth_m, throws[i].distance_m))
         << name << " at " << resolution_px << " px, pose " << i << ": "
         << describe(judged, throws[i].direction, throws[i].distance_m, contacts[i], truth_m);
-    // A contact is one: something is touched within the distance, if perhaps earlier.
+    // A reported contact must be real: something is touched within the distance, perhaps earlier.
     EXPECT_TRUE(truth_m || !contacts[i]) << name << ", pose " << i << ": touches nothing";
     ++free;
     touching += truth_m ? 1 : 0;
@@ -63,7 +63,7 @@ int expect_bounds(const std::string& name, const Mesh& object, const Mesh& scene
   return free;
 }
 
-/// From above, up to about 60 degrees off straight down.
+/// Throws from above, in directions up to about 60 degrees off straight down.
 std::vector<Throw> throws_at_ground(int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> distance_m(0.1, 1.2);
@@ -78,7 +78,7 @@ std::vector<Throw> throws_at_ground(int count, unsigned seed) {
   return throws;
 }
 
-/// In all directions, from places where much of the scene is inside the object's box.
+/// Throws in all directions, from positions where much of the scene is inside the object's box.
 std::vector<Throw> throws_around(double reach_m, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::vector<Throw> throws;
@@ -90,7 +90,7 @@ std::vector<Throw> throws_around(double reach_m, int count, unsigned seed) {
   return throws;
 }
 
-/// Points up from the ground, thinner than any pixel.
+/// Needles that point up from the ground, thinner than any pixel.
 Mesh needles() {
   std::vector<std::pair<Mesh, Eigen::Vector3f>> parts;
   for (int i = -4; i <= 4; ++i) {
@@ -145,7 +145,7 @@ TEST(GlBounds, HoldAndAreNarrowAtTheExtremes) {
   for (const double place_m : {0.0, 1e6, -1e6}) {
     for (const double size_m : {0.001, 0.2, 50.0}) {
       for (const double distance_m : {1e-4, 1.0, 100.0}) {
-        for (const double part : {0.0, 0.3, 0.999, 1.5}) {  // of the distance: where the floor is
+        for (const double part : {0.0, 0.3, 0.999, 1.5}) {  // floor, as a fraction of the distance
           const auto side = static_cast<float>(size_m);
           JudgedMesh cube(shapes::box({side, side, side}));
           Mesh floor_mesh = shapes::floor(2.0F * side, 0.0F);
@@ -160,7 +160,7 @@ TEST(GlBounds, HoldAndAreNarrowAtTheExtremes) {
           const SceneMesh target{{&floor_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
           const Eigen::Vector3d down(0, 0, -1);
           const Contact got = radar.query({&cube_gpu, cube.T_world_mesh}, down, distance_m, {&target, 1});
-          // At 1e6 m the world's double step puts the cube 1e-10 m off.
+          // At 1e6 m the world's double resolution displaces the cube by 1e-10 m.
           const auto truth_m = exact_travel(cube.mesh, cube.T_world_mesh, down, distance_m, floor_mesh,
                                             Eigen::Isometry3d::Identity(), ExactMethod::kBruteForce, 1e-9);
           EXPECT_TRUE(holds(got, truth_m, distance_m)) << place_m << " " << size_m << " " << part << " "

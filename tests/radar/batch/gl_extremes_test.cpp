@@ -1,4 +1,5 @@
-// gl_extremes_test.cpp: what the GL radar says where surfaces touch, are flush, broken, open or very many.
+// gl_extremes_test.cpp: the GL radar on surfaces that touch or are flush, on broken and open meshes, on very
+// many triangles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,13 +22,13 @@ Eigen::Isometry3d at(double x, double y, double z) {
 // Sizes are sums of powers of two, so that float vertices are exact.
 Mesh quarter_box() { return shapes::box({0.25F, 0.25F, 0.25F}); }
 
-/// One object, one mesh in its way.
+/// One object and one mesh in its path.
 class GlExtremes : public testing::Test {
  protected:
   Contact ask(const Mesh& object, const Eigen::Isometry3d& T_world_object, const Eigen::Vector3d& direction,
               double distance_m, const Mesh& scene) {
     GpuMesh object_gpu(context), scene_gpu(context);
-    object_gpu.upload(object, MeshUsage::kStreamed);  // leaves out what cannot be drawn
+    object_gpu.upload(object, MeshUsage::kStreamed);  // drops invalid triangles
     scene_gpu.upload(scene, MeshUsage::kStreamed);
     const SceneMesh target{{&scene_gpu, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
     return radar.query({&object_gpu, T_world_object}, direction, distance_m, {&target, 1});
@@ -56,13 +57,13 @@ TEST_F(GlExtremes, ATenthOfAMicrometreBeforeOrPastTouchingIsTouching) {
 
 TEST_F(GlExtremes, FacesParallelAndPerpendicularToTheDirection) {
   const Mesh box = quarter_box();
-  expect_holds(box, at(0, 0, 1), kDown, 1.0, box, 0.75);      // face onto face, corners over corners
-  expect_holds(box, at(0.125, 0, 1), kDown, 1.0, box, 0.75);  // sides flush by half an edge
-  // Past each other with 1e-7 m between the sides, and not past with 1e-7 m of common outline: less than a
-  // pixel, so that both are told by bounds only.
+  expect_holds(box, at(0, 0, 1), kDown, 1.0, box, 0.75);      // face onto face, vertices above vertices
+  expect_holds(box, at(0.125, 0, 1), kDown, 1.0, box, 0.75);  // sides flush over half an edge
+  // Passing with 1e-7 m between the sides, and touching with 1e-7 m of common outline: less than a pixel, so
+  // only the bounds distinguish the two.
   expect_holds(box, at(0.25 + 1e-7, 0.1, 1), kDown, 2.0, box, std::nullopt);
   expect_holds(box, at(0.25 - 1e-7, 0.1, 1), kDown, 2.0, box, 0.75);
-  // A sheet without thickness onto the edge of another across it.
+  // A sheet without thickness onto the edge of another one that crosses it.
   Mesh sheet;
   shapes::add_quad(sheet, {-0.25F, 0, -0.25F}, {0.25F, 0, -0.25F}, {0.25F, 0, 0.25F}, {-0.25F, 0, 0.25F});
   const Eigen::Isometry3d across =
@@ -90,7 +91,7 @@ TEST_F(GlExtremes, DegenerateDuplicateAndNaNTrianglesChangeNothing) {
 }
 
 TEST_F(GlExtremes, AnOpenMeshTouchesWithItsSurfaceAndHoldsNothingInside) {
-  Mesh bowl = shapes::ball(0.5F, 24, 36);  // upper half, open below
+  Mesh bowl = shapes::ball(0.5F, 24, 36);  // upper half, open at the bottom
   std::erase_if(bowl.triangles, [&](const Triangle& t) {
     return std::any_of(t.begin(), t.end(), [&](std::uint32_t i) { return bowl.vertices[i].z() < -1e-6F; });
   });
@@ -114,7 +115,7 @@ TEST_F(GlExtremes, TenMillionTinyTriangles) {
   const Contact beside = ask_at(at(0.5, 0.4, 1));
   EXPECT_EQ(beside.status, ContactStatus::kContact);
   EXPECT_TRUE(holds(beside, 0.875, 2.0)) << beside.lower_m << " " << beside.upper_m;
-  // The thorn is a quarter of a pixel wide: it may be missed by the pixels, but not by the bounds.
+  // The thorn is a quarter of a pixel wide: pixels may miss it, but the bounds must not.
   EXPECT_TRUE(holds(ask_at(at(0.01, 0.02, 1)), 0.875 - shapes::kThorn_m, 2.0));
 }
 

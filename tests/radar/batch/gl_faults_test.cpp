@@ -1,4 +1,5 @@
-// gl_faults_test.cpp: a renderer that gives less than asked is a sentence or no answer, never a crash.
+// gl_faults_test.cpp: a renderer that provides less than required causes an error message or no answer, never
+// a crash.
 #include <gtest/gtest.h>
 
 #include "mapping/types/system/error.hpp"
@@ -28,7 +29,8 @@ class GlFaults : public testing::Test {
 TEST_F(GlFaults, WithoutTheContextThereIsNoAnswerAndWithItAgainThereIs) {
   for (const GlMinimum minimum : {GlMinimum::kReadBack, GlMinimum::kOnRenderer}) {
     GlRadar radar(context, {.resolution_px = 64, .minimum = minimum});
-    // Before the first query, and after some: calls into no context do nothing and say so.
+    // Without a current context, GL calls do nothing and queries report it: before the first query, and after
+    // one.
     for (int i = 0; i < 2; ++i) {
       context.release();
       const Contact contact = ask(radar);
@@ -48,7 +50,7 @@ TEST_F(GlFaults, DepthThatWasNotDrawnIsNoDepth) {
   DepthImage depth_m;
   const MeshInstance instance{&cube, Eigen::Isometry3d(Eigen::Translation3d(0, 0, 2))};
   const auto render = [&] { pass.render({&instance, 1}, camera, Eigen::Isometry3d::Identity(), depth_m); };
-  for (int i = 0; i < 2; ++i) {  // before its texture is made, and after
+  for (int i = 0; i < 2; ++i) {  // before its texture is created, and after
     context.release();
     EXPECT_THROW(render(), Error);
     context.make_current();

@@ -1,4 +1,5 @@
-// gl_query_all_test.cpp: many queries at once answer as each alone, whoever takes the minimum.
+// gl_query_all_test.cpp: a batch of queries gives the same results as single queries, wherever the minimum is
+// computed.
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -28,7 +29,7 @@ void expect_same(const Contact& a, const Contact& b, std::size_t i) {
   EXPECT_EQ(a.pixel_m, b.pixel_m) << i;
 }
 
-/// Objects of three shapes in the air above the ground, each on its way somewhere.
+/// Objects of three shapes in the air above the ground, each moving in its own direction.
 class GlQueryAll : public testing::Test {
  protected:
   GlQueryAll() {
@@ -115,7 +116,7 @@ TEST_F(GlQueryAll, KeptMasksAnswerAsNewOnes) {
   GlRadar kept(context, {.resolution_px = 32, .atlas_px = 128});  // sixteen masks for sixty objects
   ask_all(kept);
   for (int step = 0; step < 3; ++step) {
-    // All move, every other one turns as well, and one becomes another shape.
+    // All move, every other one also rotates, and one changes its shape.
     for (std::size_t i = 0; i < queries.size(); ++i) {
       Eigen::Isometry3d& T = scene[i].instance.T_world_mesh;
       T.pretranslate(Eigen::Vector3d(0.01, 0, 0.005));
@@ -146,7 +147,7 @@ TEST_F(GlQueryAll, InvalidOnesAreSaidAndTheOthersAnswered) {
 }
 
 TEST_F(GlQueryAll, WhatThePassesCannotTellIsSettledExactly) {
-  // A peg inside the cup, behind the front wall as the cup moves sideways: the rear wall comes to it.
+  // A peg inside the cup, behind the front wall as the cup moves sideways: the rear wall hits it.
   const Mesh cup = shapes::cup(0.04F, 0.1F, 0.004F, 16), peg = shapes::box({0.01F, 0.01F, 0.04F});
   upload(peg);
   const SceneMesh target{{meshes.back().get(), at(0, 0, 0.06)}, SurfaceKind::kDynamic};

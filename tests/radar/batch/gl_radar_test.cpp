@@ -1,4 +1,4 @@
-// gl_radar_test.cpp: known contacts, the edges of what can be asked, and what must not count as one.
+// gl_radar_test.cpp: known contacts, limits of the parameters, and cases that must not count as contact.
 #include "radar/batch/gl_radar.hpp"
 
 #include <gtest/gtest.h>
@@ -64,8 +64,8 @@ TEST_F(GlRadarTest, BallAboveFloorTravelsItsClearance) {
   const SceneMesh floor = scene_mesh(shapes::floor(2.0F, 0.0F));
   const Contact contact = radar.query({uploaded(sphere(0.3F)), at(0.1, 0.2, 1.0)}, kDown, 2.0, {&floor, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
-  // The sample nearest to the pole is up to 0.71 pixels away, on facets that rise by 1 in 30: late by 0.11 mm
-  // at most.
+  // The sample nearest to the pole is up to 0.71 pixels away, on facets with a slope of 1 in 30: at most 0.11
+  // mm late.
   EXPECT_GE(contact.contact_distance_m, 0.7 - 1e-5);
   EXPECT_LE(contact.contact_distance_m, 0.7 + 0.71 * contact.pixel_m / 30.0);
   EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.1, 0.2, 0.0)).norm(), 0.0, 1.5 * contact.pixel_m);
@@ -119,7 +119,7 @@ TEST_F(GlRadarTest, OverlapIsReportedWithItsDepth) {
 }
 
 TEST_F(GlRadarTest,
-       OverlappingPlateLiftsFreely) {  // the surface faces along the motion: it is left, not met
+       OverlappingPlateLiftsFreely) {  // the surface faces along the motion, so the object leaves it
   const GpuMesh* plate = uploaded(shapes::box({0.3F, 0.3F, 0.01F}));
   const SceneMesh table = scene_mesh(shapes::floor(2.0F, 0.0F));
   EXPECT_EQ(radar.query({plate, at(0, 0, 0.003)}, -kDown, 0.5, {&table, 1}).status, ContactStatus::kNoTarget);
@@ -146,12 +146,11 @@ TEST_F(GlRadarTest,
 }
 
 TEST_F(GlRadarTest, SceneInAHollowIsNotAnOverlap) {
-  // A ring standing upright (its hole looks along y) with a thin shelf through the hole, just above the lower
-  // arc.
+  // An upright ring (its axis along y) with a thin shelf through its hole, just above the lower arc.
   const Mesh ring = shapes::torus(96, 32, 0.1F, 0.02F, 0.0F);
   Eigen::Isometry3d T_world_ring(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitX()));
   T_world_ring.pretranslate(Eigen::Vector3d(0, 0, 0.5));
-  // The lower arc spans z 0.38 to 0.42 at x = 0; the shelf lies at 0.43: 1 cm above it, 5 cm behind the
+  // The lower arc spans z 0.38 to 0.42 at x = 0; the shelf is at 0.43: 1 cm above the arc, 5 cm behind the
   // front.
   GlRadar deep(context, {.resolution_px = 128, .overlap_tolerance_m = 0.06});
   Mesh shelf;
@@ -159,8 +158,8 @@ TEST_F(GlRadarTest, SceneInAHollowIsNotAnOverlap) {
   const SceneMesh scene[] = {scene_mesh(shelf), scene_mesh(shapes::floor(2.0F, 0.0F))};
   const Contact contact = deep.query({uploaded(ring), T_world_ring}, kDown, 1.0, scene);
   EXPECT_EQ(contact.status, ContactStatus::kContact);
-  EXPECT_NEAR(contact.contact_distance_m, 0.38, 2e-4);  // pixels of 1.9 mm on facets that rise by 1 in 10
-  // The same shelf inside the lower arc's tube is one.
+  EXPECT_NEAR(contact.contact_distance_m, 0.38, 2e-4);  // pixels of 1.9 mm on facets with a slope of 1 in 10
+  // The same shelf inside the lower arc's tube is an overlap.
   const SceneMesh inside[] = {scene_mesh(shelf, at(0, 0, -0.03)), scene[1]};
   const Contact overlap = deep.query({uploaded(ring), T_world_ring}, kDown, 1.0, inside);
   EXPECT_EQ(overlap.status, ContactStatus::kOverlap);
@@ -169,7 +168,7 @@ TEST_F(GlRadarTest, SceneInAHollowIsNotAnOverlap) {
 
 TEST_F(GlRadarTest, PixelOutsideTheMaskSaysNothing) {
   // A pillar beside the ball, inside the square around its outline, ends higher than the floor: the ball
-  // misses it.
+  // misses the pillar.
   const Mesh ball = sphere(0.1F);
   Mesh pillar = shapes::box({0.02F, 0.02F, 1.0F});
   const SceneMesh scene[] = {scene_mesh(pillar, at(0.095, 0.095, -0.2)),
@@ -184,14 +183,14 @@ TEST_F(GlRadarTest, SurfaceEdgeOnIsNotInTheWayButItsRimIs) {
   Mesh wall;
   shapes::add_quad(wall, {0, -1, -1}, {0, 1, -1}, {0, 1, 0}, {0, -1, 0});
   const SceneMesh sheet = scene_mesh(wall);
-  // A sheet without thickness has no pixel from above: the sampled radar cannot see it.
+  // A sheet without thickness has no pixel from above, so the sampled radar misses it.
   EXPECT_EQ(radar.query({cube, at(0, 0, 0.5)}, kDown, 1.0, {&sheet, 1}).status, ContactStatus::kNoTarget);
-  // With the thickness of two pixels it can.
+  // A slab two pixels thick is found.
   const SceneMesh slab = scene_mesh(shapes::box({0.004F, 2.0F, 1.0F}), at(0, 0, -0.5));
   const Contact contact = radar.query({cube, at(0, 0, 0.5)}, kDown, 1.0, {&slab, 1});
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.4, 1e-6);
-  // Along the wall nothing stops it.
+  // Along the wall nothing blocks the cube.
   EXPECT_EQ(radar.query({cube, at(0.11, 0, -0.5)}, {0, 1, 0}, 0.5, {&slab, 1}).status,
             ContactStatus::kNoTarget);
 }
@@ -204,7 +203,7 @@ TEST_F(GlRadarTest, DistancesFromATenthOfAMillimetreTo100Metres) {
   EXPECT_EQ(radar.query({cube, at(0, 0, 0.1003)}, kDown, 1e-4, {&floor, 1}).status, ContactStatus::kNoTarget);
   const Contact far = radar.query({cube, at(0, 0, 90.1)}, kDown, 100.0, {&floor, 1});
   ASSERT_EQ(far.status, ContactStatus::kContact);
-  EXPECT_NEAR(far.contact_distance_m, 90.0, 1e-4);  // depth step 6 um
+  EXPECT_NEAR(far.contact_distance_m, 90.0, 1e-4);  // depth resolution 6 um
 }
 
 TEST_F(GlRadarTest, LosesNothingAThousandKilometresFromZero) {

@@ -1,4 +1,4 @@
-// mask_cache_test.cpp: what is kept is found, what this round uses stays.
+// mask_cache_test.cpp: cached masks are found, and masks used in the current round are not evicted.
 #include "radar/batch/mask_cache.hpp"
 
 #include <gtest/gtest.h>

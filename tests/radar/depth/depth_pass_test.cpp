@@ -1,4 +1,4 @@
-// depth_pass_test.cpp: the rendered depth is what rays in double precision meet.
+// depth_pass_test.cpp: the rendered depth equals that of rays cast in double precision.
 #include "radar/depth/depth_pass.hpp"
 
 #include <gtest/gtest.h>
@@ -19,11 +19,11 @@ constexpr Intrinsics kCamera{160, 120, 146.25, 146.25, 79.6, 60.3};
 
 struct RayHit {
   double depth_m = std::numeric_limits<double>::infinity();
-  double slope_m_per_px = 0.0;  // how the depth changes with one pixel sideways, the larger of both ways
+  double slope_m_per_px = 0.0;  // change of depth per pixel, the larger of both axes
   double margin_px = 0.0;       // distance of the pixel from the triangle's outline
 };
 
-/// Depth along the ray of image coordinates (u, v) through one triangle given in the camera frame.
+/// Depth along the ray of image coordinates (u, v) through one triangle, given in the camera frame.
 std::optional<RayHit> ray_hit(const Intrinsics& camera, double u_px, double v_px,
                               const std::array<Eigen::Vector3d, 3>& p_camera) {
   const Eigen::Vector3d normal = (p_camera[1] - p_camera[0]).cross(p_camera[2] - p_camera[0]);
@@ -51,7 +51,7 @@ std::optional<RayHit> ray_hit(const Intrinsics& camera, double u_px, double v_px
   return hit;
 }
 
-/// Triangles in front of the camera, given in the world frame of T_world_camera.
+/// Random triangles in front of the camera, in the world frame of T_world_camera.
 Mesh random_triangles(std::mt19937& random, int count, const Eigen::Isometry3d& T_world_camera) {
   std::uniform_real_distribution<double> depth_m(0.5, 8.0);
   std::uniform_real_distribution<double> u_px(-20.0, 180.0);
@@ -71,7 +71,7 @@ Mesh random_triangles(std::mt19937& random, int count, const Eigen::Isometry3d& 
   return mesh;
 }
 
-/// Renders and compares every pixel; pixels within 1/64 pixel of an outline may go either way.
+/// Renders and compares every pixel; pixels within 1/64 pixel of an outline may or may not be covered.
 void expect_rays_agree(DepthPass& pass, GlContext& context, const Mesh& mesh, const Intrinsics& camera,
                        const Eigen::Isometry3d& T_world_camera) {
   GpuMesh gpu(context);
@@ -108,7 +108,8 @@ void expect_rays_agree(DepthPass& pass, GlContext& context, const Mesh& mesh, co
       const double got_m = depth_m.at(x, y);
       const double expected_m = std::isfinite(nearest.depth_m) ? nearest.depth_m : 0.0;
       covered += expected_m > 0.0 ? 1 : 0;
-      // 0.1 mm is what is promised at 8 m; vertices snap to 1/256 pixel, which shifts a slope by up to that.
+      // 0.1 mm is the guaranteed accuracy at 8 m. Vertices snap to 1/256 pixel, which shifts a slope by up to
+      // that.
       if (std::abs(got_m - expected_m) > 1e-4 + nearest.slope_m_per_px / 64.0) ++wrong;
       if (nearest.slope_m_per_px < 0.002) worst_flat_m = std::max(worst_flat_m, std::abs(got_m - expected_m));
     }
@@ -168,11 +169,11 @@ TEST_P(DepthPassTest, WallAt8MetresIsThereToATenthOfAMillimetre) {
   DepthImage depth_m;
   pass.render({&instance, 1}, kCamera, Eigen::Isometry3d::Identity(), depth_m);
   for (const float z_m : depth_m.pixels)
-    EXPECT_NEAR(z_m, 8.0F, 1e-5F);  // flat, so the depth step alone: 0.5 um
+    EXPECT_NEAR(z_m, 8.0F, 1e-5F);  // a flat wall, so only the depth resolution: 0.5 um
 }
 
 TEST_P(DepthPassTest, FirstPixelIsCentredAtZeroZero) {
-  // A wall from image coordinates (9.9, 4.9) to (30.1, 20.1): half a pixel either way would win or lose a
+  // A wall from image coordinates (9.9, 4.9) to (30.1, 20.1): an offset of half a pixel would add or remove a
   // row.
   const Eigen::Vector3f a = back_project(kCamera, 9.9, 4.9, 2.0).cast<float>();
   const Eigen::Vector3f b = back_project(kCamera, 30.1, 20.1, 2.0).cast<float>();
@@ -223,7 +224,7 @@ TEST_P(DepthPassTest, BackFacesAreSeenUnlessCulled) {
   GpuMesh gpu(context);
   gpu.upload(floor_up, MeshUsage::kStatic);
   const MeshInstance instance{&gpu, Eigen::Isometry3d::Identity()};
-  // Above, looking down, sees the front; below, looking up, sees the back.
+  // The camera above looks down and sees the front; the camera below looks up and sees the back.
   Eigen::Isometry3d T_world_above(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
   T_world_above.pretranslate(Eigen::Vector3d(0, 0, 2));
   Eigen::Isometry3d T_world_below = Eigen::Isometry3d::Identity();
@@ -266,7 +267,7 @@ TEST_P(DepthPassTest, UnusableCameraGivesAnEmptyImage) {
 }
 
 TEST_P(DepthPassTest, ChunksOutOfSightAreNotDrawn) {
-  // A ring of ground around the camera, of which it sees an eighth or so.
+  // A ring of ground around the camera, of which about an eighth is in view.
   GpuMesh gpu(context);
   gpu.upload(shapes::torus(600, 60, 4.0F, 0.5F, 0.0F), MeshUsage::kStatic);
   const MeshInstance instance{&gpu, Eigen::Isometry3d::Identity()};

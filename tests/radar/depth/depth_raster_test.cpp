@@ -1,4 +1,4 @@
-// depth_raster_test.cpp: what the processor draws is what OpenGL draws, whole, and always the same.
+// depth_raster_test.cpp: the CPU rasteriser draws what OpenGL draws, without gaps, and always the same.
 #include "radar/depth/depth_raster.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ namespace {
 
 constexpr Intrinsics kCamera{320, 240, 292.5, 292.5, 160.0, 120.0};
 
-/// A hilly ground of triangles from a hundredth of a pixel to some pixels, 4 m wide, 1.5 to 3 m away.
+/// Hilly ground of triangles between a hundredth of a pixel and some pixels in size, 4 m wide, 1.5 to 3 m
+/// away.
 Mesh hills(int cells) {
   Mesh mesh;
   std::mt19937 random(7);
@@ -55,8 +56,8 @@ class DepthRasterTest : public testing::Test {
   }
 };
 
-/// Pixels at which one image is not within the other's depths at the pixel and its neighbours, by more than
-/// tolerance_m: where an outline or a fold may fall on either side of a pixel's centre.
+/// Counts pixels at which one image is outside the range of the other's depths at the pixel and its
+/// neighbours by more than tolerance_m. An outline or a fold may fall on either side of a pixel's centre.
 int pixels_apart(const DepthImage& one_m, const DepthImage& other_m, float tolerance_m) {
   int apart = 0;
   for (int y = 1; y + 1 < one_m.height; ++y) {
@@ -82,7 +83,7 @@ TEST_F(DepthRasterTest, AgreesWithOpenGlFromFineToCoarseTriangles) {
       Eigen::Isometry3d T_world_camera(Eigen::AngleAxisd(turned, Eigen::Vector3d(0.6, 0.8, 0.0)));
       const DepthImage gl_m = draw(with_gl, mesh, T_world_camera);
       const DepthImage processor_m = draw(by_processor, mesh, T_world_camera);
-      // A fold thinner than OpenGL's 1/256 pixel is there for one and not for the other.
+      // A fold thinner than OpenGL's 1/256 pixel may appear in only one of the images.
       EXPECT_LE(pixels_apart(processor_m, gl_m, 1e-5F), 3) << cells << " " << turned;
       EXPECT_LE(pixels_apart(gl_m, processor_m, 1e-5F), 3) << cells << " " << turned;
       int same = 0, both = 0;
@@ -97,7 +98,7 @@ TEST_F(DepthRasterTest, AgreesWithOpenGlFromFineToCoarseTriangles) {
 }
 
 TEST_F(DepthRasterTest, NeighboursLeaveNoGap) {
-  // The hills fill the whole image; behind them is nothing.
+  // The hills fill the whole image; there is nothing behind them.
   for (const int cells : {7, 33, 200, 700}) {
     GpuMesh mesh(context);
     mesh.upload(hills(cells), MeshUsage::kStatic);
@@ -111,8 +112,8 @@ TEST_F(DepthRasterTest, NeighboursLeaveNoGap) {
 }
 
 TEST(DepthCanvas, AnEdgeThatIsAlmostLevelLeavesNoGap) {
-  // Two triangles with one edge between them, longer than the picture is wide, that hardly crosses a row far
-  // from where the triangles begin.
+  // Two triangles that share an edge. The edge is wider than the image and crosses a row at a very flat
+  // angle, far from the rows where the triangles begin.
   constexpr int kWidth = 640, kHeight = 480;
   std::mt19937 random(1);
   std::uniform_real_distribution<float> part(0.0F, 1.0F);
@@ -168,7 +169,7 @@ TEST_F(DepthRasterTest, SeesAMeshThatWasReplacedOrIsAnotherAtTheSamePlace) {
     mesh.upload(shapes::floor(9.0F, z_m), MeshUsage::kStreamed);
     EXPECT_FLOAT_EQ(draw(by_processor, mesh, Eigen::Isometry3d::Identity()).at(3, 3), z_m);
   }
-  for (int k = 0; k < 40; ++k) {  // more meshes than are remembered
+  for (int k = 0; k < 40; ++k) {  // more meshes than are cached
     GpuMesh other(context);
     other.upload(shapes::floor(9.0F, 1.0F + 0.1F * static_cast<float>(k)), MeshUsage::kStatic);
     EXPECT_FLOAT_EQ(draw(by_processor, other, Eigen::Isometry3d::Identity()).at(9, 9),

@@ -1,4 +1,4 @@
-// cyber_radar_test.cpp: exact answers, bounds that hold, overlap, hollows, and every way to ask wrongly.
+// cyber_radar_test.cpp: exact results, valid bounds, overlap, hollows, and every kind of invalid query.
 #include "radar/exact/cyber_radar.hpp"
 
 #include <gtest/gtest.h>
@@ -34,14 +34,15 @@ TriangleTree tree_of(const Mesh& mesh) {
 
 Eigen::Isometry3d at(const Eigen::Vector3d& p) { return Eigen::Isometry3d(Eigen::Translation3d(p)); }
 
-/// The way a tree moved from `pose` along a direction has to another tree that stands at the world's origin.
+/// Queries the contact of a tree that moves from `pose` along a direction with another tree at the world's
+/// origin.
 Contact ask(CyberRadar& radar, const TriangleTree& object, const Eigen::Isometry3d& pose,
             const Eigen::Vector3d& direction, double distance_m, const TriangleTree& scene) {
   const SceneTree s{{&scene, Eigen::Isometry3d::Identity()}, SurfaceKind::kStatic};
   return radar.query({{&object, pose}, direction, distance_m}, {{&s, 1}, {}});
 }
 
-/// A room's corner as bumps: every triangle slanted, none alike.
+/// A bumpy floor: every triangle is slanted, no two are alike.
 Mesh bumpy_floor(int cells, float half_size_m, float bump_m, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> bump(-bump_m, bump_m);
@@ -64,7 +65,7 @@ Mesh bumpy_floor(int cells, float half_size_m, float bump_m, unsigned seed) {
   return mesh;
 }
 
-/// Unit camera looking along z at a bumpy wall 1 m ahead, some pixels unmeasured.
+/// Depth image of a camera that looks along z at a bumpy wall 1 m ahead; some pixels are invalid.
 DepthImage bumpy_depth(int width, int height, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> noise(-0.01F, 0.01F);
@@ -89,7 +90,7 @@ TEST(CyberRadar, ABoxAboveAFloorTravelsItsClearance) {
   EXPECT_EQ(contact.lower_m, contact.contact_distance_m);
   EXPECT_EQ(contact.upper_m, contact.contact_distance_m);
   EXPECT_EQ(contact.touched, SurfaceKind::kStatic);
-  // A face that lands flat: the point is its middle.
+  // A face that lands flat: the contact point is the face's centre.
   EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.1, 0.2, 0.0)).norm(), 0.0, kExact_m);
   EXPECT_NEAR((contact.normal_world - kUp).norm(), 0.0, kExact_m);
   EXPECT_NEAR(contact.pixel_m, 0.3 / 64, 1e-6);
@@ -98,12 +99,12 @@ TEST(CyberRadar, ABoxAboveAFloorTravelsItsClearance) {
 TEST(CyberRadar, AFlatLandingOnThousandsOfTrianglesIsReportedInTheMiddleOfThemAll) {
   CyberRadar radar;
   const TriangleTree fine = tree_of(bumpy_floor(260, 1.0F, 0.0F, 1));  // cells of 8 mm
-  const TriangleTree box = tree_of(shapes::box({0.2F, 0.3F, 0.1F}));   // over 1,900 of its triangles
+  const TriangleTree box = tree_of(shapes::box({0.2F, 0.3F, 0.1F}));   // above 1,900 of its triangles
   const Contact contact = ask(radar, box, at({0.113, 0.207, 0.5}), kDown, 1.0, fine);
   ASSERT_EQ(contact.status, ContactStatus::kContact);
   EXPECT_NEAR(contact.contact_distance_m, 0.45, kExact_m);
   EXPECT_NEAR((contact.point_world - Eigen::Vector3d(0.113, 0.207, 0.0)).norm(), 0.0, kExact_m);
-  // Upside down on its rim: the middle is in no piece; the point is on the rim all the same.
+  // Upside down on its rim: the centroid is on no contact, but the reported point is on the rim.
   const TriangleTree cup = tree_of(shapes::cup(0.2F, 0.1F, 0.03F, 60));
   const Eigen::Isometry3d T =
       at({0.1, 0.2, 0.5}) * Eigen::Isometry3d(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
@@ -114,7 +115,7 @@ TEST(CyberRadar, AFlatLandingOnThousandsOfTrianglesIsReportedInTheMiddleOfThemAl
   const double radius_m = (on_rim.point_world.head<2>() - Eigen::Vector2d(0.1, 0.2)).norm();
   EXPECT_GE(radius_m, 0.169);
   EXPECT_LE(radius_m, 0.2001);
-  // More than are counted: somewhere on the face.
+  // More pairs of triangles than are counted: the point is anywhere on the face.
   const TriangleTree slab = tree_of(shapes::box({1.0F, 1.0F, 0.1F}));
   const Contact under_slab = ask(radar, slab, at({0.0, 0.0, 0.5}), kDown, 1.0, fine);
   ASSERT_EQ(under_slab.status, ContactStatus::kContact);
@@ -195,7 +196,7 @@ TEST(CyberRadar, ADepthImageIsTouchedLikeItsMesh) {
     const Eigen::Vector3d direction =
         scene.T_world_camera.linear() * (Eigen::Vector3d(0.0, 0.0, 1.0) + random_point(random));
     if (exact_travel(torus, pose, direction, 0.001, mesh, scene.T_world_camera, ExactMethod::kGrid, 0.1)) {
-      continue;  // overlaps, maybe
+      continue;  // possibly overlapping
     }
     const auto truth_m = exact_travel(torus, pose, direction, 1.5, mesh, scene.T_world_camera);
     const Contact contact = radar.query({{&object, pose}, direction, 1.5}, {{}, {&scene, 1}});
@@ -218,7 +219,7 @@ TEST(CyberRadar, AnOverlapIsAsDeepAsTheWayBack) {
   EXPECT_EQ(contact.lower_m, contact.contact_distance_m);
   EXPECT_EQ(contact.upper_m, contact.contact_distance_m);
   EXPECT_NEAR((contact.normal_world - kUp).norm(), 0.0, kExact_m);
-  // Upwards the floor is what it leaves.
+  // Moving upwards, the object leaves the floor.
   EXPECT_EQ(ask(radar, object, at({0.1, 0.2, 0.15}), kUp, 2.0, scene).status, ContactStatus::kNoTarget);
 }
 
@@ -238,7 +239,7 @@ TEST(CyberRadar, SceneInsideAClosedObjectIsAnOverlapAndInsideAnOpenOneAContact) 
 
 TEST(CyberRadar, SceneInAHollowIsMetByTheLayerBehindIt) {
   CyberRadar radar;
-  // A frame of four bars about a hole, turned so that the motion runs along its plane: a peg in the hole.
+  // A ring, rotated so the motion runs along its plane, with a peg in its hole.
   const Mesh torus = shapes::torus(64, 24, 0.2F, 0.04F, 0.0F);
   const TriangleTree object = tree_of(torus);
   const TriangleTree peg = tree_of(shapes::box({0.05F, 0.05F, 0.3F}));

@@ -1,5 +1,5 @@
-// front_map_test.cpp: M is nowhere under the object, and what it says of the scene's triangles is never too
-// much.
+// object_height_map_test.cpp: M is never below the object, and its bounds for the scene's triangles are never
+// too large.
 #include "radar/exact/object_height_map.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace roomradar::object_height_map_test {
 namespace {
 
-/// Triangles of all sizes, needles among them, that share nothing.
+/// Unconnected triangles of all sizes, including needles.
 Mesh splinters(int count, std::mt19937& random) {
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
   Mesh mesh;
@@ -78,7 +78,7 @@ TEST_F(FrontMapTest, ATriangleIsNoNearerThanItsBoundAndThatIsFinerThanItsBoxs) {
       ObjectHeightMap front;
       front.build(object, resolution_px);
       Mesh scene = splinters(200, random);
-      // And some that are larger than the object, and far away as float goes.
+      // Some are larger than the object, some at the limits of float.
       for (std::size_t i = 0; i < 60; ++i) scene.vertices[i] *= i < 30 ? 40.0F : 4000.0F;
       for (const Triangle& corners : scene.triangles) {
         FrameTriangle s;
@@ -109,9 +109,9 @@ TEST_F(FrontMapTest, AFlatTriangleOverABoxIsBoundedToAPixelsRounding) {
   ObjectHeightMap front;
   front.build(object, 64);
   FrameTriangle slope{{Eigen::Vector3d(-1, -1, 0.5), {1, -1, 0.5}, {0, 1, 0.9}},
-                      {}};  // rises by 0.2 m a metre
+                      {}};  // a slope of 0.2 m per metre
   set_normal(slope);
-  const double truth_m = 0.5 + 0.2 * 0.9 - 0.1;  // over the box's edge at y = -0.1
+  const double truth_m = 0.5 + 0.2 * 0.9 - 0.1;  // above the box's edge at y = -0.1
   EXPECT_LE(front.least_gap_under(slope), truth_m);
   EXPECT_GT(front.least_gap_under(slope), truth_m - 2.0 * 0.2 * 0.2 / 64);
 }

@@ -1,4 +1,4 @@
-// radar_accuracy_test.cpp: the sampled radar against the exact judge on random poses, convex and concave.
+// radar_accuracy_test.cpp: the sampled radar against the exact reference on random poses, convex and concave.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace roomradar::radar_accuracy_test {
 namespace {
 
 struct Errors {
-  std::vector<double> late_m;   // radar minus exact, where both touch
-  std::vector<double> width_m;  // between the bounds, where the radar touches
-  int missed = 0;               // exact touches, radar says no target
-  int invented = 0;             // radar touches, exact does not
+  std::vector<double> late_m;   // radar minus exact, if both have a contact
+  std::vector<double> width_m;  // between the bounds, if the radar has a contact
+  int missed = 0;               // contact in truth, none from the radar
+  int invented = 0;             // contact from the radar, none in truth
   double pixel_m = 0.0;
 
   [[nodiscard]] double quantile_m(double q) const {
@@ -49,7 +49,7 @@ Errors measure(const Mesh& object, const Mesh& scene, int resolution_px, int cou
     const auto expected_m =
         exact_travel(object, T_world_object, direction, reach_m, scene, Eigen::Isometry3d::Identity());
     EXPECT_NE(got.status, ContactStatus::kInvalidInput);
-    // The bounds hold, sampled or not, found or not.
+    // The bounds are valid with and without a contact.
     const double truth_m = expected_m.value_or(std::numeric_limits<double>::infinity());
     EXPECT_LE(got.lower_m, truth_m) << "pose " << i;
     EXPECT_GE(got.upper_m, truth_m) << "pose " << i;
@@ -75,7 +75,7 @@ void expect_late_but_close(const std::string& name, const Errors& errors, double
       errors.invented, 1e3 * errors.width_m[errors.width_m.size() / 2],
       1e3 * errors.width_m[errors.width_m.size() * 95 / 100]);
   EXPECT_GT(errors.late_m.size(), 150U);
-  // Early only by the snap of vertices to 1/256 pixel on a slope.
+  // Early only because vertices snap to 1/256 pixel on a slope.
   EXPECT_GT(errors.late_m.front(), -errors.pixel_m / 32.0);
   EXPECT_LT(errors.quantile_m(0.5), median_px * errors.pixel_m);
   EXPECT_LT(errors.late_m.back(), worst_px * errors.pixel_m);
@@ -96,7 +96,7 @@ TEST(RadarAccuracy, SmoothTorusOnBumpyGround) {
 TEST(RadarAccuracy, ConcaveBumpyTorusOnBumpyGround) {
   const Errors errors =
       measure(shapes::torus(48, 24, 0.1F, 0.04F, 0.015F), shapes::bumpy_ground(60), 128, 400, 3);
-  // A bump that grazes another side by side is late by as much as one is high.
+  // A bump that grazes another sideways may be late by a bump's height.
   expect_late_but_close("bumpy torus", errors, 1.0, 10.0);
 }
 

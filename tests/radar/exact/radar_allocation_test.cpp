@@ -1,4 +1,4 @@
-// radar_allocation_test.cpp: a radar that has answered takes nothing more from the heap.
+// radar_allocation_test.cpp: after its first queries a radar allocates no more memory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,8 @@ TEST(RadarAllocation, AQueryTakesNothingFromTheHeapAfterTheFirstOnesOfItsSize) {
   for (const RadarMode mode : {RadarMode::kExact, RadarMode::kSampled}) {
     CyberRadar radar({.mode = mode});
     int contacts = 0, overlaps = 0, free = 0;
-    // Poses free, sunk and in the crowd; along, thickened and into the ground; turned and kept.
+    // Poses that are free, sunk or among the scene's objects; with and without margin; new and repeated
+    // queries.
     const auto ask_all = [&] {
       boxes.build(std::span<const SceneTree>(trees));
       const RadarScene scene{.trees = trees, .depths = {&depth, 1}, .boxes = &boxes};
@@ -70,7 +71,7 @@ TEST(RadarAllocation, AQueryTakesNothingFromTheHeapAfterTheFirstOnesOfItsSize) {
 }
 
 TEST(RadarAllocation, QueriesThatAreCutShortTakeNoMoreFromTheHeapEachTime) {
-  // A ball that leaves a ground of 2 mm cells, in which it is sunk, towards a wall that is met from behind.
+  // A ball, sunk in ground of 2 mm cells, moves out of it towards a wall that it hits from behind.
   const JudgedMesh ground([] {
     Mesh mesh = shapes::bumpy_ground(500);
     for (Eigen::Vector3f& vertex : mesh.vertices) vertex *= 0.5F;

@@ -1,6 +1,7 @@
-// radar_bounds_test.cpp: the radar's answers against the judge's on random poses, convex and concave objects.
+// radar_bounds_test.cpp: the radar's results against the exact reference on random poses, convex and concave
+// objects.
 //
-// ROOMRADAR_LONG_TESTS=1 asks ten times as many poses, a build with the address sanitizer a tenth as many.
+// ROOMRADAR_LONG_TESTS=1 tests ten times as many poses, a build with the address sanitizer a tenth as many.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +45,7 @@ Eigen::Isometry3d random_pose(std::mt19937& random, const Eigen::Vector3d& centr
   return T;
 }
 
-/// One radar in the exact mode and one in the sampled mode a resolution.
+/// One radar in exact mode, and one in sampled mode per resolution.
 class Radars {
  public:
   Radars() {
@@ -52,7 +53,7 @@ class Radars {
       sampled_.emplace_back(RadarConfig{.mode = RadarMode::kSampled, .resolution_px = resolution_px});
     }
   }
-  /// Asks all of them about a pose that is free now; returns whether there was a contact.
+  /// Checks the results of all radars for a pose that is free now; returns true if there is a contact.
   bool expect_right(const JudgedMesh& object, const Eigen::Vector3d& direction, double distance_m,
                     const JudgedScene& scene, const std::string& what) {
     const auto truth_m = scene.contact_distance_m(object, direction, distance_m);
@@ -88,7 +89,7 @@ class Radars {
   std::deque<CyberRadar> sampled_;
 };
 
-/// Half a bumpy torus, open where it is cut.
+/// Half a bumpy torus, open at the cut.
 Mesh open_shell() {
   Mesh mesh = shapes::torus(32, 16, 0.12F, 0.05F, 0.015F);
   mesh.triangles.resize(mesh.triangles.size() / 2);
@@ -119,8 +120,8 @@ std::deque<Named> objects() {
   return result;
 }
 
-/// Throws every object at the scene from above, in directions up to about 60 degrees off straight down; the
-/// whole world is turned and moved anew each time.
+/// Throws every object at the scene from above, in directions up to about 60 degrees off straight down. The
+/// whole world is rotated and moved for each throw.
 void throw_all(JudgedScene scene, double top_m, int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -167,7 +168,7 @@ TEST(RadarBounds, HoldOverConcaveThings) {
   throw_all(std::move(scene), 0.0, poses(3200), 2);
 }
 
-/// A table with a step and a ball, seen from 1.5 m above its middle, with noise and holes.
+/// A table with a step and a ball, seen from 1.5 m above its centre, with noise and holes.
 DepthImage depth_of_table(const Intrinsics& camera) {
   DepthImage depth_m(camera.width_px, camera.height_px);
   std::mt19937 random(12);
@@ -190,7 +191,7 @@ TEST(RadarBounds, HoldOverDepthImages) {
   const DepthImage depth_m = depth_of_table(camera);
   MaskImage mask(camera.width_px, camera.height_px, 255);
   for (int v = 30; v < 50; ++v) std::fill(mask.row(v) + 50, mask.row(v) + 70, std::uint8_t{0});
-  // Camera looks down on the world's floor: its z is the world's -z.
+  // The camera looks down at the world's floor: its z is the world's -z.
   Eigen::Isometry3d T_world_camera(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitX()));
   T_world_camera.pretranslate(Eigen::Vector3d(0, 0, 1.5));
   JudgedScene fine, coarse;
@@ -207,12 +208,12 @@ TEST(RadarBounds, HoldOverDepthImages) {
   throw_all(std::move(coarse), 0.45, poses(800), 4);
 }
 
-/// Poses that are free though scene lies in a hollow of the object, or the object in one of the scene's.
+/// Free poses with scene in a hollow of the object, or the object in a hollow of the scene.
 struct Hollow {
   std::string name;
   Mesh object;
   Eigen::Vector3d centre, spread;
-  double turn;  // at most, off upright, rad
+  double turn;  // max angle from upright, rad
   Mesh scene;
 };
 
@@ -289,7 +290,7 @@ TEST(RadarBounds, SceneInAHollowIsNeitherContactNorOverlap) {
   EXPECT_GE(free, HasFailure() ? 0 : poses(3000));
 }
 
-/// The triangles that do not face along the motion: what an object that moves so can run into.
+/// Returns the triangles that do not face along the motion, the only ones that the moving object can hit.
 Mesh opposing(const Mesh& scene, const Eigen::Vector3d& direction) {
   Mesh result = scene;
   std::erase_if(result.triangles, [&](const Triangle& t) {
@@ -300,7 +301,7 @@ Mesh opposing(const Mesh& scene, const Eigen::Vector3d& direction) {
   return result;
 }
 
-/// Whether something is decided by less than twenty times what counts as touching.
+/// Returns true if a result depends on less than twenty times the touching tolerance.
 bool is_close(std::span<const TravelSpan> crossings, const std::optional<TravelSpan>& overlap) {
   constexpr double kClose_m = 2e-5;
   return std::any_of(crossings.begin(), crossings.end(), [&](const TravelSpan& span) {
@@ -362,9 +363,9 @@ TEST(RadarBounds, WhatIsSunkMayLeave) {
   for (int i = 0; i < poses(400); ++i) {
     Named& thing = things[static_cast<std::size_t>(i) % things.size()];
     thing.mesh.T_world_mesh = random_pose(random, {0, 0, 0}, {0.4, 0.4, 0});
-    // The whole ground faces a motion up to 25 degrees off the vertical.
+    // All of the ground faces against a motion up to 25 degrees off the vertical.
     const Eigen::Vector3d up = Eigen::Vector3d(0, 0, 1) + 0.3 * shapes::random_point(random);
-    // Up until it stands free, then back in.
+    // Moves it up until it is free, then back in.
     const auto crossings = exact_crossings(thing.mesh.mesh, thing.mesh.T_world_mesh, up, ground, at(0, 0, 0));
     if (crossings.empty()) continue;
     const double sunk_m = std::pow(10.0, -4.0 + 0.015 * (i % 200));  // 0.1 mm to 0.1 m
@@ -405,7 +406,7 @@ TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
       T.pretranslate(contact_distance_m * direction.normalized());
       return exact_clearance(thing.mesh, T, ground.mesh, ground.T_world_mesh);
     };
-    // Steps by what is clear for certain: the thickened object's travel, from below.
+    // Advances by the certain clearance: approaches the inflated object's distance to contact from below.
     double truth_m = 0.0;
     for (int step = 0; step < 60 && truth_m < distance_m; ++step) {
       truth_m += std::max(clearance_m(truth_m) - margin_m, 0.0);
@@ -415,7 +416,7 @@ TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
       const Contact got = scene.query(*radar, thing, direction, distance_m, margin_m);
       const std::string text = "pose " + std::to_string(i) + " margin " + std::to_string(margin_m) + ": " +
                                describe(thing, direction, distance_m, got, truth_m);
-      // Way beyond the judge's own stop is allowed only as far as nothing comes within the margin there.
+      // A result beyond the reference's stop is allowed only if nothing comes within the margin up to there.
       for (double contact_distance_m = std::max(got.lower_m, 0.0); contact_distance_m > truth_m;
            contact_distance_m -= 1e-3) {
         ASSERT_GT(clearance_m(contact_distance_m), margin_m - kExactError_m) << text;
@@ -425,7 +426,8 @@ TEST(RadarBounds, MarginHoldsForTheThickenedObject) {
     stopped += truth_m < distance_m ? 1 : 0;
   }
   EXPECT_GT(stopped, HasFailure() ? 0 : poses(60));
-  // Of use: in the exact mode the truth but for grazes, in the sampled mode a pixel or so under it.
+  // The bound must be useful: equal to the truth in exact mode except for grazes, about a pixel below it in
+  // sampled mode.
   std::sort(timid_margins.begin(), timid_margins.end());
   std::printf("timid by median %.2f, p90 %.2f, worst %.2f margins\n", timid_margins[timid_margins.size() / 2],
               timid_margins[timid_margins.size() * 9 / 10], timid_margins.back());
@@ -444,7 +446,7 @@ TEST(RadarBounds, ARadarThatAnsweredBeforeAnswersLikeANewOne) {
     CyberRadar old({.mode = mode});
     for (int i = 0; i < poses(300) && !HasFailure(); ++i) {
       Named& thing = things[random() % things.size()];
-      // Often only moved, or only asked about another direction, so that what was kept is used again.
+      // Often only translated, or only queried in another direction, so cached data is used again.
       if (random() % 3 == 0) thing.mesh.T_world_mesh = random_pose(random, {0, 0, 0.5}, {0.4, 0.4, 0.3});
       thing.mesh.T_world_mesh.pretranslate(0.05 * shapes::random_point(random));
       const Eigen::Vector3d direction =
@@ -458,7 +460,7 @@ TEST(RadarBounds, ARadarThatAnsweredBeforeAnswersLikeANewOne) {
                                describe(thing.mesh, direction, 0.7, a, b.contact_distance_m);
       EXPECT_EQ(a.status, b.status) << text;
       EXPECT_NEAR(a.contact_distance_m, b.contact_distance_m, 1e-9) << text;
-      EXPECT_NEAR(a.lower_m, b.lower_m, 1e-6) << text;  // float boxes: where sampling stops may differ a hair
+      EXPECT_NEAR(a.lower_m, b.lower_m, 1e-6) << text;  // float boxes: sampling may stop elsewhere
       EXPECT_TRUE(a.upper_m == b.upper_m || std::abs(a.upper_m - b.upper_m) < 1e-9) << text;
       EXPECT_EQ(a.touched, b.touched) << text;
     }
@@ -487,7 +489,7 @@ TEST(RadarBounds, WhatIsThinnerThanAPixelIsMissedInNeitherBound) {
         JudgedScene thick_scene;
         thick_scene.add(thick);
         EXPECT_TRUE(radars.expect_right(thin_object, down, 1.5, thick_scene, "a thin thing"));
-        // Thin on thin, crossed: only two edges meet.
+        // Two crossed needles: only two edges touch.
         if (thin.vertices.size() == needle.vertices.size() && thin.triangles.size() > 2) {
           JudgedMesh across(shapes::box({0.5F, 0.0001F, 0.0001F}),
                             at(0.1 * shapes::random_point(random).x(), 0, 1));

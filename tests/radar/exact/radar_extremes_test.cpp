@@ -1,6 +1,6 @@
-// radar_extremes_test.cpp: what the radar says where numbers are tiny, huge, equal, or no numbers at all.
+// radar_extremes_test.cpp: the radar with numbers that are tiny, huge, equal or not finite.
 //
-// ROOMRADAR_LONG_TESTS=1 builds 10^7 triangles by place, too, instead of 10^6.
+// ROOMRADAR_LONG_TESTS=1 also builds trees of 10^7 triangles sorted by position, instead of 10^6.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ struct Radars {
   CyberRadar exact{RadarConfig{.mode = RadarMode::kExact}};
   CyberRadar sampled{RadarConfig{.mode = RadarMode::kSampled}};
 
-  /// The exact mode says truth_m to error_m; the sampled mode's bounds hold it.
+  /// Expects truth_m within error_m from exact mode, and bounds that contain truth_m from sampled mode.
   void expect(const JudgedMesh& object, const Eigen::Vector3d& direction, double distance_m,
               const JudgedScene& scene, std::optional<double> truth_m, double error_m = 1e-9) {
     const Contact got = scene.query(exact, object, direction, distance_m);
@@ -42,7 +42,7 @@ struct Radars {
     const Contact rough = scene.query(sampled, object, direction, distance_m);
     EXPECT_TRUE(holds(rough, truth_m, distance_m)) << describe(object, direction, distance_m, rough, truth_m);
   }
-  /// As the judge says.
+  /// Expects the result of the exact reference.
   void expect_judged(const JudgedMesh& object, const Eigen::Vector3d& direction, double distance_m,
                      const JudgedScene& scene) {
     const auto truth_m = scene.contact_distance_m(object, direction, distance_m);
@@ -56,7 +56,7 @@ JudgedScene scene_of(Mesh mesh, const Eigen::Isometry3d& T_world_mesh = Eigen::I
   return scene;
 }
 
-// Sizes are sums of powers of two where a hand figure is wanted, so that float vertices are exact.
+// Sizes are sums of powers of two in tests with results computed by hand, so float vertices are exact.
 Mesh quarter_box() { return shapes::box({0.25F, 0.25F, 0.25F}); }
 
 TEST(RadarExtremes, DistanceOfATenthOfAMillimetre) {
@@ -88,7 +88,7 @@ TEST(RadarExtremes, ObjectOfAMillimetreAndOfFiftyMetres) {
       radars.expect_judged(JudgedMesh(object, T), kDown + 0.5 * shapes::random_point(random), 0.5,
                            scene_of(shapes::bumpy_ground(30)));
     }
-    // On a box of the other's size.
+    // On a box of the other size.
     const float other_m = 0.05F / size_m;
     const JudgedScene box = scene_of(shapes::box({other_m, other_m, other_m}));
     const double path_length_m = static_cast<double>(size_m);
@@ -105,7 +105,7 @@ TEST(RadarExtremes, AMillionMetresFromTheOrigin) {
     for (const double sz : {-1e6, 1e6}) {
       const Eigen::Vector3d place(sx, -sx, sz);
       Mesh ground = shapes::bumpy_ground(30);
-      ground.origin = place;  // one scene far by its origin, one by its pose
+      ground.origin = place;  // one scene is far away by its origin, the other by its pose
       JudgedScene scene = scene_of(ground);
       scene.add(shapes::torus(30, 20, 0.3F, 0.1F, 0.03F), at(place + Eigen::Vector3d(0.3, 0, 0)));
       for (int i = 0; i < 15; ++i) {
@@ -127,7 +127,7 @@ TEST(RadarExtremes, DirectionAlongEachAxisAndAHairOff) {
       for (const double hair : {0.0, 1e-300, 1e-16, 1e-12, 1e-9, 1e-6, 1e-3}) {
         Eigen::Vector3d direction = Eigen::Vector3d::Zero();
         direction[axis] = sign;
-        // Boxes apart by 0.5 along the axis, shifted so that edges do not fall on edges.
+        // Boxes 0.5 apart along the axis, shifted so no edges coincide.
         const Eigen::Vector3d aside = Eigen::Vector3d(0.03, 0.07, 0.11) - 0.75 * direction -
                                       direction.cwiseAbs().cwiseProduct(Eigen::Vector3d(0.03, 0.07, 0.11));
         direction[(axis + 1) % 3] = hair;
@@ -139,7 +139,7 @@ TEST(RadarExtremes, DirectionAlongEachAxisAndAHairOff) {
                       std::nullopt);
         radars.expect_judged(JudgedMesh(shapes::cup(0.125F, 0.25F, 0.03125F, 12), at(aside)), direction, 0.75,
                              scene_of(shapes::chair(), at(-0.2, 0, -0.5)));
-        // The length of the direction says nothing.
+        // The length of the direction does not matter.
         radars.expect(JudgedMesh(quarter_box(), at(aside)), 1e-200 * direction, 0.75, scene_of(quarter_box()),
                       truth_m);
         radars.expect(JudgedMesh(quarter_box(), at(aside)), 1e200 * direction, 0.75, scene_of(quarter_box()),
@@ -158,7 +158,7 @@ TEST(RadarExtremes, WhatIsNoQuestionIsRefused) {
                             double margin_m = 0.0) {
       const Contact got = scene.query(radar, object, direction, distance_m, margin_m);
       EXPECT_FALSE(got);
-      EXPECT_EQ(got.lower_m, 0.0);  // nothing is free for certain
+      EXPECT_EQ(got.lower_m, 0.0);  // nothing is known to be free
       return got.status;
     };
     EXPECT_EQ(status(box, {0, 0, 0}, 1.0), ContactStatus::kInvalidInput);
@@ -226,14 +226,14 @@ TEST(RadarExtremes, WhatTouchesMayLeaveAndSlide) {
 TEST(RadarExtremes, FacesParallelAndPerpendicularToTheDirection) {
   Radars radars;
   const JudgedScene box = scene_of(quarter_box());
-  // Face onto face, every corner and edge over another.
+  // Face onto face, every vertex and edge above another.
   radars.expect(JudgedMesh(quarter_box(), at(0, 0, 1)), kDown, 1.0, box, 0.75);
-  // Sides flush by half an edge.
+  // Sides flush over half an edge.
   radars.expect(JudgedMesh(quarter_box(), at(0.125, 0, 1)), kDown, 1.0, box, 0.75);
-  // Past each other with 1e-7 m between the sides, and not past with 1e-7 m of common outline.
+  // Passing with 1e-7 m between the sides, and touching with 1e-7 m of common outline.
   radars.expect(JudgedMesh(quarter_box(), at(0.25 + 1e-7, 0.1, 1)), kDown, 2.0, box, std::nullopt);
   radars.expect(JudgedMesh(quarter_box(), at(0.25 - 1e-7, 0.1, 1)), kDown, 2.0, box, 0.75);
-  // A vertical sheet onto the edge of another one in the same plane, and across it.
+  // A vertical sheet onto the edge of another one: in the same plane, and crossing it.
   Mesh sheet;
   shapes::add_quad(sheet, {-0.25F, 0, -0.25F}, {0.25F, 0, -0.25F}, {0.25F, 0, 0.25F}, {-0.25F, 0, 0.25F});
   radars.expect(JudgedMesh(sheet, at(0.1, 0, 1) * Eigen::Isometry3d(
@@ -269,7 +269,7 @@ TEST(RadarExtremes, PointsAndLinesTouchLikeTriangles) {
 
 TEST(RadarExtremes, OneTriangleLargerThanTheVolume) {
   Radars radars;
-  Mesh plane;  // kilometres across; rises by 1 in 4
+  Mesh plane;  // kilometres wide, with a slope of 1 in 4
   plane.vertices = {{-4096, -4096, -1024}, {8192, -4096, 2048}, {-4096, 8192, -1024}};
   plane.triangles = {{0, 1, 2}};
   const JudgedScene scene = scene_of(plane);
@@ -277,12 +277,12 @@ TEST(RadarExtremes, OneTriangleLargerThanTheVolume) {
   radars.expect_judged(JudgedMesh(shapes::torus(30, 20, 0.2F, 0.05F, 0.02F), at(100, 200, 26)),
                        {0.3, 0.1, -1}, 2.0, scene);
   radars.expect(JudgedMesh(quarter_box(), at(0, 0, 1)), -kDown, 2.0, scene, std::nullopt);
-  // And an object that is one huge triangle, on a small box.
+  // An object that is one huge triangle, onto a small box.
   radars.expect(JudgedMesh(plane, at(0, 0, 1)), kDown, 2.0, scene_of(quarter_box()), 1.0 - 0.125 - 0.03125);
 }
 
 TEST(RadarExtremes, TenMillionTinyTriangles) {
-  // By place is slow to build: a million, or all where there is time.
+  // Sorting by position is slow: a million triangles, or all in long tests.
   const bool is_long = std::getenv("ROOMRADAR_LONG_TESTS") != nullptr;
   TriangleTree in_order, by_key;
   {
@@ -326,7 +326,7 @@ TEST(RadarExtremes, ResolutionOfOnePixelAndOf4096) {
       const auto truth_m = scene.contact_distance_m(object, direction, 1.0);
       const Contact got = scene.query(exact, object, direction, 1.0);
       EXPECT_TRUE(is_exact(got, truth_m, 1.0)) << describe(object, direction, 1.0, got, truth_m);
-      for (int kept = 0; kept < 4; ++kept) {  // M has all its pixels from the third time on
+      for (int kept = 0; kept < 4; ++kept) {  // M has its full resolution from the third query on
         const Contact rough = scene.query(sampled, object, direction, 1.0);
         EXPECT_TRUE(holds(rough, truth_m, 1.0)) << describe(object, direction, 1.0, rough, truth_m);
       }
@@ -335,13 +335,13 @@ TEST(RadarExtremes, ResolutionOfOnePixelAndOf4096) {
 }
 
 TEST(RadarExtremes, AnOpenMeshTouchesWithItsSurfaceAndHoldsNothingInside) {
-  Mesh bowl = shapes::ball(0.5F, 24, 36);  // upper half, open below
+  Mesh bowl = shapes::ball(0.5F, 24, 36);  // upper half, open at the bottom
   std::erase_if(bowl.triangles, [&](const Triangle& t) {
     return std::any_of(t.begin(), t.end(), [&](std::uint32_t i) { return bowl.vertices[i].z() < -1e-6F; });
   });
   Radars radars;
   const JudgedScene pebble = scene_of(shapes::ball(0.125F, 24, 36));
-  // Over the pebble, then round it: the pebble stands within the bowl and is not inside it.
+  // Above the pebble, then around it: the pebble is under the bowl but not inside its surface.
   radars.expect(JudgedMesh(bowl, at(0, 0, 1)), kDown, 2.0, pebble, 1.375);
   radars.expect(JudgedMesh(bowl, at(0, 0, 0)), kDown, 2.0, pebble, 0.375);
   radars.expect(JudgedMesh(bowl, at(0, 0, 0)), -kDown, 2.0, pebble, std::nullopt);

@@ -1,4 +1,4 @@
-// radar_pictures_test.cpp: the processor's radar draws what GL draws, and its M is nowhere less.
+// radar_pictures_test.cpp: the CPU radar draws the same images as GL, and its M is nowhere less.
 #include "radar/exact/radar_pictures.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace roomradar::radar_pictures_test {
 namespace {
 
 constexpr int kResolution_px = 96;
-constexpr double kDistance_m = 2.0;   // past all of the scene: what R is beyond d does not matter
+constexpr double kDistance_m = 2.0;   // beyond the whole scene: R farther than d does not matter
 constexpr float kRounding_m = 5e-5F;  // GL draws in float, over 2 m
 const Eigen::Vector3d kDown = -Eigen::Vector3d::UnitZ();
 
@@ -43,8 +43,8 @@ struct Differences {
   int both = 0, one_only = 0, differ = 0;
   float most_m = 0.0F;
 };
-/// Pixels that one picture has and the other has not, or that are farther apart than rounding: of depths, and
-/// of places across, by how steep it is there.
+/// Counts pixels that only one image has, and pixels that differ by more than the tolerance. The tolerance is
+/// depth rounding, plus the effect of a small sideways shift on the local slope.
 Differences compare(const Image<float>& a, const Image<float>& b, float nothing) {
   Differences result;
   const auto has = [&](float v) { return !std::isnan(v) && v != nothing; };
@@ -74,8 +74,8 @@ Differences compare(const Image<float>& a, const Image<float>& b, float nothing)
   return result;
 }
 
-/// One pixel in 200 may differ: where an edge (of the outline, or of a step in depth) passes its sample by
-/// rounding.
+/// One pixel in 200 may differ: rounding decides on which side of its sample an edge (of the outline or of a
+/// depth discontinuity) passes.
 void expect_same(const Image<float>& ours, const Image<float>& theirs, float nothing, const char* what) {
   ASSERT_EQ(ours.width, theirs.width);
   ASSERT_EQ(ours.height, theirs.height);

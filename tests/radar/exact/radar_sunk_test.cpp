@@ -1,4 +1,5 @@
-// radar_sunk_test.cpp: what is sunk in a very fine mesh is answered after bounded work, and honestly.
+// radar_sunk_test.cpp: queries for objects sunk in a very fine mesh end after bounded work, with valid
+// bounds.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +13,7 @@
 namespace roomradar::radar_sunk_test {
 namespace {
 
-/// 1 m across, cells of 2 mm: 500,000 triangles.
+/// 1 m wide, cells of 2 mm: 500,000 triangles.
 const JudgedMesh& fine_ground() {
   static const JudgedMesh ground([] {
     Mesh mesh = shapes::bumpy_ground(500);
@@ -48,7 +49,7 @@ TEST(RadarSunk, AWayBackThatIsTooLongIsSaidToBeAtLeastAsFarAsWasLooked) {
     direction.normalize();
     const Contact got = ask(radar, object, direction);
     if (got.status != ContactStatus::kOverlap) {
-      // Nothing that opposes the motion was found: it leaves, or work ran out before.
+      // No surface that opposes the motion was found: the object leaves, or the work limit was reached first.
       EXPECT_TRUE(got.lower_m == 0.0 || direction.z() > 0.0);
       continue;
     }
@@ -112,7 +113,7 @@ TEST(RadarSunk, LeavingAVeryFineMeshIsFreeForAsMuchAsIsKnownAndAWallAheadIsFound
                                      .direction_world = Eigen::Vector3d::UnitZ(),
                                      .distance_m = 0.3},
                                     {.trees = trees, .depths = {}});
-    // The wall faces up: it is met from behind.
+    // The wall faces up: the object hits it from behind.
     const double truth_m = 0.25 - object.T_world_mesh.translation().z() - 0.1;
     EXPECT_LE(got.lower_m, truth_m + 1e-6);
     EXPECT_GE(got.upper_m, truth_m - 1e-6);

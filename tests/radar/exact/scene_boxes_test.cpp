@@ -1,4 +1,4 @@
-// scene_boxes_test.cpp: of many trees only those near a question are asked, and the answer is the same.
+// scene_boxes_test.cpp: of many trees only those near a query are tested, and the result is the same.
 #include "radar/exact/scene_boxes.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// box_tree_test.cpp: as asking each box, and fewer questions.
+// box_tree_test.cpp: same results as testing each box, with fewer tests.
 #include "radar/geometry/box_tree.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ TEST(BoxTree, FindsWhatAskingEachFindsInOrder) {
   BoxTree tree;
   for (const std::size_t count : {0U, 1U, 7U, 8U, 9U, 64U, 65U, 1000U}) {
     std::vector<Eigen::AlignedBox3d> boxes(count);
-    for (std::size_t i = 0; i < count; ++i) {  // along a line, so that neighbours lie together
+    for (std::size_t i = 0; i < count; ++i) {  // along a line, so neighbours are close together
       const Eigen::Vector3d p = shapes::random_point(random) + Eigen::Vector3d(0.1 * double(i), 0, 0);
       boxes[i] = {p, p + 0.2 * (shapes::random_point(random) + Eigen::Vector3d::Ones())};
     }

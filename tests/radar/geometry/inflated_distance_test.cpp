@@ -1,4 +1,5 @@
-// thick_travel_test.cpp: the travel of a thickened triangle against closed forms and the judge of distances.
+// inflated_distance_test.cpp: distance to contact of an inflated triangle against closed forms and against
+// exact distances.
 #include "radar/geometry/inflated_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ double clearance_m(const FrameTriangle& object, const FrameTriangle& scene, doub
 TEST(ThickTravel, FaceEdgeAndCornerStopAtTheMargin) {
   const FrameTriangle flat = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   EXPECT_NEAR(inflated_distance(flat, triangle({0, 0, 2}, {1, 0, 2}, {0, 1, 2}), 0.25, 9.0), 1.75, 1e-9);
-  // A tip straight ahead, and one 0.3 beside the edge: sqrt(0.5^2 - 0.3^2) = 0.4 before it.
+  // A tip straight ahead, and one 0.3 beside the edge: contact sqrt(0.5^2 - 0.3^2) = 0.4 in front of it.
   EXPECT_NEAR(inflated_distance(flat, triangle({0.2, 0.2, 2}, {1, 1, 5}, {0, 1, 5}), 0.25, 9.0), 1.75, 1e-9);
   EXPECT_NEAR(inflated_distance(flat, triangle({0.5, -0.3, 2}, {0.2, -1, 5}, {0.8, -1, 5}), 0.5, 9.0), 1.6,
               1e-8);
@@ -44,7 +45,7 @@ TEST(ThickTravel, PassesBesideBehindAndAlongWithoutEnd) {
   const FrameTriangle flat = triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   EXPECT_EQ(inflated_distance(flat, triangle({3, 0, 2}, {4, 0, 2}, {3, 1, 2}), 0.25, 9.0), kInfinity);
   EXPECT_EQ(inflated_distance(flat, triangle({0, 0, -2}, {1, 0, -2}, {0, 1, -2}), 0.25, 9.0), kInfinity);
-  // A long wall along the motion, 0.3 beside.
+  // A long wall parallel to the motion, 0.3 beside it.
   const FrameTriangle wall = triangle({0.5, -0.3, -9}, {0.5, -0.3, 9}, {0.5, -5, 0});
   EXPECT_EQ(inflated_distance(flat, wall, 0.25, 9.0), kInfinity);
   EXPECT_EQ(inflated_distance(flat, wall, 0.31, 9.0), 0.0);

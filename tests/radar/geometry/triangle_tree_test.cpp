@@ -1,4 +1,5 @@
-// triangle_tree_test.cpp: boxes hold what is under them, all triangles are there, closed is told from open.
+// triangle_tree_test.cpp: boxes contain their subtrees, no triangle is lost, closed and open meshes are
+// distinguished.
 #include "radar/geometry/triangle_tree.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@
 namespace roomradar::triangle_tree_test {
 namespace {
 
-/// Every corner of every triangle in the box of its leaf, and of all nodes above; each triangle once.
+/// Expects every vertex of every triangle in the box of its leaf and of all nodes above, and each triangle
+/// once.
 void expect_sound(const TriangleTree& tree) {
   std::vector<int> seen(tree.triangle_count(), 0);
   struct Pending {
@@ -104,7 +106,7 @@ TEST(TriangleTree, NothingIsEmpty) {
 
 TEST(TriangleTree, ClosedMeansEveryEdgeIsSharedAndTheVolumePositive) {
   TriangleTree tree;
-  Mesh box = shapes::box({1.0F, 1.0F, 1.0F});  // vertices of faces are not shared: told by place
+  Mesh box = shapes::box({1.0F, 1.0F, 1.0F});  // faces do not share vertices: they are matched by position
   tree.build_by_place(box);
   EXPECT_TRUE(tree.is_closed());
   tree.build_by_place(shapes::torus(20, 10, 0.2F, 0.06F, 0.02F));
@@ -155,7 +157,7 @@ TEST(TriangleTree, VerticesAsFarApartAsFloatGoesAreATree) {
   EXPECT_EQ(tree.triangle_count(), 30U);
 }
 
-/// Numbers, in the tree's order, of the triangles under boxes that are said to lie within flat faces.
+/// Indices, in the tree's order, of the triangles under boxes that are marked as within flat faces.
 std::set<std::uint32_t> within_faces(const TriangleTree& tree) {
   std::set<std::uint32_t> within;
   for (const TreeNode& node : tree.nodes())

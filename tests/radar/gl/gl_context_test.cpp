@@ -1,4 +1,4 @@
-// gl_context_test.cpp: a context is there, says what it is, and refuses in words.
+// gl_context_test.cpp: a context is created and described, and failures have clear messages.
 #include "radar/gl/gl_context.hpp"
 
 #include <gtest/gtest.h>
@@ -77,8 +77,8 @@ TEST(GlContext, GpuIsGivenOrRefusedWithWhatToDo) {
 }
 
 TEST(GlContext, WithoutEglDriversTheMessageSaysWhatToInstall) {
-  // libglvnd finds vendors in these folders only; in an empty one there is no EGL. A process of its own: EGL
-  // looks once.
+  // libglvnd finds vendors only in these folders; with an empty folder there is no EGL. Runs in its own
+  // process, because EGL searches once.
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {
@@ -99,7 +99,7 @@ TEST(GlContext, WithoutEglDriversTheMessageSaysWhatToInstall) {
 }
 
 TEST(GlContext, ADriverThatGivesLessThanAskedIsNamedWithWhatItGives) {
-  // Mesa is told to offer an older OpenGL; in a process of its own, since it reads that once.
+  // Mesa is configured to offer an older OpenGL; in its own process, because Mesa reads the setting once.
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
       {

@@ -1,4 +1,5 @@
-// gpu_mesh_test.cpp: what is refused, what is dropped, and that an upload replaces the last.
+// gpu_mesh_test.cpp: invalid meshes are rejected, invalid triangles dropped, and an upload replaces the
+// previous mesh.
 #include "radar/gl/gpu_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +42,7 @@ TEST_F(GpuMeshTest, StaticMeshWithAnIndexPastTheEndIsRefused) {
 
 TEST_F(GpuMeshTest, StreamedMeshDropsUnusableTriangles) {
   Mesh broken = shapes::box({2.0F, 2.0F, 2.0F});
-  broken.vertices[3].y() = std::numeric_limits<float>::quiet_NaN();  // in one or two triangles of its face
+  broken.vertices[3].y() = std::numeric_limits<float>::quiet_NaN();  // in one or two triangles per face
   broken.triangles.push_back({0, 1, 99});
   gpu.upload(broken, MeshUsage::kStreamed);
   EXPECT_EQ(gpu.triangle_count() + gpu.dropped_triangles(), 13U);
@@ -69,7 +70,7 @@ TEST_F(GpuMeshTest, StreamedUploadsReplaceEachOther) {
   DepthPass pass(context), by_gl(context, {.renderer = DepthRenderer::kOpenGl});
   DepthImage depth_m;
   const MeshInstance instance{&gpu, Eigen::Isometry3d::Identity()};
-  // Growing, shrinking, empty: what is drawn is always the last one.
+  // Larger, smaller, empty: always the latest mesh is drawn.
   for (const float z_m : {2.0F, 3.0F, 1.5F, 4.0F}) {
     Mesh mesh = shapes::torus(static_cast<int>(100 * z_m), 20, 1.0F, 0.1F, 0.0F);
     for (Eigen::Vector3f& p : mesh.vertices) p.z() -= 50.0F;  // behind the camera
@@ -103,7 +104,7 @@ TEST_F(GpuMeshTest, SharesATreeInsteadOfHoldingACopy) {
   EXPECT_EQ(alone.tree(), nullptr);
   EXPECT_TRUE(mesh.bounds().isApprox(alone.bounds()));
   EXPECT_NE(mesh.revision(), alone.revision());
-  // All of it is in some run.
+  // The runs contain all triangles.
   std::size_t visited = 0;
   mesh.visit_runs([](const Eigen::AlignedBox3d&) { return true; },
                   [&](std::uint32_t first, std::uint32_t count) {

@@ -1,4 +1,4 @@
-// mesh_chunks_test.cpp: no triangle is lost, boxes hold what is in them, places are kept together.
+// mesh_chunks_test.cpp: no triangle is lost, boxes contain their triangles, nearby triangles stay together.
 #include "radar/gl/mesh_chunks.hpp"
 
 #include <gtest/gtest.h>
@@ -50,8 +50,8 @@ TEST(MeshChunks, ByPlaceMakesSmallBoxesOfShuffledTriangles) {
   std::vector<float> longest_m;
   for (const MeshChunk& chunk : chunked.chunks) longest_m.push_back(chunk.bounds_local.sizes().maxCoeff());
   std::sort(longest_m.begin(), longest_m.end());
-  // 100 runs on a surface of 11.8 m^2: a compact one is 0.34 m across. Morton order has jumps, so the median
-  // counts.
+  // 100 runs on a surface of 11.8 m^2: a compact run is 0.34 m wide. Morton order has jumps, hence the
+  // median.
   EXPECT_LT(longest_m[longest_m.size() / 2], 0.7F);
 }
 
@@ -61,7 +61,7 @@ TEST(MeshChunks, UnusableTrianglesAreDroppedAndCounted) {
   mesh.vertices.emplace_back(0.0F, std::numeric_limits<float>::infinity(), 0.0F);
   mesh.triangles.push_back({0, 1, 24});
   mesh.triangles.push_back({0, 1, 25});
-  mesh.triangles.push_back({0, 1, 26});  // one past the last vertex
+  mesh.triangles.push_back({0, 1, 26});  // index one past the last vertex
   mesh.triangles.push_back({0, 1, 0xFFFFFFFFU});
   ChunkedTriangles chunked;
   chunk_in_order(mesh, 8, chunked);

@@ -1,5 +1,5 @@
-// near_field_test.cpp: what is near, against distances known and measured triangle by triangle, and times
-// that must never be too long.
+// proximity_test.cpp: closest features against known and brute-force distances, and free times that must
+// never be too long.
 #include "radar/motion/proximity.hpp"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,8 @@ Mesh grid(std::uint32_t cells) {
 
 TEST(ProximityQuery, WhatTouchesExactlyIsNearAndKnowsItsSide) {
   std::vector<ClosestPoint> points;
-  // On a floor and under a ceiling, of two faces and of many: some of these have corners below its edges.
+  // On a floor and under a ceiling, with two triangles and with many: some of these have vertices under the
+  // box's edges.
   for (const Mesh& sheet : {shapes::floor(2.0F, 0.0F), grid(32)}) {
     Pair pair(shapes::box({0.25F, 0.5F, 0.125F}), sheet);
     for (const double side : {1.0, -1.0}) {
@@ -110,7 +111,7 @@ TEST(ProximityQuery, RoundingDoesNotTurnTheNormalOfWhatTouches) {
 }
 
 TEST(ProximityQuery, AnEdgeAcrossAnEdgeIsNearWhereTheyPass) {
-  // A box turned so that an edge of it lies over the edge of another, at right angles.
+  // A box rotated so one of its edges is above an edge of another box, at right angles.
   Mesh ridge = shapes::box({4, 0.2F, 0.2F});
   Pair pair(shapes::box({0.2F, 4, 0.2F}), ridge);
   Eigen::Isometry3d T = at(0.02, 0, 0.0);
@@ -118,7 +119,7 @@ TEST(ProximityQuery, AnEdgeAcrossAnEdgeIsNearWhereTheyPass) {
   T.translation().z() = 0.1 + std::sqrt(2.0) * 0.1 + 0.001;
   std::vector<ClosestPoint> points;
   EXPECT_EQ(pair.near(T, 0.002, points), 0U);
-  ASSERT_GE(points.size(), 2U);  // over both of the ridge's upper edges
+  ASSERT_GE(points.size(), 2U);  // above both of the ridge's upper edges
   for (const ClosestPoint& p : points) {
     EXPECT_NEAR(p.gap_m, 0.001, 1e-6);
     EXPECT_NEAR(p.normal_world.z(), 1.0, 1e-6);
@@ -164,7 +165,7 @@ TEST(ProximityQuery, TheNearestPointIsAsNearAsTheMeshes) {
     for (const ClosestPoint& p : points) EXPECT_GE(p.gap_m, distance_m - 1e-9);
     if (!points.empty()) {
       ++near_ones;
-      EXPECT_NEAR(points.front().gap_m, distance_m, 2e-3);  // corners over corners are left out
+      EXPECT_NEAR(points.front().gap_m, distance_m, 2e-3);  // vertices above vertices are omitted
     }
     if (points.empty() && distance_m < 0.01) {
       EXPECT_GT(distance_m, 0.0);
@@ -203,7 +204,7 @@ TEST(ProximityQuery, NoMotionIsFreeForLongerThanItIs) {
   EXPECT_GT(stopped, 50);
 }
 
-/// Two boards, and the same with sides of many triangles.
+/// Two boards, coarse, and the same with sides of many triangles.
 struct Boards {
   Pair coarse{shapes::box({0.3F, 0.2F, 0.02F}), shapes::box({0.5F, 0.25F, 0.02F})};
   Pair fine{shapes::box_of_cells({0.3F, 0.2F, 0.02F}, 13), shapes::box_of_cells({0.5F, 0.25F, 0.02F}, 11)};
@@ -216,7 +217,7 @@ TEST(ProximityQuery, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
   std::vector<ClosestPoint> coarse, fine;
   int near = 0, crossed = 0;
   for (int i = 0; i < 400; ++i) {
-    // Over, across the border of, or in the other board; flat on each other, or tilted by up to 1 mm.
+    // Above, beyond the border of, or inside the other board; flat, or tilted by up to 1 mm.
     Eigen::Isometry3d T = at(0.4 * unit(random), 0.2 * unit(random), 0.02 + 0.0015 * unit(random));
     T.rotate(Eigen::AngleAxisd(3.0 * unit(random), Vec3::UnitZ()));
     if (i % 2 == 0) T.rotate(Eigen::AngleAxisd(0.005 * unit(random), Vec3(unit(random), 1, 0).normalized()));
@@ -229,7 +230,7 @@ TEST(ProximityQuery, AFaceOfManyTrianglesIsAsNearAsOneOfTwo) {
     ++near;
     EXPECT_NEAR(fine.front().gap_m, coarse.front().gap_m, 1e-7) << i;
     EXPECT_GE(fine.front().gap_m, boards.coarse.distance_m(T) - 1e-7) << i;
-    // What holds up reaches as far, in each direction.
+    // The supporting points reach equally far in each direction.
     for (int k = 0; k < 8; ++k) {
       const Vec3 out(std::cos(k * std::numbers::pi / 4), std::sin(k * std::numbers::pi / 4), 0.0);
       const auto farthest = [&](const std::vector<ClosestPoint>& points) {
@@ -280,8 +281,8 @@ TEST(ProximityQuery, AStraightFallIsFreeUntilItsKeptDistance) {
 }
 
 TEST(ProximityQuery, ATipOverAnEdgeIsFreeForAWholePiece) {
-  // It turns about its lower edge, a margin over the floor: nothing comes nearer but by the square of the
-  // turn.
+  // The box rotates about its lower edge, a margin above the floor: the gap shrinks only with the square of
+  // the angle.
   Pair pair(shapes::box({0.1F, 0.1F, 0.4F}), shapes::floor(2.0F, 0.0F));
   Eigen::Isometry3d T = at(0, 0, 0);
   T.rotate(Eigen::AngleAxisd(0.3, Vec3::UnitY()));
@@ -307,7 +308,7 @@ TEST(ProximityQuery, RodsEndToEndAreNearAndAreMetFromFarAway) {
   const double met_s = pair.free_time(at(3, 0, 0), flight, 1.0, 0.001).free_s;
   EXPECT_GT(met_s, 0.15);
   EXPECT_LT(met_s, 0.2);
-  RigidMotion round;  // half a turn brings it to where the other is
+  RigidMotion round;  // half a turn brings it to the other object
   round.centre_object = Vec3(-1.5, 0.0, 0.0);
   round.angular_rad_s = Vec3(0.0, 0.0, std::numbers::pi);
   EXPECT_LT(pair.free_time(at(3, 0, 0), round, 1.0, 0.001).free_s, 1.0);

@@ -1,4 +1,5 @@
-// sweep_test.cpp: moving and turning objects against closed forms and against the judge, pose by pose.
+// time_of_impact_test.cpp: moving and rotating objects against closed forms and against the exact reference,
+// pose by pose.
 //
 // ROOMRADAR_LONG_TESTS=1 makes 25 times as many random sweeps.
 #include "radar/motion/time_of_impact.hpp"
@@ -27,7 +28,7 @@ Eigen::Isometry3d at(double x, double y, double z) {
   return Eigen::Isometry3d(Eigen::Translation3d(x, y, z));
 }
 
-/// One object, one scene mesh.
+/// One object and one scene mesh.
 struct Stage {
   JudgedMesh object;
   JudgedMesh scene;
@@ -105,7 +106,7 @@ TEST(Sweep, ABarThatTurnsOnTheSpotStrikesTheFloorAtItsAngle) {
     EXPECT_GE(hit.contact_s * speed_rad_s, angle - 1e-6);
     EXPECT_LE(hit.contact_s * speed_rad_s, angle + 1e-1);
   }
-  // Above its reach it turns for ever.
+  // Above its reach it rotates without contact.
   const Stage high{JudgedMesh(shapes::box({0.5F, 0.03125F, 0.03125F}), at(0, 0, 0.3)),
                    JudgedMesh(shapes::floor(1.0F, 0.0F))};
   const TimeOfImpact free = high.sweep_for({.angular_rad_s = {0, 1000.0, 0}}, 1000.0);
@@ -114,7 +115,8 @@ TEST(Sweep, ABarThatTurnsOnTheSpotStrikesTheFloorAtItsAngle) {
 }
 
 TEST(Sweep, TheCentreOfTurningMatters) {
-  // A bar that turns about its own end, a wall 0.4 m beside: only so it reaches the wall.
+  // A bar that rotates about its end, and a wall 0.4 m beside it: rotating about its centre, it does not
+  // reach the wall.
   const Stage stage{JudgedMesh(shapes::box({0.5F, 0.03125F, 0.03125F}), at(0, 0, 0)),
                     JudgedMesh(shapes::box({1.0F, 0.0625F, 1.0F}), at(0, 0.4, 0))};
   EXPECT_EQ(stage.sweep_for({.angular_rad_s = {0, 0, 1}}, 3.0).status, TimeOfImpactStatus::kFree);
@@ -174,8 +176,7 @@ TEST(Sweep, FreeTimesAreFreeAndContactsAreReal) {
                              std::to_string(got.queries) + " queries";
     ASSERT_TRUE(got.status == TimeOfImpactStatus::kFree || got.status == TimeOfImpactStatus::kContact)
         << text << " status " << static_cast<int>(got.status);
-    // Pose by pose, in steps in which nothing can come and go unseen: no point moves farther than what is
-    // clear.
+    // Checks pose by pose, in steps that miss no contact: no point moves farther than the clearance.
     const double reach_m = 0.5;
     const double speed_m_s = motion.linear_m_s.norm() + motion.angular_rad_s.norm() * reach_m;
     for (double time_s = 0.0; time_s < got.safe_s;) {
@@ -221,12 +222,12 @@ TEST(Sweep, StandingStillIsFreeUnlessItOverlaps) {
     EXPECT_EQ(stuck.contact_s, 0.0);
     EXPECT_TRUE(stuck.T_world_object.isApprox(at(0, 0, 0.1), 0.0));
   }
-  // What could not be asked is not free.
+  // An invalid query does not count as free.
   Stage nowhere{JudgedMesh(box, at(0, 0, 1)), JudgedMesh(floor)};
   nowhere.scene.T_world_mesh.translation().x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(nowhere.sweep_for({}, 2.0).status, TimeOfImpactStatus::kInvalidInput);
   EXPECT_EQ(nowhere.sweep_for({}, 2.0).safe_s, 0.0);
-  Mesh upright = floor;  // met along the first axis alone if it is asked from the other side
+  Mesh upright = floor;  // detected along the first axis only if queried from the other side
   for (Eigen::Vector3f& vertex : upright.vertices) vertex = {vertex.z(), vertex.x(), vertex.y()};
   const Stage crossed{JudgedMesh(box, at(0, 0, 0)), JudgedMesh(upright)};
   EXPECT_EQ(crossed.sweep_for({}, 2.0, {.max_queries = 1}).status, TimeOfImpactStatus::kOutOfQueries);
@@ -247,7 +248,7 @@ TEST(Sweep, WhatTouchesAndTurnsIsStoppedAndWhatKeepsAGapMayLeave) {
             TimeOfImpactStatus::kFree);
   const Stage gap{JudgedMesh(box, at(0, 0, 0.125 + 2e-5)), JudgedMesh(floor)};
   EXPECT_EQ(gap.sweep_for(leaving, 0.5).status, TimeOfImpactStatus::kFree);
-  // But not where it turns a corner into the floor faster than it rises.
+  // But it is a contact if rotation moves a corner into the floor faster than the object rises.
   const RigidMotion digging{.linear_m_s = {0, 0, 0.1}, .angular_rad_s = {0, 5, 0}};
   const TimeOfImpact dug = gap.sweep_for(digging, 0.5);
   EXPECT_EQ(dug.status, TimeOfImpactStatus::kContact);
@@ -257,7 +258,7 @@ TEST(Sweep, WhatTouchesAndTurnsIsStoppedAndWhatKeepsAGapMayLeave) {
 TEST(Sweep, RunsOutOfQueriesHonestly) {
   const Stage stage{JudgedMesh(shapes::box({0.25F, 0.25F, 0.25F}), at(-0.8, 0, 0.126)),
                     JudgedMesh(shapes::floor(1.0F, 0.0F))};
-  // Slides 1 mm above the floor, turning about the vertical: many short steps.
+  // Slides 1 mm above the floor while rotating about the vertical: many short steps.
   const RigidMotion motion{.linear_m_s = {1, 0, 0}, .angular_rad_s = {0, 0, 20}};
   const TimeOfImpact got = stage.sweep_for(motion, 1.5, {.max_queries = 20});
   EXPECT_EQ(got.status, TimeOfImpactStatus::kOutOfQueries);

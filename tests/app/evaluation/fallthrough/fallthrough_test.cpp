@@ -1,4 +1,4 @@
-// The fall-through test itself: with a map nothing passes hidden surfaces, without one objects do.
+// fallthrough_test.cpp: with a map no object passes hidden surfaces, without a map objects do.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace roomradar::fallthrough_test {
 namespace {
 
-// Coarse, small images: the map is worse than any that the command makes.
+// Coarse voxels, small images: the map is worse than any that the command makes.
 const RoomScan kCoarse{.resolution_m = 0.02, .every = 6, .width_px = 320, .maps = {}};
 
 TEST(Fallthrough, NothingPassesTheMapOfACoarseScanAndObjectsPassWithoutOne) {
@@ -70,7 +70,7 @@ TEST(Fallthrough, NothingPassesTheMapOfACoarseScanAndObjectsPassWithoutOne) {
 }
 
 TEST(Fallthrough, EveryRoomMeetsEveryKindOfOccluderMotionAndShape) {
-  constexpr std::int64_t kInTurn = 4 * 2 * 9;  // of a room's scenarios, no two are of the same kinds
+  constexpr std::int64_t kInTurn = 4 * 2 * 9;  // per room, until combinations of kinds repeat
   for (const std::size_t rooms : {1U, 3U, 4U, 6U, 8U}) {
     std::set<std::pair<std::size_t, std::int64_t>> met;
     for (std::int64_t number = 0; number < kInTurn * static_cast<std::int64_t>(rooms); ++number) {

@@ -1,4 +1,4 @@
-// What trade draws, compares, chooses and writes, on numbers that are known.
+// trade_test.cpp: plots, comparisons, choices and files of the trade command, on known numbers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ const std::vector<Parameter> kParameters{
 TEST(Front, HoldsWhatNothingBeatsInBothAndOnlyThat) {
   CounterRandom random(7, 0);
   std::vector<CostAndError> points;
-  for (int i = 0; i < 200; ++i)  // coarse numbers, so that many are alike
+  for (int i = 0; i < 200; ++i)  // coarse numbers, so many are equal
     points.push_back({std::floor(10.0 * random.uniform()), std::floor(10.0 * random.uniform())});
   const std::vector<std::size_t> front = pareto_front_of(points);
   std::set<std::size_t> on(front.begin(), front.end());
@@ -146,7 +146,7 @@ TEST(DrawSettings, TheNextFasterWordOfEveryKnobComesBeforeAnyFartherOne) {
 
 TEST(DrawSettings, GivesFewerWhereThereAreNotSoManyToBeFound) {
   const std::vector<Setting> settings = draw_settings(kParameters, 1000, 1);
-  EXPECT_EQ(settings.size(), 6U);  // 3 x 2, less the usual one, and the load
+  EXPECT_EQ(settings.size(), 6U);  // 3 x 2, minus the default, plus the load
   EXPECT_TRUE(draw_settings({}, 5, 1).empty());
 }
 
@@ -172,10 +172,10 @@ TEST(Knobs, WordsMakeAQualityAndTheUsualOnesTheDefault) {
   EXPECT_EQ(describe(kParameters, {0, 1, 1}), "fine 4, many 9");
 }
 
-/// Time: 10 ms for the usual setting, half of it for each step that `fine` is turned, on a machine that
-/// becomes slower with each measurement; error: the more, the faster.
+/// A simulated machine that becomes slower with each measurement. Time: 10 ms for the default setting, halved
+/// for each step of `fine`. The error grows as the time falls.
 struct Machine {
-  double slower = 1.0;  // from one measurement to the next
+  double slower = 1.0;  // factor per measurement
   int asked = 0;
   std::vector<std::string> order;
 
@@ -202,7 +202,7 @@ TEST(Sweep, RatiosAreFlatThoughTheMachineSlowsDownTwofold) {
   Machine machine;
   const MeasuredWork work = machine.work();
   const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}, {0, 1, 0}};
-  machine.slower = std::pow(2.0, 1.0 / (2.0 * 2.0 * 7.0));  // over all of the sweep's measurements
+  machine.slower = std::pow(2.0, 1.0 / (2.0 * 2.0 * 7.0));  // twofold over all of the sweep's measurements
   const std::vector<SweepRow> rows = sweep(work, {settings, 2, 1}).rows;
   ASSERT_EQ(rows.size(), 12U);
   EXPECT_GT(rows.back().default_after.front(), 1.9 * rows.front().default_before.front())
@@ -267,7 +267,7 @@ TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) 
   const std::vector<SweepRow> some =
       sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 2; }}).rows;
   EXPECT_EQ(some.size(), 2U);
-  // A scene that was not finished does not take those that were from all settings but a few.
+  // An unfinished scene does not reduce the finished ones to a few settings.
   told = 0;
   const std::vector<SweepRow> whole =
       sweep(work, {settings, 1, 1}, {[&](const SweepRow&) { ++told; }, [&] { return told == 4; }}).rows;
@@ -278,7 +278,7 @@ TEST(Sweep, GoesOnWhereASettingCannotBeDoneAndKeepsWhatWasDoneWhereItIsStopped) 
 
 TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
   const std::vector<Setting> settings{{2, 1, 0}, {1, 1, 0}, {0, 1, 0}};
-  // The default of the second scene, or the scene itself: what there is of the first stays.
+  // The second scene, or its default, fails: results of the first are kept.
   for (const bool is_opened : {true, false}) {
     Machine machine;
     MeasuredWork work = machine.work({"a", "b"});
@@ -292,7 +292,7 @@ TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
     EXPECT_EQ(result.fault, is_opened ? "no memory" : "no such folder");
     EXPECT_EQ(result.rows.size(), 3U);
   }
-  // So it does where the file for the rows is full, the row that was to be written with them.
+  // The same if the rows' file is full; the row that could not be written is kept, too.
   Machine machine;
   int written = 0;
   const auto write = [&](const SweepRow&) {
@@ -301,7 +301,7 @@ TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
   const SweptRows full = sweep(machine.work({"a"}), {settings, 1, 1}, {write, {}});
   EXPECT_EQ(full.fault, "the disk is full");
   EXPECT_EQ(full.rows.size(), 2U);
-  // A default that fails in its own row spoils all comparisons: said at once, and not at the end.
+  // A default that fails in its own row invalidates all comparisons: reported immediately.
   MeasuredWork once = machine.work({"a"});
   int asked = 0;
   once.open = [&](std::size_t) -> Measure {
@@ -316,7 +316,7 @@ TEST(Sweep, KeepsWhatWasMeasuredBeforeSomethingFailed) {
   impossible.parameters[1].defaults = 0;
   EXPECT_EQ(sweep(impossible, {settings, 1, 1}).fault, "cannot be done");
   EXPECT_TRUE(sweep(impossible, {settings, 1, 1}).rows.empty());
-  // Ctrl-C ends what is being measured, too, and is no fault.
+  // Ctrl-C also ends the current measurement, and is not an error.
   asked = 0;
   const SweptRows stopped = sweep(once, {settings, 1, 1}, {{}, [&] { return asked == 2; }});
   EXPECT_EQ(stopped.fault, "");
@@ -360,10 +360,10 @@ TEST(Presets, AreTheFastestTheFastestOfLittleLossAndTheBestWithinReason) {
       summary_of({1, 1, 0}, 0.5, 0.00209),  // balanced: a loss of nearly 1.1
       summary_of({0, 1, 0}, 0.45, 0.0028),  // fast, 1.45
       summary_of({0, 1, 0}, 0.3, 0.0058),   // nearly 3 times the default's error: on the front, but no preset
-      summary_of({0, 1, 0}, 0.1, 0.0299),   // too bad for the front
+      summary_of({0, 1, 0}, 0.1, 0.0299),   // too inaccurate for the front
       summary_of({2, 1, 0}, 2.9, 0.0009),   // accurate
       summary_of({2, 1, 0}, 5.0, 0.0004),   // too slow
-      summary_of({2, 1, 0}, 3.0, 0.0010),   // beaten
+      summary_of({2, 1, 0}, 3.0, 0.0010),   // dominated
       summary_of({2, 1, 1}, 0.1, 0.0001)};  // another load
   const PresetChoice choice = choose_presets(work, summaries, 0);
   EXPECT_EQ(choice.front, (std::vector<std::size_t>{3, 2, 1, 0, 5, 6}));
@@ -413,9 +413,9 @@ TEST(Ladder, TurnsFirstWhatGivesMostForLeastAndKeepsItTurned) {
   const MeasuredWork work = machine.work();
   const std::vector<SettingSummary> summaries{
       summary_of({2, 1, 0}, 1.0, 0.0019),                                       // the default
-      summary_of({1, 1, 0}, 0.8, 0.0020),  summary_of({0, 1, 0}, 0.5, 0.0030),  // one knob
-      summary_of({2, 0, 0}, 0.6, 0.00191), summary_of({2, 1, 1}, 0.1, 0.0001),  // another, and a load
-      summary_of({0, 0, 0}, 0.2, 0.0001)};                                      // a mixture: says nothing
+      summary_of({1, 1, 0}, 0.8, 0.0020),  summary_of({0, 1, 0}, 0.5, 0.0030),  // one parameter
+      summary_of({2, 0, 0}, 0.6, 0.00191), summary_of({2, 1, 1}, 0.1, 0.0001),  // another one, and a load
+      summary_of({0, 0, 0}, 0.2, 0.0001)};                                      // both parameters: ignored
   EXPECT_EQ(greedy_settings(work, summaries, 0, 9), (std::vector<Setting>{{1, 0, 0}}));
   std::vector<SettingSummary> without = summaries;
   without.pop_back();
@@ -444,8 +444,8 @@ TEST(Presets, OfAnErrorThatNobodyKnowsAreNone) {
   EXPECT_FALSE(choice.fast || choice.balanced || choice.accurate);
 }
 
-/// A sweep of run in which the second setting takes half the time of all stages, and moves objects in half
-/// the frames, in each of which that takes as long as ever.
+/// Results of run in which the second setting halves the time of all stages. It also moves objects in only
+/// half of the frames; time per frame with motion is unchanged.
 TradeResult run_result() {
   TradeResult result{.work = run_work({"table"}, {}, TradeScale{})};
   result.settings = {default_setting(result.work.parameters), default_setting(result.work.parameters)};
@@ -459,7 +459,8 @@ TradeResult run_result() {
       summary.figures.push_back(is_time ? 4.0 * part : 0.001 / part);
       summary.ratios.push_back(is_time ? part : 1.0);
     }
-    summary.figures[place_of(result.work, "physics_ms")] = part < 1.0 ? 0.0 : 4.0;  // a median of turns
+    // median over frames with and without motion
+    summary.figures[place_of(result.work, "physics_ms")] = part < 1.0 ? 0.0 : 4.0;
     summary.ratios[place_of(result.work, "physics_ms")] = part < 1.0 ? 0.0 : 1.0;
     summary.figures[place_of(result.work, "moved_ms")] = 4.0;
     summary.ratios[place_of(result.work, "moved_ms")] = 1.0;
@@ -482,12 +483,12 @@ TEST(Presets, AFrontSaysWhatAPartTakesInTheFramesThatHaveIt) {
   EXPECT_EQ(ratios[index_of(FramePart::kPhysics)], 1.0);
   EXPECT_EQ(presets.front[1].objects, 1);
   EXPECT_EQ(presets.front[1].figures.at("time_ratio"), 0.5);
-  // A preset that something else pushed off the front is a step all the same.
+  // A preset that another setting removed from the front is still a step.
   TradeResult pushed = run_result();
   pushed.choice.front = {0};
   pushed.choice.fast = 1;
   EXPECT_EQ(chosen_presets({pushed}, {}).front.size(), 2U);
-  // What trade writes is what --preset reads.
+  // --preset reads the file that trade writes.
   const test::TemporaryFolder folder;
   write_presets(presets, folder.path() / "p.json");
   EXPECT_EQ(read_presets(folder.path() / "p.json").front[1].run, presets.front[1].run);
@@ -539,7 +540,7 @@ TEST(TradeFiles, CsvHasAllColumnsInEachLineAndThePageNeedsNothingElse) {
   EXPECT_EQ(page.find("://"), std::string::npos) << "no network";
   EXPECT_EQ(page.find("nan"), std::string::npos);
   EXPECT_NE(page.find("prefers-color-scheme"), std::string::npos);
-  std::size_t dots = 0;  // two plots of the two settings that could be done at the usual load
+  std::size_t dots = 0;  // two plots of the two settings measured at the default load
   for (std::size_t at = 0; (at = page.find("<g><title>", at)) != std::string::npos; ++at) ++dots;
   EXPECT_EQ(dots, 4U);
   EXPECT_THROW(write_trade_page({result}, {}, folder.path() / "none" / "page.html"), Error);
@@ -547,7 +548,7 @@ TEST(TradeFiles, CsvHasAllColumnsInEachLineAndThePageNeedsNothingElse) {
   EXPECT_THROW(nowhere.write(result.work, result.settings, result.rows.front()), Error);
 }
 
-// Small images and few frames: that figures are there and of the right size, not what they are.
+// Small images and few frames: checks that figures exist and have plausible sizes, not their values.
 constexpr TradeScale kTiny{.scan_px = 160,
                            .scan_frames = 20,
                            .scan_rate_hz = 15.0,
@@ -556,7 +557,7 @@ constexpr TradeScale kTiny{.scan_px = 160,
                            .run_frames = 22,
                            .scenarios = 4};
 
-/// A work's figures by name, all of them finite.
+/// Returns a work's figures by name; expects them to be finite.
 std::map<std::string, double> figures_of(const MeasuredWork& work, const Readings& readings) {
   std::map<std::string, double> figures;
   for (std::size_t i = 0; i < work.figures.size(); ++i) {
@@ -599,8 +600,8 @@ TEST(TradeWorks, ARunIsMeasuredAgainstTheRoomWhatMovesInItAndTheRightPicture) {
   EXPECT_LE(figures["radar_ms"], figures["frame_ms"]);
 }
 
-/// Red on the left, green on the right, and the depth of each side; the picture that compose makes of it with
-/// a teapot in the middle, when the depth's edge is at `edge_px`.
+/// A picture that is red on the left and green on the right, and the depth of each side. Composes it with a
+/// teapot in the middle, with the depth's edge at `edge_px`.
 struct TwoSides {
   Frame frame;
   DepthImage true_depth_m;
@@ -646,7 +647,7 @@ TEST(PictureJudge, SaysHowFarAnEdgeThatHidesAnObjectIsFromItsPlace) {
   const JudgedPicture right = scene.shown(scene.true_depth_m);
   const JudgedPicture off_by_one = scene.shown(scene.depth_with_edge(81));
   const JudgedPicture off_by_three = scene.shown(scene.depth_with_edge(77));
-  PictureJudge judge({scene.teapot});  // last: its context is the one that is current
+  PictureJudge judge({scene.teapot});  // created last: its context must be the current one
   const auto errors_of = [&](const JudgedPicture& judged, const DepthImage& true_depth_m) {
     return judge.errors_of(judged, scene.frame, true_depth_m, Eigen::Isometry3d::Identity());
   };
@@ -657,10 +658,10 @@ TEST(PictureJudge, SaysHowFarAnEdgeThatHidesAnObjectIsFromItsPlace) {
   const PictureErrors three = errors_of(off_by_three, scene.true_depth_m);
   EXPECT_GT(one.at_edges(), 0.02);
   EXPECT_NEAR(three.at_edges() / one.at_edges(), 3.0, 1.0);
-  // An object that nothing hides, or of which nothing shows, begins to be hidden nowhere.
+  // Objects that are wholly visible or wholly hidden have no occlusion edges.
   EXPECT_TRUE(std::isnan(errors_of(right, DepthImage(160, 120, 3.0F)).at_edges()));
   EXPECT_TRUE(std::isnan(errors_of(right, DepthImage(160, 120, 0.5F)).at_edges()));
-  // What is wrong elsewhere is not said of edges.
+  // Errors elsewhere do not count as errors at edges.
   JudgedPicture spoilt = right;
   spoilt.picture.at(3, 3) = {255, 255, 255};
   const PictureErrors elsewhere = errors_of(spoilt, scene.true_depth_m);

@@ -1,4 +1,5 @@
-// Rooms: what touches does not overlap, the mesh lies on the surface, there is space to move.
+// sim_room_test.cpp: objects in simulated rooms touch without overlap, meshes are on the surface, there is
+// space to move.
 #include <gtest/gtest.h>
 
 #include "app/sim/room/room.hpp"
@@ -51,7 +52,7 @@ TEST_P(SimRoom, RaysFromFreePointsEndWhereTheDistanceIsZero) {
 TEST_P(SimRoom, FocusIsASurfaceWithSpaceForATeapot) {
   const Room room = make_room(GetParam());
   EXPECT_NEAR(signed_distance_m(room, room.focus_world), 0.0, 1e-9);
-  // A ball of 12 cm radius fits above the focus, and so does its way down from half a metre.
+  // A ball of 12 cm radius fits above the focus, and so does its path down from half a metre.
   for (double height_m = 0.121; height_m < 0.5; height_m += 0.01)
     EXPECT_GT(signed_distance_m(room, room.focus_world + Vector3d(0, 0, height_m)), 0.12);
 }

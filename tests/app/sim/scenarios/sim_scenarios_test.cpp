@@ -1,4 +1,5 @@
-// Hidden-surface scenarios: the truth is exact, the surface hidden now but seen before, the judge fair.
+// sim_scenarios_test.cpp: hidden-surface scenarios: exact truth, surfaces that are hidden now but were seen
+// before, fair scoring.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,8 +34,8 @@ TEST(SimSweep, TravelHasItsClosedForm) {
   room.solids = {box({0, 0, -0.5}, {4, 4, 1}), sphere({1, 0, 0.3}, 0.2)};
   const Vector3d down = -Vector3d::UnitZ();
   EXPECT_NEAR(contact_distance_m(room, sphere({0, 0, 0}, 0.1), at(0, 0, 1), down, 2.0), 0.9, 1e-7);
-  // A ball of 0.1 m onto a ball of 0.2 m, 0.18 m aside: centres 0.3 m apart when they touch, 0.24 m in
-  // height.
+  // A ball of 0.1 m radius onto a ball of 0.2 m, offset by 0.18 m: at contact the centres are 0.3 m apart,
+  // 0.24 m in height.
   EXPECT_NEAR(contact_distance_m(room, sphere({0, 0, 0}, 0.1), at(1.18, 0, 1), down, 2.0), 1.0 - 0.3 - 0.24,
               1e-7);
   EXPECT_NEAR(contact_distance_m(room, box({0, 0, 0}, {0.2, 0.2, 0.2}), at(0, 0, 1), down, 2.0), 0.9, 1e-7);
@@ -65,8 +66,8 @@ TEST(SimSweep, CrossedEdgesMeetWhereTheyCross) {
   EXPECT_LT((swept.point_world - Vector3d(0.013, 0, 0.1 * std::sqrt(2.0))).norm(), 1e-6);
 }
 
-/// Sphere tracing of the object's mesh, its triangles split to `spacing_m`, through the room's exact
-/// distance: slow, and too long by what lies between the points.
+/// Sphere tracing of the object's mesh, sampled at points `spacing_m` apart, through the room's exact
+/// distance field. Slow; the result is too long by the effect of the gaps between the points.
 double traced_travel_m(const Room& room, const Mesh& object, const Isometry3d& T_world_object,
                        const Vector3d& direction_world, double limit_m, double spacing_m) {
   double least_m = limit_m;
@@ -101,7 +102,7 @@ TEST(SimSweep, EveryShapeTravelsAsFarAsItsTracedMesh) {
     constexpr double kSpacing_m = 0.004;
     const double traced_m =
         traced_travel_m(room.room, s.object_mesh, s.T_world_object, s.direction_world, s.limit_m, kSpacing_m);
-    // The mesh lies up to 0.5 mm inside of the solids; a corner of the room can reach between its points.
+    // The mesh is up to 0.5 mm inside the solids; a corner of the room can reach between its points.
     EXPECT_GT(traced_m, s.true_travel_m - 1e-5) << to_string(s.object.shape);
     EXPECT_LT(traced_m, s.true_travel_m + 0.003) << to_string(s.object.shape);
   }
@@ -109,7 +110,8 @@ TEST(SimSweep, EveryShapeTravelsAsFarAsItsTracedMesh) {
 }
 
 TEST(SimDistance, IsWhatTheSlowestWaySays) {
-  // Of a cylinder and a turned box, against the box's exact distance from points all over the cylinder.
+  // Distance of a cylinder and a rotated box, against the box's exact distance from points all over the
+  // cylinder.
   Solid can = cylinder({0, 0, 0}, 0.1, 0.3);
   Solid crate = rounded_box({0.5, 0.2, 0.3}, {0.3, 0.2, 0.4}, 0.03, 0.7);
   CounterRandom random(3, 5);
@@ -130,7 +132,7 @@ TEST(SimDistance, IsWhatTheSlowestWaySays) {
       }
     const Separation apart = separation(can, crate);
     EXPECT_LE(apart.distance_m, least_m + 1e-9);
-    EXPECT_NEAR(apart.distance_m, least_m, 2e-4);  // between two points of the cylinder
+    EXPECT_NEAR(apart.distance_m, least_m, 2e-4);  // the nearest point is between two samples of the cylinder
     EXPECT_NEAR(signed_distance_m(crate, apart.point_b_world), 0.0, 1e-7);
     EXPECT_NEAR(signed_distance_m(can, apart.point_b_world), apart.distance_m, 1e-7);
   }
@@ -175,7 +177,7 @@ TEST(SimScenario, HoldsWhatItPromises) {
       EXPECT_GE(longest_m, 0.038);
       EXPECT_LE(longest_m, 2.0 * s.object.reach_m + 1e-6);
 
-      // In the contact frame the camera sees something nearer, not the contact.
+      // In the contact frame the camera sees something nearer than the contact.
       Frame frame;
       render_scenario(s, room.room, contact_frame(s), 0.0, frame);
       const Vector3d contact_camera = s.T_world_camera.inverse() * s.contact_world;
@@ -189,7 +191,7 @@ TEST(SimScenario, HoldsWhatItPromises) {
       EXPECT_LT(T_camera_believed.translation().norm(), 0.01);
       EXPECT_LT(Eigen::AngleAxisd(T_camera_believed.linear()).angle(), 0.011);
 
-      // Nothing but the true surface is in the way: the occluder keeps 4 cm from the object in each frame.
+      // Only the true surface is in the way: the occluder stays 4 cm away from the object in each frame.
       for (int i = 0; i <= contact_frame(s); ++i) {
         const std::vector<Solid> occluder = occluder_at(s, i);
         for (const double part : {0.0, 0.5, 1.0}) {
@@ -200,7 +202,7 @@ TEST(SimScenario, HoldsWhatItPromises) {
         }
       }
 
-      // The prescan's frames have the contact in view, with nothing between.
+      // Frames of the prescan show the contact without occlusion.
       int views = 0;
       for (const Isometry3d& T_world_camera : room.T_world_prescan) {
         const Vector3d p_camera = T_world_camera.inverse() * s.contact_world;

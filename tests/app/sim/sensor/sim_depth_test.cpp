@@ -1,4 +1,5 @@
-// The Kinect's depth: closed-form scenes, the noise model's figures, quantisation, shadow, dropouts.
+// sim_depth_test.cpp: the simulated Kinect's depth: closed-form scenes, noise, quantisation, shadow,
+// dropouts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A camera at the origin whose z axis is the world's, before the given solids.
+/// A camera at the origin, with the world's axes, in front of the given solids.
 struct Scene {
   std::vector<Solid> solids;
   std::vector<float> infrared;
@@ -91,10 +92,10 @@ TEST(SimDepth, EveryDepthIsAWholeNumberOfDisparitySteps) {
     EXPECT_NEAR(steps, std::round(steps), 1e-4);
   }
   EXPECT_GT(valid, 280'000U);
-  // 2.85 mm at 1 m, the figure of Khoshelham and Elberink, and its square law.
+  // 2.85 mm at 1 m, as measured by Khoshelham and Elberink, and their square law.
   EXPECT_NEAR(quantisation_step_m(scene.camera, 1.0), 0.00285, 0.00002);
   EXPECT_NEAR(quantisation_step_m(scene.camera, 4.0), 16 * 0.00285, 0.0003);
-  // A smaller image is a scaled picture of the same sensor: same steps.
+  // A smaller image is a scaled image of the same sensor: same steps.
   EXPECT_DOUBLE_EQ(quantisation_step_m(scaled(scene.camera, 0.5), 2.0),
                    quantisation_step_m(scene.camera, 2.0));
 }

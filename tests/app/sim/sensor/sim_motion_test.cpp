@@ -1,4 +1,5 @@
-// Camera paths and moving things: smooth, bounded, deterministic, where they should be.
+// sim_motion_test.cpp: camera paths and moving objects: smooth, bounded, deterministic, at the right
+// positions.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The sim: form of a source: what it sets, and sentences for what is wrong.
+// sim_options_test.cpp: the sim: form of a source: its options, and the error messages for invalid ones.
 #include <gtest/gtest.h>
 
 #include "app/sim/sensor/sim_options.hpp"

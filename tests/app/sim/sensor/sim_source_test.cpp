@@ -1,4 +1,5 @@
-// Frames of the simulated source: determinism, ground truth against slow rays, and what a frame carries.
+// sim_source_test.cpp: frames of the simulated source: determinism, content, and ground truth against
+// brute-force rays.
 #include <gtest/gtest.h>
 
 #include "app/sim/room/room.hpp"
@@ -200,8 +201,8 @@ TEST(SimSource, ASeparateColourCameraSeesTheSamePointsBesideTheDepthCamera) {
   const Frame a = frame_of(apart, 1), b = frame_of(together, 1);
   EXPECT_NEAR(a.T_colour_depth.translation().x(), -0.025, 1e-12);
   EXPECT_EQ(a.depth_m.pixels, b.depth_m.pixels);
-  // The colour of a depth pixel's point, looked up in the colour camera, is the registered colour of that
-  // pixel.
+  // The colour camera's colour at the projection of a depth pixel's point equals that pixel's registered
+  // colour.
   std::size_t alike = 0, compared = 0;
   for (int y = 40; y < 200; y += 3)
     for (int x = 40; x < 280; x += 3) {

@@ -1,4 +1,5 @@
-// Exact distances and rays of solids, against each other and against closed forms; and their meshes.
+// sim_solid_test.cpp: exact distances and rays of solids, against each other and against closed forms; and
+// their meshes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,7 +58,7 @@ TEST(SimSolid, RayEndsOnTheSurfaceAndPassesNothingBefore) {
     CounterRandom random(7, 1);
     int hits = 0;
     for (int i = 0; i < 2000; ++i) {
-      // Every other one in the room that rounded edges leave within the bounds.
+      // Every other ray starts within the bounds, in the space left by rounded edges.
       const Vector3d origin = i % 2 == 0
                                   ? random_point(random, 1.5)
                                   : Vector3d(random_point(random, 1.0).cwiseProduct(bounds_half_m(solid)));
@@ -84,7 +85,7 @@ TEST(SimSolid, NormalIsTheGradientOfTheDistance) {
     CounterRandom random(8, 1);
     for (int i = 0; i < 300; ++i) {
       const Vector3d p = random_point(random, 1.0);
-      if (signed_distance_local_m(solid, p) < 1e-3) continue;  // inside, the distance has ridges
+      if (signed_distance_local_m(solid, p) < 1e-3) continue;  // inside, the distance is not smooth
       Vector3d gradient;
       for (int axis = 0; axis < 3; ++axis)
         gradient[axis] = (signed_distance_local_m(solid, p + kStep_m * Vector3d::Unit(axis)) -
@@ -154,7 +155,7 @@ TEST(SimSolidTree, EmptyHoldsNothing) {
 
 TEST(SimMesh, EverySolidIsClosedLooksOutwardAndKeepsItsVolume) {
   const std::vector<Solid> solids = one_of_each();
-  const double r_can = 0.2, h_can = 0.3, a = 0.04;  // a cylinder grown by a ball: Steiner's formula
+  const double r_can = 0.2, h_can = 0.3, a = 0.04;  // a cylinder dilated by a ball: Steiner's formula
   const double can = std::numbers::pi * (r_can * r_can * h_can + a * (2 * r_can * r_can + 2 * r_can * h_can) +
                                          a * a * (std::numbers::pi * r_can + h_can) + 4.0 / 3.0 * a * a * a);
   const double c = 0.05, x = 0.4, y = 0.2, z = 0.1;
@@ -179,7 +180,7 @@ TEST(SimMesh, EverySolidIsClosedLooksOutwardAndKeepsItsVolume) {
       const Vector3d p = mesh.vertices[t[0]].cast<double>(), q = mesh.vertices[t[1]].cast<double>(),
                      s = mesh.vertices[t[2]].cast<double>();
       volume += p.dot(q.cross(s)) / 6.0;
-      // A triangle's middle is at most the stated deviation off the surface.
+      // A triangle's centre is at most the stated deviation off the surface.
       EXPECT_LT(std::abs(signed_distance_m(solids[i], (p + q + s) / 3.0)), kMeshDeviation_m + 1e-6);
     }
     for (const auto& [edge, count] : edges) {

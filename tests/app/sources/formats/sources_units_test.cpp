@@ -1,4 +1,4 @@
-// sources_units_test.cpp: the Kinect's units, the pairing of images, frame ranges and spooling.
+// sources_units_test.cpp: the Kinect's units, pairing of images, frame ranges, and spooling.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -53,7 +53,7 @@ TEST(KinectUnits, UprightCameraFeelsGravityAlongItsY) {
 }
 
 TEST(KinectUnits, CameraThatLooksUpHasGravityBehindIt) {
-  // z of the accelerometer is forward, and forward is up.
+  // The accelerometer's z axis points forward, and the camera looks up.
   const auto down = down_from_acceleration({0, 0.8, 0.6});
   ASSERT_TRUE(down);
   EXPECT_NEAR(down->z(), -0.6, 1e-12);
@@ -72,7 +72,7 @@ TEST(KinectUnits, ClockGoesOnWhereTheStampsWrap) {
   const double before_s = clock.seconds(0xffffff00U);
   const double after_s = clock.seconds(0x100U);
   EXPECT_NEAR(after_s - before_s, 512 / 60e6, 1e-9);
-  EXPECT_LT(clock.seconds(0xffffff00U), after_s);  // going back is seen as such
+  EXPECT_LT(clock.seconds(0xffffff00U), after_s);  // a step back is not taken for a wrap
 }
 
 TEST(ParseNumbers, TakesWholeWordsOnly) {
@@ -97,7 +97,7 @@ TEST(StampPairing, TakesTheNearerOfTheImagesBeforeAndAfter) {
   StampPairing pairing({});
   pairing.add_colour(0, 0.990);
   pairing.add_depth(0, 1.000);
-  EXPECT_TRUE(take_all(pairing).empty());  // a nearer one may still come
+  EXPECT_TRUE(take_all(pairing).empty());  // a nearer image may still arrive
   pairing.add_colour(1, 1.004);
   pairing.add_depth(1, 1.033);
   const auto pairs = take_all(pairing);
@@ -298,7 +298,7 @@ TEST(SpooledSource, LeavesNothingBehind) {
       "absent"));
 }
 
-/// Gives so many of a source's frames, then has nothing more for the time being.
+/// Delivers this many of a source's frames, then nothing for the time being.
 class PausingSource final : public FrameSource {
  public:
   PausingSource(std::unique_ptr<FrameSource> source, int count) : source_(std::move(source)), left_(count) {}
@@ -356,7 +356,7 @@ TEST(SpooledSource, LetsGoOfASourceThatHasEnded) {
 }
 
 TEST(SpooledSource, AReaderThatIsSlowLosesNothing) {
-  // The source is at its end before the second frame is asked for.
+  // The source reaches its end before the second frame is requested.
   const auto made = std::make_shared<std::atomic<int>>(0);
   class Counting final : public FrameSource {
    public:
@@ -415,7 +415,7 @@ TEST(SpooledSource, KeptGoesOnInALaterProcess) {
       if (source->next(frame).status == ReadStatus::kFrame) first.push_back(frame);
   }
   EXPECT_FALSE(SpooledSource::has_end(folder));
-  // The process was killed while it wrote a fifth entry.
+  // As if the process was killed while writing a fifth entry.
   std::filesystem::resize_file(folder / "list.bin", std::filesystem::file_size(folder / "list.bin") - 3);
   {
     const auto source = SpooledSource::kept(std::make_unique<MadeSource>(3, false), folder);
@@ -435,7 +435,7 @@ TEST(SpooledSource, KeptGoesOnInALaterProcess) {
   EXPECT_EQ(read_all(*source).frames.size(), 5U);
 }
 
-/// The list of three frames that were spooled to their end.
+/// The list of three frames that were spooled completely.
 std::string list_of_three(const std::filesystem::path& folder) {
   (void)read_all(*SpooledSource::kept(std::make_unique<MadeSource>(3, false), folder));
   return read_bytes(folder / "list.bin", "a list");
@@ -446,9 +446,9 @@ TEST(SpooledSource, AnEntryThatIsDamagedIsOneFrameThatCannotBeRead) {
   const std::filesystem::path folder = parent.path() / "spool";
   std::string list = list_of_three(folder);
   const std::size_t head_bytes = 8 + 8 + MadeSource(3, false).name().size();
-  const std::size_t entry_bytes = (list.size() - head_bytes - 4) / 3;     // the end has 4
+  const std::size_t entry_bytes = (list.size() - head_bytes - 4) / 3;     // the end mark has 4 bytes
   const std::size_t width_at = head_bytes + entry_bytes + 4 + 8 + 3 * 8;  // after size, fault, index, stamps
-  list.replace(width_at, 4, "\xff\xff\xff\xff");  // of the second frame's depth camera
+  list.replace(width_at, 4, "\xff\xff\xff\xff");  // width of the second frame's depth camera
   write_bytes(folder / "list.bin", list);
   const auto all = read_all(*SpooledSource::kept(nullptr, folder));
   ASSERT_EQ(all.faults.size(), 1U);
@@ -519,7 +519,7 @@ TEST(SpooledSource, AFrameWithoutColourDoesNotTakeThatOfOneThatWasLost) {
   const test::TemporaryFolder parent;
   const std::filesystem::path folder = parent.path() / "spool";
   std::filesystem::create_directories(folder);
-  write_colour_file(test::some_frame(7).colour, folder / "1.colour.png");  // its process was killed
+  write_colour_file(test::some_frame(7).colour, folder / "1.colour.png");  // left by a killed process
   (void)read_all(*SpooledSource::kept(std::make_unique<Colourless>(), folder));
   const auto all = read_all(*SpooledSource::again(folder));
   ASSERT_EQ(all.frames.size(), 2U);
@@ -545,7 +545,7 @@ TEST(SpooledSource, IsNotReadAheadByMoreThanAsked) {
   for (int i = 0; i < 10; ++i) {
     ASSERT_EQ(source->next(frame).status, ReadStatus::kFrame);
     EXPECT_EQ(frame.index, test::some_frame(i).index);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // it would have gone on by then
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));  // an unlimited spool would read on
     EXPECT_LE(read, i + 3);
   }
   ASSERT_TRUE(source->rewind());

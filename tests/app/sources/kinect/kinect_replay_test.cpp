@@ -1,4 +1,5 @@
-// Recordings that pause, end early, or have broken frames, through libfreenect's own interface by fakenect.
+// kinect_replay_test.cpp: recordings that pause, end early or have broken frames, replayed by fakenect
+// through libfreenect's interface.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -25,10 +26,10 @@ struct Outcome {
   std::vector<std::string> frames;
   long skipped = 0;
   long waited = 0;
-  std::string rest;  ///< messages, and lines that fakenect prints
+  std::string rest;  ///< messages, and lines printed by fakenect
 };
 
-/// `line` in a shell, killed after 300 s, which a machine that is busy and sanitizers leave time for.
+/// Runs `line` in a shell, killed after 300 s, enough for a busy machine with sanitizers.
 Outcome shell(const std::string& line) {
   Outcome outcome;
   FILE* pipe = popen(("timeout -s KILL 300 sh -c \"" + line + "\" 2>&1").c_str(), "r");
@@ -90,7 +91,7 @@ class KinectReplay : public ::testing::Test {
     for (const std::string& line : lines_) list << line << '\n';
   }
 
-  /// From the depth image with that number on, everything comes later by so much of the time of day.
+  /// Delays everything from the depth image with this number on, by time of day.
   void pause_before(std::size_t depth_image, double pause_s) {
     bool later = false;
     for (std::string& line : lines_) {
@@ -188,7 +189,7 @@ TEST_F(KinectReplay, OneThatPausesIsWaitedForAndLosesNothing) {
 }
 
 TEST_F(KinectReplay, AReaderThatLeavesInALongPauseDoesNotWaitForItsEnd) {
-  pause_before(4, 3000.0);  // ten times as long as the shell may take
+  pause_before(4, 3000.0);  // ten times the shell's time limit
   const Outcome outcome = replay(recording_, "3");
   EXPECT_EQ(outcome.status, 0) << outcome.rest;
   EXPECT_EQ(outcome.frames.size(), 3U);
@@ -206,7 +207,7 @@ TEST_F(KinectReplay, CtrlCEndsARecordingInALongPauseAndKeepsWhatWasWritten) {
   const Outcome outcome = shell(fakenect(recording_) + "sh '" + script.string() + "'");
   EXPECT_EQ(outcome.status, 0) << outcome.rest;
   const std::size_t read = test::read_all(*open_folder(to)).frames.size();
-  EXPECT_TRUE(read == 3 || read == 4) << read;  // the fourth is paired when the fifth has come
+  EXPECT_TRUE(read == 3 || read == 4) << read;  // the fourth is paired once the fifth has arrived
 }
 
 TEST_F(KinectReplay, OneWhoseListWasCutAfterALineEndsThere) {
@@ -230,7 +231,7 @@ TEST_F(KinectReplay, BrokenDepthImagesArePassedOverAsTheyAreFromTheFolder) {
   test::cut_to(recording_ / depth_files_[1], 0.5);
   fs::resize_file(recording_ / depth_files_[3], 0);
   fs::remove(recording_ / depth_files_[4]);
-  test::write_text(recording_ / depth_files_[6], std::string(700'000, 'x'));  // no line ends in it
+  test::write_text(recording_ / depth_files_[6], std::string(700'000, 'x'));  // contains no line break
   const auto folder = by_folder();
   EXPECT_EQ(folder.size(), 4U);
   const Outcome outcome = replay(recording_);

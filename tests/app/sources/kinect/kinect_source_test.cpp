@@ -1,4 +1,4 @@
-// A Kinect by script: what the source makes of one that stalls, goes, comes back, hangs, or sends rubbish.
+// kinect_source_test.cpp: a scripted Kinect that stalls, disconnects, returns, hangs or sends invalid data.
 #include "app/sources/kinect/kinect_source.hpp"
 
 #include <gtest/gtest.h>
@@ -24,24 +24,24 @@ using test::error_of;
 constexpr std::size_t kPixels = 640 * 480;
 constexpr std::uint32_t kFrameTicks = 2'000'000;
 
-/// One thing that the scripted device does in a call of serve().
+/// An action of the scripted device in one call of serve().
 struct Act {
   enum class Kind { kDepth, kColour, kShortDepth, kShortColour, kSilence, kGone, kHang } kind = Kind::kDepth;
   std::uint32_t ticks = 0;
   std::uint16_t raw = 700;
 };
 
-/// A device that plays a list of acts, then is silent. Each opening plays the next list.
+/// A device that performs a list of acts, then is silent. Each opening performs the next list.
 struct Script {
   std::vector<std::vector<Act>> openings;
   std::string serial = "A123";
   std::optional<KinectConstants> constants;
-  /// Openings that fail, by their number.
+  /// Error messages of openings that fail, by their number.
   std::map<std::size_t, std::string> refusals;
 
   std::atomic<std::size_t> opened = 0;
-  std::atomic<bool> release = false;  // of a call that hangs
-  std::atomic<int> alive = 0;         // devices
+  std::atomic<bool> release = false;  // ends a hanging call
+  std::atomic<int> alive = 0;         // number of devices
   std::mutex mutex;
   std::vector<std::string> requested_serials;
   std::vector<std::string> said;
@@ -119,7 +119,7 @@ std::vector<Act> images(int count, std::uint32_t first_ticks = 0, bool with_colo
   return acts;
 }
 
-/// All times short, so that what takes seconds with a device takes none here.
+/// Opens the scripted device with short timeouts: delays of seconds with a real device take no time here.
 std::unique_ptr<FrameSource> open_scripted(const std::shared_ptr<Script>& script, SourceOptions options = {},
                                            std::size_t most_waiting = 0) {
   KinectFeedConfig config{.name = "kinect:0"};
@@ -148,7 +148,7 @@ std::unique_ptr<FrameSource> open_scripted(const std::shared_ptr<Script>& script
       config, options);
 }
 
-/// Reads until `count` frames have come; what is skipped but not for waiting is kept as faults.
+/// Reads until `count` frames have arrived; collects skipped frames, except waiting, as faults.
 test::ReadAll read_frames(FrameSource& source, std::size_t count) {
   test::ReadAll all;
   Frame frame;
@@ -175,7 +175,7 @@ TEST(KinectSource, FramesHaveDepthColourGravityAndTheDevicesTime) {
     EXPECT_EQ(frames[i].depth_m.at(0, 0), raw_depth_m(static_cast<std::uint16_t>(600 + i)));
     EXPECT_EQ(frames[i].colour.at(639, 479).g, i);
   }
-  EXPECT_FALSE(frames[0].down_camera);  // not asked yet: nothing, and not a made-up direction
+  EXPECT_FALSE(frames[0].down_camera);  // unknown so far: absent, not an invented direction
   ASSERT_TRUE(frames[2].down_camera);
   EXPECT_NEAR(frames[2].down_camera->y(), 1.0, 1e-12);
 }
@@ -191,7 +191,7 @@ TEST(KinectSource, TimeGoesOnWhereTheStampsWrap) {
 
 TEST(KinectSource, OneThatFallsSilentIsSaidAndStartedAnewAndGoesOn) {
   const auto script = std::make_shared<Script>();
-  script->openings = {images(3), images(3)};  // its clock begins anew, too
+  script->openings = {images(3), images(3)};  // its clock restarts, too
   const auto source = open_scripted(script);
   const auto frames = read_frames(*source, 6).frames;
   ASSERT_EQ(frames.size(), 6U);
@@ -199,11 +199,11 @@ TEST(KinectSource, OneThatFallsSilentIsSaidAndStartedAnewAndGoesOn) {
     EXPECT_EQ(frames[i].index, frames[i - 1].index + 1);
     EXPECT_GT(frames[i].stamp_s, frames[i - 1].stamp_s);
   }
-  EXPECT_GT(frames[3].stamp_s - frames[2].stamp_s, 0.1);  // what passed here
+  EXPECT_GT(frames[3].stamp_s - frames[2].stamp_s, 0.1);  // the time that passed here
   EXPECT_TRUE(script->has_said("no depth image"));
   EXPECT_TRUE(script->has_said("is back after"));
   EXPECT_EQ(script->requested_serials.at(0), "");
-  EXPECT_EQ(script->requested_serials.at(1), "A123");  // the same one, whatever its number is by now
+  EXPECT_EQ(script->requested_serials.at(1), "A123");  // the same device, whatever its index is now
 }
 
 TEST(KinectSource, OneThatIsUnpluggedIsWaitedForUntilItIsBack) {
@@ -216,7 +216,7 @@ TEST(KinectSource, OneThatIsUnpluggedIsWaitedForUntilItIsBack) {
   EXPECT_EQ(read_frames(*source, 4).frames.size(), 4U);
   EXPECT_TRUE(script->has_said("has gone"));
   const std::lock_guard lock(script->mutex);
-  EXPECT_TRUE(contains(script->said.at(1), "is back"));  // not one sentence for each try
+  EXPECT_TRUE(contains(script->said.at(1), "is back"));  // not one message per attempt
 }
 
 TEST(KinectSource, WhileItIsAwayTheReaderIsNotHeld) {
@@ -256,7 +256,7 @@ TEST(KinectSource, OneThatIsAwayIsNotGivenUpBecauseItsReaderPaused) {
 TEST(KinectSource, OneThatSendsNoColourIsStartedAnewOnceThenGoesOnWithout) {
   const auto script = std::make_shared<Script>();
   std::vector<Act> depth_only;
-  for (std::uint32_t i = 0; i < 900; ++i) {  // some 0.9 s
+  for (std::uint32_t i = 0; i < 900; ++i) {  // about 0.9 s
     depth_only.push_back({Act::Kind::kDepth, i * kFrameTicks});
     depth_only.push_back({Act::Kind::kSilence});
   }
@@ -274,8 +274,8 @@ TEST(KinectSource, OneThatSendsNoColourIsStartedAnewOnceThenGoesOnWithout) {
 TEST(KinectSource, BrokenImagesArePassedOverAndCounted) {
   const auto script = std::make_shared<Script>();
   std::vector<Act> acts = images(6);
-  acts[4].kind = Act::Kind::kShortDepth;   // of frame 2
-  acts[7].kind = Act::Kind::kShortColour;  // of frame 3
+  acts[4].kind = Act::Kind::kShortDepth;   // depth of frame 2
+  acts[7].kind = Act::Kind::kShortColour;  // colour of frame 3
   script->openings = {acts};
   const auto all = read_frames(*open_scripted(script), 5);
   ASSERT_EQ(all.faults.size(), 1U);
@@ -305,7 +305,7 @@ TEST(KinectSource, ABrokenImageDoesNotOvertakeTheFrameThatWaitsForItsColour) {
 TEST(KinectSource, AClockThatIsSetBackStopsNothing) {
   const auto script = std::make_shared<Script>();
   std::vector<Act> acts = images(3, 100 * kFrameTicks);
-  for (const Act& act : images(8, 0)) acts.push_back(act);  // 3.3 s back, and stays there
+  for (const Act& act : images(8, 0)) acts.push_back(act);  // the clock jumps back by 3.3 s for good
   script->openings = {acts};
   const auto all = read_frames(*open_scripted(script), 3 + 8 - 3);
   EXPECT_EQ(all.faults.size(), 3U);
@@ -318,7 +318,8 @@ TEST(KinectSource, APictureIsOfTheNewestFrame) {
   const auto script = std::make_shared<Script>();
   script->openings = {images(20)};
   const auto source = open_scripted(script, {}, /*most_waiting=*/1);
-  while (script->opened == 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // all 20 were sent
+  // until all 20 are sent
+  while (script->opened == 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_EQ(read_frames(*source, 1).frames.at(0).index, 19);
 }
 
@@ -334,7 +335,7 @@ TEST(KinectSource, ItStopsAtOnceWhileTheDeviceIsSilent) {
   const auto script = std::make_shared<Script>();
   script->openings = {images(1)};
   { const auto source = open_scripted(script); }
-  EXPECT_EQ(script->alive, 0);  // closed, not left
+  EXPECT_EQ(script->alive, 0);  // closed, not abandoned
 }
 
 TEST(KinectSource, ItStopsWhileTheDeviceHangs) {
@@ -348,7 +349,7 @@ TEST(KinectSource, ItStopsWhileTheDeviceHangs) {
     Frame frame;
     EXPECT_TRUE(source->next(frame).waiting);
   }
-  EXPECT_EQ(script->alive, 1);  // left behind, with all that it touches
+  EXPECT_EQ(script->alive, 1);  // abandoned, with everything it uses
   script->release = true;
   for (int i = 0; i < 2000 && script->alive > 0; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -363,7 +364,7 @@ TEST(KinectSource, WhatIsInTheWayOfTheFirstOpeningIsThrown) {
   EXPECT_EQ(script->opened, 1U);
 }
 
-/// A device whose colour camera is another than the nominal one, as its registration would tell.
+/// Registration constants of a device whose colour camera differs from the nominal one.
 KinectConstants constants_of(const CameraRig& rig) {
   KinectConstants constants;
   for (const double depth_m : {0.6, 0.8, 1.2, 2.0, 3.5, 6.0})
@@ -403,7 +404,7 @@ TEST(KinectRig, TheColourCameraStandsWhereTheRegistrationSaysItDoes) {
                                        project(*truth.colour_camera, truth.T_colour_depth * p))
                                           .norm());
       }
-  EXPECT_LT(worst_px, 0.1);  // nominal is off by 20
+  EXPECT_LT(worst_px, 0.1);  // the nominal camera is off by 20
 }
 
 TEST(KinectRig, ConstantsThatMakeNoSenseAreNotTaken) {
@@ -458,7 +459,7 @@ TEST(KinectUnits, ZeroPlanesDepthGrowsAndIsLikeThePublishedFit) {
     before_m = depth_m;
   }
   EXPECT_EQ(raw_depth_m(kRawNoDepth, plane), 0.0F);
-  EXPECT_EQ(raw_depth_m(1100, plane), 0.0F);  // past where a step is half a metre
+  EXPECT_EQ(raw_depth_m(1100, plane), 0.0F);  // beyond the depth at which a raw step is half a metre
   EXPECT_EQ(raw_depth_m(700, {.distance_cm = std::nan("")}), 0.0F);
 }
 

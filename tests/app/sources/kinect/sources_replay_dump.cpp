@@ -1,5 +1,5 @@
-// sources_replay_dump.cpp: prints one line a frame, all that tells two frames apart, of a source or its first
-// frames; run under fakenect.
+// sources_replay_dump.cpp: prints a fingerprint line per frame of a source, or of its first frames; run under
+// fakenect.
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

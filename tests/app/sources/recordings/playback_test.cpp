@@ -1,4 +1,4 @@
-// playback_test.cpp: sources that are held, wound back and repeated.
+// playback_test.cpp: sources that are held, rewound and looped.
 #include "app/sources/recordings/playback_source.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kFrame_s = 1.0 / 30.0;
 
-/// Frames 0 to count - 1, a tenth of a second apart from 5 s on; frame 1 cannot be read.
+/// Frames 0 to count - 1, a tenth of a second apart, starting at 5 s; frame 1 is unreadable.
 class NumberedSource final : public FrameSource {
  public:
   NumberedSource(int count, bool rewinds) : count_(count), rewinds_(rewinds) {}
@@ -46,12 +46,12 @@ struct Seen {
   double stamp_s;
 };
 
-/// The next frame that is one.
+/// Reads the next readable frame.
 Seen next_of(PlaybackSource& source, Frame& frame) {
   ReadResult result = source.next(frame);
   if (result.status == ReadStatus::kSkipped) result = source.next(frame);
   EXPECT_EQ(result.status, ReadStatus::kFrame);
-  EXPECT_EQ(frame.depth_m.at(0, 0), static_cast<float>(frame.index));  // images go with their index
+  EXPECT_EQ(frame.depth_m.at(0, 0), static_cast<float>(frame.index));  // images match their index
   return {frame.index, frame.stamp_s};
 }
 
@@ -86,7 +86,7 @@ TEST(PlaybackSource, AHeldFrameStaysWhileTimeGoesOnAndWhatFollowsIsLaterByThat) 
 }
 
 TEST(PlaybackSource, TimeDoesNotGoOnTwiceWhereADevicesClockDoesWhileItsFrameIsHeld) {
-  // Frame 2 comes 0.2 s after frame 0: as from a device whose frames of that time nobody took.
+  // Frame 2 is 0.2 s after frame 0, as from a device whose frames in between were not read.
   PlaybackSource source = numbers(4, AtEnd::kEnd);
   Frame frame;
   next_of(source, frame);
@@ -101,15 +101,15 @@ TEST(PlaybackSource, TimeStandsStillInAPauseThoughADevicesClockGoesOn) {
   PlaybackSource source = numbers(6, AtEnd::kEnd);
   Frame frame;
   const double before_s = next_of(source, frame).stamp_s;
-  // The next two come 0.2 and 0.3 s after it by the source's clock.
+  // The next two are 0.2 and 0.3 s later by the source's clock.
   source.resume();
   EXPECT_NEAR(next_of(source, frame).stamp_s, before_s + kFrame_s, 1e-12);
   EXPECT_NEAR(next_of(source, frame).stamp_s, before_s + 2 * kFrame_s, 1e-12);
   EXPECT_NEAR(next_of(source, frame).stamp_s, before_s + 2 * kFrame_s + 0.1, 1e-12);
 }
 
-/// Frames a thirtieth of a second apart; but from the fresh-th on a minute later, as from a device whose
-/// first `fresh` frames wait in a spool.
+/// Frames a thirtieth of a second apart; from frame `fresh` on they are a minute later, as from a device
+/// whose first `fresh` frames wait in a spool.
 class DeviceSource final : public FrameSource {
  public:
   explicit DeviceSource(int fresh) : fresh_(fresh) {}
@@ -143,7 +143,7 @@ TEST(PlaybackSource, FramesThatWaitedInASpoolDoNotBringTheTimeOfAHoldTwice) {
   Frame frame;
   for (int i = 0; i < 3; ++i) next_of(source, frame);
   source.hold(true);
-  for (int i = 0; i < 1800; ++i) next_of(source, frame);  // that minute
+  for (int i = 0; i < 1800; ++i) next_of(source, frame);  // one minute
   source.hold(false);
   for (int i = 3; i < 9; ++i) EXPECT_NEAR(next_of(source, frame).stamp_s, 60.0 + i * kFrame_s, 1e-9) << i;
 }
@@ -152,7 +152,7 @@ TEST(PlaybackSource, WhatADeviceSentSinceARewindFollowsOnWhatWasShownAgain) {
   PlaybackSource source(std::make_unique<DeviceSource>(1802), AtEnd::kEnd);
   Frame frame;
   for (int i = 0; i < 1800; ++i) next_of(source, frame);
-  ASSERT_TRUE(source.rewind());  // a minute to show again, in which the device goes on
+  ASSERT_TRUE(source.rewind());  // a minute to show again, while the device continues
   for (int i = 0; i < 1840; ++i)
     ASSERT_NEAR(next_of(source, frame).stamp_s, (1800 + i) * kFrame_s, 1e-6) << i;
 }

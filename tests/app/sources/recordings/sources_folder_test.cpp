@@ -1,4 +1,4 @@
-// sources_folder_test.cpp: recordings on disk, whole ones and broken ones.
+// sources_folder_test.cpp: recordings on disk, intact and damaged.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -48,7 +48,7 @@ void write_numbered(const fs::path& folder) {
   }
 }
 
-/// What comes back from `folder` is what some_frame made, to `depth_step_m`.
+/// Expects the frames in `folder` to equal those of some_frame(), depth up to `depth_step_m`.
 void expect_some_frames(const fs::path& folder, double depth_step_m, bool with_pose, bool with_gravity,
                         double gravity_step) {
   const auto source = open_folder(folder);
@@ -118,7 +118,7 @@ TEST(RecordingRoundTrip, FakenectKeepsDepthToTheRawStepColourAndGravity) {
     EXPECT_NEAR(got.colour_after_depth_s, want.colour_after_depth_s, 1e-6);
     EXPECT_FALSE(got.T_world_camera);
   }
-  // Raw depth that has been through once comes back the same to the bit.
+  // Raw depth that was written once is read back bit-identical when written again.
   const TemporaryFolder second;
   RecordingWriter writer(second.path(), RecordingFormat::kFakenect);
   for (const Frame& frame : all.frames) writer.write(frame);
@@ -187,7 +187,7 @@ TEST(RecordingRoundTrip, FramesAmongOthersThatCameWithoutColourComeBackWithout) 
     for (int i = 0; i < 16; ++i) {
       Frame frame = some_frame(i);
       frame.stamp_s = 100.0 + i / 15.0;
-      frame.colour_after_depth_s = 0.025;  // as far as a device pairs where depth images are lost
+      frame.colour_after_depth_s = 0.025;  // max difference that a device pairs when depth images are lost
       if (i > 2 && i < 15) frame.colour.resize(0, 0);
       writer.write(frame);
     }
@@ -259,7 +259,7 @@ TEST(RecordingWriter, SaysThatTheDiskIsFull) {
   }
 }
 
-// ---- recognising ----
+// ---- format detection ----
 
 TEST(OpenFolder, SaysWhatItLookedFor) {
   const TemporaryFolder folder;
@@ -299,7 +299,7 @@ TEST(OpenFolder, ReadsNumberedFoldersInMillimetres) {
 
 // ---- faults of single frames ----
 
-/// Breaks frame 3 of a 7-Scenes recording by `act` and returns the sentence it is skipped with.
+/// Damages frame 3 of a 7-Scenes recording by `act` and returns the message with which it is skipped.
 template <typename Act>
 std::string skipped_after(const Act& act) {
   const TemporaryFolder folder;
@@ -309,7 +309,7 @@ std::string skipped_after(const Act& act) {
   EXPECT_EQ(all.frames.size(), static_cast<std::size_t>(kFrames - 1));
   EXPECT_EQ(all.faults.size(), 1U);
   if (all.faults.size() != 1 || all.frames.size() != kFrames - 1) return {};
-  EXPECT_EQ(all.frames[3].index, 4);  // the skipped one counts
+  EXPECT_EQ(all.frames[3].index, 4);  // the skipped frame counts
   EXPECT_TRUE(contains(all.faults[0], "frame 3")) << all.faults[0];
   EXPECT_TRUE(contains(all.faults[0], "3")) << all.faults[0];
   return all.faults[0];
@@ -391,7 +391,7 @@ TEST(BadFrame, HeaderThatPromisesTooMuchTakesNoMemory) {
 }
 
 TEST(BadFrame, SizeThatTheFileCannotHoldTakesNoMemory) {
-  // 16,384 x 16,384 pixels, written behind a mark in the file.
+  // 16,384 x 16,384 pixels, written after a marker in the file.
   const auto fault_with_size = [](const char* kind, const std::string& mark, std::string_view size) {
     return skipped_after([&](const fs::path& f) {
       fs::remove(name_of(f, 3, "color.png"));
@@ -441,7 +441,7 @@ TEST(BadFrame, OneOfARecordingWithoutColourIsPassedOver) {
       writer.close();
     }
     if (format == RecordingFormat::kTum)
-      std::ofstream(folder.path() / "depth.txt", std::ios::app) << "100.25\n";  // cut off as it was written
+      std::ofstream(folder.path() / "depth.txt", std::ios::app) << "100.25\n";  // truncated while written
     else
       fs::remove(name_of(folder.path(), 2, "pose.txt"));
     const auto all = read_all(*open_folder(folder.path()));
@@ -521,7 +521,7 @@ TEST(Tum, APoseWithoutARotationIsNone) {
   const auto frames = read_all(*open_folder(folder.path())).frames;
   ASSERT_GE(frames.size(), 3U);
   EXPECT_TRUE(frames[0].T_world_camera);
-  // Between its neighbours, if they are near enough, and never at the origin.
+  // Interpolated between its neighbours if they are close enough, and never at the origin.
   EXPECT_TRUE(!frames[1].T_world_camera || frames[1].T_world_camera->translation().norm() > 1.0);
   EXPECT_TRUE(frames[2].T_world_camera);
 }

@@ -75,18 +75,18 @@ TEST(RealRecordings, PlanesHaveRawDepthAndAnUprightCamera) {
     if (!frame.down_camera) continue;
     ++with_gravity;
     EXPECT_GT(frame.down_camera->y(),
-              std::cos(15.0 * M_PI / 180));  // tilted up by the 9.8 degrees its motor reports
-    EXPECT_LT(frame.down_camera->z(), 0);    // up: gravity points behind it
+              std::cos(15.0 * M_PI / 180));  // tilted up by the 9.8 degrees that its motor reports
+    EXPECT_LT(frame.down_camera->z(), 0);    // looking up: gravity points backwards
   }
   EXPECT_GE(with_colour, 34);
-  EXPECT_EQ(with_gravity, 35);  // the first depth image came before the first reading
+  EXPECT_EQ(with_gravity, 35);  // the first depth image precedes the first reading
 }
 
 TEST(RealRecordings, PlanesWallsArePlumb) {
   ROOMRADAR_RECORDING_OR_SKIP(folder, "fakenect-planes/planes");
   const auto all = read_all(*open_folder(folder));
   const Frame& frame = all.frames.at(5);
-  // The whiteboard's left half, by least squares on z = a x + b y + c.
+  // Plane of the whiteboard's left half, by least squares on z = a x + b y + c.
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (int y = 180; y < 380; ++y)
@@ -101,10 +101,10 @@ TEST(RealRecordings, PlanesWallsArePlumb) {
   const Eigen::Vector3d fit = A.ldlt().solve(b);
   const Eigen::Vector3d normal = Eigen::Vector3d(fit[0], fit[1], -1.0).normalized();
   const double off_plumb_deg = std::abs(std::asin(normal.dot(*frame.down_camera))) * 180 / M_PI;
-  EXPECT_LT(off_plumb_deg, 4.0);  // 2.5 measured; with z's sign turned round it is 22
+  EXPECT_LT(off_plumb_deg, 4.0);  // 2.5 measured; 22 with the opposite sign of z
 }
 
-/// Brightness changes around a pixel, over the mean of the image.
+/// Brightness gradient around each pixel, relative to the image's mean.
 Image<float> edge_strength(const ColourImage& colour) {
   Image<float> strength(colour.width, colour.height);
   double sum = 0;
@@ -123,10 +123,10 @@ Image<float> edge_strength(const ColourImage& colour) {
   return strength;
 }
 
-/// Where the near sides of the frame's depth jumps appear in its colour image.
+/// Projects the near sides of the frame's depth discontinuities into its colour image.
 std::vector<Eigen::Vector2d> depth_edges_in_colour(const Frame& frame) {
   std::vector<Eigen::Vector2d> points;
-  constexpr int kReach_px = 12;  // the projector's shadow lies between near and far
+  constexpr int kReach_px = 12;  // the projector's shadow is between near and far
   const DepthImage& depth_m = frame.depth_m;
   for (int y = kReach_px; y + kReach_px < depth_m.height; ++y)
     for (int x = kReach_px; x + kReach_px < depth_m.width; ++x) {
@@ -146,7 +146,7 @@ std::vector<Eigen::Vector2d> depth_edges_in_colour(const Frame& frame) {
   return points;
 }
 
-/// Mean edge strength of the colour images at the depth edges, moved by (dx, dy).
+/// Mean edge strength of the colour images at the depth edges, shifted by (dx, dy).
 double edge_agreement(const std::vector<Frame>& frames, int dx_px, int dy_px) {
   double sum = 0;
   std::size_t count = 0;
@@ -207,7 +207,7 @@ std::vector<std::string> frames_by_fakenect(const std::filesystem::path& folder)
   std::vector<std::string> lines;
   std::ifstream file(output);
   for (std::string line; std::getline(file, line);)
-    if (line.starts_with("frame ")) lines.push_back(line);  // fakenect prints lines of its own
+    if (line.starts_with("frame ")) lines.push_back(line);  // fakenect prints its own lines
   return lines;
 }
 

@@ -1,4 +1,4 @@
-// whole_file_test.cpp: what a file was it stays, until the whole of the new one is there.
+// atomic_file_test.cpp: a file keeps its old content until the new content is complete.
 #include "mapping/types/system/atomic_file.hpp"
 
 #include <fcntl.h>
@@ -92,7 +92,7 @@ TEST(AtomicFile, ALinkStaysOneAndADeviceIsWrittenAsItComes) {
 TEST(AtomicFile, APipeByItsNameIsWrittenAsItComes) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
-  write("/proc/self/fd/" + std::to_string(ends[1]), "through");  // as /dev/stdout: a link to what has no path
+  write("/proc/self/fd/" + std::to_string(ends[1]), "through");  // like /dev/stdout: a link without a path
   std::array<char, 16> text{};
   EXPECT_EQ(read(ends[0], text.data(), text.size()), 7);
   EXPECT_STREQ(text.data(), "through");
@@ -110,7 +110,7 @@ TEST(AtomicFile, AFileThatStdoutGoesToIsWrittenOn) {
   const test::TemporaryFolder folder;
   const fs::path path = folder.path() / "log";
   std::ofstream(path) << "before\n";
-  for (const int more : {O_APPEND, 0}) {  // >> and a descriptor at the end of it
+  for (const int more : {O_APPEND, 0}) {  // >>, and a descriptor at the end of the file
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {

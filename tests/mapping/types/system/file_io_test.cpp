@@ -1,4 +1,4 @@
-// file_bytes_test.cpp: all of a file or a sentence that names it.
+// file_io_test.cpp: reads all of a file, or throws an error that names it.
 #include "mapping/types/system/file_io.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(FileBytes, WhatCannotBeWrittenIsNamed) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
   const rlimit none{0, before.rlim_max};
-  setrlimit(RLIMIT_NOFILE, &none);  // nothing can be opened
+  setrlimit(RLIMIT_NOFILE, &none);  // no file can be opened
   const std::string fault = test::error_of([&] { write_bytes(kept, "new"); });
   setrlimit(RLIMIT_NOFILE, &before);
   EXPECT_TRUE(fault.starts_with(kept.string())) << fault;

@@ -1,4 +1,4 @@
-// run_apart_test.cpp: work that crashes, hangs, or takes all memory, and this process that goes on.
+// run_sandboxed_test.cpp: work that crashes, hangs or exhausts memory does not affect this process.
 #include "mapping/types/system/run_sandboxed.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::string apart(const std::function<std::string()>& work) {
 TEST(RunApart, WorkThatWaitsForEverIsEnded) {
   EXPECT_THROW((void)run_sandboxed(
                    [] {
-                     pause();  // takes no processor time
+                     pause();  // uses no CPU time
                      return std::string();
                    },
                    "file.obj: cannot be read", 0, kBytes),
@@ -61,7 +61,7 @@ TEST(RunApart, ALoopWithoutAnEndIsASentence) {
 }
 
 TEST(RunApart, DoesNotWaitForWhoeverElseHoldsThePipe) {
-  // As a child does that another thread has started meanwhile.
+  // Such as a child that another thread starts at the same time.
   std::array<int, 2> held{};
   ASSERT_EQ(pipe(held.data()), 0);
   EXPECT_EQ(apart([&] {
@@ -92,7 +92,7 @@ TEST(RunApart, WorkEndsWithTheProcessThatWaitsForIt) {
   }
   close(ends[1]);
   char byte = 0;
-  ASSERT_EQ(read(ends[0], &byte, 1), 1);  // it works
+  ASSERT_EQ(read(ends[0], &byte, 1), 1);  // the work is running
   kill(waits, SIGKILL);
   int status = 0;
   waitpid(waits, &status, 0);

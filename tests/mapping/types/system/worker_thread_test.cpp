@@ -1,4 +1,4 @@
-// second_thread_test.cpp: both pieces of work are done when the call returns, and no fault gets lost.
+// worker_thread_test.cpp: both pieces of work are done when the call returns, and no exception is lost.
 #include "mapping/types/system/worker_thread.hpp"
 
 #include <gtest/gtest.h>
