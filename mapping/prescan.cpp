@@ -171,7 +171,7 @@ Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEst
           ? verify_registration(map->octree, surface, Eigen::Isometry3d::Identity(), located)
           : register_to(map->octree, map->keyframe_database, found.keyframe_database, surface);
   if (!placed)
-    throw Error(source + ": cannot be placed in the map that it is to be added to: " + describe(placed) +
+    throw Error(source + ": cannot be registered to the map that it is to be added to: " + describe(placed) +
                 "; the map is unchanged. Begin where the map was scanned, or save as another map");
   return placed.T_a_b;
 }

@@ -11,6 +11,7 @@
 #include "app/cli/open_source.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/session/apply_quality.hpp"
+#include "app/session/session_events.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/types/system/error.hpp"
@@ -169,7 +170,7 @@ void open_session(OpenedRun& run, bool has_picture) {
   if (run.command.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   // Objects are loaded now, so an unreadable mesh is reported before the first frame.
   for (const ScriptEvent& event : run.script.events)
-    if (event.action == Action::kAdd) run.session->apply(event);
+    if (event.action == Action::kAdd) apply(*run.session, event);
 }
 
 void open_outputs(OpenedRun& run) {

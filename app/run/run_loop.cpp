@@ -9,6 +9,7 @@
 
 #include "app/cli/progress.hpp"
 #include "app/media/picture_file.hpp"
+#include "app/session/session_events.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 
@@ -127,7 +128,7 @@ ScriptEvent RunLoop::apply(const ScriptEvent& event) {
   if (event.action == Action::kAdd)
     run_.session->add_object(event.name, run_.host->take_parts());
   else
-    run_.session->apply(event);
+    roomradar::apply(*run_.session, event);
   return kept;
 }
 

@@ -85,7 +85,7 @@ void print_summary(const RunTotals& totals, const Session& session) {
   }
   const auto waits = [&](const std::string& name) {
     return std::any_of(session.waiting_drops().begin(), session.waiting_drops().end(),
-                       [&](const Session::WaitingDrop& waiting) { return waiting.drop.name == name; });
+                       [&](const WaitingDrop& waiting) { return waiting.drop.name == name; });
   };
   for (const auto& object : session.objects()) {
     const Eigen::Vector3d p = object->body.T_world_object.translation();

@@ -1,7 +1,7 @@
 // apply_quality.hpp: applies a run quality to a session's configuration.
 #pragma once
 #include "app/quality/quality.hpp"
-#include "app/session/session.hpp"
+#include "app/session/session_config.hpp"
 
 namespace roomradar {
 

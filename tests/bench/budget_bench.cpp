@@ -28,6 +28,7 @@
 #include "app/run/run_budget.hpp"
 #include "app/session/apply_quality.hpp"
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/prescan.hpp"
@@ -152,7 +153,7 @@ void drop_objects(Session& session, const Eigen::Isometry3d& T_map_room, int cou
     drop.position_world =
         T_map_room * Eigen::Vector3d(-0.5 + 0.19 * (i % 10), 1.5 + 0.12 * (i / 10 % 5), 0.2 * (i / 50));
     drop.height_m = 0.3 + 0.02 * (i % 7);
-    session.apply(drop);
+    apply(session, drop);
   }
 }
 
@@ -161,7 +162,7 @@ void remove_objects(Session& session) {
     ScriptEvent remove;
     remove.action = Action::kRemove;
     remove.name = object->body.name;
-    session.apply(remove);
+    apply(session, remove);
   }
 }
 

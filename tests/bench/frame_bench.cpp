@@ -25,6 +25,7 @@
 
 #include "app/cli/report.hpp"
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "app/sources/formats/frame_range.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -181,7 +182,7 @@ void drop_if_due(Session& session, int frame) {
   drop.action = Action::kDrop;
   drop.name = "object";
   drop.height_m = kDropHeight_m;
-  session.apply(drop);
+  apply(session, drop);
 }
 
 nlohmann::json bench(const Scene& scene, const SavedMap& map, const std::vector<Frame>& frames,

@@ -19,6 +19,7 @@
 #include "app/cli/report.hpp"
 #include "app/objects/virtual_object.hpp"
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/octree/memory_use.hpp"
@@ -68,7 +69,7 @@ void play(Session& session, std::int64_t number) {
   if (number % (10 * kRate_hz) == 60) {  // after the lying object has come to rest
     event.action = Action::kDrop;
     event.name = "dropped";
-    session.apply(event);
+    apply(session, event);
   }
   if (number % (15 * kRate_hz) == 100) {
     event.action = Action::kThrow;
@@ -76,7 +77,7 @@ void play(Session& session, std::int64_t number) {
     event.position_world = Eigen::Vector3d(0.2, 0.1, 1.4);
     event.velocity_world_mps = {-1.0, 0.5, 1.0};
     event.angular_velocity_world_rad_s = {3.0, -2.0, 1.0};
-    session.apply(event);
+    apply(session, event);
   }
 }
 
@@ -131,7 +132,7 @@ int soak(const Settings& settings) {
   ScriptEvent drop;
   drop.action = Action::kDrop;
   drop.name = "lies";
-  session.apply(drop);
+  apply(session, drop);
 
   const auto frames = static_cast<std::int64_t>(settings.hours * 3600.0) * kRate_hz;
   nlohmann::json rows = nlohmann::json::array();

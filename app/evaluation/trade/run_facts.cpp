@@ -10,6 +10,7 @@
 #include "app/evaluation/trade/measured_sandboxed.hpp"
 #include "app/session/apply_quality.hpp"
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "mapping/octree/memory_use.hpp"
 
 namespace roomradar {
@@ -28,7 +29,7 @@ void drop_objects(const RunScene& scene, int objects, int frame, Session& sessio
     const auto turn = static_cast<std::size_t>(frame / kDropEvery + number);
     if (!scene.drop_at_world.empty())
       drop.position_world = scene.drop_at_world[turn % scene.drop_at_world.size()];
-    session.apply(drop);
+    apply(session, drop);
   }
 }
 

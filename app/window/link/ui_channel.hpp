@@ -80,7 +80,7 @@ struct Snapshot {
   std::int64_t source_frame = 0;
   double run_time_s = 0.0;
   FrameResult result;
-  std::optional<Session::ShownView> view;
+  std::optional<ShownView> view;
   ColourImage picture;
   std::vector<std::pair<std::string, float>> stages_ms;  ///< of this frame: read, then the session's stages
   std::vector<ShownObject> objects;

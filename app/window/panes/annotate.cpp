@@ -121,8 +121,7 @@ void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindo
   }
 }
 
-void draw_camera(ImDrawList& draw, const Session::ShownView& view, double depth_m,
-                 const ToWindow& to_window) {
+void draw_camera(ImDrawList& draw, const ShownView& view, double depth_m, const ToWindow& to_window) {
   const Intrinsics& camera = view.camera;
   std::array<Eigen::Vector3d, 4> corners;
   const std::array<std::array<double, 2>, 4> around = {{{0, 0},

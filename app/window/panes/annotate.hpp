@@ -29,7 +29,7 @@ void draw_target_volume(ImDrawList& draw, const ShownRadar& radar, const ToWindo
                         const look::Fonts& fonts);
 
 /// Draws the camera's view frustum down to a depth.
-void draw_camera(ImDrawList& draw, const Session::ShownView& view, double depth_m, const ToWindow& to_window);
+void draw_camera(ImDrawList& draw, const ShownView& view, double depth_m, const ToWindow& to_window);
 
 /// Returns "at rest on seen static", "moves at 1.2 m/s" or "carried" and the like.
 std::string what_it_does(const ShownObject& object);

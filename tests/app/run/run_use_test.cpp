@@ -8,6 +8,7 @@
 #include <string>
 
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -73,11 +74,11 @@ class FrameUseInASession : public ::testing::Test {
     event.name = "pot";
     event.mesh = "teapot";
     event.action = Action::kAdd;
-    session_.apply(event);
+    apply(session_, event);
     event.action = Action::kThrow;
     event.position_world = Eigen::Vector3d(0.0, 0.0, z);
     event.velocity_world_mps = Eigen::Vector3d(0.0, 0.0, speed_mps);
-    session_.apply(event);
+    apply(session_, event);
   }
 
   SavedMap map_;

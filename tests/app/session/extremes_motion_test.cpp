@@ -8,6 +8,7 @@
 
 #include "app/physics/physics.hpp"
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "mapping/alignment/align.hpp"
 #include "mapping/alignment/view.hpp"
 #include "mapping/mesh/mesh_file.hpp"
@@ -113,18 +114,18 @@ TEST(Extremes, ManyTurnsByAUserKeepARotation) {
   add.action = Action::kAdd;
   add.name = "box";
   add.mesh = folder.path() / "box.ply";
-  session.apply(add);
+  apply(session, add);
   ScriptEvent place = add;
   place.action = Action::kPlace;
   place.position_world = Vec3(0, 0, 2.0);
   place.R_world_object = (1.0 + 1e-9) * Eigen::Matrix3d::Identity();  // not quite a rotation at the start
-  session.apply(place);
+  apply(session, place);
   ScriptEvent turn = add;
   turn.action = Action::kTurn;
   turn.turn_world_deg = Vec3(0.7, -1.3, 2.1);
   double worst = 0.0;
   for (int i = 0; i < turns; ++i) {
-    session.apply(turn);
+    apply(session, turn);
     worst = std::max(worst, off_rotation(session.objects().front()->body.T_world_object));
   }
   EXPECT_LT(worst, kOrthonormal);
@@ -217,11 +218,11 @@ class Thrown {
     event.action = Action::kAdd;
     event.name = "pot";
     event.mesh = "teapot";
-    session_.apply(event);
+    apply(session_, event);
     event.action = Action::kThrow;
     event.position_world = Vec3(0, 0, 3.0);
     event.velocity_world_mps = Vec3(0, 0, -20.0);
-    session_.apply(event);
+    apply(session_, event);
   }
   void step(double stamp_s) {
     result = session_.step(sky(index_++, stamp_s), times_);

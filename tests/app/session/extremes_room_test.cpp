@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "mapping/octree/fusion.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/surface/surface_extraction.hpp"
@@ -75,10 +76,10 @@ Dropped drop_pot(const SavedMap& map, const Vec3& onto_world) {
   event.action = Action::kAdd;
   event.name = "pot";
   event.mesh = "teapot";
-  session.apply(event);
+  apply(session, event);
   event.action = Action::kDrop;
   event.position_world = onto_world;
-  session.apply(event);
+  apply(session, event);
   Frame frame;
   frame.depth_camera = {64, 48, 58.5, 58.5, 31.5, 23.5};
   frame.depth_m.resize(64, 48, 0.0F);

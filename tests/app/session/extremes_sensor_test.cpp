@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/prescan.hpp"
@@ -95,9 +96,9 @@ Outcome scan_and_run(const SimOptions& options, const Alter& alter) {
   event.action = Action::kAdd;
   event.name = "pot";
   event.mesh = "teapot";
-  session.apply(event);
+  apply(session, event);
   event.action = Action::kDrop;
-  session.apply(event);
+  apply(session, event);
   const VirtualObject& pot = *session.objects().front();
   const auto height_m = [&] { return (T_room_map * pot.body.T_world_object.translation()).z(); };
   double began_m = 0.0;

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/system/error.hpp"
@@ -82,11 +83,11 @@ class UpdatingSession {
     event.mesh = "teapot";
     event.size_m = 0.1;
     event.action = Action::kAdd;
-    session.apply(event);
+    apply(session, event);
     event.action = Action::kDrop;
     event.position_world = above;
     event.height_m = 0.03;
-    session.apply(event);
+    apply(session, event);
   }
   /// Height of the pot's lowest point.
   [[nodiscard]] double pot_m() const {
@@ -106,7 +107,7 @@ class UpdatingSession {
 void ask(Session& session) {
   ScriptEvent event;
   event.action = Action::kCommit;
-  session.apply(event);
+  apply(session, event);
 }
 
 TEST(Adopt, ACrateThatCameHoldsAPotAlsoWhenAHandHidesIt) {

@@ -1,5 +1,6 @@
 // session_test.cpp: virtual objects on a known floor, and frames in which they cannot be placed.
 #include "app/session/session.hpp"
+#include "app/session/session_events.hpp"
 
 #include <gtest/gtest.h>
 
@@ -51,8 +52,8 @@ ScriptEvent event(Action action) {
 
 /// Requests the drop of a pot while no level surface is in view.
 void let_a_drop_wait(Session& session, StageTimes& times) {
-  session.apply(event(Action::kAdd));
-  session.apply(event(Action::kDrop));
+  apply(session, event(Action::kAdd));
+  apply(session, event(Action::kDrop));
   static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
 }
 
@@ -235,7 +236,7 @@ TEST(Session, ADropThatWaitsOutlivesATurnOfWhatIsNotInTheRoom) {
   let_a_drop_wait(session, times);
   ScriptEvent turn = event(Action::kTurn);
   turn.turn_world_deg = Eigen::Vector3d(0.0, 0.0, 30.0);
-  session.apply(turn);
+  apply(session, turn);
   see_the_floor(session, times);
   EXPECT_TRUE(session.objects().front()->in_room);
 }
@@ -245,7 +246,7 @@ TEST(Session, RemovedObjectDoesNotComeInByADropThatWaited) {
   Session session(map, by_recorded_poses());
   StageTimes times;
   let_a_drop_wait(session, times);
-  session.apply(event(Action::kRemove));
+  apply(session, event(Action::kRemove));
   see_the_floor(session, times);
   EXPECT_FALSE(session.objects().front()->in_room);
 }
@@ -257,9 +258,9 @@ TEST(Session, DropsThatWaitAreNotTriedAllInOneFrame) {
   for (const char* const name : {"one", "two", "three"}) {
     ScriptEvent drop = event(Action::kAdd);
     drop.name = name;
-    session.apply(drop);
+    apply(session, drop);
     drop.action = Action::kDrop;
-    session.apply(drop);
+    apply(session, drop);
   }
   static_cast<void>(session.step(depth_only(0, kAtTheSky), times));
   const auto& waiting = session.waiting_drops();
@@ -275,8 +276,8 @@ TEST(Session, NothingIsDroppedOntoASurfaceThatSomethingStandsBefore) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   StageTimes times;
-  session.apply(event(Action::kAdd));
-  session.apply(event(Action::kDrop));
+  apply(session, event(Action::kAdd));
+  apply(session, event(Action::kDrop));
   Frame full = depth_only(0, kAtTheFloor);  // a person in front of all of the floor
   for (float& depth_m : full.depth_m.pixels) depth_m *= 0.6F;
   static_cast<void>(session.step(full, times));
@@ -300,7 +301,7 @@ TEST(Session, WhereAMeshHasItsOriginDoesNotMatterForADropInView) {
     StageTimes times;
     session.add_object(
         "pot", is_about_corner ? box_about_its_corner(0.4F) : shapes::box(Eigen::Vector3f::Constant(0.4F)));
-    session.apply(event(Action::kDrop));
+    apply(session, event(Action::kDrop));
     static_cast<void>(session.step(depth_only(0, kAtTheFloor), times));
     const VirtualObject& object = *session.objects().front();
     ASSERT_TRUE(object.in_room);
@@ -313,7 +314,7 @@ TEST(Session, WhereAMeshHasItsOriginDoesNotMatterForADropInView) {
   // Its farthest corner is 1.13 m sideways from its origin, and 0.57 m from its centre.
   Session session(map, by_recorded_poses());
   session.add_object("pot", box_about_its_corner(0.8F));
-  EXPECT_NO_THROW(session.apply(event(Action::kDrop)));
+  EXPECT_NO_THROW(apply(session, event(Action::kDrop)));
 }
 
 TEST(Session, WhatIsTurnedWhileItIsCarriedTurnsAboutItsMiddle) {
@@ -325,12 +326,12 @@ TEST(Session, WhatIsTurnedWhileItIsCarriedTurnsAboutItsMiddle) {
   const auto middle = [&]() -> Eigen::Vector3d { return object.body.T_world_object * object.model->middle; };
   ScriptEvent carry = event(Action::kCarry);
   carry.position_world = Eigen::Vector3d(0.0, 0.0, 0.8);
-  session.apply(carry);
+  apply(session, carry);
   for (std::int64_t i = 0; i < 5; ++i) static_cast<void>(session.step(depth_only(i, kAtTheSky), times));
   const Eigen::Vector3d before = middle();
   ScriptEvent turn = event(Action::kTurn);
   turn.turn_world_deg = Eigen::Vector3d(90.0, 0.0, 0.0);
-  session.apply(turn);
+  apply(session, turn);
   for (std::int64_t i = 5; i < 10; ++i) static_cast<void>(session.step(depth_only(i, kAtTheSky), times));
   EXPECT_GT(Eigen::AngleAxisd(object.body.T_world_object.linear()).angle(), 1.5);
   EXPECT_LT((middle() - before).norm(), 1e-3);
@@ -343,18 +344,18 @@ TEST(Session, OneThatSpinsOnAndOnDoesNotKeepTheOthersFromTheirShadows) {
   for (const char* const name : {"rests", "spins"}) {
     ScriptEvent add = event(Action::kAdd);
     add.name = name;
-    session.apply(add);
+    apply(session, add);
   }
   ScriptEvent put = event(Action::kPlace);
   put.name = "rests";
   put.position_world = Eigen::Vector3d(0.0, 0.0, 0.001);
   put.R_world_object = Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  session.apply(put);
+  apply(session, put);
   put = event(Action::kThrow);
   put.name = "spins";
   put.position_world = Eigen::Vector3d(0.5, 0.0, -5.0);  // below the floor, where it falls without end
   put.angular_velocity_world_rad_s = Eigen::Vector3d(0.0, 0.0, 10.0);
-  session.apply(put);
+  apply(session, put);
   for (std::int64_t i = 0; i < 40; ++i) static_cast<void>(session.step(in_colour(i, kAtTheFloor), times));
   ASSERT_TRUE(session.objects()[0]->body.asleep);
   ASSERT_FALSE(session.objects()[1]->body.asleep);
@@ -383,11 +384,11 @@ void drop_pots(Session& session, const std::vector<Eigen::Vector3d>& over_world)
     ScriptEvent drop = event(Action::kAdd);
     drop.name = "pot" + std::to_string(i);
     drop.size_m = 0.08;
-    session.apply(drop);
+    apply(session, drop);
     drop.action = Action::kDrop;
     drop.position_world = over_world[i];
     drop.height_m = 0.3;
-    session.apply(drop);
+    apply(session, drop);
   }
 }
 
@@ -459,7 +460,7 @@ TEST(Session, AQualityThatWasDueInALostFrameHoldsFromThereOn) {
   ScriptEvent change = event(Action::kQuality);
   change.quality.shadow_every_n_frames = 7;
   change.from = FramePart::kCompose;
-  session.apply(change);
+  apply(session, change);
   ASSERT_EQ(session.step(depth_only(0, std::nullopt), times).status, FrameStatus::kNotLocated);
   EXPECT_EQ(session.config().shadow_every_n_frames, 7);
 }
@@ -479,7 +480,7 @@ TEST(Session, AnObjectIsShovedByOneThatIsThrownAndByOneThatIsCarried) {
       const double x = how == Action::kThrow ? -1.3 : -1.4 + 0.02 * frame;
       shove.position_world = Eigen::Vector3d(x, 0.0, 0.01);
       shove.velocity_world_mps = Eigen::Vector3d(2.0, 0.0, 0.0);
-      if (frame == 0 || how == Action::kCarry) session.apply(shove);
+      if (frame == 0 || how == Action::kCarry) apply(session, shove);
       go_on(session, 45 + frame, 1);
     }
     EXPECT_GT(shoved.T_world_object.translation().x() - stood.x(), 0.02)
@@ -537,7 +538,7 @@ double begins_at_m(const std::pair<Mesh, Put>& first, const std::pair<Mesh, Put>
     event.name = std::to_string(session.objects().size());
     event.position_world = put.at_world;
     session.add_object(event.name, mesh);
-    session.apply(event);
+    apply(session, event);
   }
   const VirtualObject& put = *session.objects().back();
   return put.body.T_world_object.translation().z() + lowest_m(put);
@@ -579,14 +580,14 @@ TEST(Session, WhatIsTooLargeForAnyPlaceInViewIsRefusedInWords) {
   const SavedMap map = floor_map();
   Session session(map, by_recorded_poses());
   session.add_object("pot", shapes::box({85.0F, 90.0F, 120.0F}));
-  const std::string fault = test::error_of([&] { session.apply(event(Action::kDrop)); });
+  const std::string fault = test::error_of([&] { apply(session, event(Action::kDrop)); });
   EXPECT_NE(fault.find("pot: reaches 61.9 m sideways"), std::string::npos) << fault;
   EXPECT_NE(fault.find("Meshes are in metres"), std::string::npos) << fault;
   // A rejected drop changes nothing.
   ScriptEvent carry = event(Action::kCarry);
   carry.position_world = Eigen::Vector3d(0, 0, 100);
-  session.apply(carry);
-  EXPECT_NE(test::error_of([&] { session.apply(event(Action::kDrop)); }), "");
+  apply(session, carry);
+  EXPECT_NE(test::error_of([&] { apply(session, event(Action::kDrop)); }), "");
   EXPECT_TRUE(session.objects().front()->carried_to_world);
 }
 
@@ -600,7 +601,7 @@ TEST(Session, WhatTheRadarLookedAtIsCountedAcrossAChangeOfRadar) {
     ScriptEvent change = event(Action::kQuality);
     change.quality.radar = i % 2 == 0 ? RadarMode::kSampled : RadarMode::kExact;
     change.from = FramePart::kPhysics;
-    session.apply(change);
+    apply(session, change);
     Frame frame = depth_only(i, kAtTheSky);
     frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
     EXPECT_LE(session.step(frame, times).use.room_asked, 1000U) << i;
@@ -615,11 +616,11 @@ struct Thrown {
 /// Throws a pot from a position and returns its state after one and a half seconds without any depth.
 Thrown thrown(Session& session, const Eigen::Vector3d& from_world, double up_mps) {
   StageTimes times;
-  session.apply(event(Action::kAdd));
+  apply(session, event(Action::kAdd));
   ScriptEvent put = event(Action::kThrow);
   put.position_world = from_world;
   put.velocity_world_mps = Eigen::Vector3d(0.0, 0.0, up_mps);
-  session.apply(put);
+  apply(session, put);
   Thrown result{*session.objects().front()};
   for (std::int64_t i = 0; i < 45; ++i) {
     Frame frame = depth_only(i, kAtTheSky);

@@ -1,5 +1,6 @@
 // player_test.cpp: a user's mouse actions become script events, on a known floor.
 #include "app/window/link/player.hpp"
+#include "app/session/session_events.hpp"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +43,7 @@ class Playing : public ::testing::Test {
     add.action = Action::kAdd;
     add.name = "pot";
     add.mesh = "teapot";
-    session_.apply(add);
+    apply(session_, add);
     step();
   }
   void step() {
@@ -56,7 +57,7 @@ class Playing : public ::testing::Test {
   /// Applies the events of one user command, and advances one frame.
   std::vector<ScriptEvent> play(const UserCommand& command) {
     std::vector<ScriptEvent> events = player_.events_of({&command, 1}, session_);
-    for (const ScriptEvent& event : events) session_.apply(event);
+    for (const ScriptEvent& event : events) apply(session_, event);
     step();
     return events;
   }
@@ -166,7 +167,7 @@ TEST_F(Playing, WhatIsDraggedAndLetGoBetweenTwoFramesIsCarriedThere) {
   const std::vector<ScriptEvent> first = player_.events_of(commands, session_);
   ASSERT_EQ(first.size(), 1U);
   EXPECT_EQ(first[0].action, Action::kCarry);
-  session_.apply(first[0]);
+  apply(session_, first[0]);
   step();
   EXPECT_GT((position() - before).norm(), 0.2);
   const std::vector<ScriptEvent> second = player_.events_of({}, session_);
@@ -233,7 +234,7 @@ TEST_F(Playing, ResetLeavesNoDropWaiting) {
     other.action = action;
     other.name = "other";
     other.mesh = "teapot";
-    session_.apply(other);  // its drop waits for the next frame
+    apply(session_, other);  // its drop waits for the next frame
   }
   (void)play(command(UserCommandKind::kReset));
   EXPECT_TRUE(session_.objects()[0]->in_room);
@@ -254,16 +255,16 @@ TEST_F(Playing, PoliciesThatDoNotGoTogetherAreRefusedAndNothingChanges) {
   solid.unknown_is_solid = true;
   skirt.action = Action::kSurfaces;
   skirt.surfaces = SurfacePolicy::kSkirt;
-  session_.apply(skirt);
+  apply(session_, skirt);
   EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kSkirt);
-  EXPECT_THROW(session_.apply(solid), Error);
+  EXPECT_THROW(apply(session_, solid), Error);
   EXPECT_FALSE(session_.unknown_is_solid());
   skirt.surfaces = SurfacePolicy::kMap;
-  session_.apply(skirt);
-  session_.apply(solid);
+  apply(session_, skirt);
+  apply(session_, solid);
   EXPECT_TRUE(session_.unknown_is_solid());
   skirt.surfaces = SurfacePolicy::kHoles;
-  EXPECT_THROW(session_.apply(skirt), Error);
+  EXPECT_THROW(apply(session_, skirt), Error);
   EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kMap);
 }
 
@@ -340,7 +341,7 @@ TEST_F(Hosted, ANewObjectComesOnceItIsReadyAndTheSameAsOneThatWasWaitedFor) {
   const ObjectModel& model = *session_.objects().back()->model;
   ScriptEvent waited_for = events[0];
   waited_for.name = "another";
-  session_.apply(waited_for);
+  apply(session_, waited_for);
   EXPECT_EQ(session_.objects().back()->model.get(), &model);  // same mesh, so it shares the model
   const ObjectParts parts = object_parts("pot", object_mesh("teapot", 0.25));
   ASSERT_EQ(model.levels.size(), parts.levels.size());
@@ -385,7 +386,7 @@ TEST_F(Hosted, ADropThatFindsNoSurfaceIsSaidToWaitOnce) {
   ScriptEvent drop;
   drop.action = Action::kDrop;
   drop.name = "pot";
-  session_.apply(drop);
+  apply(session_, drop);
   frame_.T_world_camera.reset();  // the pose is unknown
   result_ = session_.step(frame_, times_);
   host_.show(0, 0.0, frame_, result_);

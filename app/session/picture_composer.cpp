@@ -1,9 +1,7 @@
-// session_picture.cpp: composes the camera's picture with the objects and their shadows.
-#include <Eigen/Geometry>
-#include <algorithm>
-#include <vector>
+// picture_composer.cpp: colour, shadows, objects and occlusion of one picture.
+#include "app/session/picture_composer.hpp"
 
-#include "app/session/session.hpp"
+#include <algorithm>
 
 namespace roomradar {
 namespace {
@@ -27,7 +25,12 @@ Eigen::Isometry3d pose_beside(const Eigen::Isometry3d& T_world_before, const Eig
 
 }  // namespace
 
-void Session::keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
+PictureComposer::PictureComposer(GlContext& context, FrameScene& scene,
+                                 const std::vector<std::unique_ptr<VirtualObject>>& objects,
+                                 const SessionConfig& config)
+    : scene_(scene), objects_(objects), config_(config), drawer_(context) {}
+
+void PictureComposer::keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double dt_s) {
   if (frame.colour.empty()) return;
   const Eigen::Isometry3d T_world_then =
       T_world_before_ ? pose_beside(*T_world_before_, T_world_camera, dt_s, frame.colour_after_depth_s)
@@ -36,19 +39,19 @@ void Session::keep_colour(const Frame& frame, const Eigen::Isometry3d& T_world_c
   background_ = frame.colour;
 }
 
-void Session::watch_for_colour(const Frame& frame) {
+void PictureComposer::begin_frame(const Frame& frame) {
   frames_without_colour_ =
       frame.colour.empty() ? std::min(frames_without_colour_ + 1, kColourLasts_frames + 1) : 0;
   if (frames_without_colour_ > kColourLasts_frames) colour_view_.reset();
 }
 
-Session::ShownView Session::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+ShownView PictureComposer::view_of(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   if (colour_view_) return *colour_view_;
   shade_depth(frame.depth_m, frame.depth_camera, background_);
   return {frame.depth_camera, T_world_camera};
 }
 
-void Session::show_camera_alone(const Frame& frame) {
+void PictureComposer::show_camera_alone(const Frame& frame) {
   shown_view_.reset();
   if (!frame.colour.empty()) {
     picture_ = frame.colour;
@@ -60,10 +63,9 @@ void Session::show_camera_alone(const Frame& frame) {
   }
 }
 
-void Session::renew_a_shadow() {
+void PictureComposer::renew_a_shadow(bool may_refine) {
   constexpr double kTurned_rad = 0.05;
   constexpr int kFine = 16, kCoarse = 8;  // 3 ms and 0.2 ms
-  const bool may_be_fine = is_turn(0, config_.shadow_every_n_frames);
   // Objects take turns, so one that keeps rotating does not block the others.
   for (std::size_t i = 1; i <= objects_.size(); ++i) {
     const std::size_t number = (last_shadow_ + i) % objects_.size();
@@ -72,7 +74,7 @@ void Session::renew_a_shadow() {
     const Eigen::Matrix3d& R_world_object = object.body.T_world_object.linear();
     const bool has_turned =
         Eigen::AngleAxisd(object.shadow.R_world_object.transpose() * R_world_object).angle() > kTurned_rad;
-    const bool gets_fine = object.body.asleep && object.shadow.cells_across < kFine && may_be_fine;
+    const bool gets_fine = object.body.asleep && object.shadow.cells_across < kFine && may_refine;
     if (!has_turned && !gets_fine) continue;
     make_contact_shadow(object.model->surface, R_world_object, object.shadow, gets_fine ? kFine : kCoarse);
     last_shadow_ = number;
@@ -80,7 +82,8 @@ void Session::renew_a_shadow() {
   }
 }
 
-void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+void PictureComposer::compose(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                              bool may_refine_shadow) {
   shown_view_ = view_of(frame, T_world_camera);
   const auto& [camera, T_world_view] = *shown_view_;
 
@@ -96,7 +99,7 @@ void Session::compose_picture(const Frame& frame, const Eigen::Isometry3d& T_wor
   }
   drawer_.begin(drawn, camera, T_world_view, {}, layer_);  // runs in parallel with real depth and shadows
 
-  if (has_shadows) renew_a_shadow();
+  if (has_shadows) renew_a_shadow(may_refine_shadow);
   real_depth_m_.resize(camera.width_px, camera.height_px);
   const PixelRect rect = pixels_to_compose(casters, camera, T_world_view, layer_, config_.picture.occlusion);
   if (rect.width > 0 && rect.height > 0) scene_.render_surfaces(camera, T_world_view, rect, real_depth_m_);

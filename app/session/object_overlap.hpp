@@ -1,0 +1,21 @@
+// object_overlap.hpp: separates a placed object from the objects that it overlaps.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "app/objects/virtual_object.hpp"
+#include "radar/exact/cyber_radar.hpp"
+#include "radar/geometry/radar_scene.hpp"
+#include "radar/motion/proximity.hpp"
+
+namespace roomradar {
+
+/// Lifts an object that overlaps other objects until it is on top of them. Leaves it in place if the room is
+/// in the way.
+/// @param scene     everything that the object can touch, without itself
+/// @param margin_m  gap kept to the objects below, m; smaller overlaps are ignored
+void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
+                       std::span<const SceneTree> scene, double margin_m, CyberRadar& radar,
+                       ProximityQuery& proximity);
+
+}  // namespace roomradar

@@ -1,0 +1,332 @@
+// object_set.cpp: what users do to objects, and one frame of their physics.
+#include "app/session/object_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <utility>
+
+#include "app/physics/placement.hpp"
+#include "app/physics/rigid_motion.hpp"
+#include "app/session/object_overlap.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/validity.hpp"
+#include "radar/motion/time_of_impact.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
+
+/// Returns the physics of a carried object: without gravity, friction and restitution, so it slides along
+/// surfaces.
+PhysicsConfig in_hand(PhysicsConfig config) {
+  config.gravity_world_mps2.setZero();
+  config.friction = config.restitution = 0.0;
+  return config;
+}
+
+/// Returns the number of advance() calls for a time that may exceed the max of one call.
+int pieces_of(double waited_s, const PhysicsConfig& config) {
+  return std::max(1, static_cast<int>(std::ceil(waited_s / config.max_advance_s - 1e-9)));
+}
+
+/// Sets the velocity that takes a carried object to its target by the end of this frame.
+void set_in_hand(VirtualObject& object, double dt_s) {
+  const Eigen::Vector3d way = *object.carried_to_world - object.body.T_world_object.translation();
+  object.body.asleep = false;
+  object.body.angular_velocity_world_rad_s.setZero();
+  object.body.velocity_world_mps = dt_s > 0.0 ? Eigen::Vector3d(way / dt_s) : Eigen::Vector3d::Zero();
+}
+
+/// Returns the room's depth; 0 where something dynamic is in front of it and might stand on it.
+DepthImage seen_room_depth_m(const FrameScene& scene) {
+  DepthImage depth_m = scene.expected_depth_m();
+  const MaskImage& moved = scene.dynamic_mask();
+  for (std::size_t i = 0; i < std::min(moved.pixels.size(), depth_m.pixels.size()); ++i)
+    if (moved.pixels[i] != 0) depth_m.pixels[i] = 0.0F;
+  return depth_m;
+}
+
+/// Throws Error if the object is too large for any place in view.
+void require_small_enough(const VirtualObject& object, const DropRequest& drop) {
+  const double reach_m =
+      footprint_radius_m(object, drop.R_world_object.value_or(object.body.T_world_object.linear()));
+  if (reach_m <= kMostFootprint_m) return;
+  std::array<char, 240> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      ": reaches %.3g m sideways from its middle, and only what reaches at most %.0f m is dropped in view. "
+      "Meshes are in metres: give it a size (add NAME FILE size 0.2) or a place (drop NAME at X Y Z)",
+      reach_m, kMostFootprint_m);
+  throw Error(object.body.name + text.data());
+}
+
+}  // namespace
+
+ObjectSet::ObjectSet(GlContext& context, const FrameScene& scene, const SessionRoom& room,
+                     const SessionConfig& config)
+    : context_(context), scene_(scene), room_(room), config_(config), radar_(config.radar) {}
+
+VirtualObject& ObjectSet::named(const std::string& name) {
+  const auto found = std::find_if(objects_.begin(), objects_.end(),
+                                  [&](const auto& object) { return object->body.name == name; });
+  if (found == objects_.end()) throw Error("script: there is no object named " + name);
+  return **found;
+}
+
+void ObjectSet::require_new(const std::string& name) const {
+  const bool is_there = std::any_of(objects_.begin(), objects_.end(),
+                                    [&](const auto& object) { return object->body.name == name; });
+  if (is_there) throw Error("script: there is an object named " + name + " already");
+}
+
+void ObjectSet::add(const std::string& name, const Mesh& mesh) {
+  require_new(name);
+  objects_.push_back(object_of(context_, name, mesh, objects_));
+}
+
+void ObjectSet::add(const std::string& name, ObjectParts parts) {
+  require_new(name);
+  objects_.push_back(object_of(context_, name, std::move(parts), objects_));
+}
+
+VirtualObject& ObjectSet::take_over(const std::string& name) {
+  VirtualObject& object = named(name);
+  std::erase_if(waiting_, [&](const WaitingDrop& waiting) { return waiting.drop.name == name; });
+  object.carried_to_world.reset();
+  return object;
+}
+
+void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
+  if (state.R_world_object) object.body.T_world_object.linear() = *state.R_world_object;
+  object.body.T_world_object.translation() = state.position_world;
+  object.R_world_put = object.body.T_world_object.linear();
+  object.body.velocity_world_mps = state.velocity_world_mps;
+  object.body.angular_velocity_world_rad_s = state.angular_velocity_world_rad_s;
+  object.body.asleep = false;
+  object.in_room = true;
+  object.waited_s = 0.0;
+  raise_over_others(object, objects_, scene_without(&object), config_.physics.contact_margin_m, radar_,
+                    proximity_);
+  object.in_unknown = object.began_in_unknown = is_in_solid_unknown(room_, object);
+}
+
+void ObjectSet::place(const std::string& name, const ObjectState& state) { put(take_over(name), state); }
+
+void ObjectSet::drop(const DropRequest& drop, std::int64_t frame_number) {
+  if (!drop.position_world) require_small_enough(named(drop.name), drop);
+  VirtualObject& object = take_over(drop.name);
+  if (!drop.position_world) {
+    waiting_.push_back({drop, frame_number});
+    return;
+  }
+  if (drop.R_world_object) object.body.T_world_object.linear() = *drop.R_world_object;
+  put(object,
+      {.position_world = *drop.position_world + Eigen::Vector3d(0.0, 0.0, drop.height_m - lowest_m(object))});
+}
+
+void ObjectSet::carry(const std::string& name, const Eigen::Vector3d& position_world) {
+  VirtualObject& object = take_over(name);
+  if (!object.in_room) put(object, {.position_world = position_world});
+  object.carried_to_world = position_world;
+}
+
+void ObjectSet::release(const std::string& name, const Eigen::Vector3d& velocity_world_mps) {
+  VirtualObject& object = take_over(name);
+  object.body.velocity_world_mps = velocity_world_mps;
+  object.R_world_put = object.body.T_world_object.linear();
+}
+
+void ObjectSet::turn(const std::string& name, const Eigen::Vector3d& turn_world_deg) {
+  VirtualObject& object = named(name);
+  if (!object.in_room) return;
+  std::erase_if(waiting_, [&](const WaitingDrop& waiting) { return waiting.drop.name == name; });
+  RigidMotion motion;
+  motion.angular_rad_s = turn_world_deg * (std::numbers::pi / 180.0);
+  motion.centre_object = object.model->middle;
+  const std::vector<SceneTree> scene = scene_without(&object);
+  const TimeOfImpact free = time_of_impact(radar_, {&object.model->shape.touched, object.body.T_world_object},
+                                           motion, 1.0, {scene, {}});
+  if (free.status == TimeOfImpactStatus::kInvalidInput || free.status == TimeOfImpactStatus::kNoAnswer)
+    return;
+  const Eigen::Vector3d origin_before = object.body.T_world_object.translation();
+  object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
+  make_orthonormal(object.body.T_world_object);
+  if (object.carried_to_world)  // the carry target follows, so the middle stays in place
+    *object.carried_to_world += object.body.T_world_object.translation() - origin_before;
+  object.body.asleep = false;
+}
+
+void ObjectSet::remove(const std::string& name) { take_over(name).in_room = false; }
+
+void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                                std::int64_t frame_number) {
+  constexpr std::int64_t kAgainAfter_frames = 10;  // a search takes some 10 ms
+  for (WaitingDrop& waiting : std::exchange(waiting_, {})) {
+    if (frame_number < waiting.try_at_frame) {
+      waiting_.push_back(std::move(waiting));
+      continue;
+    }
+    DropRequest& drop = waiting.drop;
+    const VirtualObject& object = named(drop.name);
+    const Eigen::Matrix3d R_world_object = drop.R_world_object.value_or(object.body.T_world_object.linear());
+    const std::optional<Eigen::Vector3d> support_world =
+        find_support(seen_room_depth_m(scene_), frame.depth_camera, T_world_camera,
+                     footprint_radius_m(object, R_world_object));
+    if (!support_world) {  // staggered, so waiting drops do not all search in the same frame
+      waiting.try_at_frame = frame_number + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());
+      waiting_.push_back(std::move(waiting));
+      continue;
+    }
+    drop.position_world = *support_world - level_to_middle(object, R_world_object);
+    this->drop(drop, frame_number);
+  }
+}
+
+bool ObjectSet::is_turn_to_move(std::size_t index, std::int64_t frame_number) const {
+  const std::int64_t number = static_cast<std::int64_t>(index);
+  const std::int64_t pictures = config_.picture_every_n_frames;
+  if (pictures == 1) return (frame_number + number) % config_.move_every_n_frames == 0;
+  // Frames with a picture do not move objects. The same frames are left out if no pictures are made, so
+  // objects move the same with and without pictures.
+  const std::int64_t frame = frame_number % pictures;
+  const std::int64_t of_these = frame_number / pictures * (pictures - 1) + frame - 1;
+  return frame > 0 && (of_these + number) % config_.move_every_n_frames == 0;
+}
+
+PushDirections ObjectSet::push_of(const VirtualObject& object) const {
+  // Without the map, all surfaces are the frame's, and none is known to be dynamic.
+  if (config_.scene.surfaces != SurfacePolicy::kMap) return {};
+  return depenetration_directions(
+      {&scene_.dynamic_world().seen_world, &scene_.dynamic_world().inferred_world},
+      object.body.T_world_object * object.model->middle, radius_m(object) + kNearbyReach_m);
+}
+
+void ObjectSet::drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
+                                    std::vector<SceneTree>& scene, double& radar_ms) {
+  const auto back = std::find_if(scene.begin(), scene.end(), [](const SceneTree& surface) {
+    return surface.kind == SurfaceKind::kInferredBack;
+  });
+  if (back == scene.end()) return;
+  const RadarScene of_back{{&*back, 1}, {}};
+  const CollisionQueries probe =
+      make_collision_queries(radar_, proximity_, object.model->shape.touched, of_back, &radar_ms);
+  if (is_engulfed(object.body, waited_s, probe.travel, config_.physics, push.span())) scene.erase(back);
+}
+
+ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes& times) {
+  ContactCounts counts;
+  double radar_ms = 0.0;
+  for (std::size_t index = 0; index < objects_.size(); ++index) {
+    VirtualObject* const object = objects_[index].get();
+    if (!object->in_room) continue;
+    object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // longer gaps are stalls
+    if (!object->carried_to_world && !is_turn_to_move(index, frame_number)) continue;
+    const double waited_s = std::exchange(object->waited_s, 0.0);
+    if (!object->body.asleep) object->in_unknown = object->in_unknown && is_in_solid_unknown(room_, *object);
+    const PushDirections push = push_of(*object);
+    std::vector<SceneTree> scene = scene_without(object);
+    drop_engulfing_back(*object, waited_s, push, scene, radar_ms);
+    const RadarScene radar_scene{scene, {}};
+    CollisionQueries probe =
+        make_collision_queries(radar_, proximity_, object->model->shape.touched, radar_scene, &radar_ms);
+    probe.others = bodies_in(scene, *object);
+    const int pieces = pieces_of(waited_s, config_.physics);
+    for (int left = pieces; left > 0; --left) {
+      const double piece_s = waited_s / pieces;
+      if (object->carried_to_world) set_in_hand(*object, left * piece_s);
+      const StepReport moved =
+          advance(object->body, piece_s, probe,
+                  object->carried_to_world ? in_hand(config_.physics) : config_.physics, push.span());
+      counts.contacts += moved.contacts;
+      for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
+        counts.by_kind[kind] += moved.contacts_by_kind[kind];
+    }
+  }
+  times.add_ms("radar", radar_ms);
+  return counts;
+}
+
+double ObjectSet::penetration_m() {
+  double deepest_m = 0.0;
+  for (const auto& object : objects_) {
+    if (!object->in_room) continue;
+    std::vector<SceneTree> still = scene_without(object.get());
+    // A real hand may enter an object, and unknown space may be empty; neither counts.
+    if (config_.scene.surfaces == SurfacePolicy::kMap)
+      std::erase_if(still, [](const SceneTree& surface) {
+        return surface.kind != SurfaceKind::kStatic && surface.kind != SurfaceKind::kObject;
+      });
+    const Contact below = exact_radar_.query({{&object->model->shape.touched, object->body.T_world_object},
+                                              config_.physics.gravity_world_mps2,
+                                              0.01},
+                                             {still, {}});
+    if (below.status != ContactStatus::kOverlap) continue;
+    // An overlapping surface that crosses no part of the object is in a hollow, such as a handle.
+    constexpr double kTouching_m = 1e-6;
+    const SurfaceKindMask crossed =
+        proximity_.near({&object->model->shape.touched, object->body.T_world_object}, {still, {}},
+                        kTouching_m, 0, closest_points_);
+    if ((crossed & bit_of(below.touched)) != 0) deepest_m = std::max(deepest_m, -below.contact_distance_m);
+  }
+  return deepest_m;
+}
+
+std::vector<SceneTree> ObjectSet::scene_without(const VirtualObject* object) const {
+  std::vector<SceneTree> scene = scene_.surfaces();
+  for (const auto& other : objects_) {
+    if (other.get() != object && other->in_room)
+      scene.push_back({{&other->model->shape.touched, other->body.T_world_object}, SurfaceKind::kObject});
+  }
+  return scene;
+}
+
+std::span<const SceneBody> ObjectSet::bodies_in(const std::vector<SceneTree>& scene,
+                                                const VirtualObject& object) {
+  constexpr double kOfAHand = 1e6;  // mass ratio that makes a carried object immovable for others
+  bodies_.clear();
+  for (const auto& other : objects_) {
+    if (other.get() == &object || !other->in_room) continue;
+    const double gives =
+        object.carried_to_world ? kOfAHand : object.body.mass.mass_kg / other->body.mass.mass_kg;
+    bodies_.push_back({&other->body, other->carried_to_world ? 0.0 : gives});
+  }
+  bodies_.insert(bodies_.begin(), scene.size() - bodies_.size(), SceneBody{});  // objects come last
+  return bodies_;
+}
+
+std::vector<FineRegion> ObjectSet::fine_regions() const {
+  constexpr double kAbout_m = 0.02;  // an object's travel per frame at 0.6 m/s
+  std::vector<FineRegion> regions;
+  if (!config_.fine_mesh) return regions;
+  for (const auto& object : objects_) {
+    if (object->in_room)
+      regions.push_back({object->body.T_world_object * object->model->middle, radius_m(*object) + kAbout_m});
+  }
+  return regions;
+}
+
+void ObjectSet::count_fine_cells() {
+  const std::vector<std::uint32_t>& of_region = scene_.dynamic_cells().fine_of_region;
+  const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
+  std::size_t region = 0;  // one region per object in the room, in this order
+  for (const auto& object : objects_) {
+    const bool has_region = has_map && object->in_room && region < of_region.size();
+    object->fine_cells = has_region ? of_region[region++] : 0;
+  }
+}
+
+void ObjectSet::set_radar(const RadarConfig& config) {
+  CyberRadar radar(config);
+  tested_before_ += radar_.static_triangles_tested();
+  radar_ = std::move(radar);
+}
+
+void ObjectSet::unknown_changed() {
+  for (const auto& object : objects_)
+    object->in_unknown = object->began_in_unknown = object->in_room && is_in_solid_unknown(room_, *object);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,23 @@
+// session_room.cpp: whether an object is in unknown space.
+#include "app/session/session_room.hpp"
+
+#include <algorithm>
+
+namespace roomradar {
+
+bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object) {
+  if (!room.unknown_is_solid) return false;
+  const Eigen::Isometry3d& T_world_object = object.body.T_world_object;
+  const GpuMesh& mesh = object.model->shape.drawn;
+  const auto corner = [&](std::uint32_t vertex) -> Eigen::Vector3d {
+    return T_world_object * (mesh.origin() + mesh.vertices()[vertex].cast<double>());
+  };
+  const auto triangles = mesh.triangles();
+  return std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& triangle) {
+    const Eigen::Vector3d a = corner(triangle[0]), b = corner(triangle[1]), c = corner(triangle[2]);
+    return is_unknown(room.unknown, a) || is_unknown(room.unknown, b) || is_unknown(room.unknown, c) ||
+           is_unknown(room.unknown, (a + b + c) / 3.0);
+  });
+}
+
+}  // namespace roomradar

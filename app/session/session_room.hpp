@@ -1,0 +1,20 @@
+// session_room.hpp: the static room of a session: its surface, and the border of unknown space.
+#pragma once
+#include "app/objects/shape.hpp"
+#include "app/objects/virtual_object.hpp"
+#include "mapping/surface/unknown_surface.hpp"
+#include "radar/geometry/triangle_tree.hpp"
+
+namespace roomradar {
+
+struct SessionRoom {
+  Shape shape;             ///< the map's mesh in the world, with all committed changes
+  UnknownSurface unknown;  ///< empty until unknown space is made solid for the first time
+  TriangleTree unknown_tree;
+  bool unknown_is_solid = false;
+};
+
+/// Returns true if unknown space is solid and a corner or the centre of a triangle of the object is in it.
+bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object);
+
+}  // namespace roomradar
