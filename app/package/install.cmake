@@ -14,7 +14,7 @@ install(FILES app/quality/presets.json DESTINATION ${CMAKE_INSTALL_DATADIR}/room
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
 
-# The libraries: find_package(roomradar), then link roomradar::mapping, ::radar, ::dynamic or ::sources.
+# The libraries: find_package(roomradar COMPONENTS ...); see roomradar-config.cmake.in.
 install(TARGETS ${targets} EXPORT roomradar COMPONENT development)
 set(header_dir ${CMAKE_INSTALL_INCLUDEDIR}/roomradar)
 install(DIRECTORY mapping radar dynamic app DESTINATION ${header_dir} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
