@@ -234,7 +234,7 @@ int draw_legend(std::span<const Hole> holes, double resolution_m, cv::Point pane
   entry(kViolet, "not seen: unknown space, surface border");
   entry(kBlue, "the scan ends here");
   cv::line(picture, {panel.x, y - 5}, {panel.x + 22, y - 5}, kWay, 2, cv::LINE_AA);
-  line("camera path (dot: its start)", 32, 0.45);
+  line("the camera's way (dot: its start)", 32, 0.45);
   y += 40;
   if (holes.empty()) {
     line("No holes: all of the scan's inside was seen.", 0, 0.45);
