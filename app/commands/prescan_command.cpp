@@ -1,4 +1,6 @@
 // prescan_command.cpp: roomradar prescan: scans a room once and saves it as a map.
+#include "app/commands/prescan_command.hpp"
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include "app/cli/interrupt.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
-#include "app/commands/commands.hpp"
 #include "app/commands/unfinished_scan.hpp"
 #include "app/evaluation/held_out.hpp"
 #include "app/quality/quality_json.hpp"
@@ -74,10 +75,10 @@ nlohmann::json held_out_json(const HeldOutScore& score) {
           {"bias_m", score.bias_m}, {"cover", score.cover},   {"outliers", score.outliers}};
 }
 
-void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
+void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
                    const std::optional<HeldOutScore>& held_out) {
   const PrescanCounts& counts = scanned.counts;
-  std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, up from %s\n", command.map.c_str(),
+  std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, up from %s\n", options.map.c_str(),
               static_cast<long long>(counts.frames_tracked), static_cast<long long>(counts.frames_read),
               static_cast<long long>(counts.frames_fused), scanned.map.mesh.triangles.size(),
               scanned.map.info.up_source.c_str());
@@ -95,8 +96,8 @@ void print_summary(const PrescanCommand& command, const PrescanResult& scanned,
   if (held_out && held_out->frames == 0)
     std::printf(
         "no frame was held out that has a pose: --hold-out %lld means frame %lld and every %lldth after it\n",
-        static_cast<long long>(command.hold_out), static_cast<long long>(command.hold_out / 2),
-        static_cast<long long>(command.hold_out));
+        static_cast<long long>(options.hold_out), static_cast<long long>(options.hold_out / 2),
+        static_cast<long long>(options.hold_out));
   else if (held_out && held_out->cover == 0.0)
     std::printf("%lld frames held out: the mesh is nowhere in their view\n",
                 static_cast<long long>(held_out->frames));
@@ -182,8 +183,8 @@ auto or_say_what_is_kept(const ScanStart& start, const Act& act) {
 }
 
 /// Returns the beginning of a sentence.
-std::string stopped_for_memory(const PrescanCommand& command, bool keep_frames) {
-  return command.source + ": stopped by --max-memory " + std::to_string(std::llround(command.max_memory_mb)) +
+std::string stopped_for_memory(const PrescanOptions& options, bool keep_frames) {
+  return options.source + ": stopped by --max-memory " + std::to_string(std::llround(options.max_memory_mb)) +
          ": " +
          (keep_frames ? "its frames are kept, and the same command with --resume scans them again; " : "");
 }
@@ -202,36 +203,36 @@ void finish(Checkpoints& checkpoints, bool keep_frames) {
 
 }  // namespace
 
-int run(const PrescanCommand& command) {
+int run(const PrescanOptions& options) {
   mmap_large_allocations();
   Report report;
   report.command = "prescan";
-  report.source = command.source;
-  report.settings = {{"map", command.map}, {"poses", to_string(command.poses)}};
-  report.settings.update(to_json(command.quality));
-  if (!command.preset.empty()) report.settings["preset"] = command.preset;
-  if (!command.presets.empty()) report.settings["presets"] = command.presets;
-  if (command.hold_out > 0) report.settings["hold_out"] = command.hold_out;
-  if (command.max_memory_mb > 0.0) report.settings["max_memory_mb"] = command.max_memory_mb;
-  if (!command.calibration.empty()) report.settings["calibration"] = command.calibration;
-  if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
+  report.source = options.source;
+  report.settings = {{"map", options.map}, {"poses", to_string(options.poses)}};
+  report.settings.update(to_json(options.quality));
+  if (!options.preset.empty()) report.settings["preset"] = options.preset;
+  if (!options.presets.empty()) report.settings["presets"] = options.presets;
+  if (options.hold_out > 0) report.settings["hold_out"] = options.hold_out;
+  if (options.max_memory_mb > 0.0) report.settings["max_memory_mb"] = options.max_memory_mb;
+  if (!options.calibration.empty()) report.settings["calibration"] = options.calibration;
+  if (options.frames) report.settings["frames"] = {options.frames->first, options.frames->last};
 
   PrescanConfig config;
-  apply(command.quality, config);
-  config.poses = command.poses;
-  config.hold_out = command.hold_out;
-  config.max_memory_bytes = static_cast<std::size_t>(1e6 * command.max_memory_mb);
+  apply(options.quality, config);
+  config.poses = options.poses;
+  config.hold_out = options.hold_out;
+  config.max_memory_bytes = static_cast<std::size_t>(1e6 * options.max_memory_mb);
   // Recorded poses may disagree with the depth by more than the threshold that tells a ghost from a wall;
   // ghost removal would then erase walls.
-  config.remove_ghosts = command.poses == PoseOrigin::kTracked;
-  require_can_become_map(command.map, {command.report});
-  require_writable(command.report);
-  ScanStart start = start_scan(command);
+  config.remove_ghosts = options.poses == PoseOrigin::kTracked;
+  require_can_become_map(options.map, {options.report});
+  require_writable(options.report);
+  ScanStart start = start_scan(options);
   if (start.is_done) {
     std::printf("%s: holds %s already; there is nothing to resume (another recording needs another name)\n",
-                command.map.c_str(), command.source.c_str());
+                options.map.c_str(), options.source.c_str());
     report.results["held_already"] = true;
-    write_report(report, command.report);
+    write_report(report, options.report);
     return 0;
   }
   const std::unique_ptr<FrameSource>& source = start.source;
@@ -240,17 +241,17 @@ int run(const PrescanCommand& command) {
   if (start.map) {
     config.resolution_m = start.map->octree.resolution_m();
     std::map<std::string, std::string>& kept = start.map->info.settings;
-    const bool is_asked_for = std::any_of(command.fixed.begin(), command.fixed.end(),
+    const bool is_asked_for = std::any_of(options.fixed.begin(), options.fixed.end(),
                                           [](const auto& field) { return field.first == "deviation_m"; });
     if (!is_asked_for && kept.contains(kDeviationSetting))
       config.surface.max_deviation_m = surface_config_of(start.map->info).max_deviation_m;
     kept[kDeviationSetting] = format_number(config.surface.max_deviation_m);
     report.settings["resolution_m"] = config.resolution_m;
     report.settings["deviation_m"] = nlohmann::json::parse(kept[kDeviationSetting]);
-    if (config.resolution_m != command.quality.resolution_m ||
-        config.surface.max_deviation_m != static_cast<float>(command.quality.deviation_m))
+    if (config.resolution_m != options.quality.resolution_m ||
+        config.surface.max_deviation_m != static_cast<float>(options.quality.deviation_m))
       std::fprintf(stderr, "%s: is extended, and keeps its cells of %g m and its --deviation of %g m\n",
-                   command.map.c_str(), config.resolution_m,
+                   options.map.c_str(), config.resolution_m,
                    static_cast<double>(config.surface.max_deviation_m));
   }
   announce_memory(*source, config, report);
@@ -275,7 +276,7 @@ int run(const PrescanCommand& command) {
     }
     progress->step(note);
     const bool ends_by_itself = start.is_live && stage == "track";
-    if (!ends_by_itself && Interrupt::take()) stop(command.map, start.checkpoints.get());
+    if (!ends_by_itself && Interrupt::take()) stop(options.map, start.checkpoints.get());
   };
   const bool extends = start.map.has_value();
   const PrescanResult scanned = or_say_what_is_kept(start, [&] {
@@ -289,37 +290,37 @@ int run(const PrescanCommand& command) {
   report.results.update(results_of(scanned));
   if (extends && was_stopped) {
     if (start.checkpoints) finish(*start.checkpoints, keep_frames);
-    write_report(report, command.report);
+    write_report(report, options.report);
     throw Error(
-        stopped_for_memory(command, keep_frames) + command.map +
+        stopped_for_memory(options, keep_frames) + options.map +
         " is unchanged, because the rest could not be added later; with more memory it is added completely");
   }
   or_say_what_is_kept(start,
-                      [&] { report.times.timed("save", [&] { save_map(command.map, scanned.map); }); });
+                      [&] { report.times.timed("save", [&] { save_map(options.map, scanned.map); }); });
 
   std::optional<HeldOutScore> held_out;
   std::string not_scored;
-  if (command.hold_out > 0) {
+  if (options.hold_out > 0) {
     // An extended map's last poses are this scan's.
     const std::vector<TimedPose> poses(scanned.map.trajectory.end() - scanned.counts.frames_tracked,
                                        scanned.map.trajectory.end());
     try {
       held_out = report.times.timed(
-          "held_out", [&] { return score_held_out(*source, scanned.map.mesh, poses, command.hold_out); });
+          "held_out", [&] { return score_held_out(*source, scanned.map.mesh, poses, options.hold_out); });
       report.results["held_out"] = held_out_json(*held_out);
     } catch (const Error& error) {
       not_scored = error.what();
     }
   }
   if (start.checkpoints) finish(*start.checkpoints, keep_frames);
-  print_summary(command, scanned, held_out);
+  print_summary(options, scanned, held_out);
   print_holes(scanned.holes);
-  write_report(report, command.report);
+  write_report(report, options.report);
   if (!not_scored.empty())
     std::fprintf(stderr, "roomradar: %s: is saved; its held-out frames could not be compared with it: %s\n",
-                 command.map.c_str(), not_scored.c_str());
+                 options.map.c_str(), not_scored.c_str());
   if (!was_stopped) return not_scored.empty() ? 0 : 1;
-  throw Error(stopped_for_memory(command, keep_frames) + "the map of the " +
+  throw Error(stopped_for_memory(options, keep_frames) + "the map of the " +
               std::to_string(scanned.counts.frames_fused) + " fused frames is saved and complete; " +
               (keep_frames
                    ? "with more memory the rest is included"

@@ -75,13 +75,13 @@ bool holds(const MapInfo& map, const FrameSource& source) {
 }
 
 /// Returns the source, or null if it is a disconnected device with stored frames to resume from.
-std::unique_ptr<FrameSource> open_or_say(const PrescanCommand& command, const SourceOptions& options,
+std::unique_ptr<FrameSource> open_or_say(const PrescanOptions& options, const SourceOptions& source_options,
                                          const fs::path& folder) {
   try {
-    return open_source(command.source, command.frames, command.calibration, options);
+    return open_source(options.source, options.frames, options.calibration, source_options);
   } catch (const Error& fault) {
-    const bool has_its_frames = command.resume && SpooledSource::has_frames(folder / kSpool) &&
-                                identity_of(folder)["source"] == command.source;
+    const bool has_its_frames = options.resume && SpooledSource::has_frames(folder / kSpool) &&
+                                identity_of(folder)["source"] == options.source;
     if (!has_its_frames) throw;
     std::fprintf(
         stderr,
@@ -93,31 +93,31 @@ std::unique_ptr<FrameSource> open_or_say(const PrescanCommand& command, const So
 
 }  // namespace
 
-ScanStart start_scan(const PrescanCommand& command) {
+ScanStart start_scan(const PrescanOptions& options) {
   ScanStart start;
-  const fs::path map = tidy_map_name(command.map);
+  const fs::path map = tidy_map_name(options.map);
   const fs::path folder = unfinished_beside(map);
   require_checkpoints_only(folder, kSpool);
   require_checkpoints_only(done_beside(folder), kSpool);
-  if (!command.resume) require_no_live_scan(folder);
-  const bool extend = is_to_extend(command.resume, folder, map);
+  if (!options.resume) require_no_live_scan(folder);
+  const bool extend = is_to_extend(options.resume, folder, map);
   std::error_code ignored;
   fs::remove_all(done_beside(folder), ignored);
 
   const fs::path spool = folder / kSpool;
-  SourceOptions options;
-  options.keep_all = true;
-  if (!SpooledSource::has_end(spool)) start.source = open_or_say(command, options, folder);
+  SourceOptions source_options;
+  source_options.keep_all = true;
+  if (!SpooledSource::has_end(spool)) start.source = open_or_say(options, source_options, folder);
   const bool spooled = !start.source;  // all frames are stored, or the device is gone
-  if (!extend) require_memory_to_begin(command.max_memory_mb);
-  if (!command.resume) give_up_unfinished(folder);  // only now that the source is open
+  if (!extend) require_memory_to_begin(options.max_memory_mb);
+  if (!options.resume) give_up_unfinished(folder);  // only now that the source is open
   const bool live = spooled || !start.source->rewind();
   start.is_live = live && !spooled;
   if (start.is_live) start.source = ended_by_interrupt(std::move(start.source));
   const std::string into = extend ? sha256_of_file(map / "map.json") : kNewMap;
   if (extend) {
     start.map = load_map(map);
-    require_memory_to_begin(command.max_memory_mb,
+    require_memory_to_begin(options.max_memory_mb,
                             kSurfaceMemory * static_cast<double>(start.map->octree.memory_bytes()));
   }
   if (extend && !live && holds(start.map->info, *start.source) &&
@@ -136,20 +136,20 @@ ScanStart start_scan(const PrescanCommand& command) {
     return start;
   }
   // A scan to resume is in the checkpoints, even if no further ones are requested.
-  if (command.checkpoint_every_s > 0.0 || spooled || is_unfinished(folder)) {
-    const double every_s = command.checkpoint_every_s > 0.0 ? command.checkpoint_every_s
+  if (options.checkpoint_every_s > 0.0 || spooled || is_unfinished(folder)) {
+    const double every_s = options.checkpoint_every_s > 0.0 ? options.checkpoint_every_s
                                                             : std::numeric_limits<double>::infinity();
-    const fs::path calibration = calibration_for(command.source, command.calibration);
+    const fs::path calibration = calibration_for(options.source, options.calibration);
     std::map<std::string, std::string> identity{
-        {"source", live ? command.source : start.source->name()},
-        {"resolution", std::to_string(command.quality.resolution_m)},
-        {"tracking-px", std::to_string(command.quality.tracking_px)},
-        {"fuse-every", std::to_string(command.quality.fuse_every)},
-        {"poses", std::string(to_string(command.poses))},
-        {"frames", command.frames
-                       ? std::to_string(command.frames->first) + ":" + std::to_string(command.frames->last)
+        {"source", live ? options.source : start.source->name()},
+        {"resolution", std::to_string(options.quality.resolution_m)},
+        {"tracking-px", std::to_string(options.quality.tracking_px)},
+        {"fuse-every", std::to_string(options.quality.fuse_every)},
+        {"poses", std::string(to_string(options.poses))},
+        {"frames", options.frames
+                       ? std::to_string(options.frames->first) + ":" + std::to_string(options.frames->last)
                        : "all"},
-        {"hold-out", std::to_string(command.hold_out)},
+        {"hold-out", std::to_string(options.hold_out)},
         {"calibration", calibration.empty() ? "none" : sha256_of_file(calibration)},
         {"into", into}};
     if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
