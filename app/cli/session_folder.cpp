@@ -52,7 +52,7 @@ Json read_settings(const fs::path& folder) {
   return json;
 }
 
-/// Returns the seconds of --adopt; throws Error if the value is not valid.
+/// Returns the seconds of --commit-changes; throws Error if the value is not valid.
 double commit_after_s(const Json& value, const fs::path& folder) {
   constexpr double kMost_s = 86400.0;
   const double seconds = value.is_number() ? value.get<double>() : -1.0;

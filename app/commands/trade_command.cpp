@@ -54,8 +54,8 @@ void require_run_room(const std::string& room, const SimOptions& options) {
 
 /// Rejects unsuitable scenes before the sweep begins.
 void require_scenes(const TradeOptions& options) {
-  const bool scans = options.only != "run" && !options.table1,
-             runs = options.only != "prescan" || options.table1;
+  const bool scans = options.only != "run" && !options.compare_published,
+             runs = options.only != "prescan" || options.compare_published;
   for (const std::string& room : options.rooms) {
     const SimOptions of_room = parse_sim_spec("sim:" + room);
     if (scans) require_scan_room(room, of_room);
@@ -199,7 +199,7 @@ int run(const TradeOptions& options) {
                      {"seed", options.seed},   {"time", options.time},         {"quick", options.quick},
                      {"only", options.only},   {"objects", options.objects}};
   require_scenes(options);
-  if (options.table1) return print_table1(options, std::move(report));
+  if (options.compare_published) return print_table1(options, std::move(report));
   const Machine machine = this_machine();
   report.renderer = machine.renderer;
   const std::vector<MeasuredWork> works = works_of(options);

@@ -72,8 +72,9 @@ Script script_of(const RunOptions& options) {
 void require_can_save_map(const RunOptions& options, const Script& script) {
   if (options.save_map.empty()) return;
   if (!options.commit_after_s && !has(script, Action::kCommit))
-    throw Error("--save-map " + options.save_map +
-                ": nothing would change in the map; add --adopt SECONDS, or an adopt event to the script");
+    throw Error(
+        "--save-map " + options.save_map +
+        ": nothing would change in the map; add --commit-changes SECONDS, or an adopt event to the script");
   require_can_become_map(options.save_map, {options.report, options.frames_csv, options.video,
                                             options.pictures, options.record_session});
 }

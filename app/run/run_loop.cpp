@@ -201,7 +201,7 @@ void RunLoop::keep(const FrameResult& result) {
   if (run_.video) run_.video->write_at(session.picture(), run_time_s_);
   if (run_.frames_csv && result.status == FrameStatus::kDone)
     run_.frames_csv->write(frame_.index, result.use, session.objects());
-  if (!run_.options.pictures.empty() && run_frame_ % run_.options.pictures_every == 0)
+  if (!run_.options.pictures.empty() && run_frame_ % run_.options.pictures_stride == 0)
     write_pictures(session, result, std::filesystem::path(run_.options.pictures) / picture_name());
 }
 

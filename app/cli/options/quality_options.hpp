@@ -10,7 +10,7 @@ class App;
 
 namespace roomradar {
 
-/// Adds one option per field of the quality. Checked values are appended to
+/// Adds one option per field of the quality, and the fields' former names. Checked values are appended to
 /// `fixed`, which must outlive the parsing; complete_quality() sets the fields from it.
 void add_scan_quality_options(CLI::App& command, FieldWords& fixed);
 void add_run_quality_options(CLI::App& command, FieldWords& fixed);

@@ -5,6 +5,7 @@
 
 #include "app/cli/options/option_checks.hpp"
 #include "app/cli/options/quality_options.hpp"
+#include "app/cli/options/renamed_options.hpp"
 #include "app/cli/options/shared_options.hpp"
 
 namespace roomradar {
@@ -45,9 +46,10 @@ void add_world_options(CLI::App& command, RunOptions& options) {
   add_choice(command, "--unknown", options.unknown_is_solid, {{"free", false}, {"solid", true}},
              "space that the prescan has not observed: objects pass (free) or are stopped (solid; needs\n"
              "--surfaces map) (default: free)");
+  add_old_name(command, "--adopt", "--commit-changes");
   command
       .add_option(
-          "--adopt", options.commit_after_s,
+          "--commit-changes", options.commit_after_s,
           "add objects to this run's copy of the map, or remove them, once observed unchanged for this\n"
           "many seconds; the saved map is not modified (default: only on adopt events of the script)")
       ->check(within(0.5, 86400.0, "seconds"))
@@ -55,7 +57,7 @@ void add_world_options(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "--save-map", options.save_map,
-          "folder for the map with the adopted changes; an existing map there is replaced, also if it is\n"
+          "folder for the map with the committed changes; an existing map there is replaced, also if it is\n"
           "that of --map (default: not saved)")
       ->type_name("DIR");
 }
@@ -87,8 +89,9 @@ void add_picture_options(CLI::App& command, RunOptions& options) {
           "folder for composed pictures and masks of dynamic pixels as PNG, named by the source's frame\n"
           "number, followed by the run's if the frame is repeated (default: not written)")
       ->type_name("DIR");
+  add_old_name(command, "--pictures-every", "--pictures-stride");
   command
-      .add_option("--pictures-every", options.pictures_every,
+      .add_option("--pictures-stride", options.pictures_stride,
                   "write pictures of every Nth frame (default: 10)")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
       ->type_name("N");
@@ -119,8 +122,8 @@ void require_consistent(const CLI::App& command, const RunOptions& options) {
   if (command.count("--presets") > 0 && command.count("--preset") == 0 && !options.budget_ms)
     throw CLI::ValidationError(
         "--presets: used only with --preset NAME or --budget-ms, and neither is given");
-  if (command.count("--pictures-every") > 0 && options.pictures.empty())
-    throw CLI::ValidationError("--pictures-every: used only with --pictures, which is not given");
+  if (command.count("--pictures-stride") > 0 && options.pictures.empty())
+    throw CLI::ValidationError("--pictures-stride: used only with --pictures, which is not given");
 }
 
 /// Takes a recorded session's settings, except those given on the command line.
@@ -141,7 +144,7 @@ void take_recorded_settings(const CLI::App& command, const RunOptions& recorded,
   if (!is_given("--surfaces")) options.surfaces = recorded.surfaces;
   if (!is_given("--unknown")) options.unknown_is_solid = recorded.unknown_is_solid;
   options.quality = recorded.quality;
-  if (!is_given("--adopt")) options.commit_after_s = recorded.commit_after_s;
+  if (!is_given("--commit-changes")) options.commit_after_s = recorded.commit_after_s;
   if (!is_given("--at-end")) options.at_end = recorded.at_end;
 }
 

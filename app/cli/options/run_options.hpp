@@ -35,11 +35,11 @@ struct RunOptions {
   std::optional<double> commit_after_s;  ///< unset: changes are committed only by events of the script
   AtEnd at_end = AtEnd::kEnd;            ///< behaviour after the source's last frame
   bool window = false;
-  std::string record_session;        ///< folder for frames, events and settings; empty: not recorded
-  std::string save_map;              ///< folder for the map at the end of the run; empty: not saved
-  std::string video;                 ///< file to write; empty: not written
-  std::string pictures;              ///< folder for composed frames as PNG; empty: not written
-  std::int64_t pictures_every = 10;  ///< N: only every Nth frame is written to `pictures`
+  std::string record_session;         ///< folder for frames, events and settings; empty: not recorded
+  std::string save_map;               ///< folder for the map at the end of the run; empty: not saved
+  std::string video;                  ///< file to write; empty: not written
+  std::string pictures;               ///< folder for composed frames as PNG; empty: not written
+  std::int64_t pictures_stride = 10;  ///< N: only every Nth frame is written to `pictures`
   std::string
       frames_csv;  ///< file with a line per frame: use of room and depth, with reasons; empty: not written
   std::string report;  ///< JSON file to write; empty: not written

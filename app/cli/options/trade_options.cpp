@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "app/cli/options/renamed_options.hpp"
 #include "app/cli/options/shared_options.hpp"
 
 namespace roomradar {
@@ -46,7 +47,8 @@ void add_sweep_options(CLI::App& command, TradeOptions& options) {
 }
 
 void add_result_options(CLI::App& command, TradeOptions& options) {
-  command.add_flag("--table1", options.table1,
+  add_old_flag(command, "--table1", "--compare-published");
+  command.add_flag("--compare-published", options.compare_published,
                    "only compare the published radar's three rows with this machine (default: off)");
   command
       .add_option("--csv", options.csv,
@@ -77,13 +79,13 @@ void complete_options(const CLI::App& command, TradeOptions& options) {
     throw CLI::ValidationError("--presets: need measurements of both prescan and run; leave out --only");
   if (command.count("--objects") > 0 && options.only == "prescan")
     throw CLI::ValidationError("--objects: used only for run, which --only leaves out");
-  if (!options.table1) return;
+  if (!options.compare_published) return;
   if ((command.count("--rooms") > 0 && options.rooms.size() > 1) || !options.recordings.empty())
-    throw CLI::ValidationError("--table1: needs exactly one simulated room; give it with --rooms");
+    throw CLI::ValidationError("--compare-published: needs exactly one simulated room; give it with --rooms");
   for (const char* name :
        {"--only", "--settings", "--repeats", "--objects", "--seed", "--time", "--csv", "--html", "--presets"})
     if (command.count(name) > 0)
-      throw CLI::ValidationError(std::string(name) + ": used only for a sweep, not with --table1");
+      throw CLI::ValidationError(std::string(name) + ": used only for a sweep, not with --compare-published");
 }
 
 }  // namespace roomradar
