@@ -187,6 +187,70 @@ int print_table1(const TradeOptions& options, Report report) {
   return 0;
 }
 
+/// Measures the works one after another. Throws Error if nothing was measured; faults after the first
+/// measurement are added to `faults`.
+std::vector<TradeResult> measure_all(const std::vector<MeasuredWork>& works, const TradeOptions& options,
+                                     Stop& stop, TradeCsv& csv, StageTimes& times, DeferredErrors& faults) {
+  std::vector<TradeResult> results;
+  for (const MeasuredWork& work : works) {
+    TradeResult result;
+    if (!stop.asked()) result = times.timed(work.name, [&] { return traded(work, options, stop, csv); });
+    if (!result.fault.empty()) faults.add("trade: " + work.name + ": " + result.fault);
+    if (!result.rows.empty())
+      results.push_back(std::move(result));
+    else if (result.fault.empty())
+      std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
+  }
+  if (!results.empty()) return results;
+  faults.throw_first();
+  throw Error("trade: stopped by Ctrl-C before anything was measured");
+}
+
+/// Prints the presets to stdout, and settings that were not measured to stderr.
+void print_result(const TradeResult& result) {
+  print_presets(result);
+  if (result.was_cut_short)
+    std::fprintf(stderr, "roomradar: %s: stopped early: not all settings were measured\n",
+                 result.work.name.c_str());
+  for (const std::string& setting : faults_of(result))
+    std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
+}
+
+void write_page_of(const std::vector<TradeResult>& results, const TradeOptions& options,
+                   const Machine& machine) {
+  write_trade_page(
+      results,
+      {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
+           machine.system,
+       "seed " + std::to_string(options.seed) + ", " + std::to_string(options.repeats) +
+           " repeats in each scene" + (options.quick ? ", quick: few frames of small images" : "")},
+      options.html);
+}
+
+/// Writes the presets file, if requested. Throws Error unless all settings of both works were measured.
+void write_presets_of(const std::vector<TradeResult>& results, const TradeOptions& options,
+                      const Machine& machine) {
+  if (options.presets.empty()) return;
+  if (results.size() < 2)
+    throw Error(options.presets + ": not written: only " + results.front().work.name +
+                " was measured, and presets need both");
+  for (const TradeResult& result : results)
+    if (result.was_cut_short)
+      throw Error(options.presets + ": not written: " + result.work.name +
+                  " was stopped early, and presets need all settings");
+  write_presets(chosen_presets(results, {{"processor", machine.processor},
+                                         {"renderer", machine.renderer},
+                                         {"system", machine.system},
+                                         {"scenes", scenes_of(options)},
+                                         {"settings", std::to_string(options.settings)},
+                                         {"repeats", std::to_string(options.repeats)},
+                                         {"seed", std::to_string(options.seed)},
+                                         {"compared_by", options.time},
+                                         {"objects", std::to_string(options.objects)},
+                                         {"scale", options.quick ? "quick" : "full"}}),
+                options.presets);
+}
+
 }  // namespace
 
 int run(const TradeOptions& options) {
@@ -204,66 +268,19 @@ int run(const TradeOptions& options) {
   report.renderer = machine.renderer;
   const std::vector<MeasuredWork> works = works_of(options);
   TradeCsv csv(options.csv, works);
-  Stop stop;
-  std::vector<TradeResult> results;
+  Stop stop;              // until the results are written
   DeferredErrors faults;  // earlier measurements are written all the same
-  for (const MeasuredWork& work : works) {
-    TradeResult result;
-    if (!stop.asked())
-      result = report.times.timed(work.name, [&] { return traded(work, options, stop, csv); });
-    if (!result.fault.empty()) faults.add("trade: " + work.name + ": " + result.fault);
-    if (!result.rows.empty())
-      results.push_back(std::move(result));
-    else if (result.fault.empty())
-      std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
-  }
-  if (results.empty()) {
-    faults.throw_first();
-    throw Error("trade: stopped by Ctrl-C before anything was measured");
-  }
+  const std::vector<TradeResult> results = measure_all(works, options, stop, csv, report.times, faults);
   for (const TradeResult& result : results) {
-    print_presets(result);
+    print_result(result);
     report.results[result.work.name] = result_json(result);
-    if (result.was_cut_short)
-      std::fprintf(stderr, "roomradar: %s: stopped early: not all settings were measured\n",
-                   result.work.name.c_str());
-    for (const std::string& setting : faults_of(result))
-      std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
   }
   faults.attempt([&] {
     for (const TradeResult& result : results)
       csv.write(result.work, result.summaries, result.defaults, result.choice);
   });
-  faults.attempt([&] {
-    write_trade_page(
-        results,
-        {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
-             machine.system,
-         "seed " + std::to_string(options.seed) + ", " + std::to_string(options.repeats) +
-             " repeats in each scene" + (options.quick ? ", quick: few frames of small images" : "")},
-        options.html);
-  });
-  faults.attempt([&] {
-    if (options.presets.empty()) return;
-    if (results.size() < 2)
-      throw Error(options.presets + ": not written: only " + results.front().work.name +
-                  " was measured, and presets need both");
-    for (const TradeResult& result : results)
-      if (result.was_cut_short)
-        throw Error(options.presets + ": not written: " + result.work.name +
-                    " was stopped early, and presets need all settings");
-    write_presets(chosen_presets(results, {{"processor", machine.processor},
-                                           {"renderer", machine.renderer},
-                                           {"system", machine.system},
-                                           {"scenes", report.source},
-                                           {"settings", std::to_string(options.settings)},
-                                           {"repeats", std::to_string(options.repeats)},
-                                           {"seed", std::to_string(options.seed)},
-                                           {"compared_by", options.time},
-                                           {"objects", std::to_string(options.objects)},
-                                           {"scale", options.quick ? "quick" : "full"}}),
-                  options.presets);
-  });
+  faults.attempt([&] { write_page_of(results, options, machine); });
+  faults.attempt([&] { write_presets_of(results, options, machine); });
   faults.attempt([&] { write_report(report, options.report); });
   faults.throw_first();
   return 0;
