@@ -52,7 +52,7 @@ Json read_settings(const fs::path& folder) {
   return json;
 }
 
-/// Returns the seconds of --adopt; throws Error if the value is not valid.
+/// Returns the seconds of --commit-changes; throws Error if the value is not valid.
 double commit_after_s(const Json& value, const fs::path& folder) {
   constexpr double kMost_s = 86400.0;
   const double seconds = value.is_number() ? value.get<double>() : -1.0;
@@ -80,7 +80,7 @@ void require_can_become_session(const fs::path& folder) {
     throw Error(folder.string() + ": is not empty; a session needs an empty or new folder");
 }
 
-SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, const MapInfo& map,
+SessionRecorder::SessionRecorder(fs::path folder, const RunOptions& options, const MapInfo& map,
                                  bool are_calibrated)
     : folder_(std::move(folder)) {
   std::error_code fault;
@@ -89,19 +89,19 @@ SessionRecorder::SessionRecorder(fs::path folder, const RunCommand& command, con
   require_can_become_session(folder_);
   Json json = {{"format", kFormat},
                {"format_version", kFormatVersion},
-               {"source", command.source},
+               {"source", options.source},
                {"calibrated", are_calibrated},
-               {"map", fs::absolute(command.map).lexically_normal().string()},
+               {"map", fs::absolute(options.map).lexically_normal().string()},
                {"map_sha256", checksum_of(map)},
-               {"poses", to_string(command.poses)},
-               {"surfaces", to_string(command.surfaces)},
-               {"unknown_is_solid", command.unknown_is_solid},
-               {"quality", to_json(command.quality)},
-               {"at_end", to_string(command.at_end)}};
-  if (command.commit_after_s) json["adopt_s"] = *command.commit_after_s;
+               {"poses", to_string(options.poses)},
+               {"surfaces", to_string(options.surfaces)},
+               {"unknown_is_solid", options.unknown_is_solid},
+               {"quality", to_json(options.quality)},
+               {"at_end", to_string(options.at_end)}};
+  if (options.commit_after_s) json["adopt_s"] = *options.commit_after_s;
   write_bytes(folder_ / kSettings, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   events_.open(folder_ / kEvents);
-  events_ << "# events of " << command.source << ", as they were applied\n" << std::flush;
+  events_ << "# events of " << options.source << ", as they were applied\n" << std::flush;
   require_written(events_, folder_ / kEvents);
   results_.open(folder_ / kResults);
   results_ << "# frame, fingerprint of the objects, fingerprint of the picture (0: none was made)\n"
@@ -154,25 +154,25 @@ bool is_session_events(const fs::path& file) {
   return file.filename() == kEvents && is_session_folder(file.parent_path());
 }
 
-RunCommand read_session(const fs::path& folder) {
+RunOptions read_session(const fs::path& folder) {
   const Json json = read_settings(folder);
-  RunCommand command;
-  command.source = folder.string();
-  command.script = (folder / kEvents).string();
+  RunOptions options;
+  options.source = folder.string();
+  options.script = (folder / kEvents).string();
   try {
-    command.map = json.at("map").get<std::string>();
-    command.poses = choice_of(json, "poses", {PoseOrigin::kTracked, PoseOrigin::kRecorded}, folder);
-    command.surfaces = choice_of(
+    options.map = json.at("map").get<std::string>();
+    options.poses = choice_of(json, "poses", {PoseOrigin::kTracked, PoseOrigin::kRecorded}, folder);
+    options.surfaces = choice_of(
         json, "surfaces",
         {SurfacePolicy::kMap, SurfacePolicy::kBorder, SurfacePolicy::kSkirt, SurfacePolicy::kHoles}, folder);
-    command.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
-    command.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
-    command.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
-    if (json.contains("adopt_s")) command.commit_after_s = commit_after_s(json["adopt_s"], folder);
+    options.unknown_is_solid = json.at("unknown_is_solid").get<bool>();
+    options.quality = run_quality_of(json.at("quality"), (folder / kSettings).string() + ": quality");
+    options.at_end = choice_of(json, "at_end", {AtEnd::kEnd, AtEnd::kStay, AtEnd::kLoop}, folder);
+    if (json.contains("adopt_s")) options.commit_after_s = commit_after_s(json["adopt_s"], folder);
   } catch (const Json::exception& fault) {
     throw Error((folder / kSettings).string() + ": is damaged: " + fault.what());
   }
-  return command;
+  return options;
 }
 
 std::unique_ptr<FrameSource> open_session_frames(const fs::path& folder) {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/run_options.hpp"
+#include "app/cli/options/run_options.hpp"
 #include "app/session/script.hpp"
 #include "app/session/session_fingerprint.hpp"
 #include "mapping/map/map_folder.hpp"
@@ -31,7 +31,7 @@ class SessionRecorder {
   /// Creates the folder, or uses an empty one. Throws Error if it is not empty or cannot be written.
   /// @param map  as loaded; its checksums show later whether the map has changed
   /// @param are_calibrated  lens and depth errors of the frames are corrected
-  SessionRecorder(std::filesystem::path folder, const RunCommand& command, const MapInfo& map,
+  SessionRecorder(std::filesystem::path folder, const RunOptions& options, const MapInfo& map,
                   bool are_calibrated);
 
   /// Wraps a source so its frames are recorded as they are read and can be read again.
@@ -61,7 +61,7 @@ bool is_session_events(const std::filesystem::path& file);
 
 /// Returns the recorded command: source (the folder itself), map, script, and the settings that affect
 /// results. Throws Error naming the file and the fault.
-RunCommand read_session(const std::filesystem::path& folder);
+RunOptions read_session(const std::filesystem::path& folder);
 
 /// Opens the recorded frames. Throws Error if there are none.
 std::unique_ptr<FrameSource> open_session_frames(const std::filesystem::path& folder);

@@ -1,4 +1,6 @@
 // calibrate_command.cpp: roomradar calibrate: cameras and depth errors from a recording of a checkerboard.
+#include "app/commands/calibrate_command.hpp"
+
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -12,7 +14,6 @@
 #include "app/cli/open_source.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
-#include "app/commands/commands.hpp"
 #include "app/media/picture_file.hpp"
 
 namespace roomradar {
@@ -83,52 +84,52 @@ void say_if_scaled(double inverse_scale, double square_m) {
 
 }  // namespace
 
-int run(const CalibrateCommand& command) {
+int run(const CalibrateOptions& options) {
   Report report;
   report.command = "calibrate";
-  report.source = command.source;
-  report.settings = {{"columns", command.board.columns},
-                     {"rows", command.board.rows},
-                     {"square_m", command.board.square_m},
-                     {"calibration", command.calibration}};
-  if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
-  require_valid(command.board);
-  require_png_name(command.plot);
-  for (const std::string& path : {command.calibration, command.plot, command.report}) require_writable(path);
+  report.source = options.source;
+  report.settings = {{"columns", options.board.columns},
+                     {"rows", options.board.rows},
+                     {"square_m", options.board.square_m},
+                     {"calibration", options.calibration}};
+  if (options.frames) report.settings["frames"] = {options.frames->first, options.frames->last};
+  require_valid(options.board);
+  require_png_name(options.plot);
+  for (const std::string& path : {options.calibration, options.plot, options.report}) require_writable(path);
 
-  SourceOptions options;
-  options.as_recorded = true;  // ignores an existing calibration
+  SourceOptions source_options;
+  source_options.as_recorded = true;  // ignores an existing calibration
   const Interrupt interrupt;
   std::unique_ptr<FrameSource> source =
-      ended_by_interrupt(open_source(command.source, command.frames, {}, options));
+      ended_by_interrupt(open_source(options.source, options.frames, {}, source_options));
   BoardViews views;
   {
     Progress progress("looking for the board", source->frame_count());
     views = report.times.timed("views", [&] {
-      return find_board_views(*source, command.board, kMostViews,
+      return find_board_views(*source, options.board, kMostViews,
                               [&](std::size_t found) { progress.step(std::to_string(found) + " views"); });
     });
   }
   source.reset();  // stops the device
   report.frames_read = views.frames;
   const CalibrationFit fit =
-      report.times.timed("fit", [&] { return calibrate(views, {.board = command.board}); });
+      report.times.timed("fit", [&] { return calibrate(views, {.board = options.board}); });
 
   const Summary before = summary_of(fit.before, fit.held_out);
   const Summary after = summary_of(fit.after, fit.held_out);
   print_fit(views, fit, before, after);
-  say_if_scaled(fit.calibration.depth_correction.inverse_scale, command.board.square_m);
+  say_if_scaled(fit.calibration.depth_correction.inverse_scale, options.board.square_m);
   report.results = {{"views", views.views.size()},
                     {"held_out_views", fit.held_out.size()},
                     {"inverse_depth_scale", fit.calibration.depth_correction.inverse_scale},
                     {"before", summary_json(before)},
                     {"after", summary_json(after)}};
   DeferredErrors faults;
-  faults.attempt([&] { write_calibration(fit.calibration, command.calibration); });
+  faults.attempt([&] { write_calibration(fit.calibration, options.calibration); });
   faults.attempt([&] {
-    if (!command.plot.empty()) write_png(calibration_plot(views, fit), command.plot);
+    if (!options.plot.empty()) write_png(calibration_plot(views, fit), options.plot);
   });
-  faults.attempt([&] { write_report(report, command.report); });
+  faults.attempt([&] { write_report(report, options.report); });
   faults.throw_first();
   return 0;
 }

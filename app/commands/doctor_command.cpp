@@ -1,15 +1,16 @@
 // doctor_command.cpp: roomradar doctor: checks the set-up and says how to repair it.
+#include "app/commands/doctor_command.hpp"
+
 #include <cstdio>
 #include <cstdlib>
 
-#include "app/commands/commands.hpp"
 #include "app/commands/doctor.hpp"
 #include "app/sources/kinect/fakenect_replay.hpp"
 #include "app/sources/kinect/kinect_source.hpp"
 
 namespace roomradar {
 
-int run(const DoctorCommand& /*command*/) {
+int run_doctor() {
   const auto replayed = replayed_folder();
   std::vector<Finding> hypotheses;
   if (replayed)

@@ -1,4 +1,6 @@
 // fallthrough_command.cpp: roomradar fallthrough: runs the same hidden-surface scenarios under each policy.
+#include "app/commands/fallthrough_command.hpp"
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include "app/cli/deferred_errors.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
-#include "app/commands/commands.hpp"
 #include "app/commands/grid_command.hpp"
 #include "app/evaluation/fallthrough/mapped_room.hpp"
 #include "app/evaluation/fallthrough/page.hpp"
@@ -42,22 +43,22 @@ void require_folder_of_maps(const std::filesystem::path& folder) {
 
 /// Runs all scenarios under all policies, with `threads` scenarios prepared ahead. Ends at the first error,
 /// with the rows so far.
-std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughCommand& command, int threads,
+std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughOptions& options, int threads,
                                        DeferredErrors& faults) {
   std::deque<std::future<std::unique_ptr<PreparedScenario>>> ahead;
   int next = 0;
   const auto prepare_next = [&] {
     const ScenarioTurn turn = turn_of(next++, rooms.size());
     const ScenarioRoom& room = rooms[turn.room]->scanned.simulated;
-    ahead.push_back(std::async(std::launch::async, [&room, seed = command.seed, number = turn.number] {
+    ahead.push_back(std::async(std::launch::async, [&room, seed = options.seed, number = turn.number] {
       return std::make_unique<PreparedScenario>(room, seed, number);
     }));
   };
-  Progress progress("scenarios", command.scenarios);
+  Progress progress("scenarios", options.scenarios);
   std::vector<ScenarioRow> rows;
   CyberRadar radar;
   const auto run_scenario = [&](int number) {
-    while (next < command.scenarios && ahead.size() < static_cast<std::size_t>(threads)) prepare_next();
+    while (next < options.scenarios && ahead.size() < static_cast<std::size_t>(threads)) prepare_next();
     const std::unique_ptr<PreparedScenario> prepared = ahead.front().get();
     ahead.pop_front();
     const std::size_t room_number = turn_of(number, rooms.size()).room;
@@ -74,7 +75,7 @@ std::vector<ScenarioRow> run_scenarios(const Rooms& rooms, const FallthroughComm
     progress.step(room.scanned.title);
   };
   faults.attempt([&] {
-    for (int number = 0; number < command.scenarios; ++number) run_scenario(number);
+    for (int number = 0; number < options.scenarios; ++number) run_scenario(number);
   });
   return rows;
 }
@@ -109,15 +110,15 @@ std::vector<FailurePicture> picture_failures(const Rooms& rooms, const std::vect
 }
 
 /// Replays one scenario as a video; scans only its room.
-int replay(const FallthroughCommand& command, const RoomScan& scan) {
-  require_writable(command.video);
-  VideoWriter video(command.video, kReplayPicturesPerS);
-  const std::vector<RoomChoice> choices = choose_rooms(command.random_rooms);
-  const ScenarioTurn turn = turn_of(*command.scenario, choices.size());
+int replay(const FallthroughOptions& options, const RoomScan& scan) {
+  require_writable(options.video);
+  VideoWriter video(options.video, kReplayPicturesPerS);
+  const std::vector<RoomChoice> choices = choose_rooms(options.random_rooms);
+  const ScenarioTurn turn = turn_of(*options.scenario, choices.size());
   const std::vector<RoomChoice> one{choices[turn.room]};
   GlContext context;
   const Rooms rooms = map_rooms(context, one, scan, 1);
-  PreparedScenario prepared(rooms.front()->scanned.simulated, command.seed, turn.number);
+  PreparedScenario prepared(rooms.front()->scanned.simulated, options.seed, turn.number);
   CyberRadar radar;
   write_replay(prepared, *rooms.front(), radar, video);
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
@@ -131,49 +132,49 @@ int replay(const FallthroughCommand& command, const RoomScan& scan) {
 
 }  // namespace
 
-int run(const FallthroughCommand& command) {
-  if (!command.source.empty()) return run_grid(command);
+int run(const FallthroughOptions& options) {
+  if (!options.source.empty()) return run_grid(options);
   RoomScan scan;
-  scan.maps = command.maps;
-  for (const std::string& path : {command.report, command.csv, command.html}) require_writable(path);
-  require_folder_of_maps(command.maps);
-  if (command.scenario) return replay(command, scan);
-  const int threads = command.threads > 0
-                          ? command.threads
+  scan.maps = options.maps;
+  for (const std::string& path : {options.report, options.csv, options.html}) require_writable(path);
+  require_folder_of_maps(options.maps);
+  if (options.scenario) return replay(options, scan);
+  const int threads = options.threads > 0
+                          ? options.threads
                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   Report report;
   report.command = "fallthrough";
   report.source = "simulated rooms";
   report.settings = {
-      {"scenarios", command.scenarios},    {"seed", command.seed}, {"random_rooms", command.random_rooms},
-      {"resolution_m", scan.resolution_m}, {"maps", command.maps}, {"threads", threads}};
+      {"scenarios", options.scenarios},    {"seed", options.seed}, {"random_rooms", options.random_rooms},
+      {"resolution_m", scan.resolution_m}, {"maps", options.maps}, {"threads", threads}};
 
   GlContext context;
   report.renderer = context.renderer();
   const Rooms rooms = report.times.timed(
-      "prescan", [&] { return map_rooms(context, choose_rooms(command.random_rooms), scan, threads); });
+      "prescan", [&] { return map_rooms(context, choose_rooms(options.random_rooms), scan, threads); });
   DeferredErrors faults;  // earlier results are written all the same
   const std::vector<ScenarioRow> rows =
-      report.times.timed("scenarios", [&] { return run_scenarios(rooms, command, threads, faults); });
+      report.times.timed("scenarios", [&] { return run_scenarios(rooms, options, threads, faults); });
   if (rows.empty()) faults.throw_first();
 
   const int done = static_cast<int>(rows.size());
   const auto totals = totals_of(rows);
   const std::string about = std::to_string(done) +
-                            (done < command.scenarios ? " of " + std::to_string(command.scenarios) : "") +
-                            " scenarios, seed " + std::to_string(command.seed) + ", " +
+                            (done < options.scenarios ? " of " + std::to_string(options.scenarios) : "") +
+                            " scenarios, seed " + std::to_string(options.seed) + ", " +
                             std::to_string(rooms.size()) + " rooms, " + context.renderer();
   std::printf("%s\n%s", about.c_str(), table_of(totals, done).c_str());
   report.results["scenarios"] = done;
   report.results["policies"] = to_json(totals);
   report.results["failures"] = failures_of(rows);
   if (!faults.first().empty()) report.results["fault"] = faults.first();
-  faults.attempt([&] { write_csv(rows, command.csv); });
+  faults.attempt([&] { write_csv(rows, options.csv); });
   faults.attempt([&] {
-    if (!command.html.empty())
-      write_page(rows, about, picture_failures(rooms, rows, command.seed), command.html);
+    if (!options.html.empty())
+      write_page(rows, about, picture_failures(rooms, rows, options.seed), options.html);
   });
-  faults.attempt([&] { write_report(report, command.report); });
+  faults.attempt([&] { write_report(report, options.report); });
   faults.throw_first();
   return 0;
 }

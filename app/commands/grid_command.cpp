@@ -18,13 +18,13 @@ namespace roomradar {
 namespace {
 
 /// Reads the source's first readable frame and returns its camera's pose in the map.
-Eigen::Isometry3d read_located(const FallthroughCommand& command, const SavedMap& map, GlContext& context,
+Eigen::Isometry3d read_located(const FallthroughOptions& options, const SavedMap& map, GlContext& context,
                                Frame& frame) {
-  const auto source = open_source(command.source, command.frames, command.calibration);
+  const auto source = open_source(options.source, options.frames, options.calibration);
   ReadResult read = source->next(frame);
   while (read.status != ReadStatus::kFrame && read.status != ReadStatus::kEnd) read = source->next(frame);
   if (read.status == ReadStatus::kEnd) throw Error(source->name() + ": there is no readable frame");
-  if (command.poses == PoseOrigin::kRecorded) {
+  if (options.poses == PoseOrigin::kRecorded) {
     if (!frame.T_world_camera)
       throw Error(source->name() + ": frame " + std::to_string(frame.index) +
                   " has no recorded pose; take --poses tracked");
@@ -56,13 +56,13 @@ std::string_view recording_of(std::string_view source) {
 }
 
 /// Returns the reference's surface in the map's world.
-Mesh reference_of(const FallthroughCommand& command, const SavedMap& map, Report& report) {
-  if (command.reference.empty()) return map.mesh;
-  SavedMap reference = load_map(command.reference);
+Mesh reference_of(const FallthroughOptions& options, const SavedMap& map, Report& report) {
+  if (options.reference.empty()) return map.mesh;
+  SavedMap reference = load_map(options.reference);
   const Eigen::Isometry3d T_map_reference =
       share_recorded_world(map.info, reference.info)
           ? map.info.T_world_recorded * reference.info.T_world_recorded.inverse()
-          : require_registered(map, reference, command.map, command.reference, report).T_a_b;
+          : require_registered(map, reference, options.map, options.reference, report).T_a_b;
   Mesh& mesh = reference.mesh;
   for (Eigen::Vector3f& vertex : mesh.vertices)
     vertex = (T_map_reference.linear() * vertex.cast<double>()).cast<float>();
@@ -73,37 +73,37 @@ Mesh reference_of(const FallthroughCommand& command, const SavedMap& map, Report
 
 }  // namespace
 
-int run_grid(const FallthroughCommand& command) {
+int run_grid(const FallthroughOptions& options) {
   Report report;
   report.command = "fallthrough";
-  report.source = command.source;
-  require_png_name(command.picture);
-  for (const std::string& path : {command.report, command.picture}) require_writable(path);
-  const SavedMap map = load_map(command.map);
-  if (command.poses == PoseOrigin::kRecorded) require_recorded_world(map.info, command.map, command.source);
-  const Mesh reference_world = reference_of(command, map, report);
+  report.source = options.source;
+  require_png_name(options.picture);
+  for (const std::string& path : {options.report, options.picture}) require_writable(path);
+  const SavedMap map = load_map(options.map);
+  if (options.poses == PoseOrigin::kRecorded) require_recorded_world(map.info, options.map, options.source);
+  const Mesh reference_world = reference_of(options, map, report);
   GlContext context;
   report.renderer = context.renderer();
   Frame frame;
-  const Eigen::Isometry3d T_world_camera = read_located(command, map, context, frame);
+  const Eigen::Isometry3d T_world_camera = read_located(options, map, context, frame);
   report.frames_read = 1;
   GridConfig config;
-  config.cell_m = command.cell_m;
+  config.cell_m = options.cell_m;
   const Grid grid = report.times.timed(
       "drops", [&] { return drop_over_grid(context, map, frame, T_world_camera, reference_world, config); });
 
   std::printf("frame %lld of %s in %s; truth: the surface of %s\n%s", static_cast<long long>(frame.index),
-              command.source.c_str(), command.map.c_str(),
-              command.reference.empty() ? "this map, so `map` can differ only where something is dynamic"
-                                        : command.reference.c_str(),
+              options.source.c_str(), options.map.c_str(),
+              options.reference.empty() ? "this map, so `map` can differ only where something is dynamic"
+                                        : options.reference.c_str(),
               table_of(grid).c_str());
-  report.settings = {{"map", command.map},
-                     {"reference", command.reference.empty() ? command.map : command.reference},
-                     {"poses", to_string(command.poses)},
+  report.settings = {{"map", options.map},
+                     {"reference", options.reference.empty() ? options.map : options.reference},
+                     {"poses", to_string(options.poses)},
                      {"cell_m", config.cell_m},
                      {"radius_m", config.radius_m}};
-  if (!command.calibration.empty()) report.settings["calibration"] = command.calibration;
-  if (command.frames) report.settings["frames"] = {command.frames->first, command.frames->last};
+  if (!options.calibration.empty()) report.settings["calibration"] = options.calibration;
+  if (options.frames) report.settings["frames"] = {options.frames->first, options.frames->last};
   report.results["frame"] = frame.index;
   for (std::size_t i = 0; i < kPolicyCount; ++i) {
     nlohmann::json& policy = report.results["policies"][std::string(kFallthroughPolicies[i].name)];
@@ -121,9 +121,9 @@ int run_grid(const FallthroughCommand& command) {
   }
   DeferredErrors faults;
   faults.attempt([&] {
-    if (!command.picture.empty()) write_png(draw_plan(grid), command.picture);
+    if (!options.picture.empty()) write_png(draw_plan(grid), options.picture);
   });
-  faults.attempt([&] { write_report(report, command.report); });
+  faults.attempt([&] { write_report(report, options.report); });
   faults.throw_first();
   return 0;
 }

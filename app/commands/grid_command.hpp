@@ -1,13 +1,13 @@
 // grid_command.hpp: fall-through test in a recorded room.
 #pragma once
-#include "app/commands/commands.hpp"
+#include "app/cli/options/fallthrough_options.hpp"
 #include "mapping/map/map_folder.hpp"
 
 namespace roomradar {
 
 /// Drops a ball over each cell of a grid in the map, with the surfaces of the source's first frame. Prints
 /// the table, writes picture and report. Throws Error if the frame cannot be localised.
-int run_grid(const FallthroughCommand& command);
+int run_grid(const FallthroughOptions& options);
 
 /// Returns true if the frames of both maps came with poses in one world: those of one recording, possibly
 /// with different --frames.

@@ -1,10 +1,11 @@
 // map_pair_commands.cpp: roomradar map merge|diff: merges or compares two maps of one room.
+#include "app/commands/map_pair_commands.hpp"
+
 #include <cstdio>
 #include <utility>
 
 #include "app/cli/registered_maps.hpp"
 #include "app/cli/report.hpp"
-#include "app/commands/commands.hpp"
 #include "app/media/map_picture.hpp"
 #include "app/media/picture_file.hpp"
 #include "mapping/map/map_diff.hpp"
@@ -13,47 +14,47 @@
 #include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
-int run(const MapMergeCommand& command) {
+int run(const MapMergeOptions& options) {
   Report report;
   report.command = "map merge";
-  report.source = command.a + ", " + command.b;
-  report.settings = {{"a", command.a}, {"b", command.b}, {"map", command.map}};
-  require_can_become_map(command.map, {command.report});
-  require_writable(command.report);
-  SavedMap a = load_map(command.a);
-  const SavedMap b = load_map(command.b);
-  if (command.deviation_m) {
-    a.info.settings[kDeviationSetting] = format_number(*command.deviation_m);
-    report.settings["deviation_m"] = *command.deviation_m;
+  report.source = options.a + ", " + options.b;
+  report.settings = {{"a", options.a}, {"b", options.b}, {"map", options.map}};
+  require_can_become_map(options.map, {options.report});
+  require_writable(options.report);
+  SavedMap a = load_map(options.a);
+  const SavedMap b = load_map(options.b);
+  if (options.deviation_m) {
+    a.info.settings[kDeviationSetting] = format_number(*options.deviation_m);
+    report.settings["deviation_m"] = *options.deviation_m;
   }
   if (a.info.files.at("octree.ot").sha256 == b.info.files.at("octree.ot").sha256)
-    throw Error(command.b + ": is the same map as " + command.a +
+    throw Error(options.b + ": is the same map as " + options.a +
                 "; merged with itself, it would count every observation twice");
-  const Registration found = require_registered(a, b, command.a, command.b, report);
+  const Registration found = require_registered(a, b, options.a, options.b, report);
   const SavedMap both = report.times.timed("merge", [&] { return merge_maps(std::move(a), b, found.T_a_b); });
-  report.times.timed("save", [&] { save_map(command.map, both); });
+  report.times.timed("save", [&] { save_map(options.map, both); });
   report.results["map"] = {{"triangles", both.mesh.triangles.size()}, {"bytes", both.octree.memory_bytes()}};
-  write_report(report, command.report);
-  std::printf("%s: %zu triangles, %zu keyframes\n", command.map.c_str(), both.mesh.triangles.size(),
+  write_report(report, options.report);
+  std::printf("%s: %zu triangles, %zu keyframes\n", options.map.c_str(), both.mesh.triangles.size(),
               both.keyframe_database.keyframes.size());
   return 0;
 }
 
-int run(const MapDiffCommand& command) {
+int run(const MapDiffOptions& options) {
   Report report;
   report.command = "map diff";
-  report.source = command.a + ", " + command.b;
-  report.settings = {{"a", command.a}, {"b", command.b}};
-  require_writable(command.report);
-  require_png_name(command.picture);
-  require_writable(command.picture);
-  const SavedMap a = load_map(command.a);
-  const SavedMap b = load_map(command.b);
+  report.source = options.a + ", " + options.b;
+  report.settings = {{"a", options.a}, {"b", options.b}};
+  require_writable(options.report);
+  require_png_name(options.picture);
+  require_writable(options.picture);
+  const SavedMap a = load_map(options.a);
+  const SavedMap b = load_map(options.b);
   // A map saved by `run --save-map` has the keyframes of the map it came from, and so its world.
   const bool one_world = !a.keyframe_database.keyframes.empty() &&
                          a.info.files.at("places.bin").sha256 == b.info.files.at("places.bin").sha256;
   const Eigen::Isometry3d T_a_b = one_world ? Eigen::Isometry3d::Identity()
-                                            : require_registered(a, b, command.a, command.b, report).T_a_b;
+                                            : require_registered(a, b, options.a, options.b, report).T_a_b;
   const std::vector<Change> changes =
       report.times.timed("diff", [&] { return diff_maps(a.octree, b.octree, T_a_b); });
 
@@ -73,8 +74,8 @@ int run(const MapDiffCommand& command) {
   }
   if (changes.empty()) std::printf("nothing appeared, nothing vanished\n");
   report.results["changes"] = std::move(rows);
-  if (!command.picture.empty()) write_png(draw_changes(a.mesh, changes), command.picture);
-  write_report(report, command.report);
+  if (!options.picture.empty()) write_png(draw_changes(a.mesh, changes), options.picture);
+  write_report(report, options.report);
   return 0;
 }
 

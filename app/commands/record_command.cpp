@@ -1,4 +1,6 @@
 // record_command.cpp: roomradar record: writes a source's frames as a recording.
+#include "app/commands/record_command.hpp"
+
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -6,7 +8,6 @@
 #include "app/cli/interrupt.hpp"
 #include "app/cli/open_source.hpp"
 #include "app/cli/progress.hpp"
-#include "app/commands/commands.hpp"
 #include "app/run/dropped_frames.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/system/error.hpp"
@@ -29,23 +30,23 @@ ReadResult take_over(FrameSource& source, RecordingWriter& writer, const std::st
 
 }  // namespace
 
-int run(const RecordCommand& command) {
-  require_contents_outside_maps(command.folder);
-  SourceOptions options;
-  options.keep_all = true;
+int run(const RecordOptions& options) {
+  require_contents_outside_maps(options.folder);
+  SourceOptions source_options;
+  source_options.keep_all = true;
   const Interrupt interrupt;
   const std::unique_ptr<FrameSource> source =
-      ended_by_interrupt(open_source(command.source, command.frames, command.calibration, options));
+      ended_by_interrupt(open_source(options.source, options.frames, options.calibration, source_options));
   const bool is_live = !source->rewind();
-  RecordingWriter writer(command.folder, command.format,
-                         gives_calibrated_frames(command.source, command.calibration));
+  RecordingWriter writer(options.folder, options.format,
+                         gives_calibrated_frames(options.source, options.calibration));
   std::int64_t skipped = 0;
   DroppedFrames dropped;
   {
     Progress progress("recording", source->frame_count());
     Frame frame;
     for (;;) {
-      const ReadResult result = take_over(*source, writer, command.folder, frame);
+      const ReadResult result = take_over(*source, writer, options.folder, frame);
       if (result.status == ReadStatus::kEnd) break;
       if (result.waiting) continue;
       if (result.status == ReadStatus::kSkipped) {
@@ -58,9 +59,9 @@ int run(const RecordCommand& command) {
     }
   }
   writer.close();
-  if (writer.frames_written() == 0) throw Error(command.source + ": there is no readable frame");
-  std::printf("%s: %lld frames written as %s, %lld skipped\n", command.folder.c_str(),
-              static_cast<long long>(writer.frames_written()), std::string(to_string(command.format)).c_str(),
+  if (writer.frames_written() == 0) throw Error(options.source + ": there is no readable frame");
+  std::printf("%s: %lld frames written as %s, %lld skipped\n", options.folder.c_str(),
+              static_cast<long long>(writer.frames_written()), std::string(to_string(options.format)).c_str(),
               static_cast<long long>(skipped));
   if (is_live && dropped.count > 0)  // dropped while the disk was too slow
     std::printf("%lld frames of the device were dropped; is the disk fast enough?\n",

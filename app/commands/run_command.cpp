@@ -1,10 +1,11 @@
 // run_command.cpp: roomradar run: augmented reality in a saved room.
+#include "app/commands/run_command.hpp"
+
 #include <cstdio>
 #include <string>
 #include <vector>
 
 #include "app/cli/deferred_errors.hpp"
-#include "app/commands/commands.hpp"
 #include "app/run/opened_run.hpp"
 #include "app/run/run_loop.hpp"
 #include "app/window/play_window.hpp"
@@ -38,7 +39,7 @@ nlohmann::json report_replay(const ReplayCheck& check) {
 
 /// Plays the run, saves, reports and prints its results; returns the exit status.
 int play(OpenedRun& run) {
-  const RunCommand& command = run.command;
+  const RunOptions& options = run.options;
   const RunTotals& totals = run.totals;
   DeferredErrors faults;
   faults.attempt([&] { play_to_end(run); });
@@ -46,13 +47,13 @@ int play(OpenedRun& run) {
   if (run.frames_csv) faults.attempt([&] { run.frames_csv->close(); });
   if (totals.read == totals.skipped) {
     faults.throw_first();
-    throw Error(command.source + ": there is no readable frame" +
+    throw Error(options.source + ": there is no readable frame" +
                 (totals.last_fault.empty() ? "" : "; the last fault: " + totals.last_fault));
   }
   faults.attempt([&] {
     run.session->finish_commits();
-    if (!command.save_map.empty())
-      save_changed(run.map, run.session->committed_changes().size(), command.save_map);
+    if (!options.save_map.empty())
+      save_changed(run.map, run.session->committed_changes().size(), options.save_map);
   });
   run.report.frames_read = totals.read;
   run.report.frames_skipped = totals.skipped + totals.dropped.count;
@@ -60,33 +61,33 @@ int play(OpenedRun& run) {
   if (run.budget) run.report.results["budget"] = run.budget->report();
   if (run.check) run.report.results["replay"] = report_replay(*run.check);
   if (!faults.first().empty()) run.report.results["fault"] = faults.first();
-  faults.attempt([&] { write_report(run.report, command.report); });
+  faults.attempt([&] { write_report(run.report, options.report); });
   print_summary(totals, *run.session);
   faults.throw_first();
   if (totals.located > 0 || run.was_quit) return 0;
-  if (command.poses == PoseOrigin::kRecorded) {
+  if (options.poses == PoseOrigin::kRecorded) {
     std::fprintf(stderr, "roomradar: %s: no frame has a recorded pose; take --poses tracked\n",
-                 command.source.c_str());
+                 options.source.c_str());
     return 1;
   }
   std::fprintf(
       stderr,
       "roomradar: %s: the camera was not localised in %s in any frame; does the map show this room?\n",
-      command.source.c_str(), command.map.c_str());
+      options.source.c_str(), options.map.c_str());
   return 1;
 }
 
 /// @param link  to the window; null: no window
-int run_frames(const RunCommand& command, UiChannel* link) { return play(*open_run(command, link)); }
+int run_frames(const RunOptions& options, UiChannel* link) { return play(*open_run(options, link)); }
 
 }  // namespace
 
-int run(const RunCommand& command) {
-  if (!command.window) return run_frames(command, nullptr);
+int run(const RunOptions& options) {
+  if (!options.window) return run_frames(options, nullptr);
   std::vector<std::string> meshes;
-  if (command.object != "teapot") meshes.push_back(command.object);
-  return run_in_window("roomradar - " + command.source, meshes, command.budget_ms,
-                       [&](UiChannel& link) { return run_frames(command, &link); });
+  if (options.object != "teapot") meshes.push_back(options.object);
+  return run_in_window("roomradar - " + options.source, meshes, options.budget_ms,
+                       [&](UiChannel& link) { return run_frames(options, &link); });
 }
 
 }  // namespace roomradar

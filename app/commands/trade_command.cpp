@@ -1,4 +1,6 @@
 // trade_command.cpp: roomradar trade: measures time against accuracy.
+#include "app/commands/trade_command.hpp"
+
 #include <algorithm>
 #include <cstdio>
 
@@ -6,7 +8,6 @@
 #include "app/cli/interrupt.hpp"
 #include "app/cli/progress.hpp"
 #include "app/cli/report.hpp"
-#include "app/commands/commands.hpp"
 #include "app/evaluation/pareto/greedy_search.hpp"
 #include "app/evaluation/pareto/sample_settings.hpp"
 #include "app/evaluation/trade/machine.hpp"
@@ -24,7 +25,7 @@
 namespace roomradar {
 namespace {
 
-TradeScale scale_of(const TradeCommand& command) { return command.quick ? kQuickScale : TradeScale{}; }
+TradeScale scale_of(const TradeOptions& options) { return options.quick ? kQuickScale : TradeScale{}; }
 
 /// Throws Error if the room's spec has keys that a scan in it would ignore.
 void require_scan_room(const std::string& room, SimOptions options) {
@@ -52,27 +53,27 @@ void require_run_room(const std::string& room, const SimOptions& options) {
 }
 
 /// Rejects unsuitable scenes before the sweep begins.
-void require_scenes(const TradeCommand& command) {
-  const bool scans = command.only != "run" && !command.table1,
-             runs = command.only != "prescan" || command.table1;
-  for (const std::string& room : command.rooms) {
-    const SimOptions options = parse_sim_spec("sim:" + room);
-    if (scans) require_scan_room(room, options);
-    if (runs) require_run_room(room, options);
+void require_scenes(const TradeOptions& options) {
+  const bool scans = options.only != "run" && !options.compare_published,
+             runs = options.only != "prescan" || options.compare_published;
+  for (const std::string& room : options.rooms) {
+    const SimOptions of_room = parse_sim_spec("sim:" + room);
+    if (scans) require_scan_room(room, of_room);
+    if (runs) require_run_room(room, of_room);
   }
-  const TradeScale scale = scale_of(command);
+  const TradeScale scale = scale_of(options);
   const int read = std::max(scans ? scale.scan_frames : 0, runs ? scale.map_frames + scale.run_frames : 0);
-  for (const std::string& recording : command.recordings) (void)frames_of_recording(recording, read);
+  for (const std::string& recording : options.recordings) (void)frames_of_recording(recording, read);
 }
 
-std::vector<MeasuredWork> works_of(const TradeCommand& command) {
-  const TradeScale scale = scale_of(command);
+std::vector<MeasuredWork> works_of(const TradeOptions& options) {
+  const TradeScale scale = scale_of(options);
   std::vector<MeasuredWork> works;
-  if (command.only != "run") works.push_back(prescan_work(command.rooms, command.recordings, scale));
-  if (command.only != "prescan")
-    works.push_back(run_work(command.rooms, command.recordings, scale, command.objects));
+  if (options.only != "run") works.push_back(prescan_work(options.rooms, options.recordings, scale));
+  if (options.only != "prescan")
+    works.push_back(run_work(options.rooms, options.recordings, scale, options.objects));
   for (MeasuredWork& work : works)
-    if (command.time == "cpu") work.time = place_of(work, "cpu_ms");
+    if (options.time == "cpu") work.time = place_of(work, "cpu_ms");
   return works;
 }
 
@@ -90,11 +91,11 @@ class Stop {
   bool was_asked_ = false;
 };
 
-TradeResult traded(const MeasuredWork& work, const TradeCommand& command, Stop& stop, TradeCsv& csv) {
+TradeResult traded(const MeasuredWork& work, const TradeOptions& options, Stop& stop, TradeCsv& csv) {
   TradeResult result{.work = work};
   result.defaults = 0;
-  const std::size_t in_greedy_search = command.settings / 3;
-  const auto rows = (1 + command.settings) * work.scenes.size() * static_cast<std::size_t>(command.repeats);
+  const std::size_t in_greedy_search = options.settings / 3;
+  const auto rows = (1 + options.settings) * work.scenes.size() * static_cast<std::size_t>(options.repeats);
   Progress progress(work.name, static_cast<std::int64_t>(rows));
   const auto measure = [&](const std::vector<Setting>& settings) {
     const std::size_t before = result.settings.size();
@@ -112,13 +113,13 @@ TradeResult traded(const MeasuredWork& work, const TradeCommand& command, Stop& 
       std::snprintf(note, sizeof note, "%s: x %.2f", work.scenes[row.scene].c_str(), row.ratios[work.time]);
       progress.step(row.fault.empty() ? note : row.fault);
     };
-    SweptRows made = sweep(work, {settings, command.repeats, command.seed}, watch);
+    SweptRows made = sweep(work, {settings, options.repeats, options.seed}, watch);
     for (SweepRow& row : made.rows) result.rows.push_back(of_all(std::move(row)));
     result.fault = std::move(made.fault);
     result.summaries = summarise(work, result.settings, result.rows);
   };
   std::vector<Setting> drawn =
-      draw_settings(work.parameters, command.settings - in_greedy_search, command.seed);
+      draw_settings(work.parameters, options.settings - in_greedy_search, options.seed);
   drawn.insert(drawn.begin(), default_setting(work.parameters));
   measure(drawn);
   if (result.rows.empty()) return result;
@@ -133,10 +134,10 @@ TradeResult traded(const MeasuredWork& work, const TradeCommand& command, Stop& 
 }
 
 /// Returns "sim:table; sim:random?seed=2; kitchen" and the like.
-std::string scenes_of(const TradeCommand& command) {
+std::string scenes_of(const TradeOptions& options) {
   std::string scenes;
-  for (const std::string& room : command.rooms) scenes += (scenes.empty() ? "sim:" : "; sim:") + room;
-  for (const std::string& recording : command.recordings) scenes += (scenes.empty() ? "" : "; ") + recording;
+  for (const std::string& room : options.rooms) scenes += (scenes.empty() ? "sim:" : "; sim:") + room;
+  for (const std::string& recording : options.recordings) scenes += (scenes.empty() ? "" : "; ") + recording;
   return scenes;
 }
 
@@ -175,95 +176,112 @@ nlohmann::json result_json(const TradeResult& result) {
           {"not_measured", faults_of(result)}};
 }
 
-int print_table1(const TradeCommand& command, Report report) {
-  const Table1 table = measure_table1(command.rooms.front(), scale_of(command));
+int print_table1(const TradeOptions& options, Report report) {
+  const Table1 table = measure_table1(options.rooms.front(), scale_of(options));
   report.renderer = table.renderer;
   report.source = table.scene;
-  report.settings = {{"room", command.rooms.front()}, {"quick", command.quick}};
+  report.settings = {{"room", options.rooms.front()}, {"quick", options.quick}};
   report.results["table1"] = to_json(table);
   std::fputs(text_of(table).c_str(), stdout);
-  write_report(report, command.report);
+  write_report(report, options.report);
   return 0;
 }
 
-}  // namespace
-
-int run(const TradeCommand& command) {
-  for (const std::string& path : {command.csv, command.html, command.presets, command.report})
-    require_writable(path);
-  Report report;
-  report.command = "trade";
-  report.source = scenes_of(command);
-  report.settings = {{"rooms", command.rooms}, {"settings", command.settings}, {"repeats", command.repeats},
-                     {"seed", command.seed},   {"time", command.time},         {"quick", command.quick},
-                     {"only", command.only},   {"objects", command.objects}};
-  require_scenes(command);
-  if (command.table1) return print_table1(command, std::move(report));
-  const Machine machine = this_machine();
-  report.renderer = machine.renderer;
-  const std::vector<MeasuredWork> works = works_of(command);
-  TradeCsv csv(command.csv, works);
-  Stop stop;
+/// Measures the works one after another. Throws Error if nothing was measured; faults after the first
+/// measurement are added to `faults`.
+std::vector<TradeResult> measure_all(const std::vector<MeasuredWork>& works, const TradeOptions& options,
+                                     Stop& stop, TradeCsv& csv, StageTimes& times, DeferredErrors& faults) {
   std::vector<TradeResult> results;
-  DeferredErrors faults;  // earlier measurements are written all the same
   for (const MeasuredWork& work : works) {
     TradeResult result;
-    if (!stop.asked())
-      result = report.times.timed(work.name, [&] { return traded(work, command, stop, csv); });
+    if (!stop.asked()) result = times.timed(work.name, [&] { return traded(work, options, stop, csv); });
     if (!result.fault.empty()) faults.add("trade: " + work.name + ": " + result.fault);
     if (!result.rows.empty())
       results.push_back(std::move(result));
     else if (result.fault.empty())
       std::fprintf(stderr, "roomradar: %s: stopped before any of it was measured\n", work.name.c_str());
   }
-  if (results.empty()) {
-    faults.throw_first();
-    throw Error("trade: stopped by Ctrl-C before anything was measured");
-  }
-  for (const TradeResult& result : results) {
-    print_presets(result);
-    report.results[result.work.name] = result_json(result);
+  if (!results.empty()) return results;
+  faults.throw_first();
+  throw Error("trade: stopped by Ctrl-C before anything was measured");
+}
+
+/// Prints the presets to stdout, and settings that were not measured to stderr.
+void print_result(const TradeResult& result) {
+  print_presets(result);
+  if (result.was_cut_short)
+    std::fprintf(stderr, "roomradar: %s: stopped early: not all settings were measured\n",
+                 result.work.name.c_str());
+  for (const std::string& setting : faults_of(result))
+    std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
+}
+
+void write_page_of(const std::vector<TradeResult>& results, const TradeOptions& options,
+                   const Machine& machine) {
+  write_trade_page(
+      results,
+      {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
+           machine.system,
+       "seed " + std::to_string(options.seed) + ", " + std::to_string(options.repeats) +
+           " repeats in each scene" + (options.quick ? ", quick: few frames of small images" : "")},
+      options.html);
+}
+
+/// Writes the presets file, if requested. Throws Error unless all settings of both works were measured.
+void write_presets_of(const std::vector<TradeResult>& results, const TradeOptions& options,
+                      const Machine& machine) {
+  if (options.presets.empty()) return;
+  if (results.size() < 2)
+    throw Error(options.presets + ": not written: only " + results.front().work.name +
+                " was measured, and presets need both");
+  for (const TradeResult& result : results)
     if (result.was_cut_short)
-      std::fprintf(stderr, "roomradar: %s: stopped early: not all settings were measured\n",
-                   result.work.name.c_str());
-    for (const std::string& setting : faults_of(result))
-      std::fprintf(stderr, "roomradar: %s: not measured: %s\n", result.work.name.c_str(), setting.c_str());
+      throw Error(options.presets + ": not written: " + result.work.name +
+                  " was stopped early, and presets need all settings");
+  write_presets(chosen_presets(results, {{"processor", machine.processor},
+                                         {"renderer", machine.renderer},
+                                         {"system", machine.system},
+                                         {"scenes", scenes_of(options)},
+                                         {"settings", std::to_string(options.settings)},
+                                         {"repeats", std::to_string(options.repeats)},
+                                         {"seed", std::to_string(options.seed)},
+                                         {"compared_by", options.time},
+                                         {"objects", std::to_string(options.objects)},
+                                         {"scale", options.quick ? "quick" : "full"}}),
+                options.presets);
+}
+
+}  // namespace
+
+int run(const TradeOptions& options) {
+  for (const std::string& path : {options.csv, options.html, options.presets, options.report})
+    require_writable(path);
+  Report report;
+  report.command = "trade";
+  report.source = scenes_of(options);
+  report.settings = {{"rooms", options.rooms}, {"settings", options.settings}, {"repeats", options.repeats},
+                     {"seed", options.seed},   {"time", options.time},         {"quick", options.quick},
+                     {"only", options.only},   {"objects", options.objects}};
+  require_scenes(options);
+  if (options.compare_published) return print_table1(options, std::move(report));
+  const Machine machine = this_machine();
+  report.renderer = machine.renderer;
+  const std::vector<MeasuredWork> works = works_of(options);
+  TradeCsv csv(options.csv, works);
+  Stop stop;              // until the results are written
+  DeferredErrors faults;  // earlier measurements are written all the same
+  const std::vector<TradeResult> results = measure_all(works, options, stop, csv, report.times, faults);
+  for (const TradeResult& result : results) {
+    print_result(result);
+    report.results[result.work.name] = result_json(result);
   }
   faults.attempt([&] {
     for (const TradeResult& result : results)
       csv.write(result.work, result.summaries, result.defaults, result.choice);
   });
-  faults.attempt([&] {
-    write_trade_page(
-        results,
-        {machine.processor + ", " + std::to_string(machine.threads) + " threads, " + machine.renderer + ", " +
-             machine.system,
-         "seed " + std::to_string(command.seed) + ", " + std::to_string(command.repeats) +
-             " repeats in each scene" + (command.quick ? ", quick: few frames of small images" : "")},
-        command.html);
-  });
-  faults.attempt([&] {
-    if (command.presets.empty()) return;
-    if (results.size() < 2)
-      throw Error(command.presets + ": not written: only " + results.front().work.name +
-                  " was measured, and presets need both");
-    for (const TradeResult& result : results)
-      if (result.was_cut_short)
-        throw Error(command.presets + ": not written: " + result.work.name +
-                    " was stopped early, and presets need all settings");
-    write_presets(chosen_presets(results, {{"processor", machine.processor},
-                                           {"renderer", machine.renderer},
-                                           {"system", machine.system},
-                                           {"scenes", report.source},
-                                           {"settings", std::to_string(command.settings)},
-                                           {"repeats", std::to_string(command.repeats)},
-                                           {"seed", std::to_string(command.seed)},
-                                           {"compared_by", command.time},
-                                           {"objects", std::to_string(command.objects)},
-                                           {"scale", command.quick ? "quick" : "full"}}),
-                  command.presets);
-  });
-  faults.attempt([&] { write_report(report, command.report); });
+  faults.attempt([&] { write_page_of(results, options, machine); });
+  faults.attempt([&] { write_presets_of(results, options, machine); });
+  faults.attempt([&] { write_report(report, options.report); });
   faults.throw_first();
   return 0;
 }

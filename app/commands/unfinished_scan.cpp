@@ -74,89 +74,110 @@ bool holds(const MapInfo& map, const FrameSource& source) {
   return ("; " + map.source + "; ").find("; " + source.name() + "; ") != std::string::npos;
 }
 
-/// Returns the source, or null if it is a disconnected device with stored frames to resume from.
-std::unique_ptr<FrameSource> open_or_say(const PrescanCommand& command, const SourceOptions& options,
-                                         const fs::path& folder) {
+/// Opens the source, or leaves it null if all its frames are stored, or if it is a disconnected device with
+/// stored frames to resume from.
+void open_or_say(const PrescanOptions& options, const fs::path& folder, ScanStart& start) {
+  if (SpooledSource::has_end(folder / kSpool)) return;
+  SourceOptions source_options;
+  source_options.keep_all = true;
   try {
-    return open_source(command.source, command.frames, command.calibration, options);
+    start.source = open_source(options.source, options.frames, options.calibration, source_options);
   } catch (const Error& fault) {
-    const bool has_its_frames = command.resume && SpooledSource::has_frames(folder / kSpool) &&
-                                identity_of(folder)["source"] == command.source;
+    const bool has_its_frames = options.resume && SpooledSource::has_frames(folder / kSpool) &&
+                                identity_of(folder)["source"] == options.source;
     if (!has_its_frames) throw;
     std::fprintf(
         stderr,
         "%s. The map is made from the frames scanned before; --resume extends it once the device is back\n",
         fault.what());
-    return nullptr;
   }
+}
+
+/// Ends a scan whose recording is in the map already; deletes an interrupted scan beside the map. Throws
+/// Error if the recording is in the map only in part.
+void end_held_already(const fs::path& map, const fs::path& folder, ScanStart& start) {
+  if (fs::exists(folder)) {
+    Checkpoints unfinished(folder, {}, 0.0);
+    unfinished.ensure_folder();  // throws if another process works on it
+    unfinished.remove();
+  }
+  const auto stopped = start.map->info.settings.find(kStoppedSetting);
+  if (stopped != start.map->info.settings.end() && stopped->second == start.source->name())
+    throw Error(map.string() + ": was stopped by --max-memory before all of " + stopped->second +
+                " was in it; scan it again with more memory or a coarser --resolution: without --resume, "
+                "or as another map");
+  start.is_done = true;
+}
+
+/// Returns the facts by which a checkpoint is known to belong to the same scan.
+/// @param recording  source that can be rewound; null: a live source
+/// @param into  checksum of the map to extend, or kNewMap
+std::map<std::string, std::string> identity_for(const PrescanOptions& options, const FrameSource* recording,
+                                                const std::string& into) {
+  const fs::path calibration = calibration_for(options.source, options.calibration);
+  std::map<std::string, std::string> identity{
+      {"source", recording ? recording->name() : options.source},
+      {"resolution", std::to_string(options.quality.resolution_m)},
+      {"tracking-px", std::to_string(options.quality.tracking_px)},
+      {"fuse-every", std::to_string(options.quality.fuse_every)},
+      {"poses", std::string(to_string(options.poses))},
+      {"frames", options.frames
+                     ? std::to_string(options.frames->first) + ":" + std::to_string(options.frames->last)
+                     : "all"},
+      {"hold-out", std::to_string(options.hold_out)},
+      {"calibration", calibration.empty() ? "none" : sha256_of_file(calibration)},
+      {"into", into}};
+  if (recording) identity["length"] = std::to_string(recording->frame_count().value_or(-1));
+  return identity;
+}
+
+/// Returns the checkpoints of a new or interrupted scan. Throws Error if they belong to another scan, or if
+/// another process works on them.
+std::unique_ptr<Checkpoints> open_checkpoints(const fs::path& folder, double every_s,
+                                              const std::map<std::string, std::string>& identity) {
+  auto checkpoints = std::make_unique<Checkpoints>(
+      folder, identity, every_s > 0.0 ? every_s : std::numeric_limits<double>::infinity());
+  checkpoints->ensure_folder();  // from now on no other process can begin this map
+  checkpoints->require_same_work();
+  return checkpoints;
 }
 
 }  // namespace
 
-ScanStart start_scan(const PrescanCommand& command) {
+ScanStart start_scan(const PrescanOptions& options) {
   ScanStart start;
-  const fs::path map = tidy_map_name(command.map);
+  const fs::path map = tidy_map_name(options.map);
   const fs::path folder = unfinished_beside(map);
   require_checkpoints_only(folder, kSpool);
   require_checkpoints_only(done_beside(folder), kSpool);
-  if (!command.resume) require_no_live_scan(folder);
-  const bool extend = is_to_extend(command.resume, folder, map);
+  if (!options.resume) require_no_live_scan(folder);
+  const bool extend = is_to_extend(options.resume, folder, map);
   std::error_code ignored;
   fs::remove_all(done_beside(folder), ignored);
 
   const fs::path spool = folder / kSpool;
-  SourceOptions options;
-  options.keep_all = true;
-  if (!SpooledSource::has_end(spool)) start.source = open_or_say(command, options, folder);
+  open_or_say(options, folder, start);
   const bool spooled = !start.source;  // all frames are stored, or the device is gone
-  if (!extend) require_memory_to_begin(command.max_memory_mb);
-  if (!command.resume) give_up_unfinished(folder);  // only now that the source is open
+  if (!extend) require_memory_to_begin(options.max_memory_mb);
+  if (!options.resume) give_up_unfinished(folder);  // only now that the source is open
   const bool live = spooled || !start.source->rewind();
   start.is_live = live && !spooled;
   if (start.is_live) start.source = ended_by_interrupt(std::move(start.source));
   const std::string into = extend ? sha256_of_file(map / "map.json") : kNewMap;
   if (extend) {
     start.map = load_map(map);
-    require_memory_to_begin(command.max_memory_mb,
+    require_memory_to_begin(options.max_memory_mb,
                             kSurfaceMemory * static_cast<double>(start.map->octree.memory_bytes()));
   }
   if (extend && !live && holds(start.map->info, *start.source) &&
       (!is_unfinished(folder) || identity_of(folder)["into"] != into)) {
-    if (fs::exists(folder)) {
-      Checkpoints unfinished(folder, {}, 0.0);
-      unfinished.ensure_folder();  // throws if another process works on it
-      unfinished.remove();
-    }
-    const auto stopped = start.map->info.settings.find(kStoppedSetting);
-    if (stopped != start.map->info.settings.end() && stopped->second == start.source->name())
-      throw Error(map.string() + ": was stopped by --max-memory before all of " + stopped->second +
-                  " was in it; scan it again with more memory or a coarser --resolution: without --resume, "
-                  "or as another map");
-    start.is_done = true;
+    end_held_already(map, folder, start);
     return start;
   }
   // A scan to resume is in the checkpoints, even if no further ones are requested.
-  if (command.checkpoint_every_s > 0.0 || spooled || is_unfinished(folder)) {
-    const double every_s = command.checkpoint_every_s > 0.0 ? command.checkpoint_every_s
-                                                            : std::numeric_limits<double>::infinity();
-    const fs::path calibration = calibration_for(command.source, command.calibration);
-    std::map<std::string, std::string> identity{
-        {"source", live ? command.source : start.source->name()},
-        {"resolution", std::to_string(command.quality.resolution_m)},
-        {"tracking-px", std::to_string(command.quality.tracking_px)},
-        {"fuse-every", std::to_string(command.quality.fuse_every)},
-        {"poses", std::string(to_string(command.poses))},
-        {"frames", command.frames
-                       ? std::to_string(command.frames->first) + ":" + std::to_string(command.frames->last)
-                       : "all"},
-        {"hold-out", std::to_string(command.hold_out)},
-        {"calibration", calibration.empty() ? "none" : sha256_of_file(calibration)},
-        {"into", into}};
-    if (!live) identity["length"] = std::to_string(start.source->frame_count().value_or(-1));
-    start.checkpoints = std::make_unique<Checkpoints>(folder, identity, every_s);
-    start.checkpoints->ensure_folder();  // from now on no other process can begin this map
-    start.checkpoints->require_same_work();
-  }
+  if (options.checkpoint_every_s > 0.0 || spooled || is_unfinished(folder))
+    start.checkpoints = open_checkpoints(folder, options.checkpoint_every_s,
+                                         identity_for(options, live ? nullptr : start.source.get(), into));
   if (live && start.checkpoints) start.spool = spool;
   if (spooled) {
     start.source = SpooledSource::again(spool);

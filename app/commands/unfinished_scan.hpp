@@ -3,7 +3,7 @@
 #include <memory>
 #include <optional>
 
-#include "app/commands/commands.hpp"
+#include "app/cli/options/prescan_options.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/storage/checkpoints.hpp"
 #include "mapping/types/frame_source.hpp"
@@ -25,6 +25,6 @@ struct ScanStart {
 /// (MAP.unfinished).
 /// @throws Error if there is nothing to resume, if the interrupted scan belongs to another command, or if a
 /// live scan would be lost without --resume; also as open_source() does
-ScanStart start_scan(const PrescanCommand& command);
+ScanStart start_scan(const PrescanOptions& options);
 
 }  // namespace roomradar

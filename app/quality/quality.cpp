@@ -63,7 +63,7 @@ void set_field_of(Quality& quality, std::string_view name, std::string_view word
   bool is_known = false;
   visit_fields(quality, [&](const QualityField& field, auto& value) {
     names.append(names.empty() ? "" : ", ").append(field.name);
-    if (name != field.name) return;
+    if (name != field.name && (name.empty() || name != field.old_name)) return;
     is_known = true;
     auto read_value = value;
     if (!read(word, read_value) || !is_within(field, read_value)) fail(field, word);

@@ -45,6 +45,8 @@ struct QualityField {
   const char* unit;    ///< as printed in help; counts have "N"
   const char* help;
   double low = 0.0, high = 0.0;  ///< range of numbers, inclusive
+  const char* old_name = "";     ///< former name, read until the next version; empty: none
+  const char* old_option = "";   ///< former name on the command line; empty: none
 };
 
 /// Calls visit(QualityField, field) for each field, in the order of files and help.
@@ -77,10 +79,10 @@ void visit_fields(Quality& quality, Visit&& visit) {
         quality.tracking_px);
   visit(
       QualityField{
-          "mesh_sigmas", "--mesh-sigmas", "X",
+          "mesh_tolerance_sigmas", "--mesh-tolerance-sigmas", "X",
           "max deviation of the dynamic mesh from the measured depth, in standard deviations of the\n"
           "sensor's noise (default: 0.8)",
-          0.1, 100.0},
+          0.1, 100.0, "mesh_sigmas", "--mesh-sigmas"},
       quality.mesh_tolerance_sigmas);
   visit(
       QualityField{
@@ -101,9 +103,9 @@ void visit_fields(Quality& quality, Visit&& visit) {
                      "max substep of the physics, seconds; exceeded by up to 5 % (default: 0.0167)", 0.001,
                      0.5},
         quality.physics_step_s);
-  visit(QualityField{"object_turns", "--object-turns", "N",
+  visit(QualityField{"move_every_n_frames", "--move-every", "N",
                      "move each object every Nth frame, by all of the time since its last move (default: 1)",
-                     1, 16},
+                     1, 16, "object_turns", "--object-turns"},
         quality.move_every_n_frames);
   visit(QualityField{"object_error_px", "--object-error", "PX",
                      "max deviation of an object's drawn mesh from its file's, pixels (default: 0.7)", 0.01,
@@ -116,15 +118,15 @@ void visit_fields(Quality& quality, Visit&& visit) {
   visit(QualityField{"shadows", "--shadows", "on|off",
                      "draw shadows of objects on the surface below them (default: on)"},
         quality.shadows);
-  visit(QualityField{"shadow_turns", "--shadow-turns", "N",
+  visit(QualityField{"shadow_every_n_frames", "--shadow-every", "N",
                      "compute the full-resolution shadow of one resting object every Nth frame (default: 1)",
-                     1, 1000},
+                     1, 1000, "shadow_turns", "--shadow-turns"},
         quality.shadow_every_n_frames);
   visit(
-      QualityField{"picture_turns", "--picture-turns", "N",
+      QualityField{"picture_every_n_frames", "--picture-every", "N",
                    "make a picture every Nth frame, and move objects in the others; 1: both in every frame\n"
                    "(default: 1)",
-                   1, 16},
+                   1, 16, "picture_turns", "--picture-turns"},
       quality.picture_every_n_frames);
 }
 
@@ -133,7 +135,7 @@ void require_valid(const ScanQuality& quality);
 void require_valid(const RunQuality& quality);
 
 /// Sets a field from a word: "2", "0.5", "on", "sampled". Throws Error naming field, word and rule, or the
-/// unknown name, and then changes nothing.
+/// unknown name, and then changes nothing. Former names of fields are accepted.
 void set_field(ScanQuality& quality, std::string_view name, std::string_view word);
 void set_field(RunQuality& quality, std::string_view name, std::string_view word);
 
@@ -146,7 +148,7 @@ void set_fields(Quality& quality, const FieldWords& words) {
   for (const auto& [name, word] : words) set_field(quality, name, word);
 }
 
-/// Returns the fields that differ from `usual`, in the order of visit_fields(). set_fields() on `usual`
+/// Returns the fields that differ from `defaults`, in the order of visit_fields(). set_fields() on `defaults`
 /// restores the same quality from them, bit by bit.
 FieldWords words_of(const ScanQuality& quality, const ScanQuality& defaults = {});
 FieldWords words_of(const RunQuality& quality, const RunQuality& defaults = {});

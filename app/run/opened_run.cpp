@@ -21,24 +21,24 @@ namespace {
 
 constexpr double kVideoFramesPerS = 30.0;
 
-nlohmann::json settings_of(const RunCommand& command) {
-  nlohmann::json settings = {{"map", command.map},
-                             {"poses", to_string(command.poses)},
-                             {"object", command.object},
-                             {"script", command.script},
-                             {"surfaces", to_string(command.surfaces)},
-                             {"unknown", command.unknown_is_solid ? "solid" : "free"},
-                             {"at_end", to_string(command.at_end)},
-                             {"window", command.window},
-                             {"record_session", command.record_session},
-                             {"save_map", command.save_map}};
-  settings.update(to_json(command.quality));
-  if (!command.preset.empty()) settings["preset"] = command.preset;
-  if (!command.presets.empty()) settings["presets"] = command.presets;
-  if (command.budget_ms) settings["budget_ms"] = *command.budget_ms;
-  if (command.commit_after_s) settings["adopt_s"] = *command.commit_after_s;
-  if (!command.calibration.empty()) settings["calibration"] = command.calibration;
-  if (command.frames) settings["frames"] = {command.frames->first, command.frames->last};
+nlohmann::json settings_of(const RunOptions& options) {
+  nlohmann::json settings = {{"map", options.map},
+                             {"poses", to_string(options.poses)},
+                             {"object", options.object},
+                             {"script", options.script},
+                             {"surfaces", to_string(options.surfaces)},
+                             {"unknown", options.unknown_is_solid ? "solid" : "free"},
+                             {"at_end", to_string(options.at_end)},
+                             {"window", options.window},
+                             {"record_session", options.record_session},
+                             {"save_map", options.save_map}};
+  settings.update(to_json(options.quality));
+  if (!options.preset.empty()) settings["preset"] = options.preset;
+  if (!options.presets.empty()) settings["presets"] = options.presets;
+  if (options.budget_ms) settings["budget_ms"] = *options.budget_ms;
+  if (options.commit_after_s) settings["adopt_s"] = *options.commit_after_s;
+  if (!options.calibration.empty()) settings["calibration"] = options.calibration;
+  if (options.frames) settings["frames"] = {options.frames->first, options.frames->last};
   return settings;
 }
 
@@ -61,31 +61,32 @@ bool has(const Script& script, Action action) {
                      [action](const ScriptEvent& event) { return event.action == action; });
 }
 
-Script script_of(const RunCommand& command) {
-  if (command.script.empty()) return drop_over_view(command.object);
+Script script_of(const RunOptions& options) {
+  if (options.script.empty()) return drop_over_view(options.object);
   Script script =
-      read_script(command.script, is_session_events(command.script) ? LastLine::kMayBeCut : LastLine::kWhole);
+      read_script(options.script, is_session_events(options.script) ? LastLine::kMayBeCut : LastLine::kWhole);
   for (ScriptEvent& event : script.events)
-    if (event.action == Action::kQuality) set_fields(event.quality, command.fixed);
+    if (event.action == Action::kQuality) set_fields(event.quality, options.fixed);
   return script;
 }
 
-void require_can_save_map(const RunCommand& command, const Script& script) {
-  if (command.save_map.empty()) return;
-  if (!command.commit_after_s && !has(script, Action::kCommit))
-    throw Error("--save-map " + command.save_map +
-                ": nothing would change in the map; add --adopt SECONDS, or an adopt event to the script");
-  require_can_become_map(command.save_map, {command.report, command.frames_csv, command.video,
-                                            command.pictures, command.record_session});
+void require_can_save_map(const RunOptions& options, const Script& script) {
+  if (options.save_map.empty()) return;
+  if (!options.commit_after_s && !has(script, Action::kCommit))
+    throw Error(
+        "--save-map " + options.save_map +
+        ": nothing would change in the map; add --commit-changes SECONDS, or an adopt event to the script");
+  require_can_become_map(options.save_map, {options.report, options.frames_csv, options.video,
+                                            options.pictures, options.record_session});
 }
 
-void require_one_quality(const RunCommand& command, const Script& script) {
+void require_one_quality(const RunOptions& options, const Script& script) {
   if (!has(script, Action::kQuality)) return;
-  if (!command.preset.empty())
+  if (!options.preset.empty())
     throw Error(
         "--preset: the script or the session has quality events, which set everything that they do not name "
         "to its default, not to the preset's value; leave out one of them");
-  if (command.budget_ms)
+  if (options.budget_ms)
     throw Error(
         "--budget-ms: the script or the session has quality events of its own, and each would undo the "
         "other; leave out one of them");
@@ -101,14 +102,14 @@ void say_if_up_is_not_known(const MapInfo& info, const std::string& folder) {
 
 /// Opens the source, and the recorded results if the source is a session.
 std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
-  const RunCommand& command = run.command;
-  if (command.poses == PoseOrigin::kRecorded)
-    require_recorded_world(run.map.info, command.map, command.source);
-  std::unique_ptr<FrameSource> opened = open_source(command.source, command.frames, command.calibration);
+  const RunOptions& options = run.options;
+  if (options.poses == PoseOrigin::kRecorded)
+    require_recorded_world(run.map.info, options.map, options.source);
+  std::unique_ptr<FrameSource> opened = open_source(options.source, options.frames, options.calibration);
   run.is_live = !opened->rewind();  // frame_count() would not tell: with --frames a device has one too
-  if (is_session_folder(command.source)) {
-    run.check.emplace(command.source);
-    if (const std::string fault = map_difference(command.source, run.map.info); !fault.empty())
+  if (is_session_folder(options.source)) {
+    run.check.emplace(options.source);
+    if (const std::string fault = map_difference(options.source, run.map.info); !fault.empty())
       std::fprintf(stderr, "roomradar: %s\n", fault.c_str());
   }
   // A session that was cut off has no quit event: it is replayed as far as it has results.
@@ -118,39 +119,39 @@ std::unique_ptr<FrameSource> open_frames(OpenedRun& run) {
 }
 
 void open_budget(OpenedRun& run, bool has_picture) {
-  const RunCommand& command = run.command;
-  if (!command.budget_ms) return;
-  const std::filesystem::path path = presets_file(command.presets);
-  std::vector<FrontStep> front = front_for(read_presets(path), command.quality, command.fixed);
+  const RunOptions& options = run.options;
+  if (!options.budget_ms) return;
+  const std::filesystem::path path = presets_file(options.presets);
+  std::vector<FrontStep> front = front_for(read_presets(path), options.quality, options.fixed);
   if (front.size() < 2)
     std::fprintf(stderr,
                  "roomradar: %s has no setting faster than the requested one, so --budget-ms has no effect\n",
                  path.c_str());
-  run.budget = std::make_unique<RunBudget>(std::move(front), *command.budget_ms, has_picture);
+  run.budget = std::make_unique<RunBudget>(std::move(front), *options.budget_ms, has_picture);
 }
 
-bool makes_picture(const RunCommand& command, bool has_window) {
-  return has_window || !command.video.empty() || !command.pictures.empty();
+bool makes_picture(const RunOptions& options, bool has_window) {
+  return has_window || !options.video.empty() || !options.pictures.empty();
 }
 
 SessionConfig config_of(const OpenedRun& run, bool has_picture) {
-  const RunCommand& command = run.command;
+  const RunOptions& options = run.options;
   SessionConfig config;
-  config.poses = command.poses;
-  config.scene.surfaces = command.surfaces;
-  apply(command.quality, config);
+  config.poses = options.poses;
+  config.scene.surfaces = options.surfaces;
+  apply(options.quality, config);
   config.make_picture = has_picture;
-  config.measure_penetration = !command.report.empty();
+  config.measure_penetration = !options.report.empty();
   if (run.budget)
     config.watch = [budget = run.budget.get()](FramePart part, const FrameLoad& load) {
       return budget->before(part, load);
     };
-  if (command.commit_after_s || has(run.script, Action::kCommit)) {
+  if (options.commit_after_s || has(run.script, Action::kCommit)) {
     config.map_updates.emplace();
-    config.map_updates->after_s = command.commit_after_s;
+    config.map_updates->after_s = options.commit_after_s;
     config.map_updates->surface = surface_config_of(run.map.info);
     // A live run does not wait, unless it is recorded and must be reproducible.
-    config.map_updates->wait = !run.is_live || !command.record_session.empty();
+    config.map_updates->wait = !run.is_live || !options.record_session.empty();
   }
   return config;
 }
@@ -167,27 +168,27 @@ void open_session(OpenedRun& run, bool has_picture) {
   run.session = std::make_unique<Session>(run.map, config_of(run, has_picture), &run.map.octree);
   run.report.renderer = run.session->renderer();
   std::fprintf(stderr, "rendering with %s\n", run.session->renderer().c_str());
-  if (run.command.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
+  if (run.options.unknown_is_solid) make_unknown_solid(*run.session, run.report.times);
   // Objects are loaded now, so an unreadable mesh is reported before the first frame.
   for (const ScriptEvent& event : run.script.events)
     if (event.action == Action::kAdd) apply(*run.session, event);
 }
 
 void open_outputs(OpenedRun& run) {
-  const RunCommand& command = run.command;
-  if (!command.video.empty()) run.video = std::make_unique<VideoWriter>(command.video, kVideoFramesPerS);
-  if (command.pictures.empty()) return;
+  const RunOptions& options = run.options;
+  if (!options.video.empty()) run.video = std::make_unique<VideoWriter>(options.video, kVideoFramesPerS);
+  if (options.pictures.empty()) return;
   std::error_code failed;
-  std::filesystem::create_directories(command.pictures, failed);
-  if (failed) throw Error(command.pictures + ": the folder cannot be created: " + failed.message());
+  std::filesystem::create_directories(options.pictures, failed);
+  if (failed) throw Error(options.pictures + ": the folder cannot be created: " + failed.message());
 }
 
 /// Wraps the frames so they are recorded, if requested.
 void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
-  const RunCommand& command = run.command;
-  if (command.record_session.empty()) return;
-  run.recorder.emplace(command.record_session, command, run.map.info,
-                       gives_calibrated_frames(command.source, command.calibration));
+  const RunOptions& options = run.options;
+  if (options.record_session.empty()) return;
+  run.recorder.emplace(options.record_session, options, run.map.info,
+                       gives_calibrated_frames(options.source, options.calibration));
   // Recorded at the start, where they were loaded: the window's user may use one before its event.
   for (const ScriptEvent& event : run.script.events)
     if (event.action == Action::kAdd) run.recorder->write(run.recorder->with_mesh_kept(event), 0);
@@ -195,35 +196,35 @@ void record_frames(OpenedRun& run, std::unique_ptr<FrameSource>& frames) {
 }
 
 void play_frames(OpenedRun& run, std::unique_ptr<FrameSource> frames) {
-  auto played = std::make_unique<PlaybackSource>(std::move(frames), run.command.at_end);
+  auto played = std::make_unique<PlaybackSource>(std::move(frames), run.options.at_end);
   run.playback = played.get();
   run.source = ended_by_interrupt(std::move(played));
 }
 
 }  // namespace
 
-std::unique_ptr<OpenedRun> open_run(const RunCommand& command, UiChannel* link) {
-  auto opened = std::make_unique<OpenedRun>(command);
+std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link) {
+  auto opened = std::make_unique<OpenedRun>(options);
   OpenedRun& run = *opened;
   run.report.command = "run";
-  run.report.source = command.source;
-  run.report.settings = settings_of(command);
-  require_writable(command.report);
-  require_writable(command.frames_csv);
-  require_outside_maps(command.video);
-  require_contents_outside_maps(command.pictures);
-  run.script = script_of(command);
-  require_can_save_map(command, run.script);
-  require_one_quality(command, run.script);
-  if (!command.record_session.empty()) require_can_become_session(command.record_session);
-  run.map = load_map(command.map);
-  say_if_up_is_not_known(run.map.info, command.map);
-  const bool has_picture = makes_picture(command, link != nullptr);
+  run.report.source = options.source;
+  run.report.settings = settings_of(options);
+  require_writable(options.report);
+  require_writable(options.frames_csv);
+  require_outside_maps(options.video);
+  require_contents_outside_maps(options.pictures);
+  run.script = script_of(options);
+  require_can_save_map(options, run.script);
+  require_one_quality(options, run.script);
+  if (!options.record_session.empty()) require_can_become_session(options.record_session);
+  run.map = load_map(options.map);
+  say_if_up_is_not_known(run.map.info, options.map);
+  const bool has_picture = makes_picture(options, link != nullptr);
   std::unique_ptr<FrameSource> frames = open_frames(run);
   open_budget(run, has_picture);
   open_session(run, has_picture);
   open_outputs(run);
-  if (!command.frames_csv.empty()) run.frames_csv.emplace(command.frames_csv);
+  if (!options.frames_csv.empty()) run.frames_csv.emplace(options.frames_csv);
   record_frames(run, frames);  // last, so a run that fails to open leaves no folder that blocks the next
                                // attempt
   play_frames(run, std::move(frames));

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "app/cli/interrupt.hpp"
+#include "app/cli/options/run_options.hpp"
 #include "app/cli/report.hpp"
-#include "app/cli/run_options.hpp"
 #include "app/cli/session_folder.hpp"
 #include "app/media/video_writer.hpp"
 #include "app/run/run_budget.hpp"
@@ -19,9 +19,9 @@
 namespace roomradar {
 
 struct OpenedRun {
-  explicit OpenedRun(const RunCommand& of) : command(of) {}
+  explicit OpenedRun(const RunOptions& of) : options(of) {}
 
-  const RunCommand& command;
+  const RunOptions& options;
   Report report;
   Script script;
   SavedMap map;
@@ -44,6 +44,6 @@ struct OpenedRun {
 /// Opens everything that the command names, reads the map and creates the session. Throws Error if any of
 /// this fails, before the first frame.
 /// @param link  to the window; null: no window
-std::unique_ptr<OpenedRun> open_run(const RunCommand& command, UiChannel* link);
+std::unique_ptr<OpenedRun> open_run(const RunOptions& options, UiChannel* link);
 
 }  // namespace roomradar

@@ -156,7 +156,7 @@ void RunLoop::perform_users(const std::vector<ScriptEvent>& events) {
 void RunLoop::step() {
   const FrameResult result = run_.session->step(frame_, run_.report.times);
   if (result.status == FrameStatus::kBadFrame) {
-    count_skipped(run_.command.source + ": frame " + std::to_string(frame_.index) + ": " +
+    count_skipped(run_.options.source + ": frame " + std::to_string(frame_.index) + ": " +
                   std::string(result.fault) + "; it is skipped");
     return;
   }
@@ -202,8 +202,8 @@ void RunLoop::keep(const FrameResult& result) {
   if (run_.video) run_.video->write_at(session.picture(), run_time_s_);
   if (run_.frames_csv && result.status == FrameStatus::kDone)
     run_.frames_csv->write(frame_.index, result.use, session.objects());
-  if (!run_.command.pictures.empty() && run_frame_ % run_.command.pictures_every == 0)
-    write_pictures(session, result, std::filesystem::path(run_.command.pictures) / picture_name());
+  if (!run_.options.pictures.empty() && run_frame_ % run_.options.pictures_stride == 0)
+    write_pictures(session, result, std::filesystem::path(run_.options.pictures) / picture_name());
 }
 
 }  // namespace

@@ -7,8 +7,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::filesystem::path folder = test::folder_with(test::as_text(data, size));
   test::read_or_refuse([&] {
     if (!is_session_folder(folder)) return;
-    const RunCommand command = read_session(folder);
-    (void)read_script(command.script);
+    const RunOptions options = read_session(folder);
+    (void)read_script(options.script);
   });
   test::read_or_refuse([&] { (void)map_difference(folder, MapInfo{}); });
   test::read_or_refuse([&] {

@@ -30,7 +30,8 @@ Table1 measure_table1(const std::string& room, const TradeScale& scale) {
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const RunFacts facts = run_session(*scene, {}, objects[i]);
     table.renderer = facts.renderer;
-    if (!(facts.located > 0.0)) throw Error("trade --table1: " + room + ": no frame could be localised");
+    if (!(facts.located > 0.0))
+      throw Error("trade --compare-published: " + room + ": no frame could be localised");
     const auto stages = facts.times.summaries();
     table.rows.push_back({.published_polygons = kPublished[i].polygons,
                           .published_ms = 1e3 / kPublished[i].fps,

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "tests/support/recordings.hpp"
@@ -116,9 +117,9 @@ frame 15 unknown solid
 frame 17 camera hold
 frame 21 camera go
 frame 22 radar sampled 32
-frame 23 quality depth_stride 2 object_turns 2
+frame 23 quality depth_stride 2 move_every_n_frames 2
 frame 24 camera rewind
-frame 30 quality from physics shadows off picture_turns 2
+frame 30 quality from physics shadows off picture_every_n_frames 2
 frame 44 quit
 )";
 
@@ -176,6 +177,34 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
                          session.string()),
                1, "not empty");
   EXPECT_EQ(roomradar("record " + session.string() + " " + (folder_ / "frames").string()).status, 0);
+}
+
+TEST_F(CommandLine, ASessionRecordedWithFormerNamesReplaysTheSame) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const fs::path session = folder_ / "old_names", script = folder_ / "old_names.txt";
+  std::ofstream(script) << "frame 0 add pot teapot\ntime 0 drop pot view height 0.2\n"
+                           "frame 3 quality object_turns 3 picture_turns 2 mesh_sigmas 2\n";
+  const Outcome played =
+      roomradar("run 'sim:table?frames=12&width=160&path=view&seed=2' --poses recorded --map " + map() +
+                " --shadow-every 4 --script " + script.string() + " --record-session " + session.string());
+  ASSERT_EQ(played.status, 0) << played.out;
+  for (const char* file : {"session.json", "events.txt"}) {
+    std::string text = read_text(session / file);
+    const std::map<std::string, std::string> old_names{{"mesh_tolerance_sigmas", "mesh_sigmas"},
+                                                       {"move_every_n_frames", "object_turns"},
+                                                       {"shadow_every_n_frames", "shadow_turns"},
+                                                       {"picture_every_n_frames", "picture_turns"}};
+    for (const auto& [name, old_name] : old_names) {
+      ASSERT_NE(text.find(name), std::string::npos) << name << " is not in " << text;
+      EXPECT_EQ(text.find(old_name), std::string::npos) << text;
+      for (std::size_t at = 0; (at = text.find(name)) != std::string::npos;)
+        text.replace(at, name.size(), old_name);
+    }
+    std::ofstream(session / file) << text;
+  }
+  const Outcome replayed = roomradar("run " + session.string());
+  EXPECT_EQ(replayed.status, 0) << replayed.out;
+  EXPECT_NE(replayed.out.find("replay: 12 of 12 frames the same"), std::string::npos) << replayed.out;
 }
 
 TEST_F(CommandLine, ARunThatCannotBeginLeavesNoSession) {
@@ -276,8 +305,8 @@ TEST_F(CommandLine, RunChangesNothingOfTheMap) {
   const auto before = state();
   ASSERT_GT(before.size(), 4U);
   const Outcome ran =
-      roomradar("run 'sim:table?frames=60&width=160&moving=hand&crate=comes' --adopt 0.5 --map " + map() +
-                " --unknown solid");
+      roomradar("run 'sim:table?frames=60&width=160&moving=hand&crate=comes' --commit-changes 0.5 --map " +
+                map() + " --unknown solid");
   EXPECT_EQ(ran.status, 0) << ran.out;
   EXPECT_TRUE(state() == before);
 }
@@ -351,9 +380,9 @@ TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
   const auto before = bytes_of(map());
   const std::string changed = (folder_ / "changed").string();
   const fs::path report_path = folder_ / "adopt.json";
-  const Outcome ran =
-      roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " + map() +
-                " --poses recorded --adopt 0.8 --save-map " + changed + " --report " + report_path.string());
+  const Outcome ran = roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " +
+                                map() + " --poses recorded --commit-changes 0.8 --save-map " + changed +
+                                " --report " + report_path.string());
   ASSERT_EQ(ran.status, 0) << ran.out;
   EXPECT_EQ(bytes_of(map()), before);
   EXPECT_EQ(roomradar("map verify " + changed).status, 0);
@@ -369,8 +398,9 @@ TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
 
   // It may overwrite the room's own map if the user names it.
   const fs::path own = broken_copy();
-  const Outcome again = roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " +
-                                  own.string() + " --poses recorded --adopt 0.8 --save-map " + own.string());
+  const Outcome again =
+      roomradar("run 'sim:table?frames=60&rate=10&width=160&path=view&crate=comes' --map " + own.string() +
+                " --poses recorded --commit-changes 0.8 --save-map " + own.string());
   EXPECT_EQ(again.status, 0) << again.out;
   EXPECT_EQ(read_text(own / "octree.ot"), read_text(fs::path(changed) / "octree.ot")) << "the same each time";
   EXPECT_EQ(read_text(own / "mesh.ply"), read_text(fs::path(changed) / "mesh.ply"));
@@ -379,11 +409,11 @@ TEST_F(CommandLine, WhatCameGoesIntoANewMapAndTheOldOneStaysAsItIs) {
 TEST_F(CommandLine, SavingAMapThatCannotChangeIsRefused) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const std::string run = "run 'sim:table?frames=100000&width=160' --map " + map();
-  expect_fault(roomradar(run + " --save-map " + (folder_ / "unused").string()), 1, "--adopt");
-  expect_fault(roomradar(run + " --adopt 1 --save-map " + folder_.string()), 1, folder_.string());
-  expect_fault(roomradar(run + " --adopt 1 --surfaces holes"), 1, "--surfaces map");
-  expect_fault(roomradar(run + " --adopt 0"), 2, "86400");
-  expect_fault(roomradar(run + " --adopt nan"), 2, "86400");
+  expect_fault(roomradar(run + " --save-map " + (folder_ / "unused").string()), 1, "--commit-changes");
+  expect_fault(roomradar(run + " --commit-changes 1 --save-map " + folder_.string()), 1, folder_.string());
+  expect_fault(roomradar(run + " --commit-changes 1 --surfaces holes"), 1, "--surfaces map");
+  expect_fault(roomradar(run + " --commit-changes 0"), 2, "86400");
+  expect_fault(roomradar(run + " --commit-changes nan"), 2, "86400");
 }
 
 TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
@@ -412,8 +442,8 @@ TEST_F(CommandLine, TradeSweepsAndWritesItsFiles) {
   expect_fault(roomradar("trade --quick --only prescan " + path("none")), 1, "none");
   expect_fault(roomradar("trade --settings 0"), 2, "--settings");
   expect_fault(roomradar("trade --only run --presets " + path("p.json")), 2, "--presets");
-  expect_fault(roomradar("trade --table1 --csv " + path("t.csv")), 2, "--csv");
-  expect_fault(roomradar("trade --table1 --rooms table,wall"), 2, "--table1");
+  expect_fault(roomradar("trade --compare-published --csv " + path("t.csv")), 2, "--csv");
+  expect_fault(roomradar("trade --compare-published --rooms table,wall"), 2, "--compare-published");
   expect_fault(roomradar("trade --repeats x"), 2, "--repeats");
   expect_fault(roomradar("trade --seed 010"), 2, "without leading zeros, not 010");
   expect_fault(roomradar("trade --seed -1"), 2, "must be a whole number");
@@ -451,9 +481,76 @@ TEST_F(CommandLine, WrongUsageIsStatusTwo) {
   expect_fault(roomradar("fallthrough sim:table"), 2, "--map");
   expect_fault(roomradar(prescan + " --presets p.json"), 2, "--preset NAME");
   expect_fault(roomradar(run + " --presets p.json"), 2, "--budget-ms");
-  expect_fault(roomradar(run + " --pictures-every 3"), 2, "--pictures");
+  expect_fault(roomradar(run + " --pictures-stride 3"), 2, "--pictures");
   EXPECT_NE(roomradar(run + " --preset fast --presets /no/p.json").out.find("/no/p.json"), std::string::npos);
   EXPECT_FALSE(fs::exists(folder_ / "unused"));
+}
+
+TEST_F(CommandLine, FormerNamesOfOptionsWorkAndSaySo) {
+  ASSERT_EQ(scanned_.status, 0) << scanned_.out;
+  const std::string run = "run 'sim:table?frames=3&width=160&path=view' --poses recorded --map " + map();
+  const fs::path pictures = folder_ / "old_pictures", report_path = folder_ / "old_options.json";
+  const Outcome outcome =
+      roomradar(run + " --object-turns 2 --picture-turns=3 --shadow-turns 4 --mesh-sigmas 1.5 --adopt 9 " +
+                "--pictures " + pictures.string() + " --pictures-every 1 --report " + report_path.string());
+  ASSERT_EQ(outcome.status, 0) << outcome.out;
+  const std::map<std::string, std::string> new_names{
+      {"--object-turns", "--move-every"},   {"--picture-turns", "--picture-every"},
+      {"--shadow-turns", "--shadow-every"}, {"--mesh-sigmas", "--mesh-tolerance-sigmas"},
+      {"--adopt", "--commit-changes"},      {"--pictures-every", "--pictures-stride"}};
+  const std::string help = roomradar("run --help").out, manual = roomradar("--manual").out;
+  for (const auto& [old_name, name] : new_names) {
+    const std::string said =
+        "roomradar: " + old_name + " is now " + name + "; the old name will go in the next version\n";
+    EXPECT_NE(outcome.out.find(said), std::string::npos) << outcome.out;
+    EXPECT_EQ(help.find(old_name), std::string::npos) << old_name;
+    EXPECT_NE(help.find(name), std::string::npos) << name;
+    EXPECT_EQ(manual.find("\\-\\-" + old_name.substr(2)), std::string::npos) << old_name;
+  }
+  const nlohmann::json settings = nlohmann::json::parse(read_text(report_path))["settings"];
+  EXPECT_EQ(settings["move_every_n_frames"], 2);
+  EXPECT_EQ(settings["picture_every_n_frames"], 3);
+  EXPECT_EQ(settings["shadow_every_n_frames"], 4);
+  EXPECT_EQ(settings["mesh_tolerance_sigmas"], 1.5);
+  EXPECT_EQ(settings["adopt_s"], 9);
+  for (const char* frame : {"000000", "000001", "000002"})
+    EXPECT_TRUE(fs::exists(pictures / (std::string(frame) + ".moved.png"))) << frame;
+  // The checks are those of the new name.
+  expect_fault(roomradar(run + " --object-turns 0"), 2, "--move-every 0");
+  expect_fault(roomradar(run + " --adopt nan"), 2, "86400");
+  expect_fault(roomradar(run + " --pictures-every 3"), 2, "--pictures-stride: used only with --pictures");
+  expect_fault(roomradar(run + " --object-turns 010"), 2, "without leading zeros");
+  EXPECT_EQ(roomradar(run + " --adopt 1 --commit-changes 2").status, 2);
+  EXPECT_EQ(roomradar("prescan sim:table --map " + map() + " --adopt 1").status, 2);
+  const Outcome table = roomradar("trade --table1 --csv " + (folder_ / "t.csv").string());
+  expect_fault(table, 2, "--csv: used only for a sweep, not with --compare-published");
+  expect_fault(table, 2, "--table1 is now --compare-published; the old name will go in the next version");
+  EXPECT_EQ(roomradar("trade --help").out.find("--table1"), std::string::npos);
+}
+
+TEST_F(CommandLine, HelpOfEveryOptionEndsWithItsDefault) {
+  std::istringstream manual(roomradar("--manual").out);
+  std::string option, help;
+  int options = 0;
+  const auto check = [&] {
+    if (option.empty()) return;
+    ++options;
+    EXPECT_EQ(help.back(), ')') << option << ": " << help;
+    EXPECT_TRUE(help.find("(default: ") != std::string::npos || help.find("(required") != std::string::npos)
+        << option << ": " << help;
+  };
+  for (std::string line; std::getline(manual, line) && line != ".SH SOURCES";) {
+    if (line == ".TP" || line.starts_with(".SS")) {
+      check();
+      option.clear();
+      help.clear();
+      if (line == ".TP") std::getline(manual, option);
+    } else {
+      help = help.empty() ? line : help + " " + line;
+    }
+  }
+  check();
+  EXPECT_GT(options, 90);
 }
 
 TEST_F(CommandLine, SourcesThatAreNoneAreNamed) {
@@ -523,7 +620,7 @@ TEST_F(CommandLine, NothingElseIsPutIntoAFolderThatIsToBecomeAMap) {
   expect_fault(
       roomradar("map merge " + map() + " " + map() + " --map " + soon + " --report " + soon + "/r.json"), 1,
       rule);
-  const std::string run = "run " + source + " --map " + map() + " --adopt 2 --save-map " + soon;
+  const std::string run = "run " + source + " --map " + map() + " --commit-changes 2 --save-map " + soon;
   for (const char* output : {"--pictures", "--record-session", "--frames-csv", "--report", "--video"})
     expect_fault(roomradar(run + " " + output + " " + soon + "/../soon/new.avi"), 1, rule);
   expect_fault(roomradar(run + " --pictures " + soon), 1, rule);

@@ -115,9 +115,9 @@ class DeferredErrors : public ::testing::Test {
             {"prescan", kSource, "--map", at("other"), "--resolution", "0.05", "--report", d + "/old.json"},
             {"run", kSource, "--map", made, "--report", d + "/old.json"},
             {"run", kSource, "--map", made, "--video", d + "/v.avi"},
-            {"run", kSource, "--map", made, "--pictures", d + "/pictures", "--pictures-every", "1"},
+            {"run", kSource, "--map", made, "--pictures", d + "/pictures", "--pictures-stride", "1"},
             {"run", kSource, "--map", made, "--record-session", d + "/session"},
-            {"run", kSource, "--map", made, "--adopt", "0.5", "--save-map", d + "/map"},
+            {"run", kSource, "--map", made, "--commit-changes", "0.5", "--save-map", d + "/map"},
             {"record", kSource, d + "/recording", "--format", "tum"},
             {"record", kSource, d + "/recording-7", "--format", "7scenes"},
             {"simulate", d + "/simulated", "--frames", "3"},
@@ -201,8 +201,8 @@ TEST_F(DeferredErrors, AScanThatFindsTheDiskFullAtItsEndGoesOnOnceThereIsRoom) {
 TEST_F(DeferredErrors, ARunThatIsCutShortSavesAndReportsWhatCameBefore) {
   ASSERT_EQ(scan(at("made")), 0) << said();
   mount_disk(128);
-  ASSERT_EQ(run({"run", kSource, "--map", at("made"), "--pictures", disk() / "pictures", "--pictures-every",
-                 "1", "--adopt", "0.5", "--save-map", at("kept"), "--report", at("report.json")}),
+  ASSERT_EQ(run({"run", kSource, "--map", at("made"), "--pictures", disk() / "pictures", "--pictures-stride",
+                 "1", "--commit-changes", "0.5", "--save-map", at("kept"), "--report", at("report.json")}),
             1);
   EXPECT_NE(said().find("roomradar: " + disk().string()), std::string::npos) << said();
   EXPECT_TRUE(verify_map(at("kept")).empty());

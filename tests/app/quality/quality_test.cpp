@@ -59,16 +59,41 @@ TEST(Quality, JsonThatIsWrongIsRefusedByName) {
   EXPECT_EQ(fault(R"({"shadows": 1})"), "presets.json: fast: shadows = 1: must be on|off");
   EXPECT_EQ(fault(R"({"tracking_px": 1e99})"),
             "presets.json: fast: tracking_px = 1e+99: must be within 40 and 640");
-  EXPECT_EQ(fault(R"({"mesh_sigmas": null})"),
-            "presets.json: fast: mesh_sigmas = null: must be within 0.1 and 100");
-  EXPECT_EQ(fault(R"({"mesh_sigmas": {"a": 1}})"), "presets.json: fast: mesh_sigmas: is no single value");
+  EXPECT_EQ(fault(R"({"mesh_tolerance_sigmas": null})"),
+            "presets.json: fast: mesh_tolerance_sigmas = null: must be within 0.1 and 100");
+  EXPECT_EQ(fault(R"({"mesh_tolerance_sigmas": {"a": 1}})"),
+            "presets.json: fast: mesh_tolerance_sigmas: is no single value");
   EXPECT_NE(fault(R"({"depth_strid": 2})").find("there is no setting \"depth_strid\""), std::string::npos);
+}
+
+TEST(Quality, FormerNamesOfFieldsAreReadAndNewOnesWritten) {
+  const char* const kOld =
+      R"({"mesh_sigmas": 1.5, "object_turns": 2, "shadow_turns": 3, "picture_turns": 4})";
+  const RunQuality made = run_quality_of(nlohmann::ordered_json::parse(kOld), "file");
+  const RunQuality wanted{.mesh_tolerance_sigmas = 1.5,
+                          .move_every_n_frames = 2,
+                          .shadow_every_n_frames = 3,
+                          .picture_every_n_frames = 4};
+  EXPECT_EQ(made, wanted);
+  const FieldWords words = words_of(made);
+  const FieldWords new_words{{"mesh_tolerance_sigmas", "1.5"},
+                             {"move_every_n_frames", "2"},
+                             {"shadow_every_n_frames", "3"},
+                             {"picture_every_n_frames", "4"}};
+  EXPECT_EQ(words, new_words);
+  const nlohmann::ordered_json written = to_json(made);
+  for (const char* name : {"mesh_sigmas", "object_turns", "shadow_turns", "picture_turns"})
+    EXPECT_FALSE(written.contains(name)) << name;
+  RunQuality quality;
+  EXPECT_EQ(test::error_of([&] { set_field(quality, "object_turns", "0"); }),
+            "move_every_n_frames = 0: must be within 1 and 16");
+  EXPECT_THROW(set_field(quality, "", "1"), Error) << "most fields have no former name";
 }
 
 TEST(Quality, NumbersThatAreNoneAreRefused) {
   RunQuality quality;
   for (const char* word : {"nan", "inf", "-1", "", "1e400", "0.5 "})
-    EXPECT_THROW(set_field(quality, "mesh_sigmas", word), Error) << word;
+    EXPECT_THROW(set_field(quality, "mesh_tolerance_sigmas", word), Error) << word;
   EXPECT_EQ(quality, RunQuality{});
   quality.mesh_tolerance_sigmas = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(require_valid(quality), Error);

@@ -39,8 +39,8 @@ frame 252  surfaces border
 frame 253  unknown solid
 frame 254  radar sampled 48
 frame 255  camera hold
-frame 256  quality depth_stride 2 mesh_sigmas 0.1 radar sampled shadows off
-frame 257  quality from physics object_turns 4
+frame 256  quality depth_stride 2 mesh_tolerance_sigmas 0.1 radar sampled shadows off
+frame 257  quality from physics move_every_n_frames 4
 frame 300  quit
 )";
 
@@ -135,6 +135,15 @@ TEST(Script, EveryEventIsWrittenAsALineThatReadsBackToTheLastBit) {
     EXPECT_EQ(a.from, b.from);
     EXPECT_EQ(a.camera, b.camera);
   }
+}
+
+TEST(Script, FormerNamesOfSettingsAreReadAndNewOnesWritten) {
+  const Script script =
+      parse_script("frame 1 quality mesh_sigmas 1.5 object_turns 2 shadow_turns 3 picture_turns 4\n", "test");
+  ASSERT_EQ(script.events.size(), 1U);
+  EXPECT_EQ(to_line(script.events[0]),
+            "frame 1 quality mesh_tolerance_sigmas 1.5 move_every_n_frames 2 shadow_every_n_frames 3 "
+            "picture_every_n_frames 4");
 }
 
 TEST(Script, NothingIsAScriptToo) {

@@ -426,12 +426,12 @@ class AskedMeanwhile : public NoFrames {
 TEST(RecordedRun, AnObjectWhoseMeshCannotBeKeptDoesNotComeIn) {
   const test::TemporaryFolder folder;
   std::ofstream(folder.path() / "roof.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n";
-  RunCommand command;
-  command.map = folder.path() / "none";
-  OpenedRun run(command);
+  RunOptions options;
+  options.map = folder.path() / "none";
+  OpenedRun run(options);
   run.map = floor_map();
   run.session = std::make_unique<Session>(run.map, SessionConfig());
-  run.recorder.emplace(folder.path() / "session", command, run.map.info, /*are_calibrated=*/false);
+  run.recorder.emplace(folder.path() / "session", options, run.map.info, /*are_calibrated=*/false);
   std::ofstream(folder.path() / "session" / "meshes") << "where the folder of meshes should be";
   UiChannel link;
   std::string said;

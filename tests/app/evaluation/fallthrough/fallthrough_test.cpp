@@ -8,7 +8,7 @@
 #include <sstream>
 #include <utility>
 
-#include "app/commands/commands.hpp"
+#include "app/commands/fallthrough_command.hpp"
 #include "app/commands/grid_command.hpp"
 #include "app/evaluation/fallthrough/mapped_room.hpp"
 #include "app/evaluation/fallthrough/page.hpp"
@@ -147,9 +147,9 @@ TEST(FallthroughFiles, AFolderForMapsThatCannotBeIsNamedBeforeTheWork) {
   std::filesystem::create_directory(folder.path() / "map");
   std::ofstream(folder.path() / "map" / "map.json") << "{}";
   const auto fault_of = [](const std::filesystem::path& maps) {
-    FallthroughCommand command;
-    command.maps = maps.string();
-    const std::string fault = test::error_of([&] { (void)run(command); });
+    FallthroughOptions options;
+    options.maps = maps.string();
+    const std::string fault = test::error_of([&] { (void)run(options); });
     EXPECT_NE(fault.find(maps.string()), std::string::npos) << fault;
     return fault;
   };

@@ -450,7 +450,7 @@ TradeResult run_result() {
   TradeResult result{.work = run_work({"table"}, {}, TradeScale{})};
   result.settings = {default_setting(result.work.parameters), default_setting(result.work.parameters)};
   const auto parameter = std::find_if(result.work.parameters.begin(), result.work.parameters.end(),
-                                      [](const Parameter& k) { return k.name == "object_turns"; });
+                                      [](const Parameter& k) { return k.name == "move_every_n_frames"; });
   result.settings[1][static_cast<std::size_t>(parameter - result.work.parameters.begin())] = 2;
   for (const double part : {1.0, 0.5}) {
     SettingSummary summary{.setting = result.settings[part < 1.0 ? 1 : 0], .rows = 1, .time_ratio = part};

@@ -1,0 +1,103 @@
+// fallthrough_options.cpp: option names, help texts and checks of `roomradar fallthrough`.
+#include "app/cli/options/fallthrough_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <vector>
+
+#include "app/cli/options/option_checks.hpp"
+#include "app/cli/options/shared_options.hpp"
+
+namespace roomradar {
+namespace {
+
+void add_recorded_room_options(CLI::App& command, FallthroughOptions& options) {
+  command.add_option("SOURCE", options.source,
+                     "recording of the room of --map; its first frame is used (default: simulated rooms)");
+  command.add_option("--map", options.map, "map of SOURCE's room (required with SOURCE)")->type_name("DIR");
+  command
+      .add_option("--reference", options.reference,
+                  "map whose surface is the ground truth (default: the one of --map)")
+      ->type_name("DIR");
+  add_poses_option(
+      command, options.poses,
+      "localise the frame's camera in the map (tracked), or use the recording's pose (recorded)\n"
+      "(default: tracked)");
+  add_frames_option(command, options.frames);
+  add_calibration_option(command, options.calibration);
+  command.add_option("--cell", options.cell_m, "edge of the grid's cells, metres (default: 0.1)")
+      ->check(within(0.01, 10.0, "metres"))
+      ->type_name("M");
+  command
+      .add_option("--picture", options.picture,
+                  "draw a plan of the surfaces that the balls rest on (default: not written)")
+      ->type_name("FILE.png");
+}
+
+void add_simulated_room_options(CLI::App& command, FallthroughOptions& options) {
+  command.add_option("--scenarios", options.scenarios, "number of scenarios (default: 200)")
+      ->check(CLI::Range(1, 1'000'000))
+      ->type_name("N");
+  command.add_option("--seed", options.seed, "seed of the scenarios (default: 1)")->type_name("N");
+  command
+      .add_option("--random-rooms", options.random_rooms,
+                  "number of randomly furnished rooms, in addition to table, shelf and wall (default: 3)")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("N");
+  command
+      .add_option("--threads", options.threads,
+                  "threads for scanning rooms and preparing scenarios (default: all processors)")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  command
+      .add_option("--maps", options.maps,
+                  "folder in which the rooms' maps are stored and reused (default: not stored)")
+      ->type_name("DIR");
+  command.add_option("--csv", options.csv, "write a line per scenario and policy (default: not written)")
+      ->type_name("FILE");
+  command
+      .add_option("--html", options.html,
+                  "write a page with tables, plots and pictures of failures (default: not written)")
+      ->type_name("FILE");
+  CLI::Option* scenario = command
+                              .add_option("--scenario", options.scenario,
+                                          "replay only this scenario, as a video (default: run all)")
+                              ->check(CLI::Range(std::int64_t{0}, std::int64_t{1'000'000}))
+                              ->type_name("N");
+  CLI::Option* video = command
+                           .add_option("--video", options.video,
+                                       "video of --scenario: .mp4, .avi or .mkv (required with --scenario)")
+                           ->type_name("FILE");
+  scenario->needs(video);
+  video->needs(scenario);
+}
+
+void refuse_given(const CLI::App& command, const std::vector<std::string>& names, const char* why) {
+  for (const std::string& name : names)
+    if (command.count(name) > 0) throw CLI::ValidationError(name + why);
+}
+
+}  // namespace
+
+void add_options(CLI::App& command, FallthroughOptions& options) {
+  add_recorded_room_options(command, options);
+  add_simulated_room_options(command, options);
+  add_report_option(command, options.report);
+}
+
+void complete_options(const CLI::App& command, FallthroughOptions& options) {
+  if (options.source.empty())
+    refuse_given(command,
+                 {"--map", "--reference", "--poses", "--frames", "--calibration", "--cell", "--picture"},
+                 ": used only with a SOURCE, which is not given");
+  else
+    refuse_given(command,
+                 {"--scenarios", "--seed", "--random-rooms", "--threads", "--maps", "--csv", "--html",
+                  "--scenario", "--video"},
+                 ": used only for simulated rooms, not with a SOURCE");
+  if (!options.source.empty() && options.map.empty()) throw CLI::RequiredError("--map");
+  if (options.scenario)
+    refuse_given(command, {"--scenarios", "--threads", "--csv", "--html", "--report"},
+                 ": not available with --scenario");
+}
+
+}  // namespace roomradar

@@ -1,0 +1,33 @@
+// option_checks.cpp: checks of ranges and of decimal numbers.
+#include "app/cli/options/option_checks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+namespace roomradar {
+
+CLI::Validator within(double low, double high, const std::string& unit) {
+  return CLI::Validator(
+      [low, high, unit](const std::string& text) -> std::string {
+        double value = 0.0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return {};
+        std::array<char, 80> rule{};
+        std::snprintf(rule.data(), rule.size(), "must be within %.10g and %.10g", low, high);
+        return std::string(rule.data()) + " (" + unit + "), not " + text;
+      },
+      "", "within");
+}
+
+void refuse_other_bases(CLI::App& app) {
+  const auto fault_of = [](const std::string& text) -> std::string {
+    const bool is_plain = std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (is_plain && (text.size() == 1 || !text.starts_with('0'))) return {};
+    return "must be a whole number without leading zeros, not " + text;
+  };
+  for (CLI::Option* option : app.get_options())
+    if (option->get_type_name() == "N") option->check(fault_of);
+  for (CLI::App* command : app.get_subcommands({})) refuse_other_bases(*command);
+}
+
+}  // namespace roomradar

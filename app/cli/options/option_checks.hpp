@@ -1,0 +1,37 @@
+// option_checks.hpp: checks of option values that CLI11 lacks: ranges without "nan", words, decimal numbers.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+
+namespace roomradar {
+
+/// Returns a range check, inclusive at both ends. Unlike CLI11's own Range, it rejects "nan".
+/// @param unit  plural, for the message
+CLI::Validator within(double low, double high, const std::string& unit);
+
+/// Rejects numbers that CLI11 would misread: 010 as 8, and -1 for a seed as 18446744073709551615. Checks all
+/// options of type "N" of the program and its commands; call after all of them were added.
+void refuse_other_bases(CLI::App& app);
+
+/// Adds an option with one of several words as its value. CLI11's own transformer would list the values as
+/// numbers.
+/// @param value  must outlive the parsing
+template <typename Value>
+void add_choice(CLI::App& command, const std::string& name, Value& value,
+                const std::map<std::string, Value>& choices, const std::string& help) {
+  std::string type;
+  for (const auto& [word, meaning] : choices) type += (type.empty() ? "" : "|") + word;
+  command
+      .add_option_function<std::string>(
+          name,
+          [&value, choices, name, type](const std::string& word) {
+            const auto found = choices.find(word);
+            if (found == choices.end()) throw CLI::ValidationError(name + " " + word + ": must be " + type);
+            value = found->second;
+          },
+          help)
+      ->type_name(type);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,57 @@
+// prescan_options.cpp: option names, help texts and checks of `roomradar prescan`.
+#include "app/cli/options/prescan_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/options/option_checks.hpp"
+#include "app/cli/options/quality_options.hpp"
+#include "app/cli/options/shared_options.hpp"
+
+namespace roomradar {
+
+void add_options(CLI::App& command, PrescanOptions& options) {
+  add_source_argument(command, options.source);
+  command
+      .add_option("--map", options.map, "folder for the map; an existing map there is replaced (required)")
+      ->required()
+      ->type_name("DIR");
+  add_poses_option(command, options.poses,
+                   "estimate the camera poses (tracked), or use those of the recording (recorded)\n"
+                   "(default: tracked)");
+  add_frames_option(command, options.frames);
+  add_calibration_option(command, options.calibration);
+  command
+      .add_option("--hold-out", options.hold_out,
+                  "keep every Nth frame out of the map (i mod N = N/2) and score the mesh on them\n"
+                  "(default: none)")
+      ->check(CLI::Range(std::int64_t{2}, std::int64_t{1'000'000}))
+      ->type_name("N");
+  command.add_flag(
+      "--resume", options.resume,
+      "continue the interrupted scan of this map (DIR.unfinished); if there is none, extend the\n"
+      "map in DIR with the frames of SOURCE (default: off)");
+  command
+      .add_option("--checkpoint-every", options.checkpoint_every_s,
+                  "seconds between checkpoints; 0: none, so the scan cannot be resumed (default: 2.5)")
+      ->check(within(0.0, 86400.0, "seconds"))
+      ->type_name("S");
+  command
+      .add_option(
+          "--max-memory", options.max_memory_mb,
+          "stop before the process exceeds this many megabytes; the frames fused so far are saved as a\n"
+          "complete map (a map being extended is not changed), and the exit status is 1\n"
+          "(default: no limit)")
+      ->check(within(1.0, 1e7, "megabytes"))
+      ->type_name("MB");
+  add_preset_options(command, options.preset, options.presets);
+  add_scan_quality_options(command, options.fixed);
+  add_report_option(command, options.report);
+}
+
+void complete_options(const CLI::App& command, PrescanOptions& options) {
+  if (command.count("--presets") > 0 && command.count("--preset") == 0)
+    throw CLI::ValidationError("--presets: used only with --preset NAME, which is not given");
+  complete_quality(options.quality, options.preset, options.presets, options.fixed);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,74 @@
+// quality_options.cpp: one option per field of a quality; presets.
+#include "app/cli/options/quality_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+#include "app/cli/options/renamed_options.hpp"
+#include "app/quality/presets.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+namespace {
+
+template <typename Quality>
+void add_field_options(CLI::App& command, FieldWords& fixed) {
+  const Quality defaults;
+  visit_fields(defaults, [&](const QualityField& field, const auto& /*value*/) {
+    const std::string old_option = field.old_option;
+    if (!old_option.empty()) add_old_name(command, old_option, field.option);
+    command
+        .add_option_function<std::string>(
+            field.option,
+            [&fixed, field](const std::string& word) {
+              try {
+                Quality scratch;
+                set_field(scratch, field.name, word);
+              } catch (const Error& error) {
+                throw CLI::ValidationError(std::string(field.option) + " " + word, error.what());
+              }
+              fixed.emplace_back(field.name, word);
+            },
+            field.help)
+        ->type_name(field.unit);
+  });
+}
+
+Preset read_preset(const std::string& name, const std::string& presets) {
+  const std::filesystem::path path = presets_file(presets);
+  return preset_named(read_presets(path), name, path.string());
+}
+
+}  // namespace
+
+void add_scan_quality_options(CLI::App& command, FieldWords& fixed) {
+  add_field_options<ScanQuality>(command, fixed);
+}
+void add_run_quality_options(CLI::App& command, FieldWords& fixed) {
+  add_field_options<RunQuality>(command, fixed);
+}
+
+void add_preset_options(CLI::App& command, std::string& preset, std::string& presets) {
+  command
+      .add_option("--preset", preset,
+                  "measured settings: fast, balanced or accurate; settings given by their own options take\n"
+                  "precedence (default: none)")
+      ->type_name("NAME");
+  command
+      .add_option("--presets", presets,
+                  "presets file, as written by `roomradar trade` (default: the program's own)")
+      ->type_name("FILE");
+}
+
+void complete_quality(ScanQuality& quality, const std::string& preset, const std::string& presets,
+                      const FieldWords& fixed) {
+  if (!preset.empty()) quality = read_preset(preset, presets).scan;
+  set_fields(quality, fixed);
+}
+void complete_quality(RunQuality& quality, const std::string& preset, const std::string& presets,
+                      const FieldWords& fixed) {
+  if (!preset.empty()) quality = read_preset(preset, presets).run;
+  set_fields(quality, fixed);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,174 @@
+// run_options.cpp: option names, help texts and checks of `roomradar run`.
+#include "app/cli/options/run_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/options/option_checks.hpp"
+#include "app/cli/options/quality_options.hpp"
+#include "app/cli/options/renamed_options.hpp"
+#include "app/cli/options/shared_options.hpp"
+
+namespace roomradar {
+namespace {
+
+void add_input_options(CLI::App& command, RunOptions& options) {
+  add_source_argument(
+      command, options.source,
+      "session recorded by --record-session, replayed from its first frame with its own settings\n"
+      "unless given here; or ");
+  command
+      .add_option("--map", options.map,
+                  "folder of the saved map; not modified (required unless SOURCE is a recorded session)")
+      ->type_name("DIR");
+  add_poses_option(command, options.poses,
+                   "localise the camera in the map (tracked), or use the recording's poses (recorded)\n"
+                   "(default: tracked)");
+  add_frames_option(command, options.frames);
+  add_calibration_option(command, options.calibration);
+}
+
+void add_world_options(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("--object", options.object,
+                  "virtual object: teapot (built in) or a mesh file (default: teapot)")
+      ->type_name("MESH");
+  command
+      .add_option("--script", options.script, "events file (default: drop the object over a surface in view)")
+      ->type_name("FILE");
+  add_choice(command, "--surfaces", options.surfaces,
+             {{"holes", SurfacePolicy::kHoles},
+              {"skirt", SurfacePolicy::kSkirt},
+              {"border", SurfacePolicy::kBorder},
+              {"map", SurfacePolicy::kMap}},
+             "surfaces that can be touched: this frame's pixels (holes), also with skirts across depth\n"
+             "discontinuities (skirt), also with the image's border pushed outwards (border), or the map\n"
+             "and the dynamic foreground (map) (default: map)");
+  add_choice(command, "--unknown", options.unknown_is_solid, {{"free", false}, {"solid", true}},
+             "space that the prescan has not observed: objects pass (free) or are stopped (solid; needs\n"
+             "--surfaces map) (default: free)");
+  add_old_name(command, "--adopt", "--commit-changes");
+  command
+      .add_option(
+          "--commit-changes", options.commit_after_s,
+          "add objects to this run's copy of the map, or remove them, once observed unchanged for this\n"
+          "many seconds; the saved map is not modified (default: only on adopt events of the script)")
+      ->check(within(0.5, 86400.0, "seconds"))
+      ->type_name("SECONDS");
+  command
+      .add_option(
+          "--save-map", options.save_map,
+          "folder for the map with the committed changes; an existing map there is replaced, also if it is\n"
+          "that of --map (default: not saved)")
+      ->type_name("DIR");
+}
+
+void add_playback_options(CLI::App& command, RunOptions& options) {
+  command.add_flag("--window", options.window,
+                   "open a window: pick, drop, throw and rotate objects, and watch the radar's pictures\n"
+                   "(default: off)");
+  command
+      .add_option("--record-session", options.record_session,
+                  "folder for frames, events and settings; `run DIR` replays them with identical results\n"
+                  "(default: not recorded)")
+      ->type_name("DIR");
+  add_choice(command, "--at-end", options.at_end,
+             {{"end", AtEnd::kEnd}, {"stay", AtEnd::kStay}, {"loop", AtEnd::kLoop}},
+             "after the last frame: stop (end), hold it (stay) or begin again (loop)\n"
+             "(default: end; with --window: stay)");
+}
+
+void add_picture_options(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("--video", options.video,
+                  "write the composed pictures at their original speed as .mp4, .avi or .mkv, 30 per second\n"
+                  "(default: not written)")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--pictures", options.pictures,
+          "folder for composed pictures and masks of dynamic pixels as PNG, named by the source's frame\n"
+          "number, followed by the run's if the frame is repeated (default: not written)")
+      ->type_name("DIR");
+  add_old_name(command, "--pictures-every", "--pictures-stride");
+  command
+      .add_option("--pictures-stride", options.pictures_stride,
+                  "write pictures of every Nth frame (default: 10)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
+      ->type_name("N");
+}
+
+/// Adds the options that trade accuracy for time, and those that measure both.
+void add_effort_options(CLI::App& command, RunOptions& options) {
+  command
+      .add_option(
+          "--budget-ms", options.budget_ms,
+          "time limit per frame; if there is more work, quality is reduced where this costs the least\n"
+          "accuracy, with a message (default: no limit)")
+      ->check(within(1.0, 10000.0, "milliseconds"))
+      ->type_name("MS");
+  add_preset_options(command, options.preset, options.presets);
+  command
+      .add_option("--frames-csv", options.frames_csv,
+                  "write a line per frame: how much of room and depth was needed, and why\n"
+                  "(default: not written)")
+      ->type_name("FILE");
+  add_run_quality_options(command, options.fixed);
+  add_report_option(command, options.report);
+}
+
+void require_consistent(const CLI::App& command, const RunOptions& options) {
+  if (command.count("--object") > 0 && command.count("--script") > 0 && !options.window)
+    throw CLI::ValidationError("--object: --script says which objects to add; add it there");
+  if (command.count("--presets") > 0 && command.count("--preset") == 0 && !options.budget_ms)
+    throw CLI::ValidationError(
+        "--presets: used only with --preset NAME or --budget-ms, and neither is given");
+  if (command.count("--pictures-stride") > 0 && options.pictures.empty())
+    throw CLI::ValidationError("--pictures-stride: used only with --pictures, which is not given");
+}
+
+/// Takes a recorded session's settings, except those given on the command line.
+void take_recorded_settings(const CLI::App& command, const RunOptions& recorded, RunOptions& options) {
+  const auto is_given = [&](const char* name) { return command.count(name) > 0; };
+  if (is_given("--calibration"))
+    throw CLI::ValidationError(
+        "--calibration: not allowed for a recorded session, which is replayed with its recorded frames");
+  if (is_given("--frames"))
+    throw CLI::ValidationError(
+        "--frames: not allowed for a recorded session, which is replayed from its first frame");
+  if (is_given("--object"))
+    throw CLI::ValidationError(
+        "--object: a recorded session has its own objects; use --script to replace them");
+  if (!is_given("--map")) options.map = recorded.map;
+  if (!is_given("--poses")) options.poses = recorded.poses;
+  if (!is_given("--script")) options.script = recorded.script;
+  if (!is_given("--surfaces")) options.surfaces = recorded.surfaces;
+  if (!is_given("--unknown")) options.unknown_is_solid = recorded.unknown_is_solid;
+  options.quality = recorded.quality;
+  if (!is_given("--commit-changes")) options.commit_after_s = recorded.commit_after_s;
+  if (!is_given("--at-end")) options.at_end = recorded.at_end;
+}
+
+}  // namespace
+
+void add_options(CLI::App& command, RunOptions& options) {
+  add_input_options(command, options);
+  add_world_options(command, options);
+  add_playback_options(command, options);
+  add_picture_options(command, options);
+  add_effort_options(command, options);
+}
+
+void complete_options(const CLI::App& command, RunOptions& options,
+                      const ReadRecordedOptions& read_recorded) {
+  if (options.window && command.count("--at-end") == 0) options.at_end = AtEnd::kStay;
+  require_consistent(command, options);
+  if (const auto recorded = read_recorded(options.source))
+    take_recorded_settings(command, *recorded, options);
+  complete_quality(options.quality, options.preset, options.presets, options.fixed);
+  if (options.map.empty()) throw CLI::RequiredError("--map");
+  if (options.unknown_is_solid && options.surfaces != SurfacePolicy::kMap)
+    throw CLI::ValidationError(
+        "--unknown solid: needs --surfaces map, because only the map knows which space was observed");
+}
+
+}  // namespace roomradar

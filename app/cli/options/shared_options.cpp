@@ -1,0 +1,66 @@
+// shared_options.cpp: options that several commands have, with one help text each.
+#include "app/cli/options/shared_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/options/option_checks.hpp"
+#include "mapping/types/system/error.hpp"
+
+namespace roomradar {
+
+void add_source_argument(CLI::App& command, std::string& source, const std::string& more) {
+  command
+      .add_option(
+          "SOURCE", source,
+          more +
+              "source of frames: kinect:N[?depth=raw|mm|registered], sim:ROOM[?seed=N&...], or a folder with "
+              "a\n"
+              "recording (7-Scenes, TUM RGB-D, fakenect, or numbered color/ and depth/); kinect:N continues\n"
+              "until Ctrl-C (required)")
+      ->required();
+}
+
+void add_poses_option(CLI::App& command, PoseOrigin& poses, const std::string& help) {
+  add_choice(command, "--poses", poses,
+             {{"tracked", PoseOrigin::kTracked}, {"recorded", PoseOrigin::kRecorded}}, help);
+}
+
+void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames) {
+  command
+      .add_option_function<std::string>(
+          "--frames",
+          [&frames](const std::string& text) {
+            try {
+              frames = parse_frame_range(text);
+            } catch (const Error& error) {
+              throw CLI::ValidationError(error.what());
+            }
+          },
+          "use only frames A to B, inclusive, counted from 0 (default: all)")
+      ->type_name("A:B");
+}
+
+void add_calibration_option(CLI::App& command, std::string& calibration) {
+  command
+      .add_option("--calibration", calibration,
+                  "cameras and their errors, as written by `roomradar calibrate`\n"
+                  "(default: calibration.json in SOURCE, otherwise the cameras that SOURCE describes)")
+      ->type_name("FILE");
+}
+
+void add_format_option(CLI::App& command, RecordingFormat& format) {
+  add_choice(command, "--format", format,
+             {{"tum", RecordingFormat::kTum},
+              {"7scenes", RecordingFormat::kSevenScenes},
+              {"fakenect", RecordingFormat::kFakenect}},
+             "format of the recording (default: tum)");
+}
+
+void add_report_option(CLI::App& command, std::string& report) {
+  command
+      .add_option("--report", report,
+                  "write settings, times, memory and results as JSON (default: not written)")
+      ->type_name("FILE");
+}
+
+}  // namespace roomradar

@@ -1,0 +1,30 @@
+// shared_options.hpp: options that several commands have.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "app/sources/formats/frame_range.hpp"
+#include "app/sources/recordings/recording_writer.hpp"
+#include "mapping/types/pose_origin.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace roomradar {
+
+// Each function adds one option to a command. The value must outlive the parsing.
+
+/// Adds the required argument SOURCE.
+/// @param more  text before the general help on sources
+void add_source_argument(CLI::App& command, std::string& source, const std::string& more = {});
+
+/// Adds --poses; its help ends with the default.
+void add_poses_option(CLI::App& command, PoseOrigin& poses, const std::string& help);
+
+void add_frames_option(CLI::App& command, std::optional<FrameRange>& frames);
+void add_calibration_option(CLI::App& command, std::string& calibration);
+void add_format_option(CLI::App& command, RecordingFormat& format);
+void add_report_option(CLI::App& command, std::string& report);
+
+}  // namespace roomradar

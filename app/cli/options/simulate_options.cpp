@@ -1,0 +1,35 @@
+// simulate_options.cpp: option names, help texts and checks of `roomradar simulate`.
+#include "app/cli/options/simulate_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "app/cli/options/shared_options.hpp"
+
+namespace roomradar {
+
+void add_options(CLI::App& command, SimulateOptions& options) {
+  command.add_option("DIR", options.folder, "folder to write; must be empty or not exist (required)")
+      ->required();
+  command.add_option("--room", options.room, "table, shelf, wall, random or board (default: table)")
+      ->type_name("NAME");
+  command
+      .add_option("--seed", options.seed,
+                  "seed of the camera's path, the noise and the furniture of a random room (default: 1)")
+      ->type_name("N");
+  command.add_option("--frames", options.frames, "number of frames (default: 300)")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000}))
+      ->type_name("N");
+  command
+      .add_option(
+          "--path", options.path,
+          "camera path: scan (round the room), view (looking at its focus) or swing (in front of the\n"
+          "board) (default: scan)")
+      ->type_name("KIND");
+  command
+      .add_option("--moving", options.moving,
+                  "moving things, separated by commas: hand, ball, person (default: none)")
+      ->type_name("LIST");
+  add_format_option(command, options.format);
+}
+
+}  // namespace roomradar

@@ -1,0 +1,11 @@
+// calibrate_command.hpp: roomradar calibrate: cameras and depth errors from a recording of a checkerboard.
+#pragma once
+#include "app/cli/options/calibrate_options.hpp"
+
+namespace roomradar {
+
+/// Estimates and writes the calibration, and prints residuals before and after. Returns the exit status 0.
+/// @throws Error if the board is seen too rarely, or if a file cannot be read or written
+int run(const CalibrateOptions& options);
+
+}  // namespace roomradar

@@ -1,0 +1,13 @@
+// fallthrough_command.hpp: roomradar fallthrough: drops objects onto hidden surfaces under each policy.
+#pragma once
+#include "app/cli/options/fallthrough_options.hpp"
+
+namespace roomradar {
+
+/// Runs the scenarios in simulated rooms, or run_grid() if a source is given. Prints a table and writes the
+/// requested files. Returns the exit status 0.
+/// @throws Error if a room cannot be scanned or a file cannot be written; earlier results are written all the
+/// same
+int run(const FallthroughOptions& options);
+
+}  // namespace roomradar

@@ -1,0 +1,16 @@
+// map_command.hpp: roomradar map info|verify|export: describes, checks and exports a saved map.
+#pragma once
+#include "app/cli/options/map_options.hpp"
+
+namespace roomradar {
+
+// Each returns the exit status, and throws Error if a file cannot be read or written.
+
+/// Prints the map's facts.
+int run(const MapInfoOptions& options);
+/// Compares every file with its checksum; returns 1 if one differs.
+int run(const MapVerifyOptions& options);
+/// Writes the octree, the mesh or the border of unknown space to a file.
+int run(const MapExportOptions& options);
+
+}  // namespace roomradar

@@ -1,0 +1,105 @@
+// prescan_report.cpp: results of a prescan as JSON and as text.
+#include "app/commands/prescan_report.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/cli/report.hpp"
+
+namespace roomradar {
+namespace {
+
+nlohmann::json hole_row(const Hole& hole) {
+  return {{"kind", to_string(hole.kind)},
+          {"position_m", to_json(hole.position_world)},
+          {"size_m", hole.size_m},
+          {"area_m2", hole.area_m2},
+          {"look_direction", to_json(hole.look_direction_world)},
+          {"stand_m", hole.viewpoint_world ? to_json(*hole.viewpoint_world) : nlohmann::json(nullptr)}};
+}
+
+}  // namespace
+
+nlohmann::json results_of(const PrescanResult& scanned) {
+  const PrescanCounts& counts = scanned.counts;
+  const MapCounts octree = scanned.map.octree.counts();
+  nlohmann::json results = {
+      {"frames_tracked", counts.frames_tracked},
+      {"frames_fused", counts.frames_fused},
+      {"frames_lost", counts.frames_lost},
+      {"keyframes", counts.keyframes},
+      {"loops_found", counts.loops_found},
+      {"ghost_voxels", counts.ghost_voxels},
+      {"frames_resumed", counts.frames_resumed},
+      {"stopped_for_memory", counts.stopped_for_memory},
+      {"up_source", scanned.map.info.up_source},
+      {"map",
+       {{"leaves", octree.occupied_leaves + octree.free_leaves},
+        {"occupied_leaves", octree.occupied_leaves},
+        {"free_leaves", octree.free_leaves},
+        {"bytes", octree.memory_bytes},
+        {"triangles", scanned.map.mesh.triangles.size()}}},
+      {"surface",
+       {{"full_triangles", scanned.surface.full_triangles}, {"deviation_m", scanned.surface.deviation_m}}},
+  };
+  results["holes"] = nlohmann::json::array();
+  for (const Hole& hole : scanned.holes) results["holes"].push_back(hole_row(hole));
+  results["ate_rmse_m"] = nullptr;  // set only for tracked poses of a recording that has poses
+  if (counts.trajectory_error) {
+    results["ate_rmse_m"] = counts.trajectory_error->rmse_m;
+    results["ate_max_m"] = counts.trajectory_error->max_m;
+  }
+  if (!counts.last_fault.empty()) results["last_fault"] = counts.last_fault;
+  return results;
+}
+
+nlohmann::json held_out_json(const HeldOutScore& score) {
+  // Figures that could not be measured are omitted; as 0 they would look perfect.
+  if (score.frames == 0) return {{"frames", 0}};
+  if (score.cover == 0.0) return {{"frames", score.frames}, {"pixels", score.pixels}, {"cover", 0.0}};
+  return {{"frames", score.frames}, {"pixels", score.pixels}, {"median_m", score.median_m},
+          {"bias_m", score.bias_m}, {"cover", score.cover},   {"outliers", score.outliers}};
+}
+
+void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
+                   const std::optional<HeldOutScore>& held_out) {
+  const PrescanCounts& counts = scanned.counts;
+  std::printf("%s: %lld of %lld frames tracked, %lld fused, %zu triangles, up from %s\n", options.map.c_str(),
+              static_cast<long long>(counts.frames_tracked), static_cast<long long>(counts.frames_read),
+              static_cast<long long>(counts.frames_fused), scanned.map.mesh.triangles.size(),
+              scanned.map.info.up_source.c_str());
+  if (counts.frames_skipped > 0) {
+    std::printf("%lld frames could not be read; the last fault: %s\n",
+                static_cast<long long>(counts.frames_skipped), counts.last_fault.c_str());
+  }
+  if (scanned.map.info.up_source == to_string(UpSource::kNone))
+    std::printf(
+        "the up direction is not known: no gravity was recorded and no level surface was found; up is taken "
+        "from the first camera\n");
+  if (counts.trajectory_error)
+    std::printf("trajectory against the recorded poses: RMSE %.1f mm, max %.1f mm\n",
+                1e3 * counts.trajectory_error->rmse_m, 1e3 * counts.trajectory_error->max_m);
+  if (held_out && held_out->frames == 0)
+    std::printf(
+        "no frame was held out that has a pose: --hold-out %lld means frame %lld and every %lldth after it\n",
+        static_cast<long long>(options.hold_out), static_cast<long long>(options.hold_out / 2),
+        static_cast<long long>(options.hold_out));
+  else if (held_out && held_out->cover == 0.0)
+    std::printf("%lld frames held out: the mesh is nowhere in their view\n",
+                static_cast<long long>(held_out->frames));
+  else if (held_out)
+    std::printf("%lld frames held out: depth against the mesh %.1f mm median, %.2f %% covered\n",
+                static_cast<long long>(held_out->frames), 1e3 * held_out->median_m, 1e2 * held_out->cover);
+}
+
+void print_holes(const std::vector<Hole>& holes) {
+  constexpr std::size_t kShown = 5;
+  const std::size_t inside = static_cast<std::size_t>(std::count_if(
+      holes.begin(), holes.end(), [](const Hole& hole) { return hole.kind != HoleKind::kOuterBorder; }));
+  if (inside == 0) std::printf("everything inside the scan was observed\n");
+  for (std::size_t i = 0; i < std::min(inside, kShown); ++i)
+    std::printf("not observed: %s\n", describe(holes[i]).c_str());
+  if (inside > kShown) std::printf("and %zu smaller ones\n", inside - kShown);
+}
+
+}  // namespace roomradar

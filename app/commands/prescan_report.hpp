@@ -1,0 +1,28 @@
+// prescan_report.hpp: results of a prescan, for its report and for the user.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "app/cli/options/prescan_options.hpp"
+#include "app/evaluation/held_out.hpp"
+#include "mapping/coverage/holes.hpp"
+#include "mapping/prescan.hpp"
+
+namespace roomradar {
+
+/// Returns the report's keys that are specific to prescans, except `held_out`.
+nlohmann::json results_of(const PrescanResult& scanned);
+
+/// Returns the report's key `held_out`. Figures that could not be measured are omitted.
+nlohmann::json held_out_json(const HeldOutScore& score);
+
+/// Prints a few lines to stdout.
+/// @param held_out  unset: no frames were held out, or they were not compared
+void print_summary(const PrescanOptions& options, const PrescanResult& scanned,
+                   const std::optional<HeldOutScore>& held_out);
+
+/// Prints the largest holes that a scan from more positions would close to stdout.
+void print_holes(const std::vector<Hole>& holes);
+
+}  // namespace roomradar
