@@ -10,6 +10,7 @@
 #include "mapping/map/map_folder.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/odometry/up_direction.hpp"
+#include "mapping/prescan_counts.hpp"
 #include "mapping/revision/ghosts.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/frame_source.hpp"
@@ -36,23 +37,6 @@ struct PrescanConfig {
 /// Returns true for every hold_out-th frame: frame_index mod hold_out = hold_out / 2. Always false if
 /// hold_out < 1.
 bool is_held_out(std::int64_t frame_index, std::int64_t hold_out);
-
-/// Frame counts, and the trajectory's error against recorded poses if there are any.
-struct PrescanCounts {
-  std::int64_t frames_read = 0;
-  std::int64_t frames_skipped = 0;  ///< unreadable
-  std::int64_t frames_tracked = 0;  ///< with a trusted pose
-  std::int64_t frames_fused = 0;
-  std::int64_t frames_lost = 0;  ///< readable, but without a trusted pose; not fused
-  std::int64_t keyframes = 0;
-  std::int64_t loops_found = 0;
-  std::int64_t ghost_voxels = 0;  ///< surface voxels removed because earlier or later frames see through them
-  std::int64_t frames_resumed = 0;  ///< frames of the interrupted pass that its checkpoint already covered
-  bool stopped_for_memory = false;  ///< memory cap reached: part of the source is not in the map
-  std::string last_fault;           ///< reason why the last skipped frame was unreadable
-  /// Only for tracked poses, and if at least 3 of their frames have recorded poses.
-  std::optional<TrajectoryError> trajectory_error;
-};
 
 struct PrescanResult {
   SavedMap map;

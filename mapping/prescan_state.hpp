@@ -5,7 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "mapping/prescan.hpp"
+#include "mapping/map/map_folder.hpp"
+#include "mapping/odometry/odometry.hpp"
+#include "mapping/odometry/up_direction.hpp"
+#include "mapping/prescan_counts.hpp"
 #include "mapping/revision/ghost_removal.hpp"
 #include "mapping/storage/checkpoints.hpp"
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "app/calibration/board_views.hpp"
+#include "app/calibration/checkerboard.hpp"
 #include "mapping/types/intrinsics.hpp"
 #include "mapping/types/lens.hpp"
 

@@ -6,23 +6,14 @@
 #include <optional>
 #include <vector>
 
+#include "app/calibration/checkerboard.hpp"
 #include "mapping/types/frame.hpp"
 #include "mapping/types/frame_source.hpp"
 
 namespace roomradar {
 
-/// A printed checkerboard, measured by its inner corners.
-struct Board {
-  int columns = 8, rows = 6;  ///< inner corners, 3 to 30 each, not equal
-  double square_m = 0.03;
-};
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const Board& board);
-
-/// Returns corner (column, row) in the board's frame: z = 0, x along the columns.
-inline Eigen::Vector3d corner_board(const Board& board, int column, int row) {
-  return {column * board.square_m, row * board.square_m, 0.0};
-}
 
 struct DepthSample {
   double x_px, y_px;  ///< in the distorted depth image

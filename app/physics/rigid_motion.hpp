@@ -2,8 +2,8 @@
 #pragma once
 #include <optional>
 
+#include "app/physics/body.hpp"
 #include "app/physics/contact_solver.hpp"
-#include "app/physics/physics.hpp"
 
 namespace roomradar {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "mapping/coverage/holes.hpp"
+#include "mapping/coverage/hole.hpp"
 #include "mapping/octree/static_map.hpp"
 
 namespace roomradar {

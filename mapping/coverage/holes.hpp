@@ -1,33 +1,12 @@
 // holes.hpp: unobserved regions of a scan, with places from which a person can observe them.
 #pragma once
-#include <Eigen/Core>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "mapping/coverage/hole.hpp"
 #include "mapping/types/mesh.hpp"
 
 namespace roomradar {
-
-enum class HoleKind {
-  kUnknownSpace,   ///< space inside the scan that no ray crossed: an occluded region, a corner
-  kSurfaceBorder,  ///< the surface ends although the space on both sides was observed
-  kOuterBorder,    ///< end of the scan as a whole
-};
-std::string_view to_string(HoleKind kind);
-
-/// One unobserved region, in the map's world.
-struct Hole {
-  HoleKind kind = HoleKind::kUnknownSpace;
-  Eigen::Vector3d position_world = Eigen::Vector3d::Zero();  ///< centre, m
-  double size_m = 0.0;                                       ///< distance between its farthest points
-  double area_m2 = 0.0;                                      ///< area of the border between known and unknown
-  /// Unit viewing direction, from known space into the hole.
-  Eigen::Vector3d look_direction_world = Eigen::Vector3d::UnitX();
-  /// Free position to look from, m; unset if none has a free line of sight.
-  std::optional<Eigen::Vector3d> viewpoint_world;
-};
 
 class StaticMap;
 struct Frontier;

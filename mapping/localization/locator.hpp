@@ -12,6 +12,7 @@
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/localization/patch_matching.hpp"
 #include "mapping/localization/pose_hypothesis.hpp"
+#include "mapping/localization/relocalise.hpp"
 
 namespace roomradar {
 

@@ -1,4 +1,6 @@
 // relocalise.cpp: localises a frame in the keyframe database.
+#include "mapping/localization/relocalise.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include "mapping/alignment/align.hpp"
-#include "mapping/localization/keyframe_database.hpp"
 #include "mapping/localization/place_matching.hpp"
 
 namespace roomradar {

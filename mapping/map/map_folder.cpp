@@ -12,6 +12,7 @@
 #include <optional>
 #include <string_view>
 
+#include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/memory_use.hpp"

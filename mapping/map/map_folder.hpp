@@ -9,49 +9,13 @@
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
+#include "mapping/map/map_info.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/mesh.hpp"
 #include "mapping/types/trajectory.hpp"
 
 namespace roomradar {
-
-inline constexpr int kMapFormatVersion = 1;
-
-// Keys of MapInfo::settings that are read back.
-inline constexpr const char* kDeviationSetting = "deviation_m";  ///< SurfaceConfig::max_deviation_m
-inline constexpr const char* kPosesSetting = "poses";            ///< name of the PoseOrigin
-inline constexpr const char* kStoppedSetting =
-    "stopped_for_memory";  ///< source of which only a part is in the map
-
-/// Entry of one file in map.json.
-struct MapFile {
-  std::uint64_t bytes = 0;
-  std::string sha256;  ///< 64 hexadecimal digits
-};
-
-/// Content of map.json. save_map and load_map fill in the fields from `format_version` on.
-struct MapInfo {
-  std::string source;  ///< recordings (full paths) or devices, separated by "; "
-  std::int64_t frames_read = 0;
-  std::int64_t frames_fused = 0;
-  std::string up_source = "none";  ///< accelerometer, plane or none
-  /// From the recording's world to the map's, +z up.
-  Eigen::Isometry3d T_world_recorded = Eigen::Isometry3d::Identity();
-  std::map<std::string, std::string> settings;  ///< prescan's settings, by name
-
-  int format_version = kMapFormatVersion;
-  std::string tool_version;
-  double resolution_m = 0.0;
-  MapCounts counts;
-  std::uint64_t vertices = 0;
-  std::uint64_t triangles = 0;
-  std::uint64_t keyframes = 0;
-  std::uint64_t poses = 0;
-  /// By file name: octree.ot, octree.bt, mesh.ply, places.bin, trajectory.txt, and coverage.png if there is
-  /// one.
-  std::map<std::string, MapFile> files;
-};
 
 struct SavedMap {
   MapInfo info;

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "mapping/map/map_folder.hpp"
+#include "mapping/map/map_info.hpp"
 
 namespace roomradar {
 

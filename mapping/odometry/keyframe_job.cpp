@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mapping/localization/place_matching.hpp"
+#include "mapping/localization/relocalise.hpp"
 
 namespace roomradar {
 namespace {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "mapping/localization/keyframe_database.hpp"
+#include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/types/frame.hpp"
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mapping/alignment/stationary_camera.hpp"
+#include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/keyframe_job.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 

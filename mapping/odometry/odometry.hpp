@@ -8,6 +8,7 @@
 #include "mapping/alignment/align.hpp"
 #include "mapping/alignment/view.hpp"
 #include "mapping/localization/keyframe_database.hpp"
+#include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/types/frame.hpp"
 

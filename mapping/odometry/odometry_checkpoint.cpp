@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/storage/binary_file.hpp"
 #include "mapping/storage/checkpoints.hpp"

@@ -188,9 +188,9 @@ void keep_the_outermost(std::vector<ClosestPoint>& all, std::vector<ClosestPoint
                                        [&](const ClosestPoint& other) {
                                          return (other.point_world - p->point_world).squaredNorm() < 1e-10;
                                        });
-      if (is_new && kept.size() < ProximityQuery::kMaxPoints) kept.push_back(*p);
+      if (is_new && kept.size() < kMaxClosestPoints) kept.push_back(*p);
     }
-    if (kept.size() >= ProximityQuery::kMaxPoints) return;
+    if (kept.size() >= kMaxClosestPoints) return;
     std::erase_if(all, is_of_cluster);
   }
 }

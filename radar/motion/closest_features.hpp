@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "radar/geometry/triangle_gap.hpp"
-#include "radar/motion/proximity.hpp"
+#include "radar/motion/closest_point.hpp"
 
 namespace roomradar {
 

@@ -8,24 +8,10 @@
 #include "radar/geometry/contact.hpp"
 #include "radar/geometry/radar_scene.hpp"
 #include "radar/geometry/tree_pairs.hpp"
+#include "radar/motion/closest_point.hpp"
 #include "radar/motion/time_of_impact.hpp"
 
 namespace roomradar {
-
-/// Closest features of scene and object: a corner and its foot on a face, or two edges that pass each other.
-struct ClosestPoint {
-  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();   ///< on the scene
-  Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();  ///< unit, from point_world to the object
-  double gap_m = 0.0;                                      ///< >= 0; 0: touching
-  SurfaceKind kind = SurfaceKind::kNothing;
-  std::uint32_t tree = 0;  ///< index of the scene's tree
-};
-
-/// Bit mask of surface kinds.
-using SurfaceKindMask = std::uint32_t;
-constexpr SurfaceKindMask bit_of(SurfaceKind kind) {
-  return SurfaceKindMask{1} << static_cast<unsigned>(kind);
-}
 
 struct FreeTime {
   double free_s = 0.0;  ///< until then every pair of triangles keeps its minimum distance
@@ -60,7 +46,7 @@ class ProximityQuery {
   FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
                      const RadarScene& scene, SurfaceKindMask left_out = 0);
 
-  static constexpr std::size_t kMaxPoints = 24;
+  static constexpr std::size_t kMaxPoints = kMaxClosestPoints;
 
  private:
   std::vector<PendingPair> pending_;

@@ -20,6 +20,7 @@
 
 #include "app/sim/sensor/simulated_source.hpp"
 #include "app/sources/recordings/folder_source.hpp"
+#include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/odometry/odometry_snapshot.hpp"
 #include "mapping/types/trajectory.hpp"

@@ -4,6 +4,7 @@
 #include "mapping/octree/static_map.hpp"
 #include "mapping/types/trajectory.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
+#include "mapping/localization/keyframe_database_file.hpp"
 
 namespace {
 

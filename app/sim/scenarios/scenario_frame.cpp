@@ -1,7 +1,8 @@
 // scenario_frame.cpp: renders the camera's frames while a scenario's object moves.
+#include "app/sim/scenarios/scenario_frame.hpp"
+
 #include <vector>
 
-#include "app/sim/scenarios/scenarios.hpp"
 #include "app/sim/sensor/kinect_depth.hpp"
 #include "app/sim/solids/counter_random.hpp"
 

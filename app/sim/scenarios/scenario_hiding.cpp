@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/sim/scenarios/scenario_frame.hpp"
 #include "app/sim/sensor/camera_path.hpp"
 #include "app/sim/sensor/movers.hpp"
 #include "app/sim/solids/angles.hpp"

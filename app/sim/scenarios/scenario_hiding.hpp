@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "app/sim/scenarios/scenarios.hpp"
+#include "app/sim/scenarios/scenario.hpp"
 #include "app/sim/solids/counter_random.hpp"
 
 namespace roomradar {

@@ -8,12 +8,14 @@
 #include <sstream>
 
 #include "app/sources/recordings/folder_source.hpp"
+#include "mapping/localization/relocalise.hpp"
 #include "mapping/odometry/odometry.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/painted_frame.hpp"
 #include "tests/support/recordings.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "mapping/localization/keyframe_database_file.hpp"
 
 namespace roomradar::keyframe_database_test {
 namespace {

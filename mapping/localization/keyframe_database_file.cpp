@@ -1,10 +1,12 @@
-// places_file.cpp: reads and writes the keyframe database as one binary file.
+// keyframe_database_file.cpp: reads and writes the keyframe database as one binary file.
 //
 // All numbers are little-endian. Header: "RRPLACES", version (u32), number of views (u32). Each view: frame
 // index (i64), pose (12 f64: rotation by rows, translation), preview camera (2 u32, 4 f64), preview depth
 // (u16 per pixel), number of features (u32), their points (3 f32 each), their descriptors (32 bytes each),
 // number of patches (u32), patches. Each patch: point, normal and direction (3 f32 each), size (u8),
 // descriptor (32 bytes). The file ends with the FNV-1a hash (u64) of all bytes before it.
+#include "mapping/localization/keyframe_database_file.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>

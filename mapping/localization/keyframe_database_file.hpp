@@ -1,0 +1,16 @@
+// keyframe_database_file.hpp: the keyframe database as a binary file.
+#pragma once
+#include <filesystem>
+
+#include "mapping/localization/keyframe_database.hpp"
+
+namespace roomradar {
+
+/// Writes the database as one binary file with a checksum. Throws Error if the file cannot be written.
+void write_keyframe_database(const KeyframeDatabase& keyframe_database, const std::filesystem::path& path);
+
+/// Reads a file from write_keyframe_database(). Throws Error naming the file and the fault if it is missing,
+/// truncated, altered, or of another version. Sizes are checked before memory is allocated.
+KeyframeDatabase read_keyframe_database(const std::filesystem::path& path);
+
+}  // namespace roomradar

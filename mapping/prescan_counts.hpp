@@ -1,0 +1,28 @@
+// prescan_counts.hpp: what happened to the frames of a prescan.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "mapping/types/trajectory.hpp"
+
+namespace roomradar {
+
+/// Frame counts, and the trajectory's error against recorded poses if there are any.
+struct PrescanCounts {
+  std::int64_t frames_read = 0;
+  std::int64_t frames_skipped = 0;  ///< unreadable
+  std::int64_t frames_tracked = 0;  ///< with a trusted pose
+  std::int64_t frames_fused = 0;
+  std::int64_t frames_lost = 0;  ///< readable, but without a trusted pose; not fused
+  std::int64_t keyframes = 0;
+  std::int64_t loops_found = 0;
+  std::int64_t ghost_voxels = 0;  ///< surface voxels removed because earlier or later frames see through them
+  std::int64_t frames_resumed = 0;  ///< frames of the interrupted pass that its checkpoint already covered
+  bool stopped_for_memory = false;  ///< memory cap reached: part of the source is not in the map
+  std::string last_fault;           ///< reason why the last skipped frame was unreadable
+  /// Only for tracked poses, and if at least 3 of their frames have recorded poses.
+  std::optional<TrajectoryError> trajectory_error;
+};
+
+}  // namespace roomradar
