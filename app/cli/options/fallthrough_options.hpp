@@ -18,11 +18,11 @@ struct FallthroughOptions {
   std::string source;     ///< recording of the room; empty: simulated rooms
   std::string map;        ///< folder of the room's map
   std::string reference;  ///< folder of the map whose surface is the ground truth; empty: `map` itself
-  PoseOrigin poses = PoseOrigin::kTracked;
-  std::optional<FrameRange> frames;  ///< the first frame of the range is used; unset: frame 0
-  std::string calibration;           ///< file with the cameras and their errors; empty: as the source says
-  double cell_m = 0.1;               ///< edge of the grid's cells
-  std::string picture;               ///< PNG file with a plan of the room; empty: not written
+  PoseOrigin poses = PoseOrigin::kTracked;  ///< origin of the frame's pose in the map
+  std::optional<FrameRange> frames;         ///< the first frame of the range is used; unset: frame 0
+  std::string calibration;  ///< file with the cameras and their errors; empty: as the source says
+  double cell_m = 0.1;      ///< edge of the grid's cells
+  std::string picture;      ///< PNG file with a plan of the room; empty: not written
 
   // Simulated rooms only:
   int scenarios = 200;                   ///< number of scenarios

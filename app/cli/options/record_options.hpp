@@ -17,7 +17,7 @@ struct RecordOptions {
   std::string folder;                ///< folder to write
   std::optional<FrameRange> frames;  ///< unset: all
   std::string calibration;           ///< file with the cameras and their errors; empty: as the source says
-  RecordingFormat format = RecordingFormat::kTum;
+  RecordingFormat format = RecordingFormat::kTum;  ///< format of the folder's files
 };
 
 /// Adds the options with their help texts and checks.

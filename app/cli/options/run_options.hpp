@@ -18,14 +18,14 @@ class App;
 namespace roomradar {
 
 struct RunOptions {
-  std::string source;  ///< as for open_source(), or the folder of a recorded session
-  std::string map;     ///< folder to read
-  PoseOrigin poses = PoseOrigin::kTracked;
-  std::optional<FrameRange> frames;  ///< unset: all
-  std::string calibration;           ///< file with the cameras and their errors; empty: as the source says
-  std::string object = "teapot";     ///< built-in name or mesh file
-  std::string script;                ///< events file; empty: drop the object over a level surface in view
-  SurfacePolicy surfaces = SurfacePolicy::kMap;
+  std::string source;                       ///< as for open_source(), or the folder of a recorded session
+  std::string map;                          ///< folder to read
+  PoseOrigin poses = PoseOrigin::kTracked;  ///< kTracked: localised in the map
+  std::optional<FrameRange> frames;         ///< unset: all
+  std::string calibration;        ///< file with the cameras and their errors; empty: as the source says
+  std::string object = "teapot";  ///< built-in name or mesh file
+  std::string script;             ///< events file; empty: drop the object over a level surface in view
+  SurfacePolicy surfaces = SurfacePolicy::kMap;  ///< surfaces that objects can touch
   bool unknown_is_solid = false;    ///< kMap only: objects cannot enter space that the scan has not observed
   RunQuality quality;               ///< the preset's or the session's, with the fields of `fixed`
   FieldWords fixed;                 ///< settings given as options; no preset, script or budget changes them
@@ -34,14 +34,14 @@ struct RunOptions {
   std::optional<double> budget_ms;  ///< time limit per frame; unset: none
   std::optional<double> commit_after_s;  ///< unset: changes are committed only by events of the script
   AtEnd at_end = AtEnd::kEnd;            ///< behaviour after the source's last frame
-  bool window = false;
-  std::string record_session;         ///< folder for frames, events and settings; empty: not recorded
-  std::string save_map;               ///< folder for the map at the end of the run; empty: not saved
-  std::string video;                  ///< file to write; empty: not written
-  std::string pictures;               ///< folder for composed frames as PNG; empty: not written
-  std::int64_t pictures_stride = 10;  ///< N: only every Nth frame is written to `pictures`
-  std::string
-      frames_csv;  ///< file with a line per frame: use of room and depth, with reasons; empty: not written
+  bool window = false;                   ///< show a window, in which the user can act
+  std::string record_session;            ///< folder for frames, events and settings; empty: not recorded
+  std::string save_map;                  ///< folder for the map at the end of the run; empty: not saved
+  std::string video;                     ///< file to write; empty: not written
+  std::string pictures;                  ///< folder for composed frames as PNG; empty: not written
+  std::int64_t pictures_stride = 10;     ///< N: only every Nth frame is written to `pictures`
+  /// File with a line per frame: use of room and depth, with reasons; empty: not written.
+  std::string frames_csv;
   std::string report;  ///< JSON file to write; empty: not written
 };
 

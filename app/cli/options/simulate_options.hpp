@@ -18,7 +18,7 @@ struct SimulateOptions {
   std::int64_t frames = 300;   ///< number of frames
   std::string path = "scan";   ///< camera path: scan, view or swing
   std::string moving;          ///< such as "hand,ball,person"; empty: nothing moves
-  RecordingFormat format = RecordingFormat::kTum;
+  RecordingFormat format = RecordingFormat::kTum;  ///< format of the folder's files
 };
 
 /// Adds the options with their help texts and checks.
