@@ -57,7 +57,7 @@ struct Source {
   std::string path;  // relative to the project
   std::string room;
   int lines = 0;
-  std::vector<std::string> includes;  // of the project, relative to it
+  std::vector<std::string> includes{};  // of the project, relative to it
 };
 
 std::vector<Source> sources_of_the_house() {

@@ -43,7 +43,7 @@ MapUpdater::MapUpdater(StaticMap& octree, const Mesh& mesh, const MapUpdateConfi
   if (!holds_samples(octree))
     throw Error(
         "adopt: the map's octree holds no surface, so nothing can be added to it or carved from it; scan the "
-        "room with `roomradar prescan`, or run without --adopt");
+        "room with `roomradar prescan`, or run without --commit-changes");
   views_.resize(static_cast<std::size_t>(config.views));
 }
 

@@ -22,17 +22,17 @@ namespace roomradar {
 /// Initial state of an object that is put into the room.
 struct ObjectState {
   Eigen::Vector3d position_world = Eigen::Vector3d::Zero();      ///< of the object's origin
-  std::optional<Eigen::Matrix3d> R_world_object;                 ///< unset: the object keeps its orientation
+  std::optional<Eigen::Matrix3d> R_world_object{};               ///< unset: the object keeps its orientation
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< velocity of the centre of mass
   Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();
 };
 
 /// An object falls from above a point, or from above a level surface in view.
 struct DropRequest {
-  std::string name;
-  std::optional<Eigen::Vector3d> position_world;  ///< unset: over a level surface in view
+  std::string name{};
+  std::optional<Eigen::Vector3d> position_world{};  ///< unset: over a level surface in view
   double height_m = 0.3;  ///< height of its lowest point above the position or surface
-  std::optional<Eigen::Matrix3d> R_world_object;  ///< unset: the object keeps its orientation
+  std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation
 };
 
 /// A drop over a surface in view that has not found a surface.

@@ -8,9 +8,9 @@
 namespace roomradar {
 
 struct SessionRoom {
-  Shape shape;             ///< the map's mesh in the world, with all committed changes
-  UnknownSurface unknown;  ///< empty until unknown space is made solid for the first time
-  TriangleTree unknown_tree;
+  Shape shape;               ///< the map's mesh in the world, with all committed changes
+  UnknownSurface unknown{};  ///< empty until unknown space is made solid for the first time
+  TriangleTree unknown_tree{};
   bool unknown_is_solid = false;
 };
 

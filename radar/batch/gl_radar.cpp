@@ -278,7 +278,7 @@ void GlRadar::draw_batch() {
     }
     scene_draws_.upload(batch_scene_draws_);
     scene_tiles_.bind(true);
-    scene_tiles_.clear(batch_.size(), kNothing);
+    scene_tiles_.clear(batch_.size(), kClearValue);
     use(scene_program_, scene_tiles_);
     glUniform1i(1, 1);
     glBindTextureUnit(0, object_tiles_.texture());
@@ -381,7 +381,7 @@ RadarPictures GlRadar::pictures() const {
   result.lookat_m.resize(tile.width_px, tile.height_px, std::numeric_limits<float>::quiet_NaN());
   if (!shown_.is_drawn) return result;
   const std::size_t count = result.mask_m.pixels.size();
-  std::vector<float> object(4 * count, kNothing), gap(4 * count, kNothing);
+  std::vector<float> object(4 * count, kClearValue), gap(4 * count, kClearValue);
   object_tiles_.read(tile.corners_px[0], tile.corners_px[1], tile.width_px, tile.height_px, object.data());
   scene_tiles_.read(tile.corners_px[2], tile.corners_px[3], tile.width_px, tile.height_px, gap.data());
   const auto distance_m = static_cast<float>(shown_.volume.depth_m - shown_.volume.length_m);

@@ -116,8 +116,8 @@ std::span<const TileResult> LeastGap::read(std::size_t count) {
 
 /// Same as kLeastShader.
 TileResult LeastGap::least_of(const TileQuery& query, const float* pixels, std::size_t row_pixels) const {
-  TileResult result{stamp_, kNothing, kNothing, kNothing, -1, -1, std::numeric_limits<std::uint32_t>::max(),
-                    0};
+  TileResult result{
+      stamp_, kClearValue, kClearValue, kClearValue, -1, -1, std::numeric_limits<std::uint32_t>::max(), 0};
   const auto at = [&](int x, int y) {
     return pixels + 4 * (static_cast<std::size_t>(query.corners_px[3] + y) * row_pixels +
                          static_cast<std::size_t>(query.corners_px[2] + x));

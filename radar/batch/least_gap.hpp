@@ -21,7 +21,7 @@ struct TileResult {
 };
 inline constexpr float kNothingMet = 1e38F;
 /// Clear value of tiles, as in tile_shaders.hpp.
-inline constexpr float kNothing = 3e38F;
+inline constexpr float kClearValue = 3e38F;
 
 /// Owns the program and the buffers, which grow to the largest call. Not thread safe.
 class LeastGap {
