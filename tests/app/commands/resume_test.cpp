@@ -350,7 +350,7 @@ TEST_F(ResumeTest, AnotherSessionIsAddedAndTheWorldStays) {
   const SavedMap before = load_map(map());
   const std::string json = text_of(map() / "map.json");
   EXPECT_EQ(run(scan_table("sim:shelf?frames=30&width=160", true)), 1);
-  EXPECT_NE(said().find("cannot be placed in the map"), std::string::npos) << said();
+  EXPECT_NE(said().find("cannot be registered to the map"), std::string::npos) << said();
   EXPECT_EQ(text_of(map() / "map.json"), json);
   fs::remove_all(unfinished());  // a slow machine may have written a checkpoint
 
