@@ -36,8 +36,7 @@ Eigen::Isometry3d read_located(const FallthroughOptions& options, const SavedMap
   Locator locator;
   const Tracking tracking = locate(locator, frame, map.keyframe_database, {},
                                    [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
-                                     scene.render_expected(frame.depth_camera, T_world_camera);
-                                     return scene.expected_depth_m();
+                                     return scene.render_expected(frame.depth_camera, T_world_camera).depth_m;
                                    });
   if (!locator.T_world_camera)
     throw Error(source->name() + ": frame " + std::to_string(frame.index) + " is not found in the map (" +

@@ -39,7 +39,7 @@ void control(PlaybackSource& source, CameraPlay camera) {
 void write_pictures(const Session& session, const FrameResult& result, const std::filesystem::path& name) {
   if (!session.picture().empty()) write_png(session.picture(), name.string() + ".png");
   if (result.status == FrameStatus::kDone)
-    write_png(session.scene().dynamic_mask(), name.string() + ".moved.png");
+    write_png(session.scene().foreground().dynamic_mask, name.string() + ".moved.png");
 }
 
 class RunLoop {

@@ -24,16 +24,16 @@ FrameScene::FrameScene(GlContext& context, const Shape& room, const FrameSceneCo
   require_valid(config.mesh);
 }
 
-std::size_t FrameScene::render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera) {
-  if (expected_camera_ == camera && is_same_view(T_world_expected_, T_world_camera))
-    return expected_triangles_;
+const ExpectedView& FrameScene::render_expected(const Intrinsics& camera,
+                                                const Eigen::Isometry3d& T_world_camera) {
+  if (expected_.camera == camera && is_same_view(expected_.T_world_camera, T_world_camera)) return expected_;
   const MeshInstance room{&room_.drawn, Eigen::Isometry3d::Identity()};
-  expected_triangles_ = depth_pass_.render({&room, 1}, camera, T_world_camera, expected_depth_m_);
+  expected_.triangles = depth_pass_.render({&room, 1}, camera, T_world_camera, expected_.depth_m);
   ++room_drawn_.views;
-  room_drawn_.triangles += expected_triangles_;
-  expected_camera_ = camera;
-  T_world_expected_ = T_world_camera;
-  return expected_triangles_;
+  room_drawn_.triangles += expected_.triangles;
+  expected_.camera = camera;
+  expected_.T_world_camera = T_world_camera;
+  return expected_;
 }
 
 void FrameScene::set_surfaces(SurfacePolicy surfaces) {
@@ -42,32 +42,37 @@ void FrameScene::set_surfaces(SurfacePolicy surfaces) {
   inferred_.build_in_order(dynamic_world_.inferred_world);
 }
 
-void FrameScene::expect_size(const Intrinsics& camera) {
-  if (dynamic_mask_.empty()) return;
-  if (dynamic_mask_.width == camera.width_px && dynamic_mask_.height == camera.height_px) return;
-  const MaskImage before = std::exchange(dynamic_mask_, MaskImage(camera.width_px, camera.height_px));
-  for (int y = 0; y < dynamic_mask_.height; ++y) {
-    const std::uint8_t* from = before.row(y * before.height / dynamic_mask_.height);
-    for (int x = 0; x < dynamic_mask_.width; ++x)
-      dynamic_mask_.at(x, y) = from[x * before.width / dynamic_mask_.width];
+const MaskImage& FrameScene::previous_dynamic_mask(const Intrinsics& camera) {
+  MaskImage& mask = foreground_.dynamic_mask;
+  if (mask.empty() || (mask.width == camera.width_px && mask.height == camera.height_px)) return mask;
+  const MaskImage before = std::exchange(mask, MaskImage(camera.width_px, camera.height_px));
+  for (int y = 0; y < mask.height; ++y) {
+    const std::uint8_t* from = before.row(y * before.height / mask.height);
+    for (int x = 0; x < mask.width; ++x) mask.at(x, y) = from[x * before.width / mask.width];
   }
+  return mask;
 }
 
-ForegroundCounts FrameScene::find_dynamic(const Frame& frame) {
-  return mark_foreground(frame.depth_m, expected_depth_m_, frame.depth_camera, T_world_expected_,
-                         config_.foreground, foreground_, labels_, dynamic_mask_);
+const FrameForeground& FrameScene::find_dynamic(const Frame& frame, const ExpectedView& expected) {
+  foreground_.counts =
+      mark_foreground(frame.depth_m, expected.depth_m, frame.depth_camera, expected.T_world_camera,
+                      config_.foreground, foreground_history_, foreground_.labels, foreground_.dynamic_mask);
+  return foreground_;
 }
 
-void FrameScene::mesh_dynamic(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                              std::span<const FineRegion> fine) {
-  if (config_.surfaces == SurfacePolicy::kMap) {
-    roomradar::mesh_dynamic(frame.depth_m, dynamic_mask_, expected_depth_m_, frame.depth_camera,
-                            T_world_camera, fine, config_.moved, dynamic_scratch_, dynamic_world_);
-    inferred_.build_in_order(dynamic_world_.inferred_world);
-  } else {
-    mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh,
-               mesh_scratch_, dynamic_world_.seen_world);
-  }
+void FrameScene::mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                               const ExpectedView& expected, const FrameForeground& foreground,
+                               std::span<const FineRegion> fine) {
+  if (config_.surfaces != SurfacePolicy::kMap) return mesh_all_pixels(frame, T_world_camera);
+  mesh_dynamic(frame.depth_m, foreground.dynamic_mask, expected.depth_m, frame.depth_camera, T_world_camera,
+               fine, config_.moved, dynamic_scratch_, dynamic_world_);
+  inferred_.build_in_order(dynamic_world_.inferred_world);
+  moved_.set(dynamic_world_.seen_world, MeshUsage::kStreamed);
+}
+
+void FrameScene::mesh_all_pixels(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
+  mesh_whole(frame.depth_m, frame.depth_camera, T_world_camera, config_.surfaces, config_.mesh, mesh_scratch_,
+             dynamic_world_.seen_world);
   moved_.set(dynamic_world_.seen_world, MeshUsage::kStreamed);
 }
 

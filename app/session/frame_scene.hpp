@@ -28,7 +28,23 @@ struct FrameSceneConfig {
   DepthMeshConfig mesh = {};        ///< used with the other policies
 };
 
-/// Rebuilt from each frame by render_expected, find_dynamic and mesh_dynamic, in this order. Not thread safe.
+/// Depth of the static room in a camera's image.
+struct ExpectedView {
+  Intrinsics camera{};  ///< size 0: nothing rendered so far
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  DepthImage depth_m;
+  std::size_t triangles = 0;  ///< triangles drawn
+};
+
+/// The pixels of a frame, labelled against an expected view.
+struct FrameForeground {
+  LabelImage labels;
+  MaskImage dynamic_mask;  ///< not 0: dynamic
+  ForegroundCounts counts;
+};
+
+/// Rebuilt from each frame: each step takes the result of the step before. Results are references to the
+/// scene's buffers, valid until the next call of the same function. Not thread safe.
 class FrameScene {
  public:
   /// @param room     static mesh in the world
@@ -38,8 +54,8 @@ class FrameScene {
              const TriangleTree* unknown = nullptr);
 
   /// Renders the room's depth at a pose. The rendering is reused while the view is the same within a fraction
-  /// of a pixel. Returns the number of triangles drawn for it.
-  std::size_t render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
+  /// of a pixel.
+  const ExpectedView& render_expected(const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera);
   /// Replaces all of the config except `surfaces`, from the next frame on. The config must be valid (not
   /// checked).
   void set_fineness(const FrameSceneConfig& config) {
@@ -52,15 +68,20 @@ class FrameScene {
   /// Null: unknown space is free.
   void set_unknown(const TriangleTree* unknown) { unknown_ = unknown; }
   /// Discards the expected depth after the room's shape has changed.
-  void room_changed() { expected_camera_ = {}; }
-  /// Resizes the previous frame's mask of dynamic pixels to this camera's image, by nearest pixel.
-  void expect_size(const Intrinsics& camera);
+  void room_changed() { expected_.camera = {}; }
+  /// Returns the previous frame's mask of dynamic pixels, resized to this camera's image by nearest pixel; or
+  /// an empty image.
+  const MaskImage& previous_dynamic_mask(const Intrinsics& camera);
   /// Labels the frame's pixels by the expected depth and the previous frame's labels.
-  ForegroundCounts find_dynamic(const Frame& frame);
+  const FrameForeground& find_dynamic(const Frame& frame, const ExpectedView& expected);
   /// kMap: meshes the dynamic pixels, at full resolution in the given regions, and infers their back. Other
   /// policies mesh all pixels.
-  void mesh_dynamic(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
-                    std::span<const FineRegion> fine = {});
+  /// @param expected, foreground  of this frame
+  void mesh_surfaces(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                     const ExpectedView& expected, const FrameForeground& foreground,
+                     std::span<const FineRegion> fine = {});
+  /// Meshes all pixels. For policies other than kMap, which need no foreground.
+  void mesh_all_pixels(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
   /// Returns all surfaces that can be touched. kMap: the room, the dynamic surface, its inferred back, and
   /// the border of unknown space. Other policies: the frame's own mesh.
@@ -78,9 +99,10 @@ class FrameScene {
   /// Cells of the last dynamic mesh, by kind and by region; kMap only.
   [[nodiscard]] const DynamicCells& dynamic_cells() const { return dynamic_scratch_.cells; }
 
-  [[nodiscard]] const DepthImage& expected_depth_m() const { return expected_depth_m_; }
-  [[nodiscard]] const LabelImage& labels() const { return labels_; }
-  [[nodiscard]] const MaskImage& dynamic_mask() const { return dynamic_mask_; }
+  /// The last view rendered by render_expected().
+  [[nodiscard]] const ExpectedView& expected() const { return expected_; }
+  /// The last result of find_dynamic().
+  [[nodiscard]] const FrameForeground& foreground() const { return foreground_; }
   [[nodiscard]] const DynamicSurface& dynamic_world() const { return dynamic_world_; }
   [[nodiscard]] std::size_t dynamic_triangles() const { return moved_.touched.triangle_count(); }
   [[nodiscard]] std::size_t inferred_triangles() const { return inferred_.triangle_count(); }
@@ -92,15 +114,10 @@ class FrameScene {
   Shape moved_;
   DepthPass depth_pass_;
 
-  DepthImage expected_depth_m_;  ///< for expected_camera_ at T_world_expected_
-  Intrinsics expected_camera_;   ///< size 0: nothing rendered so far
-  Eigen::Isometry3d T_world_expected_ = Eigen::Isometry3d::Identity();
-  std::size_t expected_triangles_ = 0;
+  ExpectedView expected_;
   RoomDrawn room_drawn_;
-
-  ForegroundState foreground_;
-  LabelImage labels_;
-  MaskImage dynamic_mask_;
+  ForegroundState foreground_history_;
+  FrameForeground foreground_;
   DepthMeshScratch mesh_scratch_;
   DynamicSurfaceScratch dynamic_scratch_;
   DynamicSurface dynamic_world_;

@@ -39,7 +39,7 @@ bool share_space(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a
 }  // namespace
 
 void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
-                       std::span<const SceneTree> scene, double margin_m, CyberRadar& radar,
+                       std::span<const SceneTree> room, double margin_m, CyberRadar& radar,
                        ProximityQuery& proximity) {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const TriangleTree& tree = object.model->shape.touched;
@@ -66,8 +66,6 @@ void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<Vi
   const double raised_m = T_world_raised.translation().z() - T_world_asked.translation().z();
   if (!(raised_m > 0.0)) return;
   std::vector<ClosestPoint> closest_points;
-  std::vector<SceneTree> room(scene.begin(), scene.end());
-  std::erase_if(room, [](const SceneTree& surface) { return surface.kind == SurfaceKind::kObject; });
   const bool is_in_the_way =
       radar.query({{&tree, T_world_asked}, up, raised_m}, {room, {}}).status == ContactStatus::kContact ||
       proximity.near({&tree, T_world_raised}, {room, {}}, kTouching_m, 0, closest_points) != 0;

@@ -12,10 +12,10 @@ namespace roomradar {
 
 /// Lifts an object that overlaps other objects until it is on top of them. Leaves it in place if the room is
 /// in the way.
-/// @param scene     everything that the object can touch, without itself
+/// @param room      everything that the object can touch, without objects
 /// @param margin_m  gap kept to the objects below, m; smaller overlaps are ignored
 void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
-                       std::span<const SceneTree> scene, double margin_m, CyberRadar& radar,
+                       std::span<const SceneTree> room, double margin_m, CyberRadar& radar,
                        ProximityQuery& proximity);
 
 }  // namespace roomradar

@@ -41,9 +41,9 @@ void set_in_hand(VirtualObject& object, double dt_s) {
 }
 
 /// Returns the room's depth; 0 where something dynamic is in front of it and might stand on it.
-DepthImage seen_room_depth_m(const FrameScene& scene) {
-  DepthImage depth_m = scene.expected_depth_m();
-  const MaskImage& moved = scene.dynamic_mask();
+DepthImage seen_room_depth_m(const ExpectedView& expected, const FrameForeground& foreground) {
+  DepthImage depth_m = expected.depth_m;
+  const MaskImage& moved = foreground.dynamic_mask;
   for (std::size_t i = 0; i < std::min(moved.pixels.size(), depth_m.pixels.size()); ++i)
     if (moved.pixels[i] != 0) depth_m.pixels[i] = 0.0F;
   return depth_m;
@@ -92,9 +92,13 @@ void ObjectSet::add(const std::string& name, ObjectParts parts) {
   objects_.push_back(object_of(context_, name, std::move(parts), objects_));
 }
 
+void ObjectSet::cancel_drop(const std::string& name) {
+  std::erase_if(waiting_, [&](const WaitingDrop& waiting) { return waiting.drop.name == name; });
+}
+
 VirtualObject& ObjectSet::take_over(const std::string& name) {
   VirtualObject& object = named(name);
-  std::erase_if(waiting_, [&](const WaitingDrop& waiting) { return waiting.drop.name == name; });
+  cancel_drop(name);
   object.carried_to_world.reset();
   return object;
 }
@@ -108,7 +112,7 @@ void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
   object.body.asleep = false;
   object.in_room = true;
   object.waited_s = 0.0;
-  raise_over_others(object, objects_, scene_without(&object), config_.physics.contact_margin_m, radar_,
+  raise_over_others(object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_,
                     proximity_);
   object.in_unknown = object.began_in_unknown = is_in_solid_unknown(room_, object);
 }
@@ -142,7 +146,7 @@ void ObjectSet::release(const std::string& name, const Eigen::Vector3d& velocity
 void ObjectSet::turn(const std::string& name, const Eigen::Vector3d& turn_world_deg) {
   VirtualObject& object = named(name);
   if (!object.in_room) return;
-  std::erase_if(waiting_, [&](const WaitingDrop& waiting) { return waiting.drop.name == name; });
+  cancel_drop(name);
   RigidMotion motion;
   motion.angular_rad_s = turn_world_deg * (std::numbers::pi / 180.0);
   motion.centre_object = object.model->middle;
@@ -162,6 +166,7 @@ void ObjectSet::turn(const std::string& name, const Eigen::Vector3d& turn_world_
 void ObjectSet::remove(const std::string& name) { take_over(name).in_room = false; }
 
 void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                                const ExpectedView& expected, const FrameForeground& foreground,
                                 std::int64_t frame_number) {
   constexpr std::int64_t kAgainAfter_frames = 10;  // a search takes some 10 ms
   for (WaitingDrop& waiting : std::exchange(waiting_, {})) {
@@ -173,7 +178,7 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
     const VirtualObject& object = named(drop.name);
     const Eigen::Matrix3d R_world_object = drop.R_world_object.value_or(object.body.T_world_object.linear());
     const std::optional<Eigen::Vector3d> support_world =
-        find_support(seen_room_depth_m(scene_), frame.depth_camera, T_world_camera,
+        find_support(seen_room_depth_m(expected, foreground), frame.depth_camera, T_world_camera,
                      footprint_radius_m(object, R_world_object));
     if (!support_world) {  // staggered, so waiting drops do not all search in the same frame
       waiting.try_at_frame = frame_number + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());

@@ -76,9 +76,10 @@ class ObjectSet {
   void turn(const std::string& name, const Eigen::Vector3d& turn_world_deg);
   void remove(const std::string& name);
 
-  /// Searches surfaces in view for drops that wait. `frame` and T_world_camera are those of the scene's
-  /// expected depth.
+  /// Searches surfaces in view for drops that wait.
+  /// @param expected, foreground  of this frame
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
+                       const ExpectedView& expected, const FrameForeground& foreground,
                        std::int64_t frame_number);
 
   /// Moves all objects that are due in this frame by dt_s of physics. Stage timed: radar.
@@ -118,6 +119,8 @@ class ObjectSet {
 
   VirtualObject& named(const std::string& name);
   void require_new(const std::string& name) const;
+  /// Removes the object's waiting drop.
+  void cancel_drop(const std::string& name);
   /// Returns the object for an event that replaces its waiting drop and ends carrying.
   VirtualObject& take_over(const std::string& name);
   void put(VirtualObject& object, const ObjectState& state);

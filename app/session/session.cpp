@@ -12,6 +12,7 @@
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
+
 Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
     : map_(map),
       config_(config),
@@ -129,21 +130,24 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
     return result;
   }
   const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
-  result.static_triangles_drawn =
-      times.timed("expected", [&] { return scene_.render_expected(frame.depth_camera, T_world_camera); });
-  result.foreground = times.timed("foreground", [&] { return scene_.find_dynamic(frame); });
+  const ExpectedView& expected = times.timed("expected", [&]() -> const ExpectedView& {
+    return scene_.render_expected(frame.depth_camera, T_world_camera);
+  });
+  const FrameForeground& foreground = times.timed(
+      "foreground", [&]() -> const FrameForeground& { return scene_.find_dynamic(frame, expected); });
   if (map_updater_ && tracking)  // not with kDegenerate: the pose is partly predicted
-    times.timed("changes", [&] {
-      map_updater_->watch(frame, scene_.expected_depth_m(), scene_.labels(), T_world_camera);
-    });
+    times.timed("changes",
+                [&] { map_updater_->watch(frame, expected.depth_m, foreground.labels, T_world_camera); });
   moved_fraction_ =
-      static_cast<double>(result.foreground.moved) / static_cast<double>(frame.depth_m.pixels.size());
+      static_cast<double>(foreground.counts.moved) / static_cast<double>(frame.depth_m.pixels.size());
   begin(FramePart::kMesh);
   const std::vector<FineRegion> near_objects = objects_.fine_regions();
-  times.timed("mesh", [&] { scene_.mesh_dynamic(frame, T_world_camera, near_objects); });
+  times.timed("mesh",
+              [&] { scene_.mesh_surfaces(frame, T_world_camera, expected, foreground, near_objects); });
   objects_.count_fine_cells();
   if (!objects_.waiting_drops().empty())
-    times.timed("place", [&] { objects_.release_waiting(frame, T_world_camera, frames_); });
+    times.timed("place",
+                [&] { objects_.release_waiting(frame, T_world_camera, expected, foreground, frames_); });
   begin(FramePart::kPhysics);
   const ContactCounts moved =
       times.timed("physics", [&] { return objects_.move(dt_s, frames_, times); });  // Cyber Radar: R, M, L
@@ -160,11 +164,13 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
 
   result.status = FrameStatus::kDone;
   result.T_world_camera = T_world_camera;
+  result.static_triangles_drawn = expected.triangles;
+  result.foreground = foreground.counts;
   result.dynamic_triangles = scene_.dynamic_triangles();
   result.inferred_triangles = scene_.inferred_triangles();
   result.contacts = moved.contacts;
   result.contacts_by_kind = moved.by_kind;
-  result.use = use_of(result.foreground, drawn_before, tested_before);
+  result.use = use_of(foreground.counts, drawn_before, tested_before);
   return result;
 }
 
@@ -205,11 +211,10 @@ Tracking Session::locate_camera(const Frame& frame) {
     return tracking;
   }
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
-    scene_.render_expected(frame.depth_camera, T_world_camera);
-    return scene_.expected_depth_m();
+    return scene_.render_expected(frame.depth_camera, T_world_camera).depth_m;
   };
-  scene_.expect_size(frame.depth_camera);
-  return locate(locator_, frame, map_.keyframe_database, scene_.dynamic_mask(), expected_depth);
+  return locate(locator_, frame, map_.keyframe_database, scene_.previous_dynamic_mask(frame.depth_camera),
+                expected_depth);
 }
 
 void Session::renew_room() {

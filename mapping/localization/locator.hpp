@@ -63,8 +63,7 @@ struct Locator {
 /// all directions, verified by depth and patches, and unambiguous.
 ///
 /// With kDegenerate, unconstrained directions are the prediction's; or the whole pose is the last frame's,
-/// because alignment took a bend of the sensor's depth for a motion. The last call of expected_depth is for
-/// the pose returned.
+/// because alignment took a bend of the sensor's depth for a motion.
 ///
 /// @param dynamic_mask  not 0: pixel moved in the previous frame, is ignored; empty, or of the depth's size
 /// @return status kTracked or kDegenerate: a usable pose; other status: not localised, searched for next time

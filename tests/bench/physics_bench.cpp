@@ -118,10 +118,9 @@ void measure_rest(nlohmann::json& rows) {
           }
         }
       }
-      of_depth.mesh_dynamic(frame, T_world_camera);
-      of_map.render_expected(frame.depth_camera, T_world_camera);
-      of_map.find_dynamic(frame);
-      of_map.mesh_dynamic(frame, T_world_camera);
+      of_depth.mesh_all_pixels(frame, T_world_camera);
+      const ExpectedView& expected = of_map.render_expected(frame.depth_camera, T_world_camera);
+      of_map.mesh_surfaces(frame, T_world_camera, expected, of_map.find_dynamic(frame, expected));
       for (std::size_t policy = 0; policy < 2; ++policy) {
         const std::vector<SceneTree> surfaces = policy == 0 ? of_depth.surfaces() : of_map.surfaces();
         const RadarScene scene{surfaces, {}};

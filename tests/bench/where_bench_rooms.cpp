@@ -55,9 +55,9 @@ Parts parts_of(const Room& room, const SavedMap& map, const MeshDistanceQuery& m
 Tracking SearchedRoom::find(Locator& locator, const Frame& frame, const MaskImage& dynamic_mask) {
   const auto expected_depth = [&](const Eigen::Isometry3d& T_world_camera) -> const DepthImage& {
     const double start_ms = test::thread_ms();
-    scene.render_expected(frame.depth_camera, T_world_camera);
+    const ExpectedView& expected = scene.render_expected(frame.depth_camera, T_world_camera);
     drawing_ms += test::thread_ms() - start_ms;
-    return scene.expected_depth_m();
+    return expected.depth_m;
   };
   return locate(locator, frame, map.keyframe_database, dynamic_mask, expected_depth);
 }

@@ -43,12 +43,11 @@ int put_ball(const Vector3d& centre_camera, double radius_m, Frame& frame) {
 /// Processes one frame like the command `run`: localises it, then marks its foreground for the next frame.
 Tracking step(SearchedRoom& mapped, Locator& locator, const Frame& frame, test::Times& locate_ms) {
   const double start_ms = test::thread_ms(), drawn_ms = mapped.drawing_ms;
-  const Tracking tracking = mapped.find(locator, frame, mapped.scene.dynamic_mask());
+  const Tracking tracking = mapped.find(locator, frame, mapped.scene.foreground().dynamic_mask);
   locate_ms.samples_ms.push_back(test::thread_ms() - start_ms - (mapped.drawing_ms - drawn_ms));
-  if (has_pose(tracking)) {
-    mapped.scene.render_expected(frame.depth_camera, tracking.T_world_camera);
-    mapped.scene.find_dynamic(frame);
-  }
+  if (has_pose(tracking))
+    mapped.scene.find_dynamic(frame,
+                              mapped.scene.render_expected(frame.depth_camera, tracking.T_world_camera));
   return tracking;
 }
 

@@ -101,13 +101,15 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
     scenes.push_back(std::make_unique<FrameScene>(context, room,
                                                   FrameSceneConfig{.surfaces = policy.surfaces},
                                                   policy.unknown_solid ? &unknown : nullptr));
-    if (policy.surfaces == SurfacePolicy::kMap)
-      for (int twice = 0; twice < 2; ++twice) {  // the foreground's history is one frame
-        scenes[i]->render_expected(frame.depth_camera, T_world_camera);
-        scenes[i]->find_dynamic(frame);
-      }
-    scenes[i]->mesh_dynamic(frame, T_world_camera);
-    surfaces[i] = scenes[i]->surfaces();
+    FrameScene& scene = *scenes[i];
+    if (policy.surfaces == SurfacePolicy::kMap) {
+      const ExpectedView& expected = scene.render_expected(frame.depth_camera, T_world_camera);
+      scene.find_dynamic(frame, expected);  // the foreground's history is one frame
+      scene.mesh_surfaces(frame, T_world_camera, expected, scene.find_dynamic(frame, expected));
+    } else {
+      scene.mesh_all_pixels(frame, T_world_camera);
+    }
+    surfaces[i] = scene.surfaces();
   }
 
   const Eigen::AlignedBox3d bounds = bounds_of(map.mesh);

@@ -45,17 +45,17 @@ double show_frame(PreparedScenario& prepared, int number, const TrialSurfaces& h
   Frame reduced;
   const Frame& frame = reduced_by(how.depth_stride, prepared.frames.at(number), reduced);
   const bool has_map = how.policy == SurfacePolicy::kMap;
-  if (has_map && number == 0) {  // replaces the foreground's one-frame history, which is another scenario's
-    scene.render_expected(frame.depth_camera, scenario.T_world_camera);
-    scene.find_dynamic(frame);
-  }
+  if (has_map && number == 0)  // replaces the foreground's one-frame history, which is another scenario's
+    scene.find_dynamic(frame, scene.render_expected(frame.depth_camera, scenario.T_world_camera));
+  if (!how.fine_mesh) about_objects = {};
   const auto start = std::chrono::steady_clock::now();
   if (has_map) {
-    scene.render_expected(frame.depth_camera, scenario.T_world_believed);
-    scene.find_dynamic(frame);
+    const ExpectedView& expected = scene.render_expected(frame.depth_camera, scenario.T_world_believed);
+    const FrameForeground& foreground = scene.find_dynamic(frame, expected);
+    scene.mesh_surfaces(frame, scenario.T_world_believed, expected, foreground, about_objects);
+  } else {
+    scene.mesh_all_pixels(frame, scenario.T_world_believed);
   }
-  if (!how.fine_mesh) about_objects = {};
-  scene.mesh_dynamic(frame, scenario.T_world_believed, about_objects);
   return ms_since(start);
 }
 

@@ -37,7 +37,7 @@ ReadResult PlaybackSource::next(Frame& frame) {
 void PlaybackSource::follow(double stamp_s, bool is_new_after_rewind) {
   const double following_s = *last_stamp_s_ + kFrame_s - stamp_s;
   if (was_repeated_ || is_new_after_rewind) old_ = kOld;
-  if (anew_ > 0) {
+  if (frames_to_rebase_ > 0) {
     stamp_offset_s_ = following_s;
   } else if (was_repeated_) {  // a device's clock advanced while a frame was held
     stamp_offset_s_ = std::max(stamp_offset_s_, following_s);
@@ -45,7 +45,7 @@ void PlaybackSource::follow(double stamp_s, bool is_new_after_rewind) {
   } else if (old_ > 0 && stamp_s + stamp_offset_s_ > *last_stamp_s_ + kJump_s) {
     stamp_offset_s_ = std::max(least_offset_s_, following_s);
   }
-  anew_ = std::max(anew_ - 1, 0);
+  frames_to_rebase_ = std::max(frames_to_rebase_ - 1, 0);
   old_ = std::max(old_ - 1, 0);
   if (old_ == 0 && !is_again_) least_offset_s_ = stamp_offset_s_;
 }
@@ -59,7 +59,7 @@ ReadResult PlaybackSource::repeat(Frame& frame) {
 
 bool PlaybackSource::rewind() {
   if (!source_->rewind()) return false;
-  anew_ = std::max(anew_, 1);
+  frames_to_rebase_ = std::max(frames_to_rebase_, 1);
   return true;
 }
 

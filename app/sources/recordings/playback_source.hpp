@@ -41,7 +41,7 @@ class PlaybackSource final : public FrameSource {
   void set_at_end(AtEnd at_end) { at_end_ = at_end; }
   /// Call after a pause in reading: time stood still meanwhile, except on a device's clock.
   void resume() {
-    anew_ = 2;  // one frame may have been read ahead before the pause
+    frames_to_rebase_ = 2;  // one frame may have been read ahead before the pause
     old_ = kOld;
     least_offset_s_ = -std::numeric_limits<double>::infinity();
   }
@@ -63,7 +63,8 @@ class PlaybackSource final : public FrameSource {
   bool is_again_ = false;
   std::int64_t newest_index_ = -1;      ///< greatest index delivered
   std::optional<double> last_stamp_s_;  ///< as delivered
-  int anew_ = 0;  ///< number of coming frames whose source stamps do not continue the previous ones
+  int frames_to_rebase_ =
+      0;  ///< number of coming frames whose source stamps do not continue the previous ones
   bool was_repeated_ = false;    ///< the last frame delivered was a repetition
   int old_ = 0;                  ///< number of coming frames that may predate a pause, hold or rewind
   double stamp_offset_s_ = 0.0;  ///< added to the source's stamps

@@ -92,7 +92,7 @@ TEST_F(Video, TheFirstPictureFixesTheSize) {
     ASSERT_TRUE(reader.read(bgr)) << frame;
     EXPECT_EQ(bgr.size(), cv::Size(160, 120)) << frame;
   }
-  EXPECT_NEAR(bgr.at<cv::Vec3b>(15, 10)[2], 240, 40) << "half as large as it was";
+  EXPECT_NEAR(bgr.at<cv::Vec3b>(15, 10)[2], 240, 40) << "half its former size";
 }
 
 TEST_F(Video, WhatWasThereStaysUntilTheNewOneIsWhole) {

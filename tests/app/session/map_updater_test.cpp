@@ -172,7 +172,7 @@ TEST(Adopt, WhatIsAskedForIsAdoptedAtOnce) {
   SavedMap map = map_of("0");
   UpdatingSession run(map, view("frames=80&crate=comes"), updating(std::nullopt));
   run.run(60);
-  EXPECT_TRUE(run.session.committed_changes().empty()) << "nobody asked";
+  EXPECT_TRUE(run.session.committed_changes().empty()) << "no commit was asked for";
   ask(run.session);
   run.run(15);
   EXPECT_EQ(run.session.committed_changes().size(), 1U);

@@ -155,7 +155,7 @@ TEST(Session, WhatMovedNeedsNoColour) {
     StageTimes times;
     Frame frame = depth_only(0, kAtTheFloor);
     static_cast<void>(session.step(frame, times));
-    frame.depth_m = session.scene().expected_depth_m();
+    frame.depth_m = session.scene().expected().depth_m;
     for (int y = 40; y < 80; ++y)
       for (int x = 50; x < 100; ++x) frame.depth_m.at(x, y) = 0.8F;
     if (has_colour) give_colour(frame);

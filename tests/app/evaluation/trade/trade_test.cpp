@@ -46,7 +46,7 @@ const std::vector<Parameter> kParameters{
 TEST(Front, HoldsWhatNothingBeatsInBothAndOnlyThat) {
   CounterRandom random(7, 0);
   std::vector<CostAndError> points;
-  for (int i = 0; i < 200; ++i)  // coarse numbers, so many are equal
+  for (int i = 0; i < 200; ++i)  // coarse numbers, thus with ties
     points.push_back({std::floor(10.0 * random.uniform()), std::floor(10.0 * random.uniform())});
   const std::vector<std::size_t> front = pareto_front_of(points);
   std::set<std::size_t> on(front.begin(), front.end());

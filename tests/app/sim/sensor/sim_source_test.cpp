@@ -30,7 +30,7 @@ TEST(SimSource, FrameDependsOnOptionsAndIndexAlone) {
   while (first.next(frame).status == ReadStatus::kFrame) in_order.push_back(frame);
   ASSERT_EQ(in_order.size(), 5U);
   EXPECT_EQ(first.next(frame).status, ReadStatus::kEnd);
-  EXPECT_EQ(frame.index, 4) << "the end leaves the frame as it was";
+  EXPECT_EQ(frame.index, 4) << "the end leaves the frame unchanged";
   for (const std::int64_t index : {3, 0, 4, 1}) {
     const Frame again = frame_of(second, index);
     const Frame& before = in_order[static_cast<std::size_t>(index)];
