@@ -159,9 +159,13 @@ SessionConfig config_of(const OpenedRun& run, bool has_picture) {
 void make_unknown_solid(Session& session, StageTimes& times) {
   const auto start = std::chrono::steady_clock::now();
   session.make_unknown_solid(times);
-  std::fprintf(stderr, "unknown space: border of %zu triangles, extracted in %.1f s with %.0f MB\n",
-               session.unknown().mesh_world.triangles.size(), ms_since(start) / 1e3,
-               static_cast<double>(session.unknown().memory_bytes) / 1e6);
+  if (session.unknown()->memory_bytes > 0)  // not from the map's folder
+    std::fprintf(
+        stderr,
+        "unknown space: the map was saved without its border; %zu triangles, extracted in %.1f s with "
+        "%.0f MB\n",
+        session.unknown()->mesh_world.triangles.size(), ms_since(start) / 1e3,
+        static_cast<double>(session.unknown()->memory_bytes) / 1e6);
 }
 
 void open_session(OpenedRun& run, bool has_picture) {

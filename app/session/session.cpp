@@ -38,12 +38,14 @@ void Session::make_unknown_solid(StageTimes& times) {
         "unknown space can be solid only with the map's surfaces: the others do not know which space was "
         "observed");
   times.timed("unknown", [&] {
-    if (room_.unknown_tree.empty()) {
+    if (!room_.unknown) {
       if (map_updater_ && (last_stamp_s_ || !map_updater_->committed_changes().empty()))
         throw Error(
             "unknown solid: changes are being adopted into the map; begin the run with --unknown solid");
-      room_.unknown = unknown_surface(map_.octree, map_.mesh);
-      room_.unknown_tree.build_by_place(room_.unknown.mesh_world);
+      room_.unknown = map_.unknown
+                          ? map_.unknown
+                          : std::make_shared<const UnknownSurface>(unknown_surface(map_.octree, map_.mesh));
+      room_.unknown_tree.build_by_place(room_.unknown->mesh_world);
       if (map_updater_) map_updater_->keep_up_unknown();
     }
     room_.unknown_is_solid = true;
@@ -62,9 +64,6 @@ void Session::set_surfaces(SurfacePolicy surfaces) {
   if (surfaces != SurfacePolicy::kMap && map_updater_)
     throw Error("surfaces " + std::string(to_string(surfaces)) +
                 ": changes are being adopted into the map, which needs its surfaces");
-  if (surfaces != SurfacePolicy::kMap && room_.unknown_is_solid)
-    throw Error("surfaces " + std::string(to_string(surfaces)) +
-                ": unknown space is solid, which needs the map's surfaces; make it free first");
   config_.scene.surfaces = surfaces;
   scene_.set_surfaces(surfaces);
 }
@@ -220,8 +219,8 @@ Tracking Session::locate_camera(const Frame& frame) {
 void Session::renew_room() {
   ChangedRoom& room = map_updater_->room();
   room_.shape.set(room.mesh, std::move(room.tree));
-  if (!room_.unknown_tree.empty()) {  // extracted at first use, and kept up to date since
-    room_.unknown = std::move(room.unknown);
+  if (room_.unknown) {  // kept up to date since it was made solid for the first time
+    room_.unknown = std::make_shared<const UnknownSurface>(std::move(room.unknown));
     room_.unknown_tree = std::move(room.unknown_tree);
   }
   scene_.room_changed();

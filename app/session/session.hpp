@@ -99,8 +99,8 @@ class Session {
   void make_unknown_solid(StageTimes& times);
   /// From now on unknown space is free; all objects count as placed in observed space.
   void make_unknown_free();
-  /// Takes effect in the next frame. Throws Error for surfaces other than the map's if config().map_updates
-  /// is set or unknown space is solid.
+  /// Takes effect in the next frame. While the surfaces are not the map's, unknown space is free. Throws
+  /// Error for surfaces other than the map's if config().map_updates is set.
   void set_surfaces(SurfacePolicy surfaces);
   /// Takes effect in the next frame. Throws Error if the config is invalid.
   void set_radar(const RadarConfig& config);
@@ -132,8 +132,8 @@ class Session {
   [[nodiscard]] const FrameScene& scene() const { return scene_; }
   /// Current shape, with all committed changes.
   [[nodiscard]] const Shape& room() const { return room_.shape; }
-  /// Empty until unknown space is made solid.
-  [[nodiscard]] const UnknownSurface& unknown() const { return room_.unknown; }
+  /// Null until unknown space is made solid for the first time.
+  [[nodiscard]] const UnknownSurface* unknown() const { return room_.unknown.get(); }
   [[nodiscard]] bool unknown_is_solid() const { return room_.unknown_is_solid; }
   /// The config as given, updated by the set_ functions.
   [[nodiscard]] const SessionConfig& config() const { return config_; }

@@ -7,6 +7,7 @@ namespace roomradar {
 
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object) {
   if (!room.unknown_is_solid) return false;
+  const UnknownSurface& unknown = *room.unknown;
   const Eigen::Isometry3d& T_world_object = object.body.T_world_object;
   const GpuMesh& mesh = object.model->shape.drawn;
   const auto corner = [&](std::uint32_t vertex) -> Eigen::Vector3d {
@@ -15,8 +16,8 @@ bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object) {
   const auto triangles = mesh.triangles();
   return std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& triangle) {
     const Eigen::Vector3d a = corner(triangle[0]), b = corner(triangle[1]), c = corner(triangle[2]);
-    return is_unknown(room.unknown, a) || is_unknown(room.unknown, b) || is_unknown(room.unknown, c) ||
-           is_unknown(room.unknown, (a + b + c) / 3.0);
+    return is_unknown(unknown, a) || is_unknown(unknown, b) || is_unknown(unknown, c) ||
+           is_unknown(unknown, (a + b + c) / 3.0);
   });
 }
 

@@ -1,5 +1,7 @@
 // session_room.hpp: the static room of a session: its surface, and the border of unknown space.
 #pragma once
+#include <memory>
+
 #include "app/objects/shape.hpp"
 #include "app/objects/virtual_object.hpp"
 #include "mapping/surface/unknown_surface.hpp"
@@ -8,10 +10,11 @@
 namespace roomradar {
 
 struct SessionRoom {
-  Shape shape;               ///< the map's mesh in the world, with all committed changes
-  UnknownSurface unknown{};  ///< empty until unknown space is made solid for the first time
+  Shape shape;  ///< the map's mesh in the world, with all committed changes
+  /// Null until unknown space is made solid for the first time.
+  std::shared_ptr<const UnknownSurface> unknown{};
   TriangleTree unknown_tree{};
-  bool unknown_is_solid = false;
+  bool unknown_is_solid = false;  ///< takes effect while the surfaces are the map's
 };
 
 /// Returns true if unknown space is solid and a corner or the centre of a triangle of the object is in it.

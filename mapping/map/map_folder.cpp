@@ -14,6 +14,7 @@
 
 #include "mapping/localization/keyframe_database_file.hpp"
 #include "mapping/map/map_info_json.hpp"
+#include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/memory_use.hpp"
 #include "mapping/storage/atomic_folder.hpp"
@@ -36,7 +37,8 @@ constexpr const char* kMesh = "mesh.ply";
 constexpr const char* kPlaces = "places.bin";
 constexpr const char* kTrajectory = "trajectory.txt";
 constexpr std::array<const char*, 5> kParts = {kOctree, kPlainOctree, kMesh, kPlaces, kTrajectory};
-constexpr const char* kCoverage = "coverage.png";  // the only optional file
+constexpr const char* kCoverage = "coverage.png";  // optional
+constexpr const char* kUnknown = "unknown.bin";    // optional: earlier versions saved none
 constexpr std::uintmax_t kMaxPictureBytes = 1U << 26U;
 constexpr std::uintmax_t kMaxInfoBytes = 1U << 20U;
 
@@ -45,7 +47,8 @@ constexpr std::uintmax_t kMaxInfoBytes = 1U << 20U;
 }
 
 bool is_part(const std::string& name) {
-  return name == kCoverage || std::find(kParts.begin(), kParts.end(), name) != kParts.end();
+  return name == kCoverage || name == kUnknown ||
+         std::find(kParts.begin(), kParts.end(), name) != kParts.end();
 }
 
 // Throws Error unless `folder` is missing, empty, or contains a map and nothing else.
@@ -94,7 +97,7 @@ std::optional<std::string> fault_of(const fs::path& path, const MapFile& expecte
   return std::nullopt;
 }
 
-// Checks that map.json lists all required parts, optionally the picture, and nothing else. Thus no listed
+// Checks that map.json lists all required parts, optionally others of a map, and nothing else. Thus no listed
 // path can lead out of the folder.
 void require_parts(const MapInfo& info, const fs::path& where) {
   for (const char* part : kParts)
@@ -205,6 +208,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   write_mesh(map.mesh, partial.path() / kMesh);
   write_keyframe_database(map.keyframe_database, partial.path() / kPlaces);
   write_trajectory(partial.path() / kTrajectory, map.trajectory);
+  write_unknown_surface(unknown_surface(map.octree, map.mesh), partial.path() / kUnknown);
   if (!map.coverage_png.empty())
     write_bytes(partial.path() / kCoverage, std::string(map.coverage_png.begin(), map.coverage_png.end()));
 
@@ -219,6 +223,7 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   info.poses = map.trajectory.size();
   info.files.clear();
   std::vector<std::string> parts(kParts.begin(), kParts.end());
+  parts.emplace_back(kUnknown);
   if (!map.coverage_png.empty()) parts.emplace_back(kCoverage);
   for (const std::string& part : parts)
     info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
@@ -256,8 +261,11 @@ SavedMap read_map(const fs::path& folder) {
           .mesh = read_mesh(folder / kMesh),
           .keyframe_database = read_keyframe_database(folder / kPlaces),
           .trajectory = read_trajectory(folder / kTrajectory),
-          .coverage_png = info.files.contains(kCoverage) ? read_picture(folder / kCoverage)
-                                                         : std::vector<std::uint8_t>{}};
+          .coverage_png =
+              info.files.contains(kCoverage) ? read_picture(folder / kCoverage) : std::vector<std::uint8_t>{},
+          .unknown = info.files.contains(kUnknown)
+                         ? std::make_shared<const UnknownSurface>(read_unknown_surface(folder / kUnknown))
+                         : nullptr};
 }
 
 std::vector<std::string> faults_of(const fs::path& folder) {
@@ -283,6 +291,7 @@ std::vector<std::string> faults_of(const fs::path& folder) {
       if (name == kMesh) static_cast<void>(read_mesh(folder / part));
       if (name == kPlaces) static_cast<void>(read_keyframe_database(folder / part));
       if (name == kTrajectory) static_cast<void>(read_trajectory(folder / part));
+      if (name == kUnknown) static_cast<void>(read_unknown_surface(folder / part));
       if (name == kCoverage) static_cast<void>(read_picture(folder / part));
     });
   }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "mapping/map/map_info.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/surface_extraction.hpp"
+#include "mapping/surface/unknown_surface.hpp"
 #include "mapping/types/mesh.hpp"
 #include "mapping/types/trajectory.hpp"
 
@@ -24,6 +26,8 @@ struct SavedMap {
   KeyframeDatabase keyframe_database;
   std::vector<TimedPose> trajectory;
   std::vector<std::uint8_t> coverage_png;  ///< coverage picture; empty: none
+  /// Border of unknown space, as loaded; null: a map saved by an earlier version, or not saved so far.
+  std::shared_ptr<const UnknownSurface> unknown;
 };
 
 /// Returns whether info.T_world_recorded locates recorded poses in the map. True if the map was scanned with
@@ -51,6 +55,7 @@ void require_can_become_map(const std::filesystem::path& folder,
                             std::initializer_list<std::filesystem::path> outputs);
 
 /// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step.
+/// Extracts the border of unknown space from map.octree and map.mesh for the file unknown.bin.
 /// Afterwards `folder` is the complete new map or, after an Error, unchanged. Creates parent folders. Throws
 /// Error if `folder` exists and is not a map (its files are left alone), the map has no surface or too many
 /// triangles, or the disk fails.

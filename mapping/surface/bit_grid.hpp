@@ -51,6 +51,24 @@ class BitGrid {
             if (x < size_.x()) visit(Eigen::Vector3i(x, y, z));
           }
   }
+  /// Calls visit(first voxel, length) for each run of set voxels along x, in the same order. A run of more
+  /// than 64 voxels may be visited in pieces that follow each other.
+  template <typename Visit>
+  void for_each_run(const Visit& visit) const {
+    for (int z = 0; z < size_.z(); ++z)
+      for (int y = 0; y < size_.y(); ++y)
+        for (std::size_t i = 0; i < words_a_row_; ++i) {
+          std::uint64_t word = row(y, z)[i];
+          for (int bit = 0; word != 0;) {
+            const int clear = std::countr_zero(word);
+            word >>= clear;
+            const int length = std::countr_one(word);
+            visit(Eigen::Vector3i(static_cast<int>(64 * i) + bit + clear, y, z), length);
+            bit += clear + length;
+            word = length == 64 ? 0 : word >> length;
+          }
+        }
+  }
 
  private:
   [[nodiscard]] std::size_t row_index(int y, int z) const {

@@ -17,8 +17,7 @@ namespace {
 
 using Eigen::Vector3i;
 
-constexpr double kMostCells = 2e8;  // 25 MB of bits
-constexpr int kGridsAtOnce = 15;    // bit grids alive at the same time; most while faces are collected
+constexpr int kGridsAtOnce = 15;  // bit grids alive at the same time; most while faces are collected
 
 // State of the map in cells of one voxel, or of several if the map is very large.
 struct Known {
@@ -43,7 +42,7 @@ CellGrid grid_round(const StaticMap& map, const Eigen::AlignedBox3d& known_world
     grid.first_cell = low.unaryExpr([&](int v) { return lattice * block_of(v, -margin); });
     grid.size =
         high.unaryExpr([&](int v) { return lattice * (block_of(v - 1, margin) + 1); }) - grid.first_cell;
-    if (grid.size.cast<double>().prod() <= kMostCells) return grid;
+    if (grid.size.cast<double>().prod() <= kMaxUnknownCells) return grid;
   }
 }
 

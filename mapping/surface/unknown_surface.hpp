@@ -30,6 +30,8 @@ struct UnknownSurfaceConfig {
 /// Throws Error naming field, value and rule if a setting is out of range.
 void require_valid(const UnknownSurfaceConfig& config);
 
+inline constexpr double kMaxUnknownCells = 2e8;  ///< max cells of the grid: 25 MB of bits
+
 struct UnknownSurface {
   Mesh mesh_world;  ///< no colours, no normals; triangles face away from unknown space
   CellGrid grid;  ///< the map's voxels; cubes of several voxels if the map is too large for one bit per voxel

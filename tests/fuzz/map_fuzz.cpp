@@ -1,10 +1,11 @@
 // map_fuzz.cpp: the files of a map folder, by the first byte, as they are read once their checksums match.
 #include "mapping/localization/keyframe_database.hpp"
+#include "mapping/localization/keyframe_database_file.hpp"
+#include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/types/trajectory.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "mapping/localization/keyframe_database_file.hpp"
 
 namespace {
 
@@ -30,6 +31,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
       case 'p':
         (void)read_keyframe_database(test::file_with(sealed(bytes), "places.bin"));
+        break;
+      case 'u':
+        (void)read_unknown_surface(test::file_with(sealed(bytes), "unknown.bin"));
         break;
       case 't':
         (void)read_trajectory(test::file_with(bytes, "trajectory.txt"));

@@ -44,8 +44,8 @@ void add_world_options(CLI::App& command, RunOptions& options) {
              "discontinuities (skirt), also with the image's border pushed outwards (border), or the map\n"
              "and the dynamic foreground (map) (default: map)");
   add_choice(command, "--unknown", options.unknown_is_solid, {{"free", false}, {"solid", true}},
-             "space that the prescan has not observed: objects pass (free) or are stopped (solid; needs\n"
-             "--surfaces map) (default: free)");
+             "space that the prescan has not observed: objects are stopped (solid; needs --surfaces map) or\n"
+             "fall through it (free; for tests of falling through) (default: solid with --surfaces map)");
   add_old_name(command, "--adopt", "--commit-changes");
   command
       .add_option(
@@ -166,6 +166,8 @@ void complete_options(const CLI::App& command, RunOptions& options,
     take_recorded_settings(command, *recorded, options);
   complete_quality(options.quality, options.preset, options.presets, options.fixed);
   if (options.map.empty()) throw CLI::RequiredError("--map");
+  if (command.count("--unknown") == 0 && options.surfaces != SurfacePolicy::kMap)
+    options.unknown_is_solid = false;
   if (options.unknown_is_solid && options.surfaces != SurfacePolicy::kMap)
     throw CLI::ValidationError(
         "--unknown solid: needs --surfaces map, because only the map knows which space was observed");

@@ -26,7 +26,7 @@ struct RunOptions {
   std::string object = "teapot";  ///< built-in name or mesh file
   std::string script;             ///< events file; empty: drop the object over a level surface in view
   SurfacePolicy surfaces = SurfacePolicy::kMap;  ///< surfaces that objects can touch
-  bool unknown_is_solid = false;    ///< kMap only: objects cannot enter space that the scan has not observed
+  bool unknown_is_solid = true;     ///< kMap only: objects cannot enter space that the scan has not observed
   RunQuality quality;               ///< the preset's or the session's, with the fields of `fixed`
   FieldWords fixed;                 ///< settings given as options; no preset, script or budget changes them
   std::string preset;               ///< name; empty: none

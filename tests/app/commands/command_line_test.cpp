@@ -277,21 +277,22 @@ TEST_F(CommandLine, AWindowWithoutADisplaySaysWhatToDo) {
   expect_fault(outcome, 1, "--video");
 }
 
-TEST_F(CommandLine, SolidUnknownSpaceIsInTheReportAndNeedsTheMap) {
+TEST_F(CommandLine, UnknownSpaceIsSolidByDefaultAndNeedsTheMap) {
   ASSERT_EQ(scanned_.status, 0) << scanned_.out;
   const fs::path report_path = folder_ / "solid.json";
-  const std::string run = "run 'sim:table?frames=20&width=160&path=view&seed=2' --poses recorded --map " +
-                          map() + " --unknown solid";
+  const std::string run =
+      "run 'sim:table?frames=20&width=160&path=view&seed=2' --poses recorded --map " + map();
   const Outcome ran = roomradar(run + " --report " + report_path.string());
   ASSERT_EQ(ran.status, 0) << ran.out;
-  EXPECT_NE(ran.out.find("unknown space: "), std::string::npos) << ran.out;
   const auto report = nlohmann::json::parse(read_text(report_path));
   EXPECT_EQ(report["settings"]["unknown"], "solid");
   EXPECT_EQ(report["stages"]["unknown"]["count"], 1);
   EXPECT_GT(report["unknown_triangles"], 100);
   EXPECT_EQ(report["objects"][0]["began_in_unknown"], false);
   EXPECT_EQ(report["objects"][0]["rests_on"], "seen static");
-  expect_fault(roomradar(run + " --surfaces skirt"), 2, "needs --surfaces map");
+  ASSERT_EQ(roomradar(run + " --surfaces skirt --report " + report_path.string()).status, 0);
+  EXPECT_EQ(nlohmann::json::parse(read_text(report_path))["settings"]["unknown"], "free");
+  expect_fault(roomradar(run + " --surfaces skirt --unknown solid"), 2, "needs --surfaces map");
 }
 
 TEST_F(CommandLine, RunChangesNothingOfTheMap) {
@@ -762,7 +763,7 @@ TEST_F(CommandLine, ABrokenMapIsRefusedAndTheFileNamed) {
   const std::string run = "run 'sim:table?frames=2&width=160' --map ";
   expect_fault(roomradar(run + (folder_ / "no_map").string()), 1, "no_map");
   for (const char* name :
-       {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"}) {
+       {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
     fs::path copy = broken_copy();
     fs::remove(copy / name);
     expect_fault(roomradar(run + copy.string()), 1, name);

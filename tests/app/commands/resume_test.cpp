@@ -102,7 +102,7 @@ class ResumeTest : public ::testing::Test {
   }
   static void expect_very_same_map(const fs::path& a, const fs::path& b) {
     for (const char* file :
-         {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"})
+         {"map.json", "octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"})
       EXPECT_TRUE(text_of(a / file) == text_of(b / file)) << file;
   }
   /// Keyframes are stored rounded, so poses computed after resuming deviate as if by noise.

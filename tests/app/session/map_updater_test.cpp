@@ -160,11 +160,11 @@ TEST(Adopt, SolidUnknownSpaceInsideACrateGoesWithIt) {
   UpdatingSession run(map, view("frames=90&crate=goes"), updating(1.5));
   run.make_unknown_solid();
   const Vector3d inside = kCrateTop - Vector3d(0, 0, 0.11);
-  EXPECT_TRUE(is_unknown(run.session.unknown(), inside));
+  EXPECT_TRUE(is_unknown(*run.session.unknown(), inside));
   run.drop_pot(kCrateTop);
   run.run(90);
   ASSERT_EQ(run.session.committed_changes().size(), 1U);
-  EXPECT_FALSE(is_unknown(run.session.unknown(), inside));
+  EXPECT_FALSE(is_unknown(*run.session.unknown(), inside));
   EXPECT_NEAR(run.pot_m(), 0.75, 0.01);
 }
 

@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <thread>
@@ -154,6 +155,23 @@ TEST_F(MapFolder, ThePictureOfCoverageComesBackAndMayBeMissing) {
   expect_fault("coverage.png", "missing");
 }
 
+TEST_F(MapFolder, TheBorderOfUnknownSpaceIsSavedWithTheMapAndOldMapsHaveNone) {
+  const SavedMap read = load_map(map_);
+  ASSERT_TRUE(read.unknown);
+  const UnknownSurface expected = unknown_surface(room_.octree, room_.mesh);
+  ASSERT_GT(expected.mesh_world.triangles.size(), 100U);
+  EXPECT_EQ(read.unknown->mesh_world.vertices, expected.mesh_world.vertices);
+  EXPECT_EQ(read.unknown->mesh_world.triangles, expected.mesh_world.triangles);
+  EXPECT_TRUE(read.unknown->unknown == expected.unknown);
+
+  nlohmann::json info = nlohmann::json::parse(text_of(map_ / "map.json"));
+  info["files"].erase("unknown.bin");
+  put_text(map_ / "map.json", info.dump());
+  fs::remove(map_ / "unknown.bin");
+  EXPECT_TRUE(verify_map(map_).empty());
+  EXPECT_FALSE(load_map(map_).unknown);
+}
+
 TEST_F(MapFolder, SavingAgainReplacesTheMapAndLeavesNothingBeside) {
   room_.info.source = "another";
   save_map(map_, room_);
@@ -231,7 +249,8 @@ TEST_F(MapFolder, AMapWithoutASurfaceIsNotSavedAndTheOldOneStays) {
 }
 
 TEST_F(MapFolder, EachMissingFileIsNamed) {
-  for (const char* file : {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"}) {
+  for (const char* file :
+       {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
     const std::string content = text_of(map_ / file);
     fs::remove(map_ / file);
     expect_fault(file, "is missing");
@@ -242,7 +261,8 @@ TEST_F(MapFolder, EachMissingFileIsNamed) {
 }
 
 TEST_F(MapFolder, EachCutFileIsNamed) {
-  for (const char* file : {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"}) {
+  for (const char* file :
+       {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
     const std::string content = text_of(map_ / file);
     for (const std::size_t length : {std::size_t{0}, content.size() / 2, content.size() - 1}) {
       put_text(map_ / file, content.substr(0, length));
@@ -257,7 +277,8 @@ TEST_F(MapFolder, EachCutFileIsNamed) {
 }
 
 TEST_F(MapFolder, OneChangedByteAnywhereIsNoticed) {
-  for (const char* file : {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt"}) {
+  for (const char* file :
+       {"octree.ot", "octree.bt", "mesh.ply", "places.bin", "trajectory.txt", "unknown.bin"}) {
     const std::string content = text_of(map_ / file);
     for (std::size_t at = 0; at < content.size(); at += 1 + content.size() / 7) {
       std::string altered = content;

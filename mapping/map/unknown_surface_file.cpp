@@ -1,0 +1,145 @@
+// unknown_surface_file.cpp: reads and writes the border of unknown space as one binary file.
+//
+// All numbers are little-endian. Body: edge of a cell (f64, m), lowest cell and size of the grid (3 i32
+// each), number of runs (u32), runs of unknown cells: clear cells before the run, then its length (2 u32
+// each), with x fastest and z slowest; origin of the mesh (3 f64, m), number of vertices (u32), vertices (3
+// f32 each, m, relative to the origin), number of triangles (u32), triangles (3 u32 each).
+#include "mapping/map/unknown_surface_file.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "mapping/storage/binary_file.hpp"
+
+namespace roomradar {
+namespace {
+
+constexpr std::string_view kMagic = "RRUNKNWN";
+constexpr std::uint32_t kFileVersion = 1;
+constexpr double kMaxReach_m = 2e5;  // a map reaches at most 32,768 voxels of 1 m, and the grid a margin more
+
+void put_cells(std::string& out, const BitGrid& cells) {
+  std::vector<std::uint32_t> runs;
+  std::uint64_t next = 0;  // linear index after the last run
+  const auto width = static_cast<std::uint64_t>(cells.size().x());
+  const auto depth = static_cast<std::uint64_t>(cells.size().y());
+  cells.for_each_run([&](const Eigen::Vector3i& first, int length) {
+    const std::uint64_t start =
+        (static_cast<std::uint64_t>(first.z()) * depth + static_cast<std::uint64_t>(first.y())) * width +
+        static_cast<std::uint64_t>(first.x());
+    if (start == next && !runs.empty()) {
+      runs.back() += static_cast<std::uint32_t>(length);
+    } else {
+      runs.push_back(static_cast<std::uint32_t>(start - next));
+      runs.push_back(static_cast<std::uint32_t>(length));
+    }
+    next = start + static_cast<std::uint64_t>(length);
+  });
+  put(out, static_cast<std::uint32_t>(runs.size() / 2));
+  put(out, runs.data(), runs.size());
+}
+
+/// Sets the cells with linear indices in [from, to), one row at a time.
+void set_range(BitGrid& cells, std::uint64_t from, std::uint64_t to) {
+  const auto width = static_cast<std::uint64_t>(cells.size().x());
+  const auto depth = static_cast<std::uint64_t>(cells.size().y());
+  while (from < to) {
+    const std::uint64_t row = from / width, x = from % width;
+    const std::uint64_t end = std::min(width, x + (to - from));
+    const Eigen::Vector3i low(static_cast<int>(x), static_cast<int>(row % depth),
+                              static_cast<int>(row / depth));
+    cells.set_box(low, {static_cast<int>(end), low.y() + 1, low.z() + 1}, true);
+    from += end - x;
+  }
+}
+
+CellGrid take_grid(BinaryReader& in) {
+  CellGrid grid;
+  grid.cell_m = in.take_finite("edge of a cell");
+  in.take(grid.first_cell.data(), 3, "lowest cell");
+  in.take(grid.size.data(), 3, "size of the grid");
+  if ((grid.size.array() < 0).any() || grid.size.cast<double>().prod() > kMaxUnknownCells)
+    in.fail("a grid of " + std::to_string(grid.size.x()) + " x " + std::to_string(grid.size.y()) + " x " +
+            std::to_string(grid.size.z()) + " cells");
+  const bool is_empty = grid.size.isZero() && grid.cell_m == 0.0;
+  if (!is_empty && (!(grid.cell_m > 0.0) || (grid.size.array() == 0).any()))
+    in.fail("a grid with cells of " + std::to_string(grid.cell_m) + " m");
+  const Eigen::Array3d low_m = grid.first_cell.cast<double>().array() * grid.cell_m;
+  const Eigen::Array3d high_m = low_m + grid.size.cast<double>().array() * grid.cell_m;
+  if (!(low_m.abs() <= kMaxReach_m).all() || !(high_m.abs() <= kMaxReach_m).all())
+    in.fail("a grid that begins or ends where no map reaches");
+  return grid;
+}
+
+BitGrid take_cells(BinaryReader& in, const Eigen::Vector3i& size) {
+  BitGrid cells(size, false);
+  const auto total = static_cast<std::uint64_t>(size.cast<double>().prod());
+  const auto count = in.take<std::uint32_t>("number of runs");
+  in.require(count, 2 * sizeof(std::uint32_t), "runs of unknown cells");
+  std::uint64_t next = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto clear = in.take<std::uint32_t>("runs"), length = in.take<std::uint32_t>("runs");
+    const std::uint64_t from = next + clear;
+    next = from + length;
+    if (next > total) in.fail("a run of unknown cells that leaves the grid");
+    set_range(cells, from, next);
+  }
+  return cells;
+}
+
+Mesh take_mesh(BinaryReader& in) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    mesh.origin[axis] = in.take_finite("origin of the mesh");
+    if (std::abs(mesh.origin[axis]) > kMaxReach_m) in.fail("a mesh where no map reaches");
+  }
+  const auto vertices = in.take<std::uint32_t>("number of vertices");
+  in.require(vertices, 3 * sizeof(float), "vertices");
+  mesh.vertices.resize(vertices);
+  for (Eigen::Vector3f& vertex : mesh.vertices) {
+    in.take(vertex.data(), 3, "vertices");
+    if (!(vertex.array().abs() <= static_cast<float>(2.0 * kMaxReach_m)).all())
+      in.fail("a vertex that is not a number, or where no map reaches");
+  }
+  const auto triangles = in.take<std::uint32_t>("number of triangles");
+  in.require(triangles, sizeof(Triangle), "triangles");
+  mesh.triangles.resize(triangles);
+  for (Triangle& triangle : mesh.triangles) {
+    in.take(triangle.data(), 3, "triangles");
+    for (const std::uint32_t corner : triangle)
+      if (corner >= vertices) in.fail("a triangle without one of its vertices");
+  }
+  return mesh;
+}
+
+}  // namespace
+
+void write_unknown_surface(const UnknownSurface& surface, const std::filesystem::path& path) {
+  std::string out;
+  put(out, surface.grid.cell_m);
+  put(out, surface.grid.first_cell.data(), 3);
+  put(out, surface.grid.size.data(), 3);
+  put_cells(out, surface.unknown);
+  const Mesh& mesh = surface.mesh_world;
+  put(out, mesh.origin.data(), 3);
+  put(out, static_cast<std::uint32_t>(mesh.vertices.size()));
+  for (const Eigen::Vector3f& vertex : mesh.vertices) put(out, vertex.data(), 3);
+  put(out, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const Triangle& triangle : mesh.triangles) put(out, triangle.data(), 3);
+  write_binary(path, kMagic, kFileVersion, out);
+}
+
+UnknownSurface read_unknown_surface(const std::filesystem::path& path) {
+  const std::string bytes = read_binary(path, kMagic, kFileVersion);
+  BinaryReader in(bytes, path);
+  UnknownSurface surface;
+  surface.grid = take_grid(in);
+  surface.unknown = take_cells(in, surface.grid.size);
+  surface.mesh_world = take_mesh(in);
+  if (in.left() != 0) in.fail(std::to_string(in.left()) + " bytes more than the surface takes");
+  return surface;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,17 @@
+// unknown_surface_file.hpp: the border of a map's unknown space as a binary file.
+#pragma once
+#include <filesystem>
+
+#include "mapping/surface/unknown_surface.hpp"
+
+namespace roomradar {
+
+/// Writes the surface and the cells of unknown space as one binary file with a checksum. Throws Error if the
+/// file cannot be written.
+void write_unknown_surface(const UnknownSurface& surface, const std::filesystem::path& path);
+
+/// Reads a file from write_unknown_surface(); memory_bytes is 0. Throws Error naming the file and the fault
+/// if it is missing, truncated, altered, or of another version. Sizes are checked before memory is allocated.
+UnknownSurface read_unknown_surface(const std::filesystem::path& path);
+
+}  // namespace roomradar
