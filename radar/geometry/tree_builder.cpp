@@ -151,7 +151,7 @@ class SurfaceAreaBuilder {
 }  // namespace
 
 FloatBounds bounds_of(const Triangle& triangle, const std::vector<Eigen::Vector3f>& vertices) {
-  Bounds b;
+  FloatBounds b;
   for (const std::uint32_t v : triangle) b.extend(vertices[v].array());
   return b;
 }
