@@ -14,12 +14,13 @@
 #include "mapping/coverage/observed_area.hpp"
 #include "mapping/map/map_merge.hpp"
 #include "mapping/map/registration.hpp"
-#include "mapping/octree/memory_use.hpp"
 #include "mapping/prescan_state.hpp"
 #include "mapping/revision/ghost_removal.hpp"
+#include "mapping/scan_memory.hpp"
 #include "mapping/storage/checkpoints.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {
