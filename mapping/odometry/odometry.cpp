@@ -55,7 +55,6 @@ struct Odometry::State {
   void store_open();
   void wait_for_job();
   Eigen::Isometry3d take_over_job();
-  void keep(const Frame& frame, const Tracking& tracking);
 };
 
 Tracking Odometry::State::start(const Frame& frame) {
@@ -202,17 +201,6 @@ Eigen::Isometry3d Odometry::State::take_over_job() {
   return take_over(*std::exchange(joined, std::nullopt), kept);
 }
 
-void Odometry::State::keep(const Frame& frame, const Tracking& tracking) {
-  KeptFrame frame_kept{frame.index,     frame.stamp_s, std::nullopt, tracking.T_world_camera,
-                       tracking.status, bool{tracking}};
-  if (!kept.graph.keyframes.empty()) {
-    frame_kept.keyframe = kept.current;
-    frame_kept.T_keyframe_camera =
-        kept.graph.keyframes[kept.current].T_world_camera.inverse() * tracking.T_world_camera;
-  }
-  kept.frames.push_back(frame_kept);
-}
-
 Odometry::Odometry(const OdometryConfig& config) : state_(std::make_unique<State>(config)) {}
 Odometry::Odometry(Odometry&&) noexcept = default;
 Odometry& Odometry::operator=(Odometry&&) noexcept = default;
@@ -244,7 +232,7 @@ Tracking Odometry::track(const Frame& frame) {
     ++kept.counts.tracked;
     kept.T_world_last = kept.last_moved.T_world_camera;
     kept.T_last_next.setIdentity();
-    s.keep(frame, kept.last_moved);
+    keep(kept, frame, kept.last_moved);
     return kept.last_moved;
   }
   Tracking tracking =
@@ -255,7 +243,7 @@ Tracking Odometry::track(const Frame& frame) {
     ++kept.counts.lost;
     tracking.T_world_camera = kept.T_world_last;
     kept.T_last_next.setIdentity();
-    s.keep(frame, tracking);
+    keep(kept, frame, tracking);
     return tracking;
   }
   const Eigen::Isometry3d T_last_next = kept.T_world_last.inverse() * tracking.T_world_camera;
@@ -272,7 +260,7 @@ Tracking Odometry::track(const Frame& frame) {
     kept.last_moved_grey = s.pyramid.grey;
     kept.last_moved = tracking;
   }
-  s.keep(frame, tracking);
+  keep(kept, frame, tracking);
   return tracking;
 }
 
@@ -319,14 +307,7 @@ std::vector<TrackedFrame> Odometry::optimise() {
     graph.keyframes = s.kept.graph.keyframes;
     s.kept.graph = std::move(graph);
   }
-  std::vector<TrackedFrame> trajectory;
-  for (const KeptFrame& f : s.kept.frames) {
-    const Eigen::Isometry3d T_world_camera =
-        f.keyframe ? s.kept.graph.keyframes[*f.keyframe].T_world_camera * f.T_keyframe_camera
-                   : f.T_keyframe_camera;
-    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera, f.status, f.trusted});
-  }
-  return trajectory;
+  return trajectory_of(s.kept);
 }
 
 KeyframeDatabase Odometry::take_keyframe_database() {

@@ -53,4 +53,26 @@ Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
   return T_new_old;
 }
 
+void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking) {
+  KeptFrame frame_kept{frame.index,     frame.stamp_s, std::nullopt, tracking.T_world_camera,
+                       tracking.status, bool{tracking}};
+  if (!kept.graph.keyframes.empty()) {
+    frame_kept.keyframe = kept.current;
+    frame_kept.T_keyframe_camera =
+        kept.graph.keyframes[kept.current].T_world_camera.inverse() * tracking.T_world_camera;
+  }
+  kept.frames.push_back(frame_kept);
+}
+
+std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept) {
+  std::vector<TrackedFrame> trajectory;
+  for (const KeptFrame& f : kept.frames) {
+    const Eigen::Isometry3d T_world_camera =
+        f.keyframe ? kept.graph.keyframes[*f.keyframe].T_world_camera * f.T_keyframe_camera
+                   : f.T_keyframe_camera;
+    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera, f.status, f.trusted});
+  }
+  return trajectory;
+}
+
 }  // namespace roomradar

@@ -10,6 +10,7 @@
 #include "mapping/odometry/keyframe_graph.hpp"
 #include "mapping/odometry/keyframe_job.hpp"
 #include "mapping/odometry/odometry_config.hpp"
+#include "mapping/types/frame.hpp"
 
 namespace roomradar {
 
@@ -45,5 +46,11 @@ Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySna
 /// Applies the second thread's result; returns the motion of the current keyframe. If the newest keyframe was
 /// localised in the known map, anchors it there, and moves the world to the map's the first time.
 Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);
+
+/// Adds a frame; its pose moves with the current keyframe from now on.
+void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking);
+
+/// Returns all frames with their poses in the world.
+std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept);
 
 }  // namespace roomradar

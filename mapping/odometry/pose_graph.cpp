@@ -68,6 +68,15 @@ Matrix6d seen_from_b(const Eigen::Isometry3d& T_a_b) {
   return J;
 }
 
+ceres::Solver::Options solver_options() {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = 50;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  return options;
+}
+
 /// Counts the unconstrained directions of all free poses together: near-zero pivots of the normal equations.
 /// `place` gives each pose's index among the free poses, or -1.
 std::size_t count_free_directions(const std::vector<Measured>& measured, const std::vector<int>& place,
@@ -220,13 +229,8 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
 
   ceres::Problem problem;
   const std::vector<ceres::ResidualBlockId> ids = add_residuals(measured, place, blocks, problem);
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 50;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  ceres::Solve(solver_options(), &problem, &summary);
   if (!summary.IsSolutionUsable()) return result;
   for (const PoseBlock& block : blocks) {
     if (!block.t.allFinite() || !block.q.coeffs().allFinite()) return result;
