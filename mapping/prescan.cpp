@@ -1,208 +1,19 @@
 // prescan.cpp: the stages of a prescan, from the first frame to the finished map.
 #include "mapping/prescan.hpp"
 
-#include <algorithm>
-#include <array>
-#include <chrono>
-#include <cstdio>
-#include <map>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "mapping/coverage/coverage.hpp"
-#include "mapping/coverage/observed_area.hpp"
 #include "mapping/map/map_merge.hpp"
-#include "mapping/map/registration.hpp"
-#include "mapping/octree/memory_use.hpp"
-#include "mapping/prescan_state.hpp"
-#include "mapping/revision/ghost_removal.hpp"
-#include "mapping/storage/checkpoints.hpp"
+#include "mapping/prescan_passes.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 
 namespace roomradar {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Reads the next readable frame; returns false at the end.
-bool read(FrameSource& source, StageTimes& times, Frame& frame, PrescanCounts& counts) {
-  for (;;) {
-    const ReadResult result = times.timed("read", [&] { return source.next(frame); });
-    if (result.status == ReadStatus::kEnd) return false;
-    if (result.waiting) continue;
-    ++counts.frames_read;
-    if (result.status == ReadStatus::kFrame) return true;
-    ++counts.frames_skipped;
-    counts.last_fault = result.fault;
-  }
-}
-
-/// Returns the frame's recorded pose if a map centred on `middle` reaches it. Rejects a corrupt pose,
-/// kilometres away.
-std::optional<Eigen::Isometry3d> recorded_pose(const Frame& frame, const Eigen::Vector3d& middle,
-                                               double reach_m) {
-  const auto& T = frame.T_world_camera;
-  return T && ((T->translation() - middle).array().abs() < reach_m).all() ? T : std::nullopt;
-}
-
-/// Skips frames that a checkpoint already covers, without reading them if the source can seek.
-void skip_frames(FrameSource& source, std::int64_t count, const char* stage,
-                 const PrescanProgress& progress) {
-  for (std::int64_t i = 0; progress && i < count; ++i) progress(stage, "resumed");
-  Frame frame;
-  const auto refuse = [&](const std::string& has) {
-    throw Error(source.name() + ": has " + has + " frames, but the scan to be resumed had read " +
-                std::to_string(count) + "; is it the same recording?");
-  };
-  std::int64_t position = source.seek(count - 1) ? count - 1 : 0;
-  // A source that can seek, but not this far, has too few frames. A live scan's source would deliver new
-  // frames of the device instead of the stored ones.
-  if (position < count - 1 && source.seek(0)) refuse("fewer");
-  while (position < count && source.next(frame).status != ReadStatus::kEnd) ++position;
-  if (position < count) refuse(std::to_string(position));
-}
-
-/// Returns whether the memory in use, plus the memory that later stages need, exceeds the cap.
-bool is_full(const PrescanConfig& config, double needed_later_bytes) {
-  return config.max_memory_bytes > 0 && static_cast<double>(resident_bytes()) + needed_later_bytes >
-                                            static_cast<double>(config.max_memory_bytes);
-}
-
-/// Writes a checkpoint if one is due. Between two frames it is postponed while the last one is still being
-/// written. At the end of a stage a shorter interval applies, because the next stage may take seconds before
-/// its first checkpoint.
-template <typename Pass>
-void keep(Checkpoints* checkpoints, const char* stage, Pass& pass, StageTimes& times,
-          bool between_frames = true) {
-  if (!checkpoints || !(between_frames ? checkpoints->is_due() : checkpoints->is_due_at_end())) return;
-  times.timed("checkpoint", [&] {
-    checkpoints->write(stage,
-                       [&](const auto& into, const auto& previous) { write_state(pass, into, previous); });
-  });
-}
-
-/// Same in the first pass, where the odometry's thread must be idle at the fork.
-void keep_tracking(Checkpoints* checkpoints, TrackingPass& pass, StageTimes& times) {
-  if (!checkpoints || !checkpoints->is_due()) return;
-  times.timed("checkpoint", [&] { pass.odometry.finish_jobs(); });
-  keep(checkpoints, kTrackingStage, pass, times);
-}
-
-/// State shared by all stages of one prescan.
-struct Work {
-  FrameSource& source;
-  const PrescanConfig& config;
-  StageTimes& times;
-  const PrescanProgress& progress;
-  Checkpoints* checkpoints = nullptr;
-  double reach_m = 0.0;                          // max distance from the octree's origin along each axis
-  bool maps_recorded_world = false;              // recorded poses share the octree's origin
-  std::map<std::int64_t, double> track_ms = {};  // by frame index
-  std::optional<FuseStatus> last_fused = {};     // status of the last frame passed to fuse()
-
-  void show(const std::string& stage, const std::string& note) const {
-    if (progress) progress(stage, note);
-  }
-};
-
-/// Returns the expected centre of the recorded poses: the origin if the map shares it, else the first
-/// position.
-Eigen::Vector3d middle_of_recorded(const Work& work, const TrackingPass& pass, const Frame& frame) {
-  if (work.maps_recorded_world || !frame.T_world_camera) return Eigen::Vector3d::Zero();
-  return pass.recorded.empty() ? frame.T_world_camera->translation()
-                               : pass.recorded.front().T_world_camera.translation();
-}
-
-/// Reads the source to its end and returns the camera pose of each frame.
-TrajectoryEstimate estimate_trajectory(Work& work, TrackingPass& pass) {
-  const PrescanConfig& config = work.config;
-  Frame frame;
-  ObservedArea seen;
-  while (read(work.source, work.times, frame, pass.counts)) {
-    const Clock::time_point start = Clock::now();
-    const std::optional<Eigen::Isometry3d> recorded =
-        recorded_pose(frame, middle_of_recorded(work, pass, frame), work.reach_m);
-    if (recorded) pass.recorded.push_back({frame.index, frame.stamp_s, *recorded});
-    Tracking tracking;
-    if (config.poses == PoseOrigin::kTracked) {
-      tracking = pass.odometry.track(frame);
-    } else if (recorded) {
-      tracking = {.status = TrackStatus::kTracked, .T_world_camera = *recorded};
-      pass.odometry.add_posed(frame, *recorded);
-    }
-    work.track_ms[frame.index] = ms_since(start);
-    work.times.add_ms("track", work.track_ms[frame.index]);
-    if (tracking) pass.up.add(frame, tracking.T_world_camera);
-    if (work.progress) {  // only `progress` reports the observed area
-      if (tracking) seen.add(frame, tracking.T_world_camera);
-      work.progress(kTrackingStage, std::string(to_string(tracking.status)) + ", " + describe(seen));
-    }
-    keep_tracking(work.checkpoints, pass, work.times);
-    // Reserve a quarter of the cap for the octree and its surface, which are built after the tracker is
-    // freed.
-    pass.counts.stopped_for_memory = is_full(config, 0.25 * static_cast<double>(config.max_memory_bytes));
-    if (pass.counts.stopped_for_memory) break;
-  }
-  TrajectoryEstimate found;
-  found.frames = work.times.timed("optimise", [&] { return pass.odometry.optimise(); });
-  found.up = pass.up.estimate();
-  found.recorded = std::move(pass.recorded);
-  pass.counts.keyframes = pass.odometry.counts().keyframes;
-  pass.counts.loops_found = pass.odometry.counts().loops_found;
-  found.keyframe_database = pass.odometry.take_keyframe_database();
-  return found;
-}
-
-/// Computes the transform from the tracker's world to the map's: to an existing map, or else a rotation to +z
-/// up.
-Eigen::Isometry3d transform_to_map(const Odometry& odometry, const TrajectoryEstimate& found,
-                                   const std::optional<SavedMap>& map, const std::string& source) {
-  if (!map) return level_rotation(found.up.up_world);
-  constexpr std::size_t kPoints = 12'000;
-  const std::vector<Eigen::Vector3d> surface = surface_of(found.keyframe_database, kPoints);
-  // A long scan may be localised in the map, then leave it for other rooms, so only a small fraction
-  // overlaps.
-  RegistrationConfig located;
-  located.min_overlap = 0.01;
-  const Registration placed =
-      odometry.is_located()
-          ? verify_registration(map->octree, surface, Eigen::Isometry3d::Identity(), located)
-          : register_to(map->octree, map->keyframe_database, found.keyframe_database, surface);
-  if (!placed)
-    throw Error(source + ": cannot be registered to the map that it is to be added to: " + describe(placed) +
-                "; the map is unchanged. Begin where the map was scanned, or save as another map");
-  return placed.T_a_b;
-}
-
-/// Runs the first pass, from its start or from a checkpoint. Returns the state of the second pass if the
-/// checkpoint is of that stage.
-FusionPass track(Work& work, std::optional<SavedMap>& map) {
-  const std::optional<Checkpoint> checkpoint = work.checkpoints ? work.checkpoints->resume() : std::nullopt;
-  if (checkpoint && checkpoint->stage == kFusingStage) {
-    FusionPass fusing = read_fusing_pass(*checkpoint);
-    fusing.counts.frames_resumed = fusing.frames_read;
-    return fusing;
-  }
-  TrackingPass pass(work.config.odometry);
-  if (checkpoint) {
-    pass = read_tracking_pass(*checkpoint, work.config.odometry);
-    pass.counts.frames_resumed = pass.counts.frames_read;
-    skip_frames(work.source, pass.counts.frames_read, kTrackingStage, work.progress);
-  }
-  if (map && work.config.poses == PoseOrigin::kTracked) pass.odometry.set_prior_map(map->keyframe_database);
-  FusionPass fusing;
-  fusing.found = estimate_trajectory(work, pass);
-  fusing.counts = pass.counts;
-  if (fusing.counts.frames_read == fusing.counts.frames_skipped)
-    throw Error(work.source.name() + ": there is not one readable frame" +
-                (fusing.counts.last_fault.empty() ? "" : "; the last fault: " + fusing.counts.last_fault));
-  fusing.T_world_found = transform_to_map(pass.odometry, fusing.found, map, work.source.name());
-  fusing.octree = map ? std::move(map->octree) : StaticMap(work.config.resolution_m);
-  keep(work.checkpoints, kFusingStage, fusing, work.times, /*between_frames=*/false);
-  return fusing;
-}
 
 /// Trusted poses, in the map's world.
 std::vector<TimedPose> trusted_poses(const FusionPass& pass) {
@@ -214,49 +25,13 @@ std::vector<TimedPose> trusted_poses(const FusionPass& pass) {
   return poses;
 }
 
-/// Runs the second pass, from its start or from a checkpoint. Does nothing if the checkpoint was written
-/// after fusion.
-void fuse(Work& work, const std::vector<TimedPose>& trajectory, FusionPass& pass) {
-  if (pass.revision || pass.ghost_voxels) return;
-  std::map<std::int64_t, Eigen::Isometry3d> T_world_camera;
-  for (const TimedPose& pose : trajectory) T_world_camera[pose.frame_index] = pose.T_world_camera;
-  if (!work.source.rewind()) throw Error(work.source.name() + ": cannot be read a second time");
-  PrescanCounts second_pass;
-  second_pass.frames_read = pass.frames_read;
-  if (pass.frames_read > 0) skip_frames(work.source, pass.frames_read, kFusingStage, work.progress);
-  release_unused_memory();
-  bool has_room = true;
-  Frame frame;
-  while (has_room && pass.frames_read < pass.counts.frames_read &&
-         read(work.source, work.times, frame, second_pass)) {
-    pass.frames_read = second_pass.frames_read;
-    const auto pose = T_world_camera.find(frame.index);
-    if (pose == T_world_camera.end() || is_held_out(frame.index, work.config.hold_out)) continue;
-    if (frame.index % work.config.fuse_every != 0) continue;
-    const Clock::time_point start = Clock::now();
-    const FuseStatus fused = pass.octree.fuse(frame, pose->second);
-    const double fuse_ms = ms_since(start);
-    work.times.add_ms("fuse", fuse_ms);
-    if (const auto track_ms = work.track_ms.find(frame.index); track_ms != work.track_ms.end())
-      work.times.add_ms("frame", track_ms->second + fuse_ms);
-    work.last_fused = fused;
-    if (fused == FuseStatus::kFused)
-      pass.fused.push_back({pass.frames_read - 1, frame.index, frame.depth_camera, pose->second});
-    work.show(kFusingStage, std::string(to_string(fused)));
-    keep(work.checkpoints, kFusingStage, pass, work.times);
-    has_room = !is_full(work.config, kSurfaceMemory * static_cast<double>(pass.octree.memory_bytes()));
-  }
-  pass.stopped_for_memory = !has_room;
-  keep(work.checkpoints, kFusingStage, pass, work.times, /*between_frames=*/false);
-}
-
-std::string why_none_trusted(const Work& work) {
+std::string why_none_trusted(const PrescanWork& work) {
   if (work.config.poses == PoseOrigin::kTracked) return "is there depth between 0.5 and 6 m in the frames?";
   return "the recording has no poses, or none within the octree's reach of " +
          std::to_string(std::lround(work.reach_m)) + " m: use --poses tracked";
 }
 
-std::string why_none_fused(const Work& work) {
+std::string why_none_fused(const PrescanWork& work) {
   if (!work.last_fused) return "no frame was left to be fused: fuse_every and hold_out leave out all of them";
   if (work.last_fused == FuseStatus::kOutOfBounds)
     return "no frame could be fused: the poses are out of the octree's reach of " +
@@ -265,7 +40,8 @@ std::string why_none_fused(const Work& work) {
 }
 
 /// Fills in the map's description, except for the fields that save_map sets.
-MapInfo describe_map(const Work& work, const FusionPass& pass, const std::vector<TimedPose>& trajectory) {
+MapInfo describe_map(const PrescanWork& work, const FusionPass& pass,
+                     const std::vector<TimedPose>& trajectory) {
   MapInfo info;
   info.source = work.source.name();
   info.frames_read = pass.counts.frames_read;
@@ -295,35 +71,24 @@ PrescanResult prescan(FrameSource& source, const PrescanConfig& config, StageTim
                       const PrescanProgress& progress, PrescanInput start) {
   const double reach_m = start.map ? start.map->octree.reach_m() : StaticMap(config.resolution_m).reach_m();
   const bool maps_recorded_world = config.poses == PoseOrigin::kRecorded && !start.map;
-  Work work{source, config, times, progress, start.checkpoints, reach_m, maps_recorded_world};
+  PrescanWork work{source, config, times, progress, start.checkpoints, reach_m, maps_recorded_world};
   PrescanResult result;
   PrescanCounts& counts = result.counts;
   SavedMap& map = result.map;
 
   // First pass: camera poses.
-  FusionPass pass = track(work, start.map);
+  FusionPass pass = run_tracking_pass(work, start.map);
   map.trajectory = trusted_poses(pass);
   if (map.trajectory.empty())
     throw Error(source.name() + ": no frame has a pose that can be trusted, so there is nothing to map; " +
                 why_none_trusted(work));
 
   // Second pass: fusion.
-  fuse(work, map.trajectory, pass);
+  run_fusion_pass(work, map.trajectory, pass);
   if (pass.fused.empty()) throw Error(source.name() + ": " + why_none_fused(work));
 
   // Ghost removal.
-  if (config.remove_ghosts && !pass.ghost_voxels) {
-    if (!pass.revision)
-      pass.revision = remove_ghosts(source, pass.fused, config.ghosts, pass.octree, times,
-                                    [&](const std::string& note) { work.show("ghosts", note); });
-    refuse_surroundings(source, pass.fused, *pass.revision, pass.octree, times, [&](const std::string& note) {
-      work.show("ghosts", note);
-      keep(work.checkpoints, kFusingStage, pass, times);
-    });
-    pass.ghost_voxels = pass.revision->voxels();
-    pass.revision.reset();
-    keep(work.checkpoints, kFusingStage, pass, times, /*between_frames=*/false);
-  }
+  if (config.remove_ghosts) run_ghost_removal(work, pass);
   map.octree = std::move(pass.octree);
 
   // Surface extraction.

@@ -24,10 +24,11 @@
 #include "app/quality/quality_json.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
 #include "mapping/map/map_folder.hpp"
-#include "mapping/octree/memory_use.hpp"
 #include "mapping/prescan.hpp"
+#include "mapping/scan_memory.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {

@@ -11,9 +11,10 @@
 #include "app/cli/interrupt.hpp"
 #include "app/cli/open_source.hpp"
 #include "app/sources/recordings/spooled_source.hpp"
-#include "mapping/octree/memory_use.hpp"
+#include "mapping/scan_memory.hpp"
 #include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {

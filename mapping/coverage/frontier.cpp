@@ -239,28 +239,11 @@ std::optional<Vector3d> find_viewpoint(const Grid& grid, const Vector3d& hole_wo
   return best_world;
 }
 
-}  // namespace
-
-void require_valid(const FrontierConfig& c) {
-  const ConfigCheck require{"frontier"};
-  require(c.cell_m > 0.0 && c.cell_m <= 1.0, "cell_m", c.cell_m, "in 0..1 m");
-  require(c.min_area_m2 >= 0.0 && std::isfinite(c.min_area_m2), "min_area_m2", c.min_area_m2, ">= 0");
-  require(c.max_size_m > 0.0, "max_size_m", c.max_size_m, "> 0");
-  require(c.min_enclosed >= 0.0 && c.min_enclosed <= 1.0, "min_enclosed", c.min_enclosed, "in 0..1");
-  require(c.max_open_part >= 0.0 && c.max_open_part <= 1.0, "max_open_part", c.max_open_part, "in 0..1");
-}
-
-Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {
-  require_valid(config);
-  const Grid grid(map, std::max(config.cell_m, map.resolution_m()));
-  if (grid.empty()) return {};
-  Border border = find_border(grid);
-  for (BorderCell& cell : border.cells) cell.enclosed = enclosed_part(grid, cell) >= config.min_enclosed;
-
-  // A small open component counts as inside: a corner that was left out.
-  const Eigen::AlignedBox3d occupied_world = map.counts().occupied_world;
-  if (occupied_world.isEmpty()) return {};
-  const Vector3d extent_m = occupied_world.sizes().cwiseMax(Vector3d::Constant(grid.cell_m()));
+// Marks small open components as enclosed: a corner that was left out counts as inside.
+// occupied_m: size of the bounds of all occupied leaves.
+void enclose_small_components(const Grid& grid, const Vector3d& occupied_m, const FrontierConfig& config,
+                              Border& border) {
+  const Vector3d extent_m = occupied_m.cwiseMax(Vector3d::Constant(grid.cell_m()));
   struct Sum {
     double area_m2 = 0.0;
     Vector3d normal = Vector3d::Zero();
@@ -280,6 +263,59 @@ Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {
                               facing.z() * extent_m.x() * extent_m.y();
     if (sum.area_m2 <= config.max_open_part * section_m2) cell.enclosed = true;
   }
+}
+
+// Returns the hole of one patch of the border; nullopt if its area is 0 or below min_area_m2.
+std::optional<Hole> hole_at(const Grid& grid, const std::vector<const BorderCell*>& patch, double min_area_m2,
+                            double floor_m) {
+  Hole hole;
+  hole.kind = patch.front()->enclosed ? HoleKind::kUnknownSpace : HoleKind::kOuterBorder;
+  Vector3d middle = Vector3d::Zero(), look = Vector3d::Zero();
+  Eigen::AlignedBox3d bounds;
+  for (const BorderCell* cell : patch) {
+    hole.area_m2 += cell->area_m2;
+    middle += cell->area_m2 * grid.centre_world(cell->cell);
+    look += cell->area_m2 * cell->normal;
+    bounds.extend(grid.centre_world(cell->cell));
+  }
+  if (!(hole.area_m2 >= min_area_m2) || !(hole.area_m2 > 0.0)) return std::nullopt;
+  middle /= hole.area_m2;
+  // The border cell nearest to the centre: the centre of a bent border may lie in free space.
+  const BorderCell& nearest =
+      **std::min_element(patch.begin(), patch.end(), [&](const auto* a, const auto* b) {
+        return (grid.centre_world(a->cell) - middle).squaredNorm() <
+               (grid.centre_world(b->cell) - middle).squaredNorm();
+      });
+  hole.position_world = grid.centre_world(nearest.cell);
+  hole.size_m = bounds.diagonal().norm() + grid.cell_m();
+  hole.look_direction_world = look.norm() > 0.1 * hole.area_m2 ? Vector3d(look.normalized()) : nearest.normal;
+  hole.viewpoint_world = find_viewpoint(grid, hole.position_world, hole.look_direction_world, floor_m);
+  if (hole.viewpoint_world)
+    hole.look_direction_world = (hole.position_world - *hole.viewpoint_world).normalized();
+  return hole;
+}
+
+}  // namespace
+
+void require_valid(const FrontierConfig& c) {
+  const ConfigCheck require{"frontier"};
+  require(c.cell_m > 0.0 && c.cell_m <= 1.0, "cell_m", c.cell_m, "in 0..1 m");
+  require(c.min_area_m2 >= 0.0 && std::isfinite(c.min_area_m2), "min_area_m2", c.min_area_m2, ">= 0");
+  require(c.max_size_m > 0.0, "max_size_m", c.max_size_m, "> 0");
+  require(c.min_enclosed >= 0.0 && c.min_enclosed <= 1.0, "min_enclosed", c.min_enclosed, "in 0..1");
+  require(c.max_open_part >= 0.0 && c.max_open_part <= 1.0, "max_open_part", c.max_open_part, "in 0..1");
+}
+
+Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {
+  require_valid(config);
+  const Grid grid(map, std::max(config.cell_m, map.resolution_m()));
+  if (grid.empty()) return {};
+  Border border = find_border(grid);
+  for (BorderCell& cell : border.cells) cell.enclosed = enclosed_part(grid, cell) >= config.min_enclosed;
+
+  const Eigen::AlignedBox3d occupied_world = map.counts().occupied_world;
+  if (occupied_world.isEmpty()) return {};
+  enclose_small_components(grid, occupied_world.sizes(), config, border);
 
   const int patches = number_patches(grid, border, config.max_size_m);
   std::vector<std::vector<const BorderCell*>> members(static_cast<std::size_t>(patches));
@@ -291,32 +327,8 @@ Frontier find_frontier(const StaticMap& map, const FrontierConfig& config) {
   };
   std::vector<Found> found;
   for (const std::vector<const BorderCell*>& patch : members) {
-    Hole hole;
-    hole.kind = patch.front()->enclosed ? HoleKind::kUnknownSpace : HoleKind::kOuterBorder;
-    Vector3d middle = Vector3d::Zero(), look = Vector3d::Zero();
-    Eigen::AlignedBox3d bounds;
-    for (const BorderCell* cell : patch) {
-      hole.area_m2 += cell->area_m2;
-      middle += cell->area_m2 * grid.centre_world(cell->cell);
-      look += cell->area_m2 * cell->normal;
-      bounds.extend(grid.centre_world(cell->cell));
-    }
-    if (!(hole.area_m2 >= config.min_area_m2) || !(hole.area_m2 > 0.0)) continue;
-    middle /= hole.area_m2;
-    // The border cell nearest to the centre: the centre of a bent border may lie in free space.
-    const BorderCell& nearest =
-        **std::min_element(patch.begin(), patch.end(), [&](const auto* a, const auto* b) {
-          return (grid.centre_world(a->cell) - middle).squaredNorm() <
-                 (grid.centre_world(b->cell) - middle).squaredNorm();
-        });
-    hole.position_world = grid.centre_world(nearest.cell);
-    hole.size_m = bounds.diagonal().norm() + grid.cell_m();
-    hole.look_direction_world =
-        look.norm() > 0.1 * hole.area_m2 ? Vector3d(look.normalized()) : nearest.normal;
-    hole.viewpoint_world = find_viewpoint(grid, hole.position_world, hole.look_direction_world, floor_m);
-    if (hole.viewpoint_world)
-      hole.look_direction_world = (hole.position_world - *hole.viewpoint_world).normalized();
-    found.push_back({std::move(hole), &patch});
+    std::optional<Hole> hole = hole_at(grid, patch, config.min_area_m2, floor_m);
+    if (hole) found.push_back({std::move(*hole), &patch});
   }
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
     return a.hole.kind != b.hole.kind ? a.hole.kind < b.hole.kind : a.hole.area_m2 > b.hole.area_m2;

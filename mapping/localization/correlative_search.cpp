@@ -230,6 +230,23 @@ bool is_same_candidate(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return gap.translation().norm() < 0.2 && Eigen::AngleAxisd(gap.linear()).angle() < 0.15;
 }
 
+/// Keeps the best `count` candidates that are distinct poses, best first.
+void keep_distinct(std::size_t count, std::vector<ShapeCandidate>& candidates) {
+  const auto is_nearer = [](const ShapeCandidate& a, const ShapeCandidate& b) {
+    return a.nearness > b.nearness;
+  };
+  std::stable_sort(candidates.begin(), candidates.end(), is_nearer);
+  std::vector<ShapeCandidate> distinct;
+  for (const ShapeCandidate& candidate : candidates) {
+    if (distinct.size() == count) break;
+    if (std::none_of(distinct.begin(), distinct.end(), [&](const ShapeCandidate& other) {
+          return is_same_candidate(candidate.T_world_camera, other.T_world_camera);
+        }))
+      distinct.push_back(candidate);
+  }
+  candidates = std::move(distinct);
+}
+
 }  // namespace
 
 ShapeIndex shape_index(const KeyframeDatabase& keyframe_database) {
@@ -283,27 +300,12 @@ std::vector<ShapeCandidate> search_by_shape(const DepthImage& depth_m, const Int
     T_world_camera = settled(known.coarse, points, T_world_camera);
     candidates.push_back({T_world_camera, mean_nearness(known.coarse, points, T_world_camera)});
   }
-  const auto is_nearer = [](const ShapeCandidate& a, const ShapeCandidate& b) {
-    return a.nearness > b.nearness;
-  };
-  const auto keep_distinct = [&](std::size_t count) {
-    std::stable_sort(candidates.begin(), candidates.end(), is_nearer);
-    std::vector<ShapeCandidate> distinct;
-    for (const ShapeCandidate& candidate : candidates) {
-      if (distinct.size() == count) break;
-      if (std::none_of(distinct.begin(), distinct.end(), [&](const ShapeCandidate& other) {
-            return is_same_candidate(candidate.T_world_camera, other.T_world_camera);
-          }))
-        distinct.push_back(candidate);
-    }
-    candidates = std::move(distinct);
-  };
-  keep_distinct(4 * most);
+  keep_distinct(4 * most, candidates);
   for (ShapeCandidate& candidate : candidates) {
     candidate.T_world_camera = settled(known.fine, more_points, candidate.T_world_camera);
     candidate.nearness = mean_nearness(known.fine, more_points, candidate.T_world_camera);
   }
-  keep_distinct(most);
+  keep_distinct(most, candidates);
   return candidates;
 }
 

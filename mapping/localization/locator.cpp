@@ -37,9 +37,11 @@ Tracking align_with_model(Locator& locator, const AlignConfig& config, const Int
   Tracking tracking;
   tracking.T_world_camera = T_world_camera_guess;
   for (int round = 0; round < 2; ++round) {
-    make_pyramid(expected_depth(T_world_view), camera, locator.expected_view, locator.expected_pyramid);
-    make_target_view(locator.expected_pyramid, T_world_view, locator.expected_view, locator.expected);
-    tracking = align(locator.live, locator.expected, tracking.T_world_camera, config);
+    make_pyramid(expected_depth(T_world_view), camera, locator.expected_view,
+                 locator.buffers.expected_pyramid);
+    make_target_view(locator.buffers.expected_pyramid, T_world_view, locator.expected_view,
+                     locator.buffers.expected);
+    tracking = align(locator.buffers.live, locator.buffers.expected, tracking.T_world_camera, config);
     if (!has_pose(tracking) || is_near(T_world_view, tracking.T_world_camera, kFarOff_m, kFarOff_rad)) break;
     T_world_view = tracking.T_world_camera;
   }
@@ -102,20 +104,21 @@ PoseHypothesis tried(Locator& locator, const Frame& frame, const std::vector<Sur
         align_with_model(locator, config, frame.depth_camera, T_world_camera, T_world_camera, expected_depth);
     const Eigen::Isometry3d& T_found = hypothesis.tracking.T_world_camera;
     const Eigen::Matrix<double, 6, 6> by_depth = hypothesis.tracking.information;
-    hypothesis.appearance = match_patches_at(seen, locator.known, T_found);
+    hypothesis.appearance = match_patches_at(seen, locator.index.patches, T_found);
     if (hypothesis.tracking.status == TrackStatus::kDegenerate &&
         hypothesis.appearance.alike.size() < guess.pairs.size()) {
       pull(by_depth, guess.pairs, hypothesis.tracking);
-      hypothesis.appearance = match_patches_at(seen, locator.known, T_found);
+      hypothesis.appearance = match_patches_at(seen, locator.index.patches, T_found);
     }
     for (int round = 0; round < kPulls && hypothesis.tracking.status == TrackStatus::kDegenerate &&
                         hypothesis.appearance.alike.size() >= kEnough;
          ++round) {
       pull(by_depth, hypothesis.appearance.alike, hypothesis.tracking);
-      hypothesis.appearance = match_patches_at(seen, locator.known, T_found);
+      hypothesis.appearance = match_patches_at(seen, locator.index.patches, T_found);
     }
   };
-  const std::size_t alike_before = match_patches_at(seen, locator.known, guess.T_world_camera).alike.size();
+  const std::size_t alike_before =
+      match_patches_at(seen, locator.index.patches, guess.T_world_camera).alike.size();
   align_from(guess.T_world_camera, locator.align);
   if (alike_before >= kEnough && 3 * hypothesis.appearance.alike.size() < 2 * alike_before)
     align_from(guess.T_world_camera, locator.strict_align);
@@ -137,7 +140,7 @@ PoseHypothesis tried(Locator& locator, const Frame& frame, const std::vector<Sur
 
 /// Uses all pixels: the mask of moved pixels belongs to a pose that is no longer valid.
 void look_at_all(Locator& locator) {
-  make_source_points(locator.live_pyramid, locator.live, {}, kLiveStep_px);
+  make_source_points(locator.buffers.live_pyramid, locator.buffers.live, {}, kLiveStep_px);
 }
 
 /// Searches the whole map: by patches and, if these give no certain pose, by the depth's shape. Without
@@ -161,22 +164,23 @@ Tracking search(Locator& locator, const Frame& frame, const KeyframeDatabase& ke
                                                            : SearchEnd::kFound;
     return locator.search_end == SearchEnd::kFound ? best->tracking : Tracking{};
   };
-  if (locator.known.empty()) locator.known = build_patch_index(keyframe_database);
+  if (locator.index.patches.empty()) locator.index.patches = build_patch_index(keyframe_database);
   const std::vector<SurfacePatch> seen = describe_patches(frame, locator.relocalise.place.patches);
-  const std::vector<PoseCandidate> by_look = propose_poses(seen, locator.known, kByLook, kMinAgreeing);
+  const std::vector<PoseCandidate> by_look =
+      propose_poses(seen, locator.index.patches, kByLook, kMinAgreeing);
   for (const PoseCandidate& candidate : by_look)
     if (4 * candidate.agreeing >= by_look.front().agreeing)
       hypotheses.push_back(tried(locator, frame, seen, candidate, expected_depth));
-  if (!frame.down_camera && (frame.colour.empty() || locator.known.empty())) {
+  if (!frame.down_camera && (frame.colour.empty() || locator.index.patches.empty())) {
     const Relocalisation by_preview = relocalise(frame, keyframe_database, locator.relocalise);
     if (by_preview)
       hypotheses.push_back(tried(locator, frame, seen, {by_preview.T_world_camera, 0, {}}, expected_depth));
   }
   Tracking found = judge();
   if (!has_pose(found) && frame.down_camera) {
-    if (locator.shape_index.empty()) locator.shape_index = shape_index(keyframe_database);
-    for (const ShapeCandidate& candidate : search_by_shape(frame.depth_m, frame.depth_camera,
-                                                           *frame.down_camera, locator.shape_index, kByShape))
+    if (locator.index.shapes.empty()) locator.index.shapes = shape_index(keyframe_database);
+    for (const ShapeCandidate& candidate : search_by_shape(
+             frame.depth_m, frame.depth_camera, *frame.down_camera, locator.index.shapes, kByShape))
       hypotheses.push_back(tried(locator, frame, seen, {candidate.T_world_camera, 0, {}}, expected_depth));
     found = judge();
   }
@@ -205,9 +209,9 @@ Tracking follow(Locator& locator, const Frame& frame, const ExpectedDepth& expec
 /// Returns whether enough patches of the frame coincide with known ones and look like them.
 bool is_borne_out_by_look(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                           const Eigen::Isometry3d& T_world_camera) {
-  if (locator.known.empty()) locator.known = build_patch_index(keyframe_database);
+  if (locator.index.patches.empty()) locator.index.patches = build_patch_index(keyframe_database);
   const PatchAgreement appearance = match_patches_at(
-      describe_patches(frame, locator.relocalise.place.patches), locator.known, T_world_camera);
+      describe_patches(frame, locator.relocalise.place.patches), locator.index.patches, T_world_camera);
   return is_supported_by_patches(appearance);
 }
 
@@ -263,24 +267,10 @@ bool doubt(Locator& locator, const Frame& frame, const KeyframeDatabase& keyfram
 
 }  // namespace
 
-std::string_view to_string(SearchEnd end) {
-  switch (end) {
-    case SearchEnd::kFound:
-      return "found";
-    case SearchEnd::kNoCandidate:
-      return "no candidate";
-    case SearchEnd::kNotCertain:
-      return "not certain";
-    case SearchEnd::kAmbiguous:
-      return "ambiguous";
-  }
-  return "unknown";
-}
-
 Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                 const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth) {
-  make_pyramid(frame.depth_m, frame.depth_camera, locator.live_view, locator.live_pyramid);
-  make_source_points(locator.live_pyramid, locator.live, dynamic_mask, kLiveStep_px);
+  make_pyramid(frame.depth_m, frame.depth_camera, locator.live_view, locator.buffers.live_pyramid);
+  make_source_points(locator.buffers.live_pyramid, locator.buffers.live, dynamic_mask, kLiveStep_px);
 
   Tracking tracking;
   bool may_be_found = true;  // by a search; one per frame is enough

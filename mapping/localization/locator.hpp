@@ -19,16 +19,20 @@ namespace roomradar {
 /// Renders the depth of the room's static model at a pose, in the size of the live depth image.
 using ExpectedDepth = std::function<const DepthImage&(const Eigen::Isometry3d& T_world_camera)>;
 
-/// Result of a search of the map.
-enum class SearchEnd {
-  kFound,
-  kNoCandidate,  ///< neither appearance nor shape yields a pose
-  kNotCertain,   ///< the best pose explains the frame too poorly, or has an unconstrained direction
-  kAmbiguous,    ///< ambiguous: another pose explains the frame about as well
+/// Indices over the keyframe database, each built on first use.
+struct MapIndices {
+  PatchIndex patches;
+  ShapeIndex shapes;  ///< surfaces of the keyframes
 };
-std::string_view to_string(SearchEnd end);
 
-/// State kept from frame to frame, and reused buffers.
+/// Buffers reused from frame to frame: the live image, and the depth expected at a pose.
+struct LocatorBuffers {
+  ViewPyramid live_pyramid, expected_pyramid;
+  SourcePoints live;
+  TargetView expected;
+};
+
+/// Settings, and state kept from frame to frame.
 struct Locator {
   ViewConfig live_view{.finest_width_px = 160};  ///< twice the resolution costs 3 ms and gains no accuracy
   ViewConfig expected_view{.finest_width_px = 160, .noisy = false};  ///< rendered depth needs no smoothing
@@ -49,11 +53,8 @@ struct Locator {
   std::vector<PoseHypothesis> hypotheses;  ///< pose hypotheses of the last search
   SearchEnd search_end = SearchEnd::kNoCandidate;
 
-  PatchIndex known;        ///< patches of the keyframe database; built on first use
-  ShapeIndex shape_index;  ///< surfaces of the keyframe database; built on first use
-  ViewPyramid live_pyramid, expected_pyramid;
-  SourcePoints live;
-  TargetView expected;
+  MapIndices index;
+  LocatorBuffers buffers;
 };
 
 /// Localises the frame by alignment with the expected depth at the pose predicted from the last motion.

@@ -128,6 +128,38 @@ int seen_in(const std::vector<std::size_t>& chosen, std::span<const Alike> alike
   return count;
 }
 
+/// Pairs that agree with one of them, the vote.
+struct Group {
+  int seen;  // distinct patches of the frame
+  std::size_t vote;
+  std::vector<std::size_t> pairs;
+};
+
+/// Groups the pairs that agree with the pairs that look most alike; most patches of the frame first.
+std::vector<Group> agreeing_groups(const std::vector<Alike>& alike, int min_agreeing) {
+  std::vector<Eigen::Matrix3f> R_known_seen;
+  R_known_seen.reserve(alike.size());
+  for (const Alike& pair : alike)
+    R_known_seen.push_back(axes_of(*pair.known) * axes_of(*pair.seen).transpose());
+
+  constexpr std::size_t kVotes = 400;
+  std::vector<std::size_t> votes(alike.size());
+  std::iota(votes.begin(), votes.end(), std::size_t{0});
+  std::stable_sort(votes.begin(), votes.end(), [&](std::size_t a, std::size_t b) {
+    return alike[a].distance_bits < alike[b].distance_bits;
+  });
+  votes.resize(std::min(votes.size(), kVotes));
+  std::vector<Group> groups;
+  for (const std::size_t vote : votes) {
+    std::vector<std::size_t> pairs = agreeing_with(vote, alike, R_known_seen);
+    const int count = seen_in(pairs, alike);
+    if (count >= min_agreeing) groups.push_back({count, vote, std::move(pairs)});
+  }
+  std::stable_sort(groups.begin(), groups.end(),
+                   [](const Group& a, const Group& b) { return a.seen > b.seen; });
+  return groups;
+}
+
 constexpr float kCell_m = 0.05F;
 
 Eigen::Vector3i cell_of(const Eigen::Vector3f& point_world) {
@@ -219,34 +251,11 @@ PatchAgreement match_patches_at(std::span<const SurfacePatch> seen, const PatchI
 
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing) {
-  constexpr std::size_t kVotes = 400, kTried = 24;
+  constexpr std::size_t kTried = 24;
   std::vector<Alike> alike;
   for (std::size_t i = 0; i < seen.size(); ++i)
     add_alike(seen[i], static_cast<int>(i), known.by_size[seen[i].size], alike);
-  std::vector<Eigen::Matrix3f> R_known_seen;
-  R_known_seen.reserve(alike.size());
-  for (const Alike& pair : alike)
-    R_known_seen.push_back(axes_of(*pair.known) * axes_of(*pair.seen).transpose());
-
-  std::vector<std::size_t> votes(alike.size());
-  std::iota(votes.begin(), votes.end(), std::size_t{0});
-  std::stable_sort(votes.begin(), votes.end(), [&](std::size_t a, std::size_t b) {
-    return alike[a].distance_bits < alike[b].distance_bits;
-  });
-  votes.resize(std::min(votes.size(), kVotes));
-  struct Group {
-    int seen;
-    std::size_t vote;
-    std::vector<std::size_t> pairs;
-  };
-  std::vector<Group> groups;
-  for (const std::size_t vote : votes) {
-    std::vector<std::size_t> pairs = agreeing_with(vote, alike, R_known_seen);
-    const int count = seen_in(pairs, alike);
-    if (count >= min_agreeing) groups.push_back({count, vote, std::move(pairs)});
-  }
-  std::stable_sort(groups.begin(), groups.end(),
-                   [](const Group& a, const Group& b) { return a.seen > b.seen; });
+  const std::vector<Group> groups = agreeing_groups(alike, min_agreeing);
 
   std::vector<PoseCandidate> candidates;
   std::size_t tried = 0;

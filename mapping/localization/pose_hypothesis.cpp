@@ -88,4 +88,18 @@ bool is_ambiguous(const PoseHypothesis& best, const std::vector<PoseHypothesis>&
   });
 }
 
+std::string_view to_string(SearchEnd end) {
+  switch (end) {
+    case SearchEnd::kFound:
+      return "found";
+    case SearchEnd::kNoCandidate:
+      return "no candidate";
+    case SearchEnd::kNotCertain:
+      return "not certain";
+    case SearchEnd::kAmbiguous:
+      return "ambiguous";
+  }
+  return "unknown";
+}
+
 }  // namespace roomradar

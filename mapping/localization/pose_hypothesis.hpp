@@ -1,6 +1,7 @@
 // pose_hypothesis.hpp: pose hypotheses of a map search, and the tests that accept them.
 #pragma once
 #include <Eigen/Geometry>
+#include <string_view>
 #include <vector>
 
 #include "mapping/alignment/align.hpp"
@@ -54,5 +55,14 @@ inline bool is_same_pose(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b)
   constexpr double kSame_m = 0.1, kSame_rad = 0.1;
   return is_near(a, b, kSame_m, kSame_rad);
 }
+
+/// Result of a search of the map.
+enum class SearchEnd {
+  kFound,
+  kNoCandidate,  ///< neither appearance nor shape yields a pose
+  kNotCertain,   ///< the best pose explains the frame too poorly, or has an unconstrained direction
+  kAmbiguous,    ///< ambiguous: another pose explains the frame about as well
+};
+std::string_view to_string(SearchEnd end);
 
 }  // namespace roomradar

@@ -16,13 +16,12 @@
 #include "mapping/map/map_info_json.hpp"
 #include "mapping/map/unknown_surface_file.hpp"
 #include "mapping/mesh/mesh_file.hpp"
-#include "mapping/octree/memory_use.hpp"
 #include "mapping/storage/atomic_folder.hpp"
 #include "mapping/storage/sha256.hpp"
-#include "mapping/types/pose_origin.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
+#include "mapping/types/system/process_memory.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
@@ -30,46 +29,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kInfo = "map.json";
-constexpr const char* kOctree = "octree.ot";
-constexpr const char* kPlainOctree = "octree.bt";
-constexpr const char* kMesh = "mesh.ply";
-constexpr const char* kPlaces = "places.bin";
-constexpr const char* kTrajectory = "trajectory.txt";
-constexpr std::array<const char*, 5> kParts = {kOctree, kPlainOctree, kMesh, kPlaces, kTrajectory};
-constexpr const char* kCoverage = "coverage.png";  // optional
-constexpr const char* kUnknown = "unknown.bin";    // optional: earlier versions saved none
 constexpr std::uintmax_t kMaxPictureBytes = 1U << 26U;
 constexpr std::uintmax_t kMaxInfoBytes = 1U << 20U;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& fault) {
   throw Error(path.string() + ": " + fault);
-}
-
-bool is_part(const std::string& name) {
-  return name == kCoverage || name == kUnknown ||
-         std::find(kParts.begin(), kParts.end(), name) != kParts.end();
-}
-
-// Throws Error unless `folder` is missing, empty, or contains a map and nothing else.
-void require_replaceable(const fs::path& folder) {
-  require_outside_maps(folder);
-  std::error_code fault;
-  const fs::file_status status = fs::symlink_status(folder, fault);
-  if (!fs::exists(status)) return;
-  if (!fs::is_directory(status)) fail(folder, "exists and is not a folder; choose another name for the map");
-  bool empty = true;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
-    empty = false;
-    const std::string name = entry.path().filename().string();
-    if (name != kInfo && !is_part(name))
-      fail(folder,
-           "exists and holds \"" + name + "\", which is no part of a map; choose another name for the map");
-  }
-  if (fault) fail(folder, "cannot be listed: " + fault.message());
-  if (!empty && !fs::exists(folder / kInfo))
-    fail(folder,
-         std::string("exists and has no ") + kInfo + ", so it is no map; choose another name for the map");
 }
 
 // Compares a file's size and checksum with map.json; returns the fault, or nullopt if they agree. Does not
@@ -82,7 +46,7 @@ std::optional<std::string> fault_of(const fs::path& path, const MapFile& expecte
   const std::uintmax_t bytes = fs::file_size(path, fault);
   if (fault) return path.string() + ": cannot be read: " + fault.message();
   if (bytes != expected.bytes)
-    return path.string() + ": has " + std::to_string(bytes) + " bytes, and " + kInfo + " says " +
+    return path.string() + ": has " + std::to_string(bytes) + " bytes, and " + kMapInfoFile + " says " +
            std::to_string(expected.bytes) +
            (bytes < expected.bytes ? "; it is cut short" : "; it was altered");
   if (const std::uint64_t most = machine_bytes(); most > 0 && bytes > most)
@@ -100,10 +64,10 @@ std::optional<std::string> fault_of(const fs::path& path, const MapFile& expecte
 // Checks that map.json lists all required parts, optionally others of a map, and nothing else. Thus no listed
 // path can lead out of the folder.
 void require_parts(const MapInfo& info, const fs::path& where) {
-  for (const char* part : kParts)
+  for (const char* part : kMapParts)
     if (!info.files.contains(part)) fail(where, std::string("does not list \"") + part + "\"");
   for (const auto& [name, file] : info.files)
-    if (!is_part(name)) fail(where, "lists \"" + name.substr(0, 100) + "\", which is no part of a map");
+    if (!is_map_part(name)) fail(where, "lists \"" + name.substr(0, 100) + "\", which is no part of a map");
 }
 
 std::vector<std::uint8_t> read_picture(const fs::path& path) {
@@ -112,34 +76,13 @@ std::vector<std::uint8_t> read_picture(const fs::path& path) {
 }
 
 StaticMap read_octree(const fs::path& folder, const MapInfo& info) {
-  StaticMap octree = StaticMap::read_ot(folder / kOctree);
+  StaticMap octree = StaticMap::read_ot(folder / kMapOctreeFile);
   if (std::abs(octree.resolution_m() - info.resolution_m) > 1e-9 * info.resolution_m)
-    fail(folder / kOctree, "its resolution is not the one in " + std::string(kInfo));
+    fail(folder / kMapOctreeFile, "its resolution is not the one in " + std::string(kMapInfoFile));
   return octree;
 }
 
-std::string in_megabytes(std::uint64_t bytes) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.1f MB", static_cast<double>(bytes) / 1e6);
-  return text.data();
-}
-
-std::string extents(const Eigen::AlignedBox3d& box) {
-  if (box.isEmpty()) return "nothing";
-  const Eigen::Vector3d &low = box.min(), &high = box.max();
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(), "x %.2f..%.2f m, y %.2f..%.2f m, z %.2f..%.2f m", low.x(), high.x(),
-                low.y(), high.y(), low.z(), high.z());
-  return text.data();
-}
-
 }  // namespace
-
-bool knows_recorded_world(const MapInfo& info) {
-  const auto poses = info.settings.find(kPosesSetting);
-  return (poses != info.settings.end() && poses->second == to_string(PoseOrigin::kRecorded)) ||
-         !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
-}
 
 SurfaceConfig surface_config_of(const MapInfo& info) {
   SurfaceConfig config;
@@ -154,44 +97,6 @@ SurfaceConfig surface_config_of(const MapInfo& info) {
   return config;
 }
 
-fs::path tidy_map_name(const fs::path& folder) {
-  if (folder.empty()) throw Error("the map's folder has no name; give one, such as maps/kitchen");
-  fs::path path = folder.lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();  // a trailing slash
-  if (path.filename() == "." || path.filename() == ".." || !path.has_filename())
-    fail(folder, "is no name for a map's folder; give a new one, such as maps/kitchen");
-  return path;
-}
-
-void require_outside_maps(const fs::path& path) {
-  if (path.empty()) return;
-  std::error_code ignored;
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  if (fs::exists(folder / kInfo, ignored))
-    fail(path, "lies in the folder of a map, which holds nothing but the map; choose another place");
-}
-
-void require_contents_outside_maps(const fs::path& folder) {
-  if (folder.empty()) return;
-  require_outside_maps((folder / "").parent_path());
-  require_outside_maps(folder / "contents");
-}
-
-void require_can_become_map(const fs::path& folder, std::initializer_list<fs::path> outputs) {
-  const fs::path map = tidy_map_name(folder);
-  require_replaceable(map);
-  std::error_code ignored;  // paths that cannot be resolved are rejected when they are written
-  const fs::path whole = fs::weakly_canonical(fs::absolute(map), ignored);
-  for (const fs::path& output : outputs) {
-    if (output.empty()) continue;
-    const fs::path path = fs::weakly_canonical(fs::absolute(output), ignored);
-    if (!whole.empty() &&
-        std::mismatch(whole.begin(), whole.end(), path.begin(), path.end()).first == whole.end())
-      fail(output, "would lie in " + map.string() +
-                       ", which is to be a map and holds nothing but that; choose another place");
-  }
-}
-
 void save_map(const fs::path& folder, const SavedMap& map) {
   const fs::path target = tidy_map_name(folder);
   require_replaceable(target);
@@ -203,14 +108,15 @@ void save_map(const fs::path& folder, const SavedMap& map) {
                      " is the most; take a larger --deviation, or a coarser --resolution.");
   AtomicFolder partial(target);
 
-  map.octree.write_ot(partial.path() / kOctree);
-  map.octree.write_bt(partial.path() / kPlainOctree);
-  write_mesh(map.mesh, partial.path() / kMesh);
-  write_keyframe_database(map.keyframe_database, partial.path() / kPlaces);
-  write_trajectory(partial.path() / kTrajectory, map.trajectory);
-  write_unknown_surface(unknown_surface(map.octree, map.mesh), partial.path() / kUnknown);
+  map.octree.write_ot(partial.path() / kMapOctreeFile);
+  map.octree.write_bt(partial.path() / kMapPlainOctreeFile);
+  write_mesh(map.mesh, partial.path() / kMapMeshFile);
+  write_keyframe_database(map.keyframe_database, partial.path() / kMapKeyframesFile);
+  write_trajectory(partial.path() / kMapTrajectoryFile, map.trajectory);
+  write_unknown_surface(unknown_surface(map.octree, map.mesh), partial.path() / kMapUnknownFile);
   if (!map.coverage_png.empty())
-    write_bytes(partial.path() / kCoverage, std::string(map.coverage_png.begin(), map.coverage_png.end()));
+    write_bytes(partial.path() / kMapCoverageFile,
+                std::string(map.coverage_png.begin(), map.coverage_png.end()));
 
   MapInfo info = map.info;
   info.format_version = kMapFormatVersion;
@@ -222,12 +128,12 @@ void save_map(const fs::path& folder, const SavedMap& map) {
   info.keyframes = map.keyframe_database.keyframes.size();
   info.poses = map.trajectory.size();
   info.files.clear();
-  std::vector<std::string> parts(kParts.begin(), kParts.end());
-  parts.emplace_back(kUnknown);
-  if (!map.coverage_png.empty()) parts.emplace_back(kCoverage);
+  std::vector<std::string> parts(kMapParts.begin(), kMapParts.end());
+  parts.emplace_back(kMapUnknownFile);
+  if (!map.coverage_png.empty()) parts.emplace_back(kMapCoverageFile);
   for (const std::string& part : parts)
     info.files[part] = {fs::file_size(partial.path() / part), sha256_of_file(partial.path() / part)};
-  write_bytes(partial.path() / kInfo, to_json(info));
+  write_bytes(partial.path() / kMapInfoFile, to_json(info));
 
   partial.commit();
 }
@@ -241,7 +147,7 @@ MapInfo read_info(const fs::path& folder) {
                      aside.filename().string() + "; rename that to " + folder.filename().string());
   if (!fs::is_directory(folder, fault))
     fail(folder, "there is no such map folder; make one with `roomradar prescan`");
-  const fs::path path = folder / kInfo;
+  const fs::path path = folder / kMapInfoFile;
   const fs::file_status status = fs::symlink_status(path, fault);
   if (!fs::exists(status)) fail(path, "is missing, so the folder is no map");
   if (!fs::is_regular_file(status))
@@ -256,16 +162,17 @@ SavedMap read_map(const fs::path& folder) {
   for (const auto& [name, file] : info.files)
     if (const auto fault = fault_of(folder / name, file))
       throw Error(*fault + "; take the map from a backup or scan the room again");
-  return {.info = info,
-          .octree = read_octree(folder, info),
-          .mesh = read_mesh(folder / kMesh),
-          .keyframe_database = read_keyframe_database(folder / kPlaces),
-          .trajectory = read_trajectory(folder / kTrajectory),
-          .coverage_png =
-              info.files.contains(kCoverage) ? read_picture(folder / kCoverage) : std::vector<std::uint8_t>{},
-          .unknown = info.files.contains(kUnknown)
-                         ? std::make_shared<const UnknownSurface>(read_unknown_surface(folder / kUnknown))
-                         : nullptr};
+  return {
+      .info = info,
+      .octree = read_octree(folder, info),
+      .mesh = read_mesh(folder / kMapMeshFile),
+      .keyframe_database = read_keyframe_database(folder / kMapKeyframesFile),
+      .trajectory = read_trajectory(folder / kMapTrajectoryFile),
+      .coverage_png = info.files.contains(kMapCoverageFile) ? read_picture(folder / kMapCoverageFile)
+                                                            : std::vector<std::uint8_t>{},
+      .unknown = info.files.contains(kMapUnknownFile)
+                     ? std::make_shared<const UnknownSurface>(read_unknown_surface(folder / kMapUnknownFile))
+                     : nullptr};
 }
 
 std::vector<std::string> faults_of(const fs::path& folder) {
@@ -287,12 +194,12 @@ std::vector<std::string> faults_of(const fs::path& folder) {
       continue;
     }
     attempt([&, &name = name] {
-      if (name == kOctree) static_cast<void>(read_octree(folder, *info));
-      if (name == kMesh) static_cast<void>(read_mesh(folder / part));
-      if (name == kPlaces) static_cast<void>(read_keyframe_database(folder / part));
-      if (name == kTrajectory) static_cast<void>(read_trajectory(folder / part));
-      if (name == kUnknown) static_cast<void>(read_unknown_surface(folder / part));
-      if (name == kCoverage) static_cast<void>(read_picture(folder / part));
+      if (name == kMapOctreeFile) static_cast<void>(read_octree(folder, *info));
+      if (name == kMapMeshFile) static_cast<void>(read_mesh(folder / part));
+      if (name == kMapKeyframesFile) static_cast<void>(read_keyframe_database(folder / part));
+      if (name == kMapTrajectoryFile) static_cast<void>(read_trajectory(folder / part));
+      if (name == kMapUnknownFile) static_cast<void>(read_unknown_surface(folder / part));
+      if (name == kMapCoverageFile) static_cast<void>(read_picture(folder / part));
     });
   }
   return faults;
@@ -322,7 +229,9 @@ void export_map(const fs::path& folder, const fs::path& path) {
                    "\" is no format to export to; use .ot or .bt for the octree, .ply .obj .stl or .glb for "
                    "the mesh");
   require_outside_maps(path);
-  const char* part = extension == ".ot" ? kOctree : extension == ".bt" ? kPlainOctree : kMesh;
+  const char* part = extension == ".ot"   ? kMapOctreeFile
+                     : extension == ".bt" ? kMapPlainOctreeFile
+                                          : kMapMeshFile;
   read_consistent(folder, [&] {
     const MapInfo info = read_info(folder);
     if (const auto fault = fault_of(folder / part, info.files.at(part))) throw Error(*fault);
@@ -336,33 +245,6 @@ void export_map(const fs::path& folder, const fs::path& path) {
     out.commit();
     return 0;
   });
-}
-
-std::string describe(const MapInfo& info) {
-  std::string text;
-  const auto line = [&](const char* name, const std::string& value) {
-    text += std::string(name) + std::string(16 - std::string_view(name).size(), ' ') + value + "\n";
-  };
-  std::array<char, 32> resolution{};
-  std::snprintf(resolution.data(), resolution.size(), "%g m", info.resolution_m);
-  line("source", info.source);
-  line("resolution", resolution.data());
-  line("frames",
-       std::to_string(info.frames_fused) + " fused of " + std::to_string(info.frames_read) + " read");
-  line("up", info.up_source);
-  line("octree", std::to_string(info.counts.occupied_leaves) + " occupied and " +
-                     std::to_string(info.counts.free_leaves) + " free leaves, " +
-                     std::to_string(info.counts.nodes) + " nodes, " + in_megabytes(info.counts.memory_bytes) +
-                     " in memory");
-  line("known", extents(info.counts.known_world));
-  line("occupied", extents(info.counts.occupied_world));
-  line("mesh", std::to_string(info.triangles) + " triangles, " + std::to_string(info.vertices) + " vertices");
-  line("database", std::to_string(info.keyframes) + " keyframes");
-  line("trajectory", std::to_string(info.poses) + " poses");
-  for (const auto& [name, file] : info.files) line(name.c_str(), in_megabytes(file.bytes));
-  for (const auto& [name, value] : info.settings) line(name.substr(0, 15).c_str(), value);
-  line("format", std::to_string(info.format_version) + ", by roomradar " + info.tool_version);
-  return text;
 }
 
 }  // namespace roomradar

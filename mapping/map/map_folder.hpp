@@ -3,13 +3,12 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
-#include <initializer_list>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "mapping/localization/keyframe_database.hpp"
+#include "mapping/map/map_files.hpp"
 #include "mapping/map/map_info.hpp"
 #include "mapping/octree/static_map.hpp"
 #include "mapping/surface/surface_extraction.hpp"
@@ -30,29 +29,9 @@ struct SavedMap {
   std::shared_ptr<const UnknownSurface> unknown;
 };
 
-/// Returns whether info.T_world_recorded locates recorded poses in the map. True if the map was scanned with
-/// recorded poses, or from a recording that had them.
-bool knows_recorded_world(const MapInfo& info);
-
 /// Returns the settings for extracting the map's surface again, with prescan's max deviation if info.settings
 /// has it. Throws Error if this setting is invalid.
 SurfaceConfig surface_config_of(const MapInfo& info);
-
-/// Returns the path without dot components and without a trailing slash. Throws Error if no usable name for a
-/// map remains.
-std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
-
-/// Throws Error if the file or folder would be directly in a map's folder, which may contain only the map's
-/// files. An empty path is allowed.
-void require_outside_maps(const std::filesystem::path& path);
-/// Same for files to be written into `folder`; also throws if `folder` itself is a map.
-void require_contents_outside_maps(const std::filesystem::path& folder);
-
-/// Checks, before minutes of work, whether a map can be saved to `folder`. Throws Error if save_map would
-/// refuse its name or its content, or if one of `outputs` would be in it. `outputs` are the other files and
-/// folders to be written; empty paths are ignored.
-void require_can_become_map(const std::filesystem::path& folder,
-                            std::initializer_list<std::filesystem::path> outputs);
 
 /// Writes the map beside `folder` (folder.partial-PID), syncs it, and puts it in place in one step.
 /// Extracts the border of unknown space from map.octree and map.mesh for the file unknown.bin.
@@ -74,8 +53,5 @@ std::vector<std::string> verify_map(const std::filesystem::path& folder);
 /// .stl .glb. Throws Error if the extension is none of these, the map is damaged, or `path` is in a map's
 /// folder.
 void export_map(const std::filesystem::path& folder, const std::filesystem::path& path);
-
-/// Returns the output of `roomradar map info`.
-std::string describe(const MapInfo& info);
 
 }  // namespace roomradar

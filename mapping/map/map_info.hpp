@@ -46,4 +46,11 @@ struct MapInfo {
   std::map<std::string, MapFile> files;
 };
 
+/// Returns whether info.T_world_recorded locates recorded poses in the map. True if the map was scanned with
+/// recorded poses, or from a recording that had them.
+bool knows_recorded_world(const MapInfo& info);
+
+/// Returns the output of `roomradar map info`.
+std::string describe(const MapInfo& info);
+
 }  // namespace roomradar

@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "mapping/mesh/collapse_queue.hpp"
+#include "mapping/mesh/merged_vertex.hpp"
 #include "mapping/mesh/quadric.hpp"
 #include "mapping/mesh/triangle_distance.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
 constexpr float kThinnest_m = 1e-4F;  // min height of a new triangle
 constexpr float kLarge = 12.0F;       // a triangle with a side above this many tolerances counts as large
 constexpr float kMostTurn = 0.3F;     // min cosine between a triangle's normals before and after a collapse
@@ -31,10 +31,8 @@ class EdgeCollapser {
         tolerance_m_(tolerance_m),
         mesh_(full),
         merged_(full.vertices.size()),
-        first_corner_(full.vertices.size(), kNone),
-        next_corner_(3 * full.triangles.size(), kNone),
-        first_point_(full.triangles.size(), kNone),
-        next_point_(full.vertices.size(), kNone),
+        corners_(full.vertices.size(), 3 * full.triangles.size()),
+        points_(full.triangles.size(), full.vertices.size()),
         mark_(full.vertices.size(), 0) {
     link();
     find_borders();
@@ -58,7 +56,7 @@ class EdgeCollapser {
 
   Mesh take() {
     for (std::size_t v = 0; v < merged_.size(); ++v) {
-      const Merged& merged = merged_[v];
+      const MergedVertex& merged = merged_[v];
       if (merged.count == 0) continue;
       if (!mesh_.normals.empty() && !merged.normal_sum.isZero())
         mesh_.normals[v] = merged.normal_sum.normalized();
@@ -67,24 +65,14 @@ class EdgeCollapser {
       const auto channel = [](float value) { return static_cast<std::uint8_t>(std::lround(value)); };
       mesh_.colours[v] = {channel(mean.x()), channel(mean.y()), channel(mean.z())};
     }
-    std::erase_if(mesh_.triangles, [](const Triangle& t) { return t[0] == kNone; });
+    std::erase_if(mesh_.triangles, [](const Triangle& t) { return t[0] == kNoIndex; });
     return std::move(mesh_);
   }
 
  private:
-  // Accumulated data of all vertices merged into one.
-  struct Merged {
-    Quadric quadric;
-    Eigen::Vector3f normal_sum = Eigen::Vector3f::Zero();
-    Eigen::Vector3f colour_sum = Eigen::Vector3f::Zero();
-    std::uint32_t count = 0;
-    std::uint32_t version = 0;  // incremented by every collapse; kNone once removed, which matches no
-                                // candidate
-    float tolerance_m = 0.0F;   // minimum over the merged vertices; 0: constrained
-    bool on_border = false;
-  };
-
-  [[nodiscard]] bool is_alive(std::uint32_t triangle) const { return mesh_.triangles[triangle][0] != kNone; }
+  [[nodiscard]] bool is_alive(std::uint32_t triangle) const {
+    return mesh_.triangles[triangle][0] != kNoIndex;
+  }
   [[nodiscard]] const Eigen::Vector3f& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
 
   // Builds the list of corners per vertex, and assigns each vertex as a point to one of its triangles.
@@ -92,25 +80,21 @@ class EdgeCollapser {
     for (std::uint32_t t = 0; t < full_.triangles.size(); ++t)
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t v = full_.triangles[t][k];
-        if (first_corner_[v] == kNone) {
-          next_point_[v] = first_point_[t];
-          first_point_[t] = v;
-        }
-        next_corner_[3 * t + k] = first_corner_[v];
-        first_corner_[v] = 3 * t + k;
+        if (corners_.first[v] == kNoIndex) points_.push_front(t, v);
+        corners_.push_front(v, 3 * t + k);
       }
   }
 
   // Collects the live triangles around a vertex and unlinks the removed ones.
   void star_of(std::uint32_t vertex, std::vector<std::uint32_t>& star) {
     star.clear();
-    std::uint32_t* link = &first_corner_[vertex];
-    while (*link != kNone) {
+    std::uint32_t* link = &corners_.first[vertex];
+    while (*link != kNoIndex) {
       if (is_alive(*link / 3)) {
         star.push_back(*link / 3);
-        link = &next_corner_[*link];
+        link = &corners_.next[*link];
       } else {
-        *link = next_corner_[*link];
+        *link = corners_.next[*link];
       }
     }
   }
@@ -139,7 +123,7 @@ class EdgeCollapser {
 
   void add_planes() {
     for (std::uint32_t v = 0; v < merged_.size(); ++v) {
-      Merged& merged = merged_[v];
+      MergedVertex& merged = merged_[v];
       merged.count = 1;
       merged.tolerance_m = tolerance_m_[v];
       if (!full_.normals.empty()) merged.normal_sum = full_.normals[v];
@@ -276,7 +260,7 @@ class EdgeCollapser {
         const auto own = static_cast<std::size_t>(
             std::find_if(made_.begin(), made_.end(), [&](const Made& m) { return m.triangle == t; }) -
             made_.begin());
-        for (std::uint32_t v = first_point_[t]; v != kNone; v = next_point_[v]) {
+        for (std::uint32_t v = points_.first[t]; v != kNoIndex; v = points_.next[v]) {
           if (mark_[v] == stamp_) continue;  // already done: its triangle is in both stars
           mark_[v] = stamp_;
           const float limit_m2 = tolerance_m_[v] * tolerance_m_[v];
@@ -322,35 +306,22 @@ class EdgeCollapser {
     if (bulges(p, std::max(merged_[kept].tolerance_m, merged_[gone].tolerance_m))) return false;
 
     for (const auto* star : {&star_kept_, &star_gone_})
-      for (const std::uint32_t t : *star) first_point_[t] = kNone;
-    for (const auto& [point, triangle] : homes_) {
-      next_point_[point] = first_point_[triangle];
-      first_point_[triangle] = point;
-    }
+      for (const std::uint32_t t : *star) points_.first[t] = kNoIndex;
+    for (const auto& [point, triangle] : homes_) points_.push_front(triangle, point);
     for (const std::uint32_t t : star_gone_) {
       Triangle& triangle = mesh_.triangles[t];
       if (has_corner(t, kept)) {
-        triangle.fill(kNone);
+        triangle.fill(kNoIndex);
         continue;
       }
       const auto k =
           static_cast<std::uint32_t>(std::find(triangle.begin(), triangle.end(), gone) - triangle.begin());
       triangle[k] = kept;
-      next_corner_[3 * t + k] = first_corner_[kept];
-      first_corner_[kept] = 3 * t + k;
+      corners_.push_front(kept, 3 * t + k);
     }
-    first_corner_[gone] = kNone;
+    corners_.first[gone] = kNoIndex;
     mesh_.vertices[kept] = p;
-    Merged& into = merged_[kept];
-    Merged& from = merged_[gone];
-    into.quadric = both;
-    into.normal_sum += from.normal_sum;
-    into.colour_sum += from.colour_sum;
-    into.count += from.count;
-    into.on_border |= from.on_border;
-    ++into.version;
-    from.version = kNone;
-    into.tolerance_m = std::min(into.tolerance_m, from.tolerance_m);
+    merged_[kept].absorb(merged_[gone], both);
     return true;
   }
 
@@ -366,10 +337,10 @@ class EdgeCollapser {
   const Mesh& full_;
   const MeshDistanceQuery& full_surface_;
   const std::vector<float>& tolerance_m_;
-  Mesh mesh_;  // removed triangles have corners kNone
-  std::vector<Merged> merged_;
-  std::vector<std::uint32_t> first_corner_, next_corner_;  // linked lists per vertex of corners 3 t + k
-  std::vector<std::uint32_t> first_point_, next_point_;    // linked lists per triangle of original vertices
+  Mesh mesh_;  // removed triangles have corners kNoIndex
+  std::vector<MergedVertex> merged_;
+  IndexLists corners_;  // per vertex: corners 3 t + k
+  IndexLists points_;   // per triangle: original vertices
   std::vector<std::uint32_t> mark_;
   std::uint32_t stamp_ = 0;
   CandidateQueue queue_;

@@ -80,7 +80,8 @@ struct NodeVisibility {
   unsigned part_free = 0;  ///< its measured part is seen through; the rest is out of view or has no depth
 };
 
-/// Classifies siblings from their boxes in the camera frame and the image rectangles these project to.
+/// Classifies siblings from their boxes in the camera frame and the image rectangles these project to. One
+/// function: its eight-wide values stay in registers from the projection to the tests.
 /// @param half  half extents of a box, m
 template <typename Float8>
 NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,

@@ -1,11 +1,12 @@
 // ray_endpoints.cpp: collects a frame's ray endpoints per leaf block.
+#include "mapping/octree/ray_endpoints.hpp"
+
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <utility>
 
-#include "mapping/octree/fusion.hpp"
 #include "mapping/octree/node_visibility.hpp"
 #include "mapping/types/morton.hpp"
 

@@ -2,11 +2,12 @@
 #include "mapping/octree/static_map.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "mapping/octree/map_evidence.hpp"
+#include "mapping/octree/static_map_file.hpp"
 #include "mapping/octree/static_map_octree.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -52,60 +53,6 @@ Found find(const BlockOctree& tree, const Eigen::Vector3d& p_world) {
   found.block = &tree.leaves(found.node);
   found.i = place.towards(found.key);
   return found;
-}
-
-// Adds log-odds to everything in a node, with clamping.
-class AddLogOdds {
- public:
-  AddLogOdds(BlockOctree& tree, const FusionConfig& config, float log_odds)
-      : tree_(tree), config_(config), added_(log_odds) {}
-
-  [[nodiscard]] Slot to_node(Slot node, unsigned depth) const {
-    if (!node.is_block()) return Slot::cube(sum(node.log_odds()));
-    if (depth == kLeafDepth - 1) return to_voxels(node, 0xFFU);
-    InnerBlock& block = tree_.inner(node);
-    for (Slot& slot : block.slots) slot = to_node(slot, depth + 1);
-    return tree_.prune(node, block);
-  }
-  [[nodiscard]] Slot to_voxels(Slot node, unsigned which) const {
-    return change_leaves(tree_, node, [&](LeafBlock& block) {
-      for (unsigned i = 0; i < 8; ++i)
-        if ((which >> i & 1U) != 0) block.log_odds[i] = sum(block.log_odds[i]);
-    });
-  }
-
- private:
-  [[nodiscard]] LogOdds sum(LogOdds before) const {
-    const float unit = tree_.units().log_odds;
-    const float after =
-        std::clamp(static_cast<float>(before) * unit + added_, config_.min_log_odds, config_.max_log_odds);
-    const auto steps = static_cast<LogOdds>(std::lround(after / unit));
-    return steps == 0 ? LogOdds{1} : steps;
-  }
-  BlockOctree& tree_;
-  const FusionConfig& config_;
-  float added_;
-};
-
-// Averages a sample of another map into voxel i.
-void add_sample(BlockOctree& tree, LeafBlock& block, unsigned i, const SurfaceSample& sample) {
-  const BlockUnits& units = tree.units();
-  const float weight = std::clamp(std::round(sample.weight / units.weight), 1.0F, 65535.0F);
-  const float sum = static_cast<float>(block.weight[i]) + weight;
-  const float part = weight / sum;
-  if (sample.has_colour) {
-    Rgb& own = tree.colours(block).colours[i];
-    const float colour_part = (block.coloured >> i & 1U) != 0 ? part : 1.0F;
-    const auto mean = [colour_part](std::uint8_t a, std::uint8_t b) {
-      return static_cast<std::uint8_t>(std::lround(a + static_cast<float>(b - a) * colour_part));
-    };
-    own = {mean(own.r, sample.colour.r), mean(own.g, sample.colour.g), mean(own.b, sample.colour.b)};
-    block.coloured |= static_cast<std::uint8_t>(1U << i);
-  }
-  const auto own_distance = static_cast<float>(block.distance[i]);
-  const float distance = own_distance + (sample.distance_m / units.distance_m - own_distance) * part;
-  block.distance[i] = static_cast<std::int16_t>(std::lround(std::clamp(distance, -32767.0F, 32767.0F)));
-  block.weight[i] = static_cast<std::uint16_t>(std::min(sum, 65535.0F));
 }
 
 // Keys of the voxels whose centres are in a box.
@@ -163,19 +110,6 @@ void visit_in(const BlockOctree& tree, Slot node, const NodePlace& place, const 
   }
   const InnerBlock& block = tree.inner(node);
   for (unsigned i = 0; i < 8; ++i) visit_in(tree, block.slots[i], place.child(i), range, visit);
-}
-
-void require_cube(const VoxelIndex& lowest, int edge_voxels) {
-  const Key key = lowest.array() + kKeyOrigin;
-  const bool sound = edge_voxels > 0 && edge_voxels <= 1 << kLeafDepth &&
-                     std::has_single_bit(static_cast<unsigned>(edge_voxels)) &&
-                     (lowest.array() >= -kKeyOrigin).all() && (lowest.array() < kKeyOrigin).all() &&
-                     key.unaryExpr([&](int k) { return k & (edge_voxels - 1); }).isZero();
-  if (sound) return;
-  throw Error(
-      "voxel " + std::to_string(lowest.x()) + " " + std::to_string(lowest.y()) + " " +
-      std::to_string(lowest.z()) + " with an edge of " + std::to_string(edge_voxels) +
-      " is no leaf of an octree: it must lie within +-32768, on a multiple of its edge, a power of two");
 }
 
 const FusionConfig& checked(const FusionConfig& config) {
@@ -253,31 +187,9 @@ void StaticMap::visit_leaves(const std::function<void(const MapLeaf&)>& visit) c
 }
 
 void StaticMap::add_evidence(const MapLeaf& leaf) {
-  require_cube(leaf.lowest_voxel, leaf.edge_voxels);
-  if (!std::isfinite(leaf.log_odds)) throw Error("log-odds of a leaf must be finite");
-  if (leaf.log_odds == 0.0F) return;
-  BlockOctree& tree = octree_->tree;
-  const int log2_edge = std::countr_zero(static_cast<unsigned>(leaf.edge_voxels));
-  const unsigned depth = kLeafDepth - static_cast<unsigned>(log2_edge);
-  const NodePlace target{std::min(depth, kLeafDepth - 1), leaf.lowest_voxel.array() + kKeyOrigin};
-  const AddLogOdds add(tree, octree_->config, leaf.log_odds);
-  tree.root = change_node(tree, tree.root, {}, target, [&](Slot node) {
-    return depth < kLeafDepth ? add.to_node(node, depth)
-                              : add.to_voxels(node, 1U << target.towards(target.key));
-  });
+  roomradar::add_evidence(octree_->tree, octree_->config, leaf);
 }
-
-void StaticMap::add_evidence(const SurfaceSample& sample) {
-  require_cube(sample.voxel, 1);
-  if (!std::isfinite(sample.distance_m) || !(sample.weight > 0.0F) || !std::isfinite(sample.weight))
-    throw Error("a sample's distance must be finite, its weight finite and > 0");
-  BlockOctree& tree = octree_->tree;
-  const NodePlace target{kLeafDepth - 1, sample.voxel.array() + kKeyOrigin};
-  tree.root = change_node(tree, tree.root, {}, target, [&](Slot node) {
-    return change_leaves(
-        tree, node, [&](LeafBlock& block) { add_sample(tree, block, target.towards(target.key), sample); });
-  });
-}
+void StaticMap::add_evidence(const SurfaceSample& sample) { roomradar::add_evidence(octree_->tree, sample); }
 
 void StaticMap::revise_samples(const std::function<SampleAction(const SurfaceSample&)>& decide) {
   const double reach = reach_m();
@@ -318,6 +230,18 @@ MapCounts StaticMap::counts() const {
   counts.nodes = size.nodes;
   counts.memory_bytes = size.bytes;
   return counts;
+}
+
+void StaticMap::write_ot(const std::filesystem::path& path) const { write_ot_file(octree_->tree, path); }
+void StaticMap::write_bt(const std::filesystem::path& path) const { write_bt_file(octree_->tree, path); }
+
+StaticMap StaticMap::read_ot(const std::filesystem::path& path, const FusionConfig& config) {
+  std::unique_ptr<Octree> octree;
+  read_ot_file(path, [&](double resolution_m) -> BlockOctree& {
+    octree = std::make_unique<Octree>(resolution_m, config);
+    return octree->tree;
+  });
+  return StaticMap(std::move(octree));
 }
 
 std::string_view to_string(FuseStatus status) {

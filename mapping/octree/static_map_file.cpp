@@ -1,4 +1,6 @@
 // static_map_file.cpp: reads and writes the octree in OctoMap's file formats.
+#include "mapping/octree/static_map_file.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +12,6 @@
 #include <type_traits>
 
 #include "mapping/octree/octomap_tree.hpp"
-#include "mapping/octree/static_map.hpp"
-#include "mapping/octree/static_map_octree.hpp"
 #include "mapping/types/system/atomic_file.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
@@ -305,8 +305,7 @@ class NodeReader {
 
 }  // namespace
 
-void StaticMap::write_ot(const std::filesystem::path& path) const {
-  const BlockOctree& tree = octree_->tree;
+void write_ot_file(const BlockOctree& tree, const std::filesystem::path& path) {
   write_stream(path, [&](std::ostream& stream) {
     stream << kFirstLine << "\n#\nid " << OctoMapTree::kTreeType << "\nsize "
            << size_of(tree, tree.root, 0).nodes << "\nres " << tree.resolution_m() << "\ndata\n";
@@ -314,29 +313,28 @@ void StaticMap::write_ot(const std::filesystem::path& path) const {
   });
 }
 
-void StaticMap::write_bt(const std::filesystem::path& path) const {
-  const PlainWriter plain(octree_->tree);
+void write_bt_file(const BlockOctree& tree, const std::filesystem::path& path) {
+  const PlainWriter plain(tree);
   write_stream(path, [&](std::ostream& stream) {
     stream << "# Octomap OcTree binary file\n#\nid OcTree\nsize " << plain.nodes() << "\nres "
-           << octree_->tree.resolution_m() << "\ndata\n"
+           << tree.resolution_m() << "\ndata\n"
            << plain.bytes();
   });
 }
 
-StaticMap StaticMap::read_ot(const std::filesystem::path& path, const FusionConfig& config) {
+void read_ot_file(const std::filesystem::path& path, const MakeOctree& make_tree) {
   ByteReader bytes(path, read_bytes(path, "an octree file"));
   const Header header = read_header(path, bytes);
-  auto octree = std::make_unique<Octree>(header.resolution_m, config);
+  BlockOctree& tree = make_tree(header.resolution_m);
   if (header.nodes > 0) {
-    NodeReader nodes(path, bytes, octree->tree);
-    octree->tree.root = nodes.read(0);
+    NodeReader nodes(path, bytes, tree);
+    tree.root = nodes.read(0);
     if (nodes.nodes() != header.nodes)
       fail(path, "holds " + std::to_string(nodes.nodes()) + " nodes, but its header says " +
                      std::to_string(header.nodes));
   }
   if (bytes.bytes_left() != 0)
     fail(path, "has " + std::to_string(bytes.bytes_left()) + " bytes after its end");
-  return StaticMap(std::move(octree));
 }
 
 }  // namespace roomradar

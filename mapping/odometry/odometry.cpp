@@ -24,51 +24,6 @@ KeyframeJobConfig job_config(const OdometryConfig& config) {
   return {{config.view, config.align_keyframes, config.graph}, config.place, config.relocalise};
 }
 
-/// Applies new keyframe poses. The camera's poses move with the current keyframe, whose motion is returned.
-Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept) {
-  const Eigen::Isometry3d before = kept.graph.keyframes[kept.current].T_world_camera;
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    kept.graph.keyframes[i].T_world_camera = moved[i].T_world_camera;
-    if (i < kept.keyframe_database.keyframes.size())
-      kept.keyframe_database.keyframes[i].T_world_camera = moved[i].T_world_camera;
-  }
-  const Eigen::Isometry3d T_new_old = kept.graph.keyframes[kept.current].T_world_camera * before.inverse();
-  kept.T_world_last = T_new_old * kept.T_world_last;
-  kept.last_moved.T_world_camera = T_new_old * kept.last_moved.T_world_camera;
-  return T_new_old;
-}
-
-void anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera, OdometrySnapshot& kept) {
-  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // standard deviations of a relocalised pose
-  Matrix6d information = Matrix6d::Zero();
-  information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
-  information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
-  kept.graph.anchors.push_back({keyframe, T_known_camera, information});
-  ++kept.counts.anchored;
-}
-
-/// Applies the second thread's result; returns the motion of the current keyframe.
-Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
-  const std::size_t newest = result.graph.keyframes.size() - 1;
-  kept.graph.constraints = std::move(result.graph.constraints);
-  kept.graph.loops_found = result.graph.loops_found;
-  kept.graph.loops_rejected = result.graph.loops_rejected;
-  kept.keyframe_database.keyframes.push_back(std::move(result.place));
-  Eigen::Isometry3d T_new_old = move_keyframes(result.graph.keyframes, kept);
-  if (result.T_known_camera) {
-    if (!kept.located) {
-      const Eigen::Isometry3d T_known_world =
-          *result.T_known_camera * kept.graph.keyframes[newest].T_world_camera.inverse();
-      std::vector<Keyframe> moved = kept.graph.keyframes;
-      for (Keyframe& keyframe : moved) keyframe.T_world_camera = T_known_world * keyframe.T_world_camera;
-      T_new_old = move_keyframes(moved, kept) * T_new_old;
-      kept.located = true;
-    }
-    anchor(newest, *result.T_known_camera, kept);
-  }
-  return T_new_old;
-}
-
 }  // namespace
 
 struct Odometry::State {
@@ -100,7 +55,6 @@ struct Odometry::State {
   void store_open();
   void wait_for_job();
   Eigen::Isometry3d take_over_job();
-  void keep(const Frame& frame, const Tracking& tracking);
 };
 
 Tracking Odometry::State::start(const Frame& frame) {
@@ -247,17 +201,6 @@ Eigen::Isometry3d Odometry::State::take_over_job() {
   return take_over(*std::exchange(joined, std::nullopt), kept);
 }
 
-void Odometry::State::keep(const Frame& frame, const Tracking& tracking) {
-  KeptFrame frame_kept{frame.index,     frame.stamp_s, std::nullopt, tracking.T_world_camera,
-                       tracking.status, bool{tracking}};
-  if (!kept.graph.keyframes.empty()) {
-    frame_kept.keyframe = kept.current;
-    frame_kept.T_keyframe_camera =
-        kept.graph.keyframes[kept.current].T_world_camera.inverse() * tracking.T_world_camera;
-  }
-  kept.frames.push_back(frame_kept);
-}
-
 Odometry::Odometry(const OdometryConfig& config) : state_(std::make_unique<State>(config)) {}
 Odometry::Odometry(Odometry&&) noexcept = default;
 Odometry& Odometry::operator=(Odometry&&) noexcept = default;
@@ -289,7 +232,7 @@ Tracking Odometry::track(const Frame& frame) {
     ++kept.counts.tracked;
     kept.T_world_last = kept.last_moved.T_world_camera;
     kept.T_last_next.setIdentity();
-    s.keep(frame, kept.last_moved);
+    keep(kept, frame, kept.last_moved);
     return kept.last_moved;
   }
   Tracking tracking =
@@ -300,7 +243,7 @@ Tracking Odometry::track(const Frame& frame) {
     ++kept.counts.lost;
     tracking.T_world_camera = kept.T_world_last;
     kept.T_last_next.setIdentity();
-    s.keep(frame, tracking);
+    keep(kept, frame, tracking);
     return tracking;
   }
   const Eigen::Isometry3d T_last_next = kept.T_world_last.inverse() * tracking.T_world_camera;
@@ -317,7 +260,7 @@ Tracking Odometry::track(const Frame& frame) {
     kept.last_moved_grey = s.pyramid.grey;
     kept.last_moved = tracking;
   }
-  s.keep(frame, tracking);
+  keep(kept, frame, tracking);
   return tracking;
 }
 
@@ -364,14 +307,7 @@ std::vector<TrackedFrame> Odometry::optimise() {
     graph.keyframes = s.kept.graph.keyframes;
     s.kept.graph = std::move(graph);
   }
-  std::vector<TrackedFrame> trajectory;
-  for (const KeptFrame& f : s.kept.frames) {
-    const Eigen::Isometry3d T_world_camera =
-        f.keyframe ? s.kept.graph.keyframes[*f.keyframe].T_world_camera * f.T_keyframe_camera
-                   : f.T_keyframe_camera;
-    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera, f.status, f.trusted});
-  }
-  return trajectory;
+  return trajectory_of(s.kept);
 }
 
 KeyframeDatabase Odometry::take_keyframe_database() {

@@ -8,7 +8,9 @@
 
 #include "mapping/localization/keyframe_database.hpp"
 #include "mapping/odometry/keyframe_graph.hpp"
-#include "mapping/odometry/odometry.hpp"
+#include "mapping/odometry/keyframe_job.hpp"
+#include "mapping/odometry/odometry_config.hpp"
+#include "mapping/types/frame.hpp"
 
 namespace roomradar {
 
@@ -36,5 +38,19 @@ struct OdometrySnapshot {
   Tracking last_moved;           ///< result for that frame; its pose is trusted
   bool located = false;          ///< the world is that of the known map
 };
+
+/// Applies new keyframe poses. The camera's poses move with the current keyframe, whose motion is returned.
+/// @param moved  one per keyframe of kept.graph, except perhaps the newest
+Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept);
+
+/// Applies the second thread's result; returns the motion of the current keyframe. If the newest keyframe was
+/// localised in the known map, anchors it there, and moves the world to the map's the first time.
+Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);
+
+/// Adds a frame; its pose moves with the current keyframe from now on.
+void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking);
+
+/// Returns all frames with their poses in the world.
+std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept);
 
 }  // namespace roomradar

@@ -68,6 +68,15 @@ Matrix6d seen_from_b(const Eigen::Isometry3d& T_a_b) {
   return J;
 }
 
+ceres::Solver::Options solver_options() {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  options.max_num_iterations = 50;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  return options;
+}
+
 /// Counts the unconstrained directions of all free poses together: near-zero pivots of the normal equations.
 /// `place` gives each pose's index among the free poses, or -1.
 std::size_t count_free_directions(const std::vector<Measured>& measured, const std::vector<int>& place,
@@ -100,6 +109,74 @@ std::size_t count_free_directions(const std::vector<Measured>& measured, const s
   return static_cast<std::size_t>((decomposed.vectorD().array() < 100.0 * kNothing * most).count());
 }
 
+/// Returns the measurements that can move a pose, constraints first.
+/// @param count          number of poses
+/// @param is_held        callable with the index of a pose; true if the pose is constant
+/// @param constraint_of  out: index in `constraints` of each measured constraint
+template <typename IsHeld>
+std::vector<Measured> usable_measurements(std::size_t count, const std::vector<PoseConstraint>& constraints,
+                                          const std::vector<PoseAnchor>& anchors, const IsHeld& is_held,
+                                          std::vector<std::size_t>& constraint_of) {
+  std::vector<Measured> measured;
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const PoseConstraint& c = constraints[i];
+    if (c.a >= count || (is_held(c.a) && is_held(c.b))) continue;  // both constant: moves nothing
+    if (const auto m = usable(c.a, c.b, count, c.T_a_b, c.information, c.robust)) {
+      measured.push_back(*m);
+      constraint_of.push_back(i);
+    }
+  }
+  for (const PoseAnchor& anchor : anchors) {
+    if (anchor.pose < count && is_held(anchor.pose)) continue;
+    if (const auto m = usable(count, anchor.pose, count, anchor.T_world_camera, anchor.information, true))
+      measured.push_back(*m);
+  }
+  return measured;
+}
+
+/// Returns each pose's index among the free poses: those that a chain of measurements connects to a constant
+/// pose or the world. -1 for the others and the world, which comes last.
+template <typename IsHeld>
+std::vector<int> number_free_poses(std::size_t count, const std::vector<Measured>& measured,
+                                   const IsHeld& is_held) {
+  std::vector<std::size_t> parent(count + 1);
+  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_held(i)) parent[root_of(parent, i)] = root_of(parent, count);
+  }
+  for (const Measured& m : measured) parent[root_of(parent, m.a)] = root_of(parent, m.b);
+  std::vector<int> place(count + 1, -1);
+  int free_poses = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (is_held(i)) continue;
+    if (root_of(parent, i) == root_of(parent, count)) place[i] = free_poses++;
+  }
+  return place;
+}
+
+/// Adds a residual per measurement, and holds all poses without a place constant. The problem keeps pointers
+/// to `blocks`.
+std::vector<ceres::ResidualBlockId> add_residuals(const std::vector<Measured>& measured,
+                                                  const std::vector<int>& place,
+                                                  std::vector<PoseBlock>& blocks, ceres::Problem& problem) {
+  std::vector<ceres::ResidualBlockId> ids;
+  for (const Measured& m : measured) {
+    auto* cost = new ceres::AutoDiffCostFunction<RelativePoseResidual, 6, 3, 4, 3, 4>(
+        new RelativePoseResidual{m.T_a_b.inverse(), m.square_root});
+    ids.push_back(problem.AddResidualBlock(cost, m.robust ? new ceres::CauchyLoss(kRobustSigma) : nullptr,
+                                           blocks[m.a].t.data(), blocks[m.a].q.coeffs().data(),
+                                           blocks[m.b].t.data(), blocks[m.b].q.coeffs().data()));
+  }
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!problem.HasParameterBlock(blocks[i].t.data())) continue;
+    problem.SetManifold(blocks[i].q.coeffs().data(), new ceres::EigenQuaternionManifold);
+    if (place[i] >= 0) continue;
+    problem.SetParameterBlockConstant(blocks[i].t.data());
+    problem.SetParameterBlockConstant(blocks[i].q.coeffs().data());
+  }
+  return ids;
+}
+
 }  // namespace
 
 std::string describe(const PoseGraphResult& result) {
@@ -124,7 +201,7 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
                                     const std::vector<PoseAnchor>& anchors, const std::vector<bool>& held) {
   PoseGraphResult result;
   result.residual_sigma.assign(constraints.size(), -1.0);
-  const std::size_t count = T_world_camera.size(), world = count;
+  const std::size_t count = T_world_camera.size();
   std::vector<PoseBlock> blocks;
   blocks.reserve(count + 1);
   for (const Eigen::Isometry3d& T : T_world_camera) {
@@ -137,68 +214,23 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
   blocks.push_back({Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
 
   const auto is_held = [&](std::size_t i) { return held.empty() ? i == 0 : i < held.size() && held[i]; };
-  std::vector<Measured> measured;
-  std::vector<std::size_t> constraint_of;  // index in `constraints` of each measured constraint
-  for (std::size_t i = 0; i < constraints.size(); ++i) {
-    const PoseConstraint& c = constraints[i];
-    if (c.a >= count || (is_held(c.a) && is_held(c.b))) continue;  // both constant: moves nothing
-    if (const auto m = usable(c.a, c.b, count, c.T_a_b, c.information, c.robust)) {
-      measured.push_back(*m);
-      constraint_of.push_back(i);
-    }
-  }
-  for (const PoseAnchor& anchor : anchors) {
-    if (anchor.pose < count && is_held(anchor.pose)) continue;
-    if (const auto m = usable(world, anchor.pose, count, anchor.T_world_camera, anchor.information, true))
-      measured.push_back(*m);
-  }
+  std::vector<std::size_t> constraint_of;
+  const std::vector<Measured> measured =
+      usable_measurements(count, constraints, anchors, is_held, constraint_of);
   if (measured.empty()) {
     result.status = PoseGraphStatus::kNothingToSolve;
     return result;
   }
 
-  // Find the poses that a chain of measurements connects to a constant pose or the world.
-  std::vector<std::size_t> parent(count + 1);
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  for (std::size_t i = 0; i < count; ++i) {
-    if (is_held(i)) parent[root_of(parent, i)] = root_of(parent, world);
-  }
-  for (const Measured& m : measured) parent[root_of(parent, m.a)] = root_of(parent, m.b);
-  std::vector<int> place(count + 1, -1);
-  int free_poses = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (is_held(i)) continue;
-    if (root_of(parent, i) == root_of(parent, world)) {
-      place[i] = free_poses++;
-    } else {
-      ++result.untied;
-    }
-  }
+  const std::vector<int> place = number_free_poses(count, measured, is_held);
+  const auto free_poses =
+      static_cast<int>(std::count_if(place.begin(), place.end(), [](int p) { return p >= 0; }));
+  for (std::size_t i = 0; i < count; ++i) result.untied += !is_held(i) && place[i] < 0 ? 1 : 0;
 
   ceres::Problem problem;
-  std::vector<ceres::ResidualBlockId> ids;
-  for (const Measured& m : measured) {
-    auto* cost = new ceres::AutoDiffCostFunction<RelativePoseResidual, 6, 3, 4, 3, 4>(
-        new RelativePoseResidual{m.T_a_b.inverse(), m.square_root});
-    ids.push_back(problem.AddResidualBlock(cost, m.robust ? new ceres::CauchyLoss(kRobustSigma) : nullptr,
-                                           blocks[m.a].t.data(), blocks[m.a].q.coeffs().data(),
-                                           blocks[m.b].t.data(), blocks[m.b].q.coeffs().data()));
-  }
-  for (std::size_t i = 0; i <= count; ++i) {
-    if (!problem.HasParameterBlock(blocks[i].t.data())) continue;
-    problem.SetManifold(blocks[i].q.coeffs().data(), new ceres::EigenQuaternionManifold);
-    if (place[i] >= 0) continue;
-    problem.SetParameterBlockConstant(blocks[i].t.data());
-    problem.SetParameterBlockConstant(blocks[i].q.coeffs().data());
-  }
-
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.max_num_iterations = 50;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
+  const std::vector<ceres::ResidualBlockId> ids = add_residuals(measured, place, blocks, problem);
   ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
+  ceres::Solve(solver_options(), &problem, &summary);
   if (!summary.IsSolutionUsable()) return result;
   for (const PoseBlock& block : blocks) {
     if (!block.t.allFinite() || !block.q.coeffs().allFinite()) return result;

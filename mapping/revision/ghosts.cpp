@@ -2,7 +2,6 @@
 #include "mapping/revision/ghosts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
@@ -10,14 +9,12 @@
 
 #include "mapping/octree/tsdf_bricks.hpp"
 #include "mapping/types/depth_noise.hpp"
-#include "mapping/types/system/config_check.hpp"
 #include "mapping/types/validity.hpp"
 #include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr float kNearestProjected_m = 0.1F;  // min z for projection into the image
 // Surface nearer than this gives no depth, and hides what is behind it.
 constexpr float kTooNear_m = 0.8F;
 constexpr int kHiddenCell_px = 8;  // about the size of a 1 cm voxel at that distance
@@ -31,16 +28,34 @@ constexpr int kHardlySeen = 3;  // a voxel connected to such a group is kept onl
 constexpr std::size_t kEveryColour =
     4;  // one voxel in this many has its colour tracked: groups are judged, not single voxels
 
-// Returns false if nothing within radius_m of the centre can be in the image.
-bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_camera, double radius_m) {
-  if (centre_camera.z() < kNearestProjected_m - radius_m) return false;
-  const double nearest_z = std::max(centre_camera.z() - radius_m, static_cast<double>(kNearestProjected_m));
-  const double margin_px = 2.0 * radius_m * std::max(camera.fx_px, camera.fy_px) / nearest_z;
-  if (centre_camera.z() < 2.0 * radius_m) return true;  // too near for the test below
-  const Eigen::Vector2d pixel = project(camera, centre_camera);
-  return pixel.x() > -margin_px && pixel.y() > -margin_px && pixel.x() < camera.width_px + margin_px &&
-         pixel.y() < camera.height_px + margin_px;
-}
+/// Cells of the image that surface too near to give depth may hide.
+class HiddenCells {
+ public:
+  HiddenCells(int width_px, int height_px)
+      : across_(width_px / kHiddenCell_px + 1),
+        down_(height_px / kHiddenCell_px + 1),
+        is_hidden_(index(0, down_), false) {}
+
+  /// Hides the pixel's cell and those around it.
+  void hide_around(int x, int y) {
+    const int column = x / kHiddenCell_px, row = y / kHiddenCell_px;
+    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, down_ - 1); ++r)
+      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, across_ - 1); ++c)
+        is_hidden_[index(c, r)] = true;
+  }
+  [[nodiscard]] bool is_hidden(int x, int y) const {
+    return is_hidden_[index(x / kHiddenCell_px, y / kHiddenCell_px)];
+  }
+
+ private:
+  int across_, down_;
+  std::vector<bool> is_hidden_;
+
+  [[nodiscard]] std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(across_) +
+           static_cast<std::size_t>(column);
+  }
+};
 
 Eigen::Vector3i in_brick(std::uint16_t offset) {
   static_assert(kBrickEdge == 8);
@@ -94,25 +109,6 @@ std::vector<std::size_t> voxels_together(const std::vector<VotedVoxel>& voxels) 
 
 }  // namespace
 
-void require_valid(const GhostConfig& c) {
-  const ConfigCheck require{"ghosts"};
-  require(c.margin_m > 0.0F && std::isfinite(c.margin_m), "margin_m", c.margin_m, "> 0");
-  require(c.margin_per_m >= 0.0F && std::isfinite(c.margin_per_m), "margin_per_m", c.margin_per_m, ">= 0");
-  require(c.margin_voxels >= 0.0F && std::isfinite(c.margin_voxels), "margin_voxels", c.margin_voxels,
-          ">= 0");
-  require(c.margin_sigmas >= 0.0F && std::isfinite(c.margin_sigmas), "margin_sigmas", c.margin_sigmas,
-          ">= 0");
-  require(c.window_radius_m >= 0.0F && c.window_radius_m <= 1.0F, "window_radius_m", c.window_radius_m,
-          "in 0..1 m");
-  require(c.min_measured_share >= 0.0F && c.min_measured_share <= 1.0F, "min_measured_share",
-          c.min_measured_share, "in 0..1");
-  require(c.min_through >= 1, "min_through", c.min_through, "1 or more");
-  require(c.min_through_share >= 0.0F && c.min_through_share <= 1.0F, "min_through_share",
-          c.min_through_share, "in 0..1");
-  require(c.min_extent_m >= 0.0F && std::isfinite(c.min_extent_m), "min_extent_m", c.min_extent_m, ">= 0");
-  require(c.max_looks >= 1 && c.max_looks <= 60'000, "max_looks", c.max_looks, "in 1..60000");
-}
-
 GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
     : resolution_m_(map.resolution_m()), config_(config) {
   require_valid(config);
@@ -131,79 +127,27 @@ GhostVotes::GhostVotes(const StaticMap& map, const GhostConfig& config)
 
 void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camera) {
   const DepthImage& depth_m = frame.depth_m;
-  const Intrinsics& camera = frame.depth_camera;
   if (!depth_fault_of(frame).empty()) return;
   build_windows(depth_m, windows_);
   absence_looks_.begin(frame, T_world_camera);
 
-  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  const Eigen::Matrix3f R_camera_voxels = (T_camera_world.linear() * resolution_m_).cast<float>();
-  std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps;  // offsets from the centre of a brick's first
-                                                                 // voxel
-  for (int axis = 0; axis < 3; ++axis)
-    for (int i = 0; i < kBrickEdge; ++i)
-      steps[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] =
-          R_camera_voxels.col(axis) * static_cast<float>(i);
-  const double brick_radius_m = 0.5 * std::sqrt(3.0) * kBrickEdge * resolution_m_;
-  const auto fx = static_cast<float>(camera.fx_px);
-  const auto fy = static_cast<float>(camera.fy_px);
-  const auto cx = static_cast<float>(camera.cx_px);
-  const auto cy = static_cast<float>(camera.cy_px);
-  const auto width = static_cast<float>(depth_m.width);
-  const auto height = static_cast<float>(depth_m.height);
   const float least_margin_m =
       std::max(config_.margin_m, config_.margin_voxels * static_cast<float>(resolution_m_));
+  const BrickProjection projection(frame, T_world_camera, resolution_m_);
+  const auto offset_of = [this](std::size_t i) -> std::size_t { return votes_[i].offset; };
+  HiddenCells hidden(depth_m.width, depth_m.height);
+  projection.for_each_nearer(kTooNear_m, bricks_, offset_of,
+                             [&](std::size_t i, const Eigen::Vector3f&, int x, int y) {
+                               if (votes_[i].occupied != 0) hidden.hide_around(x, y);
+                             });
 
-  // Calls visit(index of votes, centre in the camera frame, pixel x, y) for voxels in the image nearer than
-  // farthest_m.
-  const auto for_each_nearer = [&](float farthest_m, const auto& visit) {
-    std::size_t begin = 0;
-    for (const Brick& brick : bricks_) {
-      const std::size_t first = std::exchange(begin, brick.end);
-      const Eigen::Vector3d low_world = brick.first.cast<double>() * resolution_m_;
-      const Eigen::Vector3d middle_camera =
-          T_camera_world * (low_world + Eigen::Vector3d::Constant(0.5 * kBrickEdge * resolution_m_));
-      if (middle_camera.z() > static_cast<double>(farthest_m) + brick_radius_m ||
-          !may_be_seen(camera, middle_camera, brick_radius_m))
-        continue;
-      const Eigen::Vector3f first_camera =
-          (T_camera_world * (low_world + Eigen::Vector3d::Constant(0.5 * resolution_m_))).cast<float>();
-      for (std::size_t i = first; i < brick.end; ++i) {
-        const std::size_t offset = votes_[i].offset;
-        const Eigen::Vector3f p_camera =
-            first_camera + steps[0][offset & 7U] + steps[1][offset >> 3U & 7U] + steps[2][offset >> 6U];
-        const float z = p_camera.z();
-        if (!(z > kNearestProjected_m && z < farthest_m)) continue;
-        const float u = fx * p_camera.x() / z + cx + 0.5F;
-        const float v = fy * p_camera.y() / z + cy + 0.5F;
-        if (u >= 0.0F && v >= 0.0F && u < width && v < height)
-          visit(i, p_camera, static_cast<int>(u), static_cast<int>(v));
-      }
-    }
-  };
-  const int cells_across = depth_m.width / kHiddenCell_px + 1,
-            cells_down = depth_m.height / kHiddenCell_px + 1;
-  const auto cell_at = [&](int column, int row) {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(cells_across) +
-           static_cast<std::size_t>(column);
-  };
-  std::vector<bool> is_hidden(cell_at(0, cells_down), false);
-  for_each_nearer(kTooNear_m, [&](std::size_t i, const Eigen::Vector3f&, int x, int y) {
-    if (votes_[i].occupied == 0) return;
-    const int column = x / kHiddenCell_px, row = y / kHiddenCell_px;
-    for (int r = std::max(row - 1, 0); r <= std::min(row + 1, cells_down - 1); ++r)
-      for (int c = std::max(column - 1, 0); c <= std::min(column + 1, cells_across - 1); ++c)
-        is_hidden[cell_at(c, r)] = true;
-  });
-
-  for_each_nearer(std::numeric_limits<float>::infinity(), [&](std::size_t i, const Eigen::Vector3f& p_camera,
-                                                              int x, int y) {
+  const auto vote = [&, this](std::size_t i, const Eigen::Vector3f& p_camera, int x, int y) {
     Votes& votes = votes_[i];
     const float z = p_camera.z();
     const float measured_m = depth_m.at(x, y);
     const auto window_at = [&, this] {
-      const int radius_px =
-          std::min(static_cast<int>(std::ceil(config_.window_radius_m * fx / z)), kMaxWindowRadius_px);
+      const int radius_px = std::min(
+          static_cast<int>(std::ceil(config_.window_radius_m * projection.fx() / z)), kMaxWindowRadius_px);
       return window_depth(windows_, x, y, radius_px);
     };
     const bool has_colour = i % kEveryColour == 0;
@@ -212,7 +156,7 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
           {least_margin_m, config_.margin_sigmas * depth_sigma_m(depth), config_.margin_per_m * depth});
     };
     if (!(measured_m > 0.0F)) {
-      if (is_hidden[cell_at(x / kHiddenCell_px, y / kHiddenCell_px)]) return;
+      if (hidden.is_hidden(x, y)) return;
       const WindowDepth window = window_at();
       const bool beside_nearer = window.nearest_m < z - margin_m(z);
       absence_looks_.unmeasured(frame, x, y, p_camera, window.measured_share, beside_nearer, has_colour,
@@ -231,7 +175,8 @@ void GhostVotes::look(const Frame& frame, const Eigen::Isometry3d& T_world_camer
       ++votes.through;
     else if (measured_m - z > margin_m(measured_m))
       ++votes.glimpsed;
-  });
+  };
+  projection.for_each_nearer(std::numeric_limits<float>::infinity(), bricks_, offset_of, vote);
 }
 
 bool GhostVotes::is_share(int part, int others) const {
@@ -239,17 +184,19 @@ bool GhostVotes::is_share(int part, int others) const {
          static_cast<float>(part) >= static_cast<float>(part + others) * config_.min_through_share;
 }
 
+template <typename AreSuch>
+std::vector<VotedVoxel> GhostVotes::those(const AreSuch& are_such) const {
+  std::vector<VotedVoxel> found;
+  std::uint32_t next = 0;
+  for (const VoxelBrick& brick : bricks_)
+    for (; next < brick.end; ++next)
+      if (are_such(votes_[next], absence_[next]))
+        found.push_back({brick.first + in_brick(votes_[next].offset), next});
+  return found;
+}
+
 std::vector<GhostVotes::Fate> GhostVotes::fates() const {
   std::vector<Fate> fates(votes_.size(), Fate::kStill);
-  const auto those = [this](const auto& are_such) {
-    std::vector<VotedVoxel> found;
-    std::uint32_t next = 0;
-    for (const Brick& brick : bricks_)
-      for (; next < brick.end; ++next)
-        if (are_such(votes_[next], absence_[next]))
-          found.push_back({brick.first + in_brick(votes_[next].offset), next});
-    return found;
-  };
   const auto voxels_of = [this](double edge_m) {
     return 2.0 * edge_m * edge_m / (resolution_m_ * resolution_m_);
   };
@@ -306,7 +253,7 @@ GhostVotes::Verdicts GhostVotes::verdicts() const {
   const std::vector<Fate> fates = this->fates();
   Verdicts verdicts;
   std::size_t next = 0;
-  for (const Brick& brick : bricks_)
+  for (const VoxelBrick& brick : bricks_)
     for (; next < brick.end; ++next) {
       const VoxelIndex voxel = brick.first + in_brick(votes_[next].offset);
       if (fates[next] == Fate::kGhost)

@@ -1,4 +1,4 @@
-// checkpoints.cpp: numbered folders that a forked child writes under a temporary name, syncs and renames.
+// checkpoints.cpp: the lock, and the forked child that writes a checkpoint.
 #include "mapping/storage/checkpoints.hpp"
 
 #include <fcntl.h>
@@ -10,116 +10,21 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstring>
-#include <nlohmann/json.hpp>
-#include <string_view>
 #include <thread>
 #include <utility>
 
-#include "mapping/storage/atomic_folder.hpp"
-#include "mapping/storage/sha256.hpp"
 #include "mapping/types/system/error.hpp"
-#include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/version.hpp"
 
 namespace roomradar {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
-constexpr const char* kWork = "work.json";
-constexpr const char* kWorkWriting = "work.json.writing";
-constexpr const char* kLock = "lock";
-constexpr const char* kWriting = "checkpoint.writing";
-constexpr const char* kManifest = "manifest.json";
-constexpr std::string_view kPrefix = "checkpoint-";
-constexpr std::int64_t kKept = 2;
-constexpr std::uintmax_t kMaxJsonBytes = 16U << 20U;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& fault) {
   throw Error(path.string() + ": " + fault);
-}
-
-Json read_json(const fs::path& path) {
-  std::error_code fault;
-  if (fs::is_symlink(path, fault)) fail(path, "is a link; checkpoints contain no links");
-  Json json = Json::parse(read_bytes(path, "a checkpoint's description", kMaxJsonBytes), nullptr,
-                          /*allow_exceptions=*/false);
-  if (json.is_discarded() || !json.is_object())
-    fail(path,
-         "is damaged" + std::string(path.filename() == kWork ? "; delete the folder to start again" : ""));
-  return json;
-}
-
-/// Returns sorted paths relative to the folder.
-std::vector<fs::path> files_below(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_directory()) files.push_back(entry.path().lexically_relative(folder));
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-/// Returns a file's size and checksum. For a file linked from the previous checkpoint, reuses the old entry
-/// instead of reading it.
-Json description_of(const fs::path& into, const fs::path& file, const fs::path& previous,
-                    const Json& before) {
-  const auto was = before.find(file.generic_string());
-  std::error_code fault;
-  if (was != before.end() && fs::equivalent(previous / file, into / file, fault)) return *was;
-  return {{"bytes", fs::file_size(into / file)}, {"sha256", sha256_of_file(into / file)}};
-}
-
-/// Verifies all files; throws Error naming the first that is missing or altered.
-Checkpoint read_checkpoint(const fs::path& folder) {
-  const Json manifest = read_json(folder / kManifest);
-  const auto stage = manifest.find("stage");
-  const auto files = manifest.find("files");
-  if (stage == manifest.end() || !stage->is_string() || files == manifest.end() || !files->is_object())
-    fail(folder / kManifest, "is damaged");
-  std::size_t listed = 1;  // the manifest itself
-  for (const auto& [name, expected] : files->items()) {
-    const fs::path path = folder / name;
-    const fs::path inside = fs::path(name).lexically_normal();
-    if (inside.is_absolute() || inside.empty() || *inside.begin() == "..")
-      fail(folder / kManifest, "is damaged: it names a file outside its folder");
-    std::error_code fault;
-    if (!fs::is_regular_file(fs::symlink_status(path, fault))) fail(path, "is missing");
-    const bool sound = expected.is_object() && expected.value("bytes", Json{}).is_number_unsigned() &&
-                       expected.value("sha256", Json{}).is_string() &&
-                       fs::file_size(path) == expected["bytes"].get<std::uintmax_t>() &&
-                       sha256_of_file(path) == expected["sha256"].get<std::string>();
-    if (!sound) fail(path, "is damaged");
-    ++listed;
-  }
-  if (files_below(folder).size() != listed) fail(folder, "holds files that are not its own");
-  return {stage->get<std::string>(), folder};
-}
-
-/// Returns the numbers of the folder's checkpoints, newest first.
-std::vector<std::int64_t> numbers_in(const fs::path& folder) {
-  std::vector<std::int64_t> numbers;
-  std::error_code fault;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
-    const std::string name = entry.path().filename().string();
-    std::int64_t number = 0;
-    if (!name.starts_with(kPrefix)) continue;
-    const char* const end = name.data() + name.size();
-    const auto parsed = std::from_chars(name.data() + kPrefix.size(), end, number);
-    if (parsed.ec == std::errc() && parsed.ptr == end && number > 0) numbers.push_back(number);
-  }
-  std::sort(numbers.rbegin(), numbers.rend());
-  return numbers;
-}
-
-/// Waits until all subfolders, and all files written since `since`, are on disk.
-void sync_new_files(const fs::path& folder, fs::file_time_type since) {
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_directory() || entry.last_write_time() >= since) sync_to_disk(entry.path());
 }
 
 /// Returns whether the path still names the open file; the lock's last owner may have removed the folder.
@@ -128,14 +33,6 @@ bool is_still_there(int file, const fs::path& path) {
   }, named{};
   return ::fstat(file, &opened) == 0 && ::stat(path.c_str(), &named) == 0 && opened.st_ino == named.st_ino &&
          opened.st_dev == named.st_dev;
-}
-
-/// True for a newly created folder.
-bool holds_nothing_to_go_on_from(const fs::path& folder) {
-  std::error_code fault;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault))
-    if (entry.path().filename() != kWork && entry.path().filename() != kLock) return false;
-  return !fault;
 }
 
 }  // namespace
@@ -152,13 +49,13 @@ Checkpoints::~Checkpoints() {
   reap(/*wait=*/true);
   if (lock_ < 0) return;
   std::error_code ignored;
-  if (holds_nothing_to_go_on_from(folder_)) fs::remove_all(folder_, ignored);
+  if (has_nothing_to_resume(folder_)) fs::remove_all(folder_, ignored);
   ::close(lock_);
 }
 
 void Checkpoints::take_lock() {
   if (lock_ >= 0) return;
-  const fs::path path = folder_ / kLock;
+  const fs::path path = folder_ / kCheckpointLock;
   lock_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock_ < 0) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
   // The writer child of a killed process keeps the lock for a moment longer.
@@ -180,10 +77,7 @@ void Checkpoints::ensure_folder() {
   fs::create_directories(folder_, fault);
   if (fault) fail(folder_, "the folder cannot be made: " + fault.message());
   take_lock();
-  if (fs::exists(folder_ / kWork)) return;
-  write_bytes(folder_ / kWorkWriting, Json{{"work", identity_}}.dump(2) + "\n");
-  fs::rename(folder_ / kWorkWriting, folder_ / kWork);
-  sync_to_disk(folder_ / kWork);
+  write_identity(folder_, identity_);
 }
 
 void Checkpoints::require_same_work() const {
@@ -201,16 +95,15 @@ std::optional<Checkpoint> Checkpoints::resume() {
   if (!fs::exists(folder_)) return std::nullopt;
   ensure_folder();
   require_same_work();
-  for (const std::int64_t number : numbers_in(folder_)) {
+  for (const std::int64_t number : checkpoint_numbers(folder_)) {
     last_number_ = std::max(last_number_, number);
     try {
-      Checkpoint checkpoint = read_checkpoint(numbered(number));
+      Checkpoint checkpoint = read_checkpoint(folder_, number);
       last_number_ = number;
       return checkpoint;
     } catch (const std::exception& fault) {
       faults_.push_back(std::string(fault.what()) + "; the checkpoint is skipped");
-      std::error_code ignored;
-      fs::remove_all(numbered(number), ignored);
+      remove_checkpoint(folder_, number);
     }
   }
   last_number_ = 0;
@@ -257,33 +150,11 @@ void Checkpoints::write(const std::string& stage, const WriteFiles& write_files)
 
 bool Checkpoints::try_to_write(const std::string& stage, const WriteFiles& write_files) const {
   try {
-    write_numbered(last_number_ + 1, stage, write_files);
+    write_checkpoint(folder_, last_number_ + 1, last_number_, stage, write_files, on_disk_until_);
     return true;
   } catch (const std::exception&) {
-    std::error_code ignored;
-    fs::remove_all(folder_ / kWriting, ignored);
+    discard_unfinished(folder_);
     return false;
-  }
-}
-
-void Checkpoints::write_numbered(std::int64_t number, const std::string& stage,
-                                 const WriteFiles& write_files) const {
-  const fs::path into = folder_ / kWriting;
-  fs::remove_all(into);
-  fs::create_directory(into);
-  const fs::path previous = last_number_ > 0 ? numbered(last_number_) : fs::path{};
-  const Json before = previous.empty() ? Json::object() : read_json(previous / kManifest).at("files");
-  write_files(into, previous);
-  Json manifest{{"stage", stage}, {"files", Json::object()}};
-  for (const fs::path& file : files_below(into))
-    manifest["files"][file.generic_string()] = description_of(into, file, previous, before);
-  write_bytes(into / kManifest, manifest.dump(1) + "\n");
-  sync_new_files(folder_, on_disk_until_);
-  fs::remove_all(numbered(number));  // damaged, or from an earlier numbering
-  fs::rename(into, numbered(number));
-  sync_to_disk(folder_);
-  for (const std::int64_t other : numbers_in(folder_)) {
-    if (other <= number - kKept || other > number) fs::remove_all(numbered(other));
   }
 }
 
@@ -320,8 +191,7 @@ bool Checkpoints::has_any() {
 
 void Checkpoints::forget() {
   reap(/*wait=*/true);
-  std::error_code ignored;
-  for (const std::int64_t number : numbers_in(folder_)) fs::remove_all(numbered(number), ignored);
+  for (const std::int64_t number : checkpoint_numbers(folder_)) remove_checkpoint(folder_, number);
   last_number_ = 0;
 }
 
@@ -334,48 +204,6 @@ void Checkpoints::remove() {
   fs::rename(folder_, done_beside(folder_), ignored);
   fs::remove_all(done_beside(folder_), ignored);
   if (lock_ >= 0) ::close(std::exchange(lock_, -1));
-}
-
-fs::path Checkpoints::numbered(std::int64_t number) const {
-  return folder_ / (std::string(kPrefix) + std::to_string(number));
-}
-
-fs::path done_beside(const fs::path& folder) { return folder.string() + ".done"; }
-
-void require_checkpoints_only(const fs::path& folder, std::string_view beside) {
-  std::error_code fault;
-  const fs::file_status status = fs::symlink_status(folder, fault);
-  if (!fs::exists(status)) return;
-  if (!fs::is_directory(status))
-    fail(folder, "is no folder, and its name is that of the scan's checkpoints; move it away");
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
-    const std::string name = entry.path().filename().string();
-    if (name != kWork && name != kWorkWriting && name != kLock && name != kWriting && name != beside &&
-        !name.starts_with(kPrefix))
-      fail(folder, "holds \"" + name + "\", which is no part of a scan that was cut off; move it away");
-  }
-  if (fault) fail(folder, "cannot be listed: " + fault.message());
-}
-
-std::map<std::string, std::string> identity_of(const fs::path& folder) {
-  const Json json = read_json(folder / kWork);
-  const auto work = json.find("work");
-  const char* const kDamaged = "is damaged; delete the folder to start again";
-  if (work == json.end() || !work->is_object()) fail(folder / kWork, kDamaged);
-  std::map<std::string, std::string> identity;
-  for (const auto& [name, value] : work->items()) {
-    if (!value.is_string()) fail(folder / kWork, kDamaged);
-    identity[name] = value.get<std::string>();
-  }
-  return identity;
-}
-
-bool carry_over(const fs::path& from, const fs::path& to) {
-  std::error_code fault;
-  if (!fs::is_regular_file(from, fault)) return false;
-  fs::create_hard_link(from, to, fault);
-  if (!fault) return true;
-  return fs::copy_file(from, to, fault) && !fault;
 }
 
 }  // namespace roomradar

@@ -9,17 +9,12 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-namespace roomradar {
+#include "mapping/storage/checkpoint_folder.hpp"
 
-/// A checkpoint that was read back, with sizes and checksums of all files verified.
-struct Checkpoint {
-  std::string stage;             ///< as passed to write()
-  std::filesystem::path folder;  ///< contains the written files; read-only
-};
+namespace roomradar {
 
 /// Folder of one unfinished piece of work: `work.json` (identity of the work), `lock`, and the last two
 /// checkpoints. Each checkpoint is a folder that appears atomically, after everything written earlier in the
@@ -28,11 +23,7 @@ struct Checkpoint {
 /// checkpoint. Only one process at a time can own it.
 class Checkpoints {
  public:
-  /// Writes a state's files into `into`, an empty folder. `previous` is the preceding checkpoint's folder, or
-  /// empty; unchanged files can be linked from it with carry_over(). Runs in a child process: changes to
-  /// memory are lost.
-  using WriteFiles =
-      std::function<void(const std::filesystem::path& into, const std::filesystem::path& previous)>;
+  using WriteFiles = WriteCheckpointFiles;
 
   /// @param folder    where checkpoints are stored
   /// @param identity  name-value pairs (source, settings); only work with equal pairs can resume
@@ -84,8 +75,6 @@ class Checkpoints {
   void fail_to_write();
   void reap(bool wait);
   bool try_to_write(const std::string& stage, const WriteFiles& write_files) const;
-  void write_numbered(std::int64_t number, const std::string& stage, const WriteFiles& write_files) const;
-  [[nodiscard]] std::filesystem::path numbered(std::int64_t number) const;
 
   std::filesystem::path folder_;
   std::map<std::string, std::string> identity_;
@@ -100,20 +89,5 @@ class Checkpoints {
   std::function<void(const std::string& sentence)> tell_;
   std::vector<std::string> faults_;
 };
-
-/// Returns the name that the folder has while it is being removed. If a crash leaves a folder of this name,
-/// it can be deleted.
-std::filesystem::path done_beside(const std::filesystem::path& folder);
-
-/// Throws Error if `folder` exists and is not a folder, or contains anything other than checkpoints and
-/// `beside`, an entry of their owner. Protects other files from removal.
-void require_checkpoints_only(const std::filesystem::path& folder, std::string_view beside);
-
-/// Returns the identity in the folder's work.json. Throws Error if the file is missing or damaged.
-std::map<std::string, std::string> identity_of(const std::filesystem::path& folder);
-
-/// Makes `to` a hard link to `from`, or a copy if linking fails. Returns false if `from` does not exist or
-/// cannot be copied.
-bool carry_over(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace roomradar

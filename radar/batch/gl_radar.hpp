@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "mapping/types/image.hpp"
+#include "radar/batch/gl_query.hpp"
 #include "radar/batch/least_gap.hpp"
 #include "radar/batch/mask_cache.hpp"
 #include "radar/batch/radar_volume.hpp"
 #include "radar/batch/scene_mesh.hpp"
-#include "radar/batch/tile_atlas.hpp"
-#include "radar/batch/tile_draws.hpp"
+#include "radar/batch/tile_contact.hpp"
+#include "radar/batch/tile_passes.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/exact/radar_pictures.hpp"
 #include "radar/geometry/contact.hpp"
@@ -20,35 +20,6 @@
 #include "radar/gl/gpu_mesh.hpp"
 
 namespace roomradar {
-
-/// Processor that computes the least gap of a query.
-enum class GlMinimum {
-  kAuto,        ///< GPU if there is one, CPU with the software renderer
-  kOnRenderer,  ///< compute shader; a few bytes per query are read back
-  kReadBack,    ///< CPU; all pixels are read back
-};
-
-struct GlRadarConfig {
-  int resolution_px = 128;            ///< samples along the longer side of the object's outline, 1 to 4096
-  double overlap_tolerance_m = 0.03;  ///< deeper surfaces count as behind the object and are ignored
-  int atlas_px = 2048;                ///< side of the textures shared by many queries, 1 to 16384
-  GlMinimum minimum = GlMinimum::kAuto;
-  /// Runs CyberRadar for an exact result where the two passes cannot decide (see GlRadar), if all meshes that
-  /// reach the query's volume share a tree (GpuMesh::tree()).
-  bool exact_fallback = true;
-};
-/// @throws Error naming the field, its value and the rule
-void require_valid(const GlRadarConfig& config);
-
-/// One query of GlRadar::query_all().
-struct GlQuery {
-  static constexpr std::size_t kNotInScene = static_cast<std::size_t>(-1);
-  MeshInstance object;
-  Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();  ///< any length but 0
-  double distance_m = 0.0;                                    ///< max distance to search, > 0, at most 10 km
-  /// Index of the object itself in the scene, which is skipped.
-  std::size_t own_index = kNotInScene;
-};
 
 /// Cyber Radar with OpenGL: an object that moves along a line first touches the scene where the gap ahead of
 /// its front is least.
@@ -74,7 +45,7 @@ struct GlQuery {
 /// same two passes: each pixel also stores what may be anywhere in its square, and what is certainly on its
 /// centre line. lower_m is 0 if some scene is in the same pixel as the object and neither wholly ahead nor
 /// wholly behind: a wall passed closer than a pixel, a peg in a hollow. Such a query gets the exact test on
-/// the CPU if possible (GlRadarConfig::settle); then lower_m = upper_m.
+/// the CPU if possible (GlRadarConfig::exact_fallback); then lower_m = upper_m.
 ///
 /// One-sided surfaces (is_one_sided(), such as the frontier of observed space) block from both sides here;
 /// use CyberRadar where that matters.
@@ -86,7 +57,6 @@ class GlRadar {
  public:
   /// @throws Error if config is invalid or the renderer lacks a required feature
   explicit GlRadar(GlContext& context, const GlRadarConfig& config = {});
-  ~GlRadar();
   GlRadar(const GlRadar&) = delete;
   GlRadar& operator=(const GlRadar&) = delete;
 
@@ -115,16 +85,11 @@ class GlRadar {
   [[nodiscard]] RadarPictures pictures() const;
 
  private:
+  /// A query that was drawn, and its runs in runs_.
   struct Drawn {
     std::size_t query = 0;
     RadarOutline outline;
-    std::size_t first_reach = 0, reach_count = 0;
-  };
-  /// A run of scene triangles that reaches a query's volume.
-  struct Reach {
-    std::size_t scene_index = 0;
-    std::uint32_t first_triangle = 0;
-    std::uint32_t first_key = 0;
+    std::size_t first_run = 0, run_count = 0;
   };
   /// The query that pictures() returns.
   struct Shown {
@@ -134,27 +99,25 @@ class GlRadar {
   };
 
   GlRadarConfig config_;
-  TileAtlas object_tiles_, scene_tiles_;
+  TilePasses passes_;
   MaskCache masks_;
-  TileDraws object_draws_, scene_draws_;
   LeastGap least_;
-  unsigned clear_program_ = 0, object_program_ = 0, scene_program_ = 0;
 
   // Scratch of one call; members keep their memory.
   SceneBoxes boxes_;
   std::vector<Drawn> drawn_;
-  std::vector<Reach> reaches_;
-  std::vector<TileDraw> batch_object_draws_, batch_scene_draws_;
-  std::vector<TileQuery> batch_;
+  std::vector<SceneRun> runs_;
+  TileBatch batch_;
   Shown shown_;
   CyberRadar exact_radar_;
   std::vector<SceneTree> exact_trees_;
 
   bool fit_atlases(std::size_t queries);
   bool add(std::size_t index, const GlQuery& query, std::span<const SceneMesh> scene, Contact& contact);
+  void add_scene_draws(const GlQuery& query, const RadarOutline& outline, const RadarVolume& volume,
+                       const TileQuery& tile, std::span<const SceneMesh> scene);
   void draw_batch();
-  [[nodiscard]] Contact contact_of(const GlQuery& query, const Drawn& drawn, const TileResult& result,
-                                   std::span<const SceneMesh> scene) const;
+  [[nodiscard]] std::span<const SceneRun> runs_of(const Drawn& drawn) const;
   void exact_fallback(const GlQuery& query, const Drawn& drawn, std::span<const SceneMesh> scene,
                       Contact& contact);
 };

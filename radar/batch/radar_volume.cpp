@@ -81,4 +81,16 @@ RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, d
   return volume;
 }
 
+double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline) {
+  const Eigen::AlignedBox3d bounds = mesh.bounds();
+  const Eigen::Vector3d farthest =
+      (bounds.min() - mesh.origin()).cwiseAbs().cwiseMax((bounds.max() - mesh.origin()).cwiseAbs());
+  const Eigen::Matrix<double, 3, 4> to_outline = outline_from_object(outline).cwiseAbs();
+  return 4.3e-7 * (to_outline.leftCols<3>() * farthest + to_outline.col(3)).head<2>().maxCoeff();
+}
+
+double touching_m(const RadarOutline& outline, double distance_m) {
+  return 1e-5 + 1e-6 * (outline.length_m + distance_m);
+}
+
 }  // namespace roomradar

@@ -37,4 +37,11 @@ Eigen::Matrix<double, 3, 4> outline_from_local(const RadarOutline& outline, cons
 /// Returns the volume that the object sweeps, in the world.
 RadarVolume volume_of(const RadarOutline& outline, const MeshInstance& object, double distance_m);
 
+/// Returns the max error across the direction of the object's vertices in the renderer's floats, px; same
+/// formula as kTileVertexShader.
+double vertex_error_px(const GpuMesh& mesh, const RadarOutline& outline);
+
+/// Returns the distance from 0 within which L counts as touching, m.
+double touching_m(const RadarOutline& outline, double distance_m);
+
 }  // namespace roomradar

@@ -16,6 +16,19 @@ constexpr GLuint kPositionBinding = 0, kItemBinding = 1;
 
 }  // namespace
 
+TileQuery tile_query(const RadarOutline& outline, double distance_m, double tolerance_m,
+                     std::array<int, 2> object_corner_px, std::array<int, 2> scene_corner_px) {
+  TileQuery tile;
+  tile.corners_px = {object_corner_px[0], object_corner_px[1], scene_corner_px[0], scene_corner_px[1]};
+  tile.width_px = outline.width_px;
+  tile.height_px = outline.height_px;
+  tile.touching_m = static_cast<float>(touching_m(outline, distance_m));
+  tile.far_m = static_cast<float>(distance_m) + 2.0F * tile.touching_m;
+  tile.tolerance_m = static_cast<float>(std::min(tolerance_m, outline.length_m));
+  tile.length_m = static_cast<float>(outline.length_m);
+  return tile;
+}
+
 TileDraws::TileDraws(GlContext& /*context*/) {
   static_assert(sizeof(Item) == 112 && offsetof(Item, query) == 48, "laid out as the attributes below");
   glCreateVertexArrays(1, &vertex_array_);

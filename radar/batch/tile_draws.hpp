@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "radar/batch/radar_volume.hpp"
 #include "radar/gl/gl_context.hpp"
 #include "radar/gl/gpu_mesh.hpp"
 
@@ -22,6 +23,11 @@ struct TileQuery {
   float margin_px = 0.0F;  ///< twice the error of the object's vertices across the direction
   std::array<float, 3> unused{};
 };
+
+/// Returns the data of a query without query, first_key and margin_px.
+/// @param tolerance_m  see GlRadarConfig::overlap_tolerance_m
+TileQuery tile_query(const RadarOutline& outline, double distance_m, double tolerance_m,
+                     std::array<int, 2> object_corner_px, std::array<int, 2> scene_corner_px);
 
 /// Triangles of one mesh for one tile.
 struct TileDraw {

@@ -1,54 +1,21 @@
 // cyber_radar.hpp: distance an object can move along a line before contact, exact or between bounds.
 #pragma once
 #include <Eigen/Geometry>
-#include <string_view>
+#include <cstdint>
 #include <vector>
 
-#include "mapping/types/image.hpp"
 #include "radar/exact/contact_patch.hpp"
-#include "radar/exact/object_height_map.hpp"
+#include "radar/exact/object_front.hpp"
 #include "radar/exact/overlap_depth.hpp"
+#include "radar/exact/radar_query.hpp"
 #include "radar/exact/scene_in_frame.hpp"
+#include "radar/exact/scene_queue.hpp"
 #include "radar/geometry/contact.hpp"
 #include "radar/geometry/radar_scene.hpp"
 
 namespace roomradar {
 
-enum class RadarMode {
-  kSampled,  ///< few exact tests: fast; bounds as wide as the depth range within a pixel
-  kExact     ///< exact tests until lower_m = upper_m = contact_distance_m
-};
-constexpr std::string_view to_string(RadarMode mode) {
-  return mode == RadarMode::kExact ? "exact" : "sampled";
-}
-
-struct RadarConfig {
-  RadarMode mode = RadarMode::kExact;
-  /// Pixels along the longer side of the object's outline, 1 to 4096. Determines Contact::pixel_m and the
-  /// width of sampled mode's bounds. Sampled mode uses this resolution once a direction in the object's frame
-  /// has repeated often enough that a finer M pays. Before that M has at most 40 pixels, or 64 for an object
-  /// of few triangles. Exact mode chooses the fastest resolution; its result does not depend on it.
-  int resolution_px = 64;
-  friend bool operator==(const RadarConfig&, const RadarConfig&) = default;
-};
-/// @throws Error naming the field, its value and the rule
-void require_valid(const RadarConfig& config);
-
-struct RadarQuery {
-  TreeInstance object;                                        ///< not in the scene, except as own_tree
-  Eigen::Vector3d direction_world = Eigen::Vector3d::Zero();  ///< any length but 0
-  double distance_m = 0.0;                                    ///< max distance to search, > 0
-  /// Inflates the object by this on all sides: lower_m then holds for any motion that deviates no farther
-  /// from the straight one (rotation, noise). If > 0, only lower_m is meaningful: upper_m is infinite,
-  /// overlap and touching give lower_m = 0, and surfaces that the object leaves count too.
-  double margin_m = 0.0;
-  /// Index of the object's own tree in the scene, which is skipped.
-  std::size_t own_tree = kNotInScene;
-  static constexpr std::size_t kNotInScene = static_cast<std::size_t>(-1);
-};
-
-/// Returns false for a query that CyberRadar::query() rejects by itself, whatever the scene.
-bool is_valid(const RadarQuery& query);
+struct RadarSearch;
 
 /// Cyber Radar on the CPU. M is the object's leading surface, R the scene ahead; the least gap L between them
 /// is the distance to contact. Below, u is the direction of motion and n a scene triangle's normal.
@@ -129,41 +96,30 @@ class CyberRadar {
     SceneItem item;
   };
   RadarConfig config_;
-  ObjectHeightMap front_;
+  ObjectFront front_;  // M
   std::uint64_t static_triangles_asked_ = 0;
-  std::uint64_t front_work_ = 0;  // ColumnScratch::work of all queries since front_ was last turned
   SceneInFrame scene_;
   ContactPatch patch_;
   OverlapScratch overlap_;
-  std::vector<SceneItem> heap_;
+  SceneQueue queue_;
   std::vector<SceneItem> found_;
   ColumnScratch columns_;
   std::vector<Back> backs_;
   std::vector<Layer> layers_;
-  Eigen::Vector3d u_mesh_ = Eigen::Vector3d::Zero();
 
-  struct Search;
-  Eigen::Vector3d direction_in_object(const RadarQuery& query);
-  void build_front(const TurnedTree& object, bool is_kept);
-  [[nodiscard]] int fresh_px() const;
-  [[nodiscard]] Eigen::AlignedBox3d volume_ahead(const Search& search) const;
-  [[nodiscard]] SceneBound bound_of(const Search& search) const;
-  void look(Search& search);
-  void test_exactly(Search& search, const SceneItem& item, const FrameTriangle& s);
-  void look_over(Search& search, const Eigen::Vector2d& place);
-  void cut_short(Search& search);
-  void leave(Search& search);
-  [[nodiscard]] double limit_m(const Search& search) const;
-  [[nodiscard]] double least_unsettled_m(const Search& search) const;
-  [[nodiscard]] Contact nothing_found(const Search& search) const;
-  [[nodiscard]] Contact inflated_contact_of(const Search& search) const;
-  [[nodiscard]] Contact overlap_of(const Search& search);
-  [[nodiscard]] Contact contact_of(Search& search);
-  static void touch(const Search& search, const PatchPoint& at, Contact& contact);
+  [[nodiscard]] Eigen::AlignedBox3d volume_ahead(const RadarSearch& search) const;
+  [[nodiscard]] SceneBound bound_of(const RadarSearch& search) const;
+  void look(RadarSearch& search);
+  void test_exactly(RadarSearch& search, const SceneItem& item, const FrameTriangle& s);
+  void look_over(RadarSearch& search, const Eigen::Vector2d& place);
+  void cut_short(RadarSearch& search);
+  void leave(RadarSearch& search);
+  [[nodiscard]] double limit_m(const RadarSearch& search) const;
+  [[nodiscard]] double least_unsettled_m(const RadarSearch& search) const;
+  [[nodiscard]] Contact nothing_found(const RadarSearch& search) const;
+  [[nodiscard]] Contact inflated_contact_of(const RadarSearch& search) const;
+  [[nodiscard]] Contact overlap_of(const RadarSearch& search);
+  [[nodiscard]] Contact contact_of(RadarSearch& search);
 };
-
-/// Returns the distance below which surfaces touch this object, m: 1 um plus the float resolution at its
-/// size.
-double touching_m(const TriangleTree& object);
 
 }  // namespace roomradar

@@ -62,9 +62,4 @@ class ObjectHeightMap {
   [[nodiscard]] bool is_under(int x0, int x1, int y0, int y1, float height) const;
 };
 
-/// Returns the bounds of the tree's triangles in the rotated frame, rounding and margin included, at most
-/// tolerance_m too large. Runs one search per side.
-Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, double tolerance_m,
-                                  std::vector<PendingNode>& pending);
-
 }  // namespace roomradar

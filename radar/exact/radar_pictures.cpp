@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "radar/exact/cyber_radar.hpp"
+#include "radar/exact/turned_bounds.hpp"
 #include "radar/geometry/frame_along.hpp"
 #include "radar/geometry/infinity.hpp"
 #include "radar/geometry/pixel_grid.hpp"

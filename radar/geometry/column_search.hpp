@@ -112,6 +112,8 @@ struct SceneColumn {
 /// bounds include float rounding. If the scene triangle is edge-on, boxes that do not reach through its plane
 /// by touching_m are skipped: their triangles at most slide along the plane (see classify_pair()).
 ///
+/// One function: the eight lanes of a node stay in registers between bounds and tests.
+///
 /// @param limit_m   callable without arguments; boxes and triangles without a gap below it are skipped
 /// @param floor_m   boxes without a gap of at least this are skipped
 /// @param leaf      callable with the index of an object triangle

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "radar/geometry/infinity.hpp"
 
 namespace roomradar {
 namespace {
@@ -110,6 +113,32 @@ bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleG
     gap.high_m = std::max(gap.high_m, gap.places[i].gap);
   }
   return true;
+}
+
+double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, double touching_m) {
+  const auto& o = object.corners;
+  const auto& s = scene.corners;
+  const double by_height_m =
+      std::min(std::min(s[0].z(), s[1].z()), s[2].z()) - std::max(std::max(o[0].z(), o[1].z()), o[2].z());
+  if (std::abs(scene.normal.z()) <= kEdgeOn && !scene.normal.isZero(0.0)) {
+    double low_m = kInfinity<double>, high_m = -kInfinity<double>;
+    for (const Eigen::Vector3d& corner : o) {
+      const double across_m = scene.normal.dot(corner - s[0]);
+      low_m = std::min(low_m, across_m);
+      high_m = std::max(high_m, across_m);
+    }
+    return low_m >= -touching_m || high_m <= touching_m ? kInfinity<double> : by_height_m;  // slides along it
+  }
+  if (std::abs(scene.normal.z()) < 1e-3) return by_height_m;
+  const double per_m = 1.0 / scene.normal.z();
+  double by_plane_m = kInfinity<double>, size_m = s[0].lpNorm<1>();
+  for (const Eigen::Vector3d& corner : o) {
+    by_plane_m = std::min(by_plane_m, scene.normal.dot(s[0] - corner) * per_m);
+    size_m = std::max(size_m, corner.lpNorm<1>());
+  }
+  // Rounding of a difference, a product and a sum of three, and the tilt by the normal's own rounding.
+  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+  return std::max(by_height_m, by_plane_m - kRounding * size_m * std::abs(per_m));
 }
 
 PairContact classify_pair(const FrameTriangle& object, const FrameTriangle& scene, const TriangleGap& gap,

@@ -36,6 +36,10 @@ struct TriangleGap {
 ///         as on it, so nothing slips between triangles that share an edge.
 bool find_gap(const FrameTriangle& object, const FrameTriangle& scene, TriangleGap& gap);
 
+/// Returns a cheap lower bound of the gap, from the triangles' heights and from the object's corners under
+/// the scene's extended plane. Infinite if the object slides along the scene (see classify_pair()).
+double least_gap_bound(const FrameTriangle& object, const FrameTriangle& scene, double touching_m);
+
 enum class PairContact {
   kNone,      ///< no contact ahead
   kContact,   ///< contact after max(low_m, 0)

@@ -1,433 +1,18 @@
-// triangle_tree.cpp: builds boxes over triangles, spatially or in their given order.
+// triangle_tree.cpp: copies the usable triangles, and has the tree built over them.
 #include "radar/geometry/triangle_tree.hpp"
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 #include "mapping/types/validity.hpp"
+#include "radar/geometry/flat_faces.hpp"
+#include "radar/geometry/half_edges.hpp"
+#include "radar/geometry/tree_builder.hpp"
 
 namespace roomradar {
 namespace {
-
-constexpr std::uint32_t kLeafTriangles = 2;  // spatial: fewer pair tests than with 4, fewer boxes than with 1
-constexpr std::uint32_t kRunTriangles = 4;   // in order: a quarter of the boxes to build
-
-struct Bounds {
-  Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
-  Eigen::Array3f high = Eigen::Array3f::Constant(-std::numeric_limits<float>::infinity());
-  void extend(const Eigen::Array3f& p) {
-    low = low.min(p);
-    high = high.max(p);
-  }
-  void extend(const Bounds& b) {
-    low = low.min(b.low);
-    high = high.max(b.high);
-  }
-  [[nodiscard]] float area() const {
-    const Eigen::Array3f s = high - low;
-    return s.x() * s.y() + s.y() * s.z() + s.z() * s.x();
-  }
-};
-
-Bounds bounds_of(const Triangle& triangle, const std::vector<Eigen::Vector3f>& vertices) {
-  Bounds b;
-  for (const std::uint32_t v : triangle) b.extend(vertices[v].array());
-  return b;
-}
-
-/// Writes boxes into nodes, relative to a centre and enlarged by the rounding.
-struct NodeWriter {
-  Eigen::Array3f centre;
-  float rounding_m;
-
-  void put(TreeNode& node, std::uint32_t place, const Bounds& b, std::uint32_t first,
-           std::uint32_t count) const {
-    const Eigen::Array3f middle = 0.5F * (b.low + b.high);
-    const Eigen::Array3f half = (b.high - middle).max(middle - b.low) + rounding_m;
-    const Eigen::Array3f at = middle - centre;
-    node.centre_x[place] = at.x();
-    node.centre_y[place] = at.y();
-    node.centre_z[place] = at.z();
-    node.half_x[place] = half.x();
-    node.half_y[place] = half.y();
-    node.half_z[place] = half.z();
-    node.first[place] = first;
-    node.count[place] = count;
-  }
-  static void close(TreeNode& node, std::uint32_t child_count) {
-    node.child_count = child_count;
-    for (std::uint32_t i = child_count; i < TreeNode::kWidth; ++i) {
-      for (auto* row :
-           {&node.centre_x, &node.centre_y, &node.centre_z, &node.half_x, &node.half_y, &node.half_z}) {
-        (*row)[i] = (*row)[0];
-      }
-      node.first[i] = node.first[0];
-      node.count[i] = node.count[0];
-    }
-  }
-};
-
-/// Splits by the surface area heuristic over bins of centroids, eight ways per node. Source: Wald, On fast
-/// Construction of SAH-based Bounding Volume Hierarchies, RT 2007; Wald, Benthin, Boulos, Getting Rid of
-/// Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs, RT 2008.
-class KeyframeBuilder {
- public:
-  KeyframeBuilder(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
-                  const NodeWriter& writer, std::vector<TreeNode>& nodes)
-      : writer_(writer), nodes_(nodes), order_(triangles.size()), bounds_(triangles.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    for (std::size_t i = 0; i < triangles.size(); ++i) bounds_[i] = bounds_of(triangles[i], vertices);
-  }
-
-  std::vector<std::uint32_t> build() {
-    build_node({0, static_cast<std::uint32_t>(order_.size())});
-    return std::move(order_);
-  }
-
- private:
-  struct Range {
-    std::uint32_t first, last;
-    [[nodiscard]] std::uint32_t size() const { return last - first; }
-  };
-  const NodeWriter& writer_;
-  std::vector<TreeNode>& nodes_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Bounds> bounds_;
-
-  [[nodiscard]] Bounds bounds_in(const Range& range) const {
-    Bounds b;
-    for (std::uint32_t i = range.first; i < range.last; ++i) b.extend(bounds_[order_[i]]);
-    return b;
-  }
-  [[nodiscard]] Eigen::Array3f middle_of(std::uint32_t triangle) const {
-    return 0.5F * bounds_[triangle].low + 0.5F * bounds_[triangle].high;
-  }
-
-  std::uint32_t split(const Range& range) {
-    Bounds middles;
-    for (std::uint32_t i = range.first; i < range.last; ++i) middles.extend(middle_of(order_[i]));
-    Eigen::Index axis = 0;
-    const float size = (middles.high - middles.low).maxCoeff(&axis);
-    const std::uint32_t half = range.first + range.size() / 2;
-    constexpr int kBins = 16;
-    const float scale = static_cast<float>(kBins) / size;
-    if (!(size > 0.0F) || !std::isfinite(size) || !std::isfinite(scale)) return half;  // all at one position
-    const auto bin_of = [&](std::uint32_t triangle) {
-      return std::min(kBins - 1, static_cast<int>((middle_of(triangle)[axis] - middles.low[axis]) * scale));
-    };
-    std::array<Bounds, kBins> bins;
-    std::array<std::uint32_t, kBins> counts{};
-    for (std::uint32_t i = range.first; i < range.last; ++i) {
-      const auto bin = static_cast<std::size_t>(bin_of(order_[i]));
-      bins[bin].extend(bounds_[order_[i]]);
-      ++counts[bin];
-    }
-    std::array<float, kBins> cost_above{};
-    Bounds above;
-    std::uint32_t count = 0;
-    for (std::size_t i = kBins - 1; i > 0; --i) {
-      above.extend(bins[i]);
-      count += counts[i];
-      cost_above[i] = count == 0 ? 0.0F : above.area() * static_cast<float>(count);
-    }
-    Bounds below;
-    count = 0;
-    float best = std::numeric_limits<float>::infinity();
-    std::size_t best_bin = 0;
-    for (std::size_t i = 1; i < kBins; ++i) {
-      below.extend(bins[i - 1]);
-      count += counts[i - 1];
-      if (count == 0 || count == range.size()) continue;
-      const float cost = below.area() * static_cast<float>(count) + cost_above[i];
-      if (cost < best) best = cost, best_bin = i;
-    }
-    if (best_bin == 0) return half;
-    const auto middle =
-        std::partition(order_.begin() + range.first, order_.begin() + range.last,
-                       [&](std::uint32_t triangle) { return bin_of(triangle) < static_cast<int>(best_bin); });
-    return static_cast<std::uint32_t>(middle - order_.begin());
-  }
-
-  std::uint32_t build_node(const Range& range) {
-    std::array<Range, TreeNode::kWidth> parts{range};
-    std::uint32_t part_count = 1;
-    while (part_count < TreeNode::kWidth) {
-      const auto largest =
-          std::max_element(parts.begin(), parts.begin() + part_count,
-                           [](const Range& a, const Range& b) { return a.size() < b.size(); });
-      if (largest->size() <= kLeafTriangles) break;
-      const std::uint32_t at = split(*largest);
-      parts[part_count++] = {at, largest->last};
-      largest->last = at;
-    }
-    const auto place = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    for (std::uint32_t i = 0; i < part_count; ++i) {
-      const bool is_leaf = parts[i].size() <= kLeafTriangles;
-      const Bounds bounds = bounds_in(parts[i]);
-      const std::uint32_t first = is_leaf ? parts[i].first : build_node(parts[i]);
-      writer_.put(nodes_[place], i, bounds, first, is_leaf ? parts[i].size() : 0);
-    }
-    NodeWriter::close(nodes_[place], part_count);
-    return place;
-  }
-};
-
-/// Builds nodes over runs of eight leaves, then over runs of eight nodes, and so on; the root is first.
-void build_runs(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
-                const NodeWriter& writer, std::vector<TreeNode>& nodes) {
-  const auto triangle_count = static_cast<std::uint32_t>(triangles.size());
-  constexpr std::uint32_t kWidth = TreeNode::kWidth;
-  // Number of nodes per level, leaves' parents first; the root's level has one.
-  std::array<std::uint32_t, 16> level_sizes{};
-  std::size_t level_count = 0;
-  for (std::uint32_t n = (triangle_count + kRunTriangles - 1) / kRunTriangles; level_count == 0 || n > 1;) {
-    n = (n + kWidth - 1) / kWidth;
-    level_sizes[level_count++] = n;
-  }
-  std::uint32_t node_count = 0;
-  std::array<std::uint32_t, 16> level_first{};
-  for (std::size_t level = level_count; level-- > 0;) {
-    level_first[level] = node_count;
-    node_count += level_sizes[level];
-  }
-  nodes.resize(node_count);
-
-  const auto bounds_of_node = [&](const TreeNode& node) {
-    Bounds b;
-    for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      const Eigen::Array3f c(node.centre_x[i], node.centre_y[i], node.centre_z[i]);
-      const Eigen::Array3f h(node.half_x[i], node.half_y[i], node.half_z[i]);
-      b.extend(Eigen::Array3f(c + writer.centre - h));
-      b.extend(Eigen::Array3f(c + writer.centre + h));
-    }
-    return b;
-  };
-  for (std::size_t level = 0; level < level_count; ++level) {
-    const std::uint32_t below =
-        level == 0 ? (triangle_count + kRunTriangles - 1) / kRunTriangles : level_sizes[level - 1];
-    for (std::uint32_t n = 0; n < level_sizes[level]; ++n) {
-      TreeNode& node = nodes[level_first[level] + n];
-      const std::uint32_t first_child = n * kWidth;
-      const std::uint32_t child_count = std::min(kWidth, below - first_child);
-      for (std::uint32_t i = 0; i < child_count; ++i) {
-        if (level == 0) {
-          const std::uint32_t first = (first_child + i) * kRunTriangles;
-          const std::uint32_t count = std::min(kRunTriangles, triangle_count - first);
-          Bounds b;
-          for (std::uint32_t t = first; t < first + count; ++t) b.extend(bounds_of(triangles[t], vertices));
-          writer.put(node, i, b, first, count);
-        } else {
-          const std::uint32_t child = level_first[level - 1] + first_child + i;
-          writer.put(node, i, bounds_of_node(nodes[child]), child, 0);
-        }
-      }
-      NodeWriter::close(node, child_count);
-    }
-  }
-}
-
-/// A side of a triangle on an edge between two positions. side: 3 * triangle + index of its first corner.
-struct Side {
-  std::uint64_t edge;
-  std::uint32_t side;
-  int sense;  // +1 or -1: direction along the edge
-};
-
-/// Returns a number per vertex, equal for vertices at the same position.
-std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& vertices) {
-  std::vector<std::uint32_t> by_key(vertices.size());
-  std::iota(by_key.begin(), by_key.end(), 0U);
-  const auto before = [&](std::uint32_t a, std::uint32_t b) {
-    return std::lexicographical_compare(vertices[a].data(), vertices[a].data() + 3, vertices[b].data(),
-                                        vertices[b].data() + 3);
-  };
-  std::erase_if(by_key, [&](std::uint32_t v) { return !vertices[v].allFinite(); });
-  std::sort(by_key.begin(), by_key.end(), before);
-  std::vector<std::uint32_t> number(vertices.size(), 0);
-  for (std::size_t i = 1; i < by_key.size(); ++i) {
-    number[by_key[i]] = number[by_key[i - 1]] + (before(by_key[i - 1], by_key[i]) ? 1U : 0U);
-  }
-  return number;
-}
-
-/// Returns the sides sorted by edge.
-std::vector<Side> sides_of(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& number) {
-  std::vector<Side> sides;
-  sides.reserve(triangles.size() * 3);
-  for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      const std::uint64_t a = number[triangles[t][i]], b = number[triangles[t][(i + 1) % 3]];
-      if (a != b) sides.push_back({std::min(a, b) << 32U | std::max(a, b), 3 * t + i, a < b ? 1 : -1});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.edge != b.edge ? a.edge < b.edge : a.side < b.side;
-  });
-  return sides;
-}
-
-/// See TriangleTree::is_closed().
-bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
-                       const std::vector<std::uint32_t>& number, const std::vector<Side>& sides) {
-  int balance = 0;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    balance += sides[i].sense;
-    if (i + 1 < sides.size() && sides[i + 1].edge == sides[i].edge) continue;
-    if (balance != 0) return false;
-  }
-  // Connected components are tested separately, so one that is inside out cannot hide behind a larger one.
-  std::vector<std::uint32_t> part(vertices.size());
-  std::iota(part.begin(), part.end(), 0U);
-  const auto part_of = [&](std::uint32_t v) {
-    while (part[v] != v) v = part[v] = part[part[v]];
-    return v;
-  };
-  for (const Triangle& t : triangles) {
-    part[part_of(number[t[0]])] = part_of(number[t[1]]);
-    part[part_of(number[t[1]])] = part_of(number[t[2]]);
-  }
-  std::vector<double> volume_m3(vertices.size(), 0.0);
-  const Eigen::Vector3d about = vertices[triangles[0][0]].cast<double>();
-  for (const Triangle& t : triangles) {
-    std::array<Eigen::Vector3d, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) p[i] = vertices[t[i]].cast<double>() - about;
-    volume_m3[part_of(number[t[0]])] += p[0].dot(p[1].cross(p[2]));
-  }
-  bool encloses = false;
-  for (const Triangle& t : triangles) {
-    const std::uint32_t a = number[t[0]], b = number[t[1]], c = number[t[2]];
-    if (a == b || b == c || c == a) continue;  // a point or a line encloses nothing
-    if (!(volume_m3[part_of(number[t[0]])] > 0.0)) return false;
-    encloses = true;
-  }
-  return encloses;
-}
-
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
-/// Returns the triangle beyond each side; kNone unless there is exactly one with consistent orientation.
-std::vector<std::uint32_t> neighbours_of(std::size_t triangle_count, const std::vector<Side>& sides) {
-  std::vector<std::uint32_t> beyond(3 * triangle_count, kNone);
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].edge == sides[i].edge) ++end;
-    if (end - i == 2 && sides[i].sense != sides[i + 1].sense) {
-      beyond[sides[i].side] = sides[i + 1].side / 3;
-      beyond[sides[i + 1].side] = sides[i].side / 3;
-    }
-    i = end;
-  }
-  return beyond;
-}
-
-/// Grows flat faces triangle by triangle (region growing).
-class FaceFinder {
- public:
-  FaceFinder(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
-             const std::vector<Side>& sides, double flat_m)
-      : triangles_(triangles),
-        vertices_(vertices),
-        beyond_(neighbours_of(triangles.size(), sides)),
-        flat_m_(flat_m) {}
-
-  /// Returns for each triangle whether it is within a face.
-  std::vector<bool> find() {
-    face_.assign(triangles_.size(), kNone);
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-      if (face_[t] == kNone) grow_from(t);
-    std::vector<bool> within(triangles_.size());
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      const auto is_of_its_face = [&](std::uint32_t next) {
-        return next != kNone && face_[next] == face_[t];
-      };
-      within[t] = std::all_of(&beyond_[3 * t], &beyond_[3 * t] + 3, is_of_its_face);
-    }
-    return within;
-  }
-
- private:
-  /// Area-weighted plane of the triangles so far: the more triangles, the less their rounding tilts it.
-  struct Plane {
-    Eigen::Vector3d area_m2 = Eigen::Vector3d::Zero(), moment_m3 = Eigen::Vector3d::Zero();
-    double weight_m2 = 0.0;
-
-    void add(const std::array<Eigen::Vector3d, 3>& corners, const Eigen::Vector3d& area) {
-      const double weight = area.norm();
-      area_m2 += area;
-      moment_m3 += weight / 3.0 * (corners[0] + corners[1] + corners[2]);
-      weight_m2 += weight;
-    }
-    [[nodiscard]] bool holds(const std::array<Eigen::Vector3d, 3>& corners, double within_m) const {
-      const Eigen::Vector3d normal = area_m2.stableNormalized(), middle = moment_m3 / weight_m2;
-      return std::all_of(corners.begin(), corners.end(), [&](const Eigen::Vector3d& p) {
-        return std::abs(normal.dot(p - middle)) <= within_m;
-      });
-    }
-  };
-
-  const std::vector<Triangle>& triangles_;
-  const std::vector<Eigen::Vector3f>& vertices_;
-  const std::vector<std::uint32_t> beyond_;
-  const double flat_m_;
-  std::vector<std::uint32_t> face_, taken_;
-
-  [[nodiscard]] std::array<Eigen::Vector3d, 3> corners(std::uint32_t t) const {
-    const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
-      return vertices_[triangles_[t][i]].cast<double>();
-    };
-    return {corner(0), corner(1), corner(2)};
-  }
-  static Eigen::Vector3d area(const std::array<Eigen::Vector3d, 3>& p) {
-    return (p[1] - p[0]).cross(p[2] - p[0]);
-  }
-
-  void grow_from(std::uint32_t seed) {
-    constexpr double kSameWay = 0.99;  // cosine: normals of slivers are rough, normals of folds are opposite
-    Plane plane;
-    plane.add(corners(seed), area(corners(seed)));
-    face_[seed] = seed;
-    taken_.assign(1, seed);
-    for (std::size_t at = 0; at < taken_.size(); ++at) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::uint32_t next = beyond_[3 * taken_[at] + i];
-        if (next == kNone || face_[next] != kNone) continue;
-        const auto p = corners(next);
-        const Eigen::Vector3d a = area(p);
-        if (!(a.dot(plane.area_m2) > kSameWay * a.norm() * plane.area_m2.norm()) || !plane.holds(p, flat_m_))
-          continue;
-        plane.add(p, a);
-        face_[next] = seed;
-        taken_.push_back(next);
-      }
-    }
-    // The plane may have tilted away from the first triangles.
-    const bool is_flat = std::all_of(taken_.begin(), taken_.end(),
-                                     [&](std::uint32_t t) { return plane.holds(corners(t), 2.0 * flat_m_); });
-    if (!is_flat)
-      for (const std::uint32_t t : taken_) face_[t] = t;
-  }
-};
-
-/// Sets within_faces of all nodes; children come after their parents.
-void mark_faces(const std::vector<bool>& within, std::vector<TreeNode>& nodes) {
-  for (std::size_t n = nodes.size(); n-- > 0;) {
-    TreeNode& node = nodes[n];
-    for (std::uint32_t i = 0; i < node.child_count; ++i) {
-      bool is_within = true;
-      if (node.count[i] == 0) {
-        const TreeNode& child = nodes[node.first[i]];
-        is_within = child.within_faces == (1U << child.child_count) - 1U;
-      }
-      for (std::uint32_t t = node.first[i]; t < node.first[i] + node.count[i]; ++t)
-        is_within = is_within && within[t];
-      if (is_within) node.within_faces |= 1U << i;
-    }
-  }
-}
 
 std::uint64_t next_revision() {
   static std::atomic<std::uint64_t> last{0};
@@ -445,7 +30,7 @@ void TriangleTree::take(const Mesh& mesh) {
   nodes_.clear();
   is_closed_ = false;
   revision_ = next_revision();
-  Bounds all;
+  FloatBounds all;
   for (const Triangle& t : mesh.triangles) {
     if (!is_usable(mesh, t)) continue;
     triangles_.push_back(t);
@@ -469,22 +54,23 @@ void TriangleTree::take(const Mesh& mesh) {
 void TriangleTree::build_by_place(const Mesh& mesh) {
   take(mesh);
   if (triangles_.empty()) return;
-  const NodeWriter writer{centre_.cast<float>().array(), rounding_m_};
-  const std::vector<std::uint32_t> order = KeyframeBuilder(triangles_, vertices_, writer, nodes_).build();
+  const std::vector<std::uint32_t> order =
+      build_nodes_by_place(triangles_, vertices_, {centre_.cast<float>().array(), rounding_m_}, nodes_);
   std::vector<Triangle> sorted(triangles_.size());
   for (std::size_t i = 0; i < order.size(); ++i) sorted[i] = triangles_[order[i]];
   triangles_ = std::move(sorted);
   const std::vector<std::uint32_t> number = numbers_by_place(vertices_);
-  const std::vector<Side> sides = sides_of(triangles_, number);
-  is_closed_ = encloses_a_volume(triangles_, vertices_, number, sides);
+  const std::vector<HalfEdge> edges = half_edges_of(triangles_, number);
+  is_closed_ = encloses_a_volume(triangles_, vertices_, number, edges);
   if (is_closed_)
-    mark_faces(FaceFinder(triangles_, vertices_, sides, static_cast<double>(rounding_m_)).find(), nodes_);
+    mark_flat_faces(find_within_flat_faces(triangles_, vertices_, edges, static_cast<double>(rounding_m_)),
+                    nodes_);
 }
 
 void TriangleTree::build_in_order(const Mesh& mesh) {
   take(mesh);
   if (triangles_.empty()) return;
-  build_runs(triangles_, vertices_, {centre_.cast<float>().array(), rounding_m_}, nodes_);
+  build_nodes_in_order(triangles_, vertices_, {centre_.cast<float>().array(), rounding_m_}, nodes_);
 }
 
 }  // namespace roomradar

@@ -1,4 +1,6 @@
 // free_time.cpp: how long planes between pairs of triangles keep a motion free of contact.
+#include "radar/motion/free_time.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -6,7 +8,6 @@
 #include "radar/geometry/inflated_distance.hpp"
 #include "radar/geometry/tree_pairs.hpp"
 #include "radar/motion/closest_features.hpp"
-#include "radar/motion/proximity.hpp"
 
 namespace roomradar {
 namespace {
@@ -183,8 +184,8 @@ struct TreeFreedom {
 
 }  // namespace
 
-FreeTime ProximityQuery::free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s,
-                                   double keep_m, const RadarScene& scene, SurfaceKindMask left_out) {
+FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
+                   const RadarScene& scene, SurfaceKindMask left_out, std::vector<PendingPair>& pending) {
   FreeTime result;
   if (!is_usable(object) || !(duration_s > 0.0)) return result;
   result.free_s = duration_s;
@@ -199,7 +200,7 @@ FreeTime ProximityQuery::free_time(const TreeInstance& object, const RigidMotion
     TreePair trees(object, tree.instance);
     TreeFreedom freedom{trees, tree.kind, number, course_of(object, motion, keep_m, trees), result};
     visit_pairs<PairOrder::kLeastFirst>(
-        trees, pending_, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
+        trees, pending, [&](const PairBox& o, const PairBox& s) { return freedom.key(o, s); },
         [&](const PairBox& o, const PairBox& s) {
           freedom.look_at_leaves(o, s);
           return static_cast<float>(freedom.result.free_s);

@@ -79,4 +79,9 @@ SurfaceKindMask ProximityQuery::near(const TreeInstance& object, const RadarScen
   return crossed;
 }
 
+FreeTime ProximityQuery::free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s,
+                                   double keep_m, const RadarScene& scene, SurfaceKindMask left_out) {
+  return roomradar::free_time(object, motion, duration_s, keep_m, scene, left_out, pending_);
+}
+
 }  // namespace roomradar

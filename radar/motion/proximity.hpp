@@ -9,15 +9,10 @@
 #include "radar/geometry/radar_scene.hpp"
 #include "radar/geometry/tree_pairs.hpp"
 #include "radar/motion/closest_point.hpp"
+#include "radar/motion/free_time.hpp"
 #include "radar/motion/time_of_impact.hpp"
 
 namespace roomradar {
-
-struct FreeTime {
-  double free_s = 0.0;  ///< until then every pair of triangles keeps its minimum distance
-  ClosestPoint limit;   ///< present closest features of the pair that limits free_s; kNothing if the whole
-                        ///< duration is free
-};
 
 /// Proximity queries between an object and the scene's trees; the scene's depth images are ignored.
 /// CyberRadar looks along one direction; near a contact, where an object turns over an edge, every direction
@@ -37,12 +32,7 @@ class ProximityQuery {
   SurfaceKindMask near(const TreeInstance& object, const RadarScene& scene, double reach_m,
                        SurfaceKindMask left_out, std::vector<ClosestPoint>& points);
 
-  /// Computes how long a rigid motion is free of contact with surfaces that do not cross the object now. A
-  /// plane separates each pair of triangles: the plane of one of them, or the one across their nearest
-  /// points. No corner approaches the plane faster than its present speed plus what the rotation can add. The
-  /// minimum distance of a pair is keep_m, or half its present distance if that is under twice keep_m.
-  /// Source: Mirtich, PhD thesis, Berkeley 1996, section 2.3; Tang, Kim, Manocha, C2A: controlled
-  /// conservative advancement, ICRA 2009.
+  /// See free_time() in free_time.hpp.
   FreeTime free_time(const TreeInstance& object, const RigidMotion& motion, double duration_s, double keep_m,
                      const RadarScene& scene, SurfaceKindMask left_out = 0);
 

@@ -22,9 +22,9 @@
 #include "app/session/session_events.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/map/map_folder.hpp"
-#include "mapping/octree/memory_use.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/process_memory.hpp"
 #include "mapping/types/system/stage_times.hpp"
 #include "tests/bench/bench_program.hpp"
 

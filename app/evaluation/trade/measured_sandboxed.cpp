@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "app/cli/report.hpp"
-#include "mapping/octree/memory_use.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/process_memory.hpp"
 #include "mapping/types/system/run_sandboxed.hpp"
 
 namespace roomradar {

@@ -13,10 +13,10 @@
 #include "app/evaluation/trade/trade_frames.hpp"
 #include "app/sim/scenarios/surface_score.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
-#include "mapping/octree/memory_use.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/types/linear_algebra.hpp"
 #include "mapping/types/system/error.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {

@@ -11,7 +11,7 @@
 #include "app/session/apply_quality.hpp"
 #include "app/session/session.hpp"
 #include "app/session/session_events.hpp"
-#include "mapping/octree/memory_use.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
 namespace {

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "app/evaluation/trade/measured_sandboxed.hpp"
-#include "mapping/octree/memory_use.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

@@ -1,5 +1,6 @@
 // radar_pictures_test.cpp: the CPU radar draws the same images as GL, and its M is nowhere less.
 #include "radar/exact/radar_pictures.hpp"
+#include "radar/exact/turned_bounds.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,15 @@
-// memory_use_test.cpp: freed memory is returned to the system.
-#include "mapping/octree/memory_use.hpp"
+// process_memory_test.cpp: freed memory is returned to the system.
+#include "mapping/types/system/process_memory.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstddef>
 #include <vector>
 
-namespace roomradar::memory_use_test {
+namespace roomradar::process_memory_test {
 namespace {
 
-TEST(MemoryUse, LargeBlocksGoBackAtOnceThoughSmallOnesBetweenThemStay) {
+TEST(ProcessMemory, LargeBlocksGoBackAtOnceThoughSmallOnesBetweenThemStay) {
 #ifndef __GLIBC__
   GTEST_SKIP() << "only glibc can be asked for that";
 #endif
@@ -31,4 +31,4 @@ TEST(MemoryUse, LargeBlocksGoBackAtOnceThoughSmallOnesBetweenThemStay) {
 }
 
 }  // namespace
-}  // namespace roomradar::memory_use_test
+}  // namespace roomradar::process_memory_test

@@ -1,42 +1,12 @@
-// memory_use.cpp: reads memory use from the system, and extrapolates from single frames to a whole scan.
-#include "mapping/octree/memory_use.hpp"
-
-#include <malloc.h>
-#include <unistd.h>
+// scan_memory.cpp: extrapolates from single frames to a whole scan.
+#include "mapping/scan_memory.hpp"
 
 #include <algorithm>
-#include <fstream>
 
 #include "mapping/octree/static_map.hpp"
+#include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {
-
-std::size_t resident_bytes() {
-  std::ifstream file("/proc/self/statm");
-  std::size_t all_pages = 0, resident_pages = 0;
-  if (!(file >> all_pages >> resident_pages)) return 0;
-  return resident_pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
-}
-
-std::uint64_t machine_bytes() {
-  const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
-  if (pages <= 0 || page_bytes <= 0) return 0;
-  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes);
-}
-
-void release_unused_memory() {
-#ifdef __GLIBC__
-  ::malloc_trim(0);
-#endif
-}
-
-void mmap_large_allocations() {
-#ifdef __GLIBC__
-  // Larger than what decoding one 640 x 480 image allocates, smaller than a keyframe's target view. By
-  // default glibc raises the threshold to the size of the last freed block.
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
-#endif
-}
 
 std::optional<MemoryEstimate> estimate_memory(FrameSource& source, double resolution_m) {
   constexpr std::int64_t kLooks = 4, kTries = 5, kMinute = 1800;

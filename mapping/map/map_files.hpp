@@ -1,0 +1,45 @@
+// map_files.hpp: the files of a map's folder, and which folders can become a map.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+
+namespace roomradar {
+
+/// Name of the file that describes a map and lists its other files.
+inline constexpr const char* kMapInfoFile = "map.json";
+inline constexpr const char* kMapOctreeFile = "octree.ot";
+inline constexpr const char* kMapPlainOctreeFile = "octree.bt";
+inline constexpr const char* kMapMeshFile = "mesh.ply";
+inline constexpr const char* kMapKeyframesFile = "places.bin";
+inline constexpr const char* kMapTrajectoryFile = "trajectory.txt";
+/// All required files except map.json.
+inline constexpr std::array<const char*, 5> kMapParts = {kMapOctreeFile, kMapPlainOctreeFile, kMapMeshFile,
+                                                         kMapKeyframesFile, kMapTrajectoryFile};
+inline constexpr const char* kMapCoverageFile = "coverage.png";  ///< optional
+inline constexpr const char* kMapUnknownFile = "unknown.bin";    ///< optional: earlier versions saved none
+
+/// Returns whether a map may have a file of this name beside map.json.
+bool is_map_part(const std::string& name);
+
+/// Throws Error unless `folder` is missing, empty, or contains a map and nothing else.
+void require_replaceable(const std::filesystem::path& folder);
+
+/// Returns the path without dot components and without a trailing slash. Throws Error if no usable name for a
+/// map remains.
+std::filesystem::path tidy_map_name(const std::filesystem::path& folder);
+
+/// Throws Error if the file or folder would be directly in a map's folder, which may contain only the map's
+/// files. An empty path is allowed.
+void require_outside_maps(const std::filesystem::path& path);
+/// Same for files to be written into `folder`; also throws if `folder` itself is a map.
+void require_contents_outside_maps(const std::filesystem::path& folder);
+
+/// Checks, before minutes of work, whether a map can be saved to `folder`. Throws Error if save_map would
+/// refuse its name or its content, or if one of `outputs` would be in it. `outputs` are the other files and
+/// folders to be written; empty paths are ignored.
+void require_can_become_map(const std::filesystem::path& folder,
+                            std::initializer_list<std::filesystem::path> outputs);
+
+}  // namespace roomradar

@@ -1,0 +1,63 @@
+// map_info.cpp: a map's description as text.
+#include "mapping/map/map_info.hpp"
+
+#include <array>
+#include <cstdio>
+#include <string_view>
+
+#include "mapping/types/pose_origin.hpp"
+
+namespace roomradar {
+namespace {
+
+std::string in_megabytes(std::uint64_t bytes) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.1f MB", static_cast<double>(bytes) / 1e6);
+  return text.data();
+}
+
+std::string extents(const Eigen::AlignedBox3d& box) {
+  if (box.isEmpty()) return "nothing";
+  const Eigen::Vector3d &low = box.min(), &high = box.max();
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), "x %.2f..%.2f m, y %.2f..%.2f m, z %.2f..%.2f m", low.x(), high.x(),
+                low.y(), high.y(), low.z(), high.z());
+  return text.data();
+}
+
+}  // namespace
+
+bool knows_recorded_world(const MapInfo& info) {
+  const auto poses = info.settings.find(kPosesSetting);
+  return (poses != info.settings.end() && poses->second == to_string(PoseOrigin::kRecorded)) ||
+         !info.T_world_recorded.isApprox(Eigen::Isometry3d::Identity(), 1e-12);
+}
+
+std::string describe(const MapInfo& info) {
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    text += std::string(name) + std::string(16 - std::string_view(name).size(), ' ') + value + "\n";
+  };
+  std::array<char, 32> resolution{};
+  std::snprintf(resolution.data(), resolution.size(), "%g m", info.resolution_m);
+  line("source", info.source);
+  line("resolution", resolution.data());
+  line("frames",
+       std::to_string(info.frames_fused) + " fused of " + std::to_string(info.frames_read) + " read");
+  line("up", info.up_source);
+  line("octree", std::to_string(info.counts.occupied_leaves) + " occupied and " +
+                     std::to_string(info.counts.free_leaves) + " free leaves, " +
+                     std::to_string(info.counts.nodes) + " nodes, " + in_megabytes(info.counts.memory_bytes) +
+                     " in memory");
+  line("known", extents(info.counts.known_world));
+  line("occupied", extents(info.counts.occupied_world));
+  line("mesh", std::to_string(info.triangles) + " triangles, " + std::to_string(info.vertices) + " vertices");
+  line("database", std::to_string(info.keyframes) + " keyframes");
+  line("trajectory", std::to_string(info.poses) + " poses");
+  for (const auto& [name, file] : info.files) line(name.c_str(), in_megabytes(file.bytes));
+  for (const auto& [name, value] : info.settings) line(name.substr(0, 15).c_str(), value);
+  line("format", std::to_string(info.format_version) + ", by roomradar " + info.tool_version);
+  return text;
+}
+
+}  // namespace roomradar

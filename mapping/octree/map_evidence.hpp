@@ -1,0 +1,13 @@
+// map_evidence.hpp: adds another map's evidence to the octree. Private to StaticMap.
+#pragma once
+#include "mapping/octree/block_octree.hpp"
+#include "mapping/octree/fusion_config.hpp"
+#include "mapping/octree/static_map.hpp"
+
+namespace roomradar {
+
+/// See StaticMap::add_evidence().
+void add_evidence(BlockOctree& tree, const FusionConfig& config, const MapLeaf& leaf);
+void add_evidence(BlockOctree& tree, const SurfaceSample& sample);
+
+}  // namespace roomradar

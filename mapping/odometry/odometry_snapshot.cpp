@@ -1,0 +1,78 @@
+// odometry_snapshot.cpp: moves of keyframes, and the poses that move with them.
+#include "mapping/odometry/odometry_snapshot.hpp"
+
+#include <utility>
+
+#include "mapping/types/linear_algebra.hpp"
+
+namespace roomradar {
+namespace {
+
+void anchor(std::size_t keyframe, const Eigen::Isometry3d& T_known_camera, OdometrySnapshot& kept) {
+  constexpr double kSigma_m = 0.01, kSigma_rad = 0.005;  // standard deviations of a relocalised pose
+  Matrix6d information = Matrix6d::Zero();
+  information.diagonal().head<3>().setConstant(1.0 / (kSigma_m * kSigma_m));
+  information.diagonal().tail<3>().setConstant(1.0 / (kSigma_rad * kSigma_rad));
+  kept.graph.anchors.push_back({keyframe, T_known_camera, information});
+  ++kept.counts.anchored;
+}
+
+}  // namespace
+
+Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept) {
+  const Eigen::Isometry3d before = kept.graph.keyframes[kept.current].T_world_camera;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    kept.graph.keyframes[i].T_world_camera = moved[i].T_world_camera;
+    if (i < kept.keyframe_database.keyframes.size())
+      kept.keyframe_database.keyframes[i].T_world_camera = moved[i].T_world_camera;
+  }
+  const Eigen::Isometry3d T_new_old = kept.graph.keyframes[kept.current].T_world_camera * before.inverse();
+  kept.T_world_last = T_new_old * kept.T_world_last;
+  kept.last_moved.T_world_camera = T_new_old * kept.last_moved.T_world_camera;
+  return T_new_old;
+}
+
+Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept) {
+  const std::size_t newest = result.graph.keyframes.size() - 1;
+  kept.graph.constraints = std::move(result.graph.constraints);
+  kept.graph.loops_found = result.graph.loops_found;
+  kept.graph.loops_rejected = result.graph.loops_rejected;
+  kept.keyframe_database.keyframes.push_back(std::move(result.place));
+  Eigen::Isometry3d T_new_old = move_keyframes(result.graph.keyframes, kept);
+  if (result.T_known_camera) {
+    if (!kept.located) {
+      const Eigen::Isometry3d T_known_world =
+          *result.T_known_camera * kept.graph.keyframes[newest].T_world_camera.inverse();
+      std::vector<Keyframe> moved = kept.graph.keyframes;
+      for (Keyframe& keyframe : moved) keyframe.T_world_camera = T_known_world * keyframe.T_world_camera;
+      T_new_old = move_keyframes(moved, kept) * T_new_old;
+      kept.located = true;
+    }
+    anchor(newest, *result.T_known_camera, kept);
+  }
+  return T_new_old;
+}
+
+void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking) {
+  KeptFrame frame_kept{frame.index,     frame.stamp_s, std::nullopt, tracking.T_world_camera,
+                       tracking.status, bool{tracking}};
+  if (!kept.graph.keyframes.empty()) {
+    frame_kept.keyframe = kept.current;
+    frame_kept.T_keyframe_camera =
+        kept.graph.keyframes[kept.current].T_world_camera.inverse() * tracking.T_world_camera;
+  }
+  kept.frames.push_back(frame_kept);
+}
+
+std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept) {
+  std::vector<TrackedFrame> trajectory;
+  for (const KeptFrame& f : kept.frames) {
+    const Eigen::Isometry3d T_world_camera =
+        f.keyframe ? kept.graph.keyframes[*f.keyframe].T_world_camera * f.T_keyframe_camera
+                   : f.T_keyframe_camera;
+    trajectory.push_back({f.frame_index, f.stamp_s, T_world_camera, f.status, f.trusted});
+  }
+  return trajectory;
+}
+
+}  // namespace roomradar

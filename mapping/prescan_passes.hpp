@@ -1,0 +1,46 @@
+// prescan_passes.hpp: the stages of a prescan that read the source: tracking, fusion, ghost removal.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mapping/prescan.hpp"
+#include "mapping/prescan_state.hpp"
+
+namespace roomradar {
+
+/// State shared by all stages of one prescan.
+struct PrescanWork {
+  FrameSource& source;
+  const PrescanConfig& config;
+  StageTimes& times;
+  const PrescanProgress& progress;
+  Checkpoints* checkpoints = nullptr;
+  double reach_m = 0.0;                          ///< max distance from the octree's origin along each axis
+  bool maps_recorded_world = false;              ///< recorded poses share the octree's origin
+  std::map<std::int64_t, double> track_ms = {};  ///< by frame index
+  std::optional<FuseStatus> last_fused = {};     ///< status of the last frame passed to fuse()
+
+  void show(const std::string& stage, const std::string& note) const {
+    if (progress) progress(stage, note);
+  }
+};
+
+/// Runs the first pass, from its start or from a checkpoint. Returns the state of the second pass if the
+/// checkpoint is of that stage.
+/// @param map  map to extend; its octree moves into the result
+/// @throws Error as prescan() does
+FusionPass run_tracking_pass(PrescanWork& work, std::optional<SavedMap>& map);
+
+/// Runs the second pass, from its start or from a checkpoint. Does nothing if the checkpoint was written
+/// after fusion.
+/// @param trajectory  poses of the frames to fuse, in the map's world
+void run_fusion_pass(PrescanWork& work, const std::vector<TimedPose>& trajectory, FusionPass& pass);
+
+/// Removes ghosts, and fuses their surroundings again, from the start or from a checkpoint. Does nothing if
+/// the checkpoint was written after this stage. Sets pass.ghost_voxels.
+void run_ghost_removal(PrescanWork& work, FusionPass& pass);
+
+}  // namespace roomradar

@@ -1,0 +1,98 @@
+// brick_projection.hpp: projects the voxels of bricks into one frame.
+#pragma once
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "mapping/octree/static_map.hpp"
+#include "mapping/octree/tsdf_bricks.hpp"
+#include "mapping/types/frame.hpp"
+
+namespace roomradar {
+
+inline constexpr float kNearestProjected_m = 0.1F;  // min z for projection into the image
+
+/// Returns false if nothing within radius_m of the centre can be in the image.
+inline bool may_be_seen(const Intrinsics& camera, const Eigen::Vector3d& centre_camera, double radius_m) {
+  if (centre_camera.z() < kNearestProjected_m - radius_m) return false;
+  const double nearest_z = std::max(centre_camera.z() - radius_m, static_cast<double>(kNearestProjected_m));
+  const double margin_px = 2.0 * radius_m * std::max(camera.fx_px, camera.fy_px) / nearest_z;
+  if (centre_camera.z() < 2.0 * radius_m) return true;  // too near for the test below
+  const Eigen::Vector2d pixel = project(camera, centre_camera);
+  return pixel.x() > -margin_px && pixel.y() > -margin_px && pixel.x() < camera.width_px + margin_px &&
+         pixel.y() < camera.height_px + margin_px;
+}
+
+/// A brick of 8 x 8 x 8 voxels, and the entries of its voxels in a list.
+struct VoxelBrick {
+  VoxelIndex first = VoxelIndex::Zero();
+  std::size_t end = 0;  ///< end of its entries; they begin at the end of the previous brick's
+};
+
+class BrickProjection {
+ public:
+  /// The frame must be valid (depth_fault_of()).
+  BrickProjection(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double resolution_m)
+      : camera_(frame.depth_camera),
+        T_camera_world_(T_world_camera.inverse()),
+        resolution_m_(resolution_m),
+        fx_(static_cast<float>(camera_.fx_px)),
+        fy_(static_cast<float>(camera_.fy_px)),
+        cx_(static_cast<float>(camera_.cx_px)),
+        cy_(static_cast<float>(camera_.cy_px)),
+        width_(static_cast<float>(frame.depth_m.width)),
+        height_(static_cast<float>(frame.depth_m.height)) {
+    const Eigen::Matrix3f R_camera_voxels = (T_camera_world_.linear() * resolution_m).cast<float>();
+    for (int axis = 0; axis < 3; ++axis)
+      for (int i = 0; i < kBrickEdge; ++i)
+        steps_[static_cast<std::size_t>(axis)][static_cast<std::size_t>(i)] =
+            R_camera_voxels.col(axis) * static_cast<float>(i);
+  }
+  [[nodiscard]] float fx() const { return fx_; }
+
+  /// Calls visit(index of an entry, centre in the camera frame, pixel x, y) for voxels in the image nearer
+  /// than farthest_m.
+  /// @param offset_of  callable with the index of an entry; brick_offset() of its voxel
+  template <typename OffsetOf, typename Visit>
+  void for_each_nearer(float farthest_m, std::span<const VoxelBrick> bricks, const OffsetOf& offset_of,
+                       const Visit& visit) const {
+    const double brick_radius_m = 0.5 * std::sqrt(3.0) * kBrickEdge * resolution_m_;
+    std::size_t begin = 0;
+    for (const VoxelBrick& brick : bricks) {
+      const std::size_t first = std::exchange(begin, brick.end);
+      const Eigen::Vector3d low_world = brick.first.cast<double>() * resolution_m_;
+      const Eigen::Vector3d middle_camera =
+          T_camera_world_ * (low_world + Eigen::Vector3d::Constant(0.5 * kBrickEdge * resolution_m_));
+      if (middle_camera.z() > static_cast<double>(farthest_m) + brick_radius_m ||
+          !may_be_seen(camera_, middle_camera, brick_radius_m))
+        continue;
+      const Eigen::Vector3f first_camera =
+          (T_camera_world_ * (low_world + Eigen::Vector3d::Constant(0.5 * resolution_m_))).cast<float>();
+      for (std::size_t i = first; i < brick.end; ++i) {
+        const std::size_t offset = offset_of(i);
+        const Eigen::Vector3f p_camera =
+            first_camera + steps_[0][offset & 7U] + steps_[1][offset >> 3U & 7U] + steps_[2][offset >> 6U];
+        const float z = p_camera.z();
+        if (!(z > kNearestProjected_m && z < farthest_m)) continue;
+        const float u = fx_ * p_camera.x() / z + cx_ + 0.5F;
+        const float v = fy_ * p_camera.y() / z + cy_ + 0.5F;
+        if (u >= 0.0F && v >= 0.0F && u < width_ && v < height_)
+          visit(i, p_camera, static_cast<int>(u), static_cast<int>(v));
+      }
+    }
+  }
+
+ private:
+  Intrinsics camera_;
+  Eigen::Isometry3d T_camera_world_;
+  double resolution_m_;
+  float fx_, fy_, cx_, cy_, width_, height_;
+  /// Offsets from the centre of a brick's first voxel, per axis.
+  std::array<std::array<Eigen::Vector3f, kBrickEdge>, 3> steps_;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,38 @@
+// process_memory.cpp: memory use from /proc and sysconf, and glibc's allocator.
+#include "mapping/types/system/process_memory.hpp"
+
+#include <malloc.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace roomradar {
+
+std::size_t resident_bytes() {
+  std::ifstream file("/proc/self/statm");
+  std::size_t all_pages = 0, resident_pages = 0;
+  if (!(file >> all_pages >> resident_pages)) return 0;
+  return resident_pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t machine_bytes() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES), page_bytes = ::sysconf(_SC_PAGESIZE);
+  if (pages <= 0 || page_bytes <= 0) return 0;
+  return static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(page_bytes);
+}
+
+void release_unused_memory() {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
+}
+
+void mmap_large_allocations() {
+#ifdef __GLIBC__
+  // Larger than what decoding one 640 x 480 image allocates, smaller than a keyframe's target view. By
+  // default glibc raises the threshold to the size of the last freed block.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+#endif
+}
+
+}  // namespace roomradar

@@ -1,0 +1,22 @@
+// process_memory.hpp: measures the process's memory, and returns freed memory to the system.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace roomradar {
+
+/// Resident memory of this process, in bytes; 0 if the system does not report it. Takes about 10 us.
+std::size_t resident_bytes();
+
+/// Physical memory of this machine, in bytes; 0 if the system does not report it.
+std::uint64_t machine_bytes();
+
+/// Returns freed heap memory to the system (glibc only).
+void release_unused_memory();
+
+/// Makes allocations of 1 MB and more return to the system as soon as they are freed (glibc only), for the
+/// whole process. Otherwise images and keyframes of many sizes fragment the heap: 83 MB of holes beside 55 MB
+/// in use, measured after 500 frames. Costs 0.5 ms per frame of a prescan.
+void mmap_large_allocations();
+
+}  // namespace roomradar

@@ -1,0 +1,57 @@
+// tile_passes.hpp: the two depth passes of GlRadar: objects into mask tiles, then the scene through them.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "radar/batch/least_gap.hpp"
+#include "radar/batch/tile_atlas.hpp"
+#include "radar/batch/tile_draws.hpp"
+#include "radar/gl/gl_context.hpp"
+
+namespace roomradar {
+
+/// Queries that are drawn together, and their draws.
+struct TileBatch {
+  std::vector<TileQuery> queries;
+  std::vector<TileDraw> object_draws;  ///< masks that are not cached
+  std::vector<TileDraw> scene_draws;
+
+  void clear();
+};
+
+/// Owns the shader programs of both passes, their atlases and their buffers. Not thread safe.
+class TilePasses {
+ public:
+  /// @throws Error if the renderer lacks a required feature
+  explicit TilePasses(GlContext& context);
+  ~TilePasses();
+  TilePasses(const TilePasses&) = delete;
+  TilePasses& operator=(const TilePasses&) = delete;
+
+  /// Tiles of M, by mask.
+  TileAtlas& object_tiles() { return object_.tiles; }
+  [[nodiscard]] const TileAtlas& object_tiles() const { return object_.tiles; }
+  /// Tiles of the scene, by index of the query in its batch.
+  TileAtlas& scene_tiles() { return scene_.tiles; }
+  [[nodiscard]] const TileAtlas& scene_tiles() const { return scene_.tiles; }
+
+  /// Draws both passes for the queries of the batch, and reduces their tiles into `least`. Sorts the draws.
+  /// Requires at least one query.
+  void draw(TileBatch& batch, LeastGap& least);
+  /// Makes the next call reallocate the buffers, after the renderer failed.
+  void forget();
+
+ private:
+  struct Pass {
+    explicit Pass(GlContext& context) : tiles(context), draws(context) {}
+    TileAtlas tiles;
+    TileDraws draws;
+    unsigned program = 0;
+  };
+  Pass object_, scene_;
+  unsigned clear_program_ = 0;
+};
+
+}  // namespace roomradar

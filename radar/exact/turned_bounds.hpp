@@ -1,0 +1,20 @@
+// turned_bounds.hpp: bounds of a triangle tree in a rotated frame.
+#pragma once
+#include <Eigen/Geometry>
+#include <limits>
+#include <vector>
+
+#include "radar/geometry/column_search.hpp"
+
+namespace roomradar {
+
+/// Max relative rounding error of a linear function of a point in float, with margin.
+inline constexpr float kHeightRounding = 16.0F * std::numeric_limits<float>::epsilon();
+
+/// Returns the bounds of the tree's triangles in the rotated frame, rounding and margin included, at most
+/// tolerance_m too large. Runs one search per side.
+/// @param pending  scratch memory
+Eigen::AlignedBox3d turned_bounds(const TurnedTree& object, double tolerance_m,
+                                  std::vector<PendingNode>& pending);
+
+}  // namespace roomradar
