@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "app/physics/placement.hpp"
-#include "app/physics/rigid_motion.hpp"
+#include "app/physics/physics.hpp"
 #include "app/session/object_overlap.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/validity.hpp"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/objects/virtual_object.hpp"
+#include "app/physics/depenetration.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
