@@ -30,6 +30,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"mapping", "app/sim/scenarios", "app/sim", "app/physics", "app/render", "app/media"},
     {"app/objects", "app/evaluation", "app/evaluation/pareto"},
     {"app/session"},
+    {"app/session/script"},
     {"app/cli/options"},
     {"app/cli"},
     {"app/window/link", "app/evaluation/fallthrough"},

@@ -4,6 +4,7 @@
 
 #include "app/calibration/board_views.hpp"
 #include "app/calibration/calibration.hpp"
+#include "app/calibration/view_residual.hpp"
 
 namespace roomradar {
 
@@ -11,14 +12,6 @@ struct CalibrateConfig {
   Board board;
   int grid_columns = 13, grid_rows = 10;  ///< nodes of the depth correction
   int hold_out = 5;                       ///< every n-th view is held out for validation; 0: none
-};
-
-/// Residuals of one view under a camera model.
-struct ViewResidual {
-  double colour_rms_px = 0.0;
-  double depth_bias_m = 0.0;  ///< median of corrected depth minus depth of the board's plane
-  double depth_rms_m = 0.0;
-  double distance_m = 0.0;  ///< depth of the board's centre
 };
 
 /// Standard deviations from the fit's covariance, scaled up if the residuals exceed the assumed noise.
@@ -44,9 +37,5 @@ struct CalibrationFit {
 /// views, if the fit does not converge, if a focal length's sigma exceeds 1 %, or if the result would be
 /// rejected by read_calibration().
 CalibrationFit calibrate(const BoardViews& views, const CalibrateConfig& config);
-
-/// Computes a view's residuals: the board's pose is estimated from its corners, then depth is compared with
-/// its plane.
-ViewResidual residual_of(const BoardView& view, const Board& board, const Calibration& calibration);
 
 }  // namespace roomradar

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "app/cli/options/run_options.hpp"
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 #include "app/session/session_fingerprint.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/types/frame_source.hpp"

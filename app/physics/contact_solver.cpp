@@ -19,6 +19,29 @@ struct Effective {
   double normal, along_x, along_y;  // effective masses, per kg of the body
 };
 
+/// Returns the tangents and effective masses of a contact.
+/// @param inverse  inverse inertia of the body, 1/m^2, in world axes
+Effective effective_masses(const SolverContact& contact, const Eigen::Matrix3d& inverse,
+                           std::span<const SolverBody> others) {
+  const auto mass_along = [&](const Vec3& direction) {
+    const Vec3 lever = contact.contact_offset_m.cross(direction);
+    double yields = 1.0 + lever.dot(inverse * lever);
+    if (contact.other < others.size()) {
+      const SolverBody& other = others[contact.other];
+      const Vec3 other_lever = contact.other_offset_m.cross(direction);
+      yields += other.mass_ratio * (1.0 + other_lever.dot(other.inverse_inertia_m2 * other_lever));
+    }
+    return 1.0 / yields;
+  };
+  Effective e;
+  e.x = contact.normal.unitOrthogonal();
+  e.y = contact.normal.cross(e.x);
+  e.normal = mass_along(contact.normal);
+  e.along_x = mass_along(e.x);
+  e.along_y = mass_along(e.y);
+  return e;
+}
+
 }  // namespace
 
 double energy(const Velocity& velocity, const Eigen::Matrix3d& inertia_m2) {
@@ -40,25 +63,9 @@ void solve_contacts(std::span<SolverContact> contacts, const Eigen::Matrix3d& in
   const Eigen::Matrix3d inverse = inertia_m2.inverse();
   std::array<Effective, kMaxContacts> effective;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    SolverContact& contact = contacts[i];
-    contact.impulse_mps = 0.0;
-    contact.friction_impulse_mps.setZero();
-    const auto mass_along = [&](const Vec3& direction) {
-      const Vec3 lever = contact.contact_offset_m.cross(direction);
-      double yields = 1.0 + lever.dot(inverse * lever);
-      if (contact.other < others.size()) {
-        const SolverBody& other = others[contact.other];
-        const Vec3 other_lever = contact.other_offset_m.cross(direction);
-        yields += other.mass_ratio * (1.0 + other_lever.dot(other.inverse_inertia_m2 * other_lever));
-      }
-      return 1.0 / yields;
-    };
-    Effective& e = effective[i];
-    e.x = contact.normal.unitOrthogonal();
-    e.y = contact.normal.cross(e.x);
-    e.normal = mass_along(contact.normal);
-    e.along_x = mass_along(e.x);
-    e.along_y = mass_along(e.y);
+    contacts[i].impulse_mps = 0.0;
+    contacts[i].friction_impulse_mps.setZero();
+    effective[i] = effective_masses(contacts[i], inverse, others);
   }
   const auto apply = [&](const SolverContact& contact, const Vec3& impulse) {
     velocity.linear_mps += impulse;

@@ -3,15 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "app/physics/rigid_motion.hpp"
-#include "mapping/types/system/config_check.hpp"
-#include "mapping/types/system/stage_times.hpp"
-#include "radar/exact/cyber_radar.hpp"
 
 namespace roomradar {
 namespace {
@@ -302,66 +297,6 @@ bool Stepper::slide(double dt_s) {
 
 }  // namespace
 
-void require_valid(const PhysicsConfig& config) {
-  const ConfigCheck require{"physics"};
-  const auto require_positive = [&](const char* name, double value) {
-    require(std::isfinite(value) && value > 0.0, name, value, "> 0");
-  };
-  const auto require_not_negative = [&](const char* name, double value) {
-    require(std::isfinite(value) && value >= 0.0, name, value, ">= 0");
-  };
-  require(config.gravity_world_mps2.allFinite(), "gravity_world_mps2", config.gravity_world_mps2.norm(),
-          "finite");
-  require(config.restitution >= 0.0 && config.restitution <= 1.0, "restitution", config.restitution,
-          "in 0..1");
-  require_not_negative("bounce_mps", config.bounce_mps);
-  require_not_negative("friction", config.friction);
-  require_not_negative("rolling", config.rolling);
-  require_positive("contact_margin_m", config.contact_margin_m);
-  require_positive("max_step_s", config.max_step_s);
-  require_positive("max_advance_s", config.max_advance_s);
-  require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,
-          "at most 1000 max_step_s");
-  require(config.max_slides >= 1 && config.max_slides <= 64, "max_slides", config.max_slides, "in 1..64");
-  require_positive("rest_drift_m", config.sleep_drift_m);
-  require_positive("rest_after_s", config.sleep_after_s);
-  require_positive("wake_gap_m", config.wake_gap_m);
-  require_positive("wake_moved_m", config.wake_moved_m);
-  require_positive("wake_overlap_m", config.wake_overlap_m);
-  require_not_negative("overlap_allowed_m", config.overlap_allowed_m);
-  require_positive("push_out_mps", config.max_depenetration_mps);
-  require_positive("max_speed_mps", config.max_speed_mps);
-  require_positive("max_spin_rad_s", config.max_angular_rad_s);
-}
-
-CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
-                                        const RadarScene& scene, double* spent_ms) {
-  struct Spent {
-    double* spent_ms;
-    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
-    ~Spent() {
-      if (spent_ms != nullptr) *spent_ms += ms_since(start);
-    }
-  };
-  CollisionQueries probe;
-  probe.travel = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const Vec3& direction,
-                               double distance_m) {
-    const Spent spent{spent_ms};
-    return radar.query({{&object, T_world_object}, direction, distance_m}, scene);
-  };
-  probe.near = [&, spent_ms](const Eigen::Isometry3d& T_world_object, double reach_m,
-                             SurfaceKindMask left_out, std::vector<ClosestPoint>& points) {
-    const Spent spent{spent_ms};
-    return field.near({&object, T_world_object}, scene, reach_m, left_out, points);
-  };
-  probe.free_time = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
-                                  double duration_s, double keep_m, SurfaceKindMask left_out) {
-    const Spent spent{spent_ms};
-    return field.free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out);
-  };
-  return probe;
-}
-
 StepReport advance(Body& body, double dt_s, const CollisionQueries& probe, const PhysicsConfig& config,
                    std::span<const Eigen::Vector3d> depenetration_directions_world) {
   StepReport report;
@@ -384,59 +319,6 @@ StepReport advance(Body& body, double dt_s, const CollisionQueries& probe, const
   for (int piece = 0; piece < pieces && !body.asleep && !stepper.failed(); ++piece)
     stepper.move(dt_s / pieces);
   return report;
-}
-
-bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
-                 std::span<const Eigen::Vector3d> depenetration_directions_world) {
-  const double most_m = config.max_depenetration_mps * dt_s + config.wake_overlap_m;
-  bool is_deep = false;
-  const auto is_shallow = [&](const Vec3& direction) {
-    const Contact contact = back(body.T_world_object, direction, config.contact_margin_m);
-    if (contact.status != ContactStatus::kOverlap) return false;
-    is_deep = true;
-    return -contact.contact_distance_m <= most_m;
-  };
-  const double g = config.gravity_world_mps2.norm();
-  if (g > 0.0 && is_shallow(config.gravity_world_mps2 / g)) return false;
-  if (std::any_of(depenetration_directions_world.begin(), depenetration_directions_world.end(), is_shallow))
-    return false;
-  return is_deep;
-}
-
-PushDirections depenetration_directions(std::initializer_list<const Mesh*> moving_world,
-                                        const Eigen::Vector3d& centre_world, double reach_m,
-                                        const Eigen::Vector3d& up_world) {
-  Vec3 nearest = Vec3::Zero();
-  Vec3 sum = Vec3::Zero();
-  double nearest_m2 = reach_m * reach_m;
-  std::size_t count = 0;
-  for (const Mesh* mesh : moving_world) {
-    const Vec3 centre = centre_world - mesh->origin;
-    for (const Eigen::Vector3f& vertex : mesh->vertices) {
-      const Vec3 offset = vertex.cast<double>() - centre;
-      const double distance_m2 = offset.squaredNorm();
-      if (!(distance_m2 <= reach_m * reach_m)) continue;  // also rejects NaN
-      sum += offset;
-      ++count;
-      if (distance_m2 <= nearest_m2) {
-        nearest_m2 = distance_m2;
-        nearest = offset;
-      }
-    }
-  }
-  PushDirections result;
-  if (count == 0) return result;
-  for (const Vec3& offset : {nearest, Vec3(sum / static_cast<double>(count))}) {
-    const Vec3 level = offset - offset.dot(up_world) * up_world;
-    const double length = level.norm();
-    if (length < 0.2 * offset.norm() || length < 1e-6)
-      continue;  // directly above or below: handled along
-                 // gravity
-    const Vec3 direction = level / length;
-    if (result.count == 1 && direction.dot(result.direction_world[0]) > 0.97) continue;
-    result.direction_world[static_cast<std::size_t>(result.count++)] = direction;
-  }
-  return result;
 }
 
 }  // namespace roomradar

@@ -23,11 +23,32 @@ class HeightGrid {
   HeightGrid(const DepthImage& depth_m, const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
              const PlacementConfig& config, int margin)
       : cell_m_(config.cell_m), origin_world_(T_world_camera.translation()) {
-    struct Seen {
-      int i, j;  // cell indices relative to the camera
-      float height_m;
-    };
     std::vector<Seen> points;
+    const Eigen::AlignedBox2i seen = collect(depth_m, camera, T_world_camera, config, points);
+    if (!points.empty()) fill(points, seen, config, margin);
+  }
+
+  [[nodiscard]] int size() const { return size_; }
+  [[nodiscard]] std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
+  }
+  /// Returns a pointer to a cell's height above the camera (m), usually negative; kUnseen if nothing was
+  /// seen. Row by row: from a seen cell, cells up to the margin away can be addressed relative to it.
+  [[nodiscard]] const float* top_m(int i, int j) const { return &top_m_[index(i, j)]; }
+  [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {
+    return origin_world_ + Eigen::Vector3d((i - half_) * cell_m_, (j - half_) * cell_m_, height_m);
+  }
+
+ private:
+  struct Seen {
+    int i, j;  // cell indices relative to the camera
+    float height_m;
+  };
+
+  /// Appends the visible points within range, relative to the camera; returns the bounds of their cells.
+  [[nodiscard]] Eigen::AlignedBox2i collect(const DepthImage& depth_m, const Intrinsics& camera,
+                                            const Eigen::Isometry3d& T_world_camera,
+                                            const PlacementConfig& config, std::vector<Seen>& points) const {
     // Subsampling: enough pixels per row for the farthest cells; more per column, since floors are seen at a
     // slant.
     constexpr double kOfCell = 0.75;
@@ -56,8 +77,12 @@ class HeightGrid {
         seen.extend(Eigen::Vector2i(i, j));
       }
     }
-    if (points.empty()) return;
+    return seen;
+  }
 
+  /// Lays the grid around the visible points and sets the height of each cell.
+  void fill(const std::vector<Seen>& points, const Eigen::AlignedBox2i& seen, const PlacementConfig& config,
+            int margin) {
     // A square around the visible points.
     half_ = (seen.sizes().maxCoeff() + 1) / 2 + margin;
     size_ = 2 * half_ + 1;
@@ -85,18 +110,6 @@ class HeightGrid {
       if (count[cell] > 0) top_m_[cell] = sum_m[cell] / static_cast<float>(count[cell]);
   }
 
-  [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] std::size_t index(int i, int j) const {
-    return static_cast<std::size_t>(j) * static_cast<std::size_t>(size_) + static_cast<std::size_t>(i);
-  }
-  /// Returns a pointer to a cell's height above the camera (m), usually negative; kUnseen if nothing was
-  /// seen. Row by row: from a seen cell, cells up to the margin away can be addressed relative to it.
-  [[nodiscard]] const float* top_m(int i, int j) const { return &top_m_[index(i, j)]; }
-  [[nodiscard]] Eigen::Vector3d point_world(int i, int j, double height_m) const {
-    return origin_world_ + Eigen::Vector3d((i - half_) * cell_m_, (j - half_) * cell_m_, height_m);
-  }
-
- private:
   double cell_m_;
   Eigen::Vector3d origin_world_;  // above the middle cell, at the camera's height
   int half_ = 0;

@@ -313,28 +313,6 @@ SubstepResult Piece::run() {
 
 }  // namespace
 
-void make_orthonormal(Eigen::Isometry3d& T) {
-  T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix();
-}
-
-double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before) {
-  const Eigen::Matrix3d turned = T_world_before.linear().transpose() * body.T_world_object.linear();
-  return (centre_world(body) - T_world_before * body.mass.centre_object).norm() +
-         Eigen::AngleAxisd(turned).angle() * body.mass.radius_m;
-}
-
-Eigen::Vector3d centre_world(const Body& body) { return body.T_world_object * body.mass.centre_object; }
-
-Eigen::Matrix3d inertia_world_m2(const Body& body) {
-  const Eigen::Matrix3d R = body.T_world_object.linear();
-  return R * body.mass.inertia_m2 * R.transpose();
-}
-
-void note_contact(SurfaceKind touched, StepReport& report) {
-  ++report.contacts;
-  ++report.contacts_by_kind[static_cast<std::size_t>(touched)];
-}
-
 SubstepResult simulate_substep(Body& body, double dt_s, const CollisionQueries& probe,
                                const PhysicsConfig& config, const std::optional<Push>& push,
                                RigidScratch& scratch, StepReport& report) {

@@ -3,7 +3,9 @@
 #include <optional>
 
 #include "app/physics/body.hpp"
+#include "app/physics/collision_queries.hpp"
 #include "app/physics/contact_solver.hpp"
+#include "app/physics/physics_config.hpp"
 
 namespace roomradar {
 
@@ -21,9 +23,6 @@ constexpr bool is_moving_surface(SurfaceKind kind) {
 }
 
 inline constexpr double kSupportCosine = 0.5;  ///< surfaces within 60 degrees of horizontal support a body
-
-/// Counts a contact with a surface of this kind.
-void note_contact(SurfaceKind touched, StepReport& report);
 
 struct [[nodiscard]] SubstepResult {
   /// A surface other than the pushing one crosses the body: the rest of the substep was not simulated.
@@ -48,17 +47,5 @@ struct RigidScratch {
 SubstepResult simulate_substep(Body& body, double dt_s, const CollisionQueries& probe,
                                const PhysicsConfig& config, const std::optional<Push>& push,
                                RigidScratch& scratch, StepReport& report);
-
-/// Makes the rotation orthonormal again after accumulated rounding.
-void make_orthonormal(Eigen::Isometry3d& T);
-
-/// Returns an upper bound of how far any point of the body moved since T_world_before: translation of the
-/// centre of mass plus rotation angle times radius.
-double strayed_m(const Body& body, const Eigen::Isometry3d& T_world_before);
-
-/// Returns the centre of mass in the world.
-Eigen::Vector3d centre_world(const Body& body);
-/// Returns the inertia about the centre of mass, in world axes.
-Eigen::Matrix3d inertia_world_m2(const Body& body);
 
 }  // namespace roomradar

@@ -11,7 +11,7 @@
 #include "app/cli/open_source.hpp"
 #include "app/quality/quality_json.hpp"
 #include "app/session/apply_quality.hpp"
-#include "app/session/session_events.hpp"
+#include "app/session/script/session_events.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/odometry/up_direction.hpp"
 #include "mapping/types/system/error.hpp"

@@ -10,7 +10,7 @@
 #include "app/media/video_writer.hpp"
 #include "app/run/run_budget.hpp"
 #include "app/run/run_results.hpp"
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 #include "app/session/session.hpp"
 #include "app/sources/recordings/playback_source.hpp"
 #include "app/window/link/play_host.hpp"

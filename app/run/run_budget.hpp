@@ -9,7 +9,7 @@
 
 #include "app/quality/budget.hpp"
 #include "app/quality/presets.hpp"
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 
 namespace roomradar {
 

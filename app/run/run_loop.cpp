@@ -9,7 +9,7 @@
 
 #include "app/cli/progress.hpp"
 #include "app/media/picture_file.hpp"
-#include "app/session/session_events.hpp"
+#include "app/session/script/session_events.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/format_number.hpp"
 

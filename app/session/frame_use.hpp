@@ -1,7 +1,11 @@
 // frame_use.hpp: counts how much of the room and of the depth image a frame needed.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 
+#include "app/session/frame_scene.hpp"
+#include "app/session/session_room.hpp"
+#include "dynamic/foreground/foreground.hpp"
 #include "dynamic/surface/dynamic_cells.hpp"
 
 namespace roomradar {
@@ -21,5 +25,13 @@ struct FrameUse {
   std::size_t mesh_triangles = 0;
   CellCounts cells;  ///< cells of 4 x 4 pixels in the dynamic mesh; all 0 unless SurfacePolicy::kMap
 };
+
+/// Returns the counts of the frame that the scene has just processed.
+/// @param has_map           true with SurfacePolicy::kMap
+/// @param drawn_before      scene.room_drawn() before the frame
+/// @param triangles_tested  static triangles examined by the radar in this frame
+FrameUse use_of(const SessionRoom& room, const FrameScene& scene, bool has_map,
+                const ForegroundCounts& foreground, const FrameScene::RoomDrawn& drawn_before,
+                std::uint64_t triangles_tested);
 
 }  // namespace roomradar

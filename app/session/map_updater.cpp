@@ -44,7 +44,7 @@ MapUpdater::MapUpdater(StaticMap& octree, const Mesh& mesh, const MapUpdateConfi
     throw Error(
         "adopt: the map's octree holds no surface, so nothing can be added to it or carved from it; scan the "
         "room with `roomradar prescan`, or run without --commit-changes");
-  views_.resize(static_cast<std::size_t>(config.views));
+  measured_.views.resize(static_cast<std::size_t>(config.views));
 }
 
 MapUpdater::~MapUpdater() {
@@ -52,14 +52,14 @@ MapUpdater::~MapUpdater() {
 }
 
 bool MapUpdater::is_due(const Frame& frame) {
-  stamp_s_ = frame.stamp_s;
-  frame_ = frame.index;
+  clock_.stamp_s = frame.stamp_s;
+  clock_.frame = frame.index;
   // The request's time runs even if nothing is in view: another object may stand there later.
-  if (asked_until_s_ && *asked_until_s_ == kNow) asked_until_s_ = stamp_s_ + kAskedFor_s;
-  if (asked_until_s_ && stamp_s_ > *asked_until_s_) asked_until_s_.reset();
+  if (asked_until_s_ && *asked_until_s_ == kNow) asked_until_s_ = clock_.stamp_s + kAskedFor_s;
+  if (asked_until_s_ && clock_.stamp_s > *asked_until_s_) asked_until_s_.reset();
   if (!working_.valid()) return false;
-  --frames_left_;
-  if (frames_left_ > 0) return false;
+  --measured_.frames_left;
+  if (measured_.frames_left > 0) return false;
   const bool may_be_late = !config_.wait;
   if (may_be_late && working_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   finish();
@@ -72,65 +72,66 @@ void MapUpdater::finish() {
   has_failed_ = true;  // reset below unless get() throws
   room_ = working_.get();
   has_failed_ = false;
-  for (const LastingChange& change : pending_) {
+  for (const LastingChange& change : measured_.pending) {
     tracker_.forget(change);
-    committed_.push_back({change.kind, stamp_s_, frame_, change.box_world()});
+    committed_.push_back({change.kind, clock_.stamp_s, clock_.frame, change.box_world()});
   }
-  pending_.clear();
+  measured_.pending.clear();
 }
 
 void MapUpdater::watch(const Frame& frame, const DepthImage& expected_depth_m, const LabelImage& labels,
                        const Eigen::Isometry3d& T_world_camera) {
-  if (watched_frame_ == frame.index) return;
-  watched_frame_ = frame.index;
+  if (clock_.watched_frame == frame.index) return;
+  clock_.watched_frame = frame.index;
   tracker_.update(frame.depth_m, expected_depth_m, labels, frame.depth_camera, T_world_camera, frame.stamp_s);
   if (working_.valid()) return;
-  if (pending_.empty())
+  if (measured_.pending.empty())
     look_for_changes(frame.stamp_s);
   else
     measure(frame, expected_depth_m, T_world_camera);
 }
 
 void MapUpdater::look_for_changes(double stamp_s) {
-  const bool too_soon = stamp_s < next_look_s_ && stamp_s > next_look_s_ - kLookEvery_s;
+  const bool too_soon = stamp_s < clock_.next_look_s && stamp_s > clock_.next_look_s - kLookEvery_s;
   if (too_soon || (!asked_until_s_ && !config_.after_s)) return;
-  next_look_s_ = stamp_s + kLookEvery_s;
+  clock_.next_look_s = stamp_s + kLookEvery_s;
   double after_s = config_.after_s.value_or(config_.asked_after_s);
   if (asked_until_s_) after_s = std::min(after_s, config_.asked_after_s);
-  pending_ = tracker_.settled(after_s);
-  if (pending_.empty()) return;
+  measured_.pending = tracker_.settled(after_s);
+  if (measured_.pending.empty()) return;
   asked_until_s_.reset();
-  view_count_ = 0;
-  frames_left_ = kPatience * config_.views;
+  measured_.view_count = 0;
+  measured_.frames_left = kPatience * config_.views;
 }
 
 void MapUpdater::measure(const Frame& frame, const DepthImage& expected_depth_m,
                          const Eigen::Isometry3d& T_world_camera) {
-  std::erase_if(pending_, [&](const LastingChange& change) {
+  std::erase_if(measured_.pending, [&](const LastingChange& change) {
     return tracker_.still_true(change) < static_cast<double>(config_.tracker.min_steady_fraction);
   });
-  const bool in_view = std::any_of(pending_.begin(), pending_.end(), [&](const LastingChange& change) {
-    return tracker_.seen_now(change) >= static_cast<double>(config_.tracker.min_seen_fraction);
-  });
+  const bool in_view =
+      std::any_of(measured_.pending.begin(), measured_.pending.end(), [&](const LastingChange& change) {
+        return tracker_.seen_now(change) >= static_cast<double>(config_.tracker.min_seen_fraction);
+      });
   if (in_view) {
-    RegionView& view = views_[static_cast<std::size_t>(view_count_++)];
+    RegionView& view = measured_.views[static_cast<std::size_t>(measured_.view_count++)];
     view.frame = frame;
     view.expected_depth_m = expected_depth_m;
     view.T_world_camera = T_world_camera;
   }
-  if (view_count_ == config_.views && !pending_.empty()) {
-    frames_left_ = config_.apply_after_frames;
+  if (measured_.view_count == config_.views && !measured_.pending.empty()) {
+    measured_.frames_left = config_.apply_after_frames;
     working_ = std::async(std::launch::async, [this] { return work_in(); });
     return;
   }
-  if (--frames_left_ <= 0) pending_.clear();
+  if (--measured_.frames_left <= 0) measured_.pending.clear();
 }
 
 ChangedRoom MapUpdater::work_in() const {
   ChangedRoom room{room_.mesh, {}, {}, {}};
-  for (const LastingChange& change : pending_) {
+  for (const LastingChange& change : measured_.pending) {
     const WorldRegion region(change.points_world, kRegionCell_m);
-    const Eigen::AlignedBox3d box_world = refuse_region(octree_, region, views_);
+    const Eigen::AlignedBox3d box_world = refuse_region(octree_, region, measured_.views);
     update_surface(octree_, box_world, config_.surface, room.mesh);
   }
   room.tree.build_by_place(room.mesh);

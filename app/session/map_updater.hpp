@@ -90,6 +90,19 @@ class MapUpdater {
  private:
   static constexpr double kNow = -1.0;
 
+  struct FrameClock {
+    double stamp_s = 0.0;    ///< time of the current frame
+    std::int64_t frame = 0;  ///< its index
+    std::optional<std::int64_t> watched_frame;
+    double next_look_s = 0.0;
+  };
+  struct Measurement {
+    std::vector<LastingChange> pending;  ///< settled changes that are being measured or committed
+    std::vector<RegionView> views;  ///< the first view_count show `pending`; the others are buffers to reuse
+    int view_count = 0;
+    int frames_left = 0;  ///< until measuring is given up, or until the room is due
+  };
+
   StaticMap& octree_;
   MapUpdateConfig config_;
   ChangeTracker tracker_;
@@ -97,14 +110,8 @@ class MapUpdater {
   std::optional<double> asked_until_s_;  ///< end of ask()'s request; kNow: its time starts with the next
                                          ///< frame
   bool keeps_up_unknown_ = false;
-  double stamp_s_ = 0.0;  ///< time of the current frame
-  std::int64_t frame_ = 0;
-  std::optional<std::int64_t> watched_frame_;
-  double next_look_s_ = 0.0;
-  std::vector<LastingChange> pending_;  ///< settled changes that are being measured or committed
-  std::vector<RegionView> views_;  ///< the first view_count_ show pending_; the others are buffers to reuse
-  int view_count_ = 0;
-  int frames_left_ = 0;  ///< until measuring is given up, or until the room is due
+  FrameClock clock_;
+  Measurement measured_;
   std::future<ChangedRoom> working_;
   bool has_failed_ = false;
   ChangedRoom room_;  ///< current room

@@ -72,4 +72,15 @@ void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<Vi
   if (!is_in_the_way) object.body.T_world_object = T_world_raised;
 }
 
+double penetration_m(const VirtualObject& object, std::span<const SceneTree> scene,
+                     const Eigen::Vector3d& direction_world, CyberRadar& radar, ProximityQuery& proximity) {
+  const TreeInstance instance{&object.model->shape.touched, object.body.T_world_object};
+  const Contact below = radar.query({instance, direction_world, 0.01}, {scene, {}});
+  if (below.status != ContactStatus::kOverlap) return 0.0;
+  // An overlapping surface that crosses no part of the object is in a hollow, such as a handle.
+  std::vector<ClosestPoint> unused;
+  const SurfaceKindMask crossed = proximity.near(instance, {scene, {}}, kTouching_m, 0, unused);
+  return (crossed & bit_of(below.touched)) != 0 ? std::max(0.0, -below.contact_distance_m) : 0.0;
+}
+
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// object_overlap.hpp: separates a placed object from the objects that it overlaps.
+// object_overlap.hpp: measures overlaps of objects, and separates a placed object from others.
 #pragma once
 #include <memory>
 #include <span>
@@ -17,5 +17,10 @@ namespace roomradar {
 void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
                        std::span<const SceneTree> room, double margin_m, CyberRadar& radar,
                        ProximityQuery& proximity);
+
+/// Returns the depth by which a surface of the scene overlaps the object along a direction, m, >= 0. A
+/// surface that crosses no part of the object, since it is in a hollow such as a handle, does not count.
+double penetration_m(const VirtualObject& object, std::span<const SceneTree> scene,
+                     const Eigen::Vector3d& direction_world, CyberRadar& radar, ProximityQuery& proximity);
 
 }  // namespace roomradar

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <utility>
 
-#include "app/physics/placement.hpp"
-#include "app/physics/rigid_motion.hpp"
+#include "app/physics/physics.hpp"
 #include "app/session/object_overlap.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/validity.hpp"
@@ -38,29 +36,6 @@ void set_in_hand(VirtualObject& object, double dt_s) {
   object.body.asleep = false;
   object.body.angular_velocity_world_rad_s.setZero();
   object.body.velocity_world_mps = dt_s > 0.0 ? Eigen::Vector3d(way / dt_s) : Eigen::Vector3d::Zero();
-}
-
-/// Returns the room's depth; 0 where something dynamic is in front of it and might stand on it.
-DepthImage seen_room_depth_m(const ExpectedView& expected, const FrameForeground& foreground) {
-  DepthImage depth_m = expected.depth_m;
-  const MaskImage& moved = foreground.dynamic_mask;
-  for (std::size_t i = 0; i < std::min(moved.pixels.size(), depth_m.pixels.size()); ++i)
-    if (moved.pixels[i] != 0) depth_m.pixels[i] = 0.0F;
-  return depth_m;
-}
-
-/// Throws Error if the object is too large for any place in view.
-void require_small_enough(const VirtualObject& object, const DropRequest& drop) {
-  const double reach_m =
-      footprint_radius_m(object, drop.R_world_object.value_or(object.body.T_world_object.linear()));
-  if (reach_m <= kMostFootprint_m) return;
-  std::array<char, 240> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      ": reaches %.3g m sideways from its middle, and only what reaches at most %.0f m is dropped in view. "
-      "Meshes are in metres: give it a size (add NAME FILE size 0.2) or a place (drop NAME at X Y Z)",
-      reach_m, kMostFootprint_m);
-  throw Error(object.body.name + text.data());
 }
 
 }  // namespace
@@ -177,15 +152,14 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
     DropRequest& drop = waiting.drop;
     const VirtualObject& object = named(drop.name);
     const Eigen::Matrix3d R_world_object = drop.R_world_object.value_or(object.body.T_world_object.linear());
-    const std::optional<Eigen::Vector3d> support_world =
-        find_support(seen_room_depth_m(expected, foreground), frame.depth_camera, T_world_camera,
-                     footprint_radius_m(object, R_world_object));
-    if (!support_world) {  // staggered, so waiting drops do not all search in the same frame
+    const std::optional<Eigen::Vector3d> position_world =
+        find_drop_position(object, R_world_object, frame.depth_camera, T_world_camera, expected, foreground);
+    if (!position_world) {  // staggered, so waiting drops do not all search in the same frame
       waiting.try_at_frame = frame_number + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());
       waiting_.push_back(std::move(waiting));
       continue;
     }
-    drop.position_world = *support_world - level_to_middle(object, R_world_object);
+    drop.position_world = position_world;
     this->drop(drop, frame_number);
   }
 }
@@ -264,17 +238,9 @@ double ObjectSet::penetration_m() {
       std::erase_if(still, [](const SceneTree& surface) {
         return surface.kind != SurfaceKind::kStatic && surface.kind != SurfaceKind::kObject;
       });
-    const Contact below = exact_radar_.query({{&object->model->shape.touched, object->body.T_world_object},
-                                              config_.physics.gravity_world_mps2,
-                                              0.01},
-                                             {still, {}});
-    if (below.status != ContactStatus::kOverlap) continue;
-    // An overlapping surface that crosses no part of the object is in a hollow, such as a handle.
-    constexpr double kTouching_m = 1e-6;
-    const SurfaceKindMask crossed =
-        proximity_.near({&object->model->shape.touched, object->body.T_world_object}, {still, {}},
-                        kTouching_m, 0, closest_points_);
-    if ((crossed & bit_of(below.touched)) != 0) deepest_m = std::max(deepest_m, -below.contact_distance_m);
+    deepest_m =
+        std::max(deepest_m, roomradar::penetration_m(*object, still, config_.physics.gravity_world_mps2,
+                                                     exact_radar_, proximity_));
   }
   return deepest_m;
 }

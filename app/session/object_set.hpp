@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "app/objects/virtual_object.hpp"
+#include "app/physics/depenetration.hpp"
+#include "app/session/drop_request.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
@@ -25,20 +27,6 @@ struct ObjectState {
   std::optional<Eigen::Matrix3d> R_world_object{};               ///< unset: the object keeps its orientation
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< velocity of the centre of mass
   Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();
-};
-
-/// An object falls from above a point, or from above a level surface in view.
-struct DropRequest {
-  std::string name{};
-  std::optional<Eigen::Vector3d> position_world{};  ///< unset: over a level surface in view
-  double height_m = 0.3;  ///< height of its lowest point above the position or surface
-  std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation
-};
-
-/// A drop over a surface in view that has not found a surface.
-struct WaitingDrop {
-  DropRequest drop;
-  std::int64_t try_at_frame = 0;  ///< earliest localised frame for the next search
 };
 
 /// Contacts of one frame.
@@ -113,7 +101,6 @@ class ObjectSet {
   CyberRadar radar_;
   std::uint64_t tested_before_ = 0;  ///< static triangles examined by earlier radars
   ProximityQuery proximity_;
-  std::vector<ClosestPoint> closest_points_;
   std::vector<SceneBody> bodies_;  ///< bodies in the scene of the object being moved
   CyberRadar exact_radar_;         ///< measures penetration
 

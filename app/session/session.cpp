@@ -109,25 +109,18 @@ FrameResult Session::step(const Frame& frame, StageTimes& times) {
 }
 
 FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
-  FrameResult result;
   const auto handed_over = std::chrono::steady_clock::now();
   const FrameScene::RoomDrawn drawn_before = scene_.room_drawn();
   const std::uint64_t tested_before = objects_.static_triangles_tested();
-  const double dt_s = last_stamp_s_ ? std::max(0.0, whole.stamp_s - *last_stamp_s_) : 0.0;
-  last_stamp_s_ = whole.stamp_s;
+  const double dt_s = seconds_since_last(whole.stamp_s);
   composer_.begin_frame(whole);
 
   begin(FramePart::kLocate);
   const Frame& frame = times.timed("reduce", [&]() -> const Frame& { return with_depth_reduced(whole); });
   if (map_updater_ && map_updater_->is_due(frame)) times.timed("adopt", [&] { renew_room(); });
   const Tracking tracking = times.timed("locate", [&] { return locate_camera(frame); });
-  result.tracking = tracking.status;
-  if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate) {
-    if (config_.make_picture) composer_.show_camera_alone(whole);
-    result.picture_is_new = config_.make_picture;
-    composer_.end_frame(std::nullopt);
-    return result;
-  }
+  if (tracking.status != TrackStatus::kTracked && tracking.status != TrackStatus::kDegenerate)
+    return pass_unlocated(whole, tracking.status);
   const Eigen::Isometry3d& T_world_camera = tracking.T_world_camera;
   const ExpectedView& expected = times.timed("expected", [&]() -> const ExpectedView& {
     return scene_.render_expected(frame.depth_camera, T_world_camera);
@@ -147,21 +140,23 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   if (!objects_.waiting_drops().empty())
     times.timed("place",
                 [&] { objects_.release_waiting(frame, T_world_camera, expected, foreground, frames_); });
-  begin(FramePart::kPhysics);
-  const ContactCounts moved =
-      times.timed("physics", [&] { return objects_.move(dt_s, frames_, times); });  // Cyber Radar: R, M, L
+  begin(FramePart::kPhysics);  // Cyber Radar: R, M, L
+  const ContactCounts moved = times.timed("physics", [&] { return objects_.move(dt_s, frames_, times); });
   times.add_ms("contact", ms_since(handed_over));
   begin(FramePart::kCompose);
   if (config_.make_picture) composer_.keep_colour(whole, T_world_camera, dt_s);
-  result.picture_is_new = config_.make_picture && is_due_every(config_.picture_every_n_frames);
-  if (result.picture_is_new)
+  const bool makes_picture = config_.make_picture && is_due_every(config_.picture_every_n_frames);
+  if (makes_picture)
     times.timed("compose", [&] {
       composer_.compose(whole, T_world_camera, is_due_every(config_.shadow_every_n_frames));
     });
   composer_.end_frame(T_world_camera);
   ++frames_;
 
+  FrameResult result;
   result.status = FrameStatus::kDone;
+  result.tracking = tracking.status;
+  result.picture_is_new = makes_picture;
   result.T_world_camera = T_world_camera;
   result.static_triangles_drawn = expected.triangles;
   result.foreground = foreground.counts;
@@ -169,8 +164,24 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   result.inferred_triangles = scene_.inferred_triangles();
   result.contacts = moved.contacts;
   result.contacts_by_kind = moved.by_kind;
-  result.use = use_of(foreground.counts, drawn_before, tested_before);
+  result.use = use_of(room_, scene_, config_.scene.surfaces == SurfacePolicy::kMap, foreground.counts,
+                      drawn_before, objects_.static_triangles_tested() - tested_before);
   return result;
+}
+
+FrameResult Session::pass_unlocated(const Frame& frame, TrackStatus tracking) {
+  FrameResult result;
+  result.tracking = tracking;
+  if (config_.make_picture) composer_.show_camera_alone(frame);
+  result.picture_is_new = config_.make_picture;
+  composer_.end_frame(std::nullopt);
+  return result;
+}
+
+double Session::seconds_since_last(double stamp_s) {
+  const double dt_s = last_stamp_s_ ? std::max(0.0, stamp_s - *last_stamp_s_) : 0.0;
+  last_stamp_s_ = stamp_s;
+  return dt_s;
 }
 
 void Session::begin(FramePart part) {
@@ -232,23 +243,6 @@ std::vector<CommittedChange> Session::committed_changes() const {
 
 void Session::finish_commits() {
   if (map_updater_) map_updater_->finish();
-}
-
-FrameUse Session::use_of(const ForegroundCounts& foreground, const FrameScene::RoomDrawn& drawn,
-                         std::uint64_t tested) {
-  const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
-  FrameUse use;
-  use.room_triangles = room_.shape.touched.triangle_count();
-  use.views_drawn = scene_.room_drawn().views - drawn.views;
-  if (use.views_drawn > 0)
-    use.room_drawn = (scene_.room_drawn().triangles - drawn.triangles) / use.views_drawn;
-  use.room_asked = static_cast<std::size_t>(objects_.static_triangles_tested() - tested);
-  use.valid_px = foreground.valid;
-  use.knows_moved = has_map;
-  use.meshed_px = has_map ? foreground.moved : foreground.valid;
-  use.mesh_triangles = scene_.dynamic_triangles();
-  if (has_map) use.cells = scene_.dynamic_cells().counts;
-  return use;
 }
 
 }  // namespace roomradar

@@ -1,17 +1,15 @@
 // session.hpp: augmented reality in a saved room: turns each frame into a composed picture.
 #pragma once
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "app/objects/virtual_object.hpp"
+#include "app/session/frame_result.hpp"
 #include "app/session/frame_scene.hpp"
-#include "app/session/frame_use.hpp"
 #include "app/session/map_updater.hpp"
 #include "app/session/object_set.hpp"
 #include "app/session/picture_composer.hpp"
@@ -24,28 +22,6 @@
 #include "radar/gl/gl_context.hpp"
 
 namespace roomradar {
-
-enum class FrameStatus {
-  kDone,
-  kNotLocated,  ///< no camera pose: objects do not move, the picture shows no objects
-  kBadFrame,    ///< images do not match their cameras: nothing changes, not even the picture
-};
-
-struct FrameResult {
-  FrameStatus status = FrameStatus::kNotLocated;
-  std::string_view fault;  ///< reason for kBadFrame, as from fault_of()
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< kDone only
-  TrackStatus tracking = TrackStatus::kDiverged;
-  ForegroundCounts foreground;
-  std::size_t dynamic_triangles = 0;
-  std::size_t static_triangles_drawn = 0;  ///< for the expected depth
-  std::size_t inferred_triangles = 0;      ///< of the inferred backs of dynamic surfaces
-  int contacts = 0;
-  std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< contacts per kind of surface touched
-  double deepest_penetration_m = 0.0;                 ///< >= 0; only if measured
-  FrameUse use;                                       ///< kDone only
-  bool picture_is_new = false;                        ///< false: picture() is that of an earlier frame
-};
 
 /// The state of a run from frame to frame. The saved map is only read. Not thread safe; GL calls are made on
 /// the constructing thread. Objects, policies and quality change between frames; a call that is impossible
@@ -155,6 +131,8 @@ class Session {
   std::optional<double> last_stamp_s_;
 
   FrameResult pass_through(const Frame& frame, StageTimes& times);
+  /// Returns the time since the previous frame, s, >= 0; 0 for the first. Keeps the stamp.
+  double seconds_since_last(double stamp_s);
   /// Begins a part of the frame: applies a quality that is due and calls config.watch.
   void begin(FramePart part);
   [[nodiscard]] FrameLoad load() const;
@@ -165,9 +143,8 @@ class Session {
   /// Takes over the room that the map updater has changed.
   void renew_room();
   Tracking locate_camera(const Frame& frame);
-  /// Returns the counts of this frame. `drawn` and `tested` are the counters' values before the frame.
-  FrameUse use_of(const ForegroundCounts& foreground, const FrameScene::RoomDrawn& drawn,
-                  std::uint64_t tested);
+  /// Ends a frame without a camera pose.
+  FrameResult pass_unlocated(const Frame& frame, TrackStatus tracking);
 };
 
 }  // namespace roomradar

@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "app/physics/physics.hpp"
+#include "app/physics/physics_config.hpp"
 #include "app/quality/frame_load.hpp"
 #include "app/quality/quality.hpp"
 #include "app/render/compose.hpp"

@@ -7,37 +7,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <utility>
+
+#include "app/window/panes/help_pane.hpp"
+#include "app/window/panes/run_state.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr double kMessage_s = 5.0;
-constexpr double kStall_s = 1.0;  // time without a new frame after which the bar says so
-
-constexpr std::array<std::array<const char*, 2>, 21> kHelp = {
-    {{"click on a surface", "drop the chosen object there"},
-     {"Shift + click", "place it there"},
-     {"drag an object", "carry it; let go in motion: throw it"},
-     {"wheel while dragging", "nearer, farther"},
-     {"right drag", "turn it"},
-     {"D  P  T", "drop, place, throw at the mouse"},
-     {"Tab", "choose the next object"},
-     {"A  Del  R", "add one, remove it, reset all"},
-     {"a mesh file dropped here", "add its object"},
-     {"Space", "pause"},
-     {".", "one more frame"},
-     {"F", "hold the camera; objects keep moving"},
-     {"Home", "back to the first frame"},
-     {"L", "loop, or stay at the end"},
-     {"+  -", "speed"},
-     {"S", "next surface policy"},
-     {"U", "unknown space free, solid"},
-     {"X", "radar exact, sampled"},
-     {"V", "camera, models, both"},
-     {"C", "models: look at the chosen object"},
-     {"Esc, a click", "close this; Ctrl + Q quits"}}};
 
 }  // namespace
 
@@ -51,8 +29,8 @@ PlayUi::PlayUi(UiChannel& link, const look::Fonts& fonts, const std::vector<std:
 bool PlayUi::take_news() {
   const std::string message = link_.take_message();
   if (!message.empty()) {
-    message_ = message;
-    message_until_s_ = ImGui::GetTime() + kMessage_s;
+    message_.text = message;
+    message_.until_s = ImGui::GetTime() + kMessage_s;
   }
   const std::int64_t before = shown_.run_frame;
   if (!link_.take(shown_)) return !message.empty();
@@ -66,12 +44,12 @@ bool PlayUi::take_news() {
 }
 
 void PlayUi::count_rate() {
-  ++rate_frames_;
-  const double since_s = newest_s_ - rate_from_s_;
+  ++rate_.frames;
+  const double since_s = newest_s_ - rate_.from_s;
   if (since_s < 0.7) return;
-  frames_per_s_ = rate_frames_ / since_s;
-  rate_from_s_ = newest_s_;
-  rate_frames_ = 0;
+  rate_.frames_per_s = rate_.frames / since_s;
+  rate_.from_s = newest_s_;
+  rate_.frames = 0;
 }
 
 void PlayUi::draw(float width, float height) {
@@ -92,7 +70,7 @@ void PlayUi::draw(float width, float height) {
   draw_side_panel(layout.side, shown_, link_, settings_, fonts_);
   const Area main = window_layout(width, height, MainView::kCamera, scale).camera;
   draw_message(main);
-  if (shows_help_) draw_help(width, height);
+  if (shows_help_ && draw_help(width, height, fonts_)) shows_help_ = false;
   link_.want({.radar = true, .models = view_ != MainView::kCamera});
 }
 
@@ -136,92 +114,20 @@ void PlayUi::draw_bar(const Area& area) {
   }
   ImGui::SameLine(0.0F, look::px(22.0F));
   if (look::button("Help", "H", shows_help_)) shows_help_ = !shows_help_;
-  draw_state(area);
-  draw_budget(area);
+  draw_run_state(area, shown_, link_, ImGui::GetTime() - newest_s_);
+  draw_frame_time(area, timing_, rate_.frames_per_s, speed_, fonts_);
   look::end_pane();
 }
 
-void PlayUi::draw_state(const Area& area) {
-  ImGui::SameLine();
-  ImGui::SetCursorPosX(area.width - look::px(338.0F));
-  ImGui::AlignTextToFramePadding();
-  const double silent_s = ImGui::GetTime() - newest_s_;
-  const FrameResult& result = shown_.result;
-  if (link_.is_over())
-    look::pill(look::kDim, "the run is over");
-  else if (shown_.run_frame < 0)
-    look::pill(look::kDim, "loading");
-  else if (link_.is_paused())
-    look::pill(look::kWarn, "paused");
-  else if (silent_s > kStall_s)
-    look::pill(look::kBad, "no frame for " + std::to_string(static_cast<int>(silent_s)) + " s");
-  else if (result.status != FrameStatus::kDone)
-    look::pill(look::kBad, "not located");
-  else if (shown_.is_repeating)
-    look::pill(look::kGood, shown_.is_held ? "camera held" : "at the end");
-  else
-    look::pill(look::kGood, result.tracking == TrackStatus::kDegenerate ? "partly tracked" : "tracked");
-}
-
-void PlayUi::draw_budget(const Area& area) {
-  ImDrawList* draw = ImGui::GetWindowDrawList();
-  const float frame_ms = timing_.frame_ms();
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.1f ms   %.0f fps", static_cast<double>(frame_ms), frames_per_s_);
-  if (speed_ != 1.0)
-    std::snprintf(text.data(), text.size(), "%.1f ms   %.0f fps   x%g", static_cast<double>(frame_ms),
-                  frames_per_s_, speed_);
-  const float left = area.width - look::px(182.0F), top = area.y + look::px(10.0F), width = look::px(168.0F);
-  draw->AddText(fonts_.small, fonts_.small->FontSize, {left, top}, look::kText, text.data());
-  // Frame time and goal as fractions of the budget.
-  const float bar_y = top + look::px(19.0F), bar_height = look::px(6.0F), rounding = look::px(3.0F);
-  const float budget_ms = static_cast<float>(timing_.budget_ms());
-  const float goal_ms = static_cast<float>(timing_.goal_ms());
-  const float part = std::min(frame_ms / budget_ms, 1.0F);
-  const ImU32 colour = frame_ms <= goal_ms ? look::kGood : frame_ms <= budget_ms ? look::kWarn : look::kBad;
-  draw->AddRectFilled({left, bar_y}, {left + width, bar_y + bar_height}, look::kRaised, rounding);
-  draw->AddRectFilled({left, bar_y}, {left + std::max(part * width, bar_height), bar_y + bar_height}, colour,
-                      rounding);
-  const float goal_x = left + goal_ms / budget_ms * width;
-  draw->AddLine({goal_x, bar_y - look::px(2.0F)}, {goal_x, bar_y + look::px(8.0F)}, look::kDim,
-                look::px(1.0F));
-}
-
 void PlayUi::draw_message(const Area& area) {
-  if (ImGui::GetTime() > message_until_s_ || message_.empty()) return;
-  const ImVec2 size = ImGui::CalcTextSize(message_.c_str(), nullptr, false, 0.8F * area.width);
+  if (ImGui::GetTime() > message_.until_s || message_.text.empty()) return;
+  const ImVec2 size = ImGui::CalcTextSize(message_.text.c_str(), nullptr, false, 0.8F * area.width);
   const ImVec2 at{area.x + 0.5F * (area.width - size.x), area.y + area.height - size.y - look::px(24.0F)};
   const float beside = look::px(14.0F), above = look::px(8.0F);
   ImDrawList* draw = ImGui::GetForegroundDrawList();
   draw->AddRectFilled({at.x - beside, at.y - above}, {at.x + size.x + beside, at.y + size.y + above},
                       IM_COL32(38, 44, 54, 240), look::px(8.0F));
-  draw->AddText(nullptr, 0.0F, at, look::kWarn, message_.c_str(), nullptr, 0.8F * area.width);
-}
-
-void PlayUi::draw_help(float width, float height) {
-  const float row = look::px(23.0F), wide = look::px(520.0F);
-  const float tall = row * static_cast<float>(kHelp.size()) + look::px(62.0F);
-  ImDrawList* draw = ImGui::GetForegroundDrawList();
-  draw->AddRectFilled({0.0F, 0.0F}, {width, height}, IM_COL32(8, 10, 13, 150));
-  const float left = 0.5F * (width - wide), top = 0.5F * (height - tall);
-  // A transparent window over all panes, so a click reaches nothing else.
-  ImGui::SetNextWindowPos({0.0F, 0.0F});
-  ImGui::SetNextWindowSize({width, height});
-  ImGui::Begin("help", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground);
-  ImGui::SetCursorScreenPos({0.0F, 0.0F});
-  if (ImGui::InvisibleButton("close", {width, height})) shows_help_ = false;
-  ImGui::End();
-  draw->AddRectFilled({left, top}, {left + wide, top + tall}, look::kRaised, look::px(10.0F));
-  draw->AddText(fonts_.large, fonts_.large->FontSize, {left + look::px(24.0F), top + look::px(18.0F)},
-                look::kText, "Mouse and keys");
-  float y = top + look::px(50.0F);
-  for (const auto& [keys, what] : kHelp) {
-    draw->AddText({left + look::px(24.0F), y}, look::kAccent, keys);
-    draw->AddText({left + look::px(210.0F), y}, look::kText, what);
-    y += row;
-  }
+  draw->AddText(nullptr, 0.0F, at, look::kWarn, message_.text.c_str(), nullptr, 0.8F * area.width);
 }
 
 void PlayUi::ask_at_mouse(UserCommandKind kind) {
@@ -276,97 +182,127 @@ bool PlayUi::repeats(int key) {
 }
 
 void PlayUi::press(int key, int modifiers) {
-  UserCommand command;
+  if (press_run_key(key) || press_object_key(key) || press_scene_key(key)) return;
+  static_cast<void>(press_window_key(key, modifiers));
+}
+
+/// Pause, steps, the camera and the speed.
+bool PlayUi::press_run_key(int key) {
   switch (key) {
     case GLFW_KEY_SPACE:
       link_.set_paused(!link_.is_paused());
-      break;
+      return true;
     case GLFW_KEY_PERIOD:
     case GLFW_KEY_KP_DECIMAL:
       if (!link_.is_paused()) link_.set_paused(true);
       link_.step();
-      break;
+      return true;
     case GLFW_KEY_HOME:
       link_.ask(camera_command(CameraPlay::kRewind));
       if (std::exchange(shown_.is_held, false)) link_.ask(camera_command(CameraPlay::kGo));
-      break;
+      return true;
     case GLFW_KEY_F:  // shown at once: the next key may precede the next frame
       shown_.is_held = !shown_.is_held;
       link_.ask(camera_command(shown_.is_held ? CameraPlay::kHold : CameraPlay::kGo));
-      break;
+      return true;
     case GLFW_KEY_L:
       shown_.at_end = shown_.at_end == AtEnd::kLoop ? AtEnd::kStay : AtEnd::kLoop;
       link_.ask(camera_command(shown_.at_end == AtEnd::kLoop ? CameraPlay::kLoop : CameraPlay::kStay));
-      break;
+      return true;
+    case '+':
+    case GLFW_KEY_EQUAL:  // types + with Shift
+    case GLFW_KEY_KP_ADD:
+      set_speed(2.0 * speed_);
+      return true;
+    case GLFW_KEY_MINUS:
+    case GLFW_KEY_KP_SUBTRACT:
+      set_speed(0.5 * speed_);
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// What happens to objects.
+bool PlayUi::press_object_key(int key) {
+  UserCommand command;
+  switch (key) {
     case GLFW_KEY_D:
       ask_at_mouse(UserCommandKind::kDrop);
-      break;
+      return true;
     case GLFW_KEY_P:
       ask_at_mouse(UserCommandKind::kPlace);
-      break;
+      return true;
     case GLFW_KEY_T:
       ask_at_mouse(UserCommandKind::kThrow);
-      break;
+      return true;
     case GLFW_KEY_TAB:
       choose_next();
-      break;
+      return true;
     case GLFW_KEY_A:
       add_object();
-      break;
+      return true;
     case GLFW_KEY_DELETE:
     case GLFW_KEY_BACKSPACE:
       command.kind = UserCommandKind::kRemove;
       link_.ask(command);
-      break;
+      return true;
     case GLFW_KEY_R:
       command.kind = UserCommandKind::kReset;
       link_.ask(command);
-      break;
-    // These change shown_ at once, too, because the next key may precede the next frame.
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Surfaces, unknown space and radar. These change shown_ at once, because the next key may precede the next
+/// frame.
+bool PlayUi::press_scene_key(int key) {
+  switch (key) {
     case GLFW_KEY_S: {
       constexpr std::array<SurfacePolicy, 4> kNext = {SurfacePolicy::kSkirt, SurfacePolicy::kBorder,
                                                       SurfacePolicy::kMap, SurfacePolicy::kHoles};
       shown_.surfaces = kNext[static_cast<std::size_t>(shown_.surfaces)];
       link_.ask(surfaces_command(shown_.surfaces));
-      break;
+      return true;
     }
     case GLFW_KEY_U:
       shown_.unknown_is_solid = !shown_.unknown_is_solid;
       link_.ask(unknown_command(shown_.unknown_is_solid));
-      break;
+      return true;
     case GLFW_KEY_X:
       shown_.radar.mode = shown_.radar.mode == RadarMode::kExact ? RadarMode::kSampled : RadarMode::kExact;
       link_.ask(radar_command(shown_.radar));
-      break;
+      return true;
+    default:
+      return false;
+  }
+}
+
+/// Views, help and the end.
+bool PlayUi::press_window_key(int key, int modifiers) {
+  switch (key) {
     case GLFW_KEY_V:
       view_ = view_ == MainView::kCamera   ? MainView::kModels
               : view_ == MainView::kModels ? MainView::kBoth
                                            : MainView::kCamera;
-      break;
+      return true;
     case GLFW_KEY_C:
       models_.look_at_chosen(shown_);
-      break;
-    case '+':
-    case GLFW_KEY_EQUAL:  // types + with Shift
-    case GLFW_KEY_KP_ADD:
-      set_speed(2.0 * speed_);
-      break;
-    case GLFW_KEY_MINUS:
-    case GLFW_KEY_KP_SUBTRACT:
-      set_speed(0.5 * speed_);
-      break;
+      return true;
     case GLFW_KEY_H:
     case GLFW_KEY_F1:
       shows_help_ = !shows_help_;
-      break;
+      return true;
     case GLFW_KEY_ESCAPE:
       shows_help_ = false;
-      break;
+      return true;
     case GLFW_KEY_Q:
       quits_ = quits_ || (modifiers & GLFW_MOD_CONTROL) != 0;
-      break;
+      return true;
     default:
-      break;
+      return false;
   }
 }
 

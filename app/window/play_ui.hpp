@@ -37,6 +37,16 @@ class PlayUi {
   [[nodiscard]] bool wants_to_quit() const { return quits_; }
 
  private:
+  struct Message {
+    std::string text;
+    double until_s = 0.0;
+  };
+  struct FrameRate {
+    double from_s = 0.0;  ///< start of the current interval
+    int frames = 0;       ///< since then
+    double frames_per_s = 0.0;
+  };
+
   UiChannel& link_;
   const look::Fonts& fonts_;
   Snapshot shown_;
@@ -48,22 +58,22 @@ class PlayUi {
   MainView view_ = MainView::kCamera;
   bool shows_help_ = false, quits_ = false;
   double speed_ = 1.0;
-  std::string message_;
-  double message_until_s_ = 0.0, newest_s_ = 0.0;
-  double rate_from_s_ = 0.0;
-  int rate_frames_ = 0;
-  double frames_per_s_ = 0.0;
+  Message message_;
+  double newest_s_ = 0.0;
+  FrameRate rate_;
 
   void count_rate();
   void ask_at_mouse(UserCommandKind kind);
   void add_object();
   void choose_next();
+  // Each returns false if the key is not its own.
+  bool press_run_key(int key);
+  bool press_object_key(int key);
+  bool press_scene_key(int key);
+  bool press_window_key(int key, int modifiers);
   void set_speed(double speed);
   void draw_bar(const Area& area);
-  void draw_state(const Area& area);
-  void draw_budget(const Area& area);
   void draw_message(const Area& area);
-  void draw_help(float width, float height);
   void draw_waiting(const Area& area);
 };
 

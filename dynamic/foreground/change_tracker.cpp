@@ -1,27 +1,22 @@
-// change_tracker.cpp: looks up points frame by frame, and groups them into objects.
+// change_tracker.cpp: looks up points frame by frame.
 #include "dynamic/foreground/change_tracker.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "mapping/types/depth_noise.hpp"
-#include "mapping/types/system/config_check.hpp"
-#include "mapping/types/voxel_key.hpp"
 
 namespace roomradar {
 namespace {
 
-constexpr std::uint32_t kNone = ~std::uint32_t{0};
 constexpr float kNearest_m = 0.2F;  // no sensor measures nearer
 constexpr double kLongestStep_s = 0.5;
 // A contradicting sighting weighs as much as two confirming ones. At the rim of an object that stays, the
 // pixel may show the background: one frame in four misses the object there.
 constexpr int kContradiction = 2, kConfirmation = 1, kMostDoubt = 7;
 constexpr float kFarApart_m = 4.0F;  // depth at which pixels of the sampling grid are spacing_m apart
-constexpr int kAllRound = 7;         // neighbours of an interior cell, of eight in a flat surface
 constexpr float kNothing_m = std::numeric_limits<float>::quiet_NaN();
 
 std::uint8_t bit_of(LastingKind kind) { return static_cast<std::uint8_t>(1U << static_cast<unsigned>(kind)); }
@@ -81,45 +76,10 @@ float tolerance_m(const ChangeTrackerConfig& config, float z) {
 
 }  // namespace
 
-std::string_view to_string(LastingKind kind) { return kind == LastingKind::kCame ? "came" : "went"; }
-
-Eigen::AlignedBox3d LastingChange::box_world() const {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3d& p : points_world) box.extend(p);
-  return box;
-}
-
-void require_valid(const ChangeTrackerConfig& config) {
-  const ConfigCheck require{"change_tracker"};
-  const auto part = [](float value) { return value >= 0.0F && value <= 1.0F; };
-  require(config.spacing_m >= 0.002F && config.spacing_m <= 1.0F, "spacing_m", config.spacing_m,
-          "in 0.002..1");
-  require(config.agree_sigmas > 0.0F && config.agree_sigmas < 1e3F, "agree_sigmas", config.agree_sigmas,
-          "in 0..1000");
-  require(config.pose_sigma_m >= 0.0F && config.pose_sigma_m < 1.0F, "pose_sigma_m", config.pose_sigma_m,
-          "in 0..1");
-  require(config.pose_sigma_per_m >= 0.0F && config.pose_sigma_per_m < 1.0F, "pose_sigma_per_m",
-          config.pose_sigma_per_m, "in 0..1");
-  require(config.own_reach_m >= 0.0F && std::isfinite(config.own_reach_m), "own_reach_m", config.own_reach_m,
-          ">= 0");
-  require(config.link_m >= config.spacing_m && config.link_m <= 1.0F, "link_m", config.link_m,
-          "at least spacing_m, and at most 1");
-  require(config.min_cells >= 1, "min_cells", config.min_cells, ">= 1");
-  require(part(config.min_steady_fraction), "min_steady_fraction", config.min_steady_fraction, "in 0..1");
-  require(part(config.min_core_fraction), "min_core_fraction", config.min_core_fraction, "in 0..1");
-  require(part(config.min_seen_fraction), "min_seen_fraction", config.min_seen_fraction, "in 0..1");
-  require(config.forget_after_s > 0.0F, "forget_after_s", config.forget_after_s, "> 0");
-  require(config.max_points >= 1 && config.max_points <= 10'000'000, "max_points",
-          static_cast<double>(config.max_points), "in 1..10000000");
-}
-
 ChangeTracker::ChangeTracker(const ChangeTrackerConfig& config) : config_(config) {
   require_valid(config);
   points_.reserve(config.max_points);
-  cell_of_.reserve(config.max_points);
-  cells_.reserve(config.max_points);
-  things_.reserve(config.max_points);
-  table_.reserve(4 * config.max_points);
+  reserve(config.max_points, clusters_);
 }
 
 void ChangeTracker::update(const DepthImage& depth_m, const DepthImage& expected_depth_m,
@@ -151,11 +111,11 @@ void ChangeTracker::update(const DepthImage& depth_m, const DepthImage& expected
                   (depth_m.width + stride_px - 1) / stride_px};
   const int grid_height = (depth_m.height + stride_px - 1) / stride_px;
   covered_.assign(static_cast<std::size_t>(view.grid_width) * static_cast<std::size_t>(grid_height), 0);
-  std::erase_if(points_, [&](Point& point) { return !review(view, static_cast<float>(dt_s), point); });
+  std::erase_if(points_, [&](ChangePoint& point) { return !review(view, static_cast<float>(dt_s), point); });
   add_points(view);
 }
 
-bool ChangeTracker::review(const View& view, float dt_s, Point& point) {
+bool ChangeTracker::review(const View& view, float dt_s, ChangePoint& point) {
   const Eigen::Vector3f p_camera = view.to_camera(point.position);
   const float z = p_camera.z();
   point.as_it_was = false;
@@ -234,7 +194,7 @@ void ChangeTracker::add_points(const View& view) {
       const float z = kind == LastingKind::kCame ? view.depth_m.at(x, y) : view.expected_m.at(x, y);
       if (!(z > kNearest_m)) continue;
       if (points_.size() >= config_.max_points) return;
-      Point point;
+      ChangePoint point;
       point.position = view.from_camera(view.back_projected(x, y, z));
       point.id = next_id_++;
       point.kind = kind;
@@ -244,98 +204,16 @@ void ChangeTracker::add_points(const View& view) {
   }
 }
 
-std::uint32_t ChangeTracker::find_cell(std::uint64_t code) const {
-  const std::size_t mask = table_.size() - 1;
-  for (std::size_t at = (code * 0x9E37'79B9'7F4A'7C15U) >> 32U & mask;; at = (at + 1) & mask)
-    if (table_[at] == kNone || cells_[table_[at]].code == code) return static_cast<std::uint32_t>(at);
-}
-
-std::uint32_t ChangeTracker::thing_of(std::uint32_t cell) {
-  while (cells_[cell].joined_to != cell) {
-    cells_[cell].joined_to = cells_[cells_[cell].joined_to].joined_to;
-    cell = cells_[cell].joined_to;
-  }
-  return cell;
-}
-
-void ChangeTracker::sort_into_cells(LastingKind kind, float seconds) {
-  std::size_t places = 64;
-  while (places < 2 * points_.size()) places *= 2;
-  table_.assign(places, kNone);
-  cells_.clear();
-  cell_of_.assign(points_.size(), kNone);
-  const auto index_of = [&](float x) { return static_cast<std::int64_t>(std::floor(x / config_.link_m)); };
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Point& point = points_[i];
-    if (point.kind != kind) continue;
-    const std::uint64_t code =
-        voxel_key(index_of(point.position.x()), index_of(point.position.y()), index_of(point.position.z()));
-    const std::uint32_t at = find_cell(code);
-    if (table_[at] == kNone) {
-      table_[at] = static_cast<std::uint32_t>(cells_.size());
-      cells_.push_back({.code = code, .joined_to = table_[at], .steady = false});
-    }
-    cell_of_[i] = table_[at];
-    cells_[table_[at]].steady |= point.steady_s >= seconds;
-  }
-  const std::uint64_t zero = voxel_key(0, 0, 0);
-  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
-    for (int n = 0; n < kCellsRound / 2; ++n) {  // the neighbour's own loop covers the other half
-      const std::uint32_t beside =
-          table_[find_cell(cells_[cell].code + voxel_key(neighbour_offset(n)) - zero)];
-      if (beside == kNone) continue;
-      ++cells_[cell].neighbours;
-      ++cells_[beside].neighbours;
-      const std::uint32_t a = thing_of(cell), b = thing_of(beside);
-      cells_[std::max(a, b)].joined_to = std::min(a, b);
-    }
-  }
-}
-
-void ChangeTracker::judge_things(LastingKind kind, std::vector<LastingChange>& changes) {
-  things_.assign(cells_.size(), {});
-  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell) {
-    Thing& thing = things_[thing_of(cell)];
-    ++thing.cells;
-    thing.steady_cells += cells_[cell].steady ? 1 : 0;
-    thing.core_cells += cells_[cell].neighbours >= kAllRound ? 1 : 0;
-  }
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (cell_of_[i] == kNone) continue;
-    Thing& thing = things_[thing_of(cell_of_[i])];
-    ++thing.points;
-    thing.seen_points += points_[i].as_it_was ? 1 : 0;
-  }
-  const float min_core = kind == LastingKind::kWent ? config_.min_core_fraction : 0.0F;
-  for (Thing& thing : things_) {
-    if (thing.cells < config_.min_cells ||
-        static_cast<float>(thing.core_cells) < min_core * static_cast<float>(thing.cells) ||
-        static_cast<float>(thing.steady_cells) <
-            config_.min_steady_fraction * static_cast<float>(thing.cells) ||
-        static_cast<float>(thing.seen_points) < config_.min_seen_fraction * static_cast<float>(thing.points))
-      continue;
-    changes.push_back({.kind = kind, .points_world = {}, .ids = {}});
-    thing.change = changes.size();
-  }
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (cell_of_[i] == kNone) continue;
-    const std::size_t change = things_[thing_of(cell_of_[i])].change;
-    if (change == 0) continue;
-    changes[change - 1].points_world.emplace_back(origin_world_ + points_[i].position.cast<double>());
-    changes[change - 1].ids.push_back(points_[i].id);
-  }
-}
-
 std::vector<LastingChange> ChangeTracker::settled(double seconds) {
   std::vector<LastingChange> changes;
   const auto least_s = static_cast<float>(seconds);
   for (const LastingKind kind : {LastingKind::kCame, LastingKind::kWent}) {
-    const auto steady = std::count_if(points_.begin(), points_.end(), [&](const Point& point) {
+    const auto steady = std::count_if(points_.begin(), points_.end(), [&](const ChangePoint& point) {
       return point.kind == kind && point.steady_s >= least_s;
     });
     if (steady < config_.min_cells) continue;
-    sort_into_cells(kind, least_s);
-    judge_things(kind, changes);
+    sort_into_cells(points_, kind, least_s, config_.link_m, clusters_);
+    add_objects(points_, kind, origin_world_, config_, clusters_, changes);
   }
   return changes;
 }
@@ -362,7 +240,7 @@ double ChangeTracker::seen_now(const LastingChange& change) const {
 
 void ChangeTracker::forget(const LastingChange& change) {
   auto id = change.ids.begin();
-  std::erase_if(points_, [&](const Point& point) {
+  std::erase_if(points_, [&](const ChangePoint& point) {
     while (id != change.ids.end() && *id < point.id) ++id;
     return id != change.ids.end() && *id == point.id;
   });

@@ -37,6 +37,22 @@ void join(std::vector<PixelRun>& runs, std::uint32_t a, std::uint32_t b) {
   runs[std::max(a, b)].region = std::min(a, b);
 }
 
+// Adds the sums of all runs to those of their region's root, and stores the root in each run.
+void sum_regions(ConnectedComponents& found) {
+  for (std::uint32_t i = 0; i < found.runs.size(); ++i) {
+    const std::uint32_t root = found.runs[i].region = root_of(found.runs, i);
+    if (root == i) continue;
+    ConnectedComponent& all = found.regions[root];
+    const ConnectedComponent& part = found.regions[i];
+    all.pixels += part.pixels;
+    all.strong += part.strong;
+    all.ambiguous += part.ambiguous;
+    all.before += part.before;
+    all.core += part.core;
+    all.depth2_m2 += part.depth2_m2;
+  }
+}
+
 }  // namespace
 
 void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>& evidence,
@@ -95,18 +111,7 @@ void find_components(const DepthImage& depth_m, const std::vector<std::uint8_t>&
       }
     }
   }
-  for (std::uint32_t i = 0; i < runs.size(); ++i) {
-    const std::uint32_t root = runs[i].region = root_of(runs, i);
-    if (root == i) continue;
-    ConnectedComponent& all = found.regions[root];
-    const ConnectedComponent& part = found.regions[i];
-    all.pixels += part.pixels;
-    all.strong += part.strong;
-    all.ambiguous += part.ambiguous;
-    all.before += part.before;
-    all.core += part.core;
-    all.depth2_m2 += part.depth2_m2;
-  }
+  sum_regions(found);
 }
 
 }  // namespace roomradar

@@ -9,19 +9,12 @@
 #include "dynamic/foreground/expected_bounds.hpp"
 #include "dynamic/foreground/foreground_config.hpp"
 #include "dynamic/foreground/foreground_history.hpp"
+#include "dynamic/foreground/pixel_evidence.hpp"
 #include "dynamic/foreground/static_residual.hpp"
 #include "mapping/types/image.hpp"
 #include "mapping/types/intrinsics.hpp"
 
 namespace roomradar {
-
-enum class PixelLabel : std::uint8_t {
-  kNotKnown,  ///< no live depth, no static model, or a difference too small or too new to decide
-  kStatic,    ///< agrees with the static model within noise and pose error
-  kMoved,     ///< nearer than the static model: something came in front of it
-  kRevealed,  ///< farther than the static model: something was taken away
-};
-using LabelImage = Image<PixelLabel>;
 
 /// History of the previous frame, and reused buffers. A new state has no history.
 struct ForegroundState {
@@ -29,14 +22,8 @@ struct ForegroundState {
   StaticResidual fit;
 
   ExpectedBounds bounds;
-  std::vector<std::uint8_t> before;       // bits per block, see moved_memory.hpp
-  std::vector<std::uint8_t> near_strong;  // evidence bits to keep, per block
-  std::vector<std::uint8_t> block_evidence, along_rows;
-  std::vector<std::uint8_t> revealed_for;  // per block, see mark_revealed_cores()
-  std::vector<float> weak_m, strong_m;     // one value per pixel of a row
-  std::vector<float> nearest_m, farthest_m, around_hole_m;
-  std::vector<std::uint8_t> keep, row_bits;
-  std::vector<std::uint8_t> evidence;  // bits per pixel, see foreground.cpp
+  std::vector<std::uint8_t> before;  // bits per block, see foreground_history.hpp
+  PixelEvidence evidence;
   ConnectedComponents regions;
 };
 

@@ -5,55 +5,15 @@
 #include <bit>
 #include <cmath>
 
+#include "dynamic/surface/cell_jumps.hpp"
+
 namespace roomradar {
 namespace {
 
-constexpr CellBits kNotLastColumn = 0b01111'01111'01111'01111'01111U;
 constexpr std::array<int, 4> kCorners{0, 4, 8, 12};  // indices into the ring
 
-using CellValues = std::array<float, 25>;  // inverse depths of a cell's pixels
-
-constexpr int place(CellPixel p) { return 5 * p.y + p.x; }
 constexpr CellBits bit(int place) { return CellBits{1} << place; }
 CellPixel ring(int i) { return kRing[static_cast<std::size_t>(i & 15)]; }
-
-/// Discontinuities between dynamic neighbours. Bit k of right: between pixel k and its right neighbour; of
-/// down: between pixel k and the one below.
-struct Jumps {
-  CellBits right = 0, down = 0;
-  [[nodiscard]] bool any() const { return (right | down) != 0; }
-  /// Returns true if there is one between two neighbours along the ring.
-  [[nodiscard]] bool between(CellPixel a, CellPixel b) const {
-    const int first = std::min(place(a), place(b));
-    return ((a.y == b.y ? right : down) >> first & 1U) != 0;
-  }
-};
-
-Jumps find_jumps(CellBits in, const CellValues& values, const DepthDiscontinuity& rule) {
-  Jumps jumps;
-  for (CellBits left = in & in >> 1 & kNotLastColumn; left != 0; left &= left - 1) {
-    const auto k = static_cast<std::size_t>(std::countr_zero(left));
-    if (!rule.is_one_surface_inverse(values[k], values[k + 1])) jumps.right |= left & -left;
-  }
-  for (CellBits above = in & in >> 5; above != 0; above &= above - 1) {
-    const auto k = static_cast<std::size_t>(std::countr_zero(above));
-    if (!rule.is_one_surface_inverse(values[k], values[k + 5])) jumps.down |= above & -above;
-  }
-  return jumps;
-}
-
-/// Returns all pixels connected to the lowest bit of `in` without crossing a discontinuity.
-CellBits take_surface(CellBits in, const Jumps& jumps) {
-  const CellBits can_right = in & in >> 1 & kNotLastColumn & ~jumps.right;
-  const CellBits can_down = in & in >> 5 & ~jumps.down;
-  CellBits surface = in & -in;
-  for (CellBits before = 0; before != surface;) {
-    before = surface;
-    surface |= (surface & can_right) << 1 | (surface >> 1 & can_right);
-    surface |= (surface & can_down) << 5 | (surface >> 5 & can_down);
-  }
-  return surface;
-}
 
 /// Corners of the polygon that covers an arc of the ring: the arc's ends, the cell's corners, and every pixel
 /// on `busy` sides (bits: left, bottom, right, top).
@@ -191,7 +151,7 @@ class CellSorter {
     if (is_flat) return CellKind::kFlat;
     CellValues values;
     const auto [least, most] = read(in, column, row, values);
-    Jumps jumps;
+    CellJumps jumps;
     if (most - least > rules_.jump.least_jump() * least) jumps = find_jumps(in, values, rules_.jump);
     std::array<CellBits, 4>& parts = cells_.parts[cell(column, row)];
     parts = {in};
@@ -225,7 +185,7 @@ class CellSorter {
     return {least, most};
   }
 
-  [[nodiscard]] bool is_cut_well(CellBits part, const CellValues& values, const Jumps& jumps) const {
+  [[nodiscard]] bool is_cut_well(CellBits part, const CellValues& values, const CellJumps& jumps) const {
     RingArc arc;
     if (!find_outline(part, arc)) return false;
     if (jumps.any()) {

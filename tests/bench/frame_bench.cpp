@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "app/cli/report.hpp"
+#include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "app/sources/formats/frame_range.hpp"
 #include "mapping/map/map_folder.hpp"

@@ -18,8 +18,8 @@
 
 #include "app/cli/report.hpp"
 #include "app/objects/virtual_object.hpp"
+#include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/map/map_folder.hpp"
 #include "mapping/prescan.hpp"

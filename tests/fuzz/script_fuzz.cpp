@@ -1,5 +1,5 @@
 // script_fuzz.cpp: user input: event files, names of simulated rooms, frame ranges.
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 #include "app/sim/sensor/sim_options.hpp"
 #include "app/sources/formats/frame_range.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

@@ -9,8 +9,8 @@
 #include "app/evaluation/fallthrough/totals.hpp"
 #include "app/evaluation/trade/measured_sandboxed.hpp"
 #include "app/session/apply_quality.hpp"
+#include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
 #include "mapping/types/system/process_memory.hpp"
 
 namespace roomradar {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/sources/formats/temporary_folder.hpp"
-#include "app/sources/recordings/recording_index.hpp"
+#include "app/sources/recordings/recording_index_fakenect.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "app/sources/formats/parse_numbers.hpp"
+#include "app/sources/recordings/recording_index_fakenect.hpp"
+#include "app/sources/recordings/recording_index_tum.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 

@@ -38,11 +38,10 @@ struct RecordingIndex {
 /// accelerometer dumps). Throws Error as open_folder() does.
 RecordingIndex index_recording(const std::filesystem::path& folder);
 
-/// One function per format; the folder must be of that format.
+/// One function per format; the folder must be of that format. index_tum() and index_fakenect() are in
+/// recording_index_tum.hpp and recording_index_fakenect.hpp.
 RecordingIndex index_seven_scenes(const std::filesystem::path& folder);
-RecordingIndex index_tum(const std::filesystem::path& folder);
 RecordingIndex index_numbered(const std::filesystem::path& folder);
-RecordingIndex index_fakenect(const std::filesystem::path& folder);
 
 /// A line of a list of images.
 struct ListedImage {

@@ -1,4 +1,6 @@
 // recording_index_fakenect.cpp: reads INDEX.txt and pairs its images like a live device's.
+#include "app/sources/recordings/recording_index_fakenect.hpp"
+
 #include <array>
 #include <cstring>
 #include <fstream>
@@ -10,7 +12,6 @@
 #include "app/sources/formats/kinect_units.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/stamp_pairing.hpp"
-#include "app/sources/recordings/recording_index.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 

@@ -1,4 +1,6 @@
 // recording_index_tum.cpp: reads the lists of a TUM RGB-D recording and associates them by stamp.
+#include "app/sources/recordings/recording_index_tum.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -10,7 +12,6 @@
 #include "app/sources/formats/kinect_units.hpp"
 #include "app/sources/formats/parse_numbers.hpp"
 #include "app/sources/formats/stamp_pairing.hpp"
-#include "app/sources/recordings/recording_index.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 

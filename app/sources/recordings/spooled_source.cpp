@@ -1,120 +1,20 @@
-// spooled_source.cpp: keeps images in files, all else in memory and, if the spool is kept, in a list file.
-//
-// list.bin: "RRSPOOL1", the source's name, then for each frame the size of its entry in bytes (u32) and the
-// entry; a size of 0 marks the end of the source.
+// spooled_source.cpp: captures frames in a thread, and reads them again.
 #include "app/sources/recordings/spooled_source.hpp"
 
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
-#include "app/sources/formats/image_file.hpp"
 #include "app/sources/formats/temporary_folder.hpp"
-#include "mapping/types/serialize.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
-#include "mapping/types/validity.hpp"
 
 namespace roomradar {
-namespace {
-
 namespace fs = std::filesystem;
-
-constexpr const char* kList = "list.bin";
-constexpr std::string_view kMagic = "RRSPOOL1";
-
-fs::path depth_file(const fs::path& folder, std::size_t position) {
-  return folder / (std::to_string(position) + ".depth.png");
-}
-fs::path colour_file(const fs::path& folder, std::size_t position) {
-  return folder / (std::to_string(position) + ".colour.png");
-}
-
-/// Returns false for a list without a complete header: a full disk or a kill cut it off before the first
-/// frame.
-bool has_list(const fs::path& folder) {
-  std::error_code fault;
-  const std::uintmax_t bytes = fs::file_size(folder / kList, fault);
-  return !fault && bytes > kMagic.size();
-}
-
-/// Copies all of the frame except its images.
-Frame without_images(const Frame& frame) {
-  Frame rest;
-  rest.index = frame.index;
-  rest.stamp_s = frame.stamp_s;
-  rest.colour_after_depth_s = frame.colour_after_depth_s;
-  rest.depth_camera = frame.depth_camera;
-  rest.colour_camera = frame.colour_camera;
-  rest.T_colour_depth = frame.T_colour_depth;
-  rest.T_world_camera = frame.T_world_camera;
-  rest.down_camera = frame.down_camera;
-  return rest;
-}
-
-}  // namespace
-
-template <typename Archive>
-void SpooledSource::serialize_entry(Archive& archive, Entry& entry) {
-  Frame& frame = entry.frame;
-  serialize(archive, entry.fault);
-  if (!entry.fault.empty()) return;
-  serialize(archive, frame.index);
-  serialize(archive, frame.stamp_s);
-  serialize(archive, frame.colour_after_depth_s);
-  serialize(archive, frame.depth_camera);
-  bool coloured = frame.colour_camera.width_px > 0;
-  serialize(archive, coloured);
-  if (coloured) serialize(archive, frame.colour_camera);
-  serialize(archive, frame.T_colour_depth);
-  serialize(archive, frame.T_world_camera);
-  serialize(archive, frame.down_camera);
-}
-
-/// Parses an entry; a damaged entry becomes an unreadable frame.
-SpooledSource::Entry SpooledSource::entry_of(std::string_view bytes, const fs::path& list) {
-  Entry entry;
-  try {
-    ByteReader reader(bytes, list.string());
-    serialize_entry(reader, entry);
-    reader.require_end();
-  } catch (const Error& damage) {
-    return {{}, damage.what()};
-  }
-  return entry;
-}
-
-SpooledSource::Left SpooledSource::read_list(const fs::path& folder) {
-  const fs::path path = folder / kList;
-  const std::string bytes = read_bytes(path, "the list of a live scan's frames");
-  ByteReader list(bytes, path.string());
-  std::string magic(kMagic.size(), '\0');
-  list.raw(magic.data(), magic.size());
-  if (magic != kMagic) list.fail("is no list of spooled frames, or of another version");
-  Left left;
-  serialize(list, left.name);
-  left.sound_bytes = bytes.size() - list.left();
-  while (!left.at_end) {
-    // A truncated entry was being written when the process was killed; its frame was never used.
-    std::uint32_t size = 0;
-    if (list.left() < sizeof size) break;
-    serialize(list, size);
-    if (list.left() < size) break;
-    left.at_end = size == 0;
-    if (left.at_end && list.left() > 0) {  // zeros left by a power failure instead of entries
-      left.at_end = false;
-      break;
-    }
-    if (size > 0) left.entries.push_back(entry_of(list.take(size), path));
-    left.sound_bytes = bytes.size() - list.left();
-  }
-  return left;
-}
 
 SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, fs::path folder, bool kept)
     : source_(std::move(source)),
-      folder_(std::move(folder)),
-      kept_(kept),
+      spool_{std::move(folder), kept},
       name_(source_ ? source_->name() : std::string{}) {}
 
 SpooledSource::SpooledSource(std::unique_ptr<FrameSource> source, const fs::path& parent_folder)
@@ -127,57 +27,44 @@ std::unique_ptr<SpooledSource> SpooledSource::kept(std::unique_ptr<FrameSource> 
   if (fault) throw Error(folder.string() + ": the folder cannot be made: " + fault.message());
   std::unique_ptr<SpooledSource> spooled(new SpooledSource(std::move(source), folder, /*kept=*/true));
   spooled->most_ahead_ = most_ahead;
-  const fs::path path = folder / kList;
-  if (has_list(folder)) {
-    Left left = read_list(folder);
-    fs::resize_file(path, left.sound_bytes);
+  if (has_spool_list(folder)) {
+    SpoolList left = read_spool_list(folder);
+    fs::resize_file(spool_list_file(folder), left.sound_bytes);
     spooled->take(std::move(left));
-    spooled->list_.open(path, std::ios::binary | std::ios::app);
+    spooled->spool_.list.open(spool_list_file(folder), std::ios::binary | std::ios::app);
+    require_written(spooled->spool_.list, spool_list_file(folder));
   } else {
-    ByteWriter head;
-    head.raw(kMagic.data(), kMagic.size());
-    serialize(head, spooled->name_);
-    spooled->list_.open(path, std::ios::binary);
-    spooled->list_ << head.bytes() << std::flush;
-    if (!spooled->list_) fs::remove(path, fault);  // holds no frame, and would block the folder
+    begin_spool_list(folder, spooled->name_, spooled->spool_.list);
   }
-  require_written(spooled->list_, path);
   return spooled;
 }
 
-bool SpooledSource::has_end(const fs::path& folder) { return has_list(folder) && read_list(folder).at_end; }
+bool SpooledSource::has_end(const fs::path& folder) {
+  return has_spool_list(folder) && read_spool_list(folder).at_end;
+}
 
 bool SpooledSource::has_frames(const fs::path& folder) {
-  return has_list(folder) && !read_list(folder).entries.empty();
+  return has_spool_list(folder) && !read_spool_list(folder).entries.empty();
 }
 
 std::unique_ptr<SpooledSource> SpooledSource::again(const fs::path& folder) {
-  if (!fs::exists(folder / kList)) throw Error((folder / kList).string() + ": there are no recorded frames");
+  if (!fs::exists(spool_list_file(folder)))
+    throw Error(spool_list_file(folder).string() + ": there are no recorded frames");
   std::unique_ptr<SpooledSource> spooled(new SpooledSource(nullptr, folder, /*kept=*/true));
-  spooled->take(read_list(folder));
+  spooled->take(read_spool_list(folder));
   spooled->at_end_ = true;
   return spooled;
 }
 
-void SpooledSource::take(Left left) {
+void SpooledSource::take(SpoolList left) {
   name_ = std::move(left.name);
   entries_.assign(std::make_move_iterator(left.entries.begin()), std::make_move_iterator(left.entries.end()));
   at_end_ = left.at_end;
-  left_ = entries_.size();
+  continued_.left = entries_.size();
   if (entries_.empty()) return;
-  stamp_offset_s_.reset();
-  for (const Entry& entry : entries_) index_offset_ = std::max(index_offset_ + 1, entry.frame.index + 1);
-}
-
-/// Null marks the end of the source.
-void SpooledSource::append(Entry* entry) {
-  if (!kept_) return;
-  ByteWriter bytes;
-  if (entry) serialize_entry(bytes, *entry);
-  const auto size = static_cast<std::uint32_t>(bytes.bytes().size());
-  list_.write(reinterpret_cast<const char*>(&size), sizeof size);
-  list_ << bytes.bytes() << std::flush;
-  require_written(list_, folder_ / kList);
+  continued_.stamp_offset_s.reset();
+  for (const SpoolEntry& entry : entries_)
+    continued_.index_offset = std::max(continued_.index_offset + 1, entry.frame.index + 1);
 }
 
 void SpooledSource::stop_capture() {
@@ -194,9 +81,9 @@ void SpooledSource::stop_capture() {
 
 SpooledSource::~SpooledSource() {
   stop_capture();
-  if (kept_) return;
+  if (spool_.kept) return;
   std::error_code ignored;  // destructors must not throw
-  fs::remove_all(folder_, ignored);
+  fs::remove_all(spool_.folder, ignored);
 }
 
 void SpooledSource::capture() {
@@ -231,26 +118,22 @@ bool SpooledSource::capture_one(Frame& frame) {
   const auto most = source_->frame_count();
   ReadResult result;  // stays kEnd if earlier processes already spooled frame_count() frames
   if (!most || static_cast<std::int64_t>(position) < *most) result = source_->next(frame);
-  std::optional<Entry> entry;
+  std::optional<SpoolEntry> entry;
   if (result.status == ReadStatus::kFrame) {
     constexpr double kFrame_s = 1.0 / 30.0;
-    if (!stamp_offset_s_) {
+    if (!continued_.stamp_offset_s) {
       double last_s = 0.0;
-      for (const Entry& before : entries_) last_s = std::max(last_s, before.frame.stamp_s);
-      stamp_offset_s_ = last_s + kFrame_s - frame.stamp_s;
+      for (const SpoolEntry& before : entries_) last_s = std::max(last_s, before.frame.stamp_s);
+      continued_.stamp_offset_s = last_s + kFrame_s - frame.stamp_s;
     }
-    frame.index += index_offset_;
-    frame.stamp_s += *stamp_offset_s_;
-    write_exact_depth_file(frame.depth_m, depth_file(folder_, position));
-    // A killed process may have left the colour image of a frame that is not in the list.
-    std::error_code fault;
-    fs::remove(colour_file(folder_, position), fault);
-    if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder_, position));
-    entry = Entry{without_images(frame), {}};
+    frame.index += continued_.index_offset;
+    frame.stamp_s += *continued_.stamp_offset_s;
+    entry = write_spooled(frame, spool_.folder, position);
   } else if (result.status == ReadStatus::kSkipped && !result.waiting) {
-    entry = Entry{{}, result.fault};
+    entry = SpoolEntry{{}, result.fault};
   }
-  if (!result.waiting) append(entry ? &*entry : nullptr);
+  if (spool_.kept && !result.waiting)
+    append_to_spool_list(entry ? &*entry : nullptr, spool_.folder, spool_.list);
   const std::lock_guard lock(mutex_);
   waiting_.reset();
   if (entry)
@@ -275,34 +158,16 @@ ReadResult SpooledSource::next(Frame& frame) {
     }
   }
   const std::size_t position = position_++;
-  const Entry& entry = entries_[position];
+  const SpoolEntry& entry = entries_[position];
   lock.unlock();
   changed_.notify_all();
   try {
-    return read_again(entry, position, frame);
+    return read_spooled(entry, spool_.folder, position, frame);
   } catch (const Error& fault) {
     // After a power failure the list may be ahead of its images. Images written by this process must exist.
-    if (position >= left_) throw;
+    if (position >= continued_.left) throw;
     return {ReadStatus::kSkipped, fault.what()};
   }
-}
-
-ReadResult SpooledSource::read_again(const Entry& entry, std::size_t position, Frame& frame) const {
-  if (!entry.fault.empty()) return {ReadStatus::kSkipped, entry.fault};
-  DepthImage depth_m = std::move(frame.depth_m);
-  ColourImage colour = std::move(frame.colour);
-  read_exact_depth_file(depth_file(folder_, position), depth_m);
-  const fs::path colour_path = colour_file(folder_, position);
-  if (fs::exists(colour_path))
-    read_colour_file(colour_path, colour);
-  else
-    colour.resize(0, 0);
-  frame = entry.frame;
-  frame.depth_m = std::move(depth_m);
-  frame.colour = std::move(colour);
-  if (const std::string_view fault = fault_of(frame); !fault.empty())
-    throw Error(depth_file(folder_, position).string() + ": is damaged: " + std::string(fault));
-  return {ReadStatus::kFrame, {}};
 }
 
 bool SpooledSource::rewind() {

@@ -11,10 +11,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <thread>
-#include <vector>
 
+#include "app/sources/recordings/spool_list.hpp"
 #include "mapping/types/frame_source.hpp"
 
 namespace roomradar {
@@ -61,47 +60,37 @@ class SpooledSource final : public FrameSource {
   [[nodiscard]] std::string name() const override;
 
  private:
-  /// A frame without its images, or the fault that replaced it.
-  struct Entry {
-    Frame frame;
-    std::string fault;
-  };
-  /// List left in a folder by an earlier process.
-  struct Left {
-    std::string name;
-    std::vector<Entry> entries;
-    bool at_end = false;
-    std::uintmax_t sound_bytes = 0;  ///< length of the list's valid part; an incomplete entry may follow
-  };
-  template <typename Archive>
-  static void serialize_entry(Archive& archive, Entry& entry);
-  static Entry entry_of(std::string_view bytes, const std::filesystem::path& list);
-  static Left read_list(const std::filesystem::path& folder);
-
   SpooledSource(std::unique_ptr<FrameSource> source, std::filesystem::path folder, bool kept);
-  void take(Left left);
-  void append(Entry* entry);
-  ReadResult read_again(const Entry& entry, std::size_t position, Frame& frame) const;
+  void take(SpoolList left);
   void stop_capture();
   bool wait_for_reader();
   // Run in the background thread.
   void capture();
   bool capture_one(Frame& frame);
 
+  /// Where the frames are kept.
+  struct Spool {
+    std::filesystem::path folder;
+    bool kept = false;
+    std::ofstream list{};  ///< only if kept
+  };
+  /// Continues the recording of an earlier process in the same folder.
+  struct Continuation {
+    std::int64_t index_offset = 0;               ///< added to the source's own index
+    std::optional<double> stamp_offset_s = 0.0;  ///< nothing: set at the source's next frame
+    std::size_t left = 0;                        ///< number of entries from an earlier process
+  };
+
   std::unique_ptr<FrameSource> source_;
-  std::filesystem::path folder_;
-  bool kept_;
+  Spool spool_;
   std::string name_;
-  std::ofstream list_;             ///< only if kept
-  std::int64_t index_offset_ = 0;  ///< added to the source's own if an earlier process left frames
-  std::optional<double> stamp_offset_s_ = 0.0;  ///< nothing: set at the source's next frame
+  Continuation continued_;
   std::size_t most_ahead_ = kEveryFrame;
 
   mutable std::mutex mutex_;  ///< guards the members below
   std::condition_variable changed_;
   std::size_t position_ = 0;
-  std::size_t left_ = 0;       ///< number of entries from an earlier process
-  std::deque<Entry> entries_;  ///< existing entries never move
+  std::deque<SpoolEntry> entries_;  ///< existing entries never move
   bool at_end_ = false;
   bool stop_ = false;
   std::optional<ReadResult> waiting_;  ///< latest result of the source if it had no frame yet

@@ -23,7 +23,7 @@ ObjectParts parts_of(const ScriptEvent& add) {
 bool PlayHost::wait_turn(const Frame& frame) {
   const bool in_time = !is_live_ || source_.is_again();
   return link_.wait_turn(frame.stamp_s, in_time, [this] {
-    if (run_frame_ >= 0) publish();
+    if (shown_.run_frame >= 0) publish();
   });
 }
 
@@ -42,34 +42,34 @@ std::vector<ScriptEvent> PlayHost::take_events() {
 
 void PlayHost::ready_new_objects(std::vector<UserCommand>& commands) {
   const auto is_new = [](const UserCommand& command) { return command.kind == UserCommandKind::kNew; };
-  std::copy_if(commands.begin(), commands.end(), std::back_inserter(new_objects_), is_new);
+  std::copy_if(commands.begin(), commands.end(), std::back_inserter(new_.waiting), is_new);
   std::erase_if(commands, is_new);
-  if (readying_.valid() && readying_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+  if (new_.readying.valid() && new_.readying.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     try {
-      parts_ = readying_.get();
-      commands.push_back(new_objects_.front());
+      new_.parts = new_.readying.get();
+      commands.push_back(new_.waiting.front());
     } catch (const std::bad_alloc&) {
-      link_.say(new_objects_.front().event.mesh + ": not enough memory");
+      link_.say(new_.waiting.front().event.mesh + ": not enough memory");
     } catch (const Error& fault) {
       link_.say(fault.what());
     }
-    new_objects_.pop_front();
+    new_.waiting.pop_front();
   }
-  if (readying_.valid()) {
-    if (++frames_waited_ == kSaidAfterFrames)
-      link_.say("reading " + new_objects_.front().event.mesh + " ...");
-  } else if (!new_objects_.empty()) {
-    frames_waited_ = 0;
-    readying_ = std::async(std::launch::async, parts_of, new_objects_.front().event);
+  if (new_.readying.valid()) {
+    if (++new_.frames_waited == kSaidAfterFrames)
+      link_.say("reading " + new_.waiting.front().event.mesh + " ...");
+  } else if (!new_.waiting.empty()) {
+    new_.frames_waited = 0;
+    new_.readying = std::async(std::launch::async, parts_of, new_.waiting.front().event);
   }
 }
 
 void PlayHost::show(std::int64_t run_frame, double run_time_s, const Frame& frame,
                     const FrameResult& result) {
-  run_frame_ = run_frame;
-  run_time_s_ = run_time_s;
-  source_frame_ = frame.index;
-  result_ = result;
+  shown_.run_frame = run_frame;
+  shown_.run_time_s = run_time_s;
+  shown_.source_frame = frame.index;
+  shown_.result = result;
   say_if_a_drop_waits();
   publish();
 }
@@ -82,15 +82,15 @@ void PlayHost::say_if_a_drop_waits() {
 }
 
 void PlayHost::publish() {
-  filled_.run_frame = run_frame_;
-  filled_.run_time_s = run_time_s_;
-  filled_.source_frame = source_frame_;
+  filled_.run_frame = shown_.run_frame;
+  filled_.run_time_s = shown_.run_time_s;
+  filled_.source_frame = shown_.source_frame;
   filled_.chosen = player_.chosen();
   filled_.is_held = source_.is_held();
   filled_.is_repeating = source_.is_repeating();
   filled_.at_end = source_.at_end();
   filled_.given_up = given_up_;
-  maker_.fill(session_, result_, times_, link_.wanted(), filled_);
+  maker_.fill(session_, shown_.result, times_, link_.wanted(), filled_);
   link_.publish(filled_);
 }
 

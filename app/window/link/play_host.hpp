@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 #include "app/session/session.hpp"
 #include "app/sources/recordings/playback_source.hpp"
 #include "app/window/link/player.hpp"
@@ -33,7 +33,7 @@ class PlayHost {
   /// the window.
   std::vector<ScriptEvent> take_events();
   /// Returns the parts of the object of the last kAdd returned by take_events().
-  ObjectParts take_parts() { return std::move(parts_); }
+  ObjectParts take_parts() { return std::move(new_.parts); }
   /// Sets the settings that the budget has reduced; empty: none.
   void say_given_up(std::string given_up) { given_up_ = std::move(given_up); }
   /// Tells the user that an event could not be applied.
@@ -41,26 +41,35 @@ class PlayHost {
   void show(std::int64_t run_frame, double run_time_s, const Frame& frame, const FrameResult& result);
 
  private:
+  /// Objects that the user adds, prepared on another thread.
+  struct NewObjects {
+    std::deque<UserCommand> waiting{};  ///< objects to add; the first is being prepared
+    std::future<ObjectParts> readying{};
+    int frames_waited = 0;  ///< frames since its preparation began
+    ObjectParts parts{};    ///< of the last one ready
+  };
+  /// The newest frame shown.
+  struct ShownFrame {
+    std::int64_t run_frame = -1;
+    std::int64_t source_frame = 0;
+    double run_time_s = 0.0;
+    FrameResult result{};
+  };
+
   UiChannel& link_;
   const Session& session_;
   const PlaybackSource& source_;
   const StageTimes& times_;
   bool is_live_;
   Player player_;
-  std::deque<UserCommand> new_objects_;  ///< objects to add; the first is being prepared
-  std::future<ObjectParts> readying_;
-  int frames_waited_ = 0;  ///< frames since its preparation began
-  ObjectParts parts_;
+  NewObjects new_;
   SnapshotMaker maker_;
   Snapshot filled_;
-  std::int64_t run_frame_ = -1;  ///< newest frame shown
-  std::int64_t source_frame_ = 0;
-  double run_time_s_ = 0.0;
-  FrameResult result_;
+  ShownFrame shown_;
   std::string given_up_;
   std::string said_to_wait_;  ///< object whose waiting drop the user was told about
 
-  /// Moves requests for new objects from `wishes` to new_objects_, and back once the object is ready.
+  /// Moves requests for new objects from `commands` to new_.waiting, and back once the object is ready.
   void ready_new_objects(std::vector<UserCommand>& commands);
   void say_if_a_drop_waits();
   void publish();

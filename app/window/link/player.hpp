@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/physics/ray_hit.hpp"
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 #include "app/session/session.hpp"
 #include "app/window/link/ui_channel.hpp"
 

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 #include "app/session/session.hpp"
 #include "app/sources/recordings/playback_source.hpp"
 #include "radar/exact/radar_pictures.hpp"

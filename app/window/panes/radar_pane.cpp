@@ -113,6 +113,15 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
       y = static_cast<int>((mouse.y - image.y) / pixel);
     }
   }
+  const std::string numbers = numbers_at(radar, x, y);
+  draw->AddText(fonts.small, fonts.small->FontSize, {from.x, from.y + room.y - below + look::px(4.0F)},
+                look::kText, numbers.c_str());
+  ImGui::PopFont();
+  look::end_pane();
+}
+
+std::string RadarPane::numbers_at(const ShownRadar& radar, int x, int y) const {
+  const RadarPictures& pictures = radar.pictures;
   const float depth_m = static_cast<float>(pictures.volume.depth_m);
   std::string numbers;
   if (pictures.lookat_m.contains(x, y)) {
@@ -125,10 +134,7 @@ void RadarPane::draw(const Area& area, const ShownRadar& radar, const look::Font
   if (radar.contact)
     numbers += "   exact " + in_mm(static_cast<float>(radar.contact.contact_distance_m), true) + " to " +
                std::string(to_string(radar.contact.touched));
-  draw->AddText(fonts.small, fonts.small->FontSize, {from.x, from.y + room.y - below + look::px(4.0F)},
-                look::kText, numbers.c_str());
-  ImGui::PopFont();
-  look::end_pane();
+  return numbers;
 }
 
 }  // namespace roomradar

@@ -1,5 +1,7 @@
 // radar_pane.hpp: shows R, M and L of the chosen object as pictures.
 #pragma once
+#include <string>
+
 #include "app/window/link/ui_channel.hpp"
 #include "app/window/panes/gl_texture.hpp"
 #include "app/window/panes/theme.hpp"
@@ -13,6 +15,9 @@ class RadarPane {
   void draw(const Area& area, const ShownRadar& radar, const look::Fonts& fonts);
 
  private:
+  /// Returns the values at a pixel, if it is in the pictures, and the shortest distance to contact.
+  [[nodiscard]] std::string numbers_at(const ShownRadar& radar, int x, int y) const;
+
   GlTexture range_{false}, mask_{false}, lookat_{false};
   ColourImage coloured_;
   int least_x_ = -1, least_y_ = -1;  ///< pixel of min L; -1: none

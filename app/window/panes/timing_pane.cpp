@@ -86,20 +86,28 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
                   line.colour, number.data());
   }
 
-  const float left = from.x + width + beside;
-  const float step = std::min(height / static_cast<float>(kStages.size() + 2), look::px(17.0F));
+  draw_legend({from.x + width + beside, from.y, legend, height}, median_ms, fonts);
+  ImGui::PopFont();
+  look::end_pane();
+}
+
+void TimingPane::draw_legend(const Area& area, float median_ms, const look::Fonts& fonts) const {
+  const float step = std::min(area.height / static_cast<float>(kStages.size() + 2), look::px(17.0F));
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  std::array<char, 32> number{};
   const auto row = [&](std::size_t at, ImU32 colour, const char* name, float ms, bool is_stage) {
-    const float y = from.y + step * static_cast<float>(at);
+    const float y = area.y + step * static_cast<float>(at);
     if (is_stage)
-      draw->AddRectFilled({left, y + look::px(3.0F)}, {left + look::px(8.0F), y + look::px(11.0F)}, colour,
-                          look::px(2.0F));
-    draw->AddText(fonts.small, fonts.small->FontSize, {left + look::px(14.0F), y},
+      draw->AddRectFilled({area.x, y + look::px(3.0F)}, {area.x + look::px(8.0F), y + look::px(11.0F)},
+                          colour, look::px(2.0F));
+    draw->AddText(fonts.small, fonts.small->FontSize, {area.x + look::px(14.0F), y},
                   is_stage ? look::kText : look::kDim, name);
     std::snprintf(number.data(), number.size(), "%.1f", static_cast<double>(ms));
     const float wide = ImGui::CalcTextSize(number.data()).x;
-    draw->AddText(fonts.small, fonts.small->FontSize, {left + legend - wide - look::px(2.0F), y},
+    draw->AddText(fonts.small, fonts.small->FontSize, {area.x + area.width - wide - look::px(2.0F), y},
                   is_stage ? look::kText : look::kDim, number.data());
   };
+  std::vector<float> values;
   for (std::size_t i = 0; i < kStages.size(); ++i) {
     values.clear();
     for (const Times& times : frames_) values.push_back(times.stages_ms[i]);
@@ -109,8 +117,6 @@ void TimingPane::draw(const Area& area, const look::Fonts& fonts) const {
   values.clear();
   for (const Times& times : frames_) values.push_back(times.read_ms);
   row(kStages.size() + 1, 0, "read, separate", median(values), false);
-  ImGui::PopFont();
-  look::end_pane();
 }
 
 }  // namespace roomradar

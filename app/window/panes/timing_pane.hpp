@@ -39,6 +39,9 @@ class TimingPane {
     float whole_ms = 0.0F;
     float read_ms = 0.0F;
   };
+  /// Draws each stage's colour and median.
+  void draw_legend(const Area& area, float median_ms, const look::Fonts& fonts) const;
+
   static constexpr std::size_t kKept = 240;
   double budget_ms_;
   std::vector<Times> frames_;  ///< oldest first

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 
 namespace roomradar::manual_page_test {
 namespace {

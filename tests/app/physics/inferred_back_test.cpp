@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "app/physics/depenetration.hpp"
 #include "app/physics/physics.hpp"
 #include "dynamic/surface/dynamic_surface.hpp"
 #include "radar/exact/cyber_radar.hpp"

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "app/physics/depenetration.hpp"
 #include "mapping/types/system/error.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "tests/radar/shapes.hpp"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/objects/teapot.hpp"
+#include "app/physics/depenetration.hpp"
 #include "app/physics/physics.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "tests/support/exact_travel.hpp"

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
 #include "mapping/types/system/error.hpp"
 #include "tests/support/exact_depth.hpp"
 #include "tests/support/temporary_folder.hpp"

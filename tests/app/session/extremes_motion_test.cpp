@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/physics/physics.hpp"
+#include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
 #include "mapping/alignment/align.hpp"
 #include "mapping/alignment/view.hpp"
 #include "mapping/mesh/mesh_file.hpp"

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
 #include "mapping/octree/fusion.hpp"
 #include "mapping/prescan.hpp"
 #include "mapping/surface/surface_extraction.hpp"

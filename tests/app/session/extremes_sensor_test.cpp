@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
 #include "app/sim/room/room.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/prescan.hpp"

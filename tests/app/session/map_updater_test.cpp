@@ -4,8 +4,8 @@
 
 #include <optional>
 
+#include "app/session/script/session_events.hpp"
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
 #include "app/sim/sensor/simulated_source.hpp"
 #include "mapping/surface/surface_extraction.hpp"
 #include "mapping/types/system/error.hpp"

@@ -1,6 +1,6 @@
 // session_test.cpp: virtual objects on a known floor, and frames in which they cannot be placed.
 #include "app/session/session.hpp"
-#include "app/session/session_events.hpp"
+#include "app/session/script/session_events.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // player_test.cpp: a user's mouse actions become script events, on a known floor.
 #include "app/window/link/player.hpp"
-#include "app/session/session_events.hpp"
+#include "app/session/script/session_events.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // session_events.cpp: one typed call of Session per kind of event.
-#include "app/session/session_events.hpp"
+#include "app/session/script/session_events.hpp"
 
 #include "mapping/types/system/stage_times.hpp"
 

@@ -1,12 +1,9 @@
-// script.hpp: events file of `roomradar run --script FILE`: actions of the virtual objects, and their times.
+// script_event.hpp: one event of a run: an action of a virtual object or of the session, and its time.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "app/quality/frame_load.hpp"
 #include "app/quality/quality.hpp"
@@ -45,7 +42,7 @@ enum class CameraPlay {
 
 inline constexpr double kMaxTurn_deg = 3600.0;  ///< max angle of one kTurn, per axis
 
-/// One line of the file. Positions are those of the object's origin, in the world (m, +z up).
+/// One line of a script (script.hpp). Positions are those of the object's origin, in the world (m, +z up).
 struct ScriptEvent {
   int line = 0;                       ///< in the file, from 1; 0 in a script made in code
   std::optional<std::int64_t> frame;  ///< due before this frame of the run, from 0; alternative to time_s
@@ -74,53 +71,8 @@ struct ScriptEvent {
   CameraPlay camera = CameraPlay::kGo;  ///< kCamera
 };
 
-/// Events in the order of the file, which is the order of execution: a due event waits for the events before
-/// it. All numbers are finite. Each name is added once, before its first use.
-struct Script {
-  std::vector<ScriptEvent> events;
-};
-
-/// Treatment of a last line without a line end: an event, or possibly cut off when its writer was killed.
-enum class LastLine { kWhole, kMayBeCut };
-
-/// Reads an events file. One event per line, words separated by blanks, # begins a comment:
-///
-///     frame 0    add pot teapot size 0.2
-///     frame 10   drop pot view height 0.3         over a level surface that the camera sees
-///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
-///     time 4     place pot 0.4 -0.1 0.9
-///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5
-///     time 5.5   throw pot 0.4 -0.1 1.2 velocity 1 0 0.5 spin 0 6 0       spin in rad/s about x y z; speeds
-///                                                              are limited to 20 m/s, spins to 60 rad/s
-///     time 5.5   turn pot 0 0 45                  about the world's axes (degrees)
-///     time 5.6   carry pot 0.4 -0.1 1.0           held in the air, on its way there
-///     time 5.9   release pot velocity 0 0 0
-///     time 6     remove pot
-///     time 7     adopt                           objects in view that stand still become part of the room
-///     frame 200  surfaces skirt                   holes, skirt, border or map
-///     frame 210  unknown solid                    or free
-///     frame 220  radar sampled 64                 exact or sampled; pixels
-///     frame 225  quality depth_stride 2 shadows off       others get their defaults; options keep theirs
-///     frame 226  quality from physics move_every_n_frames 4      from that part on; mesh, compose
-///     frame 230  camera hold                      repeats this frame; go, rewind, loop, stay, resume
-///     frame 300  quit
-///
-/// An object that would begin inside another one begins on top of it, if the room leaves space there. place,
-/// drop and throw may end with `turned YAW PITCH ROLL`: degrees about z, then the rotated y, then the rotated
-/// x axis. Without it an object keeps its last orientation, initially upright.
-///
-/// @param last_line  kMayBeCut: a last line without a line end is ignored, for a file whose writer was killed
-/// Throws Error "FILE:LINE: ..." with the text found and the text expected. Reasons: an unknown, missing or
-/// surplus word; a number that is malformed, not finite or out of range; a negative frame or time; a name not
-/// added, or added twice; a file that is unreadable, binary or longer than 64 MiB.
-Script read_script(const std::filesystem::path& path, LastLine last_line = LastLine::kWhole);
-
-/// Parses an events file's text. `where` replaces the file's name in messages; mesh paths are unchanged.
-Script parse_script(std::string_view text, std::string_view where);
-
-/// Returns the event as a line of the file, without a line end. parse_script() restores the same event from
-/// it, bit by bit.
-std::string to_line(const ScriptEvent& event);
+/// Returns true if the action is followed by an object's name.
+bool has_object(Action action);
 
 /// Returns true if an event is due before a frame, by frame number or by time.
 bool is_due(const ScriptEvent& event, std::int64_t run_frame, double run_time_s);

@@ -1,14 +1,13 @@
 // script.cpp: reads and writes the events file of `roomradar run --script FILE`.
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <numbers>
 
+#include "app/session/script/script_line.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/system/file_io.hpp"
 #include "mapping/types/system/format_number.hpp"
@@ -22,11 +21,6 @@ constexpr double kMaxSpeed_mps = 100.0;
 constexpr double kMaxAngular_rad_s = 1000.0;
 constexpr double kMaxTime_s = 1e6;
 
-template <typename Value>
-struct Word {
-  std::string_view word;
-  Value value;
-};
 constexpr std::array<Word<Action>, 15> kActions = {{{"add", Action::kAdd},
                                                     {"place", Action::kPlace},
                                                     {"drop", Action::kDrop},
@@ -59,97 +53,6 @@ constexpr std::array<Word<CameraPlay>, 6> kCameraPlays = {{{"hold", CameraPlay::
                                                            {"loop", CameraPlay::kLoop},
                                                            {"stay", CameraPlay::kStay},
                                                            {"resume", CameraPlay::kResume}}};
-
-/// Returns "add, place or drop" and the like.
-template <typename Value, std::size_t kCount>
-std::string listed(const std::array<Word<Value>, kCount>& words) {
-  std::string list;
-  for (std::size_t i = 0; i < kCount; ++i)
-    list.append(i == 0 ? "" : i + 1 == kCount ? " or " : ", ").append(words[i].word);
-  return list;
-}
-
-template <typename Value, std::size_t kCount>
-std::string_view word_of(const std::array<Word<Value>, kCount>& words, Value value) {
-  const auto found =
-      std::find_if(words.begin(), words.end(), [&](const auto& word) { return word.value == value; });
-  return found == words.end() ? std::string_view{} : found->word;
-}
-
-std::string in_quotes(std::string_view text) {
-  std::string result = "'";
-  result.append(text).append("'");
-  return result;
-}
-
-/// Reads the words of one line in order; every error names the file and the line.
-class LineReader {
- public:
-  LineReader(std::string_view text, std::string_view where, int line) : where_(where), line_(line) {
-    text = text.substr(0, text.find('#'));
-    while (!text.empty()) {
-      const std::size_t begin = text.find_first_not_of(" \t\r");
-      if (begin == std::string_view::npos) break;
-      const std::size_t end = std::min(text.find_first_of(" \t\r", begin), text.size());
-      words_.push_back(text.substr(begin, end - begin));
-      text.remove_prefix(end);
-    }
-  }
-  [[nodiscard]] bool done() const { return next_ == words_.size(); }
-
-  [[noreturn]] void fail(const std::string& complaint) const {
-    throw Error(std::string(where_) + ":" + std::to_string(line_) + ": " + complaint);
-  }
-  std::string_view word(const char* wanted) {
-    if (done()) fail("the line ends where " + std::string(wanted) + " is wanted");
-    return words_[next_++];
-  }
-  bool take_if(std::string_view expected) {
-    if (done() || words_[next_] != expected) return false;
-    ++next_;
-    return true;
-  }
-  void expect(std::string_view expected) {
-    const std::string_view found = word(in_quotes(expected).c_str());
-    if (found != expected) fail(in_quotes(found) + " found where " + in_quotes(expected) + " is wanted");
-  }
-  double number(const char* wanted, double lowest, double highest) {
-    const std::string_view text = word(wanted);
-    double value = 0.0;
-    const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (fault != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-      fail(in_quotes(text) + " is not a finite number; wanted is " + wanted);
-    if (value < lowest || value > highest) fail(in_quotes(text) + " is out of range for " + wanted);
-    return value;
-  }
-  double whole_number(const char* wanted, double lowest, double highest) {
-    const double value = number(wanted, lowest, highest);
-    if (value != std::floor(value)) fail("a whole number is wanted: " + std::string(wanted));
-    return value;
-  }
-  template <typename Value, std::size_t kCount>
-  Value choice(const char* wanted, const std::array<Word<Value>, kCount>& words) {
-    const std::string list = listed(words);
-    const std::string_view found = word((std::string(wanted) + ": " + list).c_str());
-    for (const Word<Value>& candidate : words)
-      if (candidate.word == found) return candidate.value;
-    fail("unknown word " + in_quotes(found) + "; wanted is " + wanted + ": " + list);
-  }
-  Eigen::Vector3d vector(const char* wanted, double limit) {
-    Eigen::Vector3d value;
-    for (int axis = 0; axis < 3; ++axis) value[axis] = number(wanted, -limit, limit);
-    return value;
-  }
-  void expect_end() const {
-    if (!done()) fail(in_quotes(words_[next_]) + " is too much; the event is complete before it");
-  }
-
- private:
-  std::string_view where_;
-  int line_;
-  std::vector<std::string_view> words_;
-  std::size_t next_ = 0;
-};
 
 Eigen::Vector3d read_position(LineReader& line) {
   return line.vector("a position X Y Z (m)", kMaxCoordinate_m);
@@ -187,22 +90,6 @@ void read_when(LineReader& line, ScriptEvent& event) {
     event.time_s = line.number("a time in seconds, from 0", 0.0, kMaxTime_s);
   } else {
     line.fail("an event begins with 'frame N' or 'time SECONDS', not with " + in_quotes(when));
-  }
-}
-
-/// Returns true if the action is followed by an object's name.
-bool has_object(Action action) {
-  switch (action) {
-    case Action::kSurfaces:
-    case Action::kUnknown:
-    case Action::kRadar:
-    case Action::kQuality:
-    case Action::kCamera:
-    case Action::kCommit:
-    case Action::kQuit:
-      return false;
-    default:
-      return true;
   }
 }
 
@@ -267,6 +154,16 @@ void read_action(LineReader& line, ScriptEvent& event) {
   }
 }
 
+std::string number_word(double value) { return " " + format_number(value); }
+
+std::string vector_words(const Eigen::Vector3d& v) {
+  return number_word(v.x()) + number_word(v.y()) + number_word(v.z());
+}
+
+std::string turned_words(const ScriptEvent& event) {
+  return event.R_world_object ? " turned" + vector_words(event.turned_deg) : std::string();
+}
+
 }  // namespace
 
 Script parse_script(std::string_view text, std::string_view where) {
@@ -314,42 +211,36 @@ Script read_script(const std::filesystem::path& path, LastLine last_line) {
 }
 
 std::string to_line(const ScriptEvent& event) {
-  const auto number = [](double value) { return " " + format_number(value); };
-  const auto vector = [&](const Eigen::Vector3d& v) { return number(v.x()) + number(v.y()) + number(v.z()); };
-
-  const auto turned = [&] {
-    return event.R_world_object ? " turned" + vector(event.turned_deg) : std::string();
-  };
-
-  std::string line = event.frame ? "frame " + std::to_string(*event.frame) : "time" + number(*event.time_s);
+  std::string line =
+      event.frame ? "frame " + std::to_string(*event.frame) : "time" + number_word(*event.time_s);
   line.append(" ").append(word_of(kActions, event.action));
   if (has_object(event.action)) line.append(" ").append(event.name);
   switch (event.action) {
     case Action::kAdd:
       line.append(" ").append(event.mesh);
-      if (event.size_m) line += " size" + number(*event.size_m);
+      if (event.size_m) line += " size" + number_word(*event.size_m);
       break;
     case Action::kPlace:
-      line += vector(*event.position_world) + turned();
+      line += vector_words(*event.position_world) + turned_words(event);
       break;
     case Action::kCarry:
-      line += vector(*event.position_world);
+      line += vector_words(*event.position_world);
       break;
     case Action::kDrop:
-      line += event.position_world ? " at" + vector(*event.position_world) : " view";
-      line += " height" + number(event.height_m) + turned();
+      line += event.position_world ? " at" + vector_words(*event.position_world) : " view";
+      line += " height" + number_word(event.height_m) + turned_words(event);
       break;
     case Action::kThrow:
-      line += vector(*event.position_world) + " velocity" + vector(event.velocity_world_mps);
+      line += vector_words(*event.position_world) + " velocity" + vector_words(event.velocity_world_mps);
       if (!event.angular_velocity_world_rad_s.isZero(0.0))
-        line += " spin" + vector(event.angular_velocity_world_rad_s);
-      line += turned();
+        line += " spin" + vector_words(event.angular_velocity_world_rad_s);
+      line += turned_words(event);
       break;
     case Action::kRelease:
-      line += " velocity" + vector(event.velocity_world_mps);
+      line += " velocity" + vector_words(event.velocity_world_mps);
       break;
     case Action::kTurn:
-      line += vector(event.turn_world_deg);
+      line += vector_words(event.turn_world_deg);
       break;
     case Action::kSurfaces:
       line.append(" ").append(word_of(kSurfaces, event.surfaces));
@@ -374,10 +265,6 @@ std::string to_line(const ScriptEvent& event) {
       break;
   }
   return line;
-}
-
-bool is_due(const ScriptEvent& event, std::int64_t run_frame, double run_time_s) {
-  return event.frame ? *event.frame <= run_frame : event.time_s && *event.time_s <= run_time_s;
 }
 
 }  // namespace roomradar

@@ -1,5 +1,5 @@
 // script_test.cpp: event files, valid and invalid.
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // session_events.hpp: executes the events of scripts and users in a session.
 #pragma once
-#include "app/session/script.hpp"
+#include "app/session/script/script.hpp"
 #include "app/session/session.hpp"
 
 namespace roomradar {

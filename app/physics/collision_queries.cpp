@@ -1,0 +1,38 @@
+// collision_queries.cpp: binds a body's queries to the radar, and times them.
+#include "app/physics/collision_queries.hpp"
+
+#include <chrono>
+
+#include "mapping/types/system/stage_times.hpp"
+
+namespace roomradar {
+
+CollisionQueries make_collision_queries(CyberRadar& radar, ProximityQuery& field, const TriangleTree& object,
+                                        const RadarScene& scene, double* spent_ms) {
+  struct Spent {
+    double* spent_ms;
+    std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
+    ~Spent() {
+      if (spent_ms != nullptr) *spent_ms += ms_since(start);
+    }
+  };
+  CollisionQueries probe;
+  probe.travel = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const Eigen::Vector3d& direction,
+                               double distance_m) {
+    const Spent spent{spent_ms};
+    return radar.query({{&object, T_world_object}, direction, distance_m}, scene);
+  };
+  probe.near = [&, spent_ms](const Eigen::Isometry3d& T_world_object, double reach_m,
+                             SurfaceKindMask left_out, std::vector<ClosestPoint>& points) {
+    const Spent spent{spent_ms};
+    return field.near({&object, T_world_object}, scene, reach_m, left_out, points);
+  };
+  probe.free_time = [&, spent_ms](const Eigen::Isometry3d& T_world_object, const RigidMotion& motion,
+                                  double duration_s, double keep_m, SurfaceKindMask left_out) {
+    const Spent spent{spent_ms};
+    return field.free_time({&object, T_world_object}, motion, duration_s, keep_m, scene, left_out);
+  };
+  return probe;
+}
+
+}  // namespace roomradar

@@ -1,0 +1,68 @@
+// depenetration.cpp: finds push directions from the vertices of moving surfaces.
+#include "app/physics/depenetration.hpp"
+
+#include <algorithm>
+
+#include "radar/geometry/contact.hpp"
+
+namespace roomradar {
+namespace {
+
+using Vec3 = Eigen::Vector3d;
+
+}  // namespace
+
+bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
+                 std::span<const Eigen::Vector3d> depenetration_directions_world) {
+  const double most_m = config.max_depenetration_mps * dt_s + config.wake_overlap_m;
+  bool is_deep = false;
+  const auto is_shallow = [&](const Vec3& direction) {
+    const Contact contact = back(body.T_world_object, direction, config.contact_margin_m);
+    if (contact.status != ContactStatus::kOverlap) return false;
+    is_deep = true;
+    return -contact.contact_distance_m <= most_m;
+  };
+  const double g = config.gravity_world_mps2.norm();
+  if (g > 0.0 && is_shallow(config.gravity_world_mps2 / g)) return false;
+  if (std::any_of(depenetration_directions_world.begin(), depenetration_directions_world.end(), is_shallow))
+    return false;
+  return is_deep;
+}
+
+PushDirections depenetration_directions(std::initializer_list<const Mesh*> moving_world,
+                                        const Eigen::Vector3d& centre_world, double reach_m,
+                                        const Eigen::Vector3d& up_world) {
+  Vec3 nearest = Vec3::Zero();
+  Vec3 sum = Vec3::Zero();
+  double nearest_m2 = reach_m * reach_m;
+  std::size_t count = 0;
+  for (const Mesh* mesh : moving_world) {
+    const Vec3 centre = centre_world - mesh->origin;
+    for (const Eigen::Vector3f& vertex : mesh->vertices) {
+      const Vec3 offset = vertex.cast<double>() - centre;
+      const double distance_m2 = offset.squaredNorm();
+      if (!(distance_m2 <= reach_m * reach_m)) continue;  // also rejects NaN
+      sum += offset;
+      ++count;
+      if (distance_m2 <= nearest_m2) {
+        nearest_m2 = distance_m2;
+        nearest = offset;
+      }
+    }
+  }
+  PushDirections result;
+  if (count == 0) return result;
+  for (const Vec3& offset : {nearest, Vec3(sum / static_cast<double>(count))}) {
+    const Vec3 level = offset - offset.dot(up_world) * up_world;
+    const double length = level.norm();
+    if (length < 0.2 * offset.norm() || length < 1e-6)
+      continue;  // directly above or below: handled along
+                 // gravity
+    const Vec3 direction = level / length;
+    if (result.count == 1 && direction.dot(result.direction_world[0]) > 0.97) continue;
+    result.direction_world[static_cast<std::size_t>(result.count++)] = direction;
+  }
+  return result;
+}
+
+}  // namespace roomradar

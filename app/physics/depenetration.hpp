@@ -1,0 +1,35 @@
+// depenetration.hpp: directions in which moving surfaces push a body, and bodies engulfed by inferred backs.
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <span>
+
+#include "app/physics/body.hpp"
+#include "app/physics/collision_queries.hpp"
+#include "app/physics/physics_config.hpp"
+#include "mapping/types/mesh.hpp"
+
+namespace roomradar {
+
+/// Returns true if the inferred backs of dynamic surfaces, queried by `back`, engulf the body instead of
+/// pushing it: they overlap it, in every direction deeper than a pushing surface can enter in one step.
+/// Engulfing must not throw a body: leave the backs out of the scene until it ends.
+bool is_engulfed(const Body& body, double dt_s, const DistanceQuery& back, const PhysicsConfig& config,
+                 std::span<const Eigen::Vector3d> depenetration_directions_world);
+
+/// Horizontal unit directions from a body to nearby moving surfaces: to the nearest vertex, and to the mean
+/// of all vertices of the meshes within reach_m of centre_world. None, one or two.
+struct PushDirections {
+  int count = 0;
+  std::array<Eigen::Vector3d, 2> direction_world{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  [[nodiscard]] std::span<const Eigen::Vector3d> span() const {
+    return {direction_world.data(), static_cast<std::size_t>(count)};
+  }
+};
+PushDirections depenetration_directions(std::initializer_list<const Mesh*> moving_world,
+                                        const Eigen::Vector3d& centre_world, double reach_m,
+                                        const Eigen::Vector3d& up_world = Eigen::Vector3d::UnitZ());
+
+}  // namespace roomradar

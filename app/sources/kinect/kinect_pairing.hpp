@@ -1,0 +1,75 @@
+// kinect_pairing.hpp: stamps a Kinect's images and pairs depth with colour.
+#pragma once
+#include <Eigen/Core>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/sources/formats/kinect_units.hpp"
+#include "app/sources/formats/stamp_pairing.hpp"
+#include "app/sources/kinect/kinect_frame.hpp"
+
+namespace roomradar {
+
+/// Turns the images of a device into frames, in the order of the depth images. An unusable image becomes a
+/// frame with a fault. Used by the device's thread only.
+class KinectPairing {
+ public:
+  /// @param config  must outlive the pairing
+  /// @param put     receives the frames
+  KinectPairing(const KinectFeedConfig& config, std::function<void(KinectFrame)> put)
+      : config_(config), put_(std::move(put)) {}
+
+  /// Continues the stamps with the host's time after a gap. Call before the device is opened again, since its
+  /// first images may arrive during the opening.
+  void restart_clock();
+  /// Adds a depth image; returns false if its size is wrong.
+  /// @param pixels          640 x 480
+  /// @param ticks           the device's stamp
+  /// @param memory          returns a frame whose memory is reused
+  /// @param acceleration_g  latest reading of the accelerometer, g, camera axes
+  bool add_depth(std::span<const std::uint16_t> pixels, std::uint32_t ticks,
+                 const std::function<KinectFrame()>& memory,
+                 const std::optional<Eigen::Vector3d>& acceleration_g);
+  /// Adds a colour image; returns false if its size is wrong. The depth image then has no colour.
+  /// @param bytes  640 x 480 x 3
+  bool add_colour(std::span<const std::uint8_t> bytes, std::uint32_t ticks);
+  /// Passes on the frames whose colour is decided.
+  void hand_over();
+  /// Passes on all frames: no image follows from this opening of the device.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Colour {
+    std::int64_t number = 0;
+    std::vector<std::uint8_t> pixels{};
+  };
+
+  double stamp_of(std::uint32_t ticks);
+  void pass_over_broken();
+  /// Queues the fault among the depth images that wait for colour, to keep their order.
+  void fail(std::int64_t number, const std::string& what);
+  [[nodiscard]] KinectFrame broken_frame(std::int64_t number, const std::string& what) const;
+  void put_broken();
+
+  const KinectFeedConfig& config_;
+  std::function<void(KinectFrame)> put_;
+  KinectClock clock_;
+  StampPairing pairing_{kDevicePairing};
+  std::int64_t depth_count_ = 0;
+  std::int64_t colour_count_ = 0;
+  std::deque<KinectFrame> depths_;
+  std::deque<Colour> colours_;
+  bool is_finishing_ = false;
+  int backwards_ = 0;
+  double last_stamp_s_ = 0.0;
+  Clock::time_point last_stamp_at_ = Clock::now();
+};
+
+}  // namespace roomradar

@@ -1,0 +1,65 @@
+// kinect_queue.hpp: hands frames from a Kinect's thread to the reader's thread.
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/sources/kinect/kinect_device.hpp"
+#include "app/sources/kinect/kinect_frame.hpp"
+
+namespace roomradar {
+
+/// Queue of frames, and the state that the device's thread shares with the reader's. Thread safe.
+class KinectQueue {
+ public:
+  enum class Take { kFrame, kNothing, kEnd };
+
+  /// @param config  must outlive the queue
+  explicit KinectQueue(const KinectFeedConfig& config) : config_(config) {}
+
+  // ---- called by the device's thread ----
+
+  /// Reports that the device is open.
+  void announce(const KinectDevice& device);
+  /// Reports that the device cannot be opened.
+  void refuse(const std::string& fault);
+  /// Reports that no frame follows.
+  void end();
+  /// Queues a frame. Returns true if the queue was full, so its oldest frame was dropped.
+  bool put(KinectFrame frame);
+  /// Returns a frame, with reused memory if available.
+  KinectFrame empty_frame();
+  /// Returns true if the reader has stopped the feed. Blocks a replay while its frames are not fetched.
+  bool must_stop();
+  /// Waits for wait_s; returns true, at once, if the reader stops the feed.
+  bool stopped_within(double wait_s);
+
+  // ---- called by the reader's thread ----
+
+  /// Waits for the first opening, up to config.patience_s. Throws Error if it failed.
+  std::optional<KinectConstants> wait_for_opening();
+  /// Moves the next frame into `frame`; waits up to wait_s for one.
+  Take take(KinectFrame& frame, double wait_s);
+  /// Returns true if the device's thread ended within config.stop_s.
+  bool stop();
+
+ private:
+  /// Frames with a fault have no memory to reuse.
+  void keep_memory(KinectFrame frame);
+
+  const KinectFeedConfig& config_;
+  std::mutex mutex_;  ///< guards the members below
+  std::condition_variable changed_;
+  std::deque<KinectFrame> ready_;
+  std::vector<KinectFrame> spare_;
+  std::optional<KinectConstants> constants_;
+  std::string refused_;
+  bool opened_ = false;
+  bool ended_ = false;
+  bool stop_ = false;
+};
+
+}  // namespace roomradar

@@ -1,0 +1,13 @@
+// recording_index_fakenect.hpp: lists the frames of a recording by libfreenect.
+#pragma once
+#include <filesystem>
+
+#include "app/sources/recordings/recording_index.hpp"
+
+namespace roomradar {
+
+/// Lists the frames of a folder that libfreenect recorded: INDEX.txt and the images that it names. Throws
+/// Error as open_folder() does.
+RecordingIndex index_fakenect(const std::filesystem::path& folder);
+
+}  // namespace roomradar

@@ -1,0 +1,158 @@
+// spool_list.cpp: keeps images in files, and all else in a list.
+#include "app/sources/recordings/spool_list.hpp"
+
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "app/sources/formats/image_file.hpp"
+#include "mapping/types/serialize.hpp"
+#include "mapping/types/system/error.hpp"
+#include "mapping/types/system/file_io.hpp"
+#include "mapping/types/validity.hpp"
+
+namespace roomradar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kMagic = "RRSPOOL1";
+
+fs::path depth_file(const fs::path& folder, std::size_t position) {
+  return folder / (std::to_string(position) + ".depth.png");
+}
+fs::path colour_file(const fs::path& folder, std::size_t position) {
+  return folder / (std::to_string(position) + ".colour.png");
+}
+
+/// Copies all of the frame except its images.
+Frame without_images(const Frame& frame) {
+  Frame rest;
+  rest.index = frame.index;
+  rest.stamp_s = frame.stamp_s;
+  rest.colour_after_depth_s = frame.colour_after_depth_s;
+  rest.depth_camera = frame.depth_camera;
+  rest.colour_camera = frame.colour_camera;
+  rest.T_colour_depth = frame.T_colour_depth;
+  rest.T_world_camera = frame.T_world_camera;
+  rest.down_camera = frame.down_camera;
+  return rest;
+}
+
+template <typename Archive>
+void serialize_entry(Archive& archive, SpoolEntry& entry) {
+  Frame& frame = entry.frame;
+  serialize(archive, entry.fault);
+  if (!entry.fault.empty()) return;
+  serialize(archive, frame.index);
+  serialize(archive, frame.stamp_s);
+  serialize(archive, frame.colour_after_depth_s);
+  serialize(archive, frame.depth_camera);
+  bool coloured = frame.colour_camera.width_px > 0;
+  serialize(archive, coloured);
+  if (coloured) serialize(archive, frame.colour_camera);
+  serialize(archive, frame.T_colour_depth);
+  serialize(archive, frame.T_world_camera);
+  serialize(archive, frame.down_camera);
+}
+
+/// Parses an entry; a damaged entry becomes an unreadable frame.
+SpoolEntry entry_of(std::string_view bytes, const fs::path& list) {
+  SpoolEntry entry;
+  try {
+    ByteReader reader(bytes, list.string());
+    serialize_entry(reader, entry);
+    reader.require_end();
+  } catch (const Error& damage) {
+    return {{}, damage.what()};
+  }
+  return entry;
+}
+
+}  // namespace
+
+fs::path spool_list_file(const fs::path& folder) { return folder / "list.bin"; }
+
+bool has_spool_list(const fs::path& folder) {
+  std::error_code fault;
+  const std::uintmax_t bytes = fs::file_size(spool_list_file(folder), fault);
+  return !fault && bytes > kMagic.size();
+}
+
+SpoolList read_spool_list(const fs::path& folder) {
+  const fs::path path = spool_list_file(folder);
+  const std::string bytes = read_bytes(path, "the list of a live scan's frames");
+  ByteReader list(bytes, path.string());
+  std::string magic(kMagic.size(), '\0');
+  list.raw(magic.data(), magic.size());
+  if (magic != kMagic) list.fail("is no list of spooled frames, or of another version");
+  SpoolList left;
+  serialize(list, left.name);
+  left.sound_bytes = bytes.size() - list.left();
+  while (!left.at_end) {
+    // A truncated entry was being written when the process was killed; its frame was never used.
+    std::uint32_t size = 0;
+    if (list.left() < sizeof size) break;
+    serialize(list, size);
+    if (list.left() < size) break;
+    left.at_end = size == 0;
+    if (left.at_end && list.left() > 0) {  // zeros left by a power failure instead of entries
+      left.at_end = false;
+      break;
+    }
+    if (size > 0) left.entries.push_back(entry_of(list.take(size), path));
+    left.sound_bytes = bytes.size() - list.left();
+  }
+  return left;
+}
+
+void begin_spool_list(const fs::path& folder, const std::string& name, std::ofstream& list) {
+  const fs::path path = spool_list_file(folder);
+  std::string written_name = name;
+  ByteWriter head;
+  head.raw(kMagic.data(), kMagic.size());
+  serialize(head, written_name);
+  list.open(path, std::ios::binary);
+  list << head.bytes() << std::flush;
+  std::error_code fault;
+  if (!list) fs::remove(path, fault);  // holds no frame, and would block the folder
+  require_written(list, path);
+}
+
+void append_to_spool_list(SpoolEntry* entry, const fs::path& folder, std::ofstream& list) {
+  ByteWriter bytes;
+  if (entry) serialize_entry(bytes, *entry);
+  const auto size = static_cast<std::uint32_t>(bytes.bytes().size());
+  list.write(reinterpret_cast<const char*>(&size), sizeof size);
+  list << bytes.bytes() << std::flush;
+  require_written(list, spool_list_file(folder));
+}
+
+SpoolEntry write_spooled(const Frame& frame, const fs::path& folder, std::size_t position) {
+  write_exact_depth_file(frame.depth_m, depth_file(folder, position));
+  // A killed process may have left the colour image of a frame that is not in the list.
+  std::error_code fault;
+  fs::remove(colour_file(folder, position), fault);
+  if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder, position));
+  return {without_images(frame), {}};
+}
+
+ReadResult read_spooled(const SpoolEntry& entry, const fs::path& folder, std::size_t position, Frame& frame) {
+  if (!entry.fault.empty()) return {ReadStatus::kSkipped, entry.fault};
+  DepthImage depth_m = std::move(frame.depth_m);
+  ColourImage colour = std::move(frame.colour);
+  read_exact_depth_file(depth_file(folder, position), depth_m);
+  const fs::path colour_path = colour_file(folder, position);
+  if (fs::exists(colour_path))
+    read_colour_file(colour_path, colour);
+  else
+    colour.resize(0, 0);
+  frame = entry.frame;
+  frame.depth_m = std::move(depth_m);
+  frame.colour = std::move(colour);
+  if (const std::string_view fault = fault_of(frame); !fault.empty())
+    throw Error(depth_file(folder, position).string() + ": is damaged: " + std::string(fault));
+  return {ReadStatus::kFrame, {}};
+}
+
+}  // namespace roomradar

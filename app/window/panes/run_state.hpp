@@ -1,0 +1,20 @@
+// run_state.hpp: state of the run and its frame time, at the right end of the bar.
+#pragma once
+#include "app/window/link/snapshot.hpp"
+#include "app/window/link/ui_channel.hpp"
+#include "app/window/panes/theme.hpp"
+#include "app/window/panes/timing_pane.hpp"
+#include "app/window/panes/window_layout.hpp"
+
+namespace roomradar {
+
+/// Draws a word for the state: loading, paused, tracked, ...
+/// @param silent_s  time since the newest frame
+void draw_run_state(const Area& area, const Snapshot& shown, const UiChannel& link, double silent_s);
+
+/// Draws the time of the last frame as numbers, and as a bar beside its goal and budget.
+/// @param speed  of the run, 1 = as recorded
+void draw_frame_time(const Area& area, const TimingPane& timing, double frames_per_s, double speed,
+                     const look::Fonts& fonts);
+
+}  // namespace roomradar
