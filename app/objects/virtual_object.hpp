@@ -22,6 +22,9 @@ struct VirtualObject {
   Eigen::Matrix3d R_world_put = Eigen::Matrix3d::Identity();  ///< orientation when last placed
   /// While carried by a user's hand: target position of its origin. Gravity does not act meanwhile.
   std::optional<Eigen::Vector3d> carried_to_world;
+  /// Pose when it last fell asleep; unset: not so far, or it fell out of the map from there.
+  std::optional<Eigen::Isometry3d> T_world_rested;
+  int departures = 0;     ///< number of times that it fell out of the map
   double waited_s = 0.0;  ///< time since it was last advanced
   /// Cells of the last frame's dynamic mesh refined to full resolution because of this object.
   std::size_t fine_cells = 0;

@@ -72,6 +72,7 @@ class RunLoop {
   std::size_t next_event_ = 0;
   std::int64_t run_frame_ = 0;
   double run_time_s_ = 0.0;
+  std::set<std::string> departed_;  ///< objects that were reported to have fallen out of the map
   std::int64_t last_picture_ = -1;  ///< highest index of the source's frames that has a picture
 
   std::string picture_name();
@@ -79,6 +80,7 @@ class RunLoop {
   ScriptEvent apply(const ScriptEvent& event);
   void record(const ScriptEvent& event);
   void perform_users(const std::vector<ScriptEvent>& events);
+  void report(const Departure& departure);
   void end_budget();
   void count_skipped(const std::string& fault);
   void keep(const FrameResult& result);
@@ -163,11 +165,20 @@ void RunLoop::step() {
   end_budget();
   run_.totals.add(result, *run_.session);
   const bool is_located = result.status == FrameStatus::kDone;
+  for (const Departure& departure : result.departures) report(departure);
   const std::string news = run_.totals.lost.add(frame_.index, is_located);
   if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
   if (run_.host) run_.host->show(run_frame_, run_time_s_, frame_, result);
   keep(result);
   progress_.step(is_located ? "located" : "not located");
+}
+
+/// Says once per object that it fell out of the map, and what to do.
+void RunLoop::report(const Departure& departure) {
+  if (!departed_.insert(departure.name).second) return;
+  const std::string sentence = sentence_of(departure, *run_.session);
+  std::fprintf(stderr, "%s\n", sentence.c_str());
+  if (run_.host) run_.host->complain(sentence);
 }
 
 /// Records the qualities that the frame used, so a replay uses the same without a clock.

@@ -2,6 +2,7 @@
 #include "app/run/run_results.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <numbers>
 
@@ -19,6 +20,20 @@ const char* note_on(const VirtualObject& object) {
 
 }  // namespace
 
+std::string sentence_of(const Departure& departure, const Session& session) {
+  const Eigen::Vector3d& p = departure.position_world;
+  std::array<char, 80> place{};
+  std::snprintf(place.data(), place.size(), " fell out of the map at %.2f %.2f %.2f m", p.x(), p.y(), p.z());
+  const bool is_solid = session.unknown_is_solid();
+  const char* const cure =
+      session.config().scene.surfaces != SurfacePolicy::kMap
+          ? "; with --surfaces map and --unknown solid, the defaults, nothing falls through"
+      : !is_solid ? "; --unknown solid, the default, stops objects at space that was not scanned"
+                  : "; it was put into space that was not scanned: place it in the scanned room";
+  return departure.name + place.data() +
+         (departure.is_back ? " and is back where it last rested" : " and is taken out of the room") + cure;
+}
+
 nlohmann::json results_of(const RunTotals& totals, const Session& session) {
   nlohmann::json objects = nlohmann::json::array();
   for (const auto& object : session.objects()) {
@@ -31,6 +46,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
                        {"at_rest", object->body.asleep},
                        {"rests_on", to_string(object->body.rests_on)},
                        {"began_in_unknown", object->began_in_unknown},
+                       {"left_the_map", object->departures},
                        {"position_m", to_json(object->body.T_world_object.translation())},
                        {"orientation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
                        {"turned_deg", turned_deg}});
@@ -59,6 +75,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"inferred_triangles_mean", totals.per_frame(totals.inferred_triangles)},
       {"static_triangles_drawn_mean", totals.per_frame(totals.static_triangles)},
       {"contacts", totals.contacts},
+      {"left_the_map", totals.departures},
       {"contacts_by_kind", contacts_by_kind},
       {"unknown_triangles", session.unknown() ? session.unknown()->mesh_world.triangles.size() : 0},
       {"unknown_mb", session.unknown() ? static_cast<double>(session.unknown()->memory_bytes) / 1e6 : 0.0},
@@ -90,9 +107,9 @@ void print_summary(const RunTotals& totals, const Session& session) {
   for (const auto& object : session.objects()) {
     const Eigen::Vector3d p = object->body.T_world_object.translation();
     if (!object->in_room)
-      std::printf(
-          "%s: not in the room%s\n", object->body.name.c_str(),
-          waits(object->body.name) ? "; its drop waits for a level surface in view with enough space" : "");
+      std::printf("%s: not in the room%s\n", object->body.name.c_str(),
+                  waits(object->body.name) ? "; its drop waits for a level surface in view with enough space"
+                                           : (object->departures > 0 ? "; it fell out of the map" : ""));
     else
       std::printf(
           "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),

@@ -16,7 +16,7 @@ namespace roomradar {
 
 /// Sums over the frames of a run.
 struct RunTotals {
-  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0;
+  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
   double dynamic_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;
@@ -33,6 +33,7 @@ struct RunTotals {
     use.add(frame.use, session.objects());
     if (frame.tracking == TrackStatus::kDegenerate) ++degenerate;
     contacts += frame.contacts;
+    departures += static_cast<std::int64_t>(frame.departures.size());
     for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
       contacts_by_kind[kind] += frame.contacts_by_kind[kind];
     const double fraction = frame.foreground.valid > 0 ? static_cast<double>(frame.foreground.moved) /
@@ -49,6 +50,9 @@ struct RunTotals {
     return located > 0 ? sum / static_cast<double>(located) : 0.0;
   }
 };
+
+/// Returns the line that tells the user of an object that fell out of the map, and what to do.
+std::string sentence_of(const Departure& departure, const Session& session);
 
 /// Returns the report's keys that are specific to runs.
 nlohmann::json results_of(const RunTotals& totals, const Session& session);

@@ -4,7 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <vector>
 
+#include "app/objects/departure.hpp"
 #include "app/session/frame_use.hpp"
 #include "dynamic/foreground/foreground.hpp"
 #include "mapping/localization/locator.hpp"
@@ -30,6 +32,7 @@ struct FrameResult {
   int contacts = 0;
   std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< contacts per kind of surface touched
   double deepest_penetration_m = 0.0;                 ///< >= 0; only if measured
+  std::vector<Departure> departures;                  ///< objects that fell out of the map
   FrameUse use;                                       ///< kDone only
   bool picture_is_new = false;                        ///< false: picture() is that of an earlier frame
 };

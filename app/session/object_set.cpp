@@ -228,6 +228,14 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
   return counts;
 }
 
+std::vector<Departure> ObjectSet::end_departures() {
+  std::vector<Departure> departures;
+  for (const auto& object : objects_)
+    if (auto departure = end_departure(*object, room_.lowest_known_m))
+      departures.push_back(std::move(*departure));
+  return departures;
+}
+
 double ObjectSet::penetration_m() {
   double deepest_m = 0.0;
   for (const auto& object : objects_) {

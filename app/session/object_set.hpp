@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/objects/departure.hpp"
 #include "app/objects/virtual_object.hpp"
 #include "app/physics/depenetration.hpp"
 #include "app/session/drop_request.hpp"
@@ -72,6 +73,8 @@ class ObjectSet {
 
   /// Moves all objects that are due in this frame by dt_s of physics. Stage timed: radar.
   ContactCounts move(double dt_s, std::int64_t frame_number, StageTimes& times);
+  /// Sets back objects that fell out of the map; call after move(). Returns them.
+  std::vector<Departure> end_departures();
   /// Returns the greatest overlap of an object with the room or another object along gravity, m, >= 0.
   double penetration_m();
 

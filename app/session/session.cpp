@@ -12,6 +12,20 @@
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
+namespace {
+
+/// Returns the least height of the map's surface and observed space, m in the world.
+double lowest_known_m(const SavedMap& map) {
+  const Eigen::AlignedBox3d known_world = map.info.counts.known_world.isEmpty()  // not loaded from a folder
+                                              ? map.octree.counts().known_world
+                                              : map.info.counts.known_world;
+  double lowest_m = known_world.min().z();
+  for (const Eigen::Vector3f& vertex : map.mesh.vertices)
+    lowest_m = std::min(lowest_m, map.mesh.origin.z() + static_cast<double>(vertex.z()));
+  return lowest_m;
+}
+
+}  // namespace
 
 Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
     : map_(map),
@@ -24,6 +38,7 @@ Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* oc
   require_valid(config.picture);
   locator_.live_view.finest_width_px = locator_.expected_view.finest_width_px = config.tracking_px;
   room_.shape.set(map.mesh, MeshUsage::kStatic);
+  room_.lowest_known_m = lowest_known_m(map);
   if (!config.map_updates) return;
   if (octree == nullptr) throw Error("adopt: the session was given no octree to change");
   if (config.scene.surfaces != SurfacePolicy::kMap)
@@ -142,6 +157,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
                 [&] { objects_.release_waiting(frame, T_world_camera, expected, foreground, frames_); });
   begin(FramePart::kPhysics);  // Cyber Radar: R, M, L
   const ContactCounts moved = times.timed("physics", [&] { return objects_.move(dt_s, frames_, times); });
+  std::vector<Departure> departures = objects_.end_departures();
   times.add_ms("contact", ms_since(handed_over));
   begin(FramePart::kCompose);
   if (config_.make_picture) composer_.keep_colour(whole, T_world_camera, dt_s);
@@ -162,6 +178,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   result.foreground = foreground.counts;
   result.dynamic_triangles = scene_.dynamic_triangles();
   result.inferred_triangles = scene_.inferred_triangles();
+  result.departures = std::move(departures);
   result.contacts = moved.contacts;
   result.contacts_by_kind = moved.by_kind;
   result.use = use_of(room_, scene_, config_.scene.surfaces == SurfacePolicy::kMap, foreground.counts,

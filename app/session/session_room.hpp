@@ -10,7 +10,8 @@
 namespace roomradar {
 
 struct SessionRoom {
-  Shape shape;  ///< the map's mesh in the world, with all committed changes
+  Shape shape;                  ///< the map's mesh in the world, with all committed changes
+  double lowest_known_m = 0.0;  ///< least height of the map's surface and observed space, in the world
   /// Null until unknown space is made solid for the first time.
   std::shared_ptr<const UnknownSurface> unknown{};
   TriangleTree unknown_tree{};

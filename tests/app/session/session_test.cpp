@@ -430,7 +430,7 @@ void go_on(Session& session, std::int64_t first, std::int64_t frames) {
 Body fallen(const SessionConfig& config) {
   const SavedMap map = half_floor_map();
   Session session(map, config);
-  drop_pots(session, {{1.0, 0.0, 0.0}});
+  drop_pots(session, {{1.0, 0.0, 6.0}});  // still above the end of the map after 33 frames
   go_on(session, 0, 34);
   return session.objects().front()->body;
 }
@@ -646,9 +646,35 @@ TEST(Session, SolidUnknownSpaceHoldsAnObjectUpAndSaysSo) {
       EXPECT_EQ(pot.body.rests_on, SurfaceKind::kUnknownFrontier);
       EXPECT_NEAR(bottom_m, 0.0, 0.005);
     } else {
-      EXPECT_LT(bottom_m, -1.0);
+      EXPECT_FALSE(pot.in_room);  // it has rested nowhere
+      EXPECT_EQ(pot.departures, 1);
+      EXPECT_LT(bottom_m, -0.5);
     }
   }
+}
+
+TEST(Session, WhatFallsOutOfTheMapIsBackWhereItLastRested) {
+  const SavedMap map = half_floor_map();
+  Session session(map, by_recorded_poses());
+  const VirtualObject& pot = thrown(session, {-1.0, 0.0, 0.3}, 0.0).pot;
+  ASSERT_TRUE(pot.body.asleep);
+  const Eigen::Isometry3d T_world_rested = pot.body.T_world_object;
+  session.throw_object(pot.body.name, {.position_world = {1.0, 0.0, 0.3}});  // over the half without floor
+  StageTimes times;
+  std::vector<Departure> departures;
+  for (std::int64_t i = 45; i < 90; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    const FrameResult result = session.step(frame, times);
+    departures.insert(departures.end(), result.departures.begin(), result.departures.end());
+  }
+  ASSERT_EQ(departures.size(), 1U);
+  EXPECT_EQ(departures[0].name, pot.body.name);
+  EXPECT_TRUE(departures[0].is_back);
+  EXPECT_LT(departures[0].position_world.z(), -0.5);
+  EXPECT_TRUE(pot.in_room && pot.body.asleep);
+  EXPECT_EQ(pot.body.T_world_object.matrix(), T_world_rested.matrix());
+  EXPECT_EQ(pot.departures, 1);
 }
 
 TEST(Session, OverASeenFloorSolidUnknownSpaceChangesNothing) {

@@ -249,7 +249,7 @@ TEST_F(Playing, WhereThereIsNothingTheUserIsTold) {
   EXPECT_TRUE(player_.complaint().empty());
 }
 
-TEST_F(Playing, PoliciesThatDoNotGoTogetherAreRefusedAndNothingChanges) {
+TEST_F(Playing, UnknownSpaceIsSolidWithTheMapsSurfacesOnly) {
   ScriptEvent solid, skirt;
   solid.action = Action::kUnknown;
   solid.unknown_is_solid = true;
@@ -264,8 +264,18 @@ TEST_F(Playing, PoliciesThatDoNotGoTogetherAreRefusedAndNothingChanges) {
   apply(session_, solid);
   EXPECT_TRUE(session_.unknown_is_solid());
   skirt.surfaces = SurfacePolicy::kHoles;
-  EXPECT_THROW(apply(session_, skirt), Error);
-  EXPECT_EQ(session_.config().scene.surfaces, SurfacePolicy::kMap);
+  const auto has_border = [&] {
+    const std::vector<SceneTree> surfaces = session_.scene().surfaces();
+    return std::any_of(surfaces.begin(), surfaces.end(), [](const SceneTree& surface) {
+      return surface.kind == SurfaceKind::kUnknownFrontier;
+    });
+  };
+  EXPECT_TRUE(has_border());
+  apply(session_, skirt);  // and back again
+  EXPECT_FALSE(has_border());
+  skirt.surfaces = SurfacePolicy::kMap;
+  apply(session_, skirt);
+  EXPECT_TRUE(has_border());
 }
 
 TEST(TurnOfDrag, TheSideThatFacesTheCameraGoesWithTheMouse) {
