@@ -38,8 +38,8 @@ void require_replaceable(const fs::path& folder) {
   }
   if (fault) refuse(folder, "cannot be listed: " + fault.message());
   if (!empty && !fs::exists(folder / kMapInfoFile))
-    refuse(folder,
-           std::string("exists and has no ") + kMapInfoFile + ", so it is no map; choose another name for the map");
+    refuse(folder, std::string("exists and has no ") + kMapInfoFile +
+                       ", so it is no map; choose another name for the map");
 }
 
 fs::path tidy_map_name(const fs::path& folder) {

@@ -15,7 +15,8 @@ inline constexpr const char* kMapMeshFile = "mesh.ply";
 inline constexpr const char* kMapKeyframesFile = "places.bin";
 inline constexpr const char* kMapTrajectoryFile = "trajectory.txt";
 /// All required files except map.json.
-inline constexpr std::array<const char*, 5> kMapParts = {kMapOctreeFile, kMapPlainOctreeFile, kMapMeshFile, kMapKeyframesFile, kMapTrajectoryFile};
+inline constexpr std::array<const char*, 5> kMapParts = {kMapOctreeFile, kMapPlainOctreeFile, kMapMeshFile,
+                                                         kMapKeyframesFile, kMapTrajectoryFile};
 inline constexpr const char* kMapCoverageFile = "coverage.png";  ///< the only optional file
 
 /// Returns whether a map may have a file of this name beside map.json.
