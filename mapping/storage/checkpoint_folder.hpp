@@ -15,7 +15,7 @@ inline constexpr const char* kCheckpointLock = "lock";
 
 /// A checkpoint that was read back, with sizes and checksums of all files verified.
 struct Checkpoint {
-  std::string stage;             ///< as passed to write()
+  std::string stage;             ///< as passed to write_checkpoint()
   std::filesystem::path folder;  ///< contains the written files; read-only
 };
 

@@ -66,7 +66,8 @@ struct Span {
   float line;                    // z on the sample line
 };
 
-/// a, b, c: vertices; error: of each vertex, per axis; p: sample position.
+/// a, b, c: vertices; error: of each vertex, per axis; p: sample position. One function: all bounds share the
+/// edges and the plane.
 Span span_of(vec3 a, vec3 b, vec3 c, vec3 error, float margin, vec2 p) {
   const float kRounding = 6e-7;  // 10 x 2^-24, more than any sum of products here needs
   Span s;

@@ -10,6 +10,7 @@
 
 namespace roomradar {
 
+/// Result of free_time().
 struct FreeTime {
   double free_s = 0.0;  ///< until then every pair of triangles keeps its minimum distance
   ClosestPoint limit;   ///< present closest features of the pair that limits free_s; kNothing if the whole
