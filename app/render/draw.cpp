@@ -99,6 +99,26 @@ struct ObjectDrawer::State {
     width_px = wide_px;
     height_px = high_px;
   }
+
+  /// Binds and clears the framebuffer, and sets depth test and culling.
+  void prepare(int width, int height) {
+    forget_gl_errors();
+    fit(width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, width, height);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_BLEND);
+    glFrontFace(GL_CW);  // image rows run down, framebuffer rows run up
+    glCullFace(GL_BACK);
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GREATER);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    const std::array<GLfloat, 4> black{};
+    const GLfloat infinitely_far = 0.0F;
+    glClearNamedFramebufferfv(framebuffer, GL_COLOR, 0, black.data());
+    glClearNamedFramebufferfv(framebuffer, GL_DEPTH, 0, &infinitely_far);
+  }
 };
 
 ObjectDrawer::ObjectDrawer(GlContext& /*context*/) : state_(std::make_unique<State>()) {
@@ -128,23 +148,7 @@ void ObjectDrawer::begin(std::span<const DrawnObject> objects, const Intrinsics&
   layer.depth_m.resize(width, height);
   if (width == 0 || height == 0) return;
 
-  forget_gl_errors();
-  state_->fit(width, height);
-  glBindFramebuffer(GL_FRAMEBUFFER, state_->framebuffer);
-  glViewport(0, 0, width, height);
-  glDisable(GL_SCISSOR_TEST);
-  glDisable(GL_BLEND);
-  glFrontFace(GL_CW);  // image rows run down, framebuffer rows run up
-  glCullFace(GL_BACK);
-  glEnable(GL_DEPTH_TEST);
-  glDepthMask(GL_TRUE);
-  glDepthFunc(GL_GREATER);
-  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  const std::array<GLfloat, 4> black{};
-  const GLfloat infinitely_far = 0.0F;
-  glClearNamedFramebufferfv(state_->framebuffer, GL_COLOR, 0, black.data());
-  glClearNamedFramebufferfv(state_->framebuffer, GL_DEPTH, 0, &infinitely_far);
-
+  state_->prepare(width, height);
   glUseProgram(state_->program);
   const Eigen::Vector3f up = lighting.up_world.normalized().cast<float>();
   const Eigen::Vector3f to_light = lighting.to_key_light_world.normalized().cast<float>();

@@ -2,41 +2,17 @@
 #include "app/session/object_set.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "app/physics/physics.hpp"
 #include "app/session/object_overlap.hpp"
 #include "mapping/types/system/error.hpp"
 #include "mapping/types/validity.hpp"
-#include "radar/motion/time_of_impact.hpp"
 
 namespace roomradar {
 namespace {
 
 constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
-
-/// Returns the physics of a carried object: without gravity, friction and restitution, so it slides along
-/// surfaces.
-PhysicsConfig in_hand(PhysicsConfig config) {
-  config.gravity_world_mps2.setZero();
-  config.friction = config.restitution = 0.0;
-  return config;
-}
-
-/// Returns the number of advance() calls for a time that may exceed the max of one call.
-int pieces_of(double waited_s, const PhysicsConfig& config) {
-  return std::max(1, static_cast<int>(std::ceil(waited_s / config.max_advance_s - 1e-9)));
-}
-
-/// Sets the velocity that takes a carried object to its target by the end of this frame.
-void set_in_hand(VirtualObject& object, double dt_s) {
-  const Eigen::Vector3d way = *object.carried_to_world - object.body.T_world_object.translation();
-  object.body.asleep = false;
-  object.body.angular_velocity_world_rad_s.setZero();
-  object.body.velocity_world_mps = dt_s > 0.0 ? Eigen::Vector3d(way / dt_s) : Eigen::Vector3d::Zero();
-}
 
 }  // namespace
 
@@ -122,20 +98,7 @@ void ObjectSet::turn(const std::string& name, const Eigen::Vector3d& turn_world_
   VirtualObject& object = named(name);
   if (!object.in_room) return;
   cancel_drop(name);
-  RigidMotion motion;
-  motion.angular_rad_s = turn_world_deg * (std::numbers::pi / 180.0);
-  motion.centre_object = object.model->middle;
-  const std::vector<SceneTree> scene = scene_without(&object);
-  const TimeOfImpact free = time_of_impact(radar_, {&object.model->shape.touched, object.body.T_world_object},
-                                           motion, 1.0, {scene, {}});
-  if (free.status == TimeOfImpactStatus::kInvalidInput || free.status == TimeOfImpactStatus::kNoAnswer)
-    return;
-  const Eigen::Vector3d origin_before = object.body.T_world_object.translation();
-  object.body.T_world_object = pose_after(object.body.T_world_object, motion, free.safe_s);
-  make_orthonormal(object.body.T_world_object);
-  if (object.carried_to_world)  // the carry target follows, so the middle stays in place
-    *object.carried_to_world += object.body.T_world_object.translation() - origin_before;
-  object.body.asleep = false;
+  turn_until_contact(object, turn_world_deg, scene_without(&object), radar_);
 }
 
 void ObjectSet::remove(const std::string& name) { take_over(name).in_room = false; }
@@ -212,17 +175,7 @@ ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes
     CollisionQueries probe =
         make_collision_queries(radar_, proximity_, object->model->shape.touched, radar_scene, &radar_ms);
     probe.others = bodies_in(scene, *object);
-    const int pieces = pieces_of(waited_s, config_.physics);
-    for (int left = pieces; left > 0; --left) {
-      const double piece_s = waited_s / pieces;
-      if (object->carried_to_world) set_in_hand(*object, left * piece_s);
-      const StepReport moved =
-          advance(object->body, piece_s, probe,
-                  object->carried_to_world ? in_hand(config_.physics) : config_.physics, push.span());
-      counts.contacts += moved.contacts;
-      for (std::size_t kind = 0; kind < kSurfaceKinds; ++kind)
-        counts.by_kind[kind] += moved.contacts_by_kind[kind];
-    }
+    advance_object(*object, waited_s, probe, config_.physics, push, counts);
   }
   times.add_ms("radar", radar_ms);
   return counts;

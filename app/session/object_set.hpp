@@ -1,7 +1,6 @@
 // object_set.hpp: the virtual objects of a session: placed, moved by physics, and kept apart by the radar.
 #pragma once
 #include <Eigen/Geometry>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -14,6 +13,7 @@
 #include "app/physics/depenetration.hpp"
 #include "app/session/drop_request.hpp"
 #include "app/session/frame_scene.hpp"
+#include "app/session/object_motion.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
 #include "mapping/types/system/stage_times.hpp"
@@ -28,12 +28,6 @@ struct ObjectState {
   std::optional<Eigen::Matrix3d> R_world_object{};               ///< unset: the object keeps its orientation
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< velocity of the centre of mass
   Eigen::Vector3d angular_velocity_world_rad_s = Eigen::Vector3d::Zero();
-};
-
-/// Contacts of one frame.
-struct ContactCounts {
-  int contacts = 0;
-  std::array<int, kSurfaceKinds> by_kind{};  ///< contacts per kind of surface touched
 };
 
 /// All functions that take a name throw Error if there is no object of that name. Not thread safe; GL calls

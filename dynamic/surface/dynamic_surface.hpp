@@ -16,12 +16,6 @@
 
 namespace roomradar {
 
-/// A region, such as around a virtual object, where the mesh has the image's resolution.
-struct FineRegion {
-  Eigen::Vector3d centre_world;
-  double radius_m;
-};
-
 /// Both meshes have their origin at the camera's position, world axes and no colours; both are empty if
 /// nothing is dynamic. Together they are closed: every edge is used equally often in both directions.
 struct DynamicSurface {

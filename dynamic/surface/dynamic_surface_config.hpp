@@ -1,5 +1,6 @@
 // dynamic_surface_config.hpp: tolerances of the dynamic surface's mesh, and the thickness of its back.
 #pragma once
+#include <Eigen/Core>
 
 namespace roomradar {
 
@@ -19,5 +20,11 @@ struct DynamicSurfaceConfig {
 };
 /// Throws Error naming the field, its value and the rule.
 void require_valid(const DynamicSurfaceConfig& config);
+
+/// A region, such as around a virtual object, where the mesh has the image's resolution.
+struct FineRegion {
+  Eigen::Vector3d centre_world;
+  double radius_m;
+};
 
 }  // namespace roomradar

@@ -59,6 +59,34 @@ bool is_seen(const Frame& frame, const Eigen::Isometry3d& T_world_camera, const 
   return depth_m > 0.0F && depth_m > p_camera.z() - kSame_m;
 }
 
+/// What can be touched under each policy. The surfaces refer to the scenes.
+struct PolicyScenes {
+  std::vector<std::unique_ptr<FrameScene>> scenes;
+  std::array<std::vector<SceneTree>, kPolicyCount> surfaces;
+};
+
+/// Meshes the frame under each policy. Room and unknown space must outlive the scenes.
+PolicyScenes scenes_of(GlContext& context, const Shape& room, const TriangleTree& unknown, const Frame& frame,
+                       const Eigen::Isometry3d& T_world_camera) {
+  PolicyScenes made;
+  for (std::size_t i = 0; i < kPolicyCount; ++i) {
+    const FallthroughPolicy& policy = kFallthroughPolicies[i];
+    made.scenes.push_back(std::make_unique<FrameScene>(context, room,
+                                                       FrameSceneConfig{.surfaces = policy.surfaces},
+                                                       policy.unknown_solid ? &unknown : nullptr));
+    FrameScene& scene = *made.scenes[i];
+    if (policy.surfaces == SurfacePolicy::kMap) {
+      const ExpectedView& expected = scene.render_expected(frame.depth_camera, T_world_camera);
+      scene.find_dynamic(frame, expected);  // the foreground's history is one frame
+      scene.mesh_surfaces(frame, T_world_camera, expected, scene.find_dynamic(frame, expected));
+    } else {
+      scene.mesh_all_pixels(frame, T_world_camera);
+    }
+    made.surfaces[i] = scene.surfaces();
+  }
+  return made;
+}
+
 Rgb plan_colour_of(SurfaceKind touched) {
   switch (touched) {
     case SurfaceKind::kStatic:
@@ -94,23 +122,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
   append_mesh(sphere(Vector3d::Zero(), config.radius_m), {}, kMeshDeviation_m, ball_mesh);
   ball.build_by_place(ball_mesh);
 
-  std::vector<std::unique_ptr<FrameScene>> scenes;
-  std::array<std::vector<SceneTree>, kPolicyCount> surfaces;
-  for (std::size_t i = 0; i < kPolicyCount; ++i) {
-    const FallthroughPolicy& policy = kFallthroughPolicies[i];
-    scenes.push_back(std::make_unique<FrameScene>(context, room,
-                                                  FrameSceneConfig{.surfaces = policy.surfaces},
-                                                  policy.unknown_solid ? &unknown : nullptr));
-    FrameScene& scene = *scenes[i];
-    if (policy.surfaces == SurfacePolicy::kMap) {
-      const ExpectedView& expected = scene.render_expected(frame.depth_camera, T_world_camera);
-      scene.find_dynamic(frame, expected);  // the foreground's history is one frame
-      scene.mesh_surfaces(frame, T_world_camera, expected, scene.find_dynamic(frame, expected));
-    } else {
-      scene.mesh_all_pixels(frame, T_world_camera);
-    }
-    surfaces[i] = scene.surfaces();
-  }
+  const PolicyScenes scenes = scenes_of(context, room, unknown, frame, T_world_camera);
 
   const Eigen::AlignedBox3d bounds = bounds_of(map.mesh);
   Grid grid;
@@ -140,7 +152,7 @@ Grid drop_over_grid(GlContext& context, const SavedMap& map, const Frame& frame,
         cell.is_hidden = !is_seen(frame, T_world_camera, contact.point_world);
       }
       for (std::size_t i = 0; i < kPolicyCount; ++i) {
-        const Contact contact = radar.query(query, {surfaces[i], {}});
+        const Contact contact = radar.query(query, {scenes.surfaces[i], {}});
         cell.drops[i] = contact ? GridDrop{std::max(0.0, contact.contact_distance_m), contact.touched}
                                 : GridDrop{limit_m, SurfaceKind::kNothing};
       }

@@ -5,7 +5,11 @@
 #include <limits>
 
 #include "app/sim/room/furniture.hpp"
-#include "app/sim/room/rooms.hpp"
+#include "app/sim/room/room_board.hpp"
+#include "app/sim/room/room_random.hpp"
+#include "app/sim/room/room_shelf.hpp"
+#include "app/sim/room/room_table.hpp"
+#include "app/sim/room/room_wall.hpp"
 #include "mapping/types/system/error.hpp"
 
 namespace roomradar {

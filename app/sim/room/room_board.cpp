@@ -1,8 +1,9 @@
 // room_board.cpp: a checkerboard on a stand in a bare room, for camera calibration.
+#include "app/sim/room/room_board.hpp"
+
 #include <numbers>
 
 #include "app/sim/room/furniture.hpp"
-#include "app/sim/room/rooms.hpp"
 
 namespace roomradar {
 

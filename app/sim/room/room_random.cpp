@@ -1,4 +1,6 @@
 // room_random.cpp: a room of random size, with random furniture where it fits, and objects on it.
+#include "app/sim/room/room_random.hpp"
+
 #include <array>
 #include <cmath>
 #include <functional>
@@ -6,7 +8,6 @@
 #include <utility>
 
 #include "app/sim/room/furniture.hpp"
-#include "app/sim/room/rooms.hpp"
 #include "app/sim/solids/angles.hpp"
 #include "app/sim/solids/counter_random.hpp"
 #include "app/sim/solids/solid_distance.hpp"

@@ -1,10 +1,31 @@
 // room_shelf.cpp: a living room: book shelves, a sofa, and a coffee table with objects on it.
+#include "app/sim/room/room_shelf.hpp"
+
 #include <numbers>
 
 #include "app/sim/room/furniture.hpp"
-#include "app/sim/room/rooms.hpp"
 
 namespace roomradar {
+namespace {
+
+/// Adds a rug with the coffee table, and what is on the table.
+void add_coffee_table(Room& room, double top_m) {
+  constexpr double kRug_m = 0.01;
+  add(room, Eigen::Isometry3d::Identity(), box({0, 0.1, 0.5 * kRug_m}, {2.2, 1.6, kRug_m}),
+      {Pattern::kCarpet, {44, 72, 98}, {226, 214, 188}, 111, 0.5F});
+  add_table(room, standing_at(0, 0.1, kRug_m), {1.2, 0.7, top_m - kRug_m},
+            {Pattern::kWood, {118, 78, 52}, {70, 44, 28}, 108, 0.4F});
+  add_book_pile(room, standing_at(-0.38, 0.22, top_m, -0.4), 5, 140);
+  add_mug(room, standing_at(0.36, -0.08, top_m, 0.7),
+          {Pattern::kTiles, {40, 90, 110}, {230, 220, 200}, 141, 0.6F});
+  add_cactus(room, standing_at(0.42, 0.3, top_m));
+  add(room, standing_at(0.1, 0.33, top_m, 0.2), box({0, 0, 0.05}, {0.24, 0.12, 0.1}),
+      {Pattern::kPoster, {214, 120, 60}, {250, 236, 210}, 142, 0.6F});
+  add(room, standing_at(-0.42, -0.1, top_m, 0.5), box({0, 0, 0.003}, {0.2, 0.27, 0.006}),
+      {Pattern::kPoster, {236, 232, 224}, {170, 40, 60}, 143, 0.7F});
+}
+
+}  // namespace
 
 Room make_shelf_room() {
   Room room;
@@ -15,23 +36,11 @@ Room make_shelf_room() {
             {Pattern::kPlaster, {204, 214, 208}, {180, 194, 188}, 102, 0.7F},
             {Pattern::kPlaster, {242, 242, 238}, {230, 230, 224}, 103, 0.7F});
   const Material birch{Pattern::kWood, {222, 190, 142}, {184, 144, 96}, 107, 0.6F};
-  const Material walnut{Pattern::kWood, {118, 78, 52}, {70, 44, 28}, 108, 0.4F};
   const Material frame{Pattern::kPortable, {44, 42, 40}, {30, 28, 26}, 110, 0.12F};
   const auto world = Eigen::Isometry3d::Identity();
 
-  constexpr double kRug_m = 0.01;
-  add(room, world, box({0, 0.1, 0.5 * kRug_m}, {2.2, 1.6, kRug_m}),
-      {Pattern::kCarpet, {44, 72, 98}, {226, 214, 188}, 111, 0.5F});
   const double top_m = 0.46;
-  add_table(room, standing_at(0, 0.1, kRug_m), {1.2, 0.7, top_m - kRug_m}, walnut);
-  add_book_pile(room, standing_at(-0.38, 0.22, top_m, -0.4), 5, 140);
-  add_mug(room, standing_at(0.36, -0.08, top_m, 0.7),
-          {Pattern::kTiles, {40, 90, 110}, {230, 220, 200}, 141, 0.6F});
-  add_cactus(room, standing_at(0.42, 0.3, top_m));
-  add(room, standing_at(0.1, 0.33, top_m, 0.2), box({0, 0, 0.05}, {0.24, 0.12, 0.1}),
-      {Pattern::kPoster, {214, 120, 60}, {250, 236, 210}, 142, 0.6F});
-  add(room, standing_at(-0.42, -0.1, top_m, 0.5), box({0, 0, 0.003}, {0.2, 0.27, 0.006}),
-      {Pattern::kPoster, {236, 232, 224}, {170, 40, 60}, 143, 0.7F});
+  add_coffee_table(room, top_m);
 
   add_shelf(room, standing_at(-1.5, 2.4 - 0.16, 0), {1.3, 0.32, 2.1}, 6, birch, 150);
   add_shelf(room, standing_at(-0.15, 2.4 - 0.16, 0), {1.3, 0.32, 2.1}, 6, birch, 151);

@@ -1,9 +1,10 @@
 // room_wall.cpp: a nearly empty room with one big wall, in which geometry alone does not determine the
 // camera's pose.
+#include "app/sim/room/room_wall.hpp"
+
 #include <numbers>
 
 #include "app/sim/room/furniture.hpp"
-#include "app/sim/room/rooms.hpp"
 
 namespace roomradar {
 

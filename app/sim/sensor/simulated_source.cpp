@@ -44,38 +44,39 @@ struct SimulatedSource::State {
         plan_camera_path(room, CameraPathKind::kView, options.seed, duration_s).centre_world;
     std::vector<Material> materials;
     for (std::size_t i = 0; i < options.movers.size(); ++i) {
-      movers.push_back(
+      moving.movers.push_back(
           plan_mover(options.movers[i], room, viewer_world, options.seed, options.pace, duration_s));
-      append_solids(movers.back(), 0.0, solids);
-      materials.insert(materials.end(), movers.back().materials.begin(), movers.back().materials.end());
-      mover_of_solid.resize(solids.size(), static_cast<std::uint8_t>(i + 1));
+      append_solids(moving.movers.back(), 0.0, solids);
+      materials.insert(materials.end(), moving.movers.back().materials.begin(),
+                       moving.movers.back().materials.end());
+      moving.mover_of_solid.resize(solids.size(), static_cast<std::uint8_t>(i + 1));
     }
     if (crate_changes()) {
-      crate = crate_in(room);
-      solids.push_back(crate);
+      moving.crate = crate_in(room);
+      solids.push_back(moving.crate);
       materials.push_back(crate_material());
-      mover_of_solid.push_back(static_cast<std::uint8_t>(options.movers.size() + 1));
+      moving.mover_of_solid.push_back(static_cast<std::uint8_t>(options.movers.size() + 1));
     }
-    mover_look.emplace(room, solids, materials, finest_texel_m(options));
+    moving.look.emplace(room, solids, materials, finest_texel_m(options));
     for (const Material& material : room.materials) infrared.push_back(material.infrared);
     for (const Material& material : materials) infrared.push_back(material.infrared);
 
-    colour_camera = options.depth_camera;
+    colour.camera = options.depth_camera;
     if (!options.registered_colour) {
-      colour_camera.fx_px *= kColourFocal;
-      colour_camera.fy_px *= kColourFocal;
-      T_colour_depth.translation().x() = -kColourOffset_m;
+      colour.camera.fx_px *= kColourFocal;
+      colour.camera.fy_px *= kColourFocal;
+      colour.T_colour_depth.translation().x() = -kColourOffset_m;
     }
-    T_colour_depth_true = T_colour_depth;
+    colour.T_colour_depth_true = colour.T_colour_depth;
     if (options.faults) add_faults();
   }
 
   void add_faults() {
     const Intrinsics& depth_camera = options.depth_camera;
-    const SensorFaults faults = sensor_faults(depth_camera, colour_camera, T_colour_depth);
-    T_colour_depth_true = faults.T_colour_depth;
+    const SensorFaults faults = sensor_faults(depth_camera, colour.camera, colour.T_colour_depth);
+    colour.T_colour_depth_true = faults.T_colour_depth;
     depth_faults.rays = pixel_rays(faults.depth_camera, faults.depth_lens, depth_camera);
-    colour_rays = pixel_rays(faults.colour_camera, faults.colour_lens, colour_camera);
+    colour.rays = pixel_rays(faults.colour_camera, faults.colour_lens, colour.camera);
     depth_faults.inverse_scale = faults.inverse_depth_scale;
     depth_faults.inverse_offset_per_m.resize(depth_camera.width_px, depth_camera.height_px);
     for (int y = 0; y < depth_camera.height_px; ++y)
@@ -90,44 +91,56 @@ struct SimulatedSource::State {
   void place_solids(std::int64_t index) {
     const double t_s = static_cast<double>(index) / options.rate_hz;
     solids.assign(room.solids.begin(), room.solids.end());
-    for (const Mover& mover : movers) append_solids(mover, t_s, solids);
+    for (const Mover& mover : moving.movers) append_solids(mover, t_s, solids);
     if (crate_changes()) {
       const bool second_half = 2 * index >= options.frames;
-      crate_is_there = second_half == (options.crate == CrateKind::kComes);
-      solids.push_back(crate);
-      if (!crate_is_there) solids.back().T_world_solid.pretranslate(Vector3d(0, 0, -kAway_m));
+      moving.crate_is_there = second_half == (options.crate == CrateKind::kComes);
+      solids.push_back(moving.crate);
+      if (!moving.crate_is_there) solids.back().T_world_solid.pretranslate(Vector3d(0, 0, -kAway_m));
     }
-    shadow.prepare(std::span<const Solid>(solids).subspan(room.solids.size()));
+    moving.shadow.prepare(std::span<const Solid>(solids).subspan(room.solids.size()));
   }
   [[nodiscard]] bool crate_changes() const {
     return options.crate == CrateKind::kComes || options.crate == CrateKind::kGoes;
   }
   void fill_truth();
   void fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
-                   ColourImage& colour) const;
+                   ColourImage& picture) const;
+
+  /// Rays of the colour camera, and its pose relative to the depth camera.
+  struct ColourCamera {
+    Intrinsics camera;
+    PixelRays rays;
+    Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();       ///< as frames declare
+    Eigen::Isometry3d T_colour_depth_true = Eigen::Isometry3d::Identity();  ///< true value
+  };
+  /// The solids besides the room's.
+  struct Moving {
+    std::vector<Mover> movers;
+    std::optional<SurfaceAppearance> look;
+    std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover index, for the solids after the room's
+    Solid crate;                               ///< one that appears or disappears, at its place
+    bool crate_is_there = false;
+    MoverShadow shadow;
+  };
+  /// Views of the current frame, and buffers.
+  struct Views {
+    ViewCaster depth, colour, crate;
+    ExactView depth_exact, colour_exact;
+    KinectScratch scratch;
+  };
 
   SimOptions options;
   Room room;
   SurfaceAppearance room_look;
-  std::optional<SurfaceAppearance> mover_look;
   CameraPath path;
-  std::vector<Mover> movers;
-  std::vector<std::uint8_t> mover_of_solid;  ///< 1 + mover index, for the solids after the room's
+  Moving moving;
   std::vector<float> infrared;
-  Solid crate;  ///< one that appears or disappears, at its place
-  bool crate_is_there = false;
-  Intrinsics colour_camera;
-  Eigen::Isometry3d T_colour_depth = Eigen::Isometry3d::Identity();       ///< as frames declare
-  Eigen::Isometry3d T_colour_depth_true = Eigen::Isometry3d::Identity();  ///< true value
+  ColourCamera colour;
   DepthFaults depth_faults;
-  PixelRays colour_rays;
   std::int64_t next_index = 0;
-
   std::vector<Solid> solids;  ///< the room's, then the movers', at the current frame's time
-  MoverShadow shadow;
-  ViewCaster depth_view, colour_view, crate_view;
-  ExactView depth_exact, colour_exact;
-  KinectScratch scratch;
+  Views views;
   SimTruth truth;
 };
 
@@ -137,57 +150,58 @@ void SimulatedSource::State::fill_truth() {
   truth.moved.resize(width_px, height_px);
   truth.mover.resize(width_px, height_px);
   truth.revealed.resize(width_px, height_px);
-  const bool crate_went = options.crate == CrateKind::kGoes && !crate_is_there;
-  if (crate_went) crate_view.prepare({&crate, 1}, options.depth_camera, truth.T_world_camera);
+  const bool crate_went = options.crate == CrateKind::kGoes && !moving.crate_is_there;
+  if (crate_went) views.crate.prepare({&moving.crate, 1}, options.depth_camera, truth.T_world_camera);
   for (std::size_t i = 0; i < truth.depth_m.pixels.size(); ++i) {
-    const float depth_m = depth_exact.depth_m.pixels[i];
+    const float depth_m = views.depth_exact.depth_m.pixels[i];
     if (depth_m >= static_cast<float>(kKinectNearest_m) && depth_m <= static_cast<float>(kKinectFarthest_m))
       truth.depth_m.pixels[i] = depth_m;
     if (crate_went) {
       const auto x = static_cast<int>(i) % width_px, y = static_cast<int>(i) / width_px;
       const PlanePoint<double> ray = ray_of(depth_faults.rays, x, y);
-      const double crate_m = crate_view.depth_of(0, ray.x, ray.y);
+      const double crate_m = views.crate.depth_of(0, ray.x, ray.y);
       if (crate_m > 0.0 && (depth_m == 0.0F || crate_m < depth_m)) truth.revealed.pixels[i] = 255;
     }
-    const auto moving = depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room.solids.size());
-    if (moving < 0) continue;
+    const auto after_room = views.depth_exact.solid.pixels[i] - static_cast<std::int64_t>(room.solids.size());
+    if (after_room < 0) continue;
     // A crate that disappears counts as part of the room until then.
-    if (options.crate == CrateKind::kGoes && mover_of_solid[static_cast<std::size_t>(moving)] > movers.size())
+    if (options.crate == CrateKind::kGoes &&
+        moving.mover_of_solid[static_cast<std::size_t>(after_room)] > moving.movers.size())
       continue;
     truth.moved.pixels[i] = 255;
-    truth.mover.pixels[i] = mover_of_solid[static_cast<std::size_t>(moving)];
+    truth.mover.pixels[i] = moving.mover_of_solid[static_cast<std::size_t>(after_room)];
   }
 }
 
 void SimulatedSource::State::fill_colour(const ViewCaster& view, const ExactView& exact, std::uint64_t key,
-                                         ColourImage& colour) const {
-  colour.resize(colour_camera.width_px, colour_camera.height_px);
+                                         ColourImage& picture) const {
+  picture.resize(colour.camera.width_px, colour.camera.height_px);
   const auto noise_scale = static_cast<float>(options.noise_scale);
-  for (int y = 0; y < colour.height; ++y)
-    for (int x = 0; x < colour.width; ++x) {
+  for (int y = 0; y < picture.height; ++y)
+    for (int x = 0; x < picture.width; ++x) {
       const int seen = exact.solid.at(x, y);
       if (seen < 0) continue;
       const auto index = static_cast<std::size_t>(seen);
       const double depth_m = exact.depth_m.at(x, y);
-      const Vector3d p_solid = colour_rays.empty() ? view.local_point(seen, x, y, depth_m)
-                                                   : view.local_point(seen, colour_rays.at(x, y).x,
-                                                                      colour_rays.at(x, y).y, depth_m);
+      const Vector3d p_solid = colour.rays.empty() ? view.local_point(seen, x, y, depth_m)
+                                                   : view.local_point(seen, colour.rays.at(x, y).x,
+                                                                      colour.rays.at(x, y).y, depth_m);
       const Vector3d normal_solid = normal_local(solids[index], p_solid);
       const double cosine = std::max(exact.cosine.at(x, y), 0.2F);
-      const double footprint_m = depth_m / (colour_camera.fx_px * cosine);
-      Rgb& pixel = colour.at(x, y);
+      const double footprint_m = depth_m / (colour.camera.fx_px * cosine);
+      Rgb& pixel = picture.at(x, y);
       const Eigen::Isometry3d& T_world_solid = solids[index].T_world_solid;
       if (index < room.solids.size()) {
         pixel = room_look.shade(index, p_solid, normal_solid, footprint_m, T_world_solid);
         if (solids.size() > room.solids.size())
-          pixel = dimmed(pixel,
-                         shadow.factor(room, T_world_solid * p_solid, T_world_solid.linear() * normal_solid));
+          pixel = dimmed(pixel, moving.shadow.factor(room, T_world_solid * p_solid,
+                                                     T_world_solid.linear() * normal_solid));
       } else {
         pixel =
-            mover_look->shade(index - room.solids.size(), p_solid, normal_solid, footprint_m, T_world_solid);
+            moving.look->shade(index - room.solids.size(), p_solid, normal_solid, footprint_m, T_world_solid);
       }
       if (noise_scale == 0.0F) continue;
-      const std::uint64_t pixel_key = mixed(key + colour.index(x, y));
+      const std::uint64_t pixel_key = mixed(key + picture.index(x, y));
       const float brightness = 1.6F * noise_scale * gaussian(pixel_key);
       const auto noisy = [brightness](std::uint8_t of) {
         return static_cast<std::uint8_t>(
@@ -216,13 +230,14 @@ void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_
   State& s = *state_;
   const double t_s = static_cast<double>(index) / s.options.rate_hz;
   s.place_solids(index);
-  s.depth_view.prepare(s.solids, s.options.depth_camera, T_world_camera);
-  render_exact(s.solids, s.depth_view, s.options.depth_camera, s.depth_faults.rays, s.depth_exact);
+  s.views.depth.prepare(s.solids, s.options.depth_camera, T_world_camera);
+  render_exact(s.solids, s.views.depth, s.options.depth_camera, s.depth_faults.rays, s.views.depth_exact);
   s.truth.T_world_camera = T_world_camera;
   s.fill_truth();
   if (s.options.noise_scale > 0.0) {
-    measure_depth(s.solids, s.infrared, s.depth_view, s.depth_exact, s.options.depth_camera, T_world_camera,
-                  s.depth_faults, s.options.noise_scale, s.options.seed, index, s.scratch, frame.depth_m);
+    measure_depth(s.solids, s.infrared, s.views.depth, s.views.depth_exact, s.options.depth_camera,
+                  T_world_camera, s.depth_faults, s.options.noise_scale, s.options.seed, index,
+                  s.views.scratch, frame.depth_m);
   } else {
     frame.depth_m = s.truth.depth_m;
     for (int y = 0; y < frame.depth_m.height; ++y)
@@ -236,18 +251,19 @@ void SimulatedSource::look(std::int64_t index, const Eigen::Isometry3d& T_world_
   if (!s.options.with_colour) {
     frame.colour = {};
   } else if (s.options.registered_colour) {
-    s.fill_colour(s.depth_view, s.depth_exact, colour_key, frame.colour);
+    s.fill_colour(s.views.depth, s.views.depth_exact, colour_key, frame.colour);
   } else {
-    s.colour_view.prepare(s.solids, s.colour_camera, T_world_camera * s.T_colour_depth_true.inverse());
-    render_exact(s.solids, s.colour_view, s.colour_camera, s.colour_rays, s.colour_exact);
-    s.fill_colour(s.colour_view, s.colour_exact, colour_key, frame.colour);
+    s.views.colour.prepare(s.solids, s.colour.camera,
+                           T_world_camera * s.colour.T_colour_depth_true.inverse());
+    render_exact(s.solids, s.views.colour, s.colour.camera, s.colour.rays, s.views.colour_exact);
+    s.fill_colour(s.views.colour, s.views.colour_exact, colour_key, frame.colour);
   }
 
   frame.index = index;
   frame.stamp_s = t_s;
   frame.depth_camera = s.options.depth_camera;
-  frame.colour_camera = s.options.with_colour ? s.colour_camera : Intrinsics{};
-  frame.T_colour_depth = s.T_colour_depth;
+  frame.colour_camera = s.options.with_colour ? s.colour.camera : Intrinsics{};
+  frame.T_colour_depth = s.colour.T_colour_depth;
   frame.T_world_camera = T_world_camera;
   frame.down_camera = T_world_camera.linear().transpose() * -Vector3d::UnitZ();
 }

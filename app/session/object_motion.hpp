@@ -1,0 +1,34 @@
+// object_motion.hpp: moves one object by physics, in a user's hand, or by a turn.
+#pragma once
+#include <Eigen/Core>
+#include <array>
+#include <span>
+
+#include "app/objects/virtual_object.hpp"
+#include "app/physics/collision_queries.hpp"
+#include "app/physics/depenetration.hpp"
+#include "app/physics/physics_config.hpp"
+#include "radar/exact/cyber_radar.hpp"
+#include "radar/geometry/radar_scene.hpp"
+
+namespace roomradar {
+
+/// Contacts of one frame.
+struct ContactCounts {
+  int contacts = 0;
+  std::array<int, kSurfaceKinds> by_kind{};  ///< contacts per kind of surface touched
+};
+
+/// Advances an object by the time since it was last moved. A carried object moves to its target by the end of
+/// this time, without gravity, friction and restitution, until something is in the way.
+/// @param waited_s  may exceed the max of one advance() call, config.max_advance_s
+/// @param counts    the object's contacts are added
+void advance_object(VirtualObject& object, double waited_s, const CollisionQueries& probe,
+                    const PhysicsConfig& config, const PushDirections& push, ContactCounts& counts);
+
+/// Rotates an object about its middle, degrees about the world's axes, until something of the scene is in the
+/// way, and wakes it. Does nothing if the radar returns no usable result.
+void turn_until_contact(VirtualObject& object, const Eigen::Vector3d& turn_world_deg,
+                        std::span<const SceneTree> scene, CyberRadar& radar);
+
+}  // namespace roomradar

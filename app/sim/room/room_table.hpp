@@ -1,0 +1,10 @@
+// room_table.hpp: a dining room with a table, four chairs and objects on it.
+#pragma once
+#include "app/sim/room/room.hpp"
+
+namespace roomradar {
+
+/// Makes a dining room: table with four chairs and objects on it, cupboard, window, pictures.
+Room make_table_room();
+
+}  // namespace roomradar
