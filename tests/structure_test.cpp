@@ -136,5 +136,22 @@ TEST(Structure, NoRoomHoldsMoreThanFifteenUnits) {
   for (const auto& [room, names] : units) EXPECT_LE(names.size(), 15U) << room;
 }
 
+TEST(Structure, NoUnitHasMoreThanFourHundredLinesAndEachHasAHeader) {
+  std::map<std::string, int> lines;  // of a header and its source together
+  std::set<std::string> headers, sources;
+  for (const Source& source : sources_of_the_house()) {
+    const fs::path path = source.path;
+    const std::string unit = (path.parent_path() / path.stem()).generic_string();
+    lines[unit] += source.lines;
+    (path.extension() == ".hpp" ? headers : sources).insert(unit);
+  }
+  for (const auto& [unit, count] : lines) EXPECT_LE(count, 400) << unit;
+  for (const std::string& unit : sources) {
+    if (unit == "app/main" || unit.ends_with("_absent"))
+      continue;  // *_absent defines another unit's functions
+    EXPECT_TRUE(headers.contains(unit)) << unit << ".cpp has no header";
+  }
+}
+
 }  // namespace
 }  // namespace roomradar::structure_test

@@ -12,20 +12,6 @@
 #include "mapping/types/validity.hpp"
 
 namespace roomradar {
-namespace {
-
-/// Returns the least height of the map's surface and observed space, m in the world.
-double lowest_known_m(const SavedMap& map) {
-  const Eigen::AlignedBox3d known_world = map.info.counts.known_world.isEmpty()  // not loaded from a folder
-                                              ? map.octree.counts().known_world
-                                              : map.info.counts.known_world;
-  double lowest_m = known_world.min().z();
-  for (const Eigen::Vector3f& vertex : map.mesh.vertices)
-    lowest_m = std::min(lowest_m, map.mesh.origin.z() + static_cast<double>(vertex.z()));
-  return lowest_m;
-}
-
-}  // namespace
 
 Session::Session(const SavedMap& map, const SessionConfig& config, StaticMap* octree)
     : map_(map),

@@ -39,8 +39,7 @@ class Session {
   /// have moved the objects.
   FrameResult step(const Frame& frame, StageTimes& times);
 
-  /// Adds an object that is not in the room at first. Throws Error if the name is taken or the mesh is
-  /// unsuitable.
+  /// Adds an object, at first outside the room. Throws Error if the name is taken or the mesh is unsuitable.
   void add_object(const std::string& name, const Mesh& mesh) { objects_.add(name, mesh); }
   /// Adds an object from parts that were prepared earlier, such as on another thread.
   void add_object(const std::string& name, ObjectParts parts) { objects_.add(name, std::move(parts)); }

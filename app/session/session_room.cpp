@@ -1,4 +1,4 @@
-// session_room.cpp: whether an object is in unknown space.
+// session_room.cpp: whether an object is in unknown space, and where the map ends.
 #include "app/session/session_room.hpp"
 
 #include <algorithm>
@@ -19,6 +19,16 @@ bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object) {
     return is_unknown(unknown, a) || is_unknown(unknown, b) || is_unknown(unknown, c) ||
            is_unknown(unknown, (a + b + c) / 3.0);
   });
+}
+
+double lowest_known_m(const SavedMap& map) {
+  const Eigen::AlignedBox3d known_world = map.info.counts.known_world.isEmpty()  // not loaded from a folder
+                                              ? map.octree.counts().known_world
+                                              : map.info.counts.known_world;
+  double lowest_m = known_world.min().z();
+  for (const Eigen::Vector3f& vertex : map.mesh.vertices)
+    lowest_m = std::min(lowest_m, map.mesh.origin.z() + static_cast<double>(vertex.z()));
+  return lowest_m;
 }
 
 }  // namespace roomradar

@@ -4,6 +4,7 @@
 
 #include "app/objects/shape.hpp"
 #include "app/objects/virtual_object.hpp"
+#include "mapping/map/map_folder.hpp"
 #include "mapping/surface/unknown_surface.hpp"
 #include "radar/geometry/triangle_tree.hpp"
 
@@ -20,5 +21,8 @@ struct SessionRoom {
 
 /// Returns true if unknown space is solid and a corner or the centre of a triangle of the object is in it.
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object);
+
+/// Returns the least height of the map's surface and observed space, m in the world.
+double lowest_known_m(const SavedMap& map);
 
 }  // namespace roomradar

@@ -83,7 +83,7 @@ nlohmann::json find_all(const std::string& name, FrameSource& source, SearchedRo
   std::vector<double> errors_mm;
   int asked = 0, found = 0, right = 0;
   Locator fresh;
-  fresh.known = build_patch_index(mapped.map.keyframe_database);
+  fresh.index.patches = build_patch_index(mapped.map.keyframe_database);
   nlohmann::json failed = nlohmann::json::array();
   for (ReadResult read; (read = source.next(frame)).status != ReadStatus::kEnd;) {
     ++asked;

@@ -128,9 +128,10 @@ TEST_F(CommandLine, ARecordedSessionReplaysToTheSamePicturesAndPoses) {
   const fs::path session = folder_ / "session", script = folder_ / "played.txt";
   std::ofstream(script) << kPlayed;
   const auto pictures = [&](const char* name) { return " --pictures " + (folder_ / name).string(); };
-  const Outcome played = roomradar("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
-                                   " --poses recorded --at-end loop --script " + script.string() +
-                                   " --record-session " + session.string() + pictures("played"));
+  const Outcome played =
+      roomradar("run 'sim:table?frames=15&width=160&path=view&seed=2' --map " + map() +
+                " --poses recorded --unknown free --at-end loop --script " + script.string() +
+                " --record-session " + session.string() + pictures("played"));
   ASSERT_EQ(played.status, 0) << played.out;
   const fs::path report_path = folder_ / "replay.json";
   const Outcome replayed =

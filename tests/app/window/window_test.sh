@@ -53,10 +53,10 @@ shot dropped
 
 echo "== keys change policies, hold the camera, add and remove"
 xdotool key u
-until_true has_event ' unknown solid$'
+until_true has_event ' unknown free$'
 settle
 xdotool key u
-until_true has_event ' unknown free$'
+until_true has_event ' unknown solid$'
 settle
 xdotool key s
 until_true has_event ' surfaces holes$'
