@@ -71,8 +71,12 @@ double farthest_m(const VirtualObject& object, const Eigen::Vector3d& direction_
 
 }  // namespace
 
+double lowest_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object) {
+  return -farthest_m(object, -R_world_object.row(2));
+}
+
 double lowest_m(const VirtualObject& object) {
-  return -farthest_m(object, -object.body.T_world_object.linear().row(2));
+  return lowest_m(object, object.body.T_world_object.linear());
 }
 
 double highest_m(const VirtualObject& object) {

@@ -24,7 +24,11 @@ struct VirtualObject {
   std::optional<Eigen::Vector3d> carried_to_world;
   /// Pose when it last fell asleep; unset: not so far, or it fell out of the map from there.
   std::optional<Eigen::Isometry3d> T_world_rested;
-  int departures = 0;     ///< number of times that it fell out of the map
+  int departures = 0;  ///< number of times that it fell out of the map
+  /// Awake without moving for 1 s, since a surface crosses it and no free pose is near. Ends when it moves.
+  bool stuck = false;
+  double still_s = 0.0;  ///< time awake within 2 mm of T_world_still
+  Eigen::Isometry3d T_world_still = Eigen::Isometry3d::Identity();
   double waited_s = 0.0;  ///< time since it was last advanced
   /// Cells of the last frame's dynamic mesh refined to full resolution because of this object.
   std::size_t fine_cells = 0;
@@ -45,6 +49,8 @@ std::unique_ptr<VirtualObject> object_of(GlContext& context, const std::string& 
 /// Return the height of its lowest and highest point above its origin, in its present orientation, m.
 double lowest_m(const VirtualObject& object);
 double highest_m(const VirtualObject& object);
+/// Returns the height of its lowest point above its origin in another orientation, m.
+double lowest_m(const VirtualObject& object, const Eigen::Matrix3d& R_world_object);
 
 /// Returns the radius of the sphere around its bounding box, m.
 double radius_m(const VirtualObject& object);

@@ -28,15 +28,15 @@ void require_valid(const PhysicsConfig& config) {
   require(config.max_advance_s <= 1000.0 * config.max_step_s, "max_advance_s", config.max_advance_s,
           "at most 1000 max_step_s");
   require(config.max_slides >= 1 && config.max_slides <= 64, "max_slides", config.max_slides, "in 1..64");
-  require_positive("rest_drift_m", config.sleep_drift_m);
-  require_positive("rest_after_s", config.sleep_after_s);
+  require_positive("sleep_drift_m", config.sleep_drift_m);
+  require_positive("sleep_after_s", config.sleep_after_s);
   require_positive("wake_gap_m", config.wake_gap_m);
   require_positive("wake_moved_m", config.wake_moved_m);
   require_positive("wake_overlap_m", config.wake_overlap_m);
   require_not_negative("overlap_allowed_m", config.overlap_allowed_m);
-  require_positive("push_out_mps", config.max_depenetration_mps);
+  require_positive("max_depenetration_mps", config.max_depenetration_mps);
   require_positive("max_speed_mps", config.max_speed_mps);
-  require_positive("max_spin_rad_s", config.max_angular_rad_s);
+  require_positive("max_angular_rad_s", config.max_angular_rad_s);
 }
 
 }  // namespace roomradar

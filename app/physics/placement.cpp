@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mapping/types/linear_algebra.hpp"
@@ -192,40 +193,53 @@ Footprint footprint_at(const float* top_m, const FootprintCells& footprint, cons
   return {true, middle_m + plane[0]};
 }
 
-/// Computes each valid cell's distance to the nearest invalid one (in cells, chamfer 1 and sqrt 2).
-std::vector<float> distance_inside(const std::vector<char>& is_place, int size) {
-  constexpr float kDiagonal = std::numbers::sqrt2_v<float>;
-  std::vector<float> distance(is_place.size());
-  const auto at = [&](int i, int j) -> float {
-    const bool is_inside = i >= 0 && j >= 0 && i < size && j < size;
-    return is_inside ? distance[static_cast<std::size_t>(j) * static_cast<std::size_t>(size) +
-                                static_cast<std::size_t>(i)]
-                     : 0.0F;
-  };
-  const auto time_of_impact = [&](int begin, int end, int step) {
-    for (int j = begin; j != end; j += step) {
-      for (int i = begin; i != end; i += step) {
-        float& here = distance[static_cast<std::size_t>(j) * static_cast<std::size_t>(size) +
-                               static_cast<std::size_t>(i)];
-        here = std::min({here, at(i - step, j) + 1.0F, at(i, j - step) + 1.0F,
-                         at(i - step, j - step) + kDiagonal, at(i + step, j - step) + kDiagonal});
-      }
-    }
-  };
-  for (std::size_t cell = 0; cell < is_place.size(); ++cell) distance[cell] = is_place[cell] ? 1e9F : 0.0F;
-  time_of_impact(0, size, 1);
-  time_of_impact(size - 1, -1, -1);
-  return distance;
+/// Computes the footprint of this radius at each cell of a grid; the grid's margin must be at least as large.
+std::vector<Footprint> footprints(const HeightGrid& grid, double radius_m, const PlacementConfig& config) {
+  const FootprintCells cells = cells_under(radius_m / config.cell_m, grid.size(), config);
+  std::vector<Footprint> all(static_cast<std::size_t>(grid.size()) * static_cast<std::size_t>(grid.size()));
+  for (int j = 0; j < grid.size(); ++j)
+    for (int i = 0; i < grid.size(); ++i)
+      all[grid.index(i, j)] = footprint_at(grid.top_m(i, j), cells, config);
+  return all;
 }
 
-/// Returns 1 at the picture's centre, less towards its edge; 0 outside.
-double centrality(const Eigen::Vector3d& p_camera, const Intrinsics& camera) {
-  if (p_camera.z() <= 0.0) return 0.0;
-  const Eigen::Vector2d p = project(camera, p_camera);
-  const double u = 2.0 * (p.x() + 0.5) / camera.width_px - 1.0;
-  const double v = 2.0 * (p.y() + 0.5) / camera.height_px - 1.0;
-  if (std::abs(u) > 1.0 || std::abs(v) > 1.0) return 0.0;
-  return std::exp(-2.0 * (u * u + v * v));
+/// Distance of a place from where it is wanted, m or fractions of the picture's width; infinite if too far.
+using Distance = std::function<double(const Eigen::Vector3d& point_world)>;
+
+Distance distance_from_wanted(const SupportQuery& query, const Intrinsics& camera,
+                              const Eigen::Isometry3d& T_world_camera, const PlacementConfig& config) {
+  constexpr double kTooFar = std::numeric_limits<double>::infinity();
+  if (query.near_world)
+    return [near = *query.near_world, most_m = config.max_away_m](const Eigen::Vector3d& point_world) {
+      const double away_m = (point_world - near).norm();
+      return away_m <= most_m ? away_m : kTooFar;
+    };
+  return [camera, T_camera_world = T_world_camera.inverse()](const Eigen::Vector3d& point_world) {
+    const Eigen::Vector3d p_camera = T_camera_world * point_world;
+    if (p_camera.z() <= 0.0) return kTooFar;
+    const Eigen::Vector2d p = project(camera, p_camera);
+    const Eigen::Vector2d size(camera.width_px, camera.height_px);
+    const Eigen::Vector2d off = p + Eigen::Vector2d::Constant(0.5) - 0.5 * size;
+    if ((off.cwiseAbs() - 0.5 * size).maxCoeff() > 0.0) return kTooFar;
+    return off.norm() / camera.width_px;
+  };
+}
+
+/// Returns the nearest place that the query's is_free accepts.
+Support nearest_free(std::vector<std::pair<double, Eigen::Vector3d>>& places, const SupportQuery& query) {
+  const double apart_m = std::max(0.06, 0.75 * query.footprint_radius_m);
+  constexpr std::size_t kMaxTried = 48;
+  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<Eigen::Vector3d> rejected;
+  for (const auto& [distance, point_world] : places) {
+    if (std::any_of(rejected.begin(), rejected.end(),
+                    [&, &p = point_world](const auto& other) { return (p - other).norm() < apart_m; }))
+      continue;
+    if (!query.is_free || query.is_free(point_world)) return {SupportStatus::kFound, point_world};
+    rejected.push_back(point_world);
+    if (rejected.size() == kMaxTried) break;
+  }
+  return {SupportStatus::kBlocked};
 }
 
 }  // namespace
@@ -243,50 +257,44 @@ void require_valid(const PlacementConfig& config) {
   require("room_to_spare_m", config.room_to_spare_m, 0.0, 1.0);
   require("min_range_m", config.min_range_m, 0.0, 10.0);
   require("max_range_m", config.max_range_m, config.min_range_m, 10.0);
-  require("table_below_camera_m", config.table_below_camera_m, 0.0, 10.0);
+  require("max_away_m", config.max_away_m, 0.0, 10.0);
 }
 
-std::optional<Eigen::Vector3d> find_support(const DepthImage& depth_m, const Intrinsics& camera,
-                                            const Eigen::Isometry3d& T_world_camera,
-                                            double footprint_radius_m, const PlacementConfig& config) {
+Support find_support(const DepthImage& depth_m, const Intrinsics& camera,
+                     const Eigen::Isometry3d& T_world_camera, const SupportQuery& query,
+                     const PlacementConfig& config) {
   require_valid(config);
-  if (!(footprint_radius_m > 0.0 && footprint_radius_m <= kMostFootprint_m)) return std::nullopt;
-  if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px)
-    return std::nullopt;
-  if (!T_world_camera.matrix().allFinite()) return std::nullopt;
+  if (!(query.footprint_radius_m > 0.0 && query.footprint_radius_m <= kMostFootprint_m)) return {};
+  if (depth_m.empty() || depth_m.width != camera.width_px || depth_m.height != camera.height_px) return {};
+  if (!T_world_camera.matrix().allFinite()) return {};
+  if (query.near_world && !query.near_world->allFinite()) return {};
 
-  const double radius_cells = (footprint_radius_m + config.room_to_spare_m) / config.cell_m;
-  const HeightGrid grid(depth_m, camera, T_world_camera, config, static_cast<int>(radius_cells));
-  const FootprintCells footprint = cells_under(radius_cells, grid.size(), config);
-  std::vector<char> is_place(static_cast<std::size_t>(grid.size()) * static_cast<std::size_t>(grid.size()),
-                             0);
-  for (int j = 0; j < grid.size(); ++j)
-    for (int i = 0; i < grid.size(); ++i)
-      is_place[grid.index(i, j)] = footprint_at(grid.top_m(i, j), footprint, config).is_level;
+  const double radius_m = query.footprint_radius_m + config.room_to_spare_m;
+  const HeightGrid grid(depth_m, camera, T_world_camera, config,
+                        std::max(static_cast<int>(radius_m / config.cell_m), 2) + 1);
+  if (grid.size() == 0) return {SupportStatus::kNothingMeasured};
+  const auto is_level = [](const Footprint& footprint) { return footprint.is_level; };
+  const std::vector<Footprint> all = footprints(grid, radius_m, config);
+  if (std::none_of(all.begin(), all.end(), is_level)) {
+    const std::vector<Footprint> small =
+        footprints(grid, std::max(config.room_to_spare_m, 2.0 * config.cell_m), config);
+    const bool has_level = std::any_of(small.begin(), small.end(), is_level);
+    return {has_level ? SupportStatus::kTooSmall : SupportStatus::kNotLevel};
+  }
 
-  const std::vector<float> inside_cells = distance_inside(is_place, grid.size());
-  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  constexpr double kAmple_m = 0.15;      // more room than this gives no higher score
-  constexpr double kFloorIsWorth = 0.2;  // score factor of the floor, relative to a table
-  double best_worth = 0.0;
-  std::optional<Eigen::Vector2i> best;
+  const Distance distance_of = distance_from_wanted(query, camera, T_world_camera, config);
+  std::vector<std::pair<double, Eigen::Vector3d>> places;
   for (int j = 0; j < grid.size(); ++j) {
     for (int i = 0; i < grid.size(); ++i) {
-      if (!is_place[grid.index(i, j)]) continue;
-      const double height_m = *grid.top_m(i, j);
-      const double room = std::min(inside_cells[grid.index(i, j)] * config.cell_m / kAmple_m, 1.0);
-      const double worth = centrality(T_camera_world * grid.point_world(i, j, height_m), camera) *
-                           (0.2 + 0.8 * room) *
-                           (height_m >= -config.table_below_camera_m ? 1.0 : kFloorIsWorth);
-      if (worth > best_worth) {
-        best_worth = worth;
-        best = Eigen::Vector2i(i, j);
-      }
+      const Footprint& footprint = all[grid.index(i, j)];
+      if (!footprint.is_level) continue;
+      const Eigen::Vector3d point_world = grid.point_world(i, j, footprint.height_m);
+      const double distance = distance_of(point_world);
+      if (std::isfinite(distance)) places.emplace_back(distance, point_world);
     }
   }
-  if (!best) return std::nullopt;
-  const Footprint found = footprint_at(grid.top_m(best->x(), best->y()), footprint, config);
-  return grid.point_world(best->x(), best->y(), found.height_m);
+  if (places.empty()) return {SupportStatus::kTooFar};
+  return nearest_free(places, query);
 }
 
 }  // namespace roomradar

@@ -81,6 +81,7 @@ class RunLoop {
   void record(const ScriptEvent& event);
   void perform_users(const std::vector<ScriptEvent>& events);
   void report(const Departure& departure);
+  void say(const std::string& sentence);
   void end_budget();
   void count_skipped(const std::string& fault);
   void keep(const FrameResult& result);
@@ -118,7 +119,12 @@ void RunLoop::perform_due() {
 void RunLoop::perform(const ScriptEvent& event, bool is_from_script) {
   if (event.action == Action::kAdd && is_from_script)
     return;  // already added and recorded before the first frame
-  record(apply(event));
+  try {
+    record(apply(event));
+  } catch (const PlaceRefused& refused) {  // not recorded: it has changed nothing
+    ++run_.totals.places_refused;
+    say(refused.what());
+  }
 }
 
 /// Applies an event and returns it in the form to be recorded.
@@ -166,6 +172,7 @@ void RunLoop::step() {
   run_.totals.add(result, *run_.session);
   const bool is_located = result.status == FrameStatus::kDone;
   for (const Departure& departure : result.departures) report(departure);
+  for (const ObjectNotice& notice : result.notices) say(notice.name + notice.text);
   const std::string news = run_.totals.lost.add(frame_.index, is_located);
   if (!news.empty()) std::fprintf(stderr, "%s\n", news.c_str());
   if (run_.host) run_.host->show(run_frame_, run_time_s_, frame_, result);
@@ -176,7 +183,10 @@ void RunLoop::step() {
 /// Says once per object that it fell out of the map, and what to do.
 void RunLoop::report(const Departure& departure) {
   if (!departed_.insert(departure.name).second) return;
-  const std::string sentence = sentence_of(departure, *run_.session);
+  say(sentence_of(departure, *run_.session));
+}
+
+void RunLoop::say(const std::string& sentence) {
   std::fprintf(stderr, "%s\n", sentence.c_str());
   if (run_.host) run_.host->complain(sentence);
 }

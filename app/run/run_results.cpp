@@ -44,6 +44,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
     objects.push_back({{"name", object->body.name},
                        {"in_room", object->in_room},
                        {"at_rest", object->body.asleep},
+                       {"stuck", object->stuck},
                        {"rests_on", to_string(object->body.rests_on)},
                        {"began_in_unknown", object->began_in_unknown},
                        {"left_the_map", object->departures},
@@ -76,6 +77,7 @@ nlohmann::json results_of(const RunTotals& totals, const Session& session) {
       {"static_triangles_drawn_mean", totals.per_frame(totals.static_triangles)},
       {"contacts", totals.contacts},
       {"left_the_map", totals.departures},
+      {"places_refused", totals.places_refused},
       {"contacts_by_kind", contacts_by_kind},
       {"unknown_triangles", session.unknown() ? session.unknown()->mesh_world.triangles.size() : 0},
       {"unknown_mb", session.unknown() ? static_cast<double>(session.unknown()->memory_bytes) / 1e6 : 0.0},
@@ -100,20 +102,23 @@ void print_summary(const RunTotals& totals, const Session& session) {
                 change.stamp_s - totals.first_stamp_s, change.kind == LastingKind::kCame ? "came" : "went",
                 p.x(), p.y(), p.z(), size.x(), size.y(), size.z());
   }
-  const auto waits = [&](const std::string& name) {
-    return std::any_of(session.waiting_drops().begin(), session.waiting_drops().end(),
-                       [&](const WaitingDrop& waiting) { return waiting.drop.name == name; });
+  const auto why_out = [&](const VirtualObject& object) -> std::string {
+    for (const WaitingDrop& waiting : session.waiting_drops())
+      if (waiting.drop.name == object.body.name)
+        return "; its drop waits: " + (waiting.why.empty() ? "no frame was located since" : waiting.why);
+    return object.departures > 0 ? "; it fell out of the map" : "";
   };
   for (const auto& object : session.objects()) {
     const Eigen::Vector3d p = object->body.T_world_object.translation();
     if (!object->in_room)
-      std::printf("%s: not in the room%s\n", object->body.name.c_str(),
-                  waits(object->body.name) ? "; its drop waits for a level surface in view with enough space"
-                                           : (object->departures > 0 ? "; it fell out of the map" : ""));
+      std::printf("%s: not in the room%s\n", object->body.name.c_str(), why_out(*object).c_str());
     else
       std::printf(
           "%s: %s at %.3f %.3f %.3f m%s%s\n", object->body.name.c_str(),
-          object->body.asleep ? "at rest" : "moving", p.x(), p.y(), p.z(),
+          object->stuck         ? "stuck in a surface"
+          : object->body.asleep ? "at rest"
+                                : "moving",
+          p.x(), p.y(), p.z(),
           object->body.rests_on == SurfaceKind::kUnknownFrontier ? ", on the border of unknown space" : "",
           note_on(*object));
   }

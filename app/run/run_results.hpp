@@ -16,7 +16,8 @@ namespace roomradar {
 
 /// Sums over the frames of a run.
 struct RunTotals {
-  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0;
+  std::int64_t read = 0, skipped = 0, located = 0, degenerate = 0, contacts = 0, departures = 0,
+               places_refused = 0;
   std::array<std::int64_t, kSurfaceKinds> contacts_by_kind{};
   double dynamic_fraction = 0.0, dynamic_triangles = 0.0, inferred_triangles = 0.0, static_triangles = 0.0;
   double max_moved_fraction = 0.0;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "app/physics/placement.hpp"
 #include "mapping/types/system/error.hpp"
@@ -18,6 +20,56 @@ DepthImage seen_room_depth_m(const ExpectedView& expected, const FrameForeground
   for (std::size_t i = 0; i < std::min(moved.pixels.size(), depth_m.pixels.size()); ++i)
     if (moved.pixels[i] != 0) depth_m.pixels[i] = 0.0F;
   return depth_m;
+}
+
+/// Returns true if an object at the start of its fall, and on its way down, is clear of everything, and the
+/// surface that it meets is the room's own at the expected height.
+bool is_fall_free(const VirtualObject& object, const Eigen::Isometry3d& T_world_start, double height_m,
+                  const DropScene& scene) {
+  constexpr double kClearance_m = 0.02;  // sideways, and above the object
+  constexpr double kUnevenness_m = 0.02;
+  const PlacementConfig placement;
+  const double slope = std::tan(placement.max_tilt_deg * (std::numbers::pi / 180.0));
+  const double early_m = slope * footprint_radius_m(object, T_world_start.linear()) + kUnevenness_m;
+  const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
+  const TreeInstance at_start{&object.model->shape.touched, T_world_start};
+  const RadarScene surfaces{scene.surfaces, {}};
+  if (is_in_solid_unknown(scene.room, object, T_world_start)) return false;
+  const Contact around = scene.radar.query({at_start, down, height_m + kClearance_m, kClearance_m}, surfaces);
+  if (!(around.lower_m >= height_m - kClearance_m - early_m)) return false;
+  const Contact below = scene.radar.query({at_start, down, height_m + kUnevenness_m + early_m}, surfaces);
+  return below.status == ContactStatus::kContact && below.touched == SurfaceKind::kStatic;
+}
+
+/// Returns the end of a sentence that says why there is no place.
+std::string reason_of(SupportStatus status, double footprint_radius_m) {
+  std::array<char, 160> text{};
+  switch (status) {
+    case SupportStatus::kNothingMeasured:
+      return "the map has no surface between 0.4 and 4 m in this view";
+    case SupportStatus::kNotLevel:
+      return "the map has no level surface in this view";
+    case SupportStatus::kTooSmall:
+      std::snprintf(text.data(), text.size(),
+                    "no level surface in this view has a free circle of %.2f m across, which it needs",
+                    2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m));
+      return text.data();
+    case SupportStatus::kTooFar:
+      std::snprintf(
+          text.data(), text.size(),
+          "there is no free level circle of %.2f m across, which it needs, within %.0f cm of that point",
+          2.0 * (footprint_radius_m + PlacementConfig{}.room_to_spare_m),
+          100.0 * PlacementConfig{}.max_away_m);
+      return text.data();
+    case SupportStatus::kBlocked:
+      return "something is in the way above or beside every level surface that is large enough, or that "
+             "space "
+             "was not scanned";
+    case SupportStatus::kInvalidInput:
+    case SupportStatus::kFound:
+      break;
+  }
+  return "the frame has no usable depth";
 }
 
 }  // namespace
@@ -35,17 +87,24 @@ void require_small_enough(const VirtualObject& object, const DropRequest& drop) 
   throw Error(object.body.name + text.data());
 }
 
-std::optional<Eigen::Vector3d> find_drop_position(const VirtualObject& object,
-                                                  const Eigen::Matrix3d& R_world_object,
-                                                  const Intrinsics& camera,
-                                                  const Eigen::Isometry3d& T_world_camera,
-                                                  const ExpectedView& expected,
-                                                  const FrameForeground& foreground) {
-  const std::optional<Eigen::Vector3d> support_world =
-      find_support(seen_room_depth_m(expected, foreground), camera, T_world_camera,
-                   footprint_radius_m(object, R_world_object));
-  if (!support_world) return std::nullopt;
-  return *support_world - level_to_middle(object, R_world_object);
+DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,
+                                const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                                const ExpectedView& expected, const FrameForeground& foreground,
+                                const DropScene& scene) {
+  const Eigen::Matrix3d R_world_object = drop.R_world_object.value_or(object.body.T_world_object.linear());
+  const Eigen::Vector3d to_middle = level_to_middle(object, R_world_object);
+  const auto is_free = [&](const Eigen::Vector3d& point_world) {
+    Eigen::Isometry3d T_world_start = Eigen::Isometry3d::Identity();
+    T_world_start.linear() = R_world_object;
+    T_world_start.translation() = point_world - to_middle;
+    T_world_start.translation().z() += drop.height_m - lowest_m(object, R_world_object);
+    return is_fall_free(object, T_world_start, drop.height_m, scene);
+  };
+  const double radius_m = footprint_radius_m(object, R_world_object);
+  const Support support = find_support(seen_room_depth_m(expected, foreground), camera, T_world_camera,
+                                       {radius_m, drop.near_world, is_free});
+  if (!support) return {std::nullopt, reason_of(support.status, radius_m)};
+  return {support.point_world - to_middle, {}};
 }
 
 }  // namespace roomradar

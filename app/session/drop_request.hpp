@@ -4,17 +4,24 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/objects/virtual_object.hpp"
 #include "app/session/frame_scene.hpp"
+#include "app/session/session_room.hpp"
 #include "mapping/types/intrinsics.hpp"
+#include "radar/exact/cyber_radar.hpp"
+#include "radar/geometry/radar_scene.hpp"
 
 namespace roomradar {
 
-/// An object falls from above a point, or from above a level surface in view.
+/// Drops an object from above a position, or from above a level surface in view.
 struct DropRequest {
   std::string name{};
   std::optional<Eigen::Vector3d> position_world{};  ///< unset: over a level surface in view
+  /// Without position_world: the surface nearest to this point, at most 25 cm away; unset: the one nearest to
+  /// the picture's middle.
+  std::optional<Eigen::Vector3d> near_world{};
   double height_m = 0.3;  ///< height of its lowest point above the position or surface
   std::optional<Eigen::Matrix3d> R_world_object{};  ///< unset: the object keeps its orientation
 };
@@ -23,18 +30,33 @@ struct DropRequest {
 struct WaitingDrop {
   DropRequest drop;
   std::int64_t try_at_frame = 0;  ///< earliest localised frame for the next search
+  std::string why{};  ///< why the last search found no place, as the end of a sentence; empty: none so far
 };
 
 /// Throws Error if the object is too large for any place in view.
 void require_small_enough(const VirtualObject& object, const DropRequest& drop);
 
-/// Searches a level surface of the room in view with space for the object; dynamic surfaces do not count.
-/// @param R_world_object        orientation in which the object is dropped
+/// Surfaces of a frame, and the queries that check whether an object's fall is free.
+struct DropScene {
+  const SessionRoom& room;
+  const std::vector<SceneTree>& surfaces;  ///< everything that the object can touch
+  CyberRadar& radar;
+};
+
+/// Result of find_drop_position().
+struct [[nodiscard]] DropPosition {
+  std::optional<Eigen::Vector3d>
+      position_world;  ///< position of the object's origin, with its centre on the surface
+  std::string why;     ///< if there is no position: the end of a sentence
+};
+
+/// Searches a level surface of the room in view on which the object can stand, with the space above it free;
+/// dynamic surfaces do not count.
 /// @param camera                the depth camera
 /// @param expected, foreground  of this frame
-/// @returns position of the object's origin that puts its centre on the surface; nothing if no place is found
-std::optional<Eigen::Vector3d> find_drop_position(
-    const VirtualObject& object, const Eigen::Matrix3d& R_world_object, const Intrinsics& camera,
-    const Eigen::Isometry3d& T_world_camera, const ExpectedView& expected, const FrameForeground& foreground);
+DropPosition find_drop_position(const VirtualObject& object, const DropRequest& drop,
+                                const Intrinsics& camera, const Eigen::Isometry3d& T_world_camera,
+                                const ExpectedView& expected, const FrameForeground& foreground,
+                                const DropScene& scene);
 
 }  // namespace roomradar

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/objects/departure.hpp"
+#include "app/objects/object_notice.hpp"
 #include "app/session/frame_use.hpp"
 #include "dynamic/foreground/foreground.hpp"
 #include "mapping/localization/locator.hpp"
@@ -33,6 +34,7 @@ struct FrameResult {
   std::array<int, kSurfaceKinds> contacts_by_kind{};  ///< contacts per kind of surface touched
   double deepest_penetration_m = 0.0;                 ///< >= 0; only if measured
   std::vector<Departure> departures;                  ///< objects that fell out of the map
+  std::vector<ObjectNotice> notices;                  ///< since the frame before
   FrameUse use;                                       ///< kDone only
   bool picture_is_new = false;                        ///< false: picture() is that of an earlier frame
 };

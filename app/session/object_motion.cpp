@@ -48,6 +48,38 @@ void advance_object(VirtualObject& object, double waited_s, const CollisionQueri
   }
 }
 
+void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
+                         const PhysicsConfig& config, CyberRadar& radar, ProximityQuery& proximity,
+                         std::vector<SceneTree>& scene, double& radar_ms) {
+  const auto back = std::find_if(scene.begin(), scene.end(), [](const SceneTree& surface) {
+    return surface.kind == SurfaceKind::kInferredBack;
+  });
+  if (back == scene.end()) return;
+  const RadarScene of_back{{&*back, 1}, {}};
+  const CollisionQueries probe =
+      make_collision_queries(radar, proximity, object.model->shape.touched, of_back, &radar_ms);
+  if (is_engulfed(object.body, waited_s, probe.travel, config, push.span())) scene.erase(back);
+}
+
+std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects) {
+  constexpr double kAbout_m = 0.02;  // an object's travel per frame at 0.6 m/s
+  std::vector<FineRegion> regions;
+  for (const auto& object : objects) {
+    if (object->in_room)
+      regions.push_back({object->body.T_world_object * object->model->middle, radius_m(*object) + kAbout_m});
+  }
+  return regions;
+}
+
+void set_fine_cells(std::span<const std::unique_ptr<VirtualObject>> objects,
+                    std::span<const std::uint32_t> cells_of_region) {
+  std::size_t region = 0;
+  for (const auto& object : objects) {
+    const bool has_region = object->in_room && region < cells_of_region.size();
+    object->fine_cells = has_region ? cells_of_region[region++] : 0;
+  }
+}
+
 void turn_until_contact(VirtualObject& object, const Eigen::Vector3d& turn_world_deg,
                         std::span<const SceneTree> scene, CyberRadar& radar) {
   RigidMotion motion;

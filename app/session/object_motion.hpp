@@ -2,12 +2,16 @@
 #pragma once
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
+#include <memory>
 #include <span>
+#include <vector>
 
 #include "app/objects/virtual_object.hpp"
 #include "app/physics/collision_queries.hpp"
 #include "app/physics/depenetration.hpp"
 #include "app/physics/physics_config.hpp"
+#include "dynamic/surface/dynamic_surface_config.hpp"
 #include "radar/exact/cyber_radar.hpp"
 #include "radar/geometry/radar_scene.hpp"
 
@@ -25,6 +29,19 @@ struct ContactCounts {
 /// @param counts    the object's contacts are added
 void advance_object(VirtualObject& object, double waited_s, const CollisionQueries& probe,
                     const PhysicsConfig& config, const PushDirections& push, ContactCounts& counts);
+
+/// Removes the inferred back from the scene if it engulfs the object.
+/// @param radar_ms  the time of the queries is added
+void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
+                         const PhysicsConfig& config, CyberRadar& radar, ProximityQuery& proximity,
+                         std::vector<SceneTree>& scene, double& radar_ms);
+
+/// Returns balls around the objects in the room, in which the dynamic mesh has full resolution.
+std::vector<FineRegion> fine_regions(std::span<const std::unique_ptr<VirtualObject>> objects);
+
+/// Sets fine_cells of all objects: the counts of fine_regions(), in its order; 0 without a count.
+void set_fine_cells(std::span<const std::unique_ptr<VirtualObject>> objects,
+                    std::span<const std::uint32_t> cells_of_region);
 
 /// Rotates an object about its middle, degrees about the world's axes, until something of the scene is in the
 /// way, and wakes it. Does nothing if the radar returns no usable result.

@@ -2,8 +2,15 @@
 #include "app/session/object_overlap.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <limits>
-#include <vector>
+#include <optional>
+#include <utility>
+
+#include "app/physics/free_pose.hpp"
+#include "app/physics/rigid_motion.hpp"
 
 namespace roomradar {
 namespace {
@@ -36,7 +43,82 @@ bool share_space(CyberRadar& radar, ProximityQuery& field, const TreeInstance& a
   return overlap_shifted(shift_m) && overlap_shifted(-shift_m);
 }
 
+constexpr double kWayOut_m = 0.10;   // max way of an object out of what it was put into
+constexpr double kSearched_m = 1.0;  // radius in which a free place is searched for the message
+
+std::string millimetres(double distance_m) { return std::to_string(std::lround(1e3 * distance_m)) + " mm"; }
+
+/// Returns "X Y Z m", as a script takes it.
+std::string coordinates(const Eigen::Vector3d& p) {
+  std::array<char, 80> text{};
+  std::snprintf(text.data(), text.size(), "%.3f %.3f %.3f m", p.x(), p.y(), p.z());
+  return text.data();
+}
+
+bool is_middle_unknown(const SessionRoom& room, const VirtualObject& object,
+                       const Eigen::Isometry3d& T_world_object) {
+  return room.unknown_is_solid && is_unknown(*room.unknown, T_world_object * object.model->middle);
+}
+
+TreeInstance instance_of(const VirtualObject& object) {
+  return {&object.model->shape.touched, object.body.T_world_object};
+}
+
+std::optional<FreePose> free_pose_near(const VirtualObject& object, double max_m, const WayOut& way) {
+  const auto is_known = [&](const Eigen::Isometry3d& T_world_object) {
+    return !is_middle_unknown(way.room, object, T_world_object);
+  };
+  return nearest_free_pose(instance_of(object), way.all, way.gap_m, max_m, is_known, way.radar,
+                           way.proximity);
+}
+
 }  // namespace
+
+std::string leave_surfaces(VirtualObject& object, const WayOut& way) {
+  constexpr double kSaid_m = 0.005;  // less is a surface's noise
+  const bool crosses = is_crossed(instance_of(object), way.surfaces, way.proximity);
+  if (!crosses && !is_middle_unknown(way.room, object, object.body.T_world_object)) return {};
+  if (const auto free = free_pose_near(object, kWayOut_m, way)) {
+    object.body.T_world_object = free->T_world_object;
+    if (free->moved_m < kSaid_m) return {};
+    return " would begin in a surface, and is moved out by " + millimetres(free->moved_m);
+  }
+  if (!crosses) return {};  // all of it is in unknown space, which it can leave
+  std::string text = object.body.name + ": cannot begin at " +
+                     coordinates(object.body.T_world_object.translation()) +
+                     ": a surface is in the way, and there is no free place within 10 cm";
+  if (const auto far = free_pose_near(object, kSearched_m, way))
+    text += "; the nearest found is " + coordinates(far->T_world_object.translation());
+  throw PlaceRefused(text);
+}
+
+bool is_still_too_long(VirtualObject& object, double waited_s) {
+  constexpr double kStill_m = 0.002, kStuckAfter_s = 1.0;
+  if (object.body.asleep || object.carried_to_world ||
+      strayed_m(object.body, object.T_world_still) > kStill_m) {
+    object.T_world_still = object.body.T_world_object;
+    object.still_s = 0.0;
+    object.stuck = false;
+    return false;
+  }
+  object.still_s += waited_s;
+  if (object.still_s < kStuckAfter_s) return false;
+  object.still_s = 0.0;
+  return true;
+}
+
+std::string free_or_stuck(VirtualObject& object, const WayOut& way) {
+  std::vector<SceneTree> lasting = way.all;  // what moves goes away, or pushes
+  std::erase_if(lasting, [](const SceneTree& surface) { return is_moving_surface(surface.kind); });
+  if (!is_crossed(instance_of(object), lasting, way.proximity)) return {};
+  if (const auto free = free_pose_near(object, kWayOut_m, way)) {
+    object.body.T_world_object = free->T_world_object;
+    return " was stuck in a surface, and is moved out by " + millimetres(free->moved_m);
+  }
+  if (std::exchange(object.stuck, true)) return {};
+  return " is stuck in a surface at " + coordinates(object.body.T_world_object.translation()) +
+         "; place it somewhere else";
+}
 
 void raise_over_others(VirtualObject& object, std::span<const std::unique_ptr<VirtualObject>> objects,
                        std::span<const SceneTree> room, double margin_m, CyberRadar& radar,

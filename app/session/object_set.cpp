@@ -13,7 +13,6 @@ namespace roomradar {
 namespace {
 
 constexpr double kNearbyReach_m = 0.25;  // dynamic surfaces farther than this from the object do not push it
-
 }  // namespace
 
 ObjectSet::ObjectSet(GlContext& context, const FrameScene& scene, const SessionRoom& room,
@@ -55,17 +54,33 @@ VirtualObject& ObjectSet::take_over(const std::string& name) {
 }
 
 void ObjectSet::put(VirtualObject& object, const ObjectState& state) {
+  const Eigen::Isometry3d T_world_before = object.body.T_world_object;
   if (state.R_world_object) object.body.T_world_object.linear() = *state.R_world_object;
   object.body.T_world_object.translation() = state.position_world;
+  try {
+    raise_over_others(object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_,
+                      proximity_);
+    const std::string moved = leave_surfaces(object, way_out_of(object));
+    if (!moved.empty()) notices_.push_back({object.body.name, moved});
+  } catch (const PlaceRefused&) {
+    object.body.T_world_object = T_world_before;
+    throw;
+  }
   object.R_world_put = object.body.T_world_object.linear();
   object.body.velocity_world_mps = state.velocity_world_mps;
   object.body.angular_velocity_world_rad_s = state.angular_velocity_world_rad_s;
   object.body.asleep = false;
   object.in_room = true;
   object.waited_s = 0.0;
-  raise_over_others(object, objects_, scene_.surfaces(), config_.physics.contact_margin_m, radar_,
-                    proximity_);
+  object.stuck = false;
+  object.still_s = 0.0;
+  object.T_world_still = object.body.T_world_object;
   object.in_unknown = object.began_in_unknown = is_in_solid_unknown(room_, object);
+}
+
+WayOut ObjectSet::way_out_of(const VirtualObject& object) {
+  return {room_,        scene_.surfaces(), scene_without(&object), config_.physics.contact_margin_m,
+          exact_radar_, proximity_};
 }
 
 void ObjectSet::place(const std::string& name, const ObjectState& state) { put(take_over(name), state); }
@@ -114,16 +129,27 @@ void ObjectSet::release_waiting(const Frame& frame, const Eigen::Isometry3d& T_w
     }
     DropRequest& drop = waiting.drop;
     const VirtualObject& object = named(drop.name);
-    const Eigen::Matrix3d R_world_object = drop.R_world_object.value_or(object.body.T_world_object.linear());
-    const std::optional<Eigen::Vector3d> position_world =
-        find_drop_position(object, R_world_object, frame.depth_camera, T_world_camera, expected, foreground);
-    if (!position_world) {  // staggered, so waiting drops do not all search in the same frame
-      waiting.try_at_frame = frame_number + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());
-      waiting_.push_back(std::move(waiting));
+    const std::vector<SceneTree> surfaces = scene_without(&object);
+    DropPosition found = find_drop_position(object, drop, frame.depth_camera, T_world_camera, expected,
+                                            foreground, {room_, surfaces, exact_radar_});
+    if (found.position_world) {
+      drop.position_world = found.position_world;
+      try {
+        this->drop(drop, frame_number);
+      } catch (const PlaceRefused& refused) {
+        notices_.push_back({"", refused.what()});
+      }
       continue;
     }
-    drop.position_world = position_world;
-    this->drop(drop, frame_number);
+    if (drop.near_world) {
+      notices_.push_back({drop.name, " is not dropped: " + found.why});
+      continue;
+    }
+    if (waiting.why.empty()) notices_.push_back({drop.name, " is not dropped so far: " + found.why});
+    waiting.why = std::move(found.why);
+    // staggered, so that not all search in one frame
+    waiting.try_at_frame = frame_number + kAgainAfter_frames + static_cast<std::int64_t>(waiting_.size());
+    waiting_.push_back(std::move(waiting));
   }
 }
 
@@ -146,36 +172,30 @@ PushDirections ObjectSet::push_of(const VirtualObject& object) const {
       object.body.T_world_object * object.model->middle, radius_m(object) + kNearbyReach_m);
 }
 
-void ObjectSet::drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
-                                    std::vector<SceneTree>& scene, double& radar_ms) {
-  const auto back = std::find_if(scene.begin(), scene.end(), [](const SceneTree& surface) {
-    return surface.kind == SurfaceKind::kInferredBack;
-  });
-  if (back == scene.end()) return;
-  const RadarScene of_back{{&*back, 1}, {}};
-  const CollisionQueries probe =
-      make_collision_queries(radar_, proximity_, object.model->shape.touched, of_back, &radar_ms);
-  if (is_engulfed(object.body, waited_s, probe.travel, config_.physics, push.span())) scene.erase(back);
-}
-
 ContactCounts ObjectSet::move(double dt_s, std::int64_t frame_number, StageTimes& times) {
   ContactCounts counts;
+  constexpr double kStuckLooksAfter_s = 0.5;  // overlaps are the most expensive contacts
   double radar_ms = 0.0;
   for (std::size_t index = 0; index < objects_.size(); ++index) {
     VirtualObject* const object = objects_[index].get();
     if (!object->in_room) continue;
     object->waited_s += std::min(dt_s, config_.physics.max_advance_s);  // longer gaps are stalls
     if (!object->carried_to_world && !is_turn_to_move(index, frame_number)) continue;
+    if (object->stuck && object->waited_s < kStuckLooksAfter_s) continue;
     const double waited_s = std::exchange(object->waited_s, 0.0);
     if (!object->body.asleep) object->in_unknown = object->in_unknown && is_in_solid_unknown(room_, *object);
     const PushDirections push = push_of(*object);
     std::vector<SceneTree> scene = scene_without(object);
-    drop_engulfing_back(*object, waited_s, push, scene, radar_ms);
+    drop_engulfing_back(*object, waited_s, push, config_.physics, radar_, proximity_, scene, radar_ms);
     const RadarScene radar_scene{scene, {}};
     CollisionQueries probe =
         make_collision_queries(radar_, proximity_, object->model->shape.touched, radar_scene, &radar_ms);
     probe.others = bodies_in(scene, *object);
     advance_object(*object, waited_s, probe, config_.physics, push, counts);
+    if (is_still_too_long(*object, waited_s)) {
+      const std::string news = free_or_stuck(*object, way_out_of(*object));
+      if (!news.empty()) notices_.push_back({object->body.name, news});
+    }
   }
   times.add_ms("radar", radar_ms);
   return counts;
@@ -230,24 +250,12 @@ std::span<const SceneBody> ObjectSet::bodies_in(const std::vector<SceneTree>& sc
 }
 
 std::vector<FineRegion> ObjectSet::fine_regions() const {
-  constexpr double kAbout_m = 0.02;  // an object's travel per frame at 0.6 m/s
-  std::vector<FineRegion> regions;
-  if (!config_.fine_mesh) return regions;
-  for (const auto& object : objects_) {
-    if (object->in_room)
-      regions.push_back({object->body.T_world_object * object->model->middle, radius_m(*object) + kAbout_m});
-  }
-  return regions;
+  return config_.fine_mesh ? roomradar::fine_regions(objects_) : std::vector<FineRegion>{};
 }
 
 void ObjectSet::count_fine_cells() {
-  const std::vector<std::uint32_t>& of_region = scene_.dynamic_cells().fine_of_region;
   const bool has_map = config_.scene.surfaces == SurfacePolicy::kMap;
-  std::size_t region = 0;  // one region per object in the room, in this order
-  for (const auto& object : objects_) {
-    const bool has_region = has_map && object->in_room && region < of_region.size();
-    object->fine_cells = has_region ? of_region[region++] : 0;
-  }
+  set_fine_cells(objects_, has_map ? scene_.dynamic_cells().fine_of_region : std::vector<std::uint32_t>{});
 }
 
 void ObjectSet::set_radar(const RadarConfig& config) {

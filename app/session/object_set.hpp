@@ -6,14 +6,16 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/objects/departure.hpp"
+#include "app/objects/object_notice.hpp"
 #include "app/objects/virtual_object.hpp"
-#include "app/physics/depenetration.hpp"
 #include "app/session/drop_request.hpp"
 #include "app/session/frame_scene.hpp"
 #include "app/session/object_motion.hpp"
+#include "app/session/object_overlap.hpp"
 #include "app/session/session_config.hpp"
 #include "app/session/session_room.hpp"
 #include "mapping/types/system/stage_times.hpp"
@@ -47,10 +49,12 @@ class ObjectSet {
   /// Adds an object from parts that were prepared earlier, such as on another thread.
   void add(const std::string& name, ObjectParts parts);
   /// Puts an object into the room. If it would overlap other objects, it begins on top of them where the room
-  /// leaves space.
+  /// leaves space. If a surface of the room crosses it, or it is in solid unknown space, it begins at the
+  /// nearest free pose within 10 cm, with a notice. Throws PlaceRefused if a surface crosses it and no free
+  /// pose is that near; nothing has changed then.
   void place(const std::string& name, const ObjectState& state);
-  /// Drops an object. Without a position the drop waits for release_waiting(); then throws Error if the
-  /// object is too large for any place in view.
+  /// Drops an object; at a position as place(). Without a position the drop waits for release_waiting(); then
+  /// throws Error if the object is too large for any place in view.
   void drop(const DropRequest& drop, std::int64_t frame_number);
   /// Carries an object towards a position until something is in the way; lasts until release().
   void carry(const std::string& name, const Eigen::Vector3d& position_world);
@@ -59,7 +63,8 @@ class ObjectSet {
   void turn(const std::string& name, const Eigen::Vector3d& turn_world_deg);
   void remove(const std::string& name);
 
-  /// Searches surfaces in view for drops that wait.
+  /// Searches surfaces in view for drops that wait. A drop near a point is searched once; if there is no
+  /// place, the drop ends with a notice. Other drops are searched again in later frames.
   /// @param expected, foreground  of this frame
   void release_waiting(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                        const ExpectedView& expected, const FrameForeground& foreground,
@@ -69,6 +74,8 @@ class ObjectSet {
   ContactCounts move(double dt_s, std::int64_t frame_number, StageTimes& times);
   /// Sets back objects that fell out of the map; call after move(). Returns them.
   std::vector<Departure> end_departures();
+  /// Returns the notices since the last call.
+  std::vector<ObjectNotice> take_notices() { return std::exchange(notices_, {}); }
   /// Returns the greatest overlap of an object with the room or another object along gravity, m, >= 0.
   double penetration_m();
 
@@ -98,8 +105,9 @@ class ObjectSet {
   CyberRadar radar_;
   std::uint64_t tested_before_ = 0;  ///< static triangles examined by earlier radars
   ProximityQuery proximity_;
+  std::vector<ObjectNotice> notices_;
   std::vector<SceneBody> bodies_;  ///< bodies in the scene of the object being moved
-  CyberRadar exact_radar_;         ///< measures penetration
+  CyberRadar exact_radar_;         ///< for drops, ways out of surfaces and penetration
 
   VirtualObject& named(const std::string& name);
   void require_new(const std::string& name) const;
@@ -108,13 +116,11 @@ class ObjectSet {
   /// Returns the object for an event that replaces its waiting drop and ends carrying.
   VirtualObject& take_over(const std::string& name);
   void put(VirtualObject& object, const ObjectState& state);
+  [[nodiscard]] WayOut way_out_of(const VirtualObject& object);
   /// Returns true if the object with this index is moved in this frame.
   [[nodiscard]] bool is_turn_to_move(std::size_t index, std::int64_t frame_number) const;
   /// Returns the directions in which dynamic surfaces near the object push it out.
   [[nodiscard]] PushDirections push_of(const VirtualObject& object) const;
-  /// Removes the inferred back from the scene if it engulfs the object.
-  void drop_engulfing_back(const VirtualObject& object, double waited_s, const PushDirections& push,
-                           std::vector<SceneTree>& scene, double& radar_ms);
   /// Returns one entry per tree of scene_without(): the tree's body, or null if the tree is not an object.
   std::span<const SceneBody> bodies_in(const std::vector<SceneTree>& scene, const VirtualObject& object);
 };

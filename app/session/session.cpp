@@ -165,6 +165,7 @@ FrameResult Session::pass_through(const Frame& whole, StageTimes& times) {
   result.dynamic_triangles = scene_.dynamic_triangles();
   result.inferred_triangles = scene_.inferred_triangles();
   result.departures = std::move(departures);
+  result.notices = objects_.take_notices();
   result.contacts = moved.contacts;
   result.contacts_by_kind = moved.by_kind;
   result.use = use_of(room_, scene_, config_.scene.surfaces == SurfacePolicy::kMap, foreground.counts,
@@ -203,14 +204,8 @@ FrameLoad Session::load() const {
 const Frame& Session::with_depth_reduced(const Frame& frame) {
   const int stride = usable_stride(frame.depth_camera, config_.depth_stride);
   if (stride == 1) return frame;
-  reduced_.index = frame.index;
-  reduced_.stamp_s = frame.stamp_s;
+  copy_all_but_images(frame, reduced_);
   reduced_.colour = frame.colour;
-  reduced_.colour_camera = frame.colour_camera;
-  reduced_.colour_after_depth_s = frame.colour_after_depth_s;
-  reduced_.T_colour_depth = frame.T_colour_depth;
-  reduced_.T_world_camera = frame.T_world_camera;
-  reduced_.down_camera = frame.down_camera;
   reduce_depth(frame, stride, reduced_);
   return reduced_;
 }

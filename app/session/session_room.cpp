@@ -6,9 +6,13 @@
 namespace roomradar {
 
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object) {
+  return is_in_solid_unknown(room, object, object.body.T_world_object);
+}
+
+bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object,
+                         const Eigen::Isometry3d& T_world_object) {
   if (!room.unknown_is_solid) return false;
   const UnknownSurface& unknown = *room.unknown;
-  const Eigen::Isometry3d& T_world_object = object.body.T_world_object;
   const GpuMesh& mesh = object.model->shape.drawn;
   const auto corner = [&](std::uint32_t vertex) -> Eigen::Vector3d {
     return T_world_object * (mesh.origin() + mesh.vertices()[vertex].cast<double>());

@@ -21,6 +21,9 @@ struct SessionRoom {
 
 /// Returns true if unknown space is solid and a corner or the centre of a triangle of the object is in it.
 bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object);
+/// Same, with the object at another pose.
+bool is_in_solid_unknown(const SessionRoom& room, const VirtualObject& object,
+                         const Eigen::Isometry3d& T_world_object);
 
 /// Returns the least height of the map's surface and observed space, m in the world.
 double lowest_known_m(const SavedMap& map);

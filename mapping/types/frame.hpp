@@ -27,4 +27,16 @@ struct Frame {
   std::optional<Eigen::Vector3d> down_camera;       ///< unit direction of gravity in the camera frame
 };
 
+/// Copies index, times, cameras and poses; the images of `to` stay.
+inline void copy_all_but_images(const Frame& from, Frame& to) {
+  to.index = from.index;
+  to.stamp_s = from.stamp_s;
+  to.depth_camera = from.depth_camera;
+  to.colour_camera = from.colour_camera;
+  to.colour_after_depth_s = from.colour_after_depth_s;
+  to.T_colour_depth = from.T_colour_depth;
+  to.T_world_camera = from.T_world_camera;
+  to.down_camera = from.down_camera;
+}
+
 }  // namespace roomradar

@@ -107,14 +107,14 @@ void measure_rest(nlohmann::json& rows) {
     for (int i = 0; source.next(frame).status == ReadStatus::kFrame; ++i) {
       const Eigen::Isometry3d& T_world_camera = *frame.T_world_camera;
       if (i == 0) {
-        const auto support_world = find_support(frame.depth_m, frame.depth_camera, T_world_camera, 0.12);
-        if (!support_world) throw Error(std::string(name) + ": no level surface in view");
+        const Support support = find_support(frame.depth_m, frame.depth_camera, T_world_camera, {0.12});
+        if (!support) throw Error(std::string(name) + ": no level surface in view");
         for (const Thing* thing : {&cube, &pot, &ball, &plate}) {
           for (auto& of_policy : lying) {
             Lying& one = of_policy.emplace_back();
             one.thing = thing;
             one.body.mass = thing->mass;
-            one.body.T_world_object.translation() = *support_world + Vec3(0, 0, 0.1 + thing->mass.radius_m);
+            one.body.T_world_object.translation() = support.point_world + Vec3(0, 0, 0.1 + thing->mass.radius_m);
           }
         }
       }

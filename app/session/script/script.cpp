@@ -109,7 +109,9 @@ void read_action(LineReader& line, ScriptEvent& event) {
       event.position_world = read_position(line);
       break;
     case Action::kDrop:
-      if (!line.take_if("view")) {
+      if (line.take_if("near")) {
+        event.near_world = read_position(line);
+      } else if (!line.take_if("view")) {
         line.expect("at");
         event.position_world = read_position(line);
       }
@@ -227,7 +229,9 @@ std::string to_line(const ScriptEvent& event) {
       line += vector_words(*event.position_world);
       break;
     case Action::kDrop:
-      line += event.position_world ? " at" + vector_words(*event.position_world) : " view";
+      line += event.position_world ? " at" + vector_words(*event.position_world)
+              : event.near_world   ? " near" + vector_words(*event.near_world)
+                                   : " view";
       line += " height" + number_word(event.height_m) + turned_words(event);
       break;
     case Action::kThrow:

@@ -21,7 +21,8 @@ enum class LastLine { kWhole, kMayBeCut };
 /// Reads an events file. One event per line, words separated by blanks, # begins a comment:
 ///
 ///     frame 0    add pot teapot size 0.2
-///     frame 10   drop pot view height 0.3         over a level surface that the camera sees
+///     frame 10   drop pot view height 0.3         over the free level surface nearest to the view's middle
+///     frame 11   drop pot near 0.4 -0.1 0.7       over the one nearest to this point, at most 25 cm away
 ///     time 2.5   drop pot at 0.4 -0.1 0.75 height 0.3
 ///     time 4     place pot 0.4 -0.1 0.9
 ///     time 5     throw pot 0.4 -0.1 1.2 velocity 1 0 0.5

@@ -53,6 +53,9 @@ struct ScriptEvent {
   std::optional<double> size_m;  ///< kAdd: length of the longest side after scaling; unset: not scaled
   /// kPlace, kDrop, kThrow, kCarry. kDrop without a position: over a surface in view.
   std::optional<Eigen::Vector3d> position_world;
+  /// kDrop without a position: over the surface in view nearest to this point; unset: nearest to the view's
+  /// middle.
+  std::optional<Eigen::Vector3d> near_world;
   double height_m = 0.3;  ///< kDrop: initial height of its lowest point above the position or surface
   Eigen::Vector3d velocity_world_mps = Eigen::Vector3d::Zero();  ///< kThrow, kRelease: velocity of the centre
                                                                  ///< of mass

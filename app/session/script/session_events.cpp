@@ -23,7 +23,8 @@ void apply(Session& session, const ScriptEvent& event) {
       session.place(event.name, state_of(event));
       break;
     case Action::kDrop:
-      session.drop({event.name, event.position_world, event.height_m, event.R_world_object});
+      session.drop(
+          {event.name, event.position_world, event.near_world, event.height_m, event.R_world_object});
       break;
     case Action::kCarry:
       session.carry(event.name, *event.position_world);

@@ -25,20 +25,6 @@ fs::path colour_file(const fs::path& folder, std::size_t position) {
   return folder / (std::to_string(position) + ".colour.png");
 }
 
-/// Copies all of the frame except its images.
-Frame without_images(const Frame& frame) {
-  Frame rest;
-  rest.index = frame.index;
-  rest.stamp_s = frame.stamp_s;
-  rest.colour_after_depth_s = frame.colour_after_depth_s;
-  rest.depth_camera = frame.depth_camera;
-  rest.colour_camera = frame.colour_camera;
-  rest.T_colour_depth = frame.T_colour_depth;
-  rest.T_world_camera = frame.T_world_camera;
-  rest.down_camera = frame.down_camera;
-  return rest;
-}
-
 template <typename Archive>
 void serialize_entry(Archive& archive, SpoolEntry& entry) {
   Frame& frame = entry.frame;
@@ -134,7 +120,9 @@ SpoolEntry write_spooled(const Frame& frame, const fs::path& folder, std::size_t
   std::error_code fault;
   fs::remove(colour_file(folder, position), fault);
   if (!frame.colour.empty()) write_colour_file(frame.colour, colour_file(folder, position));
-  return {without_images(frame), {}};
+  SpoolEntry entry;
+  copy_all_but_images(frame, entry.frame);
+  return entry;
 }
 
 ReadResult read_spooled(const SpoolEntry& entry, const fs::path& folder, std::size_t position, Frame& frame) {

@@ -174,10 +174,15 @@ void Player::drop_or_place(const UserCommand& command, const Session& session,
   }
   ScriptEvent event =
       event_of(command.kind == UserCommandKind::kPlace ? Action::kPlace : Action::kDrop, chosen_);
-  event.position_world = hit->point_world - level_to_middle(*object, object->body.T_world_object.linear());
   event.height_m = command.event.height_m;
-  if (command.kind == UserCommandKind::kPlace)
-    event.position_world->z() += kOverSurface_m - lowest_m(*object);
+  const bool is_on_object = &hit == &pointed.object;
+  if (command.kind == UserCommandKind::kDrop && !is_on_object) {
+    event.near_world = hit->point_world;
+  } else {
+    event.position_world = hit->point_world - level_to_middle(*object, object->body.T_world_object.linear());
+    if (command.kind == UserCommandKind::kPlace)
+      event.position_world->z() += kOverSurface_m - lowest_m(*object);
+  }
   events.push_back(event);
 }
 

@@ -40,7 +40,7 @@ void SnapshotMaker::fill(const Session& session, const FrameResult& result, cons
     shown.objects.push_back({object->body.name, mesh, object->body.T_world_object,
                              object->model->shape.drawn.bounds(), object->body.velocity_world_mps,
                              object->in_room, object->body.asleep, object->carried_to_world.has_value(),
-                             object->body.rests_on});
+                             object->stuck, object->body.rests_on});
   }
   shown.surfaces = session.config().scene.surfaces;
   shown.unknown_is_solid = session.unknown_is_solid();

@@ -64,6 +64,7 @@ struct ShownObject {
   bool in_room = false;
   bool asleep = false;
   bool is_carried = false;
+  bool stuck = false;
   SurfaceKind rests_on = SurfaceKind::kNothing;
 };
 

@@ -30,6 +30,7 @@ void draw_label(ImDrawList& draw, ImVec2 at, const std::string& text, ImU32 colo
 std::string what_it_does(const ShownObject& object) {
   if (!object.in_room) return "not in the room";
   if (object.is_carried) return "carried";
+  if (object.stuck) return "stuck in a surface";
   if (object.asleep) return "at rest on " + std::string(to_string(object.rests_on));
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "moves at %.1f m/s", object.velocity_world_mps.norm());

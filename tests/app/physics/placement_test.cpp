@@ -63,30 +63,79 @@ const Box kTable{{-0.6, -0.4, 0.70}, {0.6, 0.4, 0.73}};
 TEST(Placement, FindsTheMiddleOfATable) {
   const Eigen::Isometry3d T_world_camera = looking({0, -1.2, 1.4}, {0, 0, 0.7});
   for (const bool is_noisy : {false, true}) {
-    const auto support_world =
-        find_support(view_of({kFloor, kTable}, T_world_camera, is_noisy), kCamera, T_world_camera, 0.12);
-    ASSERT_TRUE(support_world) << is_noisy;
-    EXPECT_NEAR(support_world->z(), 0.73, is_noisy ? 0.008 : 0.002);
-    EXPECT_LT(std::abs(support_world->x()), 0.6 - 0.12);
-    EXPECT_LT(std::abs(support_world->y()), 0.4 - 0.12);
-    EXPECT_LT(support_world->head<2>().norm(), 0.25);
+    const Support support =
+        find_support(view_of({kFloor, kTable}, T_world_camera, is_noisy), kCamera, T_world_camera, {0.12});
+    ASSERT_TRUE(support) << is_noisy;
+    EXPECT_NEAR(support.point_world.z(), 0.73, is_noisy ? 0.008 : 0.002);
+    EXPECT_LT(std::abs(support.point_world.x()), 0.6 - 0.12);
+    EXPECT_LT(std::abs(support.point_world.y()), 0.4 - 0.12);
+    EXPECT_LT(support.point_world.head<2>().norm(), 0.25);
   }
 }
 
-TEST(Placement, PrefersTheTableToMoreFloor) {
-  // The floor is at the image's centre.
-  const Eigen::Isometry3d T_world_camera = looking({0, -2.0, 1.5}, {0.3, 0.3, 0.3});
-  const auto support_world =
-      find_support(view_of({kFloor, kTable}, T_world_camera), kCamera, T_world_camera, 0.1);
-  ASSERT_TRUE(support_world);
-  EXPECT_NEAR(support_world->z(), 0.73, 0.005);
+TEST(Placement, TakesThePlaceNearestToTheMiddleOfTheView) {
+  // Looks at the floor beside the table, then at the table: both have places.
+  for (const double height_m : {0.0, 0.73}) {
+    const Vec3 at(height_m > 0.0 ? 0.1 : 1.5, 0.0, height_m);
+    const Eigen::Isometry3d T_world_camera = looking({at.x(), -1.6, 1.6}, at);
+    const Support support =
+        find_support(view_of({kFloor, kTable}, T_world_camera), kCamera, T_world_camera, {0.1});
+    ASSERT_TRUE(support);
+    EXPECT_LT((support.point_world - at).norm(), 0.03) << height_m;
+  }
+}
+
+TEST(Placement, TakesThePlaceNearestToAPointWithinReach) {
+  const Eigen::Isometry3d T_world_camera = looking({0, -1.2, 1.4}, {0, 0, 0.7});
+  const DepthImage depth_m = view_of({kFloor, kTable}, T_world_camera);
+  const Support there = find_support(depth_m, kCamera, T_world_camera, {0.1, Vec3(0.3, 0.1, 0.73)});
+  ASSERT_TRUE(there);
+  EXPECT_LT((there.point_world - Vec3(0.3, 0.1, 0.73)).norm(), 0.03);
+  // At the table's edge: moved inwards by footprint and margin.
+  const Support inside = find_support(depth_m, kCamera, T_world_camera, {0.1, Vec3(0.59, 0.0, 0.73)});
+  ASSERT_TRUE(inside);
+  EXPECT_NEAR(inside.point_world.x(), 0.6 - 0.1 - PlacementConfig{}.room_to_spare_m, 0.03);
+  EXPECT_EQ(find_support(depth_m, kCamera, T_world_camera, {0.1, Vec3(0.0, 0.0, 1.5)}).status,
+            SupportStatus::kTooFar);
+  EXPECT_EQ(find_support(depth_m, kCamera, T_world_camera, {0.1, Vec3(std::nan(""), 0.0, 0.73)}).status,
+            SupportStatus::kInvalidInput);
+}
+
+TEST(Placement, AsksIfAPlaceIsFreeAndSaysThatNoneIs) {
+  const Eigen::Isometry3d T_world_camera = looking({0, -1.2, 1.4}, {0, 0, 0.7});
+  const DepthImage depth_m = view_of({kFloor, kTable}, T_world_camera);
+  int tried = 0;
+  const Support left = find_support(depth_m, kCamera, T_world_camera, {0.1, {}, [&](const Vec3& p) {
+                                                                         ++tried;
+                                                                         return p.x() < -0.1;
+                                                                       }});
+  ASSERT_TRUE(left);
+  EXPECT_LT(left.point_world.x(), -0.1);
+  EXPECT_GT(left.point_world.x(), -0.2);
+  EXPECT_GT(tried, 1);
+  EXPECT_EQ(
+      find_support(depth_m, kCamera, T_world_camera, {0.1, {}, [](const Vec3&) { return false; }}).status,
+      SupportStatus::kBlocked);
+}
+
+TEST(Placement, SaysWhyThereIsNoPlace) {
+  const Eigen::Isometry3d wall = looking({0, -2.0, 1.2}, {0, 0, 1.2});
+  EXPECT_EQ(find_support(view_of({{{-3, 0, -3}, {3, 0.1, 5}}}, wall), kCamera, wall, {0.1}).status,
+            SupportStatus::kNotLevel);
+  const Eigen::Isometry3d from_above = looking({0, -1.0, 1.4}, {0, 0, 0.5});
+  const Box stool{{-0.1, -0.1, 0.4}, {0.1, 0.1, 0.45}};
+  EXPECT_EQ(find_support(view_of({stool}, from_above), kCamera, from_above, {0.15}).status,
+            SupportStatus::kTooSmall);
+  EXPECT_EQ(find_support(DepthImage(320, 240), kCamera, from_above, {0.15}).status,
+            SupportStatus::kNothingMeasured);
+  EXPECT_EQ(find_support(DepthImage{}, kCamera, from_above, {0.15}).status, SupportStatus::kInvalidInput);
 }
 
 TEST(Placement, TakesTheFloorWhereThereIsNothingElse) {
   const Eigen::Isometry3d T_world_camera = looking({0, -1.5, 1.4}, {0, 0, 0});
-  const auto support_world = find_support(view_of({kFloor}, T_world_camera), kCamera, T_world_camera, 0.15);
-  ASSERT_TRUE(support_world);
-  EXPECT_NEAR(support_world->z(), 0.0, 0.002);
+  const Support support = find_support(view_of({kFloor}, T_world_camera), kCamera, T_world_camera, {0.15});
+  ASSERT_TRUE(support);
+  EXPECT_NEAR(support.point_world.z(), 0.0, 0.002);
 }
 
 TEST(Placement, KeepsClearOfWhatStandsOnTheTable) {
@@ -94,12 +143,12 @@ TEST(Placement, KeepsClearOfWhatStandsOnTheTable) {
   const Box mug{{-0.05, -0.05, 0.73}, {0.05, 0.05, 0.83}};
   const Box book{{0.2, -0.2, 0.73}, {0.4, 0.1, 0.76}};
   const double radius_m = 0.1;
-  const auto support_world =
-      find_support(view_of({kFloor, kTable, mug, book}, T_world_camera), kCamera, T_world_camera, radius_m);
-  ASSERT_TRUE(support_world);
-  EXPECT_NEAR(support_world->z(), 0.73, 0.005);
+  const Support support =
+      find_support(view_of({kFloor, kTable, mug, book}, T_world_camera), kCamera, T_world_camera, {radius_m});
+  ASSERT_TRUE(support);
+  EXPECT_NEAR(support.point_world.z(), 0.73, 0.005);
   for (const Box& thing : {mug, book}) {
-    const Eigen::Vector2d p = support_world->head<2>();
+    const Eigen::Vector2d p = support.point_world.head<2>();
     const Eigen::Vector2d nearest = p.cwiseMax(thing.low.head<2>()).cwiseMin(thing.high.head<2>());
     EXPECT_GT((p - nearest).norm(), radius_m);
   }
@@ -108,42 +157,42 @@ TEST(Placement, KeepsClearOfWhatStandsOnTheTable) {
 TEST(Placement, AWallASlopeOrASmallStoolIsNoPlace) {
   const Eigen::Isometry3d T_world_camera = looking({0, -2.0, 1.2}, {0, 0, 1.2});
   EXPECT_FALSE(
-      find_support(view_of({{{-3, 0, -3}, {3, 0.1, 5}}}, T_world_camera), kCamera, T_world_camera, 0.1));
+      find_support(view_of({{{-3, 0, -3}, {3, 0.1, 5}}}, T_world_camera), kCamera, T_world_camera, {0.1}));
 
   const Eigen::Isometry3d from_above = looking({0, -1.0, 1.4}, {0, 0, 0.5});
   const Box stool{{-0.1, -0.1, 0.4}, {0.1, 0.1, 0.45}};
-  EXPECT_FALSE(find_support(view_of({stool}, from_above), kCamera, from_above, 0.15));
-  EXPECT_TRUE(find_support(view_of({stool}, from_above), kCamera, from_above, 0.05));
+  EXPECT_FALSE(find_support(view_of({stool}, from_above), kCamera, from_above, {0.15}));
+  EXPECT_TRUE(find_support(view_of({stool}, from_above), kCamera, from_above, {0.03}));
 
   // The floor, seen by a camera whose pose has the world tilted by 25 degrees.
   const Eigen::Isometry3d tilt(Eigen::AngleAxisd(25.0 * M_PI / 180.0, Vec3::UnitX()));
   const DepthImage floor_m = view_of({kFloor}, from_above);
-  EXPECT_TRUE(find_support(floor_m, kCamera, from_above, 0.1));
-  EXPECT_FALSE(find_support(floor_m, kCamera, tilt * from_above, 0.1));
+  EXPECT_TRUE(find_support(floor_m, kCamera, from_above, {0.1}));
+  EXPECT_FALSE(find_support(floor_m, kCamera, tilt * from_above, {0.1}));
 }
 
 TEST(Placement, RidgesAreNoPlaceThoughEachStepIsSmall) {
   const Eigen::Isometry3d from_above = looking({0, -1.0, 1.7}, {0, 0, 0.73});
   std::vector<Box> boxes = {kTable};
-  EXPECT_TRUE(find_support(view_of(boxes, from_above), kCamera, from_above, 0.1));
+  EXPECT_TRUE(find_support(view_of(boxes, from_above), kCamera, from_above, {0.1}));
   for (double x = -0.6; x < 0.6; x += 0.16) boxes.push_back({{x, -0.4, 0.73}, {x + 0.08, 0.4, 0.764}});
   PlacementConfig config;
   config.room_to_spare_m = 0.0;
-  EXPECT_FALSE(find_support(view_of(boxes, from_above), kCamera, from_above, 0.1, config));
-  EXPECT_TRUE(find_support(view_of(boxes, from_above), kCamera, from_above, 0.025, config));
+  EXPECT_FALSE(find_support(view_of(boxes, from_above), kCamera, from_above, {0.1}, config));
+  EXPECT_TRUE(find_support(view_of(boxes, from_above), kCamera, from_above, {0.025}, config));
 }
 
 TEST(Placement, NothingSeenOrNonsenseFindsNothing) {
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  EXPECT_FALSE(find_support(DepthImage(320, 240), kCamera, T, 0.1));
-  EXPECT_FALSE(find_support(DepthImage{}, kCamera, T, 0.1));
-  EXPECT_FALSE(find_support(DepthImage(319, 240, 1.0F), kCamera, T, 0.1));
-  EXPECT_FALSE(find_support(DepthImage(320, 240, 1.0F), kCamera, T, 0.0));
-  EXPECT_FALSE(find_support(DepthImage(320, 240, 1.0F), kCamera, T, std::nan("")));
-  EXPECT_FALSE(find_support(DepthImage(320, 240, 1.0F), kCamera, T, 50.0));
+  EXPECT_FALSE(find_support(DepthImage(320, 240), kCamera, T, {0.1}));
+  EXPECT_FALSE(find_support(DepthImage{}, kCamera, T, {0.1}));
+  EXPECT_FALSE(find_support(DepthImage(319, 240, 1.0F), kCamera, T, {0.1}));
+  EXPECT_FALSE(find_support(DepthImage(320, 240, 1.0F), kCamera, T, {0.0}));
+  EXPECT_FALSE(find_support(DepthImage(320, 240, 1.0F), kCamera, T, {std::nan("")}));
+  EXPECT_FALSE(find_support(DepthImage(320, 240, 1.0F), kCamera, T, {50.0}));
   Eigen::Isometry3d broken = T;
   broken.translation().x() = std::nan("");
-  EXPECT_FALSE(find_support(DepthImage(320, 240, 1.0F), kCamera, broken, 0.1));
+  EXPECT_FALSE(find_support(DepthImage(320, 240, 1.0F), kCamera, broken, {0.1}));
 }
 
 TEST(Placement, NamesTheFieldThatIsWrong) {

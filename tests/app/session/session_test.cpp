@@ -677,6 +677,87 @@ TEST(Session, WhatFallsOutOfTheMapIsBackWhereItLastRested) {
   EXPECT_EQ(pot.departures, 1);
 }
 
+/// Steps a frame that shows nothing for a time; returns the notices.
+std::vector<ObjectNotice> wait(Session& session, std::int64_t from, std::int64_t until) {
+  StageTimes times;
+  std::vector<ObjectNotice> notices;
+  for (std::int64_t i = from; i < until; ++i) {
+    Frame frame = depth_only(i, kAtTheSky);
+    frame.depth_m = DepthImage(kCamera.width_px, kCamera.height_px, 0.0F);
+    const FrameResult result = session.step(frame, times);
+    notices.insert(notices.end(), result.notices.begin(), result.notices.end());
+  }
+  return notices;
+}
+
+TEST(Session, WhatIsPlacedInAFloorIsMovedOutOfItAndSaidSo) {
+  const SavedMap map = floor_map();
+  for (const double depth_m : {0.0, 0.03, 0.08}) {
+    Session session(map, by_recorded_poses());
+    session.add_object("box", shapes::box(Eigen::Vector3f::Constant(0.1F)));
+    const VirtualObject& box = *session.objects().front();
+    session.place("box", {.position_world = {0.3, 0.2, 0.055 - depth_m}});
+    const std::vector<ObjectNotice> notices = wait(session, 0, 30);
+    EXPECT_NEAR(box.body.T_world_object.translation().z(), 0.05, 0.003) << depth_m;
+    EXPECT_TRUE(box.body.asleep) << depth_m;
+    EXPECT_FALSE(box.stuck);
+    ASSERT_EQ(notices.size(), depth_m > 0.01 ? 1U : 0U) << depth_m;
+    if (!notices.empty()) {
+      EXPECT_EQ(notices[0].name, "box");
+      EXPECT_NE(notices[0].text.find("moved out"), std::string::npos) << notices[0].text;
+    }
+  }
+}
+
+/// A floor and 9 cm above it a ceiling: no room for a box of 10 cm; 2 x 2 m.
+SavedMap slot_map() {
+  SavedMap map = floor_map();
+  for (const Eigen::Vector3f& p : {Eigen::Vector3f(-1, -1, 0.09F), Eigen::Vector3f(-1, 1, 0.09F),
+                                   Eigen::Vector3f(1, 1, 0.09F), Eigen::Vector3f(1, -1, 0.09F)})
+    map.mesh.vertices.push_back(p);
+  map.mesh.triangles.push_back({4, 5, 6});
+  map.mesh.triangles.push_back({4, 6, 7});
+  return map;
+}
+
+TEST(Session, WhatHasNoFreePlaceNearIsRefusedWithTheNearestAndNothingHasChanged) {
+  const SavedMap map = slot_map();
+  Session session(map, by_recorded_poses());
+  session.add_object("box", shapes::box(Eigen::Vector3f::Constant(0.1F)));
+  const VirtualObject& box = *session.objects().front();
+  const std::string refused = test::error_of([&] {
+    session.place("box", {.position_world = {0.7, 0.0, 0.06}});
+  });
+  EXPECT_NE(refused.find("no free place within 10 cm; the nearest found is"), std::string::npos) << refused;
+  EXPECT_FALSE(box.in_room);
+  // In the room already, it stays where it is.
+  session.place("box", {.position_world = {-1.5, 0.0, 0.3}});
+  EXPECT_THROW(session.place("box", {.position_world = {0.7, 0.0, 0.06}}), PlaceRefused);
+  EXPECT_TRUE(box.in_room);
+  EXPECT_EQ(box.body.T_world_object.translation(), Eigen::Vector3d(-1.5, 0.0, 0.3));
+}
+
+TEST(Session, ADropNearAPointIsTriedOnceAndSaysWhyNot) {
+  const SavedMap map = floor_map();
+  Session session(map, by_recorded_poses());
+  session.add_object("box", shapes::box(Eigen::Vector3f::Constant(0.1F)));
+  const VirtualObject& box = *session.objects().front();
+  StageTimes times;
+  session.drop({.name = "box", .near_world = Eigen::Vector3d(0.2, 0.1, 0.0)});
+  static_cast<void>(session.step(depth_only(0, kAtTheFloor), times));
+  ASSERT_TRUE(box.in_room);
+  EXPECT_LT((box.body.T_world_object.translation().head<2>() - Eigen::Vector2d(0.2, 0.1)).norm(), 0.03);
+  session.remove("box");
+  session.drop({.name = "box", .near_world = Eigen::Vector3d(0.2, 0.1, 1.0)});
+  const FrameResult result = session.step(depth_only(1, kAtTheFloor), times);
+  EXPECT_FALSE(box.in_room);
+  EXPECT_TRUE(session.waiting_drops().empty());
+  ASSERT_EQ(result.notices.size(), 1U);
+  EXPECT_NE(result.notices[0].text.find("is not dropped: there is no free level circle of"),
+            std::string::npos)
+      << result.notices[0].text;
+}
+
 TEST(Session, OverASeenFloorSolidUnknownSpaceChangesNothing) {
   const SavedMap map = half_floor_map();
   Session session(map, by_recorded_poses());
