@@ -27,7 +27,7 @@ struct Keyframe {
                                            ///< modified
   std::uint32_t revision = 0;              ///< number of times that `view` was replaced
   /// Length of the camera's path up to this keyframe, m; a rotation by 1 rad counts as 1 m, and motion while
-  /// tracking was degenerate or lost counts tenfold. The drift between two keyframes is assumed to be a
+  /// tracking was degenerate counts tenfold. The drift between two keyframes is assumed to be a
   /// fraction of the path between them.
   double path_length_m = 0.0;
 };
