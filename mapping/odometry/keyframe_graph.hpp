@@ -26,7 +26,7 @@ struct KeyframeGraphConfig {
   /// and rotation in rad. Larger changes are rejected as false matches between places that look alike.
   double drift_m = 0.15;
   double drift_part = 0.05;
-  std::size_t prepare_keyframe = 8;  ///< capacity of the keyframe cache; 4 MB per keyframe
+  std::size_t cached_keyframes = 8;  ///< capacity of the keyframe cache; 4 MB per keyframe
 };
 
 struct KeyframeGraph {
@@ -63,11 +63,11 @@ bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t 
 /// other and are within the assumed drift of the current poses, adds both as constraints and returns true. A
 /// pair at least three keyframes apart in sequence counts as a loop, found or rejected.
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
-          const ConnectConfig& config, KeyframeCache& prepare_keyframe);
+          const ConnectConfig& config, KeyframeCache& cache);
 
 /// Connects the newest keyframe to older keyframes near it. If there are more than max_edges_new, selects
 /// this many over all view distances.
-void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& prepare_keyframe);
+void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache);
 
 /// Rebuilds all constraints from the keyframes' current depth, on two threads. Deterministic.
 void close_loops(KeyframeGraph& graph, const ConnectConfig& config);

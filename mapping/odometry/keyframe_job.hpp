@@ -18,9 +18,9 @@ struct KeyframeJobConfig {
 /// Input of run(). Owns its data except the two keyframe databases, which must not change while run()
 /// executes.
 struct KeyframeJob {
-  Frame frame;                     ///< frame of the newest keyframe
-  KeyframeGraph graph;             ///< includes the newest keyframe, which has no edges yet
-  KeyframeCache prepare_keyframe;  ///< contains the newest keyframe
+  Frame frame;          ///< frame of the newest keyframe
+  KeyframeGraph graph;  ///< includes the newest keyframe, which has no edges yet
+  KeyframeCache cache;  ///< contains the newest keyframe
   const KeyframeDatabase* keyframe_database = nullptr;  ///< one entry per keyframe of the graph except the
                                                         ///< newest
   const KeyframeDatabase* known = nullptr;              ///< database of an earlier map; null: none

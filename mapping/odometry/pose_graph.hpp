@@ -66,10 +66,10 @@ std::string describe(const PoseGraphResult& result);
 ///
 /// Leaves out measurements between two constant poses, and invalid measurements: index out of range, a number
 /// that is not finite, or information that is not positive semidefinite. Their residual_sigma is -1.
-/// @param held  by pose: true if the pose is constant; if empty, only the first pose is constant
+/// @param constant  by pose: true if the pose is constant; if empty, only the first pose is constant
 PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_camera,
                                     const std::vector<PoseConstraint>& constraints,
                                     const std::vector<PoseAnchor>& anchors = {},
-                                    const std::vector<bool>& held = {});
+                                    const std::vector<bool>& constant = {});
 
 }  // namespace roomradar
