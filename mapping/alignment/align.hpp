@@ -1,4 +1,4 @@
-// align.hpp: registers a depth (and intensity) image to views of known pose.
+// align.hpp: estimates a camera pose by aligning a depth (and intensity) image with views of known pose.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -11,77 +11,90 @@ namespace roomradar {
 
 enum class TrackStatus {
   kTracked,       ///< all six degrees of freedom are constrained by the measurements
-  kTooFewPoints,  ///< too little overlap with the references; the pose is the guess
-  kDegenerate,    ///< unconstrained degrees of freedom (one wall) keep the guess; the others are aligned
-  kDiverged,      ///< the image disagrees with the references at the pose found; the pose is the guess
+  kTooFewPoints,  ///< too few correspondences with the references; the returned pose is the guess
+  /// Some degrees of freedom are unconstrained, e.g. because only one wall is in view. These degrees of
+  /// freedom keep the guess's values; all others are aligned.
+  kDegenerate,
+  /// The image disagrees with the references at the aligned pose; the returned pose is the guess.
+  kDiverged,
 };
 std::string_view to_string(TrackStatus status);
 
-/// Pose found by alignment. A default-constructed Tracking means failed.
+/// Result of an alignment. A default-constructed Tracking means failed.
 struct [[nodiscard]] Tracking {
   TrackStatus status = TrackStatus::kDiverged;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< always finite
-  double rms_m = -1.0;           ///< RMS of the inliers' point-to-plane distances; < 0: none
-  double inlier_fraction = 0.0;  ///< fraction of the correspondences that are within the noise
-  double overlap = 0.0;  ///< fraction of the image's points with a correspondence in the first reference
-  int unconstrained_dofs = 0;  ///< number of unconstrained degrees of freedom, 0..6; these keep the guess
+  double rms_m = -1.0;           ///< RMS point-to-plane distance of the inliers, m; < 0: no result
+  double inlier_fraction = 0.0;  ///< fraction of the correspondences whose distance is within the noise
+  /// Fraction of the image's points that have a correspondence in the first reference.
+  double overlap = 0.0;
+  /// Number of unconstrained degrees of freedom, 0..6. They keep the guess's values.
+  int unconstrained_dofs = 0;
   /// Inverse covariance of the error of T_world_camera, as a twist (translation m, rotation rad) in the
-  /// camera frame: T_true = T_world_camera * exp(twist). Reduced to account for the correlation of
-  /// neighbouring pixels.
+  /// camera frame: T_true = T_world_camera * exp(twist). Scaled down because the errors of neighbouring
+  /// pixels are correlated.
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
   explicit operator bool() const { return status == TrackStatus::kTracked; }
 };
 
-/// Returns whether the pose is usable, though some degrees of freedom may be the guess's.
+/// Returns true if T_world_camera is an aligned pose. Unconstrained degrees of freedom may still have the
+/// guess's values.
 inline bool has_pose(const Tracking& tracking) {
   return tracking.status == TrackStatus::kTracked || tracking.status == TrackStatus::kDegenerate;
 }
 
 struct AlignConfig {
-  int coarsest_level = 2;  ///< coarsest pyramid level used
-  int finest_level = 0;    ///< finest pyramid level used
-  int iterations = 6;      ///< max per level
-  /// Max point-to-plane distance of a correspondence at the coarsest level; halved per finer level, but never
-  /// less than 3 cm.
+  int coarsest_level = 2;  ///< index of the coarsest pyramid level used
+  int finest_level = 0;    ///< index of the finest pyramid level used; 0 is full resolution
+  int iterations = 6;      ///< max number of iterations per level
+  /// Max point-to-plane distance of a correspondence at the coarsest level, m. Halved per finer level, but
+  /// never less than 0.03 m.
   float gate_m = 0.10F;
-  float robust_sigma = 2.5F;  ///< residual, in standard deviations, whose weight is 1/4 at the finest level
-  float intensity_sigma = 8.0F;  ///< grey levels of 255; 0: colour is ignored
-  int min_points = 150;          ///< min number of correspondences at the finest level
+  /// Residual at which the robust kernel's weight is 1/4 at the finest level, in standard deviations.
+  float robust_sigma = 2.5F;
+  /// Standard deviation of intensity residuals, in grey levels of 0..255. 0: intensity is not used.
+  float intensity_sigma = 8.0F;
+  int min_points = 150;  ///< min number of correspondences at the finest level
   float min_inlier_fraction = 0.3F;
-  /// Min mean squared cosine between the normals and a direction for depth to constrain this direction. Below
-  /// it, noise of the normals looks like information.
+  /// Depth constrains a direction only if the mean squared cosine between the normals and the direction is at
+  /// least this. Below it, the noise of the normals alone would make the direction look constrained.
   float min_constraint = 0.001F;
-  float max_uncertainty_m = 0.01F;  ///< standard deviation above which a direction counts as unconstrained
-  float max_correction_m = 0.5F;    ///< larger corrections of the guess, in m or rad, count as kDiverged
+  /// A direction counts as unconstrained if the pose's standard deviation along it exceeds this, m.
+  float max_uncertainty_m = 0.01F;
+  /// Larger corrections of the guess count as kDiverged; max translation in m, and max rotation in rad.
+  float max_correction_m = 0.5F;
 };
 
-/// A reference and its pose; the view's own T_world_view is ignored.
+/// A reference view with a pose that replaces the view's own T_world_view.
 struct PosedReference {
   const TargetView* view = nullptr;
   Eigen::Isometry3d T_world_view = Eigen::Isometry3d::Identity();
 };
 
-/// Estimates T_world_camera by point-to-plane ICP with projective association, plus intensity residuals up to
-/// one gain and offset per reference. Gauss-Newton from coarse to fine; residuals are weighted by their
-/// standard deviations and robust to parts of the image that have moved. Each reference contributes in
-/// proportion to its overlap. Returns kDiverged at the identity if the guess is not finite. Unconstrained
-/// degrees of freedom keep the guess's value and are counted in unconstrained_dofs. Source: Chen and Medioni
-/// 1992 (point to plane); Newcombe et al., KinectFusion, ISMAR 2011 (projective association); Zhang, Kaess,
-/// Singh, On Degeneracy of Optimization-based State Estimation Problems, ICRA 2016.
+/// Estimates T_world_camera by point-to-plane ICP with projective association. Intensity residuals are added,
+/// with one gain and one offset per reference. Gauss-Newton, from coarse to fine. Residuals are weighted by
+/// their standard deviations and by a robust kernel, so parts of the image that have moved have little
+/// effect. Each reference contributes in proportion to its overlap.
+///
+/// Unconstrained degrees of freedom keep the guess's values and are counted in unconstrained_dofs. If the
+/// guess is not finite, returns kDiverged with the identity as pose. Source: Chen and Medioni 1992 (point to
+/// plane); Newcombe et al., KinectFusion, ISMAR 2011 (projective association); Zhang, Kaess, Singh, On
+/// Degeneracy of Optimization-based State Estimation Problems, ICRA 2016.
 Tracking align(const SourcePoints& live, std::span<const PosedReference> references,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 
-/// Same with one reference, at its own T_world_view.
+/// Aligns with a single reference, at its own T_world_view.
 Tracking align(const SourcePoints& live, const TargetView& reference,
                const Eigen::Isometry3d& T_world_camera_guess, const AlignConfig& config = {});
 
-/// Converts a twist (translation m, rotation vector rad) to a motion, and back. Translation and rotation are
+/// Returns the motion for a twist (translation m, rotation vector rad). Translation and rotation are
 /// converted separately; to first order this equals the exponential map.
 Eigen::Isometry3d retract(const Eigen::Matrix<double, 6, 1>& twist);
+/// Returns the twist of a motion: the inverse of retract().
 Eigen::Matrix<double, 6, 1> local(const Eigen::Isometry3d& T);
 
-/// Predicts the next motion: T_last_now if `tracking` is kTracked, else half of it. Halving stops unobserved
-/// degrees of freedom from keeping a past speed.
+/// Predicts the motion from this frame to the next. Returns T_last_now if `tracking` is kTracked, else half
+/// of that motion, so unobserved degrees of freedom do not keep a past speed.
 Eigen::Isometry3d expected_motion(const Tracking& tracking, const Eigen::Isometry3d& T_last_now);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// keyframe.hpp: stored views that later frames are aligned with, and refinement of their depth.
+// keyframe.hpp: stored views with which later frames are aligned, and averaging of further depth into them.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -8,36 +8,38 @@
 
 namespace roomradar {
 
-/// Compact form of a view: 4 bytes per pixel, a tenth of the size of its pyramid and reference.
+/// Compact form of a ViewPyramid: 4 bytes per pixel, a tenth of the size of the pyramid and its TargetView.
 struct StoredView {
-  Intrinsics camera;                   ///< camera of the pyramid's finest level
+  Intrinsics camera;                   ///< camera of the finest level, the only level stored
   Image<std::uint16_t> inverse_depth;  ///< in units of kInverseDepthStep_per_m; 0: no depth
-  Image<std::uint8_t> intensity;       ///< 1..255; 0: none; empty image: no colour
-  Image<std::uint8_t> measured;        ///< number of measurements averaged into the depth
+  Image<std::uint8_t> intensity;       ///< 1..255; 0: unknown; empty image: no colour
+  Image<std::uint8_t> measured;        ///< number of measurements averaged into each pixel's depth
 };
 
-/// Step of the 16-bit inverse depth, which covers depths from 0.27 m. The step equals 0.06 mm at 1 m and 2 mm
-/// at 6 m, a thirtieth of a Kinect's noise there.
+/// Step of the 16-bit inverse depth, 1/m. Depths from 0.27 m upwards can be represented. The step corresponds
+/// to 0.06 mm at 1 m and 2 mm at 6 m, where it is a thirtieth of a Kinect's noise.
 constexpr float kInverseDepthStep_per_m = 5.7e-5F;
 
 struct Keyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  std::shared_ptr<const StoredView> view;  ///< never null; replaced, not modified, when the depth is refined
-  std::uint32_t revision = 0;              ///< number of times the view was replaced
-  /// Path length of the camera up to here, m; a radian counts as a metre, and unobserved motion counts
-  /// tenfold. The drift between two keyframes is assumed to be a fraction of the path between them.
+  std::shared_ptr<const StoredView> view;  ///< never null; refined depth is a new view, views are never
+                                           ///< modified
+  std::uint32_t revision = 0;              ///< number of times that `view` was replaced
+  /// Length of the camera's path up to this keyframe, m; a rotation by 1 rad counts as 1 m, and motion while
+  /// tracking was degenerate counts tenfold. The drift between two keyframes is assumed to be a
+  /// fraction of the path between them.
   double path_length_m = 0.0;
 };
 
-/// Stores the finest level of a pyramid. `measured` must have the level's size.
+/// Returns the pyramid's finest level in compact form. `measured` must have that level's size.
 StoredView store(const ViewPyramid& pyramid, const Image<std::uint8_t>& measured);
 
 /// Rebuilds the pyramid from the stored finest level.
 void restore(const StoredView& view, const ViewConfig& config, ViewPyramid& pyramid);
 
-/// Averages another view's depth into the finest level of `pyramid` where both see the same surface, and
-/// increments `measured` there.
+/// Averages the depth of `other` into the finest level of `pyramid` where both show the same surface, and
+/// increments those pixels of `measured`.
 void improve_depth(ViewPyramid& pyramid, Image<std::uint8_t>& measured, const ViewPyramid& other,
                    const Eigen::Isometry3d& T_other_pyramid);
 

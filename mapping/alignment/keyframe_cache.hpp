@@ -8,20 +8,26 @@
 
 namespace roomradar {
 
-/// Keyframe prepared for alignment, both as reference and as live view. Its T_world_view is the identity; the
-/// pose is in the Keyframe. 4 MB at 320 x 240, including 0.7 MB for the live view.
+/// Keyframe prepared for alignment, as a reference and as a source of points. The pose is in the Keyframe;
+/// reference.T_world_view is the identity. 4 MB at 320 x 240, including 0.7 MB for `live`.
 struct CachedKeyframe {
   TargetView reference;
   SourcePoints live;
 };
 
-enum class PreparedParts { kAll, kLive, kReference };  ///< parts to prepare; the other stays empty
+enum class PreparedParts {
+  kAll,
+  kLive,
+  kReference
+};  ///< Parts of a CachedKeyframe that are prepared. A
+    ///< part that is not prepared stays empty.
 
 std::shared_ptr<const CachedKeyframe> prepare_keyframe(const StoredView& view, const ViewConfig& config,
                                                        PreparedParts parts = PreparedParts::kAll);
 
-/// Caches at most `capacity` keyframes and evicts the least recently used. Entries stay valid for their
-/// holders after eviction. Copies share entries, but are otherwise independent. Not thread safe.
+/// Caches at most `capacity` keyframes and evicts the least recently used. A returned entry stays valid after
+/// its eviction, as long as the caller keeps the pointer. Copies of a cache share entries, but are otherwise
+/// independent. Not thread safe.
 class KeyframeCache {
  public:
   explicit KeyframeCache(std::size_t capacity, PreparedParts parts = PreparedParts::kAll)
@@ -29,10 +35,10 @@ class KeyframeCache {
 
   /// Returns null if the keyframe is not cached.
   std::shared_ptr<const CachedKeyframe> find(std::size_t keyframe);
-  /// Prepares and caches the keyframe if it is not cached.
+  /// Returns the keyframe's entry. Prepares and caches the entry if it is not cached.
   std::shared_ptr<const CachedKeyframe> get(std::size_t keyframe, const StoredView& view,
                                             const ViewConfig& config);
-  /// Replaces the keyframe's entry, if any.
+  /// Caches `made` as the keyframe's entry; replaces an existing entry.
   void put(std::size_t keyframe, std::shared_ptr<const CachedKeyframe> made);
 
  private:

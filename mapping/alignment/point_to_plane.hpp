@@ -1,4 +1,4 @@
-// point_to_plane.hpp: residuals of points against the planes and intensities of a target view.
+// point_to_plane.hpp: point-to-plane and intensity residuals of points against a target view.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -9,49 +9,55 @@
 
 namespace roomradar {
 
-/// Normal equations of residuals r = r0 + J twist: H = J'wJ, g = J'wr.
+/// Normal equations of the weighted least squares over residuals r, with r linear in the camera's twist
+/// (Jacobian J, weights w): H = J^T w J, g = J^T w r.
 struct NormalEquations {
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
   double weight = 0.0;
 
-  /// Fills in the lower triangle of H; needed after match_points().
+  /// Copies the upper triangle of H to the lower; needed after match_points(), which fills the upper only.
   void mirror() { H.triangularView<Eigen::StrictlyLower>() = H.transpose(); }
 };
 
-/// Intensity mapping to one reference: reference = gain * live + offset.
+/// Intensity model of one reference: reference intensity = gain * live intensity + offset.
 struct Exposure {
   float gain = 1.0F;
   float offset = 0.0F;
   bool known = false;
 };
 
-/// Sums over all points and one reference.
+/// Sums over all points for one reference.
 struct PointMatches {
   NormalEquations depth, colour;
-  std::size_t met = 0;      ///< points that project to a reference pixel with a surface
-  std::size_t inliers = 0;  ///< correspondences within the gate and three standard deviations
-  double squares = 0.0;     ///< sum of the inliers' squared distances
-  /// weighted sums of intensities
+  std::size_t met = 0;  ///< number of points that project to a pixel with a surface
+  /// Number of correspondences whose distance is within the gate and within three standard deviations of the
+  /// difference between two measurements.
+  std::size_t inliers = 0;
+  double squares = 0.0;  ///< sum of the inliers' squared distances, m^2
+  /// Weighted sums over the correspondences in which both intensities are known: sum of the weights (n), of
+  /// the live and reference intensities, and of their squares.
   double n = 0.0, live = 0.0, reference = 0.0, live_live = 0.0, reference_reference = 0.0;
 };
 
-/// Which residuals count, and how much.
+/// Limits and weights of the residuals.
 struct MatchLimits {
-  float gate_m;
-  float inverse_soft;             ///< 1 / (standard deviations at which the weight is 1/4)
-  float inverse_intensity_sigma;  ///< 0: colour is ignored
+  float gate_m;  ///< max point-to-plane distance of a correspondence
+  /// Reciprocal of the residual, in standard deviations, at which the robust kernel's weight is 1/4.
+  float inverse_soft;
+  float inverse_intensity_sigma;  ///< 1 / standard deviation, in grey levels; 0: intensity is not used
 };
 
-/// Projects the points into the reference, and sums the residuals of those with a correspondence: distance to
-/// the plane and, if exposure.known, difference of intensity. The twist is in the camera frame.
-/// @param pass  sums are added to it; H as an upper triangle only
+/// Projects the points into the reference to find correspondences, and sums the residuals of each: distance
+/// to the reference's plane and, if exposure.known, difference of intensity. Residuals are linearised in the
+/// twist of the camera, in the camera frame.
+/// @param[in,out] pass  the sums are added to it; of H, the upper triangle only
 void match_points(const std::vector<SourcePoint>& points, const TargetLevel& reference,
                   const Eigen::Isometry3d& T_view_camera, const MatchLimits& limits, const Exposure& exposure,
                   PointMatches& pass);
 
-/// Computes the gain and offset that give the live intensities the mean and spread of the reference's;
-/// unknown if there are too few.
+/// Computes the gain and offset that map the mean and standard deviation of the live intensities to those of
+/// the reference's intensities. `known` is false if there are too few correspondences.
 Exposure match_exposure(const PointMatches& pass);
 
 }  // namespace roomradar

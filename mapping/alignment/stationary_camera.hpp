@@ -1,13 +1,13 @@
-// stationary_camera.hpp: detects that the camera did not move between two images.
+// stationary_camera.hpp: detects from two images that the camera did not move.
 #pragma once
 #include "mapping/types/image.hpp"
 
 namespace roomradar {
 
-/// Returns true if most edges of `before` (intensities 0..255) moved by less than a fifth of a pixel. The
-/// camera is then stationary, even if something moves in front of it. Returns false if the sizes differ or
-/// there are fewer than 300 edge pixels. Requiring only a majority ignores a moving person. Depth is not used
-/// because a stationary Kinect recalibrates.
+/// Returns true if most image edges of `before` (intensities 0..255) moved by less than 0.2 px. Then the
+/// camera is stationary; a minority of edges may move, e.g. those of a person. Returns false if the sizes
+/// differ or there are fewer than 300 edge pixels. Depth is not used, because the depth of a Kinect changes
+/// while it recalibrates, even if it is stationary.
 bool is_camera_stationary(const Image<float>& before, const Image<float>& now);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// keyframe_database.hpp: keyframe database for relocalisation in a known room.
+// keyframe_database.hpp: keyframes of a map, for relocalisation in a known room.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -13,33 +13,34 @@
 
 namespace roomradar {
 
-/// One keyframe of the database.
+/// One keyframe of the database: image features, surface patches, and a small depth image ("preview").
 struct MapKeyframe {
   std::int64_t frame_index = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the depth camera
-  std::vector<Eigen::Vector3f> points_camera;  ///< m, in this view's depth camera; one per descriptor
+  /// Surface point of each descriptor, in this keyframe's depth camera, m.
+  std::vector<Eigen::Vector3f> points_camera;
   /// ORB descriptors; empty if the source has no colour. Source: Rublee et al., ORB: an efficient alternative
   /// to SIFT or SURF, ICCV 2011.
   std::vector<Descriptor> descriptors;
-  std::vector<SurfacePatch> patches;  ///< in this view's depth camera
+  std::vector<SurfacePatch> patches;  ///< surface patches, in this keyframe's depth camera
   Intrinsics preview_camera;
-  Image<std::uint16_t> preview_depth_mm;  ///< size of preview_camera; 0: none
+  Image<std::uint16_t> preview_depth_mm;  ///< depth preview, with the size of preview_camera; 0: no depth
 };
 
 struct KeyframeDatabase {
   std::vector<MapKeyframe> keyframes;
 };
 
-/// Max features, and max patches, per view; bounds the cost of matching each with each.
+/// Max number of features per keyframe, and max number of patches. Bounds the cost of matching all pairs.
 inline constexpr int kMostDescribed = 10'000;
 
 struct KeyframeDatabaseConfig {
-  int features = 800;  ///< max per view, at most kMostDescribed
-  int patches = 800;   ///< max per view, at most kMostDescribed
+  int features = 800;  ///< max number of ORB features per keyframe, at most kMostDescribed
+  int patches = 800;   ///< max number of patches per keyframe, at most kMostDescribed
   int preview_width_px = 160;
 };
 
-/// Computes the features with their points, the patches and the preview of one frame.
+/// Computes the features with their surface points, the patches and the depth preview of a frame.
 MapKeyframe make_map_keyframe(const Frame& frame, const Eigen::Isometry3d& T_world_camera,
                               const KeyframeDatabaseConfig& config = {});
 

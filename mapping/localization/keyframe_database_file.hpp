@@ -1,4 +1,4 @@
-// keyframe_database_file.hpp: the keyframe database as a binary file.
+// keyframe_database_file.hpp: writes and reads the keyframe database as a binary file.
 #pragma once
 #include <filesystem>
 
@@ -6,11 +6,11 @@
 
 namespace roomradar {
 
-/// Writes the database as one binary file with a checksum. Throws Error if the file cannot be written.
+/// Writes the database to `path`, with a checksum. Throws Error if the file cannot be written.
 void write_keyframe_database(const KeyframeDatabase& keyframe_database, const std::filesystem::path& path);
 
-/// Reads a file from write_keyframe_database(). Throws Error naming the file and the fault if it is missing,
-/// truncated, altered, or of another version. Sizes are checked before memory is allocated.
+/// Reads a file from write_keyframe_database(). Throws Error (naming the file and the problem) if the file is
+/// missing, truncated, altered, or of another version. Sizes are checked before memory is allocated.
 KeyframeDatabase read_keyframe_database(const std::filesystem::path& path);
 
 }  // namespace roomradar

@@ -1,4 +1,4 @@
-// locator.hpp: localises the camera in the saved room, frame by frame.
+// locator.hpp: localises the camera in a saved map, frame by frame.
 #pragma once
 #include <Eigen/Geometry>
 #include <functional>
@@ -16,58 +16,69 @@
 
 namespace roomradar {
 
-/// Renders the depth of the room's static model at a pose, in the size of the live depth image.
+/// Callback that renders the depth of the room's static model at a pose, in the size of the live depth image.
+/// The returned image is valid until the next call.
 using ExpectedDepth = std::function<const DepthImage&(const Eigen::Isometry3d& T_world_camera)>;
 
-/// Indices over the keyframe database, each built on first use.
+/// Search indices over the keyframe database. Each is built when it is first used.
 struct MapIndices {
   PatchIndex patches;
-  ShapeIndex shapes;  ///< surfaces of the keyframes
+  ShapeIndex shapes;  ///< surfaces of the keyframes' depth previews
 };
 
-/// Buffers reused from frame to frame: the live image, and the depth expected at a pose.
+/// Buffers that are reused for each frame: pyramid and points of the live image, pyramid and planes of the
+/// expected depth.
 struct LocatorBuffers {
   ViewPyramid live_pyramid, expected_pyramid;
   SourcePoints live;
   TargetView expected;
 };
 
-/// Settings, and state kept from frame to frame.
+/// Settings of locate(), and its state between frames.
 struct Locator {
-  ViewConfig live_view{.finest_width_px = 160};  ///< twice the resolution costs 3 ms and gains no accuracy
-  ViewConfig expected_view{.finest_width_px = 160, .noisy = false};  ///< rendered depth needs no smoothing
+  /// Resolution of the live view. Twice the resolution costs 3 ms more and does not improve accuracy.
+  ViewConfig live_view{.finest_width_px = 160};
+  /// Resolution of the expected view. Rendered depth needs no smoothing.
+  ViewConfig expected_view{.finest_width_px = 160, .noisy = false};
   AlignConfig align;
-  /// For poses that depth alone must constrain, and for aligned poses that patches contradict. The higher
-  /// min_constraint keeps bumps of a mesh from passing for constraints.
+  /// Alignment settings for poses that depth alone must constrain, and for a repeated alignment after the
+  /// first lost most matching patches. The higher min_constraint prevents bumps of the mesh from constraining
+  /// a direction.
   AlignConfig strict_align{.min_constraint = 0.01F};
   RelocaliseConfig relocalise;
-  std::optional<Eigen::Isometry3d> T_world_camera;  ///< pose of the last frame; unset while lost
-  /// Predicted motion from the last frame to the next.
+  std::optional<Eigen::Isometry3d> T_world_camera;  ///< pose of the previous frame; unset while lost
+  /// Predicted motion from the previous frame to the next.
   Eigen::Isometry3d T_last_now = Eigen::Isometry3d::Identity();
-  int unverified_frames = 0;        ///< number of consecutive frames whose depth contradicts the tracked pose
-  int recheck_cooldown_frames = 0;  ///< doubtful frames left before the map is searched again
-  /// Last pose before tracking was lost; tried for the first 30 of lost_frames.
+  int unverified_frames = 0;  ///< number of consecutive frames whose depth contradicts the tracked pose
+  /// Number of frames with contradicting depth that must still pass before the map is searched again.
+  int recheck_cooldown_frames = 0;
+  /// Last pose before tracking was lost; locate() tries to resume there in the first 30 lost frames.
   std::optional<Eigen::Isometry3d> T_world_lost;
   int lost_frames = 0;
 
-  std::vector<PoseHypothesis> hypotheses;  ///< pose hypotheses of the last search
+  std::vector<PoseHypothesis> hypotheses;  ///< all pose hypotheses of the last search
   SearchEnd search_end = SearchEnd::kNoCandidate;
 
   MapIndices index;
   LocatorBuffers buffers;
 };
 
-/// Localises the frame by alignment with the expected depth at the pose predicted from the last motion.
+/// Localises a frame. First aligns it with the depth expected at the pose predicted from the last motion.
 /// Searches the map if this fails, if the depth has contradicted the pose for three frames, or if no pose is
-/// known. The search uses the map's patches, then the shape of the depth if gravity is known. If there is
-/// neither colour nor gravity, it uses the keyframe database. A pose found by search must be constrained in
-/// all directions, verified by depth and patches, and unambiguous.
+/// known.
 ///
-/// With kDegenerate, unconstrained directions are the prediction's; or the whole pose is the last frame's,
-/// because alignment took a bend of the sensor's depth for a motion.
+/// The search uses the map's patches; if they give no certain pose and gravity is known, it uses the shape of
+/// the depth. Without gravity, and without colour or patches in the map, it uses relocalise(). A pose found
+/// by search must be constrained in all directions, verified by depth and patches, and unambiguous.
 ///
-/// @param dynamic_mask  not 0: pixel moved in the previous frame, is ignored; empty, or of the depth's size
-/// @return status kTracked or kDegenerate: a usable pose; other status: not localised, searched for next time
+/// With kDegenerate, unconstrained directions have the prediction's values. If the depth of a recalibrating
+/// sensor bent and alignment took this for a motion, the whole pose is the previous frame's instead, also
+/// with kDegenerate.
+///
+/// @param dynamic_mask  pixels that are not 0 showed moving objects in the previous frame and are ignored;
+///                      empty, or of the depth image's size
+/// @return a usable pose if the status is kTracked or kDegenerate; with any other status, the camera is
+///         lost, and the next call searches for it
 Tracking locate(Locator& locator, const Frame& frame, const KeyframeDatabase& keyframe_database,
                 const MaskImage& dynamic_mask, const ExpectedDepth& expected_depth);
 

@@ -1,4 +1,4 @@
-// patch_matching.hpp: camera pose hypotheses from matched surface patches.
+// patch_matching.hpp: finds camera pose hypotheses by matching surface patches.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -14,12 +14,14 @@
 
 namespace roomradar {
 
-/// All patches of the keyframe database, in the world, grouped by size.
+/// All patches of a keyframe database, in the world's frame, grouped by patch size.
 struct PatchIndex {
   struct OfSize {
-    std::vector<std::uint64_t> first_bits;  ///< first 64 bits of each descriptor, contiguous in memory
+    /// First 64 bits of each patch's descriptor, contiguous in memory for fast comparison.
+    std::vector<std::uint64_t> first_bits;
     std::vector<SurfacePatch> patches;
-    std::unordered_multimap<std::uint64_t, std::uint32_t> by_cell;  ///< indices in `patches`, by 5 cm cell
+    std::unordered_multimap<std::uint64_t, std::uint32_t> by_cell;  ///< indices in `patches`, by the 5 cm
+                                                                    ///< cell of the patch's centre
   };
   std::array<OfSize, kPatchSizes> by_size;
   [[nodiscard]] bool empty() const;
@@ -28,21 +30,25 @@ PatchIndex build_patch_index(const KeyframeDatabase& keyframe_database);
 
 struct PoseCandidate {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  int agreeing = 0;              ///< patches of the frame that coincide with known ones of similar appearance
-  std::vector<PointPair> pairs;  ///< their points, as in PatchAgreement::alike
+  /// Number of the frame's patches that, at this pose, coincide with known patches of similar appearance.
+  int agreeing = 0;
+  /// Centres of the coinciding patches, as in PatchAgreement::alike.
+  std::vector<PointPair> pairs;
 };
 
-/// Returns distinct poses that at least `min_agreeing` patches agree on, best first. Each pair of similar
-/// patches votes for the approximate pose that it implies. RANSAC over point triples of the agreeing pairs
-/// then gives the exact pose. Deterministic.
+/// Returns at most `most` distinct poses that at least `min_agreeing` patches of the frame support, best
+/// first. Each pair of similar patches (one of the frame, one known) votes for the approximate pose that it
+/// implies. RANSAC over triples of the agreeing pairs' centres then gives the exact pose. Deterministic.
 std::vector<PoseCandidate> propose_poses(std::span<const SurfacePatch> seen, const PatchIndex& known,
                                          std::size_t most, int min_agreeing);
 
-/// Agreement of a frame's patches with the known patches at a pose. `compared` counts patches that coincide
-/// with known ones; `alike` lists those that also look similar.
+/// Comparison of a frame's patches with the known patches at a pose. `compared` is the number of the frame's
+/// patches that coincide with known patches, whatever they look like. `alike` lists the coinciding patches
+/// that also look similar.
 struct PatchAgreement {
   int compared = 0;
-  std::vector<PointPair> alike;  ///< a: known point in the world; b: frame's point in the camera
+  /// Patch centres: a is the known patch's, in the world; b is the frame's patch's, in the camera.
+  std::vector<PointPair> alike;
   [[nodiscard]] double alike_part() const {
     return compared > 0 ? static_cast<double>(alike.size()) / compared : 0.0;
   }

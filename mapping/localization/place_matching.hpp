@@ -1,4 +1,4 @@
-// place_matching.hpp: finds keyframes that look like a view, and their relative poses.
+// place_matching.hpp: finds keyframes that look similar to a view, and their relative poses.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -9,30 +9,33 @@
 
 namespace roomradar {
 
-/// Returns the indices in `places` of at most `count` keyframes with the most features in common with
-/// `place`, best first, each with at least `min_matches`. Compares only each view's `strongest` features.
+/// Returns the indices, in `keyframe_database`, of the keyframes that share the most features with `place`:
+/// at most `count`, best first, each with at least `min_matches` matches. Compares only the first `strongest`
+/// features of each keyframe.
 std::vector<std::size_t> most_alike(const MapKeyframe& place, std::span<const MapKeyframe> keyframe_database,
                                     std::size_t count, int min_matches, std::size_t strongest = 300);
 
-/// Rigid motion that maps `inliers` of b's matched feature points onto a's.
+/// Relative pose of two keyframes a and b, from their matched features.
 struct KeyframeMatch {
   int inliers = 0;
-  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();  ///< valid only if inliers > 0
+  /// Rigid motion that maps the surface points of `inliers` features of b onto those of a; valid only if
+  /// inliers > 0.
+  Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
 };
 
-/// Corresponding points in two frames.
+/// The same point in two frames a and b.
 struct PointPair {
-  Eigen::Vector3d a, b;  ///< m
-  double gate_m;         ///< max distance between the points after alignment
+  Eigen::Vector3d a, b;  ///< the point in frame a and in frame b, m
+  double gate_m;         ///< max distance between the two after alignment, m
 };
 
-/// Computes the motion with the most inliers, by RANSAC over `samples` triples with a fixed seed, refined
-/// over all inliers.
+/// Computes the rigid motion T_a_b with the most inliers, by RANSAC over `samples` triples, then refines it
+/// over all inliers. The random seed is fixed.
 KeyframeMatch motion_of(const std::vector<PointPair>& pairs, int samples);
 
-/// Matches all features (nearest descriptor, ratio test) and computes the motion that most of their points
-/// agree on within the depth noise. RANSAC over triples with a fixed seed, refined over all inliers. Source:
-/// Fischler and Bolles 1981; Umeyama 1991; Lowe 2004 (ratio test).
+/// Matches all features of two keyframes (nearest descriptor, ratio test), and computes the motion on which
+/// most of their points agree within the depth noise; see motion_of(). Source: Fischler and Bolles 1981
+/// (RANSAC); Umeyama 1991 (rigid motion); Lowe 2004 (ratio test).
 KeyframeMatch match_keyframes(const MapKeyframe& a, const MapKeyframe& b);
 
 }  // namespace roomradar

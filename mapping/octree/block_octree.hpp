@@ -1,7 +1,7 @@
-// block_octree.hpp: the octree that depth frames are fused into; private to StaticMap. Keys, depth, log-odds
-// and pruning are OctoMap's, and static_map_file.cpp writes OctoMap's file formats from it. Eight siblings
-// share one block: a frame touches about 50,000 groups of eight voxels, and memory access dominates its time.
-// A block of eight voxels is one cache line; in OctoMap it is nine separately allocated nodes.
+// block_octree.hpp: octree into which depth frames are fused. Private to StaticMap. Keys, depth, log-odds and
+// pruning are OctoMap's, and static_map_file.cpp writes it in OctoMap's file formats. Eight siblings share
+// one block of one cache line; in OctoMap they are nine separately allocated nodes. Memory access dominates
+// the time of a frame, which changes about 50,000 groups of eight voxels.
 #pragma once
 #include <Eigen/Core>
 #include <array>
@@ -15,11 +15,11 @@
 
 namespace roomradar {
 
-inline constexpr unsigned kLeafDepth = 16;  // OctoMap's, from its 16-bit keys
-inline constexpr int kKeyOrigin = 32768;    // key of the voxel whose lower corner is the world's origin
+inline constexpr unsigned kLeafDepth = 16;  // depth of the voxels, as in OctoMap, whose keys have 16 bits
+inline constexpr int kKeyOrigin = 32768;    // key of the voxel whose lower corner is at the world's origin
 
-/// Log-odds in units of BlockUnits::log_odds. 0 means unknown; a known voxel whose log-odds come out as 0
-/// stores 1, since OctoMap treats a probability of one half as occupied.
+/// Log-odds in units of BlockUnits::log_odds; 0 means unknown. A known voxel whose log-odds round to 0 stores
+/// 1, because OctoMap treats a probability of one half as occupied.
 using LogOdds = std::int16_t;
 
 /// State of a node: unknown, a cube of uniform log-odds, or a block of children.
@@ -34,9 +34,10 @@ class Slot {
   [[nodiscard]] bool is_unknown() const { return bits_ == 0; }
   [[nodiscard]] bool is_cube() const { return (bits_ & kCube) != 0; }
   [[nodiscard]] bool is_block() const { return bits_ != 0 && !is_cube(); }
-  /// Log-odds of a cube; 0 if unknown.
+  /// Returns the log-odds of a cube; 0 if unknown.
   [[nodiscard]] LogOdds log_odds() const { return static_cast<LogOdds>(static_cast<std::uint16_t>(bits_)); }
-  /// Block number, in the pool of inner blocks for nodes above depth 15, of leaf blocks at depth 15.
+  /// Returns the block's number: in the pool of inner blocks for a node above depth 15, and in the pool of
+  /// leaf blocks for a node at depth 15.
   [[nodiscard]] std::uint32_t number() const { return bits_; }
   friend bool operator==(const Slot&, const Slot&) = default;
 
@@ -46,32 +47,33 @@ class Slot {
   std::uint32_t bits_ = 0;
 };
 
-/// The children of a node above depth 15, in OctoMap's order: x has weight 1, y 2, z 4.
+/// The eight children of a node above depth 15. Child index, as in OctoMap: x has weight 1, y 2, z 4.
 struct alignas(32) InnerBlock {
   std::array<Slot, 8> slots;
 };
 static_assert(sizeof(InnerBlock) == 32);
 
-/// The eight voxels of a node at depth 15. A voxel behind a surface may be unknown and still have a signed
-/// distance.
+/// The eight voxels of a node at depth 15. A voxel behind a surface may have a signed distance although its
+/// occupancy is unknown.
 struct alignas(64) LeafBlock {
   std::array<LogOdds, 8> log_odds{};
-  std::array<std::int16_t, 8> distance{};  ///< in BlockUnits::distance_m
-  std::array<std::uint16_t, 8> weight{};   ///< in BlockUnits::weight; 0: no signed distance
-  std::uint32_t colours = 0;               ///< number of its ColourBlock; 0: none
+  std::array<std::int16_t, 8> distance{};  ///< signed distance, in units of BlockUnits::distance_m
+  std::array<std::uint16_t, 8> weight{};   ///< weight, in units of BlockUnits::weight; 0: no signed distance
+  std::uint32_t colours = 0;               ///< number of the voxels' ColourBlock; 0: none
   std::uint8_t coloured = 0;               ///< bit i: voxel i has a colour
 
   [[nodiscard]] bool holds(unsigned i) const { return log_odds[i] != 0 || weight[i] != 0; }
 };
 static_assert(sizeof(LeafBlock) == 64);
 
-/// Colours of a leaf block, stored separately since most blocks have none or rarely update it.
+/// Colours of a leaf block's voxels, stored separately because most blocks have none or rarely update them.
 struct ColourBlock {
   std::array<Rgb, 8> colours;
 };
 
-/// Step sizes of the integers in the blocks: 15 or 16 bits span each range that the config allows. With
-/// default settings at 1 cm: log-odds 1e-4, distance 3 micrometres, weight half that of a frame at 5 m.
+/// Step sizes of the integers in the blocks; 15 or 16 bits cover the range that the config allows. With
+/// default settings and 1 cm voxels, the steps are: log-odds 1e-4, distance 3 micrometres, weight half the
+/// weight of a frame at 5 m.
 struct BlockUnits {
   BlockUnits(double resolution_m, const FusionConfig& config);
   float log_odds;
@@ -79,7 +81,7 @@ struct BlockUnits {
   float weight;
 };
 
-/// A node's position in the tree: its depth and the key of its lowest voxel (kKeyOrigin + voxel index).
+/// Position of a node in the tree: its depth and the key of its lowest voxel (kKeyOrigin + voxel index).
 struct NodePlace {
   unsigned depth = 0;
   Eigen::Array3i key = Eigen::Array3i::Zero();
@@ -89,7 +91,7 @@ struct NodePlace {
     const int edge = edge_voxels() / 2;
     return {depth + 1, key + Eigen::Array3i(i & 1U ? edge : 0, i & 2U ? edge : 0, i & 4U ? edge : 0)};
   }
-  /// Index of the child that contains a voxel.
+  /// Returns the index of the child that contains a voxel.
   [[nodiscard]] unsigned towards(const Eigen::Array3i& voxel_key) const {
     const auto digit = [&](int axis) {
       return static_cast<unsigned>(voxel_key[axis] >> (kLeafDepth - 1 - depth)) & 1U;
@@ -114,7 +116,7 @@ class BlockOctree {
   const InnerBlock& inner(Slot slot) const { return inner_[slot.number()]; }
   LeafBlock& leaves(Slot slot) { return leaves_[slot.number()]; }
   const LeafBlock& leaves(Slot slot) const { return leaves_[slot.number()]; }
-  /// The block's colours, allocated if it has none.
+  /// Returns the block's colours; allocates them if the block has none.
   ColourBlock& colours(LeafBlock& block) {
     if (block.colours == 0) block.colours = colours_.take();
     return colours_[block.colours];
@@ -123,9 +125,9 @@ class BlockOctree {
     return (block.coloured >> i & 1U) != 0 ? colours_[block.colours].colours[i] : Rgb{};
   }
 
-  /// Prunes: returns the new state of `node`, given its children `block`. If all eight are equal, the node
-  /// becomes a cube or unknown and its block is freed. Otherwise the node stays a block (then `block` must be
-  /// that block) or gets a new block, a copy of `block`.
+  /// Prunes `node`, whose children are `block`, and returns its new state. If all eight children are equal,
+  /// their block is freed and the node becomes a cube or unknown. Otherwise the node keeps its block, which
+  /// must then be `block`, or gets a new block with a copy of `block`.
   Slot prune(Slot node, const InnerBlock& block) {
     if (alike(block)) {
       if (node.is_block()) inner_.give_back(node.number());
@@ -150,7 +152,8 @@ class BlockOctree {
   }
 
  private:
-  // True only for equal cubes or all unknown, since no two slots share a block.
+  // Returns true if all children are unknown or equal cubes. Equal block numbers do not occur, because no two
+  // nodes share a block.
   static bool alike(const InnerBlock& block) {
     bool same = true;
     for (const Slot slot : block.slots) same &= slot == block.slots[0];
@@ -171,10 +174,10 @@ class BlockOctree {
 };
 
 struct SubtreeSize {
-  std::size_t nodes = 0;  ///< number of OctoMap nodes, as stored in its file formats
-  std::size_t bytes = 0;  ///< memory of the blocks in use, colours included
+  std::size_t nodes = 0;  ///< number of nodes that OctoMap's file formats store
+  std::size_t bytes = 0;  ///< memory of the blocks in use, including colours
 };
-/// Size of a node and all its descendants.
+/// Returns the size of a node with all its descendants.
 SubtreeSize size_of(const BlockOctree& tree, Slot node, unsigned depth);
 
 inline void erase_sample(LeafBlock& block, unsigned i) {
@@ -183,7 +186,7 @@ inline void erase_sample(LeafBlock& block, unsigned i) {
   block.coloured &= static_cast<std::uint8_t>(~(1U << i));
 }
 
-/// Children of a node that is not a block: each equals the node.
+/// Returns the eight children of a node that is not a block; each equals the node.
 inline InnerBlock opened(Slot node) {
   InnerBlock block;
   block.slots.fill(node);
@@ -195,8 +198,8 @@ inline LeafBlock opened_leaves(Slot node) {
   return block;
 }
 
-/// Visits a node's subtree in Morton order: on_cube(place, log-odds) for cubes, on_leaves(place, LeafBlock)
-/// for leaf blocks.
+/// Visits a node's subtree in Morton order. Calls on_cube(place, log-odds) for each cube, and
+/// on_leaves(place, LeafBlock) for each leaf block.
 template <typename OnCube, typename OnLeaves>
 void for_each_part(const BlockOctree& tree, Slot node, const NodePlace& place, const OnCube& on_cube,
                    const OnLeaves& on_leaves) {
@@ -207,7 +210,7 @@ void for_each_part(const BlockOctree& tree, Slot node, const NodePlace& place, c
   for (unsigned i = 0; i < 8; ++i) for_each_part(tree, block.slots[i], place.child(i), on_cube, on_leaves);
 }
 
-/// Visits each free or occupied leaf, of any size, in Morton order: visit(place, log-odds).
+/// Calls visit(place, log-odds) for each free or occupied leaf, of any size, in Morton order.
 template <typename Visit>
 void for_each_leaf(const BlockOctree& tree, const Visit& visit) {
   for_each_part(tree, tree.root, {}, visit, [&](const NodePlace& place, const LeafBlock& block) {
@@ -216,8 +219,8 @@ void for_each_leaf(const BlockOctree& tree, const Visit& visit) {
   });
 }
 
-/// Calls change(LeafBlock&) on the voxels of a node at depth 15, expanding the node if needed. Returns the
-/// node's new state, pruned.
+/// Calls change(LeafBlock&) on the eight voxels of a node at depth 15; splits the node first if it is not a
+/// block. Returns the node's pruned new state.
 template <typename Change>
 Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
   LeafBlock made;
@@ -227,8 +230,8 @@ Slot change_leaves(BlockOctree& tree, Slot node, const Change& change) {
   return tree.prune(node, block);
 }
 
-/// Replaces the node at `target`, which is at or below `place`, by change(slot); creates the nodes in
-/// between. Returns the new state of the node at `place`, pruned.
+/// Replaces the node at `target` by change(slot), and creates the nodes between `place` and `target`.
+/// `target` must be at or below `place`, the position of `node`. Returns the pruned new state of `node`.
 template <typename Change>
 Slot change_node(BlockOctree& tree, Slot node, const NodePlace& place, const NodePlace& target,
                  const Change& change) {

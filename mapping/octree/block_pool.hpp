@@ -1,4 +1,4 @@
-// block_pool.hpp: pool allocator of equal blocks addressed by 32-bit numbers.
+// block_pool.hpp: pool allocator for equally sized blocks that are addressed by 32-bit numbers.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,11 +10,12 @@
 
 namespace roomradar {
 
-/// Blocks never move, so references stay valid while others are allocated. Number 0 is reserved for "none".
+/// Pool of blocks. Blocks never move, so references stay valid while other blocks are allocated. Number 0 is
+/// reserved and means "none".
 template <typename Block>
 class BlockPool {
  public:
-  /// @param limit  max blocks in use at a time; numbers stay below 2^31
+  /// @param limit  max number of blocks in use at a time; by default, all numbers below 2^31
   explicit BlockPool(std::uint32_t limit = (1U << 31U) - 1) : limit_(limit) {}
 
   /// Allocates a block, initialised to Block{}, and returns its number. Throws Error if the limit is reached.
@@ -39,7 +40,7 @@ class BlockPool {
   const Block& operator[](std::uint32_t number) const { return chunks_[number / kChunk][number % kChunk]; }
 
   [[nodiscard]] std::size_t in_use() const { return next_ - 1 - free_.size(); }
-  /// Memory of all blocks ever allocated; freed blocks are kept for reuse.
+  /// Returns the memory of all blocks ever allocated, because freed blocks are kept for reuse.
   [[nodiscard]] std::size_t memory_bytes() const {
     return chunks_.size() * kChunk * sizeof(Block) + free_.capacity() * sizeof(std::uint32_t);
   }

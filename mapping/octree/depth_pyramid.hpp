@@ -1,4 +1,5 @@
-// depth_pyramid.hpp: min/max pyramid of a depth image, bounding free and hidden space per pixel rectangle.
+// depth_pyramid.hpp: min/max pyramid of a depth image, which bounds free and occluded space behind pixel
+// rectangles.
 #pragma once
 #include <algorithm>
 #include <bit>
@@ -12,15 +13,15 @@
 
 namespace roomradar {
 
-/// Half-width (m) of the truncation band around a surface measured at depth_m, in which signed distance is
-/// kept.
+/// Returns the half-width of the truncation band, m: signed distance is fused up to this far in front of and
+/// behind a surface measured at depth_m.
 float half_layer_m(float depth_m, double resolution_m, const FusionConfig& config);
 
-/// Bounds along the optical axis over all pixels of a rectangle. Nearer than `front`, every pixel observes
-/// free space. Nearer than `nearest`, every pixel with depth observes free space; pixels without depth are
-/// ignored. Farther than -`behind`, every pixel is occluded or unmeasured. Between `front` and -`behind` may
-/// be surface. Unit: 1 / steps_per_m of the pyramid, rounded conservatively. `behind` is negated so that a
-/// rectangle's bounds are the minimum of its pixels' bounds in every field.
+/// Bounds of the depth, along the optical axis, over all pixels of a rectangle. Space nearer than `front` is
+/// free in every pixel. Space nearer than `nearest` is free in every pixel with depth; pixels without depth
+/// are ignored. Space farther than -`behind` is occluded or unmeasured in every pixel. A surface is possible
+/// only between `front` and -`behind`. The unit is 1 / steps_per_m of the pyramid, and values are rounded
+/// conservatively. `behind` is negated, so every bound of a rectangle is the minimum of its pixels' bounds.
 struct DepthBounds {
   std::int16_t front = 0;
   std::int16_t nearest = 0;
@@ -28,40 +29,46 @@ struct DepthBounds {
   std::int16_t unused = 0;
 };
 
-/// Level i has cells of 2^i x 2^i pixels, i = 1..levels. All levels are stacked in one array, so a cell's
-/// index takes little arithmetic; array elements outside the levels are neutral.
+/// Pyramid of DepthBounds. Level i has cells of 2^i x 2^i pixels, i = 1..levels. All levels are stacked in
+/// one array, so computing a cell's index is cheap. Array elements outside the levels do not affect a
+/// minimum.
 struct DepthPyramid {
   float steps_per_m = 0.0F;
   int width_px = 0, height_px = 0;
   int levels = 0;
-  int stride = 0;                                                   ///< cells per row of the array
-  std::vector<DepthBounds> cells;                                   ///< 2^levels rows
-  std::vector<float> row_nearest_m, row_farthest_m, row_deepest_m;  // scratch, for two rows of the image
+  int stride = 0;                  ///< number of cells per row of the array
+  std::vector<DepthBounds> cells;  ///< the array: 2^levels rows of `stride` cells
+  std::vector<float> row_nearest_m, row_farthest_m, row_deepest_m;  // scratch for two rows of the image
 
-  /// First row of a level: 0, 1/2, 3/4, ... of all rows.
+  /// Returns the first row of a level in the array. Level 1 begins at row 0, level 2 at half of all rows,
+  /// level 3 at three quarters, and so on.
   [[nodiscard]] int first_row(int level) const { return (1 << levels) - (2 << (levels - level)); }
   [[nodiscard]] DepthBounds* row(int level, int y) { return cells.data() + (first_row(level) + y) * stride; }
   [[nodiscard]] int cells_across(int level) const { return ((width_px - 1) >> level) + 1; }
   [[nodiscard]] int cells_down(int level) const { return ((height_px - 1) >> level) + 1; }
 };
 
-/// Builds the pyramid, reusing its memory. Pixels without depth prove nothing. A hole smaller than 4 x 4
-/// pixels (2 x 2 in rectangles up to six pixels wide) takes its neighbours' bounds, so single dropouts do not
-/// keep the space in front of a wall unknown. Pixels beyond max_range_m prove free space up to max_range_m.
+/// Builds the pyramid, reusing its memory. Pixels without depth give no evidence. Holes smaller than 4 x 4
+/// pixels (2 x 2 in rectangles up to six pixels wide) take the bounds of the pixels around them, so single
+/// dropouts do not leave the space in front of a wall unknown. Pixels with more depth than max_range_m make
+/// space free up to max_range_m.
 void build_pyramid(const DepthImage& depth_m, double resolution_m, const FusionConfig& config,
                    DepthPyramid& pyramid);
 
-/// Up to 4 x 4 cells of one level. The same number of cells is always read, some of them twice: a branch
-/// would cost more.
+/// Rectangle of up to 4 x 4 cells of one level, as offsets into the pyramid's array. The same number of cells
+/// is always read, some of them twice, because a branch would cost more.
 struct CellRect {
-  int at = 0;                           ///< index of the first cell
-  int column = 0;                       ///< offset from the first column to the last but one, or 0
-  int second = 0, third = 0, last = 0;  ///< offsets from the first row to these; third: last but one
+  int at = 0;      ///< index of the first cell in the array
+  int column = 0;  ///< offset from the first column to the last but one; 0 if there is none
+  /// Offsets in the array from the first row of the rectangle to its second, its last but one, and its last
+  /// row.
+  int second = 0, third = 0, last = 0;
 };
 
-/// Bounds over all of the cells.
+/// Returns the bounds over all cells of the rectangle.
 inline DepthBounds bounds_within(const DepthPyramid& pyramid, const CellRect& rect) {
-  using Pair = std::int16_t __attribute__((vector_size(2 * sizeof(DepthBounds))));  // two neighbouring cells
+  // bounds of two neighbouring cells
+  using Pair = std::int16_t __attribute__((vector_size(2 * sizeof(DepthBounds))));
   const DepthBounds* first = pyramid.cells.data() + rect.at;
   const auto least = [](const Pair& a, const Pair& b) { return a < b ? a : b; };
   const auto in_row = [&](int row) {

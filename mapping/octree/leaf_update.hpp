@@ -1,4 +1,4 @@
-// leaf_update.hpp: updates the eight voxels of a leaf block with a frame. Private to the fusion.
+// leaf_update.hpp: updates the eight voxels of a leaf block with a depth frame. Private to the fusion.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,20 +13,20 @@
 
 namespace roomradar {
 
-/// Weight of a measurement: the variance at 1 m divided by its own variance, at most 1.
+/// Returns the weight of a measurement: variance at 1 m divided by the variance at depth_m, at most 1.
 inline float weight_at(float depth_m) {
   const float ratio = depth_sigma_m(1.0F) / depth_sigma_m(depth_m);
   return std::min(ratio * ratio, 1.0F);
 }
 
-/// Measurements for eight voxels, from the pixels that their centres project to.
+/// Measurements of eight voxels, each from the pixel to which the voxel's centre projects.
 template <typename Float8>
 struct Observed {
-  EightPoints<Float8> p_camera;  ///< voxel centres
-  Float8 distance_m;             ///< measured depth minus the centre's depth
+  EightPoints<Float8> p_camera;  ///< voxel centres, m
+  Float8 distance_m;             ///< measured depth minus depth of the voxel's centre
   Float8 sigma_m;                ///< standard deviation of the measured depth
-  unsigned free = 0;             ///< bit i: centre i is seen through
-  unsigned sampled = 0;          ///< bit i: centre i is within the truncation of the measured surface
+  unsigned free = 0;             ///< bit i: the centre of voxel i is seen through
+  unsigned sampled = 0;          ///< bit i: the centre of voxel i is within the truncation band
 };
 
 template <typename Float8>
@@ -51,7 +51,7 @@ class LeafUpdate {
                   colour.height == frame.colour_camera.height_px;
   }
 
-  /// Free cube at the minimum log-odds, which further misses do not change.
+  /// Returns a free cube at the minimum log-odds; further misses do not change it.
   [[nodiscard]] Slot saturated_free() const { return Slot::cube(static_cast<LogOdds>(min_)); }
   [[nodiscard]] Slot missed(Slot cube) const {
     const float after = std::max(static_cast<float>(cube.log_odds()) + miss_, min_);
@@ -74,9 +74,10 @@ class LeafUpdate {
     return {p_camera, distance_m, sigma_m, free.bits(), sampled.bits()};
   }
 
-  /// Updates the eight voxels of `node` and returns the node's new state.
+  /// Updates the eight voxels of `node`, and returns the node's new state.
   /// @param hit  bit i: a ray ends in voxel i
-  /// @param refresh_colour  updates colours even if this frame has less than kSettledPart of their weight
+  /// @param refresh_colour  true: also updates colours of voxels to whose weight this frame contributes less
+  ///                        than kSettledPart
   Slot update(Slot node, const Observed<Float8>& observed, unsigned hit, bool refresh_colour) {
     const unsigned missed = observed.free & ~hit;
     unsigned sampled = observed.sampled;
@@ -92,14 +93,16 @@ class LeafUpdate {
     return tree_.prune(node, block);
   }
 
-  /// Marks eight voxels that are all seen through, by a frame of this weight. `clear`: the space around them
-  /// is seen through, too. Their samples then fade: the distance is averaged towards the truncation, and the
-  /// sample is erased once the voxel is saturated free, so it can merge with the free space around it.
+  /// Updates eight voxels that a frame of this weight sees through. `clear` means that the frame also sees
+  /// through the space around them. In this case their samples fade: their distance is averaged with the
+  /// truncation distance, and they are erased once their voxel has the minimum log-odds, so the voxels can be
+  /// merged with the free space around them.
   ///
   /// Without `clear`, samples are kept: beside edges and on obliquely seen surfaces, seeing through a voxel
-  /// is noise more often than change. The exception are samples behind a surface, which are seen through only
-  /// if the surface has gone: frames that see through them cancel frames that measured them. Otherwise an
-  /// object that was too close to a wall for `clear` would leave its back side behind after moving away.
+  /// is caused by noise more often than by a change. Samples behind a surface are the exception, because they
+  /// can be seen through only if the surface has gone. Each frame that sees through them cancels frames that
+  /// measured them. Otherwise an object that was too close to a wall for `clear` would leave its back side in
+  /// the map after moving away.
   Slot mark_free(Slot node, float weight, bool clear) {
     LeafBlock& block = tree_.leaves(node);
     add_log_odds(block, 0, 0xFFU);
@@ -111,24 +114,26 @@ class LeafUpdate {
   }
 
  private:
-  // Samples within this many voxels of the surface take its colour; the mesh's vertices are interpolated from
-  // them.
+  // Only samples within this many voxels of the surface take its colour, because only these are used to
+  // interpolate the colours of mesh vertices.
   static constexpr float kColourVoxels = 1.5F;
   // A measurement with less than this fraction of the total weight leaves the colour unchanged, except on a
-  // refresh. It then counts as this fraction: smaller changes would be lost in rounding to 8 bits.
+  // refresh. On a refresh it is given this fraction, because smaller changes would be lost in rounding to 8
+  // bits.
   static constexpr float kSettledPart = 1.0F / 8.0F;
 
-  // Samples at least this far behind a surface count as behind it; nearer ones are seen past too often
-  // because of noise and pose errors.
+  // Min distance behind a surface, in voxels, at which a sample counts as behind it. Samples nearer to the
+  // surface are seen past too often, because of noise and pose errors.
   static constexpr float kBehind_voxels = 0.5F;
-  // A frame that sees through such a sample cancels this many frames that measured it. Above 1, because the
-  // first ones only make the voxel free, and an object present in half of the frames should disappear.
+  // Number of frames that measured a sample which one frame that sees through the sample cancels. Above 1,
+  // because the first such frames only make the voxel free, and because an object present in half of the
+  // frames should disappear.
   static constexpr float kCancelled = 2.0F;
 
   static Float8 absolute(const Float8& a) { return max(a, Float8(0.0F) - a); }
   [[nodiscard]] float in_steps(float log_odds) const { return std::round(log_odds / tree_.units().log_odds); }
 
-  // depth_sigma_m() of each element.
+  // Returns depth_sigma_m() of each element.
   static Float8 sigma_of(const Float8& depth_m) {
     const Float8 beyond_m = max(depth_m - 0.4F, 0.0F);
     return beyond_m * beyond_m * 0.0019F + 0.0012F;
@@ -147,20 +152,21 @@ class LeafUpdate {
     select(Float8::Mask::of_bits(hit | missed), known, before).store_rounded(block.log_odds);
   }
 
-  // Returns the samples behind a surface whose voxels are not occupied. Occupied voxels keep their samples:
-  // without one they would be invisible to the ghost votes.
+  // Returns the voxels (bit i: voxel i) that have a sample behind a surface and are not occupied. Occupied
+  // voxels keep their samples, because ghost removal cannot see voxels without samples.
   [[nodiscard]] unsigned behind_surface(const LeafBlock& block) const {
     return ((Float8::load(block.distance) < Float8(behind_)) & (Float8::load(block.log_odds) <= 0.0F)).bits();
   }
-  // Returns those of behind_surface() for which this frame measures a surface more than the truncation
-  // farther away.
+  // Returns the voxels in behind_surface() for which this frame measures a surface farther away by more than
+  // the truncation distance.
   [[nodiscard]] unsigned seen_through(const LeafBlock& block, const Observed<Float8>& observed) const {
     const Float8 further =
         observed.distance_m * (1.0F / tree_.units().distance_m) - Float8::load(block.distance);
     return behind_surface(block) & (Float8(truncation_m_ / tree_.units().distance_m) < further).bits();
   }
 
-  // Subtracts the weight of a frame that sees through the samples in `gone`. Returns those that remain.
+  // Subtracts the weight of a frame that sees through the samples of the voxels in `gone`. Returns the voxels
+  // whose samples remain.
   unsigned cancel_samples(LeafBlock& block, const Float8& weight, unsigned gone) const {
     const Float8 own_weight = Float8::load(block.weight);
     const Float8 cancelled = max(weight * (kCancelled / tree_.units().weight), 1.0F);
@@ -245,8 +251,8 @@ class LeafUpdate {
   Pinhole camera_, colour_camera_;
   Eigen::Matrix4f T_colour_depth_;
   float truncation_m_, colour_distance_m_;
-  float behind_;                  // distance, in the tree's units
-  float hit_, miss_, min_, max_;  // log-odds, in the tree's units
+  float behind_;                  // -kBehind_voxels as distance, in units of BlockUnits::distance_m
+  float hit_, miss_, min_, max_;  // in units of BlockUnits::log_odds
   bool has_colour_ = false;
 };
 

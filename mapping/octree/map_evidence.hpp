@@ -1,4 +1,4 @@
-// map_evidence.hpp: adds another map's evidence to the octree. Private to StaticMap.
+// map_evidence.hpp: adds the log-odds and samples of another map to the octree. Private to StaticMap.
 #pragma once
 #include "mapping/octree/block_octree.hpp"
 #include "mapping/octree/fusion_config.hpp"
@@ -6,7 +6,7 @@
 
 namespace roomradar {
 
-/// See StaticMap::add_evidence().
+/// Adds a leaf's log-odds; see StaticMap::add_evidence().
 void add_evidence(BlockOctree& tree, const FusionConfig& config, const MapLeaf& leaf);
 void add_evidence(BlockOctree& tree, const SurfaceSample& sample);
 

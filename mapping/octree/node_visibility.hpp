@@ -1,5 +1,5 @@
-// node_visibility.hpp: visibility of eight sibling nodes in a depth image. Private to the fusion; the
-// template parameter Float8 selects a version from float8.hpp.
+// node_visibility.hpp: visibility of eight sibling nodes in a depth image. Private to the fusion. The
+// template parameter Float8 selects a SIMD version from simd8f.hpp.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -12,10 +12,10 @@
 
 namespace roomradar {
 
-/// Depth below this is treated as no measurement: no depth camera measures at such short range.
+/// Smaller depths count as not measured, because no depth camera measures at such short range.
 inline constexpr float kLeastDepth_m = 0.05F;
 
-inline constexpr float kNearest_m = 0.01F;  // min z for projection into the image
+inline constexpr float kNearest_m = 0.01F;  // min z of points that are projected into the image
 
 /// Pinhole camera in float.
 struct Pinhole {
@@ -35,7 +35,8 @@ struct EightPoints {
   Float8 x, y, z;
 };
 
-/// Offsets from a node's centre to its children's centres in the camera frame, for each depth.
+/// Offsets from the centre of a node to the centres of its children, in the camera frame, by depth of the
+/// node.
 class ChildOffsets {
  public:
   ChildOffsets(const Eigen::Matrix3d& R_camera_world, double resolution_m) {
@@ -51,12 +52,12 @@ class ChildOffsets {
       }
     }
   }
-  /// Offset from the centre of a node at `depth` to that of its child i, m.
+  /// Returns the offset from the centre of a node at `depth` to the centre of its child i, m.
   [[nodiscard]] const Eigen::Vector3d& to_child(unsigned depth, unsigned i) const {
     return to_child_[depth][i];
   }
-  /// Half extents, in the camera frame, of the box of all voxel centres in a child of a node at `depth`, m.
-  /// Voxels are classified by their centres.
+  /// Returns the half extents, in the camera frame, of the bounding box of all voxel centres in a child of a
+  /// node at `depth`, m. Only centres count, because voxels are classified by their centres.
   [[nodiscard]] const Eigen::Vector3f& half_extent(unsigned depth) const { return half_extent_[depth]; }
   template <typename Float8>
   [[nodiscard]] EightPoints<Float8> centres(unsigned depth, const Eigen::Vector3d& parent_camera) const {
@@ -72,17 +73,18 @@ class ChildOffsets {
   std::array<std::array<std::array<float, 8>, 3>, kLeafDepth> eight_;
 };
 
-/// Visibility of eight siblings that no ray ends in, one bit each. A sibling in none of the masks may contain
-/// surface.
+/// Visibility of eight siblings that contain no ray endpoint, as bit masks (bit i: sibling i). A sibling in
+/// none of the masks may contain a surface.
 struct NodeVisibility {
-  unsigned nothing = 0;    ///< occluded or out of view
-  unsigned free = 0;       ///< wholly seen through
-  unsigned part_free = 0;  ///< its measured part is seen through; the rest is out of view or has no depth
+  unsigned nothing = 0;  ///< sibling is occluded or out of view
+  unsigned free = 0;     ///< sibling is wholly seen through
+  /// The measured part of the sibling is seen through; the rest is out of view or has no depth.
+  unsigned part_free = 0;
 };
 
-/// Classifies siblings from their boxes in the camera frame and the image rectangles these project to. One
-/// function: its eight-wide values stay in registers from the projection to the tests.
-/// @param half  half extents of a box, m
+/// Classifies eight siblings by their boxes in the camera frame and by the image rectangles to which the
+/// boxes project. This is one function, so the eight-wide values stay in registers.
+/// @param half  half extents of each box, m
 template <typename Float8>
 NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& half, const Pinhole& camera,
                      float max_range_m, const DepthPyramid& pyramid) {
@@ -122,7 +124,8 @@ NodeVisibility judge(const EightPoints<Float8>& centres, const Eigen::Vector3f& 
 
   const auto in_sight = (zero <= left) & (zero <= top) & (right <= camera.width) & (bottom <= camera.height);
   const unsigned whole = in_sight.bits();
-  // Image rectangles in whole pixels, and the finest pyramid level at which each spans at most four cells.
+  // Computes image rectangles in whole pixels, and the finest pyramid level at which each spans at most four
+  // cells per side.
   const Float8 x_end(camera.width - 1.0F), y_end(camera.height - 1.0F);
   const Float8 left_px = floor(min(max(left, zero), x_end)), right_px = floor(min(max(right, zero), x_end));
   const Float8 top_px = floor(min(max(top, zero), y_end)), bottom_px = floor(min(max(bottom, zero), y_end));

@@ -1,6 +1,6 @@
-// octomap_tree.hpp: node type of roomradar's .ot files, and an OctoMap octree that reads and writes them.
-// StaticMap writes this format node by node. The tree class is for programs that open the file with OctoMap's
-// AbstractOcTree::read(). Only static_map_file.cpp includes this header and OctoMap.
+// octomap_tree.hpp: node type of the project's .ot map files, and an OctoMap octree that reads and writes
+// them. StaticMap itself writes this format node by node. The tree class is for programs that open the file
+// with OctoMap's AbstractOcTree::read(). Only static_map_file.cpp includes this header and OctoMap.
 #pragma once
 #include <octomap/OcTreeNode.h>
 #include <octomap/OccupancyOcTreeBase.h>
@@ -13,21 +13,21 @@
 
 namespace roomradar {
 
-/// Log-odds of exactly 0 (probability one half) mean unknown. Leaves hidden behind a surface may be unknown
-/// and have a signed distance; leaves with neither are not stored. Only finest leaves have a signed distance
-/// (weight > 0).
+/// Node with log-odds and, at the finest depth only, a signed distance (if weight > 0). Log-odds of exactly 0
+/// (probability one half) mean unknown. Leaves behind a surface may be unknown and still have a signed
+/// distance; leaves with neither are not stored.
 class OctoMapNode : public octomap::OcTreeNode {
  public:
   float distance_m = 0.0F;
   float weight = 0.0F;
   Rgb colour;
-  std::uint8_t colour_count = 0;  ///< > 0: the node has a colour
+  std::uint8_t colour_count = 0;  ///< the node has a colour if this is > 0
 
   [[nodiscard]] bool has_sample() const { return weight > 0.0F; }
   void copyData(const OctoMapNode& from);
   bool operator==(const OctoMapNode& other) const;
 
-  /// .ot format: log-odds, then a byte that is 1 if a sample follows, else 0.
+  /// Writes the node in .ot format: log-odds, then one byte that is 1 if a sample follows, else 0.
   std::ostream& writeData(std::ostream& stream) const;
   std::istream& readData(std::istream& stream);
 };
@@ -39,7 +39,7 @@ class OctoMapTree : public octomap::OccupancyOcTreeBase<OctoMapNode> {
   explicit OctoMapTree(double resolution_m);
   [[nodiscard]] OctoMapTree* create() const override { return new OctoMapTree(resolution); }
   [[nodiscard]] std::string getTreeType() const override { return kTreeType; }
-  /// True for eight leaves with equal log-odds and no signed distance.
+  /// Returns true if all eight children are leaves with equal log-odds and without signed distance.
   bool isNodeCollapsible(const OctoMapNode* node) const override;
 };
 

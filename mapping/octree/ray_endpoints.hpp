@@ -1,4 +1,4 @@
-// ray_endpoints.hpp: collects a frame's ray endpoints per leaf block. Private to StaticMap.
+// ray_endpoints.hpp: collects the endpoints of a frame's rays by leaf block. Private to StaticMap.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -11,14 +11,16 @@
 
 namespace roomradar {
 
-/// Ray endpoints in one leaf block: the block's Morton code and a bit for each voxel that contains one.
+/// Ray endpoints in one leaf block: Morton code of the block, and one bit per voxel that contains an
+/// endpoint.
 class BlockHits {
  public:
   BlockHits() = default;
   BlockHits(std::uint64_t block_code, unsigned voxels) : bits_(block_code << 8U | voxels) {}
   [[nodiscard]] std::uint64_t block_code() const { return bits_ >> 8U; }
   [[nodiscard]] unsigned voxels() const { return bits_ & 0xFFU; }
-  /// Child index, within its parent, of the block's ancestor at `depth`.
+  /// Returns the child index that a descent from the root takes at a node of depth `depth` to reach the
+  /// block.
   [[nodiscard]] unsigned child(unsigned depth) const {
     return static_cast<unsigned>(bits_ >> (8U + 3U * (kLeafDepth - 1 - depth))) & 7U;
   }
@@ -28,21 +30,21 @@ class BlockHits {
   std::uint64_t bits_ = 0;
 };
 
-/// Buffers reused from frame to frame.
+/// Buffers that are reused for each frame.
 struct FusionScratch {
   DepthPyramid pyramid;
-  std::vector<BlockHits> hits;  ///< sorted by code, each block once
+  std::vector<BlockHits> hits;  ///< one entry per block with endpoints, sorted by Morton code
   std::vector<BlockHits> sort_buffer;
   std::vector<float> ray_x;
-  std::vector<int> row_keys[2][3];  ///< x, y and z keys of the previous and the current row
+  std::vector<int> row_keys[2][3];  ///< [previous row, current row][x, y, z]: keys of the row's endpoints
   std::vector<std::uint8_t> is_new;
   std::vector<std::uint32_t> columns;
 };
 
 enum class HitStatus { kCollected, kNone, kOutOfBounds };
 
-/// Fills scratch.hits with the ray endpoints of all pixels that have depth within max_range_m. Returns kNone
-/// if no pixel has depth at any range, kOutOfBounds if an endpoint is outside the octree.
+/// Sets scratch.hits to the endpoints of all pixels whose depth is at most max_range_m. Returns kNone if no
+/// pixel has depth at any range, and kOutOfBounds if an endpoint is outside the octree.
 HitStatus collect_hits(const Frame& frame, const Eigen::Isometry3d& T_world_camera, double resolution_m,
                        const FusionConfig& config, FusionScratch& scratch);
 

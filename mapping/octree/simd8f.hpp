@@ -1,6 +1,6 @@
-// simd8f.hpp: eight floats at a time, one per sibling voxel, in AVX2 and portable versions with equal
-// results. Neither version fuses multiply and add, so maps are bit-identical on every machine; files that use
-// them are compiled with -ffp-contract=off.
+// simd8f.hpp: vector of eight floats, one per sibling voxel, in an AVX2 and a portable version. Both give
+// bit-identical results: neither fuses multiply and add, and files that use them are compiled with
+// -ffp-contract=off. Maps are therefore bit-identical on every machine.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace roomradar {
 
-/// Portable mask and vector of eight; compilers vectorise the loops. Comparisons with NaN are false.
+/// Portable mask of eight lanes. Compilers vectorise the loops. Comparisons with NaN are false.
 struct PortableMask8 {
   std::array<bool, 8> v;
   static PortableMask8 of_bits(unsigned bits) {
@@ -42,11 +42,11 @@ struct PortableFloat8 {
     return out;
   }
   void store(std::array<float, 8>& to) const { to = v; }
-  /// Rounds towards zero; values must be within the range of int.
+  /// Stores the values rounded towards zero; values must be within the range of int.
   void store_truncated(std::array<int, 8>& to) const {
     for (unsigned i = 0; i < 8; ++i) to[i] = static_cast<int>(v[i]);
   }
-  /// Rounds to nearest, halves upwards; saturates to the 16-bit range.
+  /// Stores the values rounded to the nearest integer, halves upwards, and clamped to the 16-bit range.
   template <typename Int16>
   void store_rounded(std::array<Int16, 8>& to) const {
     for (unsigned i = 0; i < 8; ++i) {
@@ -56,7 +56,7 @@ struct PortableFloat8 {
       to[i] = static_cast<Int16>(within);
     }
   }
-  /// base[index], or 0 if masked out; indices are integers below 2^24.
+  /// Returns base[index] for each lane, or 0 where the mask is false. Indices are integers below 2^24.
   static PortableFloat8 gather(const float* base, const PortableFloat8& index, const Mask& mask) {
     PortableFloat8 out;
     for (unsigned i = 0; i < 8; ++i) out.v[i] = mask.v[i] ? base[static_cast<int>(index.v[i])] : 0.0F;
@@ -91,7 +91,7 @@ inline PortableFloat8 operator*(const PortableFloat8& a, const PortableFloat8& b
 inline PortableFloat8 operator/(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x / y; });
 }
-/// min() and max() return b if either is NaN.
+/// Returns b if a or b is NaN, like max().
 inline PortableFloat8 min(const PortableFloat8& a, const PortableFloat8& b) {
   return plain::each(a, b, [](float x, float y) { return x < y ? x : y; });
 }
@@ -101,7 +101,7 @@ inline PortableFloat8 max(const PortableFloat8& a, const PortableFloat8& b) {
 inline PortableFloat8 floor(const PortableFloat8& a) {
   return plain::each(a, a, [](float x, float) { return std::floor(x); });
 }
-/// Largest power of two not above |a|, for each element; for normal numbers.
+/// Returns the largest power of two that is at most |a|, by lane. Requires normal numbers.
 inline PortableFloat8 power_of_two_within(const PortableFloat8& a) {
   return plain::each(a, a, [](float x, float) {
     return std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & 0x7F80'0000U);
@@ -215,7 +215,7 @@ inline Avx2Float8 select(const Avx2Mask8& mask, const Avx2Float8& yes, const Avx
 
 #endif
 
-/// The fastest version available to the compiler.
+/// Fastest version that this compilation supports.
 #if defined(__AVX2__)
 using Float8 = Avx2Float8;
 #else

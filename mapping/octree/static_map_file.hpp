@@ -1,4 +1,4 @@
-// static_map_file.hpp: reads and writes the octree in OctoMap's file formats. Private to StaticMap.
+// static_map_file.hpp: reads and writes the octree as OctoMap files (.ot and .bt). Private to StaticMap.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -7,14 +7,16 @@
 
 namespace roomradar {
 
-/// See StaticMap::write_ot().
+/// Writes a .ot file; see StaticMap::write_ot().
 void write_ot_file(const BlockOctree& tree, const std::filesystem::path& path);
-/// See StaticMap::write_bt().
+/// Writes a .bt file; see StaticMap::write_bt().
 void write_bt_file(const BlockOctree& tree, const std::filesystem::path& path);
 
-/// Returns an empty octree of this resolution, which outlives the call.
+/// Callback that returns an empty octree of the given resolution. The octree must outlive the call of
+/// read_ot_file().
 using MakeOctree = std::function<BlockOctree&(double resolution_m)>;
-/// See StaticMap::read_ot(). Fills the tree from `make_tree`, called once the header is read.
+/// Reads a .ot file; see StaticMap::read_ot(). Calls `make_tree` once the file's header is read, and fills
+/// the tree that it returns.
 void read_ot_file(const std::filesystem::path& path, const MakeOctree& make_tree);
 
 }  // namespace roomradar

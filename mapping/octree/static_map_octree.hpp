@@ -1,4 +1,4 @@
-// static_map_octree.hpp: data members of StaticMap. Private to static_map.cpp.
+// static_map_octree.hpp: data members of StaticMap. Private to StaticMap's source files.
 #pragma once
 #include "mapping/octree/block_octree.hpp"
 #include "mapping/octree/fusion.hpp"

@@ -1,4 +1,4 @@
-// tsdf_bricks.hpp: a static map's signed distances (TSDF) in small dense bricks, for fast neighbour access.
+// tsdf_bricks.hpp: signed distances of a static map (TSDF) in dense bricks, for fast access to neighbours.
 #pragma once
 #include <Eigen/Geometry>
 #include <array>
@@ -14,34 +14,35 @@ namespace roomradar {
 
 struct TsdfSample {
   float distance_m = 0.0F;
-  float weight = 0.0F;  ///< as SurfaceSample::weight; 0: unknown
+  float weight = 0.0F;  ///< weight as in SurfaceSample; 0: unknown
   Rgb colour;
   bool has_colour : 1 = false;
-  bool extrapolated : 1 = false;  ///< extrapolated from its neighbours, not measured
+  bool extrapolated : 1 = false;  ///< extrapolated from neighbouring samples, not measured
 
   [[nodiscard]] bool known() const { return weight > 0.0F; }
 };
 
-inline constexpr int kBrickEdge = 8;                                     // voxels, a power of two
-inline constexpr int kBrickSize = kBrickEdge * kBrickEdge * kBrickEdge;  // voxels
+inline constexpr int kBrickEdge = 8;  // edge of a brick in voxels, a power of two
+inline constexpr int kBrickSize = kBrickEdge * kBrickEdge * kBrickEdge;  // number of voxels in a brick
 
 struct Brick {
-  VoxelIndex first = VoxelIndex::Zero();  ///< lowest voxel of the brick, a multiple of kBrickEdge
+  VoxelIndex first = VoxelIndex::Zero();  ///< lowest voxel of the brick; coordinates are multiples of
+                                          ///< kBrickEdge
   std::array<TsdfSample, kBrickEdge * kBrickEdge * kBrickEdge> samples;
 };
 
-/// All bricks with at least one sample of min_weight or more, in the octree's order.
+/// All bricks that contain at least one sample of weight min_weight or more, in the octree's order.
 class TsdfBricks {
  public:
   TsdfBricks(const StaticMap& map, float min_weight);
-  /// As above, only from samples whose voxel centre is in the box.
+  /// Uses only samples whose voxel centre is in the box.
   TsdfBricks(const StaticMap& map, float min_weight, const Eigen::AlignedBox3d& box_world);
 
   [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
-  /// Callers may change samples but must not add, remove or move bricks.
+  /// Returns the bricks. Callers may change samples, but must not add, remove or move bricks.
   [[nodiscard]] std::vector<Brick>& bricks() { return bricks_; }
   static constexpr std::size_t kNone = ~std::size_t{0};
-  /// Index in bricks() of the brick whose lowest voxel is `first`, or kNone.
+  /// Returns the index, in bricks(), of the brick whose lowest voxel is `first`; kNone if there is none.
   [[nodiscard]] std::size_t find(const VoxelIndex& first) const;
 
  private:
@@ -52,12 +53,13 @@ class TsdfBricks {
   std::unordered_map<std::uint64_t, std::size_t> by_code_;
 };
 
-/// Lowest voxel of the brick that contains a voxel.
+/// Returns the lowest voxel of the brick that contains `voxel`.
 inline VoxelIndex brick_of(const VoxelIndex& voxel) {
   return voxel.unaryExpr([](int v) { return v & ~(kBrickEdge - 1); });
 }
 
-/// Index into a brick's samples; coordinates of `offset` in 0..kBrickEdge-1.
+/// Returns the index into a brick's samples of the voxel at `offset` from the lowest voxel, each coordinate
+/// in 0..kBrickEdge-1.
 inline std::size_t brick_offset(const Eigen::Vector3i& offset) {
   return static_cast<std::size_t>((offset.z() * kBrickEdge + offset.y()) * kBrickEdge + offset.x());
 }
@@ -71,8 +73,8 @@ class BrickNeighbourhood {
     std::size_t brick = TsdfBricks::kNone;
     std::size_t offset = 0;
   };
-  /// Brick and index of a voxel given relative to the centre brick's lowest voxel, each coordinate in
-  /// -kBrickEdge..2*kBrickEdge-1.
+  /// Returns the brick and index of a voxel given relative to the centre brick's lowest voxel, each
+  /// coordinate in -kBrickEdge..2*kBrickEdge-1.
   [[nodiscard]] Place place(const Eigen::Vector3i& relative) const;
 
  private:

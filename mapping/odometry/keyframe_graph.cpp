@@ -68,19 +68,19 @@ Eigen::Isometry3d relative(const KeyframeGraph& graph, std::size_t a, std::size_
 }
 
 void solve_free(KeyframeGraph& graph, const std::vector<PoseConstraint>& constraints,
-                const std::vector<PoseAnchor>& anchors, const std::vector<bool>& held) {
+                const std::vector<PoseAnchor>& anchors, const std::vector<bool>& constant) {
   std::vector<Eigen::Isometry3d> poses;
   poses.reserve(graph.keyframes.size());
   for (const Keyframe& keyframe : graph.keyframes) poses.push_back(keyframe.T_world_camera);
-  if (!is_usable(optimise_pose_graph(poses, constraints, anchors, held).status)) return;
+  if (!is_usable(optimise_pose_graph(poses, constraints, anchors, constant).status)) return;
   for (std::size_t i = 0; i < poses.size(); ++i) graph.keyframes[i].T_world_camera = poses[i];
 }
 
 /// Holds the first pose constant, unless anchors locate the keyframes in the world.
-std::vector<bool> first_held(const KeyframeGraph& graph) {
-  std::vector<bool> held(graph.keyframes.size(), false);
-  if (!held.empty() && graph.anchors.empty()) held.front() = true;
-  return held;
+std::vector<bool> first_constant(const KeyframeGraph& graph) {
+  std::vector<bool> constant(graph.keyframes.size(), false);
+  if (!constant.empty() && graph.anchors.empty()) constant.front() = true;
+  return constant;
 }
 
 /// Reweights a constraint by the similarity of its keyframes' views, in all directions in which it has
@@ -138,19 +138,19 @@ bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t 
 }
 
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
-          const ConnectConfig& config, KeyframeCache& prepare_keyframe) {
-  const auto a = prepare_keyframe.get(older, *graph.keyframes[older].view, config.view);
-  const auto b = prepare_keyframe.get(newer, *graph.keyframes[newer].view, config.view);
+          const ConnectConfig& config, KeyframeCache& cache) {
+  const auto a = cache.get(older, *graph.keyframes[older].view, config.view);
+  const auto b = cache.get(newer, *graph.keyframes[newer].view, config.view);
   const Tracking b_in_a = align(b->live, a->reference, T_older_newer, config.align);
   const Tracking a_in_b = align(a->live, b->reference, T_older_newer.inverse(), config.align);
   return add(graph, older, newer, agreement(graph, older, newer, b_in_a, a_in_b, config.graph));
 }
 
-void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& prepare_keyframe) {
+void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache) {
   if (graph.keyframes.size() < 2) return;
   const std::size_t newest = graph.keyframes.size() - 1;
   for (const std::size_t i : older_near(graph, newest, config.graph.max_edges_new, config.graph.furthest)) {
-    join(graph, i, newest, relative(graph, i, newest), config, prepare_keyframe);
+    join(graph, i, newest, relative(graph, i, newest), config, cache);
   }
 }
 
@@ -174,7 +174,7 @@ void close_loops(KeyframeGraph& graph, const ConnectConfig& config) {
   std::sort(halves.begin(), halves.end(), by_reference);
   const auto align_all = [&](std::span<Half> part) {
     KeyframeCache references(1, PreparedParts::kReference),
-        lives(config.graph.prepare_keyframe, PreparedParts::kLive);
+        lives(config.graph.cached_keyframes, PreparedParts::kLive);
     for (Half& half : part) {
       const auto a = references.get(half.reference, *graph.keyframes[half.reference].view, config.view);
       const auto b = lives.get(half.live, *graph.keyframes[half.live].view, config.view);
@@ -199,7 +199,9 @@ void close_loops(KeyframeGraph& graph, const ConnectConfig& config) {
   }
 }
 
-void solve(KeyframeGraph& graph) { solve_free(graph, graph.constraints, graph.anchors, first_held(graph)); }
+void solve(KeyframeGraph& graph) {
+  solve_free(graph, graph.constraints, graph.anchors, first_constant(graph));
+}
 
 void solve_positions_then_turns(KeyframeGraph& graph) {
   if (graph.keyframes.empty()) return;
@@ -208,7 +210,7 @@ void solve_positions_then_turns(KeyframeGraph& graph) {
   weighed.reserve(graph.constraints.size());
   for (const PoseConstraint& constraint : graph.constraints)
     weighed.push_back(weighed_by_likeness(constraint));
-  solve_free(graph, weighed, graph.anchors, first_held(graph));
+  solve_free(graph, weighed, graph.anchors, first_constant(graph));
 
   // No pose is constant now: a constant first pose would keep its rotation from the first step.
   constexpr double kSigma_m = 1e-4;  // not 0: many consistent alignments may still move a position
@@ -217,8 +219,8 @@ void solve_positions_then_turns(KeyframeGraph& graph) {
   std::vector<PoseAnchor> anchors = graph.anchors;
   for (std::size_t i = 0; i < graph.keyframes.size(); ++i)
     anchors.push_back({i, graph.keyframes[i].T_world_camera, position});
-  const std::vector<bool> none_held(graph.keyframes.size(), false);
-  solve_free(graph, graph.constraints, anchors, none_held);
+  const std::vector<bool> none_constant(graph.keyframes.size(), false);
+  solve_free(graph, graph.constraints, anchors, none_constant);
   if (!graph.anchors.empty()) return;
   const Eigen::Isometry3d T_before_after = T_world_first * graph.keyframes.front().T_world_camera.inverse();
   for (Keyframe& keyframe : graph.keyframes)
@@ -227,11 +229,11 @@ void solve_positions_then_turns(KeyframeGraph& graph) {
 
 void solve_near_newest(KeyframeGraph& graph, double furthest) {
   if (graph.keyframes.size() < 2) return;
-  std::vector<bool> held(graph.keyframes.size(), true);
+  std::vector<bool> constant(graph.keyframes.size(), true);
   for (const std::size_t i : keyframes_near(graph, graph.keyframes.back().T_world_camera, furthest))
-    held[i] = false;
-  if (graph.anchors.empty()) held.front() = true;
-  solve_free(graph, graph.constraints, graph.anchors, held);
+    constant[i] = false;
+  if (graph.anchors.empty()) constant.front() = true;
+  solve_free(graph, graph.constraints, graph.anchors, constant);
 }
 
 }  // namespace roomradar

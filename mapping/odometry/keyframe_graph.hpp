@@ -1,4 +1,4 @@
-// keyframe_graph.hpp: pose graph of keyframes and the measured motions between them.
+// keyframe_graph.hpp: pose graph of keyframes, with relative poses from alignment as edges.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstddef>
@@ -13,72 +13,80 @@
 namespace roomradar {
 
 struct KeyframeGraphConfig {
-  int max_edges_rebuild = 12;  ///< max edges from a keyframe to older ones on a full rebuild
-  int max_edges_new = 6;       ///< max edges from a new keyframe to older ones during tracking
-  double furthest = 1.5;       ///< max view_distance() of two connected keyframes
+  int max_edges_rebuild = 12;  ///< max number of edges from a keyframe to older ones on a full rebuild
+  int max_edges_new = 6;       ///< max number of edges from a new keyframe to older ones while tracking
+  double furthest = 1.5;       ///< max view_distance() between two connected keyframes
   double min_overlap = 0.25;   ///< min fraction of a keyframe's points with a correspondence in the other
-  double min_inliers = 0.5;    ///< min fraction of these correspondences that agree
-  double max_gap_m = 0.05;     ///< max difference between the alignments in both directions
+                               ///< keyframe
+  double min_inliers = 0.5;    ///< min fraction of a pair's correspondences that are inliers
+  /// Max translation, m, between the results of aligning a pair in both directions.
+  double max_gap_m = 0.05;
   double max_gap_rad = 0.05;
-  /// Max pose correction (m and rad) by a loop closure: drift_m plus drift_part of the path between the two
-  /// keyframes. Places that only look alike are farther apart.
+  /// Constant part of the max change, by a new edge, of the relative pose of two keyframes: translation in m,
+  /// and rotation in rad. Larger changes are rejected as false matches between places that look alike.
   double drift_m = 0.15;
   double drift_part = 0.05;
-  std::size_t prepare_keyframe = 8;  ///< keyframes in the cache, 4 MB each
+  std::size_t cached_keyframes = 8;  ///< capacity of the keyframe cache; 4 MB per keyframe
 };
 
 struct KeyframeGraph {
-  std::vector<Keyframe> keyframes;  ///< the first pose is constant, unless there are anchors
+  std::vector<Keyframe> keyframes;  ///< the first pose is constant if there are no anchors
   std::vector<PoseConstraint> constraints;
-  std::vector<PoseAnchor> anchors;  ///< poses of keyframes in a known map
-  std::int64_t loops_found = 0;     ///< connected pairs that are not neighbours in sequence
+  std::vector<PoseAnchor> anchors;  ///< measured poses of keyframes in the world of a known map
+  /// Number of connected pairs that are at least three keyframes apart in sequence.
+  std::int64_t loops_found = 0;
   std::int64_t loops_rejected = 0;
 };
 
-/// Settings for preparing and aligning keyframes.
+/// Settings for preparing, aligning and connecting keyframes.
 struct ConnectConfig {
   ViewConfig view;
   AlignConfig align;
   KeyframeGraphConfig graph;
 };
 
-/// Returns how much two viewpoints differ. At 1, such as 0.8 m or 35 degrees apart, the views hardly overlap.
+/// Returns a measure of how much two viewpoints differ: distance / 0.8 m + angle / 35 degrees. At 1, the two
+/// views hardly overlap.
 double view_distance(const Eigen::Isometry3d& T_a_b);
 
-/// Returns the indices of the keyframes with view_distance() below `furthest`, nearest first.
+/// Returns the indices of all keyframes whose view_distance() to a camera pose is less than `furthest`,
+/// nearest first.
 std::vector<std::size_t> keyframes_near(const KeyframeGraph& graph, const Eigen::Isometry3d& T_world_camera,
                                         double furthest);
 
-/// Returns whether T_older_newer differs from the current poses by no more than the assumed drift.
+/// Returns true if T_older_newer differs from the relative pose of the two keyframes' current poses by less
+/// than the assumed drift: drift_m + drift_part * path between them, in m and rad.
 bool is_within_drift(const KeyframeGraph& graph, std::size_t older, std::size_t newer,
                      const Eigen::Isometry3d& T_older_newer, const KeyframeGraphConfig& config);
 
-/// Aligns two keyframes both ways, starting from T_older_newer. If the results agree with each other, and
-/// with the current poses within drift, adds both as constraints and returns true. Pairs that are not
-/// neighbours in sequence count as loops, found or rejected.
+/// Aligns two keyframes in both directions, starting from T_older_newer. If both results agree with each
+/// other and are within the assumed drift of the current poses, adds both as constraints and returns true. A
+/// pair at least three keyframes apart in sequence counts as a loop, found or rejected.
 bool join(KeyframeGraph& graph, std::size_t older, std::size_t newer, const Eigen::Isometry3d& T_older_newer,
-          const ConnectConfig& config, KeyframeCache& prepare_keyframe);
+          const ConnectConfig& config, KeyframeCache& cache);
 
-/// Connects the newest keyframe to older ones near it; if there are too many, to a selection over all
-/// distances.
-void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& prepare_keyframe);
+/// Connects the newest keyframe to older keyframes near it. If there are more than max_edges_new, selects
+/// this many over all view distances.
+void connect_newest(KeyframeGraph& graph, const ConnectConfig& config, KeyframeCache& cache);
 
-/// Rebuilds all constraints from the keyframes' current depth, on two threads; deterministic.
+/// Rebuilds all constraints from the keyframes' current depth, on two threads. Deterministic.
 void close_loops(KeyframeGraph& graph, const ConnectConfig& config);
 
 /// Optimises all keyframe poses to fit the constraints and anchors.
 void solve(KeyframeGraph& graph);
 
-/// Computes the final poses of all keyframes in two steps. Over the many points that two keyframes share,
-/// noise averages out, but distortion of the depth, constant in the camera frame, remains. Distortion cancels
-/// between similar views. Between different views it bends the relative motion, mostly into a rotation about
-/// the observed surface, and alignment reports this rotation as well constrained. So the first step finds the
-/// positions: it weights constraints by the similarity of their views (view_distance()), and uses their
-/// information only to exclude unconstrained directions. The second step finds the rotations that best fit
-/// these positions, weighted by information.
+/// Computes the final poses of all keyframes in two steps, to reduce the effect of depth distortion.
+/// Distortion is constant in the camera frame, so it does not average out over many points as noise does.
+/// Between similar views it cancels. Between different views it biases the relative pose, mostly by a
+/// rotation about the observed surface, which alignment wrongly reports as well constrained.
+///
+/// The first step therefore finds the positions. It weights constraints by the similarity of their views
+/// (view_distance()), and uses their information only to exclude unconstrained directions. The second step
+/// finds the rotations that best fit these positions, with constraints weighted by their information.
 void solve_positions_then_turns(KeyframeGraph& graph);
 
-/// Same as solve(), but moves only keyframes with view_distance() to the newest below `furthest`.
+/// Optimises only the keyframes whose view_distance() to the newest is less than `furthest`; all other poses
+/// are constant.
 void solve_near_newest(KeyframeGraph& graph, double furthest);
 
 }  // namespace roomradar

@@ -12,7 +12,7 @@ namespace {
 
 /// Connects the newest keyframe to distant ones that look alike; returns whether any was connected.
 bool join_alike(KeyframeGraph& graph, const MapKeyframe& newest, const KeyframeDatabase& keyframe_database,
-                const ConnectConfig& config, KeyframeCache& prepare_keyframe) {
+                const ConnectConfig& config, KeyframeCache& cache) {
   constexpr int kMinMatches = 25, kMinInliers = 30;
   constexpr std::size_t kCandidates = 2;
   const std::size_t number = graph.keyframes.size() - 1;
@@ -23,7 +23,7 @@ bool join_alike(KeyframeGraph& graph, const MapKeyframe& newest, const KeyframeD
     if (view_distance(T_older_newest) < config.graph.furthest) continue;
     const KeyframeMatch match = match_keyframes(keyframe_database.keyframes[i], newest);
     if (match.inliers < kMinInliers) continue;
-    joined = join(graph, i, number, match.T_a_b, config, prepare_keyframe) || joined;
+    joined = join(graph, i, number, match.T_a_b, config, cache) || joined;
   }
   return joined;
 }
@@ -34,9 +34,8 @@ KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config) {
   KeyframeJobResult result;
   KeyframeGraph& graph = job.graph;
   result.place = make_map_keyframe(job.frame, graph.keyframes.back().T_world_camera, config.place);
-  const bool came_back =
-      join_alike(graph, result.place, *job.keyframe_database, config.join, job.prepare_keyframe);
-  connect_newest(graph, config.join, job.prepare_keyframe);
+  const bool came_back = join_alike(graph, result.place, *job.keyframe_database, config.join, job.cache);
+  connect_newest(graph, config.join, job.cache);
   if (came_back) {
     solve(graph);
   } else {

@@ -1,4 +1,4 @@
-// keyframe_job.hpp: background processing of a new keyframe: description, place recognition, graph edges.
+// keyframe_job.hpp: background processing of a new keyframe: features, place recognition, graph edges.
 #pragma once
 #include <optional>
 
@@ -15,25 +15,27 @@ struct KeyframeJobConfig {
   RelocaliseConfig relocalise;
 };
 
-/// Input of run(). Owns its data except for the two keyframe databases, which must not change while it runs.
+/// Input of run(). Owns its data except the two keyframe databases, which must not change while run()
+/// executes.
 struct KeyframeJob {
-  Frame frame;                                          ///< frame of the newest keyframe
-  KeyframeGraph graph;                                  ///< includes the newest keyframe, not connected yet
-  KeyframeCache prepare_keyframe;                       ///< includes the newest keyframe
-  const KeyframeDatabase* keyframe_database = nullptr;  ///< one per keyframe except the newest
+  Frame frame;          ///< frame of the newest keyframe
+  KeyframeGraph graph;  ///< includes the newest keyframe, which has no edges yet
+  KeyframeCache cache;  ///< contains the newest keyframe
+  const KeyframeDatabase* keyframe_database = nullptr;  ///< one entry per keyframe of the graph except the
+                                                        ///< newest
   const KeyframeDatabase* known = nullptr;              ///< database of an earlier map; null: none
 };
 
 struct KeyframeJobResult {
-  KeyframeGraph graph;  ///< connected and optimised
+  KeyframeGraph graph;  ///< input graph with the newest keyframe connected, and optimised poses
   MapKeyframe place;    ///< database entry of the newest keyframe
-  /// Pose of the newest keyframe in the earlier map's world, if it was localised there.
+  /// Pose of the newest keyframe in the earlier map's world; unset if it was not localised there.
   std::optional<Eigen::Isometry3d> T_known_camera;
 };
 
-/// Connects the newest keyframe to those near it, and to distant ones that look alike: after drift,
-/// appearance still recognises a place. Then optimises the poses near the newest keyframe, or all poses if a
-/// distant keyframe was connected.
+/// Connects the newest keyframe to keyframes near it, and to distant keyframes with similar features, which
+/// are the same place if poses have drifted. Then optimises the poses near the newest keyframe, or all poses
+/// if a distant keyframe was connected.
 KeyframeJobResult run(KeyframeJob job, const KeyframeJobConfig& config);
 
 }  // namespace roomradar

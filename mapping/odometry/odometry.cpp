@@ -32,7 +32,7 @@ struct Odometry::State {
   OdometrySnapshot kept;
   ViewPyramid pyramid;  ///< of the current frame, like `live`
   SourcePoints live;
-  KeyframeCache prepare_keyframe;
+  KeyframeCache cache;
   ViewPyramid open;  ///< the current keyframe's, refined by the views since it became current
   Image<std::uint8_t> open_measured;
   bool open_is_newer = false;  ///< newer than the stored view
@@ -40,8 +40,7 @@ struct Odometry::State {
   std::optional<KeyframeJobResult> joined;  ///< the job's result, once it has been waited for
   int job_frames = 0;                       ///< frames since the job began
 
-  explicit State(const OdometryConfig& chosen)
-      : config(chosen), prepare_keyframe(chosen.graph.prepare_keyframe) {}
+  explicit State(const OdometryConfig& chosen) : config(chosen), cache(chosen.graph.cached_keyframes) {}
 
   Tracking start(const Frame& frame);
   Tracking align_near(std::size_t first, const Eigen::Isometry3d& T_world_guess);
@@ -77,14 +76,14 @@ Tracking Odometry::State::align_near(std::size_t first, const Eigen::Isometry3d&
   const auto most = static_cast<std::size_t>(std::max(config.references, 1));
   const std::vector<Keyframe>& keyframes = kept.graph.keyframes;
   std::vector<std::shared_ptr<const CachedKeyframe>> used{
-      prepare_keyframe.get(first, *keyframes[first].view, config.view)};
+      cache.get(first, *keyframes[first].view, config.view)};
   std::vector<PosedReference> references{{&used[0]->reference, keyframes[first].T_world_camera}};
   bool made_one = false;
   for (const std::size_t i : keyframes_near(kept.graph, T_world_guess, kUsefulReference)) {
     if (i == first || references.size() >= most) continue;
-    auto other = prepare_keyframe.find(i);
+    auto other = cache.find(i);
     if (!other && std::exchange(made_one, true)) continue;
-    if (!other) other = prepare_keyframe.get(i, *keyframes[i].view, config.view);
+    if (!other) other = cache.get(i, *keyframes[i].view, config.view);
     references.push_back({&other->reference, keyframes[i].T_world_camera});
     used.push_back(std::move(other));
   }
@@ -128,7 +127,7 @@ void Odometry::State::improve_current(const Tracking& tracking) {
   auto made = std::make_shared<CachedKeyframe>();
   make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
   make_source_points(open, made->live);
-  prepare_keyframe.put(kept.current, std::move(made));
+  cache.put(kept.current, std::move(made));
 }
 
 bool Odometry::State::is_far_from(std::size_t keyframe, const Tracking& tracking) const {
@@ -164,9 +163,9 @@ void Odometry::State::add_keyframe(const Frame& frame, const Tracking& tracking)
   auto made = std::make_shared<CachedKeyframe>();
   make_target_view(open, Eigen::Isometry3d::Identity(), config.view, made->reference);
   made->live = live;
-  prepare_keyframe.put(kept.current, std::move(made));
+  cache.put(kept.current, std::move(made));
   job = std::async(std::launch::async, run,
-                   KeyframeJob{frame, kept.graph, prepare_keyframe, &kept.keyframe_database,
+                   KeyframeJob{frame, kept.graph, cache, &kept.keyframe_database,
                                known.keyframes.empty() ? nullptr : &known},
                    job_config(config));
   job_frames = 0;
@@ -300,7 +299,7 @@ std::vector<TrackedFrame> Odometry::optimise() {
   s.store_open();
   if (!s.kept.graph.keyframes.empty()) {
     KeyframeGraph graph = s.kept.graph;
-    s.prepare_keyframe = KeyframeCache(s.config.graph.prepare_keyframe);  // no longer needed, and large
+    s.cache = KeyframeCache(s.config.graph.cached_keyframes);  // no longer needed, and large
     close_loops(graph, job_config(s.config).join);
     solve_positions_then_turns(graph);
     move_keyframes(graph.keyframes, s.kept);

@@ -13,10 +13,10 @@ namespace roomradar {
 
 struct OdometrySnapshot;
 
-/// Tracks a camera against keyframes, closes loops, and returns all poses at the end. The world is the first
-/// usable frame's camera, unless frames come with poses (add_posed) or the camera is localised in a known
-/// map. A second thread connects new keyframes to the others. Its results are applied after a fixed number of
-/// frames, so poses do not depend on timing. Not thread safe.
+/// Tracks a camera against keyframes, closes loops, and returns all poses at the end. The world frame is the
+/// camera frame of the first usable frame, unless frames come with poses (add_posed) or the camera is
+/// localised in a known map. A second thread connects new keyframes to older ones. Its results are applied
+/// after a fixed number of frames, so poses do not depend on timing. Not thread safe.
 class Odometry {
  public:
   explicit Odometry(const OdometryConfig& config = {});
@@ -24,38 +24,38 @@ class Odometry {
   Odometry& operator=(Odometry&&) noexcept;
   ~Odometry();
 
-  /// Sets the keyframe database of an earlier map, whose poses stay constant; call before the first frame.
-  /// New keyframes are searched for in it. Once one is found, the odometry's world is the map's, for earlier
-  /// frames too.
+  /// Sets the keyframe database of an earlier map; call before the first frame. New keyframes are searched
+  /// for in it. Once one is found, all poses, also those of earlier frames, are in the earlier map's world.
+  /// The earlier map's own poses stay constant.
   void set_prior_map(KeyframeDatabase known);
-  /// Returns whether the world is that of the known map.
+  /// Returns true if poses are in the world of the map given to set_prior_map().
   [[nodiscard]] bool is_located() const;
 
-  /// Returns the current estimate of the next frame's pose. After a loss, searches near the last pose, then
-  /// in all keyframes. The frame's images must have its cameras' sizes.
+  /// Tracks the next frame and returns its current pose estimate. After a loss, tries the last pose first,
+  /// then all keyframes. The images must have the sizes of the frame's cameras.
   Tracking track(const Frame& frame);
 
-  /// Adds a frame with a given pose: keyframes are selected and described, but nothing is aligned or
-  /// optimised.
+  /// Adds a frame with a given pose. Adds a database keyframe if the view is new, but aligns and optimises
+  /// nothing.
   void add_posed(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Rebuilds all constraints from the current depth, optimises the keyframes' poses, and returns all frames
-  /// so far with their final poses.
+  /// Rebuilds all constraints from the keyframes' current depth, optimises the keyframes' poses, and returns
+  /// all frames so far with their final poses.
   std::vector<TrackedFrame> optimise();
 
-  /// Moves the keyframe database out, with current poses; call optimise() first.
+  /// Moves the keyframe database out, with current poses. Call optimise() first.
   KeyframeDatabase take_keyframe_database();
 
   [[nodiscard]] OdometryCounts counts() const;
 
-  /// Waits until the second thread is idle; call before a snapshot or a fork. Changes no pose: the thread's
-  /// result is applied at its usual frame.
+  /// Waits until the second thread is idle; call before snapshot() or a fork of the process. Changes no pose:
+  /// the thread's result is still applied at the frame where it is due.
   void finish_jobs();
-  /// Returns the complete state, with the second thread's result applied. Views are shared, not copied. Call
-  /// only after finish_jobs().
+  /// Returns the complete state, with the second thread's result already applied. Views are shared, not
+  /// copied. Call only after finish_jobs().
   [[nodiscard]] OdometrySnapshot snapshot() const;
-  /// Resumes from a snapshot; the known map must be set again. The snapshot must be consistent
-  /// (load_odometry() checks this).
+  /// Resumes from a snapshot, which must be consistent (load_odometry() checks this). Call set_prior_map()
+  /// again if it was used.
   Odometry(const OdometryConfig& config, OdometrySnapshot snapshot);
 
  private:

@@ -14,11 +14,12 @@
 
 namespace roomradar {
 
-/// Frame with its pose relative to a keyframe, so the frame moves with the keyframe.
+/// Frame with a pose relative to a keyframe, so the frame's pose changes when the keyframe's pose does.
 struct KeptFrame {
   std::int64_t frame_index = 0;
   double stamp_s = 0.0;
-  std::optional<std::size_t> keyframe;  ///< unset: T_keyframe_camera is the pose in the world, and constant
+  /// Index of the keyframe. Unset: T_keyframe_camera is the frame's pose in the world, and constant.
+  std::optional<std::size_t> keyframe;
   Eigen::Isometry3d T_keyframe_camera = Eigen::Isometry3d::Identity();
   TrackStatus status = TrackStatus::kDiverged;
   bool trusted = false;
@@ -27,30 +28,38 @@ struct KeptFrame {
 struct OdometrySnapshot {
   OdometryCounts counts;
   KeyframeGraph graph;
-  KeyframeDatabase keyframe_database;  ///< one per keyframe; add_posed() adds entries without keyframes
+  /// One entry per keyframe of `graph`. add_posed() adds entries for which there is no keyframe.
+  KeyframeDatabase keyframe_database;
   std::vector<KeptFrame> frames;
-  std::size_t current = 0;  ///< keyframe that the last frame was aligned with first
-  int improved = 0;         ///< views averaged into it since its reference was built
+  /// Index of the current keyframe: the keyframe with which the next frame is aligned first.
+  std::size_t current = 0;
+  /// Number of frames averaged into the current keyframe's depth since it was last prepared for alignment.
+  int improved = 0;
   Eigen::Isometry3d T_world_last = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< predicted motion to the next frame
-  double path_length_m = 0.0;                                     ///< see Keyframe
-  Image<float> last_moved_grey;  ///< intensity image when the camera last moved
-  Tracking last_moved;           ///< result for that frame; its pose is trusted
-  bool located = false;          ///< the world is that of the known map
+  Eigen::Isometry3d T_last_next = Eigen::Isometry3d::Identity();  ///< predicted motion from the last frame to
+                                                                  ///< the next
+  double path_length_m = 0.0;  ///< length of the camera's path, as defined at Keyframe
+  /// Intensity image of the last frame before the camera became stationary; empty if its pose is not trusted.
+  Image<float> last_moved_grey;
+  Tracking last_moved;   ///< tracking result of the frame of last_moved_grey
+  bool located = false;  ///< true if poses are in the world of the prior map
 };
 
-/// Applies new keyframe poses. The camera's poses move with the current keyframe, whose motion is returned.
-/// @param moved  one per keyframe of kept.graph, except perhaps the newest
+/// Sets new keyframe poses and moves all poses that depend on them. The camera moves with the current
+/// keyframe.
+/// @param moved  keyframes of kept.graph with new poses; the newest may be missing
+/// @return the motion of the current keyframe, in the world
 Eigen::Isometry3d move_keyframes(const std::vector<Keyframe>& moved, OdometrySnapshot& kept);
 
-/// Applies the second thread's result; returns the motion of the current keyframe. If the newest keyframe was
-/// localised in the known map, anchors it there, and moves the world to the map's the first time.
+/// Applies the second thread's result, and returns the motion of the current keyframe, in the world. If the
+/// newest keyframe was localised in the prior map, adds an anchor for it. The first anchor also moves all
+/// poses into the prior map's world.
 Eigen::Isometry3d take_over(KeyframeJobResult result, OdometrySnapshot& kept);
 
-/// Adds a frame; its pose moves with the current keyframe from now on.
+/// Adds a frame whose pose is stored relative to the current keyframe.
 void keep(OdometrySnapshot& kept, const Frame& frame, const Tracking& tracking);
 
-/// Returns all frames with their poses in the world.
+/// Returns all frames, with their present poses in the world.
 std::vector<TrackedFrame> trajectory_of(const OdometrySnapshot& kept);
 
 }  // namespace roomradar

@@ -111,23 +111,24 @@ std::size_t count_free_directions(const std::vector<Measured>& measured, const s
 
 /// Returns the measurements that can move a pose, constraints first.
 /// @param count          number of poses
-/// @param is_held        callable with the index of a pose; true if the pose is constant
+/// @param is_constant    callable with the index of a pose; true if the pose is constant
 /// @param constraint_of  out: index in `constraints` of each measured constraint
-template <typename IsHeld>
+template <typename IsConstant>
 std::vector<Measured> usable_measurements(std::size_t count, const std::vector<PoseConstraint>& constraints,
-                                          const std::vector<PoseAnchor>& anchors, const IsHeld& is_held,
+                                          const std::vector<PoseAnchor>& anchors,
+                                          const IsConstant& is_constant,
                                           std::vector<std::size_t>& constraint_of) {
   std::vector<Measured> measured;
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     const PoseConstraint& c = constraints[i];
-    if (c.a >= count || (is_held(c.a) && is_held(c.b))) continue;  // both constant: moves nothing
+    if (c.a >= count || (is_constant(c.a) && is_constant(c.b))) continue;  // both constant: moves nothing
     if (const auto m = usable(c.a, c.b, count, c.T_a_b, c.information, c.robust)) {
       measured.push_back(*m);
       constraint_of.push_back(i);
     }
   }
   for (const PoseAnchor& anchor : anchors) {
-    if (anchor.pose < count && is_held(anchor.pose)) continue;
+    if (anchor.pose < count && is_constant(anchor.pose)) continue;
     if (const auto m = usable(count, anchor.pose, count, anchor.T_world_camera, anchor.information, true))
       measured.push_back(*m);
   }
@@ -136,19 +137,19 @@ std::vector<Measured> usable_measurements(std::size_t count, const std::vector<P
 
 /// Returns each pose's index among the free poses: those that a chain of measurements connects to a constant
 /// pose or the world. -1 for the others and the world, which comes last.
-template <typename IsHeld>
+template <typename IsConstant>
 std::vector<int> number_free_poses(std::size_t count, const std::vector<Measured>& measured,
-                                   const IsHeld& is_held) {
+                                   const IsConstant& is_constant) {
   std::vector<std::size_t> parent(count + 1);
   std::iota(parent.begin(), parent.end(), std::size_t{0});
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_held(i)) parent[root_of(parent, i)] = root_of(parent, count);
+    if (is_constant(i)) parent[root_of(parent, i)] = root_of(parent, count);
   }
   for (const Measured& m : measured) parent[root_of(parent, m.a)] = root_of(parent, m.b);
   std::vector<int> place(count + 1, -1);
   int free_poses = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_held(i)) continue;
+    if (is_constant(i)) continue;
     if (root_of(parent, i) == root_of(parent, count)) place[i] = free_poses++;
   }
   return place;
@@ -198,7 +199,8 @@ std::string describe(const PoseGraphResult& result) {
 
 PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_camera,
                                     const std::vector<PoseConstraint>& constraints,
-                                    const std::vector<PoseAnchor>& anchors, const std::vector<bool>& held) {
+                                    const std::vector<PoseAnchor>& anchors,
+                                    const std::vector<bool>& constant) {
   PoseGraphResult result;
   result.residual_sigma.assign(constraints.size(), -1.0);
   const std::size_t count = T_world_camera.size();
@@ -213,19 +215,21 @@ PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_came
   }
   blocks.push_back({Eigen::Vector3d::Zero(), Eigen::Quaterniond::Identity()});
 
-  const auto is_held = [&](std::size_t i) { return held.empty() ? i == 0 : i < held.size() && held[i]; };
+  const auto is_constant = [&](std::size_t i) {
+    return constant.empty() ? i == 0 : i < constant.size() && constant[i];
+  };
   std::vector<std::size_t> constraint_of;
   const std::vector<Measured> measured =
-      usable_measurements(count, constraints, anchors, is_held, constraint_of);
+      usable_measurements(count, constraints, anchors, is_constant, constraint_of);
   if (measured.empty()) {
     result.status = PoseGraphStatus::kNothingToSolve;
     return result;
   }
 
-  const std::vector<int> place = number_free_poses(count, measured, is_held);
+  const std::vector<int> place = number_free_poses(count, measured, is_constant);
   const auto free_poses =
       static_cast<int>(std::count_if(place.begin(), place.end(), [](int p) { return p >= 0; }));
-  for (std::size_t i = 0; i < count; ++i) result.untied += !is_held(i) && place[i] < 0 ? 1 : 0;
+  for (std::size_t i = 0; i < count; ++i) result.untied += !is_constant(i) && place[i] < 0 ? 1 : 0;
 
   ceres::Problem problem;
   const std::vector<ceres::ResidualBlockId> ids = add_residuals(measured, place, blocks, problem);

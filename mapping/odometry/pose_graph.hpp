@@ -1,4 +1,4 @@
-// pose_graph.hpp: optimises poses to fit measured relative poses.
+// pose_graph.hpp: optimises camera poses to fit measured relative and absolute poses.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -10,56 +10,66 @@
 
 namespace roomradar {
 
-/// Measured pose of camera b in camera a.
+/// Measured pose of camera b in the frame of camera a.
 struct PoseConstraint {
   std::size_t a = 0;
   std::size_t b = 0;
   Eigen::Isometry3d T_a_b = Eigen::Isometry3d::Identity();
-  Matrix6d information = Matrix6d::Identity();  ///< for a twist (translation m, rotation rad) at camera b
-  bool robust = false;                          ///< may be an outlier (a loop closure)
+  /// Inverse covariance of T_a_b, as a twist (translation m, rotation rad) in the frame of camera b.
+  Matrix6d information = Matrix6d::Identity();
+  /// True if the measurement may be an outlier, e.g. a loop closure: the solver then uses a robust kernel.
+  bool robust = false;
 };
 
-/// Measured pose of a camera in the world; may be an outlier.
+/// Measured pose of a camera in the world. The measurement may be an outlier, so the solver uses a robust
+/// kernel.
 struct PoseAnchor {
   std::size_t pose = 0;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  Matrix6d information = Matrix6d::Identity();  ///< for a twist at the camera
+  /// Inverse covariance of T_world_camera, as a twist (translation m, rotation rad) in the camera frame.
+  Matrix6d information = Matrix6d::Identity();
 };
 
 enum class PoseGraphStatus {
   kSolved,
-  kUnderdetermined,  ///< solved; unconstrained poses and directions stay near their initial values
-  kNothingToSolve,   ///< no usable measurement involves a free pose; poses unchanged
-  kNotFinite,        ///< a pose is not finite; poses unchanged
-  kFailed,           ///< the solver failed; poses unchanged
+  /// Solved; unconstrained poses and directions stay near their initial values.
+  kUnderdetermined,
+  kNothingToSolve,  ///< no usable measurement involves a pose that is not constant; poses unchanged
+  kNotFinite,       ///< a pose is not finite; poses unchanged
+  kFailed,          ///< the solver failed; poses unchanged
 };
 
-/// Returns whether the poses are at least as good as before.
+/// Returns true if the poses were optimised.
 constexpr bool is_usable(PoseGraphStatus status) {
   return status == PoseGraphStatus::kSolved || status == PoseGraphStatus::kUnderdetermined;
 }
 
 struct PoseGraphResult {
   PoseGraphStatus status = PoseGraphStatus::kFailed;
-  std::size_t untied = 0;  ///< poses that no chain of measurements connects to a constant pose or an anchor
-  std::size_t free_directions = 0;  ///< unconstrained directions, summed over the other poses
-  double cost_before = 0.0;         ///< half the sum of squared residuals, in standard deviations
+  /// Number of poses that no chain of measurements connects to a constant pose or an anchor.
+  std::size_t untied = 0;
+  /// Number of unconstrained directions, summed over the poses that are connected.
+  std::size_t free_directions = 0;
+  /// Initial cost: half the sum of squared residuals, in standard deviations.
+  double cost_before = 0.0;
   double cost_after = 0.0;
-  /// Per constraint: length of its final residual, in standard deviations; -1: left out.
+  /// Norm of the final residual by constraint, in standard deviations; -1: the constraint was left out.
   std::vector<double> residual_sigma;
 };
 
-/// Returns the status as a sentence, with its numbers.
+/// Returns a sentence that states the status and the counts of poses and directions.
 std::string describe(const PoseGraphResult& result);
 
-/// Moves T_world_camera to minimise the residuals of constraints and anchors. `held` marks constant poses,
-/// one value per pose; if empty, the first pose is constant. Poses without a chain of measurements to a
-/// constant pose or an anchor stay unchanged, as do unconstrained directions; both are counted. Never throws.
-/// Leaves out measurements between two constant poses, and invalid ones: index out of range, a number that is
-/// not finite, information that is not positive semidefinite. Their residual_sigma is -1.
+/// Moves the poses T_world_camera to minimise the residuals of constraints and anchors. Poses that no chain
+/// of measurements connects to a constant pose or an anchor do not change, nor do poses in unconstrained
+/// directions; both are counted in the result. Does not throw.
+///
+/// Leaves out measurements between two constant poses, and invalid measurements: index out of range, a number
+/// that is not finite, or information that is not positive semidefinite. Their residual_sigma is -1.
+/// @param constant  by pose: true if the pose is constant; if empty, only the first pose is constant
 PoseGraphResult optimise_pose_graph(std::vector<Eigen::Isometry3d>& T_world_camera,
                                     const std::vector<PoseConstraint>& constraints,
                                     const std::vector<PoseAnchor>& anchors = {},
-                                    const std::vector<bool>& held = {});
+                                    const std::vector<bool>& constant = {});
 
 }  // namespace roomradar

@@ -1,16 +1,16 @@
-// relative_pose_residual.hpp: Ceres residual of two poses against their measured relative pose.
+// relative_pose_residual.hpp: Ceres residual of two camera poses and their measured relative pose.
 #pragma once
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 namespace roomradar {
 
-/// Ceres functor over the poses of cameras a and b, each a translation (m) and a unit quaternion (x, y, z,
-/// w). With E = T_a_b(measured)^-1 * T_world_a^-1 * T_world_b:
-///   residual = S * (translation of E, 2 * vector part of E's quaternion with its w made positive)
-/// where S' S is the information of the measurement, so the residual is in standard deviations and has no
-/// unit. Neither pose is constant here. Source: Ceres' pose_graph_3d example; Grisetti et al., A Tutorial on
-/// Graph-Based SLAM, 2010.
+/// Ceres functor over the poses of cameras a and b, each given as a translation (m) and a unit quaternion (x,
+/// y, z, w). With E = T_a_b(measured)^-1 * T_world_a^-1 * T_world_b:
+///   residual = S * (translation of E, 2 * vector part of the quaternion of E, whose sign makes w positive)
+/// S^T S is the information of the measurement, so the residual is in standard deviations and has no unit.
+/// Neither pose is constant in the functor. Source: Ceres' pose_graph_3d example; Grisetti et al., A Tutorial
+/// on Graph-Based SLAM, 2010.
 struct RelativePoseResidual {
   Eigen::Isometry3d T_b_a_measured;
   Eigen::Matrix<double, 6, 6> sqrt_information;

@@ -1,4 +1,4 @@
-// up_direction.hpp: estimates the up direction of a recording, from the accelerometer or from planes.
+// up_direction.hpp: estimates a recording's up direction from the accelerometer or from dominant planes.
 #pragma once
 #include <Eigen/Geometry>
 #include <string_view>
@@ -9,31 +9,33 @@
 namespace roomradar {
 
 enum class UpSource {
-  kNone,           ///< nothing usable: mean of the cameras' -y
-  kAccelerometer,  ///< gravity measured by the device
-  kPlane,          ///< normal of the dominant plane that is roughly level for an upright camera
+  kNone,           ///< neither gravity nor a plane was usable; up_world is the cameras' mean -y axis
+  kAccelerometer,  ///< mean gravity measured by the device
+  kPlane,          ///< normal of the dominant plane within 60 degrees of the cameras' mean -y axis
 };
 std::string_view to_string(UpSource source);
 
 struct UpDirection {
   UpSource source = UpSource::kNone;
-  Eigen::Vector3d up_world = Eigen::Vector3d::UnitZ();  ///< unit
-  double support = 0.0;  ///< kPlane: fraction of all normals within 5 degrees of up_world; else 1 or 0
+  Eigen::Vector3d up_world = Eigen::Vector3d::UnitZ();  ///< unit vector
+  /// kPlane: fraction of all normals that are within 5 degrees of up_world. kAccelerometer: 1. kNone: 0.
+  double support = 0.0;
 };
 
-/// Accumulates measurements frame by frame; callers add only frames with trusted poses.
+/// Accumulates measurements frame by frame. Callers should add only frames with trusted poses.
 class UpEstimator {
  public:
-  /// Adds the frame's gravity, and normals of its depth on a grid 20 columns wide, both rotated into the
-  /// world.
+  /// Adds the frame's gravity, if it has one, and normals of its depth image, sampled on a grid of 20
+  /// columns. Both are rotated into the world.
   void add(const Frame& frame, const Eigen::Isometry3d& T_world_camera);
 
-  /// Returns the mean of gravity if at least half of the frames have it. Otherwise returns the most frequent
-  /// normal within 60 degrees of the cameras' mean -y, if at least 5 % of the normals support it. A hand-held
-  /// camera may look down at a table, but is rarely upside down. Otherwise returns the mean -y with kNone.
+  /// Returns the up direction from the first usable source: (1) mean gravity, if at least half of the frames
+  /// have gravity; (2) the most frequent normal within 60 degrees of the cameras' mean -y axis, if at least 5
+  /// % of all normals are within 5 degrees of it; (3) the mean -y axis, with kNone. The limit of 60 degrees
+  /// assumes that a hand-held camera may look down at a table, but is rarely upside down.
   [[nodiscard]] UpDirection estimate() const;
 
-  /// Serialises the complete state to a ByteWriter, or from a ByteReader.
+  /// Writes the complete state to a ByteWriter, or reads it from a ByteReader.
   template <typename Archive>
   void serialize_fields(Archive& archive) {
     serialize(archive, normals_world_);
@@ -49,8 +51,8 @@ class UpEstimator {
   }
 
  private:
-  /// Keeps the first of each keep_every_ normals. When full, drops every second one and doubles keep_every_,
-  /// so all frames keep equal weight, however many there are.
+  /// Stores every keep_every_-th normal. When the buffer is full, drops every second stored normal and
+  /// doubles keep_every_, so early and late frames have equal weight.
   void keep(const Eigen::Vector3f& normal_world);
 
   std::vector<Eigen::Vector3f> normals_world_;
@@ -62,7 +64,7 @@ class UpEstimator {
   std::size_t frames_with_gravity_ = 0;
 };
 
-/// Returns the shortest rotation from `up_world` to +z; if up_world = -z, a rotation about x.
+/// Returns the shortest rotation that turns `up_world` to +z. If up_world is -z, rotates about x.
 Eigen::Isometry3d level_rotation(const Eigen::Vector3d& up_world);
 
 }  // namespace roomradar

@@ -9,8 +9,9 @@ namespace roomradar {
 
 inline constexpr int kMaxWindowRadius_px = 31;
 
-/// nearest_m[k] contains, for each pixel, the min depth of the 2^k x 2^k pixels whose upper left corner it is
-/// (infinity if none has depth). Two such squares cover any longer side below 2^(k+1).
+/// Sparse table. nearest_m[k] contains, by pixel, the minimum depth of the 2^k x 2^k pixels whose upper left
+/// corner is this pixel; infinity if none of them has depth. Four such squares cover any window whose side is
+/// at least 2^k and less than 2^(k+1).
 struct DepthWindows {
   std::vector<DepthImage> nearest_m;
   Image<std::int32_t> measured;  ///< integral image: number of pixels with depth above and left of each
@@ -23,7 +24,7 @@ struct WindowDepth {
       0.0F;  ///< pixels with depth / all pixels of the window, including those outside the image
 };
 
-/// Builds the tables, reusing the memory of `windows`.
+/// Builds the sparse table and the integral image, reusing the memory of `windows`.
 void build_windows(const DepthImage& depth_m, DepthWindows& windows);
 
 /// Queries the window of (2 radius + 1)^2 pixels around pixel x, y of the image, with a radius in

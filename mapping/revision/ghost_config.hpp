@@ -1,4 +1,5 @@
-// ghost_config.hpp: when surface of the map counts as a ghost.
+// ghost_config.hpp: thresholds above which a surface of the map counts as a ghost, left by an object that
+// moved away.
 #pragma once
 
 namespace roomradar {
@@ -8,25 +9,28 @@ struct GhostConfig {
   /// margins. The first two (metres, and standard deviations of depth) cover noise and tracking errors.
   float margin_m = 0.03F;
   float margin_sigmas = 4.0F;
-  /// Margin per metre of depth: a pose error of 1.7 degrees shifts a slanted surface this much, and sensors
-  /// other than the Kinect are noisier at long range.
+  /// Margin per metre of depth, m. Covers a pose error of 1.7 degrees on a slanted surface, and sensors that
+  /// are noisier than the Kinect at long range.
   float margin_per_m = 0.03F;
   /// Margin in voxels: samples are up to one voxel in front of or behind the measured surface.
   float margin_voxels = 1.5F;
-  /// Radius, at the sample's depth, of the window in which every pixel must see through it. Otherwise small
-  /// pose errors would let rays pass the edges of static objects.
+  /// Radius of a window around the sample's pixel, m at the sample's depth. A frame sees through the sample
+  /// only if all pixels of the window do; otherwise, small pose errors would let rays pass the edges of
+  /// static objects.
   float window_radius_m = 0.03F;
   float min_measured_share = 0.5F;  ///< fraction of the window's pixels that must have depth; the centre
                                     ///< always must
-  int min_through = 3;              ///< min frames that see through a ghost's sample
-  float min_through_share = 0.1F;   ///< min fraction of these among frames that see it or see through it
+  int min_through = 3;              ///< min number of frames that must see through a ghost's sample
+  /// Min fraction of frames that see through a ghost's sample, among all frames that measure it or see
+  /// through it.
+  float min_through_share = 0.1F;
   /// A connected group of seen-through samples is a ghost if it covers a square of this edge, at two samples
   /// per voxel face. Smaller groups are tracking errors at the edges of static objects.
   float min_extent_m = 0.15F;
-  int max_looks = 170;  ///< max frames used, spread over the recording
+  int max_looks = 170;  ///< max number of frames used, evenly spaced over the recording
 };
 
-/// Throws Error naming field, value and rule if a setting is out of range.
+/// Throws Error (naming the field, its value and the rule) if a setting is out of range.
 void require_valid(const GhostConfig& config);
 
 }  // namespace roomradar

@@ -40,9 +40,10 @@ using GhostProgress = std::function<void(const std::string& note)>;
 GhostRevision remove_ghosts(FrameSource& source, std::span<const FusedFrame> fused, const GhostConfig& config,
                             StaticMap& map, StageTimes& times, const GhostProgress& progress = {});
 
-/// Fuses the surroundings of the removed voxels again, from revision.next on, without the pixels that saw the
-/// departed objects, whose depth had shifted the real surface behind them. Between frames, as when `progress`
-/// is called, map and revision are all state needed to resume. Reads nothing if nothing was removed.
+/// Fuses the surroundings of the removed voxels again, starting with frame revision.next. Leaves out pixels
+/// that measured the departed objects, because these had shifted the surface behind them. Between frames,
+/// e.g. when `progress` is called, `map` and `revision` are the complete state needed to resume. Reads
+/// nothing if nothing was removed.
 ///
 /// @throws Error if the source cannot be rewound
 void refuse_surroundings(FrameSource& source, std::span<const FusedFrame> fused, GhostRevision& revision,

@@ -1,4 +1,5 @@
-// refuse_region.hpp: erases part of the static map and fuses it again from frames of its current state.
+// refuse_region.hpp: erases a region of the static map and fuses it again from frames of the room's present
+// state.
 #pragma once
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -12,14 +13,14 @@
 
 namespace roomradar {
 
-/// The space around a set of points: cells that contain a point, and their neighbours.
+/// Region around a set of points: all grid cells that contain a point, and their 26 neighbours.
 class WorldRegion {
  public:
-  /// @param cell_m  cell size, m, > 0; points are one to two cells inside the region's border
+  /// @param cell_m  edge of a cell, m, > 0; every point is one to two cells inside the region's border
   WorldRegion(std::span<const Eigen::Vector3d> points_world, double cell_m);
 
   [[nodiscard]] bool contains(const Eigen::Vector3d& p_world) const;
-  /// Bounds of all cells; empty without points.
+  /// Returns the bounding box of all cells, m; empty if there are no points.
   [[nodiscard]] const Eigen::AlignedBox3d& box_world() const { return box_world_; }
 
  private:
@@ -28,21 +29,23 @@ class WorldRegion {
   std::unordered_set<std::uint64_t> cells_;
 };
 
-/// A frame, its pose, and the depth of the map's surface there before the change.
+/// A frame, its pose, and the depth that the map predicts at this pose before it is revised.
 struct RegionView {
   Frame frame;
-  DepthImage expected_depth_m;  ///< same size as the frame's depth; 0: no surface in the map
+  DepthImage expected_depth_m;  ///< same size as the frame's depth image; 0: the map has no surface there
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
 };
 
-/// Fuses the map again where frames differ from it, only at pixels whose measured or expected point is in the
-/// region. First erases old data: samples that most frames see through become free, also behind the region
-/// (the far side of a removed object). Samples in the region that frames measure, or right behind what they
-/// measure, are erased to be measured again. Then fuses the selected pixels as StaticMap::fuse() does. Other
-/// pixels change nothing.
+/// Updates a region of the map to the frames. Uses only pixels whose measured point is in the region, or that
+/// measure beyond an expected point in the region. All other pixels change nothing.
 ///
-/// @param views  frames of one static scene; several, because a single frame turns its noise into surface
-/// @return the box (world) in which surface may have appeared or disappeared; empty if nothing changed
+/// First erases samples that these pixels contradict. Samples that more frames see through than measure
+/// become free, even behind the region, e.g. on the far side of a removed object. Samples in the region that
+/// at least one frame measures, within the truncation distance, are erased. Then fuses the pixels as
+/// StaticMap::fuse() does, which measures the erased samples again.
+///
+/// @param views  frames of one static scene; pass several, because a single frame's noise becomes surface
+/// @return the box (world, m) in which surface may have changed; empty if nothing changed
 Eigen::AlignedBox3d refuse_region(StaticMap& map, const WorldRegion& region,
                                   std::span<const RegionView> views);
 

@@ -1,4 +1,4 @@
-// box_tree.hpp: an 8-wide hierarchy of bounding boxes over boxes given in spatial order.
+// box_tree.hpp: 8-wide hierarchy of bounding boxes over a list of spatially ordered boxes.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -11,14 +11,15 @@ namespace roomradar {
 /// Finds the boxes that satisfy a predicate without testing each of them. Building is not thread safe.
 class BoxTree {
  public:
-  /// O(n); allocates nothing if an earlier build had at least as many boxes. The closer consecutive boxes
-  /// lie, the more is pruned.
+  /// Builds the hierarchy in O(n); allocates nothing if an earlier build had at least as many boxes. Groups
+  /// consecutive boxes, so visits skip more if consecutive boxes are close together.
   void build(std::span<const Eigen::AlignedBox3d> boxes);
 
   [[nodiscard]] std::size_t size() const { return levels_.empty() ? 0 : levels_.front().count; }
 
-  /// Calls work(index) for each box for which `reaches(box)` is true, in ascending order. If `reaches` is
-  /// true for a box, it must be true for every box around it.
+  /// Calls work(index) for each given box for which `reaches(box)` is true, in ascending order of index.
+  /// `reaches` must be monotonic: if it is true for a box, it must be true for every box that contains that
+  /// box.
   template <typename Reaches, typename Work>
   void visit(const Reaches& reaches, const Work& work) const {
     if (!levels_.empty()) visit_range(levels_.size() - 1, 0, levels_.back().count, reaches, work);
@@ -30,7 +31,7 @@ class BoxTree {
     std::size_t first = 0;
     std::size_t count = 0;
   };
-  std::vector<Eigen::AlignedBox3d> boxes_;  // boxes of all levels, the given ones first
+  std::vector<Eigen::AlignedBox3d> boxes_;  // boxes of all levels; level 0 (the given boxes) is first
   std::vector<Level> levels_;
 
   template <typename Reaches, typename Work>

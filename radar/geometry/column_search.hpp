@@ -1,4 +1,4 @@
-// column_search.hpp: search for the object triangles in a scene triangle's column along the motion.
+// column_search.hpp: finds the object triangles that overlap a scene triangle in projection along the motion.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,15 +11,16 @@
 
 namespace roomradar {
 
-/// A tree in the frame of a motion: origin at the tree's centre, z along the direction of motion, m.
+/// Triangle tree of the object, rotated into the frame of the motion. The frame's origin is the tree's
+/// centre; its z axis is the direction of motion. Unit: m.
 struct TurnedTree {
   const TriangleTree* tree = nullptr;
   Eigen::Matrix3d R_frame_mesh = Eigen::Matrix3d::Identity();
-  double margin_m = 0.0;    ///< boxes are inflated by this
-  double touching_m = 0.0;  ///< closer surfaces touch; see classify_pair()
+  double margin_m = 0.0;    ///< the search inflates boxes by this distance on all sides
+  double touching_m = 0.0;  ///< surfaces closer than this touch; see classify_pair()
 };
 
-/// Returns a triangle in the frame of the motion, with a zero normal.
+/// Returns an object triangle in the frame of the motion, with a zero normal.
 inline FrameTriangle turned_corners(const TurnedTree& object, std::uint32_t triangle) {
   FrameTriangle result;
   const Triangle& t = object.tree->triangles()[triangle];
@@ -36,7 +37,8 @@ inline FrameTriangle turned_triangle(const TurnedTree& object, std::uint32_t tri
   return result;
 }
 
-/// Ranges of a linear function over eight boxes: f(p) = g . p lies in value[i] +- reach[i] over box i.
+/// Range of a linear function f(p) = g . p over each of a node's eight boxes: over box i, f is within
+/// value[i] +- reach[i].
 struct LinearOverBoxes {
   alignas(32) std::array<float, TreeNode::kWidth> value, reach;
 };
@@ -49,20 +51,22 @@ inline void linear_over_boxes(const TreeNode& node, const Eigen::Vector3f& g, Li
   }
 }
 
-/// A node or leaf (count > 0) to be visited, and a lower bound of the gaps in it.
+/// Inner node (count = 0) or leaf (count > 0) that is still to be visited. low_m is a lower bound of the gap,
+/// along the motion, from its triangles to the scene triangle; first and count are as in TreeNode.
 struct PendingNode {
   float low_m;
   std::uint32_t first, count;
 };
 
-/// Scratch memory of searches, and a count of their work.
+/// Scratch memory for searches, and a counter of their cost.
 struct ColumnScratch {
   std::vector<PendingNode> pending;
-  std::uint64_t work = 0;  ///< nodes visited and triangles passed to `leaf`, about 0.1 us each; accumulates
+  /// Number of nodes visited plus triangles passed to `leaf`, about 0.1 us each. Accumulates over searches.
+  std::uint64_t work = 0;
 };
 
-/// Sorts the nodes from `first` on by descending low_m, so the nearest is popped next. Insertion sort: they
-/// are the children of one node.
+/// Sorts the nodes from index `first` on by descending low_m, so the one with the smallest gap is popped
+/// next. Insertion sort, because there are at most eight: the children of one node.
 inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t first) {
   for (std::size_t i = first + 1; i < pending.size(); ++i) {
     for (std::size_t j = i; j > first && pending[j].low_m > pending[j - 1].low_m; --j) {
@@ -71,28 +75,31 @@ inline void put_nearest_last(std::vector<PendingNode>& pending, std::size_t firs
   }
 }
 
-/// A scene triangle's column along the motion, as linear functions of the object's points (mesh frame,
-/// relative to the tree's centre). All bounds include float rounding.
+/// Column that a scene triangle spans along the motion. Its axes, edge and plane are gradients of linear
+/// functions of the object's points p (mesh frame, relative to the tree's centre, m). All bounds include
+/// float rounding.
 struct SceneColumn {
   Eigen::Vector3f x_axis, y_axis, z_axis;
-  float x0, x1, y0, y1, z0, z1;  ///< bounds of the triangle, rounding included, m; z0 and z1 are infinite
-                                 ///< unless is_steep
-  /// A point p with edge . p > edge_reach is outside the projected triangle, beyond its longest edge.
+  /// Bounds of the scene triangle in the frame of the motion, m. z0 and z1 are infinite unless is_steep.
+  float x0, x1, y0, y1, z0, z1;
+  /// Outward direction across the triangle's longest edge: points p with edge . p > edge_reach are beyond
+  /// this edge, so outside the projected triangle.
   Eigen::Vector3f edge;
   float edge_reach;
-  /// Height of the triangle's plane above a point p: offset + plane . p, +- plane_slack. For a triangle seen
-  /// edge-on, the expression is the signed distance from its plane instead. A box farther from that plane
-  /// than -beside does not reach through it.
+  /// Height of the triangle's plane above a point p, along the motion: offset + plane . p, +- plane_slack. If
+  /// is_edge_on, offset + plane . p is instead the signed distance of p from the plane; a box whose distance
+  /// from the plane exceeds -beside does not cross it.
   Eigen::Vector3f plane = Eigen::Vector3f::Zero();
   float offset = 0.0F, plane_slack = std::numeric_limits<float>::infinity();
   float beside = -std::numeric_limits<float>::infinity();
   bool is_edge_on = false;
-  bool is_steep = true;  ///< the triangle's heights bound the gap at least as tightly as its plane
+  /// The plane is nearly parallel to the motion, so the z range of the triangle bounds the gap as well.
+  bool is_steep = true;
 
   SceneColumn(const TurnedTree& object, const FrameTriangle& scene);
 
-  /// Returns a lower bound of the gap between the scene triangle's plane and an object triangle; -infinity if
-  /// the scene triangle is edge-on.
+  /// Returns a lower bound of the gap from an object triangle to the scene triangle's plane, along the
+  /// motion. -infinity if the scene triangle is edge-on.
   [[nodiscard]] float least_gap(const TriangleTree& tree, std::uint32_t triangle) const {
     if (is_edge_on) return -std::numeric_limits<float>::infinity();
     const Eigen::Vector3f centre = tree.centre().cast<float>();
@@ -105,19 +112,21 @@ struct SceneColumn {
 };
 
 /// Visits the object triangles that may overlap `scene` in projection along the motion, smallest possible gap
-/// first.
+/// first. The gap is the height of the scene's surface above the object's, along the motion.
 ///
 /// The gap between the scene triangle's plane and a point is linear in the point, so its minimum and maximum
 /// over a box are exact. If the plane is steep, the heights of box and triangle bound the gap as well. All
-/// bounds include float rounding. If the scene triangle is edge-on, boxes that do not reach through its plane
-/// by touching_m are skipped: their triangles at most slide along the plane (see classify_pair()).
+/// bounds include float rounding. If the scene triangle is edge-on, boxes that do not cross its plane by more
+/// than touching_m are skipped: their triangles at most slide along the plane (see classify_pair()).
 ///
-/// One function: the eight lanes of a node stay in registers between bounds and tests.
+/// Bounds and tests are in one function, so the eight lanes of a node stay in registers.
 ///
-/// @param limit_m   callable without arguments; boxes and triangles without a gap below it are skipped
-/// @param floor_m   boxes without a gap of at least this are skipped
-/// @param leaf      callable with the index of an object triangle
-/// @return true if a box was skipped because it is ahead of the scene by more than -floor_m
+/// @param limit_m   callable without arguments that returns a gap; boxes and triangles whose min gap is not
+///                  below it are skipped
+/// @param floor_m   boxes whose max gap is less than this are skipped
+/// @param leaf      callable that takes the index of an object triangle
+/// @return true if a box was skipped because its max gap is less than floor_m, i.e. the scene triangle is
+///         behind it
 template <typename Limit, typename Leaf>
 bool search_column(const TurnedTree& object, const FrameTriangle& scene, const Limit& limit_m, double floor_m,
                    ColumnScratch& scratch, const Leaf& leaf) {

@@ -1,4 +1,4 @@
-// contact.hpp: first contact of a moving object, with its distance between guaranteed bounds.
+// contact.hpp: first contact of a moving object with the scene, and guaranteed bounds of the distance to it.
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
@@ -8,12 +8,13 @@
 namespace roomradar {
 
 enum class ContactStatus {
-  kInvalidInput,  ///< direction zero or not finite, distance not finite or <= 0, object empty, or a pose not
-                  ///< finite
+  kInvalidInput,  ///< direction zero or not finite, distance not finite or <= 0, object without triangles, or
+                  ///< a pose not finite
   kNoAnswer,      ///< the renderer failed (out of memory, context lost); nothing is known
-  kNoTarget,      ///< no contact found within the distance
+  kNoTarget,      ///< no contact within the queried distance
   kContact,       ///< contact after contact_distance_m >= 0
-  kOverlap,  ///< a surface facing against the motion is already inside the object; contact_distance_m < 0
+  /// The object already overlaps a surface that faces against the motion; contact_distance_m < 0.
+  kOverlap,
 };
 
 /// Kind of a surface that can be touched.
@@ -27,13 +28,13 @@ enum class SurfaceKind {
 };
 constexpr std::size_t kSurfaceKinds = 6;
 
-/// Returns true for surfaces that were never observed. They block from their outside only, so an object that
-/// is inside when they appear, or is placed behind them, can leave.
+/// Returns true for surfaces that are assumed, not observed. They block motion from their outside only. An
+/// object that is already behind such a surface, e.g. when the surface appears, can therefore leave.
 constexpr bool is_one_sided(SurfaceKind touched) {
   return touched == SurfaceKind::kUnknownFrontier || touched == SurfaceKind::kInferredBack;
 }
 
-/// Returns the name used in reports.
+/// Returns the surface kind's name in reports.
 constexpr std::string_view to_string(SurfaceKind touched) {
   switch (touched) {
     case SurfaceKind::kNothing:
@@ -53,21 +54,23 @@ constexpr std::string_view to_string(SurfaceKind touched) {
 }
 
 struct [[nodiscard]] Contact {
-  ContactStatus status = ContactStatus::kInvalidInput;  // unset means failed
-  /// Distance along the direction to contact, m; set for kContact and kOverlap only. Negative for an overlap:
-  /// minus the distance back along the direction until the object is clear of surfaces that face against the
-  /// motion.
+  ContactStatus status = ContactStatus::kInvalidInput;  // a default-constructed Contact means failed
+  /// Distance along the direction to contact, m; valid for kContact and kOverlap only. For kOverlap it is
+  /// negative: the object must move back by -contact_distance_m along the direction to clear the surfaces
+  /// that face against the motion.
   double contact_distance_m = 0.0;
-  /// Bounds of the true distance to contact, m. kNoTarget: lower_m is certainly free, at most the queried
-  /// distance, and upper_m is infinite. kOverlap: both are contact_distance_m; if the overlap is too deep to
-  /// be measured (see CyberRadar), lower_m is -infinity.
+  /// Lower bound of the true distance to contact, m. kNoTarget: distance that is certainly free, at most the
+  /// queried distance. kOverlap: contact_distance_m, or -infinity if the overlap is too deep to be measured
+  /// (see CyberRadar).
   double lower_m = 0.0;
+  /// Upper bound of the true distance to contact, m. kNoTarget: infinite. kOverlap: contact_distance_m.
   double upper_m = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< contact point on the scene's surface
+  Eigen::Vector3d point_world = Eigen::Vector3d::Zero();  ///< contact point on the scene's surface, m
   /// Unit normal of the scene's triangle, turned to face the object.
   Eigen::Vector3d normal_world = Eigen::Vector3d::Zero();
   SurfaceKind touched = SurfaceKind::kNothing;
-  double pixel_m = 0.0;  ///< side of a radar pixel: sample spacing across the direction
+  /// Side of a radar pixel, m: spacing of the query's samples across the direction.
+  double pixel_m = 0.0;
 
   /// Returns true for kContact and kOverlap.
   explicit operator bool() const {

@@ -1,13 +1,13 @@
-// frame_along.hpp: orthonormal frame with z along a direction of motion.
+// frame_along.hpp: orthonormal frame with its z axis along a direction of motion.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>
 
 namespace roomradar {
 
-/// Returns the right-handed rotation whose rows are x and y across the direction and the unit direction u
-/// itself. Depends on the direction alone, so equal directions give equal pixels. Source: Duff et al.,
-/// Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
+/// Returns the right-handed rotation into a frame whose z axis is the unit direction u: its rows are the
+/// frame's x, y and z axes. Depends on u alone, so queries with equal directions use equal pixels. Source:
+/// Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
 inline Eigen::Matrix3d frame_along(const Eigen::Vector3d& u) {
   const double sign = std::copysign(1.0, u.z());
   const double a = -1.0 / (sign + u.z());

@@ -1,4 +1,4 @@
-// half_edges.hpp: half-edges of a triangle mesh, and whether they enclose a volume.
+// half_edges.hpp: half-edges of a triangle mesh, and the test whether they enclose a volume.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -8,24 +8,26 @@
 
 namespace roomradar {
 
-/// A triangle's side, on an edge between two positions.
+/// One side of a triangle, as a directed edge between two vertex positions.
 struct HalfEdge {
-  std::uint64_t edge;  ///< key of the undirected edge; equal for all its half-edges
+  std::uint64_t edge;  ///< key of the undirected edge, equal for all half-edges on it
   std::uint32_t side;  ///< 3 * triangle + index of the side's first corner
-  int sense;           ///< +1 or -1: direction along the edge
+  int sense;           ///< +1 or -1: direction of the side along the undirected edge
 };
 
-/// Returns a number per vertex, equal for vertices at the same position. Vertices that are not finite get 0.
+/// Returns a number by vertex, the same for all vertices at the same position. Vertices that are not finite
+/// get 0.
 std::vector<std::uint32_t> numbers_by_place(const std::vector<Eigen::Vector3f>& vertices);
 
-/// Returns the half-edges sorted by edge, without those between vertices at the same position.
-/// @param number  from numbers_by_place()
+/// Returns the half-edges of all triangles, sorted by edge. Omits half-edges whose two vertices have the same
+/// position.
+/// @param number  result of numbers_by_place()
 std::vector<HalfEdge> half_edges_of(const std::vector<Triangle>& triangles,
                                     const std::vector<std::uint32_t>& number);
 
-/// See TriangleTree::is_closed(). Needs at least one triangle.
-/// @param number  from numbers_by_place()
-/// @param edges   from half_edges_of()
+/// Returns true if the mesh is closed, as defined at TriangleTree::is_closed(). Needs at least one triangle.
+/// @param number  result of numbers_by_place()
+/// @param edges   result of half_edges_of()
 bool encloses_a_volume(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector3f>& vertices,
                        const std::vector<std::uint32_t>& number, const std::vector<HalfEdge>& edges);
 

@@ -1,4 +1,5 @@
-// infinity.hpp: the distance to nothing.
+// infinity.hpp: short name for a number type's infinity, which stands for "no distance limit" or "nothing
+// found".
 #pragma once
 #include <limits>
 

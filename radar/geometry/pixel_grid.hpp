@@ -10,8 +10,9 @@ struct PixelGrid {
   int width_px = 0, height_px = 0;
 };
 
-/// Returns a grid of `resolution_px` pixels along the longer side and as many as needed, at least one, along
-/// the other. A rectangle without area (an object seen edge-on) gets pixels too.
+/// Returns a grid of square pixels that covers the rectangle, with `resolution_px` pixels along the longer
+/// side and at least one along the shorter. A rectangle without area (an object seen edge-on) gets pixels,
+/// too.
 inline PixelGrid fit_pixels(double width_m, double height_m, int resolution_px) {
   constexpr double kLeastSide_m = 1e-6;
   PixelGrid grid;

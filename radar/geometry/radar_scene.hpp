@@ -1,4 +1,4 @@
-// radar_scene.hpp: surfaces that can be touched, given as meshes with trees or as depth images.
+// radar_scene.hpp: scene that an object can touch, as triangle trees with poses and depth images.
 #pragma once
 #include <Eigen/Geometry>
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace roomradar {
 
-/// A mesh with a pose in the world. Does not own the tree, which must outlive it.
+/// A triangle tree with a pose in the world. Does not own the tree, which must outlive the instance.
 struct TreeInstance {
   const TriangleTree* tree = nullptr;
   Eigen::Isometry3d T_world_mesh = Eigen::Isometry3d::Identity();
@@ -24,18 +24,18 @@ inline bool has_surface(const SceneTree& s) {
   return s.instance.tree != nullptr && !s.instance.tree->empty();
 }
 
-/// The surface through a depth image's pixels, triangulated only where a volume projects into the image. Does
-/// not own the images.
+/// Surface of a depth image, triangulated only inside the query's volume. Does not own the images.
 ///
-/// Vertices: every stride-th pixel of every stride-th row that is measured (depth finite and > 0; mask, if
-/// given, not 0), back_project()ed and rounded to float in the camera frame. Each cell of the grid has
-/// corners a (top left), b (top right), c (bottom left) and d (bottom right). Its triangles are a, c, d and
-/// a, d, b, counter-clockwise seen from the camera. A triangle exists if its corners' depths differ by at
-/// most max_jump_m + max_jump_slope * (least depth).
+/// Vertices are the measured pixels of every stride_px-th row and column: depth finite and > 0 and, if a mask
+/// is given, mask not 0. Each vertex is back_project()ed and rounded to float in the camera frame. Each cell
+/// of the grid has corners a (top left), b (top right), c (bottom left) and d (bottom right). Its triangles
+/// are a, c, d and a, d, b, counter-clockwise seen from the camera. A triangle exists if its corners' depths
+/// differ by at most max_jump_m + max_jump_slope * (smallest of the three depths).
 struct SceneDepth {
   const DepthImage* depth_m = nullptr;
-  const MaskImage* mask = nullptr;  ///< same size as depth_m; null: all pixels
-  Intrinsics camera;                ///< only focal lengths and principal point are used, in depth_m's pixels
+  const MaskImage* mask = nullptr;  ///< size of depth_m; null: all measured pixels are used
+  /// Only focal lengths and principal point are used, in pixels of depth_m.
+  Intrinsics camera;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int stride_px = 1;
   float max_jump_m = 0.05F;
@@ -45,12 +45,14 @@ struct SceneDepth {
 
 class SceneBoxes;
 
-/// Instances with a null or empty mesh, and images that are null or empty, are skipped.
+/// All surfaces of a query. Instances with a null or empty tree, and images that are null or empty, are
+/// skipped.
 struct RadarScene {
   std::span<const SceneTree> trees;
   std::span<const SceneDepth> depths;
-  /// Built from these trees at their present poses, so a query visits only the trees near it; null: visits
-  /// all. Pays from some tens of trees on, if many queries share it.
+  /// Optional hierarchy of the boxes of `trees` at their present poses, so a query visits only the trees near
+  /// it. Null: a query visits all trees. Building it is worthwhile from some tens of trees on, if many
+  /// queries share it.
   const SceneBoxes* boxes = nullptr;
 };
 

@@ -6,28 +6,32 @@
 
 namespace roomradar {
 
-/// Crossing of a line along the motion with an object's surface.
+/// Crossing of a line, parallel to the motion, with an object's surface.
 struct Layer {
-  double gap_m;  ///< height of the point above the crossing; negative if the crossing is ahead
-  int way_out;   ///< 1 if the line leaves the solid there, -1 if it enters
+  /// Distance of the query point ahead of the crossing, m; negative if the crossing is ahead of the point.
+  double gap_m;
+  /// 1 if the line, followed along the motion, leaves the solid at the crossing; -1 if it enters the solid.
+  int way_out;
 };
 
-/// Finds all crossings of the object's surface on the line through a point, ahead of it and up to limit_m
-/// behind it.
-/// @return false if the line runs too near an edge to count crossings
+/// Finds all crossings of the object's surface with the line through a point along the motion: those ahead of
+/// the point, and those up to limit_m behind it.
+/// @return false if the line passes an edge too closely to decide which triangles it crosses
 bool layers_at(const TurnedTree& object, const Eigen::Vector3d& point, double limit_m, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 
-/// Returns true if the point of `layers` is in the solid after the object has moved by contact_distance_m.
-/// More exits than entries ahead of the point mean inside, so solids may overlap.
+/// Returns true if the point for which layers_at() found `layers` is inside the solid after the object has
+/// moved by contact_distance_m. It is inside if there are more exits than entries ahead of the point; by this
+/// rule, a mesh's solids may overlap each other.
 bool is_within(const std::vector<Layer>& layers, double contact_distance_m);
 
-/// Returns true if a triangle that does not cross the object's surface is inside its solid, deeper than
-/// touching_m. Counts the crossings ahead of it. False for an object that is not closed.
+/// Returns true if a scene triangle that does not intersect the object's surface is inside the object's
+/// solid, deeper than touching_m. Counts the crossings ahead of a point of the triangle. Returns false if the
+/// object is not closed.
 bool is_inside(const TurnedTree& object, const FrameTriangle& scene, ColumnScratch& scratch,
                std::vector<Layer>& layers);
 
-/// Returns one of five points inside the triangle, at irregular positions.
+/// Returns a point inside the triangle, at one of five irregular barycentric positions, selected by `which`.
 Eigen::Vector3d inner_point(const FrameTriangle& triangle, int which);
 
 }  // namespace roomradar

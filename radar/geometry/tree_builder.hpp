@@ -1,4 +1,4 @@
-// tree_builder.hpp: builds the nodes of a TriangleTree, spatially or in the triangles' given order.
+// tree_builder.hpp: builds the nodes of a TriangleTree, spatially or in the given order of the triangles.
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
@@ -28,23 +28,24 @@ struct FloatBounds {
   }
 };
 
-/// Returns the bounds of a triangle's corners, without rounding margin.
+/// Returns the bounds of a triangle's corners; rounding is not included.
 FloatBounds bounds_of(const Triangle& triangle, const std::vector<Eigen::Vector3f>& vertices);
 
-/// Boxes of nodes are relative to `centre`, and enlarged by rounding_m on all sides.
+/// Frame of the nodes' boxes: boxes are relative to `centre` and enlarged by rounding_m on all sides.
 struct NodeFrame {
   Eigen::Array3f centre;  // m
   float rounding_m;
 };
 
-/// Splits by the surface area heuristic; see TriangleTree::build_by_place().
-/// @param nodes  out: the root is first, children come after their parents
-/// @return the triangles in the order that the leaves refer to, as indices in `triangles`
+/// Builds nodes with the surface area heuristic; see TriangleTree::build_by_place().
+/// @param[out] nodes  the root is first, and children come after their parents
+/// @return indices in `triangles`, in the order in which the leaves refer to them
 std::vector<std::uint32_t> build_nodes_by_place(const std::vector<Triangle>& triangles,
                                                 const std::vector<Eigen::Vector3f>& vertices,
                                                 const NodeFrame& frame, std::vector<TreeNode>& nodes);
 
-/// Groups runs of consecutive triangles; see TriangleTree::build_in_order(). Reuses the memory of `nodes`.
+/// Builds nodes over ranges of consecutive triangles; see TriangleTree::build_in_order(). Reuses the memory
+/// of `nodes`.
 void build_nodes_in_order(const std::vector<Triangle>& triangles,
                           const std::vector<Eigen::Vector3f>& vertices, const NodeFrame& frame,
                           std::vector<TreeNode>& nodes);

@@ -1,4 +1,4 @@
-// tree_pairs.hpp: simultaneous traversal of two trees, for pairs of boxes and finally of triangles.
+// tree_pairs.hpp: simultaneous traversal of two triangle trees, down to pairs of leaves.
 #pragma once
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,11 +15,11 @@
 
 namespace roomradar {
 
-/// A box of a tree, in the frame of the TreePair.
+/// Box of one of the two trees, in the frame of the TreePair, m.
 struct PairBox {
   Eigen::Vector3f centre, half;
-  std::uint32_t first, count;  ///< as in TreeNode; count 0: an inner node
-  bool is_within_faces;        ///< all its triangles lie within flat faces
+  std::uint32_t first, count;  ///< as in TreeNode; count 0 means an inner node
+  bool is_within_faces;        ///< true if all triangles in the box lie within flat faces
 };
 struct PendingPair {
   PairBox object, scene;
@@ -27,8 +27,9 @@ struct PendingPair {
 };
 /// Order in which pairs of boxes are visited.
 enum class PairOrder {
-  kAny,         ///< last found first: fewest pairs pending
-  kLeastFirst,  ///< least key first: if a leaf rules out all keys above a bound, no box above it is opened
+  kAny,  ///< last in, first out: keeps the number of pending pairs smallest
+  /// Smallest key first: once a leaf has lowered the bound, pairs with larger keys are never opened.
+  kLeastFirst,
 };
 
 inline constexpr std::size_t kLeafTriangles = 4;  // max triangles per leaf of a TriangleTree
@@ -37,9 +38,10 @@ inline bool is_usable(const TreeInstance& instance) {
   return instance.tree != nullptr && !instance.tree->empty() && instance.T_world_mesh.matrix().allFinite();
 }
 
-/// Returns true if the spheres around two trees' boxes are farther apart than `than_m`; so are the trees.
+/// Returns true if the bounding spheres of the two trees are farther apart than `than_m`, which implies the
+/// same for the trees.
 inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other, double than_m) {
-  constexpr double kRounding = 1.0 + 1e-5;  // of the boxes' float sizes
+  constexpr double kRounding = 1.0 + 1e-5;  // covers the rounding of half_size() to float
   const auto middle_world = [](const TreeInstance& instance) -> Eigen::Vector3d {
     return instance.T_world_mesh * (instance.tree->origin() + instance.tree->centre());
   };
@@ -50,10 +52,13 @@ inline bool are_farther_apart(const TreeInstance& one, const TreeInstance& other
   return (middle_world(one) - middle_world(other)).squaredNorm() > reached_m * reached_m;
 }
 
-/// A leaf's triangles, computed once while calls repeat the same leaf with different boxes of the other tree.
+/// Cache of one leaf's triangles, so they are computed once while consecutive calls pass the same leaf with
+/// different boxes of the other tree.
 class LeafTriangles {
  public:
-  /// @param triangle  callable that returns triangle i of the tree; called only if the leaf has changed
+  /// Returns the leaf's triangles; valid until the next call.
+  /// @param triangle  callable that returns triangle i of the tree; called only if the leaf is another one
+  ///                  than in the previous call
   template <typename MakeTriangle>
   std::span<const FrameTriangle> of(const PairBox& leaf, const MakeTriangle& triangle) {
     assert(leaf.count <= kLeafTriangles);
@@ -70,14 +75,16 @@ class LeafTriangles {
   std::uint32_t first_ = 0, count_ = 0;
 };
 
-/// An object's tree beside one of the scene's trees. Frame: the scene's mesh, with its tree's centre as
-/// origin.
+/// An object's tree and one of the scene's trees, in a common frame: the scene mesh's axes, with the centre
+/// of the scene's tree as origin.
 class TreePair {
  public:
   const TriangleTree& object;
   const TriangleTree& scene;
   Eigen::Isometry3d T_world_frame;
-  Eigen::Isometry3d T_frame_object;  ///< from the object's mesh, relative to its tree's centre
+  /// Transforms points of the object's mesh, relative to the centre of the object's tree, into the common
+  /// frame.
+  Eigen::Isometry3d T_frame_object;
 
   TreePair(const TreeInstance& o, const TreeInstance& s)
       : object(*o.tree),
@@ -86,7 +93,8 @@ class TreePair {
         T_frame_object(T_world_frame.inverse() * o.T_world_mesh *
                        Eigen::Translation3d(object.origin() + object.centre())) {}
 
-  /// Triangles of a leaf; valid until the next call for the same tree.
+  /// Returns the triangles of a leaf of the object's tree, in the common frame; valid until the next call of
+  /// of_object().
   [[nodiscard]] std::span<const FrameTriangle> of_object(const PairBox& leaf) {
     return object_leaf_.of(leaf, [this](std::uint32_t i) { return object_triangle(i); });
   }
@@ -116,13 +124,13 @@ class TreePair {
   }
 };
 
-/// Returns true if a leaf's triangles may bound the other tree's box more tightly than the leaf's own box:
-/// the leaf is more than twice as large.
+/// Returns true if `leaf` is more than twice as large as the box `other`. Its triangles may then bound the
+/// distance to that box more tightly than the leaf's own box does.
 inline bool are_large_against(const PairBox& leaf, const PairBox& other) {
   return leaf.count > 0 && leaf.half.maxCoeff() > 2.0F * other.half.maxCoeff();
 }
 
-/// Returns true if the whole box is behind a triangle's plane.
+/// Returns true if the whole box is behind the triangle's plane.
 inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
   constexpr double kTouching_m = 1e-9;
   return t.normal.dot(box.centre.cast<double>() - t.corners[0]) +
@@ -130,15 +138,15 @@ inline bool is_behind(const FrameTriangle& t, const PairBox& box) {
          -kTouching_m;
 }
 
-/// Visits all pairs of leaves for which key(object box, scene box) is finite, until leaf() returns -infinity.
-/// Skips pairs that both lie within flat faces (see TriangleTree). With PairOrder::kLeastFirst it stops once
-/// no key is less than the last value returned by leaf().
+/// Calls leaf(object box, scene box) for all pairs of leaves whose key(object box, scene box) is finite,
+/// until leaf() returns -infinity. Skips pairs in which both boxes lie within flat faces (see TriangleTree).
+/// With PairOrder::kLeastFirst, stops once all pending keys are at least the value that leaf() returned last.
 template <PairOrder order, typename Key, typename Leaf>
 void visit_pairs(const TreePair& trees, std::vector<PendingPair>& pending, const Key& key, const Leaf& leaf) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
   const TriangleTree& object = trees.object;
   const TriangleTree& scene = trees.scene;
-  // Boxes are enlarged by the rounding of a float rotation and translation.
+  // Boxes are enlarged by the rounding error of transforming them in float.
   const Eigen::Matrix3f R = trees.T_frame_object.linear().cast<float>();
   const Eigen::Matrix3f R_abs = R.cwiseAbs();
   const Eigen::Vector3f t = trees.T_frame_object.translation().cast<float>();
