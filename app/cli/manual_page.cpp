@@ -34,6 +34,7 @@ the map's world (m, z up), velocities in m/s, # begins a comment.
 .nf
 frame 0    add pot teapot size 0.2           # or a mesh file
 frame 10   drop pot view height 0.3          # over a level surface that the camera sees
+frame 11   drop pot near 0.4 -0.1 0.7        # over the one nearest to this point, at most 25 cm away
 time 2.5   drop pot at 0.4 \-0.1 0.75 height 0.3
 time 4     place pot 0.4 \-0.1 0.9            # drop, place, throw may end: turned YAW PITCH ROLL (degrees)
 time 5     throw pot 0.4 \-0.1 1.2 velocity 1 0 0.5

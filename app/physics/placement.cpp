@@ -124,6 +124,7 @@ struct FootprintCells {
     std::ptrdiff_t away;  // offset in the grid
     double x_m, y_m;
     float most_rise_m;  // max height difference from the centre of a surface on which the object can stand
+    bool is_core;       // must be measured
   };
   std::vector<Cell> cells;  // from the rim inwards, since edges show first at the rim
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();  // sums of (1, x, y) (1, x, y)^T
@@ -134,6 +135,7 @@ double steepest_of(const PlacementConfig& config) {
 }
 
 FootprintCells cells_under(double radius_cells, int grid_size, const PlacementConfig& config) {
+  constexpr double kCore_m = 0.06;  // a hole this near the centre could let a small object through
   FootprintCells footprint;
   const int reach = static_cast<int>(std::floor(radius_cells));
   for (int j = -reach; j <= reach; ++j) {
@@ -143,7 +145,8 @@ FootprintCells cells_under(double radius_cells, int grid_size, const PlacementCo
       footprint.moments += row * row.transpose();
       footprint.cells.push_back(
           {static_cast<std::ptrdiff_t>(j) * grid_size + i, row.y(), row.z(),
-           static_cast<float>(2.0 * config.flatness_m + steepest_of(config) * row.tail<2>().norm())});
+           static_cast<float>(2.0 * config.flatness_m + steepest_of(config) * row.tail<2>().norm()),
+           row.tail<2>().norm() <= kCore_m});
     }
   }
   std::stable_sort(footprint.cells.begin(), footprint.cells.end(),
@@ -170,7 +173,7 @@ Footprint footprint_at(const float* top_m, const FootprintCells& footprint, cons
   for (const FootprintCells::Cell& cell : footprint.cells) {
     const float cell_top_m = top_m[cell.away];
     if (cell_top_m == kUnseen) {
-      if (++unseen > most_unseen) return {};
+      if (cell.is_core || ++unseen > most_unseen) return {};
       const Eigen::Vector3d row(1.0, cell.x_m, cell.y_m);
       moments -= row * row.transpose();
       continue;

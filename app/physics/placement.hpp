@@ -10,10 +10,10 @@
 namespace roomradar {
 
 struct PlacementConfig {
-  double cell_m = 0.02;           ///< cell size of the height map made from the view, 0.005 to 0.1
-  double max_tilt_deg = 8.0;      ///< max angle between the surface and the horizontal
-  double flatness_m = 0.015;      ///< max deviation of heights under the footprint from a plane
-  double min_seen = 0.9;          ///< min measured fraction of the footprint
+  double cell_m = 0.02;       ///< cell size of the height map made from the view, 0.005 to 0.1
+  double max_tilt_deg = 8.0;  ///< max angle between the surface and the horizontal
+  double flatness_m = 0.015;  ///< max deviation of heights under the footprint from a plane
+  double min_seen = 0.9;      ///< min measured fraction of the footprint; within 6 cm of its centre all of it
   double room_to_spare_m = 0.05;  ///< free and level margin around the footprint
   double min_range_m = 0.4;       ///< min depth of the surface along the camera's axis
   double max_range_m = 4.0;       ///< max depth of the surface along the camera's axis
